@@ -107,6 +107,10 @@ static enum glint_status parse_table(const char *file,
         status = glint_error_report(error, GLINT_E_FORMAT, file,
                                     "is no lens table; glint lenses lists "
                                     "those that come with glint");
+    else if (status == GLINT_OK && bytes > 5 && memcmp(text, "name:", 5) == 0)
+        status = glint_error_report(error, GLINT_E_FORMAT, file,
+                                    "a lens file of FlareSim; glint import "
+                                    "makes a table of it");
     else if (status == GLINT_OK)
         status = glint_prescription_parse(lens, (const char *)text, bytes, file,
                                           error);

@@ -159,6 +159,10 @@ int tool_option(struct tool *tool, int option, const char *value)
             return -1;
         return tool_usage(tool, "--seed takes a whole number, not '%s'", value);
     default: /* getopt_long has printed the error */
+        if (tool->cause)
+            snprintf(tool->cause->text, sizeof tool->cause->text,
+                     "%s: unknown, ambiguous or without its value",
+                     line && optind > 0 ? line[optind - 1] : "options");
         suggest_option(tool);
         return EXIT_USAGE;
     }
