@@ -79,16 +79,19 @@ feed_with 15 33x17 good-* bad-*
 live corpus --count 60 -o null --stats json
 stop_feed
 
-feed_with 10 320x180 one.jpg cut torn bad-empty two.jpg bad-garbage
+# Loops of 7 and 5 frames: a machine that fetches every second one, or every
+# third, sees all of them.
+feed_with 10 320x180 one.jpg cut torn bad-empty two.jpg bad-garbage one.jpg
 live video --count 20 --no-tracking -o y4m:/tmp/x.y4m --stats json
 mv /tmp/x.y4m /out/video.y4m
 stop_feed
 
-feed_with 30 640x480 large.jpg bad-truncated.jpg
+feed_with 30 640x480 large.jpg bad-truncated.jpg large.jpg large.jpg large.jpg
 start panel --stats json
 wait_for grep -q '"frames":[1-9]' $name.json
 wait_frames $name.json 3
 shot panel
+wait_for grep -q '"corrupt":[1-9]' $name.json
 kill -INT $live
 ended
 stop_feed
