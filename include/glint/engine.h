@@ -183,7 +183,9 @@ struct glint_engine_config {
                           glint_engine_defaults() */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     const struct glint_lens *model; /* kept; the caller sets it */
-    struct glint_workers *workers;  /* kept; NULL: serial. Changes no output */
+    struct glint_workers *workers;  /* must outlive the engine; NULL: one
+                                       thread. The output is the same for any
+                                       number of threads */
     unsigned sets; /* instruction sets, as in glint/flare.h; 0: plain C */
     glint_clock_fn *clock; /* clock; kept; NULL: reports have no times, and no
                               budget is held */

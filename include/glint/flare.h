@@ -45,7 +45,8 @@ extern const struct glint_wave_planner glint_wave_planner;
  * set whose steps are invisible: where outlines of neighbouring waves are
  * close to each other, or faint. */
 struct glint_wave_sets {
-    /* glint_wave_planner; linked only by programs that name it. */
+    /* &glint_wave_planner. It is a pointer so that only programs that use sets
+     * link the planner. */
     const struct glint_wave_planner *planner;
     int n_sets;                    /* 1 .. GLINT_MAX_WAVE_SETS */
     int size[GLINT_MAX_WAVE_SETS]; /* number of waves of each set, 2 or more,

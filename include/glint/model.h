@@ -159,7 +159,8 @@ enum glint_channel {
     GLINT_OUT_STOP_X, /* stop radii */
     GLINT_OUT_STOP_Y,
     GLINT_OUT_ENERGY,
-    GLINT_OUT_RADIUS,   /* the largest relative radius [Bodonyi25] */
+    GLINT_OUT_RADIUS,   /* largest height / semi-diameter of the ray over all
+                           surfaces [Bodonyi25] */
     GLINT_OUT_BARREL_0, /* (1 + r^2) / 2, r = relative radius at a barrel that
                            cuts: above 1 the ray is cut */
     GLINT_OUT_BARREL_1,

@@ -72,7 +72,8 @@ struct calls {
     std::mutex lock;
     std::atomic<int> n{0};
     std::atomic<int> err{-1}; /* glint's standard error while N > 0 */
-    char text[256] = "";      /* message on an abort in the newest call */
+    char text[256] = "";      /* message to print on an abort; names the file of
+                                 the latest call */
 };
 
 inline calls under_way;

@@ -133,8 +133,8 @@ bool glint_y4m_layout_parse(struct glint_y4m_layout *layout, const char *tag);
  * _I444. */
 const char *glint_y4m_layout_tag(enum glint_pixel_format format);
 
-/* Returns whether a stored frame, but for an alpha plane, is a struct
- * glint_image as it is: 8 bits of BT.709. */
+/* Returns whether a stored frame is in the form of a struct glint_image: 8
+ * bits, BT.709, not 4:1:1. An alpha plane may follow. */
 bool glint_y4m_is_plain(const struct glint_y4m_header *header);
 
 /* Sets SIZE to the samples across and down PLANE, 0 .. 3, or to 0 and 0 if
@@ -177,9 +177,10 @@ enum glint_status glint_y4m_reader_open(struct glint_y4m_reader *reader,
                                         const char *path,
                                         struct glint_error *error);
 
-/* Opens PATH as frames of HEADER without any lines, as programs of cameras
- * write them: planes whose rows of luma begin STRIDE bytes apart, those of
- * narrower chroma half of that; 0: rows without padding. GLINT_E_IO. */
+/* Opens PATH, raw frames in the format of HEADER without header and FRAME
+ * lines, as camera programs write them. Rows of luma begin STRIDE bytes apart,
+ * rows of narrower chroma half as far apart; if STRIDE is 0, rows have no
+ * padding. Returns GLINT_E_IO on failure. */
 enum glint_status
 glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
                           const struct glint_y4m_header *header, size_t stride,

@@ -306,8 +306,7 @@ void glint_engine_destroy(struct glint_engine *engine)
     free(engine);
 }
 
-/* ------------------------------------------------------------------ changing
- */
+/* ----------------------------------------------------------------- settings */
 
 const struct glint_view *glint_engine_view(const struct glint_engine *engine)
 {

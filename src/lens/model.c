@@ -49,8 +49,8 @@ enum {
     MIN_EXPONENT = -80,
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
-    /* log2 of the number of intervals of angle at whose ends a box is checked
-     */
+    /* log2 of the number of intervals of angle; each end of an interval is
+     * checked to have a box that is not negative */
     BOX_NODES_LOG2 = 5,
     MAX_SHARED = 8 /* largest size of all tables that systems refer to, in sizes
                       of the file; otherwise systems that share large tables

@@ -340,7 +340,8 @@ int32_t glint_shadow_reaches(const struct glint_scene *scene,
                              const struct glint_met_surface *surface,
                              const int32_t place[3]);
 
-/* Sets AT to where rays from SURFACE start: off that of a mesh. */
+/* Sets AT to the start of rays that leave SURFACE: its position, moved off a
+ * mesh by GLINT_SCENE_LIFT along the normal of the face. */
 static inline void glint_scene_leave(const struct glint_scene *scene,
                                      const struct glint_met_surface *surface,
                                      int32_t at[3])

@@ -85,8 +85,9 @@ struct glint_layer_span {
 };
 
 struct glint_scene_motions {
-    /* Take the memory of the part, NULL while it is measured, and of a worker.
-     */
+    /* carve allocates the state of motions from ARENA and returns NULL while
+     * ARENA only counts bytes; carve_worker allocates the arrays of one
+     * WORKER. */
     struct glint_motion_state *(*carve)(const struct glint_scene *scene,
                                         struct glint_arena *arena);
     void (*carve_worker)(const struct glint_scene *scene,

@@ -88,8 +88,8 @@ static void unexpose(struct glint_float_image *image, double exposure)
         image->rgb[i] /= (float)exposure;
 }
 
-/* Checks whether the picture NAME may have floats: by its extension, or as a
- * pipe, which has none. */
+/* Returns whether the picture NAME may hold floats: by its extension, or
+ * because it is a pipe ("-"), without an extension. */
 static bool has_floats(const char *name)
 {
     return glint_picture_is_float(name) || strcmp(name, "-") == 0;

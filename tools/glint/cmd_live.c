@@ -290,8 +290,9 @@ static int parse_line(struct line *line)
                                              line->argv[optind]);
 }
 
-/* Refuses files of O, with the configuration file CONFIG (NULL: none), that
- * would be written over each other. Returns -1 or an exit code. */
+/* Rejects options O by which an output would overwrite an input, CONFIG (may be
+ * NULL) or another output. Returns -1 if there is no such output, else an exit
+ * code. */
 static int check_apart(const struct tool *tool, const struct live_options *o,
                        const char *config)
 {
@@ -339,7 +340,7 @@ static int reread(void *ctx, struct tool *tool, struct live_options *into)
     struct line *line = ctx;
 
     (void)tool;
-    /* An open drawing uses none of its strings. */
+    /* Open drawings have no pointers to the strings of AGAIN. */
     config_free(&line->again);
     return parse(line, &line->again, into);
 }

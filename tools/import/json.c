@@ -75,7 +75,7 @@ static void note_others(struct json_lens *j, json_t *element, int line,
     }
 }
 
-/* Reads TEXT and has TAKE take what is in it. */
+/* Parses TEXT as JSON and fills LENS from the root by TAKE. */
 static bool read_text(struct imported *lens, const char *text, size_t bytes,
                       bool (*take)(struct json_lens *j, json_t *root))
 {

@@ -132,7 +132,7 @@ enum glint_scatter_model {
     /* R' = sum over j of h_j(d) f_j(x_o), h_j(u, v) = sum over q of
      * column_jq(v) row_jq(u) */
     GLINT_SCATTER_FACTORED,
-    /* R' = h(d) out(x_o), of which h sums to 1 */
+    /* R' = h(d) out(x_o), where the kernel h sums to 1 */
     GLINT_SCATTER_ALBEDO
 };
 

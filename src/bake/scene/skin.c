@@ -9,7 +9,7 @@
 #include "glint/scene/translucent.h"
 #include "glint/view.h"
 
-/* Fraction of texels that two triangles may have, where charts touch. */
+/* Max fraction of texels whose centres lie inside two triangles. */
 #define MOST_SHARED .02
 
 int glint_skin_material(const struct glint_description *scene,

@@ -8,7 +8,7 @@
 #include "engine/setup/degrees.h"
 #include "engine/setup/dirt.h"
 
-/* Cells a side of the sampling that decides which barrels matter. */
+/* Cells per side of the grid of rays that finds the barrels that cut. */
 enum { SAMPLING = 96 };
 
 static void find_cuts(struct glint_cells *c)

@@ -282,7 +282,8 @@ struct work {
     double a[MOST][MOST], v[MOST][MOST];
 };
 
-/* Makes columns I and J stand at right angles; returns whether they did not. */
+/* Rotates columns I and J until they are orthogonal (a Jacobi step). Returns 0
+ * if they were orthogonal before, else 1. */
 static int part(struct work *w, int i, int j)
 {
     const double p = dot(w->a[i], w->a[i], w->n);

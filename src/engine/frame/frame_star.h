@@ -16,10 +16,8 @@ struct glint_frame_star {
     /* Factor on the star: lamps' powers are multiplied by the frame's scale and
      * by this. 0: there is no star. */
     double share;
-    /* The lamps' extent and power are their own members, unless seen_px of
-     * frame->known is above 0, the white spot with its glare: the power is then
-     * an estimate, which the star may raise. Below 0 their cores are drawn,
-     * too. */
+    /* By seen_px of a lamp in frame->known: above 0, the lamp's power is an
+     * estimate that the star may raise; below 0, the lamp's core is drawn. */
     bool is_bare; /* true: no picture shows the lamps, so their cores are drawn,
                      too */
     bool is_alone; /* true: the star is drawn without ghosts */

@@ -167,8 +167,8 @@ static struct place place_of(const struct draw *d, int y, int x)
     return at;
 }
 
-/* Returns the area of a pixel of LIGHT: by how much it differs from what edges
- * give it. */
+/* Returns by how much LIGHT differs from the light that edges give a pixel, in
+ * units of the sums. */
 static inline int32_t area_of(const struct draw *d, int32_t light_q15)
 {
     const int32_t off_q15 = light_q15 - d->patch.clear * 32768;

@@ -15,7 +15,7 @@ enum {
     SIDE_LOG2 = 3,
     SIDE_Q8 = 256 << SIDE_LOG2,
     LEAST_Q19 = 8,   /* light of a spot, _q16 1 */
-    KEPT = 64,       /* highlights, before those that are near are one */
+    KEPT = 64,       /* max number of highlights before near ones are merged */
     WEIGHT_LOG2 = 26 /* sums of weights are below 2^26 */
 };
 

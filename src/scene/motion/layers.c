@@ -22,7 +22,8 @@ enum {
 /* ---------------------------------------------------------------- projection
  */
 
-/* A plane that lines are cut at: inside it the product is not negative. */
+/* A clipping plane: points whose dot product with BY is 0 or more are
+ * inside. */
 struct side {
     int64_t by[3];
 };

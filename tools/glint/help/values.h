@@ -13,8 +13,8 @@
  * until the next call. Options of the engine are those of glint/options.h. */
 const char *values_of(const char *command, const char *option);
 
-/* Prints the fixed words of what values_of() returns, a line each; of an OPTION
- * of NULL none. */
+/* Prints the fixed words among the values of OPTION, one per line; nothing if
+ * OPTION is NULL. */
 void values_print_words(const char *command, const char *option);
 
 #endif

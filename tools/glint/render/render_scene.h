@@ -15,7 +15,8 @@ struct render_scene {
     int samples; /* 0: the default */
     double exposure_ev;
     bool linear;     /* OUT takes floats */
-    bool is_frames;  /* there are poses, frames or a lens */
+    bool is_frames;  /* true: poses, frames or a lens are given, so that
+                        render_frames() draws */
     bool is_lit;     /* there is an option of the flare */
     bool is_video;   /* --frames FIRST-LAST */
     int first, last; /* frames */
