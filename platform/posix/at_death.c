@@ -59,7 +59,7 @@ static void die(int signal_number)
     raise(signal_number);
 }
 
-static void take_signals(void)
+static void install_signal_handlers(void)
 {
     static const int broken[] = {SIGPIPE, SIGXFSZ};
     struct sigaction old, act = {.sa_handler = SIG_IGN};
@@ -76,22 +76,22 @@ static void take_signals(void)
     atexit(at_exit);
 }
 
-static void take_signals_once(void)
+static void install_signal_handlers_once(void)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
 
-    pthread_once(&once, take_signals);
+    pthread_once(&once, install_signal_handlers);
 }
 
 void glint_at_death_in_library(int (*report)(void))
 {
-    take_signals_once();
+    install_signal_handlers_once();
     __atomic_store_n(&library_report, report, __ATOMIC_SEQ_CST);
 }
 
 bool glint_at_death(glint_at_death_fn *fn)
 {
-    take_signals_once();
+    install_signal_handlers_once();
     for (int i = 0; i < MAX_FN; i++) {
         glint_at_death_fn *none = NULL;
 

@@ -77,7 +77,7 @@ void glint_bright_set_low(struct glint_bright *b, int low)
 
 /* -------------------------------------------------------------------- value */
 
-void glint_bright_go(struct glint_bright *b, int y)
+void glint_bright_seek_row(struct glint_bright *b, int y)
 {
     const struct glint_layout *layout = b->layout;
 

@@ -90,8 +90,8 @@ void glint_bright_set_low(struct glint_bright *b, int low);
  * of it is below low. */
 int glint_bright_scan(struct glint_bright *b, int y);
 
-/* Sets RGB to the linear light, 0 .. white, of pixel X of the row scanned last.
- */
+/* Sets RGB to the linear light, 0 .. white, of pixel X of the row that was
+ * scanned or sought last. */
 void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
 
 /* Returns the step in linear light from the code of LIGHT to the next code of
@@ -99,7 +99,7 @@ void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
 int32_t glint_bright_step_q20(const struct glint_bright *b, int c,
                               int32_t light_q20);
 
-/* Goes to row Y without a scan, for reads. */
-void glint_bright_go(struct glint_bright *b, int y);
+/* Makes Y the row that glint_bright_read() reads, without a scan. */
+void glint_bright_seek_row(struct glint_bright *b, int y);
 
 #endif

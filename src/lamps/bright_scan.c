@@ -697,7 +697,7 @@ int glint_bright_scan(struct glint_bright *b, int y)
     int any, greatest = 0;
 
     b->n_marked = 0;
-    glint_bright_go(b, y);
+    glint_bright_seek_row(b, y);
     any = mark(b);
     /* a last block that is not whole is always read. */
     if (n_blocks * BRIGHT_BLOCK > b->width)

@@ -128,7 +128,7 @@ static void see_ring(const struct window *w, int ring, sample_fn *see,
 
         if (w->y + dy < 0 || w->y + dy >= w->height)
             continue;
-        glint_bright_go(w->bright, w->y + dy);
+        glint_bright_seek_row(w->bright, w->y + dy);
         at.dy = dy;
         if (gap < 0) {
             see_run(w, -end, end, &at, step, see, ctx);
@@ -347,7 +347,7 @@ static int32_t light_at(const struct window *w, int32_t x_q8, int32_t y_q8)
     if (w->x + dx < 0 || w->x + dx >= w->width || w->y + dy < 0 ||
         w->y + dy >= w->height || !is_in(w, dx, dy))
         return -1;
-    glint_bright_go(w->bright, w->y + dy);
+    glint_bright_seek_row(w->bright, w->y + dy);
     glint_bright_read(w->bright, w->x + dx, rgb_q20);
     return q_larger(q_larger(rgb_q20[0], rgb_q20[1]), rgb_q20[2]);
 }

@@ -113,7 +113,7 @@ static int look_around(const struct glint_score *s,
         point_of(sum, d, i, &x, &y);
         if (x < 0 || y < 0 || x >= s->width || y >= s->height)
             continue;
-        glint_bright_go(s->bright, y);
+        glint_bright_seek_row(s->bright, y);
         found_q8[n++] = contrast_at(s, in_q8, x);
     }
     return n;

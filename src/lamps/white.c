@@ -63,7 +63,7 @@ static void count(struct glint_white *w, struct glint_bright *b, int height)
     for (int j = 0; j < ny; j++) {
         struct grid column = grid_of(b->width, nx);
 
-        glint_bright_go(b, row.at);
+        glint_bright_seek_row(b, row.at);
         for (int i = 0; i < nx; i++) {
             w->at_least[bright_value_at(b, column.at)]++;
             grid_next(&column);

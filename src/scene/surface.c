@@ -42,9 +42,10 @@ static int meets(const struct glint_scene *s, uint32_t i,
     return does && met->t < limit;
 }
 
-/* Returns whether rays that start on OBJECT are to ask object I: not a sphere
- * or plane itself, which is convex. */
-static int is_asked(const struct glint_scene *s, uint32_t i, uint32_t object)
+/* Returns whether rays that start on OBJECT may meet object I: a shown object,
+ * no catcher, and not the start itself unless it is a mesh, as spheres and
+ * planes are convex. */
+static int may_be_met(const struct glint_scene *s, uint32_t i, uint32_t object)
 {
     const struct glint_scene_object *o = s->placed[i].object;
 
@@ -62,7 +63,7 @@ int glint_scene_meet(const struct glint_scene *scene,
     for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
         struct glint_met next = {.t = met->t};
 
-        if (is_asked(scene, i, object) &&
+        if (may_be_met(scene, i, object) &&
             meets(scene, i, ray, i == object ? triangle : GLINT_NOTHING, 0,
                   &next)) {
             *met = next;
@@ -79,7 +80,7 @@ int glint_scene_blocks(const struct glint_scene *scene,
     for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
         struct glint_met met = {.t = limit};
 
-        if (is_asked(scene, i, object) &&
+        if (may_be_met(scene, i, object) &&
             meets(scene, i, ray, i == object ? triangle : GLINT_NOTHING, 1,
                   &met))
             return 1;
@@ -94,7 +95,7 @@ int glint_scene_planes_block(const struct glint_scene *scene,
         struct glint_met met;
 
         if (scene->placed[i].object->kind == GLINT_OBJECT_PLANE &&
-            is_asked(scene, i, object) &&
+            may_be_met(scene, i, object) &&
             meets_plane(&scene->placed[i], ray, &met))
             return 1;
     }

@@ -281,7 +281,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o,
 
 static void print_figures(const struct overlay *o)
 {
-    const int drawn = overlay_drawn(o), n = drawn ? drawn : 1;
+    const int drawn = overlay_count_frames(o), n = drawn ? drawn : 1;
 
     fprintf(stderr,
             "%dx%d (find %.1f ms, flare %.1f ms), %d ghosts; flare memory %zu "
@@ -298,7 +298,7 @@ static void print_json(const struct overlay *o,
                        const struct overlay_light *light)
 {
     const double seconds = tool_seconds() - o->figures.started;
-    const int drawn = overlay_drawn(o), n = drawn ? drawn : 1;
+    const int drawn = overlay_count_frames(o), n = drawn ? drawn : 1;
     struct json_writer json = {.to = stdout};
 
     json_write(&json,

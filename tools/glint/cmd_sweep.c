@@ -109,11 +109,11 @@ struct file {
     void (*write)(const struct sweep *s, FILE *file);
 };
 
-static const struct file files[] = {{"sweep.csv", sweep_csv},
-                                    {"front.svg", sweep_svg_front},
-                                    {"dials.svg", sweep_svg_dials},
+static const struct file files[] = {{"sweep.csv", sweep_write_csv},
+                                    {"front.svg", sweep_write_front_svg},
+                                    {"dials.svg", sweep_write_dials_svg},
                                     {"table.md", sweep_names},
-                                    {"index.html", sweep_page}};
+                                    {"index.html", sweep_write_page}};
 
 static int save(const struct sweep *s, const char *folder, const struct file *f)
 {
@@ -134,7 +134,7 @@ static int save_all(const struct sweep *s, const char *folder)
     for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
         code = save(s, folder, &files[i]);
     if (code == EXIT_OK && s->tool->json)
-        sweep_json(s, stdout);
+        sweep_write_json(s, stdout);
     else if (code == EXIT_OK && !s->tool->quiet)
         sweep_names(s, stdout);
     return code;

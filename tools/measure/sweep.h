@@ -153,11 +153,11 @@ void sweep_words(const struct sweep_setting *set, char text[160]);
 /* Returns the index of the name of P's quality, or -1. */
 int sweep_named(const struct sweep_point *p);
 
-void sweep_csv(const struct sweep *s, FILE *file);
-void sweep_json(const struct sweep *s, FILE *file);
-void sweep_svg_front(const struct sweep *s, FILE *file);
-void sweep_svg_dials(const struct sweep *s, FILE *file);
-void sweep_page(const struct sweep *s, FILE *file);
+void sweep_write_csv(const struct sweep *s, FILE *file);
+void sweep_write_json(const struct sweep *s, FILE *file);
+void sweep_write_front_svg(const struct sweep *s, FILE *file);
+void sweep_write_dials_svg(const struct sweep *s, FILE *file);
+void sweep_write_page(const struct sweep *s, FILE *file);
 
 /* Prints the table of named qualities, as Markdown, and which settings of one
  * parameter lie above --quality. */

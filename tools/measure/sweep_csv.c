@@ -24,7 +24,7 @@ static void print_number(FILE *file, double x)
         fprintf(file, "%.7g", x);
 }
 
-void sweep_csv(const struct sweep *s, FILE *file)
+void sweep_write_csv(const struct sweep *s, FILE *file)
 {
     fputs("lens,width,height,lights,angle,kind,dial,quality", file);
     for (int d = 0; d < n_sweep_parameters; d++)
@@ -50,7 +50,7 @@ void sweep_csv(const struct sweep *s, FILE *file)
     }
 }
 
-void sweep_json(const struct sweep *s, FILE *file)
+void sweep_write_json(const struct sweep *s, FILE *file)
 {
     struct json_writer json = {.to = file};
 

@@ -134,17 +134,17 @@ static void strips(const struct sweep *s, FILE *file)
     }
 }
 
-void sweep_page(const struct sweep *s, FILE *file)
+void sweep_write_page(const struct sweep *s, FILE *file)
 {
     html_begin(file, "What accuracy costs",
                "figcaption{max-width:320px}img{width:320px}");
     fputs(head, file);
     table_of_names(s, file);
     fputs("<h2>Error against time</h2>\n", file);
-    sweep_svg_front(s, file);
+    sweep_write_front_svg(s, file);
     table_of_front(s, file);
     fputs("<h2>Each dial by itself</h2>\n", file);
-    sweep_svg_dials(s, file);
+    sweep_write_dials_svg(s, file);
     strips(s, file);
     html_end(file);
 }

@@ -78,7 +78,7 @@ static void draw_panel(struct plot *p, const struct sweep_mean *dot, int n)
 
 /* Plots the means over all cases in which parameters are combined, and each of
  * these cases. */
-void sweep_svg_front(const struct sweep *s, FILE *file)
+void sweep_write_front_svg(const struct sweep *s, FILE *file)
 {
     int n_panels = 1, n, n_dots = 0;
     struct sweep_mean *const dot = sweep_means(s, &n);
@@ -174,7 +174,7 @@ static void draw_parameter(const struct sweep *s, FILE *file, int number, int d)
     }
 }
 
-void sweep_svg_dials(const struct sweep *s, FILE *file)
+void sweep_write_dials_svg(const struct sweep *s, FILE *file)
 {
     bool swept[MAX_PARAMETERS] = {false};
     int n_panels = 0;

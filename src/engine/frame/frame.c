@@ -298,7 +298,7 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
         times[1] = times[2] = now(f);
         glint_flare_bin(f->memory.flare, stats);
         f->plan.n_binned++;
-        if (glint_frame_is_served(f, stats))
+        if (glint_frame_fit_capacity(f, stats))
             break;
         status = f->limits.reserved ? GLINT_OK : glint_frame_regrow(f);
     }

@@ -71,10 +71,11 @@ enum glint_status glint_frame_still(struct glint_frame *frame,
 /* Returns how many ghosts the N bundles of the last frame belong to. */
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 
-/* Returns whether everything fitted; if not, raises the capacities, or makes
- * grids coarser if they would exceed the frame's memory. */
-bool glint_frame_is_served(struct glint_frame *frame,
-                           const struct glint_flare_stats *stats);
+/* Returns true if all of STATS fitted or the memory cannot grow. Else raises
+ * the capacities, or makes grids coarser if capacities would exceed the frame's
+ * memory, and returns false. */
+bool glint_frame_fit_capacity(struct glint_frame *frame,
+                              const struct glint_flare_stats *stats);
 
 /* Returns the bytes that the frame used, as glint_flare_bytes() counts them. */
 size_t glint_frame_bytes_used(const struct glint_frame *frame,

@@ -156,8 +156,8 @@ static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
     return f->limits.is_held = true;
 }
 
-bool glint_frame_is_served(struct glint_frame *f,
-                           const struct glint_flare_stats *s)
+bool glint_frame_fit_capacity(struct glint_frame *f,
+                              const struct glint_flare_stats *s)
 {
     struct glint_flare_config *c = &f->cfg;
     const int bundles = bundles_within(s->need_bundles);
@@ -328,11 +328,11 @@ size_t glint_frame_bytes_needed(const struct glint_frame *f,
                                : glint_flare_bytes(&needed);
 }
 
-/* Returns the millions of instructions that a plan takes for looking at N rays.
- */
-static double looking_minsn(double n)
+/* Returns the millions of instructions for which a plan looks at N_RAYS
+ * rays. */
+static double minsn_to_look_at(double n_rays)
 {
-    return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n;
+    return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n_rays;
 }
 
 static double bound_of(const struct glint_frame *f)
@@ -346,7 +346,7 @@ bool glint_frame_hold_looking(struct glint_frame *f)
     const int waves = glint_frame_has_sets(f) ? f->setup->set_size[0]
                                               : f->setup->n_wavelengths;
     const double light =
-        looking_minsn((double)RAYS * f->setup->n_ghosts * waves);
+        minsn_to_look_at((double)RAYS * f->setup->n_ghosts * waves);
     const int n = f->lights.n;
 
     if (f->limits.most_minsn <= 0)
@@ -434,7 +434,7 @@ bool glint_frame_hold_work(struct glint_frame *f)
     enum { MOST_PLANS = 12 };
     const struct glint_cost_plan plan = glint_frame_plan(f);
     const struct glint_cost cost = glint_cost_of(&plan, &f->dials);
-    const double spent = looking_minsn((double)f->plan.n_looked);
+    const double spent = minsn_to_look_at((double)f->plan.n_looked);
     const double again = spent / f->plan.n_plans;
     const double left = bound_of(f) - spent;
     const struct glint_dials before = f->dials;

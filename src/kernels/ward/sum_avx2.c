@@ -9,8 +9,8 @@
 #define OP(name)     _mm256_##name
 #define WHOLE(name)  _mm256_##name##_si256
 #define REPEAT(x)    _mm256_broadcastsi128_si256(x)
-#define w_up         _mm256_sllv_epi32
-#define w_down       _mm256_srlv_epi32
+#define w_shl_each   _mm256_sllv_epi32
+#define w_shr_each   _mm256_srlv_epi32
 
 static inline W w_gather(const uint32_t *code, W at)
 {

@@ -24,10 +24,10 @@
 #define w_magnitude       vabsq_s32
 #define w_shl             vshlq_n_s32
 #define w_sar             vshrq_n_s32
-#define w_up              vshlq_s32
+#define w_shl_each        vshlq_s32
 #define w_shr(x, n)       S(vshrq_n_u32(U(x), n))
 #define w_shr_all(x, n)   S(vshlq_u32(U(x), vdupq_n_s32(-(n))))
-#define w_down(x, by)     S(vshlq_u32(U(x), vnegq_s32(by)))
+#define w_shr_each(x, by) S(vshlq_u32(U(x), vnegq_s32(by)))
 #define w_above(a, b)     S(vcgtq_s32(a, b))
 #define w_choose(m, a, b) vbslq_s32(U(m), a, b)
 

@@ -12,7 +12,7 @@
 
 /* There is no shift by lanes: returns X times 2^BY, BY 0 .. 15, whose two bytes
  * are looked up. */
-static inline W w_up(W x, W by)
+static inline W w_shl_each(W x, W by)
 {
     const W low =
         _mm_setr_epi8(1, 2, 4, 8, 16, 32, 64, -128, 0, 0, 0, 0, 0, 0, 0, 0);

@@ -113,7 +113,7 @@ static void check_row(struct fixture *f, int y)
 
     memset(&sum, 0, sizeof sum);
     memset(&plain, 0, sizeof plain);
-    glint_bright_go(&f->bright, y);
+    glint_bright_seek_row(&f->bright, y);
     glint_row_light_begin(&f->row);
     for (int i = 0; i < 2; i++)
         glint_row_light_extend(&f->row, &f->bright, ends[i][0], ends[i][1]);

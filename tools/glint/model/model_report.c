@@ -182,7 +182,7 @@ static void print_header(const struct model_file *model)
            model->bytes, model_basis_name(&model->lens),
            (unsigned long)h->key[1], (unsigned long)h->key[0]);
     if (glint_basis_is_lens(h->basis))
-        printf("lights              %s\n", lights[h->basis & 3U]);
+        printf("directions baked    %s\n", lights[h->basis & 3U]);
     printf("focal length        %10.3f mm\n", model_real_of(h->focal_mm));
     printf("back focal length   %10.3f mm\n", model_real_of(h->back_focal_mm));
     printf("entrance pupil      %10.3f mm radius\n",

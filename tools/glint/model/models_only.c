@@ -48,15 +48,16 @@ int stop_mask_read(const struct tool *tool, const char *file,
     return tool_usage(tool, "%s is a picture; this program reads none", file);
 }
 
-/* Reports that there is no model. It is not reached, as all lenses that were
- * opened have one. */
+/* Reports that there is no model. Never reached, as all opened lenses have a
+ * model. */
 enum glint_status opened_table_setup(struct opened_lens *lens,
                                      const struct settings *settings,
                                      const struct stop_option *stop,
                                      struct glint_error *error)
 {
     (void)lens, (void)settings, (void)stop;
-    snprintf(error->text, sizeof error->text, "there is no model");
+    snprintf(error->text, sizeof error->text,
+             "the lens has no model; make one with glint bake");
     return GLINT_E_LENS;
 }
 

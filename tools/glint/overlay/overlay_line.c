@@ -47,7 +47,7 @@ static bool measure_layer(struct drawing *drawing,
     return is_drawn;
 }
 
-int overlay_drawn(const struct overlay *o)
+int overlay_count_frames(const struct overlay *o)
 {
     const int n = o->drawing.run.n_frames;
 
@@ -57,7 +57,7 @@ int overlay_drawn(const struct overlay *o)
 struct overlay_light overlay_light(struct overlay *o)
 {
     struct drawing *drawing = &o->drawing;
-    const int n = overlay_drawn(o);
+    const int n = overlay_count_frames(o);
     struct overlay_light light = {true, o->figures.peak,
                                   n ? o->figures.mean_sum / n : 0};
     struct glint_response_light drawn;
@@ -151,7 +151,8 @@ static void say_brightness(const struct overlay_figures *f, FILE *to)
         say_span(&f->strength, "strength", false, to);
     if (f->exposure.n > 0) {
         say_span(&f->exposure,
-                 f->strength.n > 0 ? ", then exposure" : "exposure", true, to);
+                 f->strength.n > 0 ? ", in other frames exposure" : "exposure",
+                 true, to);
         fputs(" EV", to);
     }
     if (f->gain.min != 1 || f->gain.max != 1)
@@ -272,7 +273,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
 {
     const struct drawing *drawing = &o->drawing;
     const double seconds = tool_seconds() - o->figures.started;
-    const int n = overlay_drawn(o);
+    const int n = overlay_count_frames(o);
 
     fprintf(to, "%s: ", o->output);
     if (n != 1)

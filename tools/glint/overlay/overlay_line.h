@@ -27,7 +27,7 @@ struct overlay_light overlay_light(struct overlay *o);
 
 /* Returns the number of frames that are in the output, without those before
  * the first of --frames. */
-int overlay_drawn(const struct overlay *o);
+int overlay_count_frames(const struct overlay *o);
 
 /* Prints one line, or two if nothing can be seen. */
 void overlay_say(const struct overlay *o, const struct overlay_light *light,

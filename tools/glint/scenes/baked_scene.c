@@ -245,7 +245,8 @@ static void print_text(const struct baked_scene *scene,
            n->triangles, n->vertices, n->cells, n->refs);
     if (scene->report.flat)
         printf("left out     %d triangles without area\n", scene->report.flat);
-    printf("step         %.3g units; places are within half of one, each way\n",
+    printf("step         %.3g units; coordinates are rounded to it, at most "
+           "half a step off\n",
            ldexp(1, -h->unit_log2));
     if (scene->is_text)
         printf("reach        %.4g units from the origin; poses, to %.4g\n",

@@ -86,7 +86,7 @@ static enum glint_status bake(const char *named, const char *from,
 /* Reads the picture or text PATH and bakes it. */
 static enum glint_status
 bake_source(const char *path, const char *written,
-            void (*over)(void *ctx, struct glint_environment_options *),
+            void (*override)(void *ctx, struct glint_environment_options *),
             void *ctx, struct environment_file *file, struct glint_error *error)
 {
     struct glint_environment_options options;
@@ -102,15 +102,15 @@ bake_source(const char *path, const char *written,
             status = tool_find_input(path, source, written, beside, error);
         picture = beside;
     }
-    if (over)
-        over(ctx, &options);
+    if (override)
+        override(ctx, &options);
     return status == GLINT_OK ? bake(path, picture, &options, file, error)
                               : status;
 }
 
 enum glint_status environment_file_read(
     const char *path, const char *written,
-    void (*over)(void *ctx, struct glint_environment_options *), void *ctx,
+    void (*override)(void *ctx, struct glint_environment_options *), void *ctx,
     struct environment_file *file, struct glint_error *error)
 {
     char self[TOOL_PATH_BYTES];
@@ -121,7 +121,7 @@ enum glint_status environment_file_read(
     *file = (struct environment_file){.data = NULL};
     status = tool_find_input("", path, written, self, error);
     if (status == GLINT_OK && environment_file_is_source(path)) {
-        status = bake_source(path, written, over, ctx, file, error);
+        status = bake_source(path, written, override, ctx, file, error);
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
@@ -137,8 +137,8 @@ enum glint_status environment_file_read(
 }
 
 int environment_file_open(const struct tool *tool, const char *path,
-                          void (*over)(void *ctx,
-                                       struct glint_environment_options *),
+                          void (*override)(void *ctx,
+                                           struct glint_environment_options *),
                           void *ctx, struct environment_file *file)
 {
     struct glint_error error = {""};
@@ -148,7 +148,7 @@ int environment_file_open(const struct tool *tool, const char *path,
     if (code != EXIT_OK)
         return code;
     status =
-        environment_file_read(path, tool->written, over, ctx, file, &error);
+        environment_file_read(path, tool->written, override, ctx, file, &error);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
@@ -264,7 +264,8 @@ static void print_text(const struct environment_file *file,
     for (uint32_t i = 0; i < h->n_lights; i++) {
         const struct glint_environment_light *l = &file->environment.light[i];
 
-        printf("  toward %7.4f %7.4f %7.4f  radius %5.2f  white in it %.4g "
+        printf("  toward %7.4f %7.4f %7.4f  radius %5.2f  a white surface "
+               "facing it gets %.4g "
                "%.4g %.4g\n",
                ldexp(l->toward_q30[0], -30), ldexp(l->toward_q30[1], -30),
                ldexp(l->toward_q30[2], -30), degrees(l->radius_q30),
@@ -316,7 +317,7 @@ struct line {
     double turn, scale;
 };
 
-static void over(void *ctx, struct glint_environment_options *o)
+static void override_options(void *ctx, struct glint_environment_options *o)
 {
     const struct line *l = ctx;
 
@@ -385,7 +386,8 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
                            &line, "takes one environment");
     if (code >= 0)
         return code;
-    code = environment_file_open(tool, argv[optind], over, &line, &file);
+    code = environment_file_open(tool, argv[optind], override_options, &line,
+                                 &file);
     if (code != EXIT_OK)
         return code;
     code = bake_line_write(tool, file.data, file.bytes);

@@ -22,18 +22,17 @@ bool environment_file_is_source(const char *argument);
 bool environment_file_is_baked(const char *argument);
 
 /* Opens the picture, text or baked file PATH, unless it, or the picture of a
- * text, is the file WRITTEN. OVER, unless NULL, changes the
- * options of what is to be baked, after those of a text were read. _open
- * returns an exit code, after printing the reason on failure, and keeps what
- * TOOL writes. */
+ * text, is the file WRITTEN. OVERRIDE, unless NULL, changes the options of what
+ * is to be baked, after those of a text were read. _open returns an exit code,
+ * after printing the reason on failure, and keeps what TOOL writes. */
 enum glint_status environment_file_read(
     const char *path, const char *written,
-    void (*over)(void *ctx, struct glint_environment_options *), void *ctx,
+    void (*override)(void *ctx, struct glint_environment_options *), void *ctx,
     struct environment_file *file, struct glint_error *error);
 
 int environment_file_open(const struct tool *tool, const char *path,
-                          void (*over)(void *ctx,
-                                       struct glint_environment_options *),
+                          void (*override)(void *ctx,
+                                           struct glint_environment_options *),
                           void *ctx, struct environment_file *file);
 
 void environment_file_close(struct environment_file *file);

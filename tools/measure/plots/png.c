@@ -135,9 +135,9 @@ static struct bytes png_of(const uint8_t *rgb, int width, int height)
     return b;
 }
 
-/* Makes the file of a picture by the image plug-in, compressed; at NULL if it
- * is not there, or cannot. */
-static struct bytes small_png_of(const uint8_t *rgb, int width, int height)
+/* Returns a compressed PNG file, encoded by the image plug-in; at is NULL if
+ * the plug-in is missing or fails. */
+static struct bytes compressed_png_of(const uint8_t *rgb, int width, int height)
 {
     const size_t row = 3 * (size_t)width, n = row * (size_t)height;
     struct glint_oiio_pixels pixels = {.width = width, .height = height};
@@ -162,7 +162,7 @@ static struct bytes small_png_of(const uint8_t *rgb, int width, int height)
 void html_png(FILE *file, const uint8_t *rgb, int width, int height)
 {
     const struct bytes stored = png_of(rgb, width, height);
-    const struct bytes small = small_png_of(rgb, width, height);
+    const struct bytes small = compressed_png_of(rgb, width, height);
     const bool is_small = small.at && (!stored.at || small.n < stored.n);
     const struct bytes b = is_small ? small : stored;
 
