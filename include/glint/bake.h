@@ -46,8 +46,8 @@ struct glint_bake_options {
     int n_beside;
     struct glint_workers
         *workers; /* parallel-for; NULL: serial. Changes no output */
-    /* NULL: silent. Called after each fit with an estimated fraction, which
-     * may fall. */
+    /* called after each fit with an estimated fraction, which may fall; may be
+     * NULL. */
     glint_progress_fn *progress;
     void *progress_ctx;
 };
@@ -59,11 +59,11 @@ void glint_bake_defaults(struct glint_bake_options *options);
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options);
 
-/* Sets PROJECTION to that of LENS at the d line, from chief rays at whole
- * degrees (finer for narrow lenses) up to 85 or the last that gets through.
- * MISS_DEG receives the max error of the polynomial at them. GLINT_E_LENS:
- * LENS is not round, or hardly any light gets through; ERROR states which,
- * and PROJECTION becomes that of a pinhole. */
+/* Sets PROJECTION to the projection of LENS at the d line, from chief rays at
+ * whole degrees (finer for narrow lenses) up to 85 degrees or the last ray that
+ * gets through. MISS_DEG receives the max error of the polynomial at them.
+ * GLINT_E_LENS: LENS is not round, or hardly any light gets through; ERROR
+ * states which, and PROJECTION becomes a pinhole's. */
 enum glint_status glint_projection_of(struct glint_projection *projection,
                                       const struct glint_prescription *lens,
                                       double *miss_deg,

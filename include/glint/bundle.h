@@ -22,10 +22,10 @@ struct glint_vertex {
                            down; within +-GLINT_VERTEX_LIMIT_Q8 */
     int32_t stop_x_q16,
         stop_y_q16; /* position in the stop, stop radii, within +-2^14 */
-    /* (1 + r^2) / 2 at each of two barrels that may cut, where r is the
-     * ray's distance from the axis / semi-diameter: above 1 the ray is cut.
-     * The slope at r = 1 is that of r, and the value is smooth everywhere. 0
-     * .. 2^14; 0: no such barrel. */
+    /* (1 + r^2) / 2 at each of two barrels that may cut, where r is the ray's
+     * distance from the axis / semi-diameter: above 1 the ray is cut. The slope
+     * at r = 1 is the slope of r, and the value is smooth everywhere. 0 ..
+     * 2^14; 0: no such barrel. */
     int32_t barrel_q16[2];
     int32_t energy_q16; /* 0 .. 65536, in the bundle's unit; below 0: the ray is
                            invalid, and the other members are undefined */
@@ -42,7 +42,7 @@ struct glint_bundle {
      * 2^(flux_exponent - 31). */
     int32_t flux_q31; /* 2^30 .. 2^31 - 1, or 0 */
     int flux_exponent;
-    int32_t rgb_q14[3]; /* colour of the wavelength times that of the light,
+    int32_t rgb_q14[3]; /* colour of the wavelength times colour of the light,
                            linear BT.709, -4 .. 4 */
 };
 

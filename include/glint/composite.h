@@ -5,8 +5,8 @@
  *     glint_composite_init(&composite, &image, sets, 0, mem, bytes);  once
  *     glint_composite_add(composite, &image, &layer);       each picture
  *
- * For programs that add their own light: glow, bloom, a lamp. Tables, kernels
- * and rounding are those of flares. Integers only; pixels without light keep
+ * For programs that add their own light: glow, bloom, a lamp. Flares use the
+ * same tables, kernels and rounding. Integers only; pixels without light keep
  * their codes. */
 #ifndef GLINT_COMPOSITE_H
 #define GLINT_COMPOSITE_H
@@ -30,7 +30,7 @@ struct glint_layer {
     ptrdiff_t stride; /* values from row to row */
 };
 
-/* Returns the bytes that init takes. */
+/* Returns the bytes that glint_composite_init() needs. */
 size_t glint_composite_bytes(void);
 
 /* Places tables in MEM[BYTES], aligned to 64, for pictures with the format

@@ -47,7 +47,7 @@ struct glint_dials {
                       of one of three wavelengths, and merged with those of
                       near-by lights, see dimmest of struct glint_flare_frame */
     double star_cull; /* factor on cull_codes for stars, whose ends are smooth
-                         and faint, unlike those of ghosts */
+                         and faint, unlike ends of ghosts */
     double still_px;  /* static tolerance, pixels: a light of a video that moved
                          less reuses its rays; 0: none */
     int dust_log2; /* log2 of the cells per side of the finest table of dust and

@@ -74,24 +74,25 @@ struct glint_engine_lamp glint_engine_lamp_of(const struct glint_lamp *lamp,
 struct glint_frame_rays; /* opaque: a source of rays */
 struct glint_engine_camera {
     /* n_blades: sides of the stop, 3 .. 64, or 0 for a circle;
-     * blade_rotation_deg: angle of its first corner; f_number: 0 for that of
-     * the model, its widest opening. */
+     * blade_rotation_deg: angle of its first corner; f_number: 0 for the
+     * model's, its widest opening. */
     int n_blades;
     double blade_rotation_deg, f_number;
     double sensor_width_mm,
-        sensor_height_mm; /* sensor size, mm; 0: that of the model's film */
+        sensor_height_mm; /* sensor size, mm; 0: size of the model's film */
     const struct glint_projection
         *projection; /* copied; NULL: pinhole projection */
-    /* A setup of the caller instead of the stop above; kept. The caller
-     * calls glint_engine_update_stop() when it changes. NULL: the engine
-     * makes one from the model. */
+    /* A setup of the caller instead of the stop above; must outlive the engine.
+     * The caller calls glint_engine_update_stop() when it changes. NULL: the
+     * engine makes one from the model. */
     const struct glint_setup *setup;
     /* Source of rays without a model, for the lens of SETUP:
      * glint_frame_traces of libglint-bake.a. NULL: a model is required. */
     const struct glint_frame_rays *rays;
-    const struct glint_tint *tints; /* [ghosts of the setup]; kept; NULL: none
-                                     */
-    /* Dirt on the front element, from glint_front_make(); kept; NULL: none. */
+    const struct glint_tint *tints; /* [ghosts of the setup], or NULL; must
+                                       outlive the engine */
+    /* Dirt on the front element, from glint_front_make(), or NULL; must outlive
+     * the engine. */
     const struct glint_front_dirt *front;
 };
 
@@ -168,7 +169,8 @@ struct glint_engine_drawing {
 /* Caches measurements of lenses between runs of a program. KEY identifies
  * the entry; NAME is the lens's. */
 struct glint_engine_cache {
-    /* Reads DATA, [BYTES]; returns 0 if there is no such entry. */
+    /* Reads DATA, [BYTES]; returns 0 if there is no entry of that NAME and
+     * KEY. */
     int (*read)(void *ctx, const char *name, uint64_t key, void *data,
                 size_t bytes);
     void (*write)(void *ctx, const char *name, uint64_t key, const void *data,
@@ -182,12 +184,13 @@ struct glint_engine_config {
     size_t size;       /* sizeof this struct in the program, set by
                           glint_engine_defaults() */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
-    const struct glint_lens *model; /* kept; the caller sets it */
+    const struct glint_lens *model; /* must outlive the engine; the caller sets
+                                       it */
     struct glint_workers *workers;  /* must outlive the engine; NULL: one
                                        thread. The output is the same for any
                                        number of threads */
     unsigned sets; /* instruction sets, as in glint/flare.h; 0: plain C */
-    glint_clock_fn *clock; /* clock; kept; NULL: reports have no times, and no
+    glint_clock_fn *clock; /* may be NULL: then reports have no times, and no
                               budget is held */
     struct glint_engine_camera camera;
     struct glint_engine_search search;
@@ -215,9 +218,9 @@ struct glint_engine_config {
 void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
                                  int width, int height);
 
-/* Sets CFG to the defaults of glint overlay, except for straight blades:
- * those of overlay have a roundness of 0.2, see glint_engine_iris(). The
- * caller still sets the model and the workers. */
+/* Sets CFG to the defaults of glint overlay, except for straight blades: blades
+ * of overlay have a roundness of 0.2, see glint_engine_iris(). The caller still
+ * sets the model and the workers. */
 static inline void glint_engine_defaults(struct glint_engine_config *cfg,
                                          int width, int height)
 {
@@ -290,7 +293,7 @@ struct glint_engine; /* opaque */
 enum glint_status glint_engine_create(struct glint_engine **engine,
                                       const struct glint_engine_config *cfg,
                                       struct glint_error *error);
-/* Frees ENGINE, which may be NULL. */
+/* Frees ENGINE, or does nothing if ENGINE is NULL. */
 void glint_engine_destroy(struct glint_engine *engine);
 
 /* Returns where the pictures lie on the sensor. */
@@ -312,8 +315,8 @@ enum glint_status glint_engine_set_text(struct glint_engine *engine,
 void glint_engine_set_light(struct glint_engine *engine,
                             const struct glint_engine_light *light);
 
-/* Changes the dials of the following pictures, and returns those in use:
- * with a budget, what it chose. */
+/* Changes the dials of the following pictures, and returns the dials in use:
+ * with a budget, the dials it chose. */
 void glint_engine_set_dials(struct glint_engine *engine,
                             struct glint_dials dials);
 struct glint_dials glint_engine_dials(const struct glint_engine *engine);
@@ -324,10 +327,10 @@ void glint_engine_set_only_ghost(struct glint_engine *engine, int ghost);
 /* Changes the budget of an engine that has one. */
 void glint_engine_set_budget(struct glint_engine *engine, double budget_ms);
 
-/* Sets the f-number of the following pictures, at least that of the model,
- * and, unless the exposure is by hand, measures the brightness of the lens's
- * flares again. GLINT_E_ARGUMENT with ERROR: the stop stays as it is.
- * GLINT_E_MEMORY. Not for an engine with a setup of the caller. */
+/* Sets the f-number of the following pictures, at least the model's, and,
+ * unless the exposure is by hand, measures the brightness of the lens's flares
+ * again. GLINT_E_ARGUMENT with ERROR: the stop stays as it is. GLINT_E_MEMORY.
+ * Not for an engine with a setup of the caller. */
 enum glint_status glint_engine_stop(struct glint_engine *engine,
                                     double f_number, struct glint_error *error);
 
@@ -434,9 +437,9 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
                                     struct glint_engine_report *report);
 
 /* Draws PARTS of the flare of the lamps exposed last into RGB,
- * [height][width][3], linear light, row 0 on top. The veil is that of the
- * picture that glint_engine_draw() drew, and must be the first layer.
- * GLINT_E_ARGUMENT, GLINT_E_MEMORY. */
+ * [height][width][3], linear light, row 0 on top. The veil is of the picture
+ * that glint_engine_draw() drew, and must be the first layer. GLINT_E_ARGUMENT,
+ * GLINT_E_MEMORY. */
 enum glint_status glint_engine_draw_layer(struct glint_engine *engine,
                                           const struct glint_engine_lamp *lamps,
                                           int n, unsigned parts, float *rgb,
@@ -460,9 +463,9 @@ enum glint_status glint_engine_render(struct glint_engine *engine,
                                       double gain, unsigned parts, float *rgb,
                                       struct glint_engine_report *report);
 
-/* Sets LIGHT to that of the flare of N LAMPS at a factor of 1 on their
- * powers, measured in a small picture of about 640 x 360 pixels, whose peak
- * is the 99.99th percentile. GLINT_E_MEMORY. */
+/* Sets LIGHT to the light of the flare of N LAMPS at a factor of 1 on their
+ * powers, measured in a picture of about 640 x 360 pixels. The peak is the
+ * 99.99th percentile. GLINT_E_MEMORY. */
 enum glint_status glint_engine_measure(const struct glint_engine *engine,
                                        const struct glint_engine_lamp *lamps,
                                        int n,

@@ -177,7 +177,9 @@ struct glint_reuse;
 extern const struct glint_reuse glint_reuse;
 
 struct glint_flare_config {
-    struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
+    struct glint_workers *workers; /* must outlive the flare; NULL: one thread.
+                                      The output is the same for any number of
+                                      threads */
     unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C
                       (kernels.h). Changes no output */
     int width, height;      /* size of the picture, 1 .. GLINT_MAX_SIDE */

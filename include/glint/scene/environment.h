@@ -77,12 +77,12 @@ struct glint_environment_light {
 /* Begins as every baked file does (src/base/blob.h). */
 struct glint_environment_header {
     uint32_t magic, version;
-    uint32_t bytes;   /* bytes of the whole file */
-    uint32_t crc32;   /* checksum of all after this word: polynomial 0xedb88320,
-                         reflected, begun and ended with all ones */
-    uint32_t variant; /* enum glint_environment_levels */
-    uint32_t key[2];  /* key of the picture and the options, low word first */
-    char name[64];    /* name of the environment, terminated */
+    uint32_t bytes;     /* bytes of the whole file */
+    uint32_t crc32;     /* checksum of all bytes after this word: polynomial
+                           0xedb88320, reflected, begun and ended with all ones */
+    uint32_t variant;   /* enum glint_environment_levels */
+    uint32_t key[2];    /* key of the picture and the options, low word first */
+    char name[64];      /* name of the environment, terminated */
     uint32_t side_log2; /* of level 0: GLINT_ENVIRONMENT_LEAST_LOG2 .. MOST */
     uint32_t code;      /* enum glint_environment_code */
     int32_t unit_log2;  /* -160 .. 100 */

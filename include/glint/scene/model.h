@@ -253,7 +253,8 @@ struct glint_scene_motion {
     int32_t size;  /* of the body, on which sensors stand; steps */
     int32_t shell; /* radius of the shell about a food that is seen, steps; 0:
                       none */
-    int32_t line;  /* width of lines to sensors that see it, steps; 0: none */
+    int32_t line;  /* width of lines to sensors that see it, steps; 0: no
+                      lines */
     int32_t box;   /* the same of the edges of the box of all frames */
     /* Of shells, which let their fraction pass; of lines and box, whose colour
      * alone counts. */
@@ -274,15 +275,16 @@ enum glint_scene_hand { GLINT_HAND_LEFT, GLINT_HAND_RIGHT };
 /* Begins as every baked file does (src/base/blob.h). */
 struct glint_scene_header {
     uint32_t magic, version;
-    uint32_t bytes;   /* bytes of the whole file */
-    uint32_t crc32;   /* checksum of all after this word: polynomial 0xedb88320,
-                         reflected, begun and ended with all ones */
-    uint32_t variant; /* enum glint_scene_hand */
-    uint32_t key[2];  /* key of all texts and what they name, low word first */
-    char name[64];    /* name of the scene, terminated */
-    int32_t unit_log2;         /* -28 .. 60: one unit is 2^unit_log2 steps */
-    uint32_t shadow;           /* 1: lights throw shadows */
-    uint32_t background;       /* enum glint_scene_background */
+    uint32_t bytes;      /* bytes of the whole file */
+    uint32_t crc32;      /* checksum of all bytes after this word: polynomial
+                            0xedb88320, reflected, begun and ended with all ones */
+    uint32_t variant;    /* enum glint_scene_hand */
+    uint32_t key[2];     /* key of all texts and the files they name, low word
+                            first */
+    char name[64];       /* name of the scene, terminated */
+    int32_t unit_log2;   /* -28 .. 60: one unit is 2^unit_log2 steps */
+    uint32_t shadow;     /* 1: lights throw shadows */
+    uint32_t background; /* enum glint_scene_background */
     int32_t background_q15[3]; /* colour, 0 .. 2^30; else 0 */
     struct glint_scene_camera camera;
     uint32_t flare;                    /* 1: the lens sees the lights, else 0 */
@@ -302,7 +304,7 @@ struct glint_scene_header {
     uint32_t n_skins, skin_at;     /* struct glint_scene_skin */
 };
 
-/* An opened file; it points into that, which must outlive it. */
+/* An opened file: points into the file's data, which must outlive it. */
 struct glint_scene_model {
     const struct glint_scene_header *header;
     const struct glint_scene_light *light;
@@ -317,9 +319,9 @@ struct glint_scene_model {
     const struct glint_scene_skin *skin;
 };
 
-/* Checks DATA[BYTES], aligned to 4 bytes, and points MODEL into it. DATA is
- * kept. Takes time in proportion to BYTES and the objects' triangles.
- * GLINT_E_FORMAT: *REASON states what is wrong, in static text. */
+/* Checks DATA[BYTES], aligned to 4 bytes, and points MODEL into DATA, which
+ * must outlive MODEL. Time is in proportion to BYTES and the objects'
+ * triangles. GLINT_E_FORMAT: *REASON states what is wrong, in static text. */
 enum glint_status glint_scene_open(struct glint_scene_model *model,
                                    const void *data, size_t bytes,
                                    const char **reason);

@@ -83,8 +83,8 @@ struct glint_motion_sensor {
 struct glint_motion_header {
     uint32_t magic, version;
     uint32_t bytes;   /* bytes of the whole file */
-    uint32_t crc32;   /* checksum of all after this word: polynomial 0xedb88320,
-                         reflected, begun and ended with all ones */
+    uint32_t crc32;   /* checksum of all bytes after this word: polynomial
+                         0xedb88320, reflected, begun and ended with all ones */
     uint32_t variant; /* enum glint_motion_fit */
     uint32_t key[2];  /* key of the recording and the options, low word first */
     char name[64];    /* name of the motion, terminated */
@@ -138,8 +138,8 @@ struct glint_motion_frame {
 };
 
 /* Checks DATA[BYTES], aligned to 4 bytes, all of it, and opens it where it
- * lies; it is kept. GLINT_E_FORMAT: *REASON states what is wrong, in static
- * text. */
+ * lies; DATA must outlive MOTION. GLINT_E_FORMAT: *REASON states what is wrong,
+ * in static text. */
 enum glint_status glint_motion_open(struct glint_motion *motion,
                                     const void *data, size_t bytes,
                                     const char **reason);
@@ -161,7 +161,8 @@ enum glint_status glint_motion_frame(struct glint_motion *motion, uint32_t k,
 enum glint_status glint_motion_event(struct glint_motion *motion, uint32_t i,
                                      struct glint_motion_event *event);
 
-/* Sets INDEX to entry I, that of frames from i glint_motion_per_block() on. */
+/* Sets INDEX to entry I, the entry of frames from I glint_motion_per_block()
+ * on. */
 enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
                                      struct glint_motion_index *index);
 

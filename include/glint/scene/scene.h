@@ -63,7 +63,9 @@ struct glint_scene_parts {
 };
 
 struct glint_scene_config {
-    struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
+    struct glint_workers *workers; /* must outlive the scene; NULL: one thread.
+                                      The output is the same for any number of
+                                      threads */
     unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C
                       (kernels.h). Changes no output */
     int width, height; /* size of the picture, 1 .. GLINT_MAX_SIDE */
@@ -100,20 +102,20 @@ struct glint_scene; /* opaque, in the caller's memory */
 void glint_scene_defaults(struct glint_scene_config *cfg, int width,
                           int height);
 
-/* Returns the exact number of bytes that init takes, or 0 if CFG is out of
- * range, or MODEL needs a part that CFG does not name. */
+/* Returns the exact number of bytes that glint_scene_init() needs, or 0 if CFG
+ * is out of range or MODEL needs a part that CFG does not name. */
 size_t glint_scene_bytes(const struct glint_scene_config *cfg,
                          const struct glint_scene_model *model);
 
-/* Returns which part MODEL needs and PARTS do not name: "meshes", "textures",
- * "bounces", "wards", "stones" or "motions"; NULL: none. */
+/* Returns the first part that MODEL needs and PARTS do not name: "meshes",
+ * "textures", "bounces", "wards", "stones" or "motions"; NULL: none. */
 const char *glint_scene_lacks(const struct glint_scene_parts *parts,
                               const struct glint_scene_model *model);
 
 /* Places a scene in MEM[BYTES], aligned to 64, which needs no finish. MODEL is
- * copied; what it points into is kept. GLINT_E_MEMORY: BYTES is too small.
- * GLINT_E_UNSUPPORTED: MODEL needs a part that CFG does not name.
- * GLINT_E_FORMAT: its environment or a translucent medium is damaged, as
+ * copied; the file that it points into must outlive the scene. GLINT_E_MEMORY:
+ * BYTES is too small. GLINT_E_UNSUPPORTED: MODEL needs a part that CFG does not
+ * name. GLINT_E_FORMAT: its environment or a translucent medium is damaged, as
  * glint_environment_open() and glint_translucent_open() say. */
 enum glint_status glint_scene_init(struct glint_scene **scene,
                                    const struct glint_scene_config *cfg,
@@ -163,8 +165,8 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
 enum glint_status glint_scene_set_material(struct glint_scene *scene,
                                            int object, int material);
 
-/* Makes RADIUS, steps, that of ball OBJECT. GLINT_E_ARGUMENT: it is not a ball,
- * or that is below 1 or leaves +-GLINT_SCENE_SPAN. */
+/* Sets the radius of ball OBJECT to RADIUS, steps. GLINT_E_ARGUMENT: it is not
+ * a ball, or that is below 1 or leaves +-GLINT_SCENE_SPAN. */
 enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
                                          int32_t radius);
 
@@ -209,7 +211,7 @@ enum glint_scene_kind {
     GLINT_KINDS
 };
 
-/* Returns how many frames the motion of SCENE has; 0: there is none. */
+/* Returns how many frames the motion of SCENE has, 0 if it has no motion. */
 uint32_t glint_scene_frames(const struct glint_scene *scene);
 
 /* Moves body, sensors, foods, attached lamps, and a camera in a sensor to frame

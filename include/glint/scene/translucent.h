@@ -62,19 +62,21 @@ enum glint_translucent_model {
 /* Begins as every baked file does (src/base/blob.h). */
 struct glint_translucent_header {
     uint32_t magic, version;
-    uint32_t bytes;   /* bytes of the whole file */
-    uint32_t crc32;   /* checksum of all after this word: polynomial 0xedb88320,
-                         reflected, begun and ended with all ones */
-    uint32_t variant; /* enum glint_translucent_model */
-    uint32_t key[2];  /* key of the text and what it names, low word first */
-    char name[64];    /* name of the translucent medium, terminated */
+    uint32_t bytes;     /* bytes of the whole file */
+    uint32_t crc32;     /* checksum of all bytes after this word: polynomial
+                           0xedb88320, reflected, begun and ended with all ones */
+    uint32_t variant;   /* enum glint_translucent_model */
+    uint32_t key[2];    /* key of the text and the files it names, low word
+                           first */
+    char name[64];      /* name of the translucent medium, terminated */
     uint32_t side_log2; /* GLINT_TRANSLUCENT_LEAST_LOG2 .. MOST */
     uint32_t kernel;    /* texels each way, odd */
     uint32_t n_planes;  /* of each channel; of albedo 1 */
     uint32_t rank;      /* of each plane */
     uint32_t texel_um;  /* side of a texel, micrometres, 1 .. 10^6 */
     uint32_t index_q16; /* of refraction, 1 .. 3 */
-    /* Codes of f and in: 4 .. 8 bits take a byte each, 9 .. 16 two. */
+    /* Codes of f and in: 4 .. 8 bits are stored in a byte each, 9 .. 16 bits in
+     * two. */
     uint32_t code_bits;
     uint32_t tap_bits; /* 6 .. 16: no tap is 2^(tap_bits - 1) or more */
     /* Factored: f_p = code / 2^(code_bits - 1), signed, [3][n_planes][texels].
@@ -97,7 +99,7 @@ struct glint_translucent_header {
                                   mantissa of 0 */
 };
 
-/* An opened file; it points into that, which must outlive it. */
+/* An opened file: points into the file's data, which must outlive it. */
 struct glint_translucent {
     const struct glint_translucent_header *header;
     const void *code;
@@ -107,8 +109,8 @@ struct glint_translucent {
     const uint16_t *transmit_q15;
 };
 
-/* Checks DATA[BYTES], aligned to 4 bytes, and points STONE into
- * it. DATA is kept. GLINT_E_FORMAT: *REASON states what is wrong, in static
+/* Checks DATA[BYTES], aligned to 4 bytes, and points STONE into DATA, which
+ * must outlive STONE. GLINT_E_FORMAT: *REASON states what is wrong, in static
  * text. */
 enum glint_status glint_translucent_open(struct glint_translucent *stone,
                                          const void *data, size_t bytes,

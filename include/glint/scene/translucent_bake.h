@@ -57,7 +57,7 @@ enum glint_stone_pattern {
     GLINT_STONE_MASK   /* material 0 by the fraction in mask */
 };
 
-/* A slab, of which one face is lit and seen. */
+/* A slab; one face is lit and seen. */
 struct glint_stone {
     int side;        /* texels each way, 1 .. GLINT_SCATTER_MAX_SIDE */
     int kernel;      /* texels each way, odd, 1 .. GLINT_SCATTER_MAX_KERNEL */
@@ -94,11 +94,11 @@ struct glint_scatter_rows {
     double *share; /* [side * side] fraction of material 0; NULL: measured */
 };
 
-/* Computes ROWS of STONE by diffusion in the slab [Jensen01], each
- * entry at least 0, the sum of a row at most 1; R'(x, y - x) = R'(y, x - y).
- * Takes 12 bytes an entry and about 25 MB besides; 128 texels with kernels of
- * 29 take 158 MiB. GLINT_E_ARGUMENT: ERROR names what is out of range.
- * GLINT_E_MEMORY, GLINT_E_CLOSED: ROWS is empty. */
+/* Computes ROWS of STONE by diffusion in the slab [Jensen01], each entry at
+ * least 0, the sum of a row at most 1; R'(x, y - x) = R'(y, x - y). Uses 12
+ * bytes per entry and about 25 MB besides; 128 texels with kernels of 29 use
+ * 158 MiB. GLINT_E_ARGUMENT: ERROR names what is out of range. GLINT_E_MEMORY,
+ * GLINT_E_CLOSED: ROWS is empty. */
 enum glint_status glint_scatter_compute(const struct glint_stone *stone,
                                         const struct glint_watch *watch,
                                         struct glint_scatter_rows *rows,
@@ -116,8 +116,8 @@ enum glint_status glint_scatter_read(const struct glint_float_image *picture,
 
 void glint_scatter_close(struct glint_scatter_rows *rows);
 
-/* Sets RADIOSITY[side * side][3] to what ROWS make of IRRADIANCE, of the same
- * shape. */
+/* Sets RADIOSITY[side * side][3] to the product of ROWS and IRRADIANCE, which
+ * has the same shape. */
 void glint_scatter_light_rows(const struct glint_scatter_rows *rows,
                               const double *irradiance, double *radiosity);
 
