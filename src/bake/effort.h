@@ -26,7 +26,7 @@ struct glint_effort {
     double look;     /* work of finding the angles of a ghost */
     double typical;  /* work of a ghost, before any is known */
     double expected; /* work of all ghosts; 0: unknown */
-    int ghost;       /* index of the last ghost that was begun; -1: none */
+    int ghost;       /* index of the last ghost that was begun; -1: no ghost */
     int n_ended;     /* number of ghosts that worker 0 finished */
     double ended;    /* work of the finished ghosts */
     double work;     /* work of the current ghost of worker 0 */

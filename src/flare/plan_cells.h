@@ -17,7 +17,7 @@ static inline struct glint_real plan_pixels_per_mm(const struct glint_plan *p)
     return x;
 }
 
-/* Returns how many cells a side the grid of a bundle gets that shines with
+/* Returns the cells per side of the grid of a bundle that shines with
  * IRRADIANCE, display white. For an annular box this includes the two rows of
  * cells next to the middle, which carry no light. */
 int glint_plan_cells(const struct glint_plan *plan,
@@ -25,8 +25,8 @@ int glint_plan_cells(const struct glint_plan *plan,
                      const struct glint_transfer *transfer,
                      struct glint_real irradiance);
 
-/* Sets the sags of PLANNED for a grid of N_CELLS a side and a stop whose
- * outline has the curvature ROUND_Q16, 1 / stop radius. */
+/* Sets the sags of PLANNED for a grid of N_CELLS cells per side and a stop
+ * whose outline has the curvature ROUND_Q16, 1 / stop radius. */
 void glint_plan_sags(struct glint_bundle_plan *planned,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer, int n_cells,

@@ -90,7 +90,8 @@ static inline int glint_flare_add_need(int a, int b)
     return a > INT32_MAX - b ? INT32_MAX : a + b;
 }
 
-/* Returns how many tiles of 2^LOG2 pixels a side cover PIXELS_X x PIXELS_Y. */
+/* Returns how many tiles of 2^LOG2 x 2^LOG2 pixels cover PIXELS_X x
+ * PIXELS_Y. */
 static inline size_t glint_flare_count_tiles(int pixels_x, int pixels_y,
                                              int log2)
 {

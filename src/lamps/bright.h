@@ -78,7 +78,7 @@ void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
                         int width);
 void glint_bright_init(struct glint_bright *b, int width);
 
-/* Prepares for reading IMAGE, which is kept until the next call. */
+/* Prepares for reading IMAGE, which must stay valid until the next call. */
 void glint_bright_begin(struct glint_bright *b,
                         const struct glint_image *image);
 

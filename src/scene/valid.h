@@ -7,7 +7,7 @@
 
 #include "glint/scene/model.h"
 
-/* Returns what is wrong with a camera, or NULL. */
+/* Returns the error of a camera as text, or NULL if it is valid. */
 const char *glint_scene_camera_fault(const struct glint_scene_camera *camera);
 
 /* The same of brushed metal. */

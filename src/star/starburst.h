@@ -118,8 +118,8 @@ struct glint_star_config {
 /* struct glint_star is opaque, in the caller's memory. */
 struct glint_flare;
 
-/* Returns the exact number of bytes that init takes for CFG, or 0 if CFG is out
- * of range. */
+/* Returns the exact number of bytes that glint_star_init() needs for CFG, or 0
+ * if CFG is out of range. */
 size_t glint_star_bytes(const struct glint_star_config *cfg);
 
 /* Places a star in MEM[BYTES], aligned to 64, which needs no finish.
@@ -128,9 +128,9 @@ enum glint_status glint_star_init(struct glint_star **star,
                                   const struct glint_star_config *cfg,
                                   void *mem, size_t bytes);
 
-/* Sets the N lights to draw; TABLES are kept, LIGHTS are not. Lights beyond
- * max_lights are left out, and so is light below FAINTEST, in display white: 0,
- * or 2^-21 and more. */
+/* Sets the N lights to draw. TABLES must stay valid while they are drawn,
+ * LIGHTS need not. Lights beyond max_lights are left out, and so is light below
+ * FAINTEST, in display white: 0, or 2^-21 and more. */
 void glint_star_set(struct glint_star *star,
                     const struct glint_star_tables *tables,
                     const struct glint_star_light *lights, int n,

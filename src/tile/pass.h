@@ -92,8 +92,8 @@ struct glint_blend_rows {
 /* How several passes are blended and cover the picture. It is a table of
  * functions, so that only a program that names it (blend.h) links them. */
 struct glint_blend {
-    /* Has PASS draw ROWS of N_X pixels in front of what passes before it gave,
-     * GIVEN; returns what all give together. */
+    /* Draws ROWS of N_X pixels of PASS in front of GIVEN, the result of the
+     * passes before; returns the result of all. */
     enum glint_given (*add)(const struct glint_pass *pass, void *state,
                             const struct glint_pass_rows *rows,
                             enum glint_given given, int n_x,

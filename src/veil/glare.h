@@ -79,8 +79,8 @@ glint_veil_front_fn glint_veil_front_row;
 struct glint_veil_front {
     glint_veil_front_fn *row; /* glint_veil_front_row */
     int n_x, n_y;             /* GLINT_VEIL_FRONT_NODES() of both sides */
-    /* [n_y][n_x]: fraction of what is covered at most, at the borders of every
-     * fourth pixel. Kept. */
+    /* [n_y][n_x]: cover as a fraction of the max cover, at the borders of every
+     * fourth pixel. Must stay valid while the veil is drawn. */
     const uint16_t *part_q16;
 };
 
@@ -91,8 +91,8 @@ struct glint_flare;
  * size. */
 void glint_veil_cells(int width, int height, int cells[2]);
 
-/* Returns the exact number of bytes that init takes for CFG, or 0 if CFG is out
- * of range. */
+/* Returns the exact number of bytes that glint_veil_init() needs for CFG, or 0
+ * if CFG is out of range. */
 size_t glint_veil_bytes(const struct glint_veil_config *cfg);
 
 /* Places a veil in MEM[BYTES], aligned to 64, which needs no finish.
@@ -116,8 +116,9 @@ void glint_veil_spread(struct glint_veil *veil,
                        const struct glint_veil_spread *spreads, int n);
 
 /* Makes, besides, what a front element spreads: N spreads, whose shares are
- * those where it is covered most. FRONT is kept; NULL: nothing, as before the
- * first call. The veil has to have room for it. */
+ * those where it is covered most. FRONT must stay valid while the veil is
+ * drawn; NULL: the front spreads nothing, as before the first call. The
+ * configuration of the veil must have has_front set. */
 void glint_veil_front(struct glint_veil *veil,
                       const struct glint_veil_front *front,
                       const struct glint_veil_spread *spreads, int n);

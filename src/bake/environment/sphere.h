@@ -43,8 +43,8 @@ double glint_luminance(const double rgb[3]);
 bool glint_sphere_open(struct glint_sphere *sphere, int side);
 void glint_sphere_close(struct glint_sphere *sphere);
 
-/* Makes TO, of a side that divides FROM's, the means of FROM. Returns false
- * without memory. */
+/* Makes TO the means of FROM; the side of TO must divide the side of FROM.
+ * Returns false if there is no memory. */
 bool glint_sphere_shrink(struct glint_sphere *to, int side,
                          const struct glint_sphere *from);
 

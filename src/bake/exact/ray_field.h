@@ -43,7 +43,7 @@ struct ray_field_config {
     struct glint_view view;
     bool round;    /* the lens is round */
     int max_cells; /* fineness of the grids, 1 .. 1024 */
-    bool uniform;  /* true: all ghosts get max_cells a side */
+    bool uniform;  /* true: all ghosts get max_cells cells per side */
     /* nm: the ends of the wavelengths and one near the middle. */
     double wave_nm[3];
 };
@@ -57,7 +57,8 @@ struct ray_field {
     int ghost;
     const struct ray_patch *patch;
     struct glint_pupil pupil;
-    int n_cells;     /* cells a side; 0: nothing of it is in the picture */
+    int n_cells;     /* cells per side; 0: no light of the ghost is in the
+                        picture */
     int least_cells; /* fewest that do not step over the opening */
     bool folds;
     int n_cuts, cut_event[RAY_FIELD_CUTS]; /* as chosen by the sampling */

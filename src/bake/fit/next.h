@@ -70,8 +70,8 @@ double glint_next_settled(const struct glint_next_rules *f,
                           const struct glint_zone_piece *p,
                           const struct glint_zone_aim *aim);
 
-/* Returns what to do with P after attempt A. For bright ghosts zones are halved
- * further. */
+/* Returns the next step for P after attempt A. For bright ghosts zones are
+ * halved further. */
 enum glint_next glint_next(const struct glint_next_rules *f,
                            const struct glint_zone_piece *p,
                            const struct glint_attempt *a);

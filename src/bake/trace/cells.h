@@ -36,7 +36,7 @@ struct glint_cells {
     double direction[3];
     /* rotation from the light's frame to the camera's */
     double cos_phi, sin_phi;
-    int n; /* cells a side, even */
+    int n; /* cells per side, even */
     int n_cuts;
     int cut_event[GLINT_MAX_CUTS];
     int stride;   /* number of doubles of a node */

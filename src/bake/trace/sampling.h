@@ -35,7 +35,7 @@ struct glint_sampling {
     bool folds; /* true: some light arrives turned over, some does not */
 };
 
-/* Traces a grid of SIDE cells a side (even, up to GLINT_MAX_SAMPLING) over
+/* Traces a grid of SIDE x SIDE cells (SIDE even, up to GLINT_MAX_SAMPLING) over
  * PUPIL. */
 void glint_sampling_run(struct glint_sampling *sampling,
                         const struct glint_path *path,

@@ -24,8 +24,9 @@ struct glint_openings {
     double stop_mm, field_mm;
 };
 
-/* Sets X_MM to the widest range of the line from FRONT's left to its right on
- * which rays get through, and a little more; returns whether there is one. */
+/* Sets X_MM to the widest range of the line from left to right of FRONT on
+ * which rays get through, and a little more. Returns false if no ray gets
+ * through. */
 bool glint_spot_find(const struct glint_openings *o,
                      const struct glint_pupil *front, double x_mm[2]);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Takes memory with the alignment that the run-time half needs. */
+ * Allocates memory with the alignment that the run-time half needs. */
 #ifndef GLINT_ENGINE_FRAME_BLOCK_H
 #define GLINT_ENGINE_FRAME_BLOCK_H
 

@@ -108,7 +108,7 @@ struct glint_frame_lights {
     int n_apart;  /* lights that can be distinguished */
     int n_beyond; /* lights left out before that, outside the model's range */
     int n_more;   /* lights that are further points of a lamp */
-    /* Factors on the lights; NULL: none. */
+    /* Factors on the lights, or NULL. */
     const int32_t (*gain_q14)[3];
     struct glint_lamp *merged; /* [n]: lamps to be traced, if some merged */
     bool *seen; /* [GLINT_MAX_GHOSTS]: true for ghosts in the last frame */
@@ -158,7 +158,7 @@ struct glint_frame {
     /* As in struct glint_flare_frame; the caller's. The exposure is chosen as
      * if there were none. */
     const struct glint_tint *tints;
-    /* Further knowledge of the lamps that are drawn; NULL: none. */
+    /* Further knowledge of the lamps that are drawn, or NULL. */
     const struct glint_engine_lamp *known;
     struct glint_shade shade; /* the stop's, without its finest tables */
     struct glint_frame_picture picture;

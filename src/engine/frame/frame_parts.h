@@ -40,7 +40,7 @@ bool glint_frame_has_sets(const struct glint_frame *frame);
 /* Makes room for N lights. GLINT_E_MEMORY. */
 enum glint_status glint_frame_hold_lights(struct glint_frame *frame, int n);
 
-/* Takes memory for the table of dim ghosts. GLINT_E_MEMORY. */
+/* Allocates the table of dim ghosts. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_hold_dim(struct glint_frame *frame);
 
 /* Allocates the data of each ghost. GLINT_E_MEMORY. */

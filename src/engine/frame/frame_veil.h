@@ -18,8 +18,8 @@ struct glint_frame_veil {
      * spread over the whole picture, and share that dirt on the front element
      * spreads by 1 to 10 degrees. 0: none. */
     double glare, haze;
-    /* Dirt on the front element, which scatters light like haze, but in discs;
-     * the caller's. NULL: none. */
+    /* Dirt on the front element, which scatters light like haze, but in discs,
+     * or NULL. The caller owns it. */
     const struct glint_front_dirt *front;
     /* Factor on the veil where it is drawn alone, rather than that on the
      * flare; 0: the same. */
@@ -42,8 +42,8 @@ struct glint_frame_veil {
 bool glint_frame_has_veil(const struct glint_frame *frame);
 
 /* Allocates the veil, and makes the table of dirt on the front element unless
- * there is one for the frame's stop. Does nothing if there is no veil.
- * GLINT_E_MEMORY. */
+ * there is a table for the frame's stop. Does nothing if there is no veil.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_veil_hold(struct glint_frame *frame);
 
 /* Reads the light of IMAGE, whose white is WHITE, for the next frame, if that

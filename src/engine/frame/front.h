@@ -62,7 +62,7 @@ struct glint_front_method {
                    const struct glint_veil_spread *spreads, int n);
 };
 
-enum { GLINT_FRONT_SIDE = 512 }; /* cells a side of the front's square */
+enum { GLINT_FRONT_SIDE = 512 }; /* cells per side of the front's square */
 
 struct glint_front_dirt {
     const struct glint_front_method *method;

@@ -8,7 +8,7 @@
 #include "engine/setup/dust.h"
 #include "engine/setup/iris.h"
 
-enum { GLINT_DIRT_LOG2 = 9 }; /* log2 of the cells a side of the table */
+enum { GLINT_DIRT_LOG2 = 9 }; /* log2 of the cells per side of the table */
 
 struct glint_dirt {
     struct glint_shade shade;

@@ -7,8 +7,8 @@
 
 enum { GLINT_DUST_MOST = 512 };
 
-/* A line from end to end with round ends, or a disc if both ends are one place;
- * its rim is soft. */
+/* A line from end to end with round ends, or a disc if both ends are at one
+ * point; its rim is soft. */
 struct glint_speck {
     double end[2][2], radius, rim; /* stop radii */
     double opacity;                /* 0 .. 1, in its middle */

@@ -13,7 +13,7 @@ struct glint_star_optics {
     double rotation_deg, f_number;
     double round, soft; /* as in struct glint_iris */
     double pixel_um;    /* side of a pixel on the sensor, um */
-    /* Dirt in the stop; NULL: none. */
+    /* Dirt in the stop, or NULL. */
     const struct glint_smear *smear;
 };
 

@@ -33,7 +33,7 @@
 enum {
     GLINT_LIGHT_OCTAVES = 45, /* octaves of irradiance _q20 */
     GLINT_HELD_CELLS =
-        64 /* cells a side up to which the mirrored half of a grid is kept */
+        64 /* max cells per side of grids whose mirrored half is stored */
 };
 
 /* Scratch of a worker for two rows of nodes and the cells between them. */

@@ -25,7 +25,7 @@ struct glint_ghost_cell {
     struct glint_outside at[4];
 };
 
-/* Returns node (I, J), which must be in one of the two rows that are kept. */
+/* Returns node (I, J), which must be in one of the two stored rows. */
 static inline const struct glint_vertex *
 ghost_node(const struct glint_ghost_edges *g, int i, int j)
 {
