@@ -34,7 +34,7 @@ struct glint_oiio_file;
 /* The facts of a file beside its pixels. Pointers, and the data behind them,
  * live as long as the file does. */
 struct glint_oiio_facts {
-    const unsigned char *icc; /* ICC profile; NULL: none */
+    const unsigned char *icc; /* ICC profile, or NULL */
     size_t icc_bytes;
     char colour_space[32]; /* OpenImageIO's name of it, or "" */
     double gamma;          /* gamma that the file states by itself, or 0 */

@@ -39,7 +39,7 @@ struct glint_y4m_sink {
     struct glint_image like; /* the first frame, without its memory */
     struct glint_image planes;
     struct glint_row_rgb row;
-    void *mem; /* memory of planes and row; NULL: none is needed */
+    void *mem; /* memory of planes and row; NULL if unused */
     struct glint_y4m_writer writer;
 };
 

@@ -40,8 +40,8 @@ enum glint_output_kind {
 struct glint_output {
     int fd;           /* -1: closed */
     const char *name; /* name for errors; not owned */
-    char *target;     /* file that commit replaces; NULL: none */
-    char *tmp;        /* temporary file in its place; NULL: none */
+    char *target;     /* file that commit replaces, or NULL */
+    char *tmp;        /* temporary file that is written instead, or NULL */
     uint8_t *buffer;  /* Small writes are gathered here. */
     size_t used;      /* bytes in buffer */
     int failed;       /* errno of the first write that failed, or 0 */

@@ -66,8 +66,8 @@ enum glint_status canvas_codes(struct glint_engine *engine,
                                double exposure, uint8_t *codes,
                                struct glint_engine_report *report);
 
-/* Returns what a processor is called, without commas, for tables of what was
- * measured on it; "unknown" if the system does not say. */
+/* Returns the processor's name, without commas, for tables of figures measured
+ * on it; "unknown" if the system does not report it. */
 const char *canvas_machine(void);
 
 /* Returns the median of N values, 1 .. CANVAS_MAX, and leaves VALUES as they

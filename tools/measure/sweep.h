@@ -35,7 +35,8 @@ enum sweep_kind { SWEEP_STANDARD, SWEEP_ALONE, SWEEP_TOGETHER, SWEEP_QUALITY };
 
 struct sweep_setting {
     enum sweep_kind kind;
-    int alone;      /* index of the parameter that alone is set; -1: none */
+    int alone;      /* index of the only parameter that is set; -1: no
+                       parameter */
     double quality; /* --quality, 0 .. 1; -1: not set by it */
     double value[MAX_PARAMETERS];
 };
@@ -92,7 +93,7 @@ struct sweep {
     int n_points;
     struct sweep_picture *picture;
     int n_pictures;
-    /* Rounds of timing, 1 .. SWEEP_ROUNDS; cells a side of the grid of rays
+    /* Rounds of timing, 1 .. SWEEP_ROUNDS; cells per side of the grid of rays
      * that draws the exact picture, 4 .. 1024, even. */
     int rounds, grid;
     bool small;

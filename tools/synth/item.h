@@ -85,7 +85,7 @@ void synth_ranges_defaults(struct synth_ranges *ranges);
 bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
                        struct glint_error *why);
 
-/* Prints every name, its range and law, a line each. */
+/* Prints each name with its range and law, one per line. */
 void synth_ranges_print(FILE *file, const struct synth_ranges *ranges);
 
 /* Writes them as members of an object. */

@@ -55,7 +55,8 @@ struct steer {
     int sensor; /* that the camera is in, or -1 */
 };
 
-/* MODEL is copied; what it points into is kept. GLINT_E_MEMORY. */
+/* MODEL is copied; the file that it points into must outlive STEER. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status steer_open(struct steer *steer,
                              const struct glint_scene_model *model);
 

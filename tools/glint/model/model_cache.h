@@ -18,7 +18,7 @@
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  struct glint_bake_options options, struct model_file *model);
 
-/* Returns whether the model is installed or kept, and need not be baked. */
+/* Returns whether the model is installed or cached, and need not be baked. */
 bool model_is_cached(const struct glint_prescription *lens,
                      const struct glint_bake_options *options);
 
@@ -26,8 +26,8 @@ bool model_is_cached(const struct glint_prescription *lens,
  * long. */
 bool model_cache_name(char *path, size_t bytes, const char *lens, uint64_t key);
 
-/* Sets PATH to where FILE is kept, and makes its folder. Returns false if there
- * is no cache. */
+/* Sets PATH to the path of FILE in the cache, and makes the folder. Returns
+ * false if there is no cache. */
 bool model_cache_path(char *path, size_t bytes, const char *file);
 
 #endif

@@ -9,8 +9,8 @@
 #include "glint/engine.h"
 #include "options/tool.h"
 
-/* Returns the cache, which prints of each entry, if TOOL is verbose, whether it
- * was read or measured. TOOL is kept. */
+/* Returns the cache. If TOOL is verbose, the cache prints for each entry
+ * whether it was read or measured. TOOL must outlive the cache. */
 struct glint_engine_cache response_cache(const struct tool *tool);
 
 #endif

@@ -51,8 +51,8 @@ struct scene_frame {
     double project_ms, map_ms, draw_ms;
 };
 
-/* Takes memory for pictures of MODEL, which is kept. Returns an exit code,
- * after printing the reason on failure. */
+/* Allocates memory for pictures of MODEL, which must outlive FRAME. Returns an
+ * exit code, after printing the reason on failure. */
 int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
                      const struct glint_scene_model *model,
                      const struct scene_dials *dials);

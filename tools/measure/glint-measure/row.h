@@ -23,8 +23,8 @@ struct figure_row {
     double theta, phi; /* direction of the first light, degrees */
     double stops;      /* powers of all lights over white, at an exposure of 1;
                           NAN: the exposure makes the flare white */
-    int dust_log2;     /* cells a side of tables of dust; 0: by quality */
-    int grid;          /* cells a side of the exact picture's rays */
+    int dust_log2;     /* cells per side of tables of dust; 0: by quality */
+    int grid;          /* cells per side of the exact picture's rays */
     int rounds;        /* frames drawn; times are the least of them */
     /* linear: the flare in linear light; codes: in sRGB codes on black; frame:
      * drawn in place onto a dim YUYV frame, as glint bench does. */
