@@ -37,7 +37,8 @@ struct glint_response {
     /* log2 of the light at each angle; -100: there is none. */
     struct glint_response_light log2_of[GLINT_RESPONSE_ANGLES];
     /* Lamps of visible extent: their RMS radii, tangents, rising from 0, and
-     * log2 of the brightest part of their flare over that of a point. */
+     * log2 of the brightest part of their flare / the brightest part of a
+     * point's. */
     double extent[GLINT_RESPONSE_EXTENTS],
         softened_log2[GLINT_RESPONSE_EXTENTS];
     double ms; /* milliseconds that measuring took */
@@ -70,13 +71,13 @@ enum glint_status glint_response_obtain(const struct glint_frame *like,
                                         const struct glint_engine_cache *cache,
                                         struct glint_response *response);
 
-/* Returns the brightest part of the flare of LAMP / that of a point: at most 1,
- * as its ghosts are blurred. */
+/* Returns the brightest part of the flare of LAMP / the brightest part of a
+ * point's flare: at most 1, as the lamp's ghosts are blurred. */
 double glint_response_softening(const struct glint_response *response,
                                 const struct glint_lamp *lamp);
 
-/* Sets LIGHT to that of a point THETA_DEG off the axis. Outside the view it is
- * that at the corner: there the lens itself dims lamps. */
+/* Sets LIGHT to the light of a point THETA_DEG off the axis. Outside the view
+ * it is the light at the corner: there the lens itself dims lamps. */
 void glint_response_at(const struct glint_response *response, double theta_deg,
                        struct glint_response_light *light);
 

@@ -115,7 +115,7 @@ enum glint_status glint_strength_expose_still(struct glint_strength *strength,
                                               const struct glint_ground *ground,
                                               double white);
 
-/* Sets LIGHT to that of the flare of LAMPS by RESPONSE, at scale 1. */
+/* Sets LIGHT to the light of the flare of LAMPS by RESPONSE, at scale 1. */
 void glint_strength_light(const struct glint_response *response,
                           const struct glint_strength_lamps *lamps,
                           struct glint_response_light *light);

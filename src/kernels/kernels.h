@@ -127,8 +127,8 @@ struct glint_quad_kernels {
     glint_add_quads_packed_fn *add_packed;
 };
 
-/* Return the best kernels that the GLINT_SET_ bits SETS allow: those in C if
- * there is no bit, or those of NEON where all CPUs have it (choose.h). */
+/* Return the best kernels that the GLINT_SET_ bits SETS allow: kernels in C if
+ * there is no bit, or NEON kernels where all CPUs have NEON (choose.h). */
 const struct glint_kernels *glint_kernels_of(unsigned sets);
 const struct glint_quad_kernels *glint_quad_kernels_of(unsigned sets);
 

@@ -39,7 +39,7 @@ struct glint_lamp_finder {
     int dropped;
 };
 
-/* Replaces the candidates by those of IMAGE. */
+/* Replaces the candidates by candidates of IMAGE. */
 void glint_lamps_collect(struct glint_lamp_finder *f,
                          const struct glint_image *image);
 

@@ -52,10 +52,10 @@ enum glint_evidence {
     EVIDENCE_SPREAD, /* stops between the quartiles of the contrast close
                         around: large where light does not fall off alike in all
                         directions */
-    EVIDENCE_FILL, /* area over that of a disc of the same RMS radius: 256 for a
-                      disc */
-    EVIDENCE_BOX,  /* area over that of its box: 256 if it fills the box */
-    EVIDENCE_SIZE, /* log2 of its fraction of the picture, 0 or less */
+    EVIDENCE_FILL,   /* area / area of a disc of the same RMS radius: 256 for a
+                        disc */
+    EVIDENCE_BOX,    /* area / area of its box: 256 if it fills the box */
+    EVIDENCE_SIZE,   /* log2 of its fraction of the picture, 0 or less */
     EVIDENCE_COLOUR, /* saturation, 256 if it is one channel alone; less in a
                         large region */
     EVIDENCE_DIM, /* stops by which the picture's median is less than five below

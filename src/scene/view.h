@@ -46,7 +46,7 @@ int glint_view_init(struct glint_scene_view *view,
                     const struct glint_scene_camera *camera, int width,
                     int height, int64_t focal_q16);
 
-/* Sets RAY to that of place (X, Y), and SEEN_Q30 to its direction in camera
+/* Sets RAY to the ray through (X, Y), and SEEN_Q30 to its direction in camera
  * coordinates. */
 void glint_view_ray(const struct glint_scene_view *view, int32_t x_q8,
                     int32_t y_q8, struct glint_scene_ray *ray,
@@ -65,8 +65,9 @@ struct glint_corner glint_view_corner(const struct glint_scene_view *view,
 struct glint_box glint_view_box(const struct glint_scene_view *view,
                                 const int32_t (*v)[3], int n);
 
-/* Sets DEPTH to that of the plane of NORMAL_Q30 through V, both in camera
- * coordinates; returns 0 if the camera is in it. NEAREST is the least z. */
+/* Sets DEPTH to the depth of the plane of NORMAL_Q30 through V, both in camera
+ * coordinates. Returns 0 if the camera is in the plane. NEAREST is the least
+ * z. */
 int glint_view_depth(const struct glint_scene_view *view, const int32_t v[3],
                      const int32_t normal_q30[3], int32_t nearest,
                      struct glint_depth *depth);

@@ -55,7 +55,7 @@ static inline void glint_put_sample(struct glint_scene_worker *w, int x, int y,
 /* Prepares ball P, which is placed. */
 void glint_quick_ball(const struct glint_scene *scene, struct glint_placed *p);
 
-/* Sets RAY to that of place (X, Y), and SEEN_Q30 to its direction in camera
+/* Sets RAY to the ray through (X, Y), and SEEN_Q30 to its direction in camera
  * coordinates, each element off by 2^-24. */
 void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
                      int32_t y_q8, struct glint_scene_ray *ray,
@@ -104,8 +104,8 @@ struct glint_scene_motions {
                               struct glint_box tile);
     /* Lists in W those that may touch its row Y, from back to front. */
     void (*list)(struct glint_scene_worker *w, int y);
-    /* Sets W->over to those of the list over pixel X; returns the end of the
-     * pixels that the same ones are over. */
+    /* Sets W->over to the layers of the list over pixel X. Returns the end of
+     * the pixels that the same layers are over. */
     int (*next)(struct glint_scene_worker *w, int x);
     /* Draws W->over over pixel (X, Y), whose light so far is SUM. */
     void (*over)(const struct glint_scene_worker *w, int x, int y,

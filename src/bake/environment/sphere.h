@@ -23,7 +23,7 @@ struct glint_sphere {
 };
 
 /* Sets TOWARD to the direction of place (U, V), 0 .. 1 across and down the
- * square; returns its solid angle over that of the square. */
+ * square; returns its solid angle / the solid angle of the square. */
 double glint_sphere_toward(double u, double v, double toward[3]);
 
 /* The same of the middle of texel I of a square of SIDE, over that of a texel.

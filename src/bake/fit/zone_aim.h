@@ -17,8 +17,8 @@ struct glint_zone_aim {
     double thin[2]; /* factors on sensor_mm along x and y */
     double stop;    /* tolerance of places in the stop, radii */
     double energy;  /* tolerance of the energy, as a fraction */
-    double ease;    /* tolerance / that of a bright ghost */
-    double share;   /* brightness / that of a bright ghost */
+    double ease;    /* tolerance / tolerance of a bright ghost */
+    double share;   /* brightness / brightness of a bright ghost */
     double hidden;  /* smallest visible position error, in units of sensor_mm */
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pictures as textures: sides that are powers of two, and smaller ones of
- * them. Means are those of light, not of codes. */
+ * Pictures as textures: sides that are powers of two, and smaller ones of them.
+ * Means are of light, not of codes. */
 #ifndef GLINT_BAKE_SCENE_TEXELS_H
 #define GLINT_BAKE_SCENE_TEXELS_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads coatings of a lens table: the words of a `coating`, and those of
- * `mixed-coating`, one word a coating. */
+ * Reads coatings of a lens table: the words of a `coating` and of a
+ * `mixed-coating`, one word per coating. */
 #ifndef GLINT_BAKE_TABLE_COATINGS_H
 #define GLINT_BAKE_TABLE_COATINGS_H
 

@@ -47,8 +47,9 @@ static WHOLLY_INLINE double judge(double so_far, bool fine,
  * round or a cylinder on the axis. N is LANES or 1. */
 void glint_beam_meet_form(struct beam *b, int n, const struct glint_form *form);
 
-/* Refracts rays, or reflects them, where they have met a form. RATIO is that of
- * the indices before it and behind it, OUT are the cosines behind it. */
+/* Refracts rays, or reflects them, where they have met a form. RATIO is the
+ * ratio of the indices before it and behind it, OUT are the cosines behind
+ * it. */
 void glint_beam_cross_form(struct beam *b, int n, bool reflects, double ratio,
                            const double *out);
 

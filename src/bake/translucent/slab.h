@@ -30,7 +30,7 @@ struct glint_slab {
 };
 
 /* Sets SLAB to channel C of a mix of the materials of STONE, with the fraction
- * SHARE of material 0; z_b is that of its own D. */
+ * SHARE of material 0; z_b is computed from the D of the mix. */
 void glint_slab_of(const struct glint_stone *stone, double share, int c,
                    struct glint_slab *slab);
 

@@ -85,8 +85,8 @@ size_t glint_frame_bytes_used(const struct glint_frame *frame,
 size_t glint_frame_bytes_needed(const struct glint_frame *frame,
                                 const struct glint_flare_stats *stats);
 
-/* Sets *SCALE to that of LAMPS as the plan predicts it, without drawing; {0,
- * 0}: there is no light. GLINT_E_MEMORY. */
+/* Sets *SCALE to the scale of LAMPS as the plan predicts it, without drawing,
+ * or to {0, 0} if there is no light. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
                                          const struct glint_lamp *lamps,
                                          int n_lamps,

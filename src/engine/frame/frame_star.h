@@ -34,7 +34,8 @@ struct glint_frame_star {
     struct glint_star_light *light;
     void *mem;
     size_t bytes;             /* of MEM */
-    int max_lights, n_lights; /* room for lights, and those of this frame */
+    int max_lights, n_lights; /* capacity for lights, and number of lights of
+                                 this frame */
     double pixels;            /* pixels that its parts light */
     bool is_set;              /* true: the star is set for this frame */
 };

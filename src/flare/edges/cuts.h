@@ -24,8 +24,8 @@ struct glint_outside {
     uint8_t barrels;
 };
 
-/* Sets SIDES and BARRELS of N nodes in a row. Those of lost nodes are
- * undefined. */
+/* Sets SIDES and BARRELS of N nodes in a row. Sides and barrels of lost nodes
+ * are undefined. */
 void glint_cuts_row(const struct glint_stop *stop,
                     const struct glint_vertex *row, int n, uint64_t *sides,
                     uint8_t *barrels);

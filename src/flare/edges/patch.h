@@ -47,7 +47,7 @@ void glint_patch_read(struct glint_patch *p, const struct glint_edge *edge);
 /* The member draw of struct glint_shade_method. */
 glint_patch_fn glint_patch_draw;
 
-/* Marks N places as those of no edge. */
+/* Fills EDGE[N] with entries that draw nothing. */
 void glint_patch_blank(struct glint_edge *edge, int n);
 
 #endif
