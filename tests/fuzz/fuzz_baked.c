@@ -8,21 +8,10 @@
  *
  *     make fuzz FUZZ=baked SECONDS=120
  */
-#include <stdlib.h>
-#include <string.h>
-
-#include "base/blob.h"
+#include "fuzz/fuzz.h"
 #include "glint/scene/scene.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
 enum { SIDE = 10, ROOM = 1 << 22, ONE_Q30 = 1 << 30 };
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 /* Draws as the scene stands; lights must have fractions of 16. */
 static void draw(struct glint_scene *scene, enum glint_pixel_format format)
@@ -98,19 +87,11 @@ static void use(const struct glint_scene_model *model, int which)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    unsigned char *copy = malloc(size ? size : 1); /* exact, for overruns */
+    unsigned char *copy =
+        fuzz_blob(data, size, GLINT_SCENE_MAGIC, GLINT_SCENE_VERSION);
     struct glint_scene_model model;
     const char *reason = NULL;
-    uint32_t *const word = (void *)copy;
 
-    require(copy != NULL);
-    if (size)
-        memcpy(copy, data, size);
-    if (size >= sizeof(struct glint_blob_header)) {
-        word[0] = GLINT_SCENE_MAGIC;
-        word[1] = GLINT_SCENE_VERSION;
-        glint_blob_seal(copy, size);
-    }
     if (glint_scene_open(&model, copy, size, &reason) != GLINT_OK)
         require(reason && *reason);
     else if (model.header->n_objects <= 16)

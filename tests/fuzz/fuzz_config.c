@@ -7,24 +7,14 @@
  *
  *     make fuzz FUZZ=config SECONDS=60
  */
-#include <stdlib.h>
-#include <string.h>
-
+#include "fuzz/fuzz.h"
 #include "options/config.h"
 #include "options/command_line.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static const struct option options[] = {{"lens", required_argument, NULL, 'L'},
                                         {"tint", optional_argument, NULL, 'T'},
                                         {"dither", no_argument, NULL, 'd'},
                                         TOOL_COMMON_OPTIONS};
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 struct taken {
     int n;

@@ -7,21 +7,11 @@
  *     make fuzz FUZZ=control SECONDS=60
  */
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "control/controls.h"
 #include "control/playback.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
+#include "fuzz/fuzz.h"
 
 static const struct control_form *form_of(enum control_verb verb)
 {

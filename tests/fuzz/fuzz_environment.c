@@ -7,19 +7,9 @@
  *     make fuzz FUZZ=environment SECONDS=60
  */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "base/blob.h"
+#include "fuzz/fuzz.h"
 #include "glint/scene/environment_bake.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 /* Reads all that a lookup may read. */
 static void use(const struct glint_environment *e)
@@ -43,19 +33,11 @@ static void use(const struct glint_environment *e)
 
 static void open_blob(const uint8_t *data, size_t size)
 {
-    unsigned char *copy = malloc(size ? size : 1); /* exact, for overruns */
+    unsigned char *copy = fuzz_blob(data, size, GLINT_ENVIRONMENT_MAGIC,
+                                    GLINT_ENVIRONMENT_VERSION);
     struct glint_environment environment;
     const char *reason = NULL;
-    uint32_t *const word = (void *)copy;
 
-    require(copy != NULL);
-    if (size)
-        memcpy(copy, data, size);
-    if (size >= sizeof(struct glint_blob_header)) {
-        word[0] = GLINT_ENVIRONMENT_MAGIC;
-        word[1] = GLINT_ENVIRONMENT_VERSION;
-        glint_blob_seal(copy, size);
-    }
     if (glint_environment_open(&environment, copy, size, &reason) == GLINT_OK)
         use(&environment);
     else

@@ -7,18 +7,8 @@
  *
  *     make fuzz FUZZ=import SECONDS=60
  */
-#include <stdlib.h>
-#include <string.h>
-
+#include "fuzz/fuzz.h"
 #include "import/imported.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 static char *import(struct imported *lens, const struct import_format *format,
                     const uint8_t *data, size_t size, bool strict,

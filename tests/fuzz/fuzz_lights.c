@@ -8,20 +8,11 @@
  */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "fuzz/fuzz.h"
 #include "lamp_files/lamp_list.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
 enum { ROWS = 50, ROW_BYTES = 300, FRAMES = 3 };
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 static void check_row(const struct lamp_row *r)
 {

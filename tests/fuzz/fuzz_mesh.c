@@ -6,20 +6,9 @@
  *     make fuzz FUZZ=mesh SECONDS=60
  */
 #include <math.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bake/scene/mesh.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
+#include "fuzz/fuzz.h"
 
 static void check(const struct glint_described_triangle *t, int n_names)
 {

@@ -5,18 +5,8 @@
  *
  *     make fuzz FUZZ=mjpeg SECONDS=60
  */
-#include <stdlib.h>
-#include <string.h>
-
+#include "fuzz/fuzz.h"
 #include "jpeg/mjpeg.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 /* Returns a hash of all samples; so the memory checker looks at each. */
 static uint32_t hash_of(const struct glint_image *image)

@@ -9,22 +9,12 @@
  *
  *     make fuzz FUZZ=model SECONDS=120
  */
-#include <stdlib.h>
-#include <string.h>
-
 #include "flare/window.h"
+#include "fuzz/fuzz.h"
 #include "glint/flare.h"
 #include "glint/transfer.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
 enum { ONE = 1 << 30, SLACK = 64 /* units of 2^-30, between two knots */ };
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 static void check_rays(struct glint_transfer *t)
 {
@@ -284,14 +274,10 @@ static void check_zoom(void *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    uint32_t *copy = malloc(size ? size : 1); /* exact, so that an overrun
-                                                 shows */
+    uint32_t *copy = (void *)fuzz_copy(data, size);
     struct glint_lens lens;
     const char *reason = NULL;
 
-    require(copy != NULL);
-    if (size)
-        memcpy(copy, data, size);
     if (size >= 4 && *copy == GLINT_ZOOM_MAGIC) {
         check_zoom(copy, size);
         free(copy);

@@ -7,19 +7,8 @@
  *
  *     make fuzz FUZZ=motion SECONDS=60
  */
-#include <stdlib.h>
-#include <string.h>
-
-#include "base/blob.h"
+#include "fuzz/fuzz.h"
 #include "glint/scene/motion.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 struct file {
     const uint8_t *data;
@@ -71,15 +60,12 @@ static void by_blocks(const uint8_t *data, size_t size,
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    unsigned char *copy = malloc(size ? size : 1); /* exact, for overruns */
+    unsigned char *copy = fuzz_copy(data, size);
     struct glint_motion motion;
     const char *reason = NULL;
     uint32_t *const word = (void *)copy;
     int is_whole;
 
-    require(copy != NULL);
-    if (size)
-        memcpy(copy, data, size);
     if (size >= sizeof(struct glint_motion_header)) {
         word[0] = GLINT_MOTION_MAGIC;
         word[1] = GLINT_MOTION_VERSION;

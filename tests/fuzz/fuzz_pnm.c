@@ -6,21 +6,10 @@
  *
  *     make fuzz FUZZ=pnm SECONDS=60
  */
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "formats/pnm.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#include "fuzz/fuzz.h"
 
 unsigned glint_fuzz_sink; /* keeps reads from being optimised away */
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 static void open_null(struct glint_output *out)
 {

@@ -6,18 +6,9 @@
  *     make fuzz FUZZ=recording SECONDS=60
  */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "fuzz/fuzz.h"
 #include "glint/scene/motion_bake.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 struct text {
     const uint8_t *at;

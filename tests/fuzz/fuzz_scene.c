@@ -8,21 +8,10 @@
  *     make fuzz FUZZ=scene SECONDS=60
  */
 #include <math.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "fuzz/fuzz.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/model.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 struct rest {
     const uint8_t *data;

@@ -7,19 +7,9 @@
  *     make fuzz FUZZ=stone SECONDS=60
  */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "base/blob.h"
+#include "fuzz/fuzz.h"
 #include "glint/scene/stone_bake.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 /* Spreads even light and a checked one over a small translucent medium. */
 static void use(const struct glint_translucent *t)
@@ -39,19 +29,11 @@ static void use(const struct glint_translucent *t)
 
 static void open_blob(const uint8_t *data, size_t size)
 {
-    unsigned char *copy = malloc(size ? size : 1); /* exact, for overruns */
+    unsigned char *copy = fuzz_blob(data, size, GLINT_TRANSLUCENT_MAGIC,
+                                    GLINT_TRANSLUCENT_VERSION);
     struct glint_translucent stone;
     const char *reason = NULL;
-    uint32_t *const word = (void *)copy;
 
-    require(copy != NULL);
-    if (size)
-        memcpy(copy, data, size);
-    if (size >= sizeof(struct glint_blob_header)) {
-        word[0] = GLINT_TRANSLUCENT_MAGIC;
-        word[1] = GLINT_TRANSLUCENT_VERSION;
-        glint_blob_seal(copy, size);
-    }
     if (glint_translucent_open(&stone, copy, size, &reason) != GLINT_OK)
         require(reason && *reason);
     else if (stone.header->side_log2 == GLINT_TRANSLUCENT_LEAST_LOG2)

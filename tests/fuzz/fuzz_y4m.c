@@ -7,20 +7,10 @@
  *
  *     make fuzz FUZZ=y4m SECONDS=60
  */
-#include <stdlib.h>
-#include <string.h>
-
+#include "fuzz/fuzz.h"
 #include "video/y4m.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
 unsigned glint_fuzz_sink; /* keeps reads from being optimised away */
-
-static void require(int condition)
-{
-    if (!condition)
-        abort();
-}
 
 struct memory {
     const uint8_t *data;

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What fuzz targets share. */
+#ifndef GLINT_TESTS_FUZZ_FUZZ_H
+#define GLINT_TESTS_FUZZ_FUZZ_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/blob.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static inline void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+/* Returns a malloc'ed copy of DATA, exactly as long, so that ASan sees an
+ * overrun. */
+static inline unsigned char *fuzz_copy(const uint8_t *data, size_t size)
+{
+    unsigned char *copy = malloc(size ? size : 1);
+
+    require(copy != NULL);
+    if (size)
+        memcpy(copy, data, size);
+    return copy;
+}
+
+/* The same, with magic, version, size and checksum of a blob put right. */
+static inline unsigned char *fuzz_blob(const uint8_t *data, size_t size,
+                                       uint32_t magic, uint32_t version)
+{
+    unsigned char *copy = fuzz_copy(data, size);
+    uint32_t *const word = (void *)copy;
+
+    if (size >= sizeof(struct glint_blob_header)) {
+        word[0] = magic;
+        word[1] = version;
+        glint_blob_seal(copy, size);
+    }
+    return copy;
+}
+
+#endif
