@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pictures to draw on by hand; include after cmocka.h.
+ * Pictures to draw on by hand.
  */
 #ifndef GLINT_TESTS_CANVAS_H
 #define GLINT_TESTS_CANVAS_H

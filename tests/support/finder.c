@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/finder.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "support/canvas.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 struct glint_spot finder_spot[FINDER_SPOTS];
 uint32_t finder_seed = 1;
@@ -27,8 +23,7 @@ int finder_find_at_most(const struct glint_lamp_finder_config *cfg,
     assert_true(bytes > 0);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
     memset(mem, rng_below(&finder_seed, 256), bytes);
-    assert_int_equal(glint_lamp_finder_init(&finder, cfg, mem, bytes),
-                     GLINT_OK);
+    assert_ok(glint_lamp_finder_init(&finder, cfg, mem, bytes));
     n = glint_lamp_finder_find(finder, image, finder_spot, max);
     if (dropped)
         *dropped = glint_lamp_finder_dropped(finder);

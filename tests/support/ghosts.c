@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/ghosts.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/rng.h"
+#include "support/test.h"
 
 /* Normals of an octagon's sides, _q30: cos and sin of 22.5 + 45 k degrees,
  * rounded by hand. As constants they are the same with every libm, and so are
@@ -87,7 +83,7 @@ struct glint_flare *open_flare(struct glint_flare_config *c, void **mem)
     assert_int_not_equal(bytes, 0);
     assert_int_equal(posix_memalign(mem, 64, bytes), 0);
     memset(*mem, 0xa5, bytes); /* Dirty memory shows what init leaves unset. */
-    assert_int_equal(glint_flare_init(&f, c, *mem, bytes), GLINT_OK);
+    assert_ok(glint_flare_init(&f, c, *mem, bytes));
     return f;
 }
 

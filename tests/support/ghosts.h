@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Synthetic ghosts, drawn by the integer rasteriser. Include after cmocka.h.
+ * Synthetic ghosts, drawn by the integer rasteriser.
  */
 #ifndef TESTS_SUPPORT_GHOSTS_H
 #define TESTS_SUPPORT_GHOSTS_H

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lenses, and a check of doubles, for tests. Include after cmocka.h; run from
- * the root of the tree.
+ * Lenses, and a check of doubles, for tests. Run from the root of the tree.
  */
 #ifndef GLINT_TESTS_LENS_CHECK_H
 #define GLINT_TESTS_LENS_CHECK_H
@@ -10,6 +9,7 @@
 #include <stdio.h>
 
 #include "glint/bake.h"
+#include "support/test.h"
 
 /* Checks that |GOT - EXPECTED| <= TOLERANCE in double; cmocka compares floats
  * only. */

@@ -3,7 +3,7 @@
  * The Heliar as a command opens it by default, with its model and settings. Run
  * from the root of the tree.
  *
- *     cmocka_run_group_tests(tests, opened_heliar, opened_close);
+ *     TEST_GROUP(opened_heliar, opened_close);
  */
 #ifndef GLINT_TESTS_OPENED_H
 #define GLINT_TESTS_OPENED_H

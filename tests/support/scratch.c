@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/scratch.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
+
+#include "support/test.h"
 
 char scratch_file[] = "/tmp/glint-test-file-XXXXXX";
 char scratch_dir[] = "/tmp/glint-test-dir-XXXXXX";

@@ -3,7 +3,7 @@
  * Temporary files for a test, below /tmp: either one file, or a folder for any
  * number of files.
  *
- *     cmocka_run_group_tests(tests, scratch_open_dir, scratch_close_dir);
+ *     TEST_GROUP(scratch_open_dir, scratch_close_dir);
  *     scratch_put("a.ppm", BYTES("P6 1 1 255 abc"));
  *     unlink(scratch_path("a.ppm"));
  */

@@ -2,16 +2,13 @@
  *
  * The integer rasteriser against that of [Bodonyi23], on grids made by hand.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "reference/cells/cells.h"
 #include "support/ghosts.h"
+#include "support/test.h"
 
 static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 
@@ -36,12 +33,11 @@ static void add_difference(const struct ghost *g, double *off, double *all)
 
 /* By edges a cell has one irradiance, from the energy in its middle, so the
  * picture must be within 0.6 % of that by cells. */
-static void test_edges_agree_with_cells(void **state)
+TEST(edges_agree_with_cells)
 {
     const struct ghost g = {32, 100, 75, 60, 100, 1, 300, 6, {16384, 0, 0}};
     double off = 0, all = 0;
 
-    (void)state;
     add_difference(&g, &off, &all);
     assert_true(off < 0.006 * all);
     assert_true(total(pixels, 0) > 0.999 * total(want, 0));
@@ -50,11 +46,10 @@ static void test_edges_agree_with_cells(void **state)
 
 /* Cells of two pixels, folded and cut by stop and barrel, must give nearly the
  * light that the reference samples. */
-static void test_small_cells_agree(void **state)
+TEST(small_cells_agree)
 {
     double off = 0, all = 0;
 
-    (void)state;
     for (int k = 0; k < 16; k++) {
         const struct ghost g = {16, 100, 75, 9 + k % 4,    60 * k,
                                 1,  300, -2, {16384, 0, 0}};
@@ -62,14 +57,4 @@ static void test_small_cells_agree(void **state)
         add_difference(&g, &off, &all);
     }
     assert_true(off < 0.083 * all); /* 0.0896 by pixel centres alone */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_edges_agree_with_cells),
-        cmocka_unit_test(test_small_cells_agree),
-    };
-
-    return cmocka_run_group_tests_name("cells", tests, NULL, NULL);
 }

@@ -3,12 +3,8 @@
  * The published method's fit against exact rays, in double precision.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "reference/lens/published.h"
 #include "support/lens_check.h"
@@ -156,15 +152,13 @@ static void check_errors(const struct glint_fitted_ghost *ghost,
         assert_near(rms[kind], 0, most[kind]);
 }
 
-static void test_errors(void **state)
+TEST(errors)
 {
-    (void)state;
     for (size_t k = 0; k < sizeof bound / sizeof *bound; k++) {
         struct glint_fitted_ghost ghost;
 
-        assert_int_equal(
-            glint_published_fit(&setup, bound[k].ghost, &options, &ghost),
-            GLINT_OK);
+        assert_ok(
+            glint_published_fit(&setup, bound[k].ghost, &options, &ghost));
         check_errors(&ghost, bound[k].most, 0);
         check_errors(&ghost, bound[k].most, 0.5);
         glint_fitted_finish(&ghost);
@@ -200,14 +194,12 @@ static void check_system(const struct glint_fitted_system *s)
         check_output(&s->output[kind], kind);
 }
 
-static void test_shape(void **state)
+TEST(shape)
 {
     struct glint_fitted_ghost ghost;
 
-    (void)state;
     assert_int_equal(options.max_terms, 5);
-    assert_int_equal(glint_published_fit(&setup, 7, &options, &ghost),
-                     GLINT_OK);
+    assert_ok(glint_published_fit(&setup, 7, &options, &ghost));
     assert_int_equal(ghost.n_systems, 3);
     for (int k = 0; k < ghost.n_systems; k++) {
         const struct glint_fitted_system *s = &ghost.system[k];
@@ -228,13 +220,12 @@ static void test_shape(void **state)
     glint_fitted_finish(&ghost);
 }
 
-static void test_same_twice(void **state)
+TEST(same_twice)
 {
     struct glint_fitted_ghost a, b;
 
-    (void)state;
-    assert_int_equal(glint_published_fit(&setup, 12, &options, &a), GLINT_OK);
-    assert_int_equal(glint_published_fit(&setup, 12, &options, &b), GLINT_OK);
+    assert_ok(glint_published_fit(&setup, 12, &options, &a));
+    assert_ok(glint_published_fit(&setup, 12, &options, &b));
     assert_int_equal(a.n_systems, b.n_systems);
     for (int k = 0; k < a.n_systems; k++) {
         const struct glint_fitted_system *s = &a.system[k], *t = &b.system[k];
@@ -253,13 +244,12 @@ static void test_same_twice(void **state)
     glint_fitted_finish(&b);
 }
 
-static void test_refusals(void **state)
+TEST(refusals)
 {
     struct glint_published_options bad = options;
     const double same[2] = {550, 550};
     struct glint_fitted_ghost ghost;
 
-    (void)state;
     assert_int_equal(glint_published_fit(&setup, -1, &options, &ghost),
                      GLINT_E_ARGUMENT);
     bad.max_terms = 0;
@@ -273,14 +263,4 @@ static void test_refusals(void **state)
     assert_int_equal(ghost.n_systems, 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_errors),
-        cmocka_unit_test(test_shape),
-        cmocka_unit_test(test_same_twice),
-        cmocka_unit_test(test_refusals),
-    };
-
-    return cmocka_run_group_tests(tests, load, NULL);
-}
+TEST_GROUP(load, NULL);

@@ -4,14 +4,9 @@
  * of what the scene half has to show (src/README.md has the sources).
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "reference/scatter/rebuild.h"
 #include "bake/translucent/linear.h"
@@ -66,7 +61,7 @@ judged(struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o)
 {
     struct glint_scatter_judgement j, kept;
 
-    assert_int_equal(glint_scatter_judge(rows, o, NULL, &j), GLINT_OK);
+    assert_ok(glint_scatter_judge(rows, o, NULL, &j));
     kept = j;
     glint_scatter_judgement_close(&j);
     return kept;
@@ -82,9 +77,8 @@ static double rmse_of(struct glint_scatter_rows *rows,
 
 /* C1: what models break. Those that cannot be below 0 are not; profiles alone
  * go both ways alike; none makes light of its own. */
-static void test_c1_physics(void **state)
+TEST(c1_physics)
 {
-    (void)state;
     for (int i = 0; i < 2; i++)
         for (int kind = 0; kind < GLINT_CANDIDATES; kind++) {
             const struct glint_scatter_candidate o =
@@ -107,14 +101,13 @@ static void test_c1_physics(void **state)
 /* C3: rows of which 30 % are off by a texel are another kind of rows to one
  * term, unless they are turned to begin with their maximum. On clean rows that
  * changes little. A second term mends it by itself. */
-static void test_c3_turned(void **state)
+TEST(c3_turned)
 {
     struct glint_scatter_rows off;
     struct glint_scatter_candidate o = candidate_of(GLINT_CANDIDATE_TUCKER, 1);
     double plain, turned;
     uint32_t seed = 3;
 
-    (void)state;
     plain = judged(&stone[0], &o).rmse;
     o.turned = true;
     turned = judged(&stone[0], &o).rmse;
@@ -155,7 +148,7 @@ static void green_row(const void *ctx, int i, double *to)
 
 /* C4: rank-1 fits of the running error are the truncated decomposition, to five
  * digits. */
-static void test_c4_tucker(void **state)
+TEST(c4_tucker)
 {
     const struct greens g = {&stone[1]};
     const struct glint_tall m = {TEXELS, K2, green_row, &g};
@@ -163,7 +156,6 @@ static void test_c4_tucker(void **state)
     double f[TEXELS], h[K2];
     struct glint_terms terms;
 
-    (void)state;
     assert_non_null(left);
     assert_true(glint_terms_of(&m, 5, &terms));
     for (int x = 0; x < TEXELS; x++)
@@ -178,11 +170,10 @@ static void test_c4_tucker(void **state)
 
 /* C5: higher degrees are nearer, and many terms than one; the size is T and 3
  * (P + 1) numbers a texel, and T rows. */
-static void test_c5_polynomials(void **state)
+TEST(c5_polynomials)
 {
     double by_degree[5];
 
-    (void)state;
     for (int degree = 1; degree <= 5; degree++) {
         struct glint_scatter_candidate o =
             candidate_of(GLINT_CANDIDATE_TUCKER, 8);
@@ -202,13 +193,12 @@ static void test_c5_polynomials(void **state)
 /* C6: with a large, the logarithm is a line and the fit the linear one, which
  * is the optimum; with a small and b = 1 entries below 0 come back: "never
  * negative" does not hold. The search does not do worse than either. */
-static void test_c6_logarithms(void **state)
+TEST(c6_logarithms)
 {
     const double linear = rmse_of(&stone[0], GLINT_CANDIDATE_SVD, 3);
     struct glint_scatter_candidate o = candidate_of(GLINT_CANDIDATE_LOG_SVD, 3);
     struct glint_scatter_judgement found, j;
 
-    (void)state;
     found = judged(&stone[0], &o);
     assert_true(found.candidate.a > 0);
     o.a = 1000;
@@ -222,9 +212,8 @@ static void test_c6_logarithms(void **state)
 
 /* C7: what is held above 0 or fitted by logarithms is further off, or as far:
  * the decomposition spends a little on entries outside the square. */
-static void test_c7_held(void **state)
+TEST(c7_held)
 {
-    (void)state;
     for (int i = 0; i < 2; i++)
         for (int terms = 2; terms <= 8; terms *= 2) {
             const double linear =
@@ -241,7 +230,7 @@ static void test_c7_held(void **state)
 
 /* C8: sizes that the source prints in MiB, where one square of texels fits two
  * of its laws; 3.60 takes 39 numbers a texel. */
-static void test_c8_sizes(void **state)
+TEST(c8_sizes)
 {
     static const struct {
         int side, kernel, terms; /* terms 0: profiles */
@@ -253,7 +242,6 @@ static void test_c8_sizes(void **state)
     };
     char text[16];
 
-    (void)state;
     for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
         const struct glint_scatter_candidate o =
             size[i].terms ? candidate_of(GLINT_CANDIDATE_SVD, size[i].terms)
@@ -270,9 +258,8 @@ static void test_c8_sizes(void **state)
 
 /* C9: with ten terms the decomposition is nearer than profiles, by less memory.
  */
-static void test_c9_profiles(void **state)
+TEST(c9_profiles)
 {
-    (void)state;
     for (int i = 0; i < 2; i++)
         assert_true(rmse_of(&stone[i], GLINT_CANDIDATE_SVD, 10) <
                     rmse_of(&stone[i], GLINT_CANDIDATE_SUBEDIT, 0));
@@ -280,9 +267,8 @@ static void test_c9_profiles(void **state)
 
 /* C10: at equal size, ten terms and more are nearer than clusters with as many
  * non-negative ones. */
-static void test_c10_clusters(void **state)
+TEST(c10_clusters)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct glint_scatter_candidate peers =
             candidate_of(GLINT_CANDIDATE_PEERS, 10);
@@ -300,7 +286,7 @@ static void test_c10_clusters(void **state)
 
 /* C11: sums of rows by kept sums of h are those of all entries, in 800 times
  * less multiplications. */
-static void test_c11_albedo(void **state)
+TEST(c11_albedo)
 {
     const struct glint_scatter_candidate o =
         candidate_of(GLINT_CANDIDATE_SVD, 5);
@@ -308,7 +294,6 @@ static void test_c11_albedo(void **state)
     const struct glint_tall m = {TEXELS, K2, green_row, &g};
     struct glint_terms terms;
 
-    (void)state;
     assert_near(glint_scatter_candidate_sums(&o, 16384, 841, false) /
                     glint_scatter_candidate_sums(&o, 16384, 841, true),
                 800, 1);
@@ -331,15 +316,14 @@ static void test_c11_albedo(void **state)
 }
 
 /* C13: the map of errors adds up to the whole, and percentiles are its own. */
-static void test_c13_spread(void **state)
+TEST(c13_spread)
 {
     struct glint_scatter_candidate o = candidate_of(GLINT_CANDIDATE_SVD, 3);
     struct glint_scatter_judgement j;
     double square = 0, largest = 0;
     int below = 0;
 
-    (void)state;
-    assert_int_equal(glint_scatter_judge(&stone[1], &o, NULL, &j), GLINT_OK);
+    assert_ok(glint_scatter_judge(&stone[1], &o, NULL, &j));
     for (int x = 0; x < TEXELS; x++) {
         square += j.error[x] * j.error[x] / TEXELS;
         largest = fmax(largest, j.error[x]);
@@ -354,13 +338,12 @@ static void test_c13_spread(void **state)
 
 /* A black translucent medium, one of one texel: all models, finite. What is out
  * of range is refused. */
-static void test_extremes(void **state)
+TEST(extremes)
 {
     struct glint_scatter_rows black, one;
     struct glint_scatter_candidate bad = candidate_of(GLINT_CANDIDATE_SVD, 21);
     struct glint_scatter_judgement j;
 
-    (void)state;
     assert_true(glint_scatter_open(&black, 4, 9, false));
     assert_true(glint_scatter_open(&one, 1, 3, false));
     one.r[4] = one.r[13] = one.r[22] = 0.25f;
@@ -386,9 +369,8 @@ static bool at_once(void *ctx)
     return ++*(int *)ctx > 1;
 }
 
-static void test_ended(void **state)
+TEST(ended)
 {
-    (void)state;
     for (int kind = GLINT_CANDIDATE_SVD; kind < GLINT_CANDIDATES; kind++) {
         const struct glint_scatter_candidate o =
             candidate_of((enum glint_scatter_candidate_kind)kind, 0);
@@ -402,23 +384,4 @@ static void test_ended(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_c1_physics),
-        cmocka_unit_test(test_c3_turned),
-        cmocka_unit_test(test_c4_tucker),
-        cmocka_unit_test(test_c5_polynomials),
-        cmocka_unit_test(test_c6_logarithms),
-        cmocka_unit_test(test_c7_held),
-        cmocka_unit_test(test_c8_sizes),
-        cmocka_unit_test(test_c9_profiles),
-        cmocka_unit_test(test_c10_clusters),
-        cmocka_unit_test(test_c11_albedo),
-        cmocka_unit_test(test_c13_spread),
-        cmocka_unit_test(test_extremes),
-        cmocka_unit_test(test_ended),
-    };
-
-    return cmocka_run_group_tests(tests, open_stones, close_stones);
-}
+TEST_GROUP(open_stones, close_stones);

@@ -2,18 +2,14 @@
  *
  * The page of a translucent medium's models.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "reference/scatter/stone_models.h"
 #include "support/scratch.h"
+#include "support/test.h"
 
 static void stone(struct glint_scatter_rows *rows)
 {
@@ -24,7 +20,7 @@ static void stone(struct glint_scatter_rows *rows)
     s.side = 8;
     s.kernel = 5;
     s.fields = 2;
-    assert_int_equal(glint_scatter_compute(&s, NULL, rows, &error), GLINT_OK);
+    assert_ok(glint_scatter_compute(&s, NULL, rows, &error));
 }
 
 /* What the file NAME begins with, and whether it has WORDS. */
@@ -47,7 +43,7 @@ static bool has(const char *name, const char *words)
 
 /* A page, a table, curves, and a picture for each model; names cannot make
  * markup. */
-static void test_page(void **state)
+TEST(page)
 {
     static const char *const picture[] = {
         "clustered-2",     "clustered-4", "factored-3", "factored-5",
@@ -58,10 +54,8 @@ static void test_page(void **state)
     const struct tool tool = {.name = "bake", .quiet = true};
     struct glint_scatter_rows rows;
 
-    (void)state;
     stone(&rows);
-    assert_int_equal(stone_models_report(&tool, "a<b", &rows, scratch_dir),
-                     EXIT_OK);
+    assert_ok(stone_models_report(&tool, "a<b", &rows, scratch_dir));
     assert_int_equal(scratch_count(scratch_dir), STONE_MODELS + 3);
     assert_true(has("report.html", "Models of a&#60;b"));
     assert_true(has("report.md", "| [SubEdit](subedit.png) |"));
@@ -75,24 +69,15 @@ static void test_page(void **state)
     glint_scatter_close(&rows);
 }
 
-static void test_no_folder(void **state)
+TEST(no_folder)
 {
     const struct tool tool = {.name = "bake", .quiet = true};
     struct glint_scatter_rows rows;
 
-    (void)state;
     stone(&rows);
     assert_int_equal(stone_models_report(&tool, "a", &rows, "/proc/none/a"),
                      EXIT_OUTPUT);
     glint_scatter_close(&rows);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_page),
-        cmocka_unit_test(test_no_folder),
-    };
-
-    return cmocka_run_group_tests(tests, scratch_open_dir, scratch_close_dir);
-}
+TEST_GROUP(scratch_open_dir, scratch_close_dir);

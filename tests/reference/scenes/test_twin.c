@@ -3,19 +3,15 @@
  * The reference renderer of scenes: rows A1 to A15 of the rows a scene must
  * hold, with values written by hand. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "reference/scenes/twin.h"
 #include "reference/scenes/vec.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 struct stage {
     struct glint_description scene;
@@ -52,7 +48,7 @@ static struct stage *open_text(const char *text)
     if (glint_description_parse(&stage->scene, text, strlen(text), "t.scene",
                                 &files, &error) != GLINT_OK)
         fail_msg("%s", error.text);
-    assert_int_equal(twin_open(&stage->twin, &stage->scene), GLINT_OK);
+    assert_ok(twin_open(&stage->twin, &stage->scene));
     return stage;
 }
 
@@ -86,24 +82,22 @@ static void about(const double *a, double x, double y, double z, double most)
     "material y phong 1 0 0 colour 1 1 0\n" \
     "material z phong 1 0 0 colour 0 0 1\n"
 
-static void test_a1_length(void **state)
+TEST(a1_length)
 {
     double a[3] = {0, 6, 8};
 
-    (void)state;
     assert_true(vec_unit(a) == 10);
     about(a, 0, .6, .8, 1e-15);
 }
 
 /* A2, A3: the normal and the hit of the tutorial's triangle. */
-static void test_a2_a3_triangle(void **state)
+TEST(a2_a3_triangle)
 {
     struct stage *s = open_text(
         TUTORIAL "triangle t 0 40 120 30 -40 60 -30 -40 60 material m\n");
     const struct twin_ray ray = ray_of(0, 0, 0, 0, 0, 1);
     struct twin_hit hit;
 
-    (void)state;
     assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
     about(hit.normal, 0, .6, -.8, 1e-15);
     assert_true(fabs(hit.t - 90) < 1e-12);
@@ -114,13 +108,12 @@ static void test_a2_a3_triangle(void **state)
 /* A4: a ray through a place in the plane of the tutorial's triangle meets it if
  * that is inside, however small the triangle is: where the area test, of which
  * test_scene_rays has the baseline, fails for most. */
-static void test_a4_inside(void **state)
+TEST(a4_inside)
 {
     static const double corner[3][3] = {
         {0, 40, 120}, {30, -40, 60}, {-30, -40, 60}};
     uint32_t seed = 1;
 
-    (void)state;
     for (double size = 1; size > 1e-4; size /= 10) {
         struct stage *s = open_text(
             TUTORIAL "triangle t 0 40 120 30 -40 60 -30 -40 60 material m\n");
@@ -155,7 +148,7 @@ static void test_a4_inside(void **state)
 }
 
 /* A5: of three triangles in a row the nearest is seen. */
-static void test_a5_nearest(void **state)
+TEST(a5_nearest)
 {
     struct stage *s = open_text(
         TUTORIAL "triangle u 0 30 40 40 -30 120 -40 -30 120 material u\n"
@@ -166,7 +159,6 @@ static void test_a5_nearest(void **state)
     struct twin_pixel pixel;
     struct twin_hit hit;
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         assert_true(twin_meet_object(&s->twin, i, &ray, 1e9, &hit));
         assert_true(fabs(hit.t - t[i]) < 1e-12);
@@ -177,14 +169,13 @@ static void test_a5_nearest(void **state)
 }
 
 /* A6: corner pixels look at (-8, 4.5, 10) and (8, -4.5, 10). */
-static void test_a6_corners(void **state)
+TEST(a6_corners)
 {
     const struct twin_view view = {160, 90, 0, 1};
     struct stage *s =
         open_text(TUTORIAL "sphere t at 0 0 9 radius 1 material m\n");
     struct twin_ray ray;
 
-    (void)state;
     twin_camera_ray(&s->twin, &view, 0, 0, &ray);
     vec_add(ray.from, 10 / ray.toward[2], ray.toward, ray.toward);
     about(ray.toward, -8, 4.5, 10, 1e-12);
@@ -216,7 +207,7 @@ static void shows(struct twin_pixel p, double r, double g, double b)
 
 /* A7: a light at (0, 40, 0), a point at (0, 0, 30) of a floor: .8 of 255 is
  * 204. The lamp has 1 at its distance of 50. */
-static void test_a7_diffuse(void **state)
+TEST(a7_diffuse)
 {
     const struct twin_pixel p =
         look("hand left\nmaterial m phong 0 1 0 colour 1 0 0\n"
@@ -224,21 +215,19 @@ static void test_a7_diffuse(void **state)
              "plane floor at 0 0 0 normal 0 1 0 material m\n",
              0, 30, 0, 0, -1, 1);
 
-    (void)state;
     shows(p, .8, 0, 0);
     assert_int_equal((int)(255 * (double)p.rgb[0] + .5), 204);
 }
 
 /* A8: along the normal all terms are whole: .1 + .6 of the colour, .3 of the
  * light's. Away from it the specular term falls by its power. */
-static void test_a8_phong(void **state)
+TEST(a8_phong)
 {
     static const char text[] =
         "hand left\nmaterial m phong .1 .6 .3 colour 1 .5 0 power 2\n"
         "light sun direction 0 1 0 colour 1 1 2 radius 30\n" /* x .25 */
         "plane floor at 0 0 0 normal 0 1 0 material m\n";
 
-    (void)state;
     shows(look(text, 0, 1, 0, 0, -1, 0), .1 + .15 + .075, .05 + .075 + .075,
           .15);
     /* at 45 degrees (R.V)^2 is 1/2 */
@@ -249,14 +238,13 @@ static void test_a8_phong(void **state)
 }
 
 /* A9: mirrored twice is the identity, and a mirror shows what is there. */
-static void test_a9_mirror(void **state)
+TEST(a9_mirror)
 {
     static const char text[] = "hand left\nmaterial m phong 0 0 0 reflect .5\n"
                                "material w phong 1 0 0 colour .2 .4 .8\n"
                                "plane floor at 0 0 0 normal 0 1 0 material m\n"
                                "sphere ball at 0 8 9 radius .01 material w\n";
 
-    (void)state;
     shows(look(text, 0, 1, 0, 0, -1, 1), .1, .2, .4);
     /* upwards there is nothing, and mirrors do not show the picture behind */
     assert_true(look(text, 0, 1, 0, 0, -1, -1).cover == 1);
@@ -265,7 +253,7 @@ static void test_a9_mirror(void **state)
 
 /* A10: a ball at height Y over a point that a lamp at height 5 lights: before
  * it, behind, just short of and just beyond the lamp. */
-static void test_a10_shadow(void **state)
+TEST(a10_shadow)
 {
     static const struct {
         const char *ball;
@@ -275,7 +263,6 @@ static void test_a10_shadow(void **state)
                {"at 0 5.4 0 radius .5", true}, /* the lamp is inside */
                {"at 3 3 0 radius .5", false}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         char text[400];
         struct twin_pixel p;
@@ -292,7 +279,7 @@ static void test_a10_shadow(void **state)
 }
 
 /* No acne: a ball lit from where it is seen has no dark pixel. */
-static void test_a10_acne(void **state)
+TEST(a10_acne)
 {
     struct stage *s =
         open_text("hand left\ncamera fov 40 at 0 0 -4 toward 0 0 0\n"
@@ -300,7 +287,6 @@ static void test_a10_acne(void **state)
                   "sphere b at 0 0 0 radius 1 material m\nshadow on\n");
     uint32_t seed = 1;
 
-    (void)state;
     for (int i = 0; i < 20000; i++) {
         const double a = .24 * rng_signed(&seed), b = .24 * rng_signed(&seed);
         const struct twin_ray ray = ray_of(0, 0, -4, a, b, 1);
@@ -320,7 +306,7 @@ static void test_a10_acne(void **state)
 
 /* A11: what is behind a ball is seen straight through it, by its fraction; with
  * the index 1 the same to the bit. Where there is no object the picture is. */
-static void test_a11_pass(void **state)
+TEST(a11_pass)
 {
     static const char plain[] = GLASS("") "sphere w at 1 0 6 radius .5 "
                                           "material w\n";
@@ -328,7 +314,6 @@ static void test_a11_pass(void **state)
                                                  "material w\n";
     int seen = 0;
 
-    (void)state;
     for (int k = 0; k < 40; k++) {
         const struct twin_pixel a = look(plain, 0, 0, -5, k * .005, 0, 1);
         const struct twin_pixel b = look(one, 0, 0, -5, k * .005, 0, 1);
@@ -346,7 +331,7 @@ static void test_a11_pass(void **state)
 /* A12: a ray half a radius off the middle of a ball of index 1.5 enters at 30
  * degrees and continues at asin(1/3) = 19.4712; it is turned by twice the
  * difference and crosses the axis .8949 behind the ball's rim. */
-static void test_a12_refract(void **state)
+TEST(a12_refract)
 {
     struct stage *s = open_text(
         GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material w\n");
@@ -357,7 +342,6 @@ static void test_a12_refract(void **state)
     const double cross = cos(round) + sin(round) / tan(turn);
     struct glint_described_object *w = &s->scene.object[1];
 
-    (void)state;
     /* A small ball there is seen, and one beside it is not. */
     w->kind = GLINT_DESCRIBED_SPHERE;
     w->radius = 1e-6;
@@ -379,13 +363,12 @@ static void test_a12_refract(void **state)
 }
 
 /* A12: a ball of less index mirrors what comes at more than 14.48 degrees. */
-static void test_a12_outside(void **state)
+TEST(a12_outside)
 {
     static const char text[] =
         GLASS("refract .25") "sphere w at 4 0 -5 radius .5 material w\n";
     int seen = 0;
 
-    (void)state;
     /* A mirror of the ball's shape: the normal at X is half way between back
      * and the ball beside. */
     for (int i = 0; i < 200; i++) {
@@ -408,13 +391,12 @@ static void test_a12_outside(void **state)
 
 /* A13: corners of a triangle have their texels; between texels' middles it is
  * a straight line, in light; beyond the picture it repeats. */
-static void test_a13_texture(void **state)
+TEST(a13_texture)
 {
     static const char text[] =
         "hand left\ntexture t x\nmaterial w phong 1 0 0 texture t\n"
         "triangle w 0 0 4 1 0 4 0 1 4 uv 0 0 2 0 0 1 material w\n";
 
-    (void)state;
     shows(look(text, .125, .5, 0, 0, 0, 1), 0, 0, 0);
     shows(look(text, .375, .5, 0, 0, 0, 1), 1, 1, 1);
     shows(look(text, .25, .5, 0, 0, 0, 1), .5, .5, .5);
@@ -424,7 +406,7 @@ static void test_a13_texture(void **state)
 }
 
 /* A14: what has no area and what the ray lies in is missed. */
-static void test_a14_misses(void **state)
+TEST(a14_misses)
 {
     static const struct {
         const char *text;
@@ -440,7 +422,6 @@ static void test_a14_misses(void **state)
         {"sphere s at 0 0 -5 radius 1 material m\n", {0, 0, 1}},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         char text[300];
         struct twin_pixel p;
@@ -455,14 +436,13 @@ static void test_a14_misses(void **state)
 }
 
 /* A15: both roots of a ball, from before and from inside; a ray that grazes. */
-static void test_a15_sphere(void **state)
+TEST(a15_sphere)
 {
     struct stage *s = open_text("hand left\nmaterial m phong 1 0 0\n"
                                 "sphere s at 0 0 5 radius 3 material m\n");
     struct twin_ray ray = ray_of(0, 0, 0, 0, 0, 1);
     struct twin_hit hit;
 
-    (void)state;
     assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
     assert_true(hit.t == 2 && !hit.inside);
     about(hit.normal, 0, 0, -1, 0);
@@ -479,7 +459,7 @@ static void test_a15_sphere(void **state)
 
 /* A catcher has the shadow alone: .6 of what the light does not reach is taken
  * from the picture, and where it does nothing is changed. */
-static void test_catcher(void **state)
+TEST(catcher)
 {
     static const char text[] =
         "hand left\nmaterial m phong 1 0 0\n"
@@ -487,20 +467,18 @@ static void test_catcher(void **state)
         "plane floor at 0 0 0 normal 0 1 0 catcher .6\n"
         "sphere b at 0 3 0 radius .5 material m\nshadow on\n";
 
-    (void)state;
     assert_true(fabs((double)look(text, 1, 1, 0, -1, -1, 0).cover - .6) < 1e-6);
     assert_true(look(text, 3, 1, 0, 0, -1, 0).cover == 0);
 }
 
 /* Rays through a closed mesh of triangles that share edges and corners meet
  * it as those through all of its triangles do. */
-static void test_tree(void **state)
+TEST(tree)
 {
     char text[16000] = "hand left\nmaterial m phong 1 0 0\n";
     struct stage *s;
     uint32_t seed = 7;
 
-    (void)state;
     for (int i = 0; i < 100; i++) {
         const double x = 2 * rng_signed(&seed), y = 2 * rng_signed(&seed);
 
@@ -516,7 +494,7 @@ static void test_tree(void **state)
     s->scene.object[0].kind = GLINT_DESCRIBED_MESH;
     s->scene.object[0].n_triangles = 100;
     twin_close(&s->twin);
-    assert_int_equal(twin_open(&s->twin, &s->scene), GLINT_OK);
+    assert_ok(twin_open(&s->twin, &s->scene));
     for (int i = 0; i < 2000; i++) {
         const struct twin_ray ray =
             ray_of(0, 0, 0, .5 * rng_signed(&seed), .5 * rng_signed(&seed), 1);
@@ -547,30 +525,4 @@ static void test_tree(void **state)
         assert_true(fabs(hit.t - nearest) < 1e-9);
     }
     close_stage(s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a1_length),
-        cmocka_unit_test(test_a2_a3_triangle),
-        cmocka_unit_test(test_a4_inside),
-        cmocka_unit_test(test_a5_nearest),
-        cmocka_unit_test(test_a6_corners),
-        cmocka_unit_test(test_a7_diffuse),
-        cmocka_unit_test(test_a8_phong),
-        cmocka_unit_test(test_a9_mirror),
-        cmocka_unit_test(test_a10_shadow),
-        cmocka_unit_test(test_a10_acne),
-        cmocka_unit_test(test_a11_pass),
-        cmocka_unit_test(test_a12_refract),
-        cmocka_unit_test(test_a12_outside),
-        cmocka_unit_test(test_a13_texture),
-        cmocka_unit_test(test_a14_misses),
-        cmocka_unit_test(test_a15_sphere),
-        cmocka_unit_test(test_catcher),
-        cmocka_unit_test(test_tree),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,17 +7,14 @@
 #ifndef GLINT_SUPPORT_CAMERA_CHECK_H
 #define GLINT_SUPPORT_CAMERA_CHECK_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <errno.h>
 #include <string.h>
 
 #include "linux/v4l2.h"
 #include "support/fakes/fake_camera.h"
+#include "support/test.h"
 
 static struct glint_v4l2 v4l2;
 static struct glint_error said;
@@ -89,7 +86,7 @@ static inline void done(void)
 /* Takes a frame, checks that its first byte is CODE, and gives it back. */
 static inline void must_get(int code)
 {
-    assert_int_equal(next(), GLINT_OK);
+    assert_ok(next());
     assert_non_null(frame.image.plane[0]);
     assert_int_equal(frame.image.plane[0][0], code);
     done();
@@ -97,7 +94,7 @@ static inline void must_get(int code)
 
 static inline void must_get_nothing(void)
 {
-    assert_int_equal(next(), GLINT_OK);
+    assert_ok(next());
     assert_null(frame.image.plane[0]);
     done();
 }

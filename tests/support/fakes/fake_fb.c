@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/fakes/fake_fb.h"
 
-#include <setjmp.h>
 #include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 
 #include <errno.h>
 #include <fcntl.h>
@@ -17,6 +14,7 @@
 #include <linux/vt.h>
 
 #include "support/fakes/wrapped.h"
+#include "support/test.h"
 
 char fake_fb_path[] = "/tmp/glint-test-fb-XXXXXX";
 char fake_tty_path[] = "/tmp/glint-test-tty-XXXXXX";

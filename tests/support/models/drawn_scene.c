@@ -2,14 +2,11 @@
 #include "support/models/drawn_scene.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "reference/scenes/twin.h"
+#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
@@ -30,8 +27,7 @@ void drawn_open(struct drawn *d, const char *text,
         fail_msg("%s", error.text);
     if (glint_scene_open(&d->model, d->data, d->bytes, &reason) != GLINT_OK)
         fail_msg("%s", reason);
-    assert_int_equal(scene_frame_open(&d->frame, tool, &d->model, dials),
-                     EXIT_OK);
+    assert_ok(scene_frame_open(&d->frame, tool, &d->model, dials));
 }
 
 void drawn_close(struct drawn *d)
@@ -50,7 +46,7 @@ void drawn_draw(struct drawn *d, int width, int height, int32_t *light_q20)
     memset(light_q20, 0,
            3 * (size_t)width * (size_t)height * sizeof *light_q20);
     glint_image_place(&image, light_q20);
-    assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
+    assert_ok(scene_frame_draw(&d->frame, &image));
 }
 
 /* Returns whether pixel I of the reference is like those about it. */
@@ -85,7 +81,7 @@ double drawn_near_twin(const char *text,
 
     drawn_open(&d, text, files, &dials, &tool);
     drawn_draw(&d, WIDTH, HEIGHT, light_q20);
-    assert_int_equal(twin_open(&twin, d.description), GLINT_OK);
+    assert_ok(twin_open(&twin, d.description));
     twin_render(&twin, &view, NULL, exact);
     twin_close(&twin);
     drawn_close(&d);

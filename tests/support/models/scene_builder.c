@@ -2,14 +2,11 @@
 #include "support/models/scene_builder.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/blob.h"
+#include "support/test.h"
 
 enum { ONE_Q30 = 1 << 30 };
 

@@ -2,12 +2,10 @@
 #include "support/models/stone_builder.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 /* Sets H to a bell of WIDTH texels that sums to 1. */
 static void set_bell(double *h, int kernel, double width)
@@ -91,9 +89,8 @@ void build_stone_of(struct built_stone *b, enum glint_scatter_model model,
         free(b->fit.in);
         b->fit.in = NULL;
     }
-    assert_int_equal(glint_stone_bake(&b->fit, &b->text, "test", 7, &b->data,
-                                      &b->bytes, &b->report, &error),
-                     GLINT_OK);
+    assert_ok(glint_stone_bake(&b->fit, &b->text, "test", 7, &b->data,
+                               &b->bytes, &b->report, &error));
     if (glint_translucent_open(&b->stone, b->data, b->bytes, &reason) !=
         GLINT_OK)
         fail_msg("%s", reason);

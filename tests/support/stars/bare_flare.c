@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/stars/bare_flare.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/test.h"
 
 void *bare_flare_take(size_t bytes)
 {
@@ -31,8 +29,7 @@ void bare_flare_open(struct bare_flare *bare, int width, int height,
     config.max_bundles = config.max_primitives = config.max_refs = 1;
     bytes = glint_flare_bytes(&config);
     bare->mem = bare_flare_take(bytes);
-    assert_int_equal(glint_flare_init(&bare->flare, &config, bare->mem, bytes),
-                     GLINT_OK);
+    assert_ok(glint_flare_init(&bare->flare, &config, bare->mem, bytes));
 }
 
 void bare_flare_close(struct bare_flare *bare)

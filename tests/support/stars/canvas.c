@@ -2,14 +2,11 @@
 #include "support/stars/canvas.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/star/star_tables.h"
+#include "support/test.h"
 
 void star_canvas_open(struct star_canvas *c, int width, int height,
                       int tile_log2, int n_workers, uint32_t order)
@@ -24,7 +21,7 @@ void star_canvas_open(struct star_canvas *c, int width, int height,
     c->mem = bare_flare_take(bytes);
     assert_int_equal(glint_star_init(&c->star, &star, c->mem, bytes - 1),
                      GLINT_E_MEMORY);
-    assert_int_equal(glint_star_init(&c->star, &star, c->mem, bytes), GLINT_OK);
+    assert_ok(glint_star_init(&c->star, &star, c->mem, bytes));
 }
 
 void star_canvas_close(struct star_canvas *c)
@@ -60,7 +57,7 @@ struct glint_star_tables *star_canvas_tables(int n_blades, double rotation_deg,
                                         .pixel_um = 1};
     struct glint_star_tables *t;
 
-    assert_int_equal(glint_star_tables_make(&t, &o), GLINT_OK);
+    assert_ok(glint_star_tables_make(&t, &o));
     return t;
 }
 

@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/tracks/moving.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "glint/scene/bake.h"
 #include "glint/scene/motion_bake.h"
 #include "support/rng.h"
+#include "support/test.h"
 #include "support/tracks/tracks.h"
 
 /* What is baked as the motion of a text: a track, or foods that stand still. */
@@ -75,11 +71,10 @@ static enum glint_status bake_motion(void *ctx, const char *name,
     baker = glint_motion_baker_open(&options);
     assert_non_null(baker);
     b.angle_deg = recorded.angle_deg;
-    assert_int_equal(glint_motion_baker_body(baker, &b, error), GLINT_OK);
+    assert_ok(glint_motion_baker_body(baker, &b, error));
     put_frames(baker);
-    assert_int_equal(
-        glint_motion_baker_finish(baker, "run", 1, data, bytes, &report, error),
-        GLINT_OK);
+    assert_ok(glint_motion_baker_finish(baker, "run", 1, data, bytes, &report,
+                                        error));
     glint_motion_baker_close(baker);
     return GLINT_OK;
 }
@@ -111,8 +106,7 @@ struct moving *moving_open(const char *text, int tile_log2, int samples)
     free(scene);
     if (glint_scene_open(&d->model, d->data, d->bytes, &reason) != GLINT_OK)
         fail_msg("%s", reason);
-    assert_int_equal(scene_frame_open(&d->frame, &tool, &d->model, &dials),
-                     EXIT_OK);
+    assert_ok(scene_frame_open(&d->frame, &tool, &d->model, &dials));
     return d;
 }
 
@@ -131,7 +125,7 @@ void moving_draw(struct moving *d)
 
     memset(d->light_q20, 0, sizeof d->light_q20);
     glint_image_place(&image, d->light_q20);
-    assert_int_equal(scene_frame_draw(&d->frame, &image), EXIT_OK);
+    assert_ok(scene_frame_draw(&d->frame, &image));
 }
 
 void moving_of_track(int motion, int n_frames, double angle_deg)

@@ -5,13 +5,9 @@
  * says.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "bake/measure_model.h"
 #include "bake/fit/zone_rays.h"
@@ -142,18 +138,16 @@ static void same_bytes(const struct glint_prescription *lens,
     free(b.data);
 }
 
-static void test_workers(void **state)
+TEST(workers)
 {
-    (void)state;
     same_bytes(&heliar, &options, &model, 3, 11);
 }
 
-static void test_twice(void **state)
+TEST(twice)
 {
     static struct glint_prescription lens;
     struct baked b;
 
-    (void)state;
     make_singlet(&lens);
     bake(&b, &lens, &options);
     assert_int_equal(b.lens.header->n_ghosts, 1);
@@ -164,12 +158,11 @@ static void test_twice(void **state)
 
 /* ------------------------------------------------------------------- header */
 
-static void test_header(void **state)
+TEST(header)
 {
     const struct glint_model_header *h = model.lens.header;
     const uint64_t key = glint_bake_key(&heliar, &options);
 
-    (void)state;
     assert_string_equal(h->name, "heliar-tronnier");
     assert_near(glint_real_value(h->focal_mm), setup.optics.focal_mm, 1e-6);
     assert_near(glint_real_value(h->stop_radius_mm),
@@ -192,16 +185,14 @@ static void test_header(void **state)
 
 /* The polynomial of the direct image's flux must be within 5e-5 of that
  * flux. */
-static void test_flux(void **state)
+TEST(flux)
 {
     static const double nm[] = {400, 450, 532, 650, 700};
     const struct glint_model_header *h = model.lens.header;
     static struct glint_setup five;
     struct glint_error error;
 
-    (void)state;
-    assert_int_equal(glint_setup_init(&five, &heliar, 0, 0, nm, 5, &error),
-                     GLINT_OK);
+    assert_ok(glint_setup_init(&five, &heliar, 0, 0, nm, 5, &error));
     for (int k = 0; k < 5; k++) {
         const double lo = 1 / (700.0 * 700), hi = 1 / (400.0 * 400);
         const double w = (2 / (nm[k] * nm[k]) - lo - hi) / (hi - lo);
@@ -226,12 +217,11 @@ static bool covered(const struct glint_lens *lens, int ghost, double theta_deg,
 }
 
 /* Each ghost that the search for pictures finds must be in the model. */
-static void test_nothing_missing(void **state)
+TEST(nothing_missing)
 {
     static const double deg[] = {0, 3, 7, 11};
     int seen = 0, lost_in_field = 0;
 
-    (void)state;
     for (int g = 0; g < setup.n_ghosts; g++)
         for (int k = 0; k < 4; k++) {
             struct glint_path path;
@@ -297,7 +287,7 @@ static int parts_of(const struct glint_transfer *part, int n, double x_mm,
 /* In the stop, rays of a triplet's ghost of surfaces 0 and 3 turn around: its
  * pupil is divided. Each ray that comes through must be in exactly one part,
  * but for rays on the lines where parts meet; and each part must have rays. */
-static void test_parts(void **state)
+TEST(parts)
 {
     enum { GHOST = 2, MOST = 32, ANGLES = 8, SIDE = 61 };
     static struct glint_transfer part[MOST];
@@ -308,13 +298,11 @@ static void test_parts(void **state)
     int shared_deg = 0, n_rays = 0;
     struct baked b;
 
-    (void)state;
     if (getenv("GLINT_QUICK") && *getenv("GLINT_QUICK"))
         skip(); /* Half a minute under sanitizers, in code that others run. */
     load_lens(&lens, "../tests/lenses/cooke-triplet");
     bake_fast(&b, &lens, NULL, 1, 0.5);
-    assert_int_equal(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error),
-                     GLINT_OK);
+    assert_ok(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error));
     assert_int_equal(fast.ghost[GHOST].j, 3);
     assert_in_range(b.lens.header->n_parts, 1, MOST - 1);
     for (int a = 0; a < ANGLES; a++) {
@@ -354,7 +342,7 @@ static void test_parts(void **state)
 
 /* Two barrels cut this ghost within 0.0008 radii of each other: the second one
  * must be used only where a smaller error is requested. */
-static void test_near_barrels(void **state)
+TEST(near_barrels)
 {
     static const double band_nm[2] = {400, 700};
     static const double range[2] = {0.29, 0.305};
@@ -367,10 +355,8 @@ static void test_near_barrels(void **state)
     struct glint_error error;
     struct glint_zone zone;
 
-    (void)state;
     load_lens(&lens, "canon-zoom-long");
-    assert_int_equal(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error),
-                     GLINT_OK);
+    assert_ok(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error));
     glint_visible_init(&visible, &zoom, 71, 23.8, band_nm);
     glint_visible_profile_find(&visible, range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], false);
@@ -383,13 +369,12 @@ static void test_near_barrels(void **state)
 }
 
 /* A box that is cut must be the same box in the coordinates of the part. */
-static void test_cut(void **state)
+TEST(cut)
 {
     struct glint_zone zone = {.lo = 0.1, .hi = 0.2}, cut;
     const struct glint_zone_part part = {-0.25, 0.5, 0.75, -0.5, 0.75, 3};
     uint32_t seed = 3;
 
-    (void)state;
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
         zone.middle[k] = rng_signed(&seed);
         zone.half_x[k] = rng_signed(&seed);
@@ -415,7 +400,7 @@ static void test_cut(void **state)
 
 /* Cropping a zone that is wider than its ghost and its colours must take away
  * dark places only. */
-static void test_crop(void **state)
+TEST(crop)
 {
     const double range[2] = {sin(0.1), sin(0.2)};
     static struct glint_visible visible, narrow;
@@ -426,7 +411,6 @@ static void test_crop(void **state)
     uint32_t seed = 8;
     int seen = 0;
 
-    (void)state;
     glint_visible_init(&visible, &setup, 7, field_mm, options.band_nm);
     glint_visible_narrow(&narrow, &visible, -0.5, 1);
     assert_near(narrow.wave_lo,
@@ -574,9 +558,8 @@ static double error_of(uint16_t stored)
 
 /* The errors that the file states must be within 30 % of those measured
  * here. */
-static void test_errors_are_true(void **state)
+TEST(errors_are_true)
 {
-    (void)state;
     for (int g = 0; g < setup.n_ghosts; g++)
         for (uint32_t k = 0; k < model.lens.ghost[g].n_systems; k++) {
             const int system = (int)(model.lens.ghost[g].first_system + k);
@@ -599,11 +582,10 @@ static void test_errors_are_true(void **state)
 }
 
 /* The errors must be at most 1.6 times those that the tolerance stands for. */
-static void test_errors_are_small(void **state)
+TEST(errors_are_small)
 {
     static const double aim[TRIED] = {0.08, 0.08, 4.5e-4, 4.5e-4, 1.2e-2};
 
-    (void)state;
     assert_int_equal(model.report.unmet, 0);
     assert_true(model.report.rays > 300 * (int)model.lens.header->n_systems);
     assert_true(model.report.intruders < model.report.rays / 1000);
@@ -617,13 +599,12 @@ static void test_errors_are_small(void **state)
 
 /* Near the axis, where light folds into rings, errors must fall with the square
  * of the tolerance. */
-static void test_axis_is_finer(void **state)
+TEST(axis_is_finer)
 {
     const double tolerance = 0.25, aim_px = 0.04;
     struct glint_prescription lens;
     struct baked b;
 
-    (void)state;
     bake_fast(&b, &lens, FAST_SINGLET, tolerance, 4);
     assert_int_equal(b.lens.system[0].sine_lo_q30, 0);
     assert_true(error_of(outputs_of(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
@@ -633,12 +614,11 @@ static void test_axis_is_finer(void **state)
 
 /* A film as good as this one reflects nothing at its wavelength, so the energy
  * of a ghost has a zero there, which the fit must follow. */
-static void test_energy_has_zeros(void **state)
+TEST(energy_has_zeros)
 {
     struct glint_prescription lens;
     struct baked b;
 
-    (void)state;
     bake_fast(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1, 0.5);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++) {
         assert_true(error_of(outputs_of(&b, (int)k)[GLINT_OUT_ENERGY].rms) <
@@ -649,7 +629,7 @@ static void test_energy_has_zeros(void **state)
 
 /* With one coefficient planted wrong, both measurements must show it: else they
  * could not fail. */
-static void test_planted_error(void **state)
+TEST(planted_error)
 {
     static const struct glint_fitted_system no_barrels;
     static const double band_nm[2] = {400, 700};
@@ -661,7 +641,6 @@ static void test_planted_error(void **state)
     int32_t *coef;
     uint32_t largest = 0;
 
-    (void)state;
     b.data = malloc(model.bytes);
     assert_non_null(b.data);
     memcpy(b.data, model.data, model.bytes);
@@ -693,7 +672,7 @@ static void other_key(const struct glint_prescription *lens,
     assert_true(glint_bake_key(lens, o) != glint_bake_key(&heliar, &options));
 }
 
-static void test_key(void **state)
+TEST(key)
 {
     struct glint_prescription lens = heliar;
     struct glint_bake_options o = options;
@@ -702,7 +681,6 @@ static void test_key(void **state)
     double *const of_options[] = {&o.band_nm[0], &o.band_nm[1], &o.max_deg,
                                   &o.field_mm, &o.tolerance};
 
-    (void)state;
     assert_true(glint_bake_key(&lens, &o) == glint_bake_key(&heliar, &options));
     for (size_t k = 0; k < sizeof of_lens / sizeof *of_lens; k++) {
         lens = heliar;
@@ -740,11 +718,10 @@ static void test_key(void **state)
     assert_true(glint_bake_key(&lens, &o) == glint_bake_key(&heliar, &options));
 }
 
-static void test_refusals(void **state)
+TEST(refusals)
 {
     static const double numbers[] = {(double)NAN, -1, 1e9, HUGE_VAL, -HUGE_VAL};
 
-    (void)state;
     for (int k = 0; k < 5 * 5 + 2; k++) {
         struct glint_bake_options o = options;
         double *const of_options[] = {&o.band_nm[0], &o.band_nm[1], &o.max_deg,
@@ -772,12 +749,11 @@ static void test_refusals(void **state)
 
 /* ------------------------------------------------------------- odd requests */
 
-static void test_no_ghosts(void **state)
+TEST(no_ghosts)
 {
     static struct glint_prescription lens;
     struct baked b;
 
-    (void)state;
     make_singlet(&lens);
     lens.n_surfaces = 1; /* The sensor lies in the glass. */
     lens.stop_after = 1;
@@ -789,13 +765,12 @@ static void test_no_ghosts(void **state)
 }
 
 /* However loose the tolerance, each polynomial must keep a term. */
-static void test_loosest(void **state)
+TEST(loosest)
 {
     static struct glint_prescription lens;
     struct glint_bake_options o = options;
     struct baked b;
 
-    (void)state;
     make_singlet(&lens);
     o.tolerance = 100;
     bake(&b, &lens, &o);
@@ -807,7 +782,7 @@ static void test_loosest(void **state)
 
 /* With a field of only 1e-3 mm a ghost may show at angle 0 alone; each range
  * must still have a width. */
-static void test_ranges_have_width(void **state)
+TEST(ranges_have_width)
 {
     static const double band_nm[2] = {400, 700};
     static struct glint_prescription lens;
@@ -816,10 +791,8 @@ static void test_ranges_have_width(void **state)
     double range[GLINT_MAX_RANGES][2];
     struct glint_error error;
 
-    (void)state;
     make_doublet(&lens);
-    assert_int_equal(
-        glint_setup_init(&doublet, &lens, 0, 0, band_nm, 2, &error), GLINT_OK);
+    assert_ok(glint_setup_init(&doublet, &lens, 0, 0, band_nm, 2, &error));
     for (int g = 0; g < doublet.n_ghosts; g++) {
         int n;
 
@@ -833,7 +806,7 @@ static void test_ranges_have_width(void **state)
 /* Through these ghosts the stop looks so small that all light enters by a
  * twentieth of a millimetre of the front. Their ranges must still reach to
  * where the ghosts end. */
-static void test_ranges_of_spots(void **state)
+TEST(ranges_of_spots)
 {
     static const struct {
         int ghost;
@@ -846,10 +819,8 @@ static void test_ranges_of_spots(void **state)
     double range[GLINT_MAX_RANGES][2];
     struct glint_error error;
 
-    (void)state;
     load_lens(&lens, "nikon-zoom-short");
-    assert_int_equal(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error),
-                     GLINT_OK);
+    assert_ok(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error));
     for (size_t i = 0; i < sizeof spot / sizeof *spot; i++) {
         glint_visible_init(&visible, &zoom, spot[i].ghost, 23.8, band_nm);
         assert_int_equal(glint_visible_ranges(&visible, 60, range), 1);
@@ -858,30 +829,4 @@ static void test_ranges_of_spots(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_workers),
-        cmocka_unit_test(test_twice),
-        cmocka_unit_test(test_header),
-        cmocka_unit_test(test_flux),
-        cmocka_unit_test(test_nothing_missing),
-        cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_near_barrels),
-        cmocka_unit_test(test_cut),
-        cmocka_unit_test(test_crop),
-        cmocka_unit_test(test_errors_are_true),
-        cmocka_unit_test(test_errors_are_small),
-        cmocka_unit_test(test_axis_is_finer),
-        cmocka_unit_test(test_energy_has_zeros),
-        cmocka_unit_test(test_planted_error),
-        cmocka_unit_test(test_key),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_no_ghosts),
-        cmocka_unit_test(test_loosest),
-        cmocka_unit_test(test_ranges_have_width),
-        cmocka_unit_test(test_ranges_of_spots),
-    };
-
-    return cmocka_run_group_tests(tests, load, unload);
-}
+TEST_GROUP(load, unload);

@@ -3,19 +3,15 @@
  * Baked scenes: that the run time accepts what is written, and that it states
  * what the text said, in steps. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/scene/bake.h"
 #include "glint/scene/model.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 static char mesh_text[1 << 18];
 
@@ -116,13 +112,12 @@ static void is(const int32_t *v, double x, double y, double z, double scale)
 
 /* Header, lights, materials and objects of a right-handed scene: z is mirrored.
  */
-static void test_plain(void **state)
+TEST(plain)
 {
     struct baked b;
     const struct glint_scene_header *h;
     double unit;
 
-    (void)state;
     bake_good(&b, PLAIN);
     h = b.model.header;
     unit = ldexp(1, h->unit_log2);
@@ -168,12 +163,11 @@ static void test_plain(void **state)
  */
 /* Glass of index 1 is baked as what light goes straight through, which is drawn
  * by A11; other glass is not. */
-static void test_a12_index_1(void **state)
+TEST(a12_index_1)
 {
     static const char *const refract[3] = {"", " refract 1", " refract 1.001"};
     struct baked b[3];
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         char text[200];
 
@@ -191,14 +185,13 @@ static void test_a12_index_1(void **state)
         free(b[i].data);
 }
 
-static void test_hands(void **state)
+TEST(hands)
 {
     struct baked b;
     const struct glint_scene_mesh *m;
     const struct glint_scene_triangle *t;
     const int32_t *v;
 
-    (void)state;
     for (int left = 0; left < 2; left++) {
         char text[400];
         double unit;
@@ -224,7 +217,7 @@ static void test_hands(void **state)
 
 /* Textures: levels down to one texel, each the mean of the light; V runs down,
  * and whole numbers are taken off where U and V are large. */
-static void test_textures(void **state)
+TEST(textures)
 {
     struct baked b;
     const struct glint_scene_texture *t;
@@ -232,7 +225,6 @@ static void test_textures(void **state)
     const int32_t *uv;
     const uint8_t *texel;
 
-    (void)state;
     bake_good(&b, "texture t x.ppm\nmaterial m phong 0 1 0 texture t\n"
                   "triangle t 0 0 0 1 0 0 0 1 0 "
                   "uv 1000 -7 1000.5 -7 1001 -6.5 material m\n");
@@ -319,13 +311,12 @@ static void check_lists(const struct baked *b)
 }
 
 /* Vertices are kept once, and what has no area is left out. */
-static void test_grid(void **state)
+TEST(grid)
 {
     enum { N = 20 };
     struct baked b;
     const struct glint_scene_mesh *m;
 
-    (void)state;
     write_sheet(N);
     bake_good(&b, "material m phong 0 1 0\n"
                   "mesh s s.obj at 3 0 0 scale .1 turn 0 0 1 30 material m\n");
@@ -341,9 +332,8 @@ static void test_grid(void **state)
 
 /* The lowest vertex, and so the grid, lies such that all others are 10 steps
  * beside the sides of cells, on this side of them or on that. */
-static void test_margin(void **state)
+TEST(margin)
 {
-    (void)state;
     for (int k = -10; k <= 10; k += 20) {
         const char *const text = "material m phong 0 1 0\n"
                                  "mesh s s.obj at 0 0 0 material m\n";
@@ -364,7 +354,7 @@ static void test_margin(void **state)
 
 /* The same text gives the same bytes; what is too small beside the rest is
  * reported; extremes open. */
-static void test_extremes(void **state)
+TEST(extremes)
 {
     static const char *const texts[] = {
         "material m phong 0 1 0\nsphere s at 0 0 0 radius 1e-6 material m\n",
@@ -384,7 +374,6 @@ static void test_extremes(void **state)
     struct glint_error error = {""};
     struct baked a, b;
 
-    (void)state;
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         bake_good(&a, texts[i]);
         bake_good(&b, texts[i]);
@@ -400,16 +389,4 @@ static void test_extremes(void **state)
                           &error),
                      GLINT_E_LENS);
     assert_non_null(strstr(error.text, "sphere dot is too small, 1e-06"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plain),       cmocka_unit_test(test_hands),
-        cmocka_unit_test(test_a12_index_1), cmocka_unit_test(test_textures),
-        cmocka_unit_test(test_grid),        cmocka_unit_test(test_margin),
-        cmocka_unit_test(test_extremes),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

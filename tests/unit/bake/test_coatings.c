@@ -4,15 +4,11 @@
  * reflects, which key a model gets, and what is refused.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/bake.h"
+#include "support/test.h"
 
 /* A cemented doublet and a single lens: surface 1 is cemented, surfaces 0, 2, 3
  * and 4 meet air. */
@@ -66,13 +62,12 @@ static void expect(const struct glint_prescription *lens, const double nm[5],
 
 /* ------------------------------------------------------------------- tables */
 
-static void test_mixed_line(void **state)
+TEST(mixed_line)
 {
     static struct glint_prescription lens;
     const double all[5] = {550, 0, 550, 550, 550};
     const double mgf2[5] = {1.38, 0, 1.38, 1.38, 1.38};
 
-    (void)state;
     good(&lens, "");
     assert_int_equal(lens.n_mixed, 0);
     good(&lens, "mixed-coating 450 none 620/1.46\n");
@@ -83,7 +78,7 @@ static void test_mixed_line(void **state)
     expect(&lens, all, mgf2); /* The mixed coating is not applied yet. */
 }
 
-static void test_mistakes(void **state)
+TEST(mistakes)
 {
     static const char *const bad[][2] = {
         {"mixed-coating\n", "x.lens:10:14: coating wavelength is missing"},
@@ -98,7 +93,6 @@ static void test_mistakes(void **state)
         {"mixed-coating 450\nmixed-coating 500\n",
          "x.lens:11:1: a second mixed-coating; the first is on line 10"}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         static struct glint_prescription lens;
         struct glint_error error = {""};
@@ -110,12 +104,11 @@ static void test_mistakes(void **state)
 
 /* --------------------------------------------------------------- --coating */
 
-static void test_dealt_out(void **state)
+TEST(dealt_out)
 {
     static struct glint_prescription lens;
     const double zero[5] = {0};
 
-    (void)state;
     good(&lens, "coating 600 1.5\n");
     coat(&lens, "450,500/1.6,none");
     expect(&lens, (const double[]){450, 0, 500, 0, 450},
@@ -127,7 +120,7 @@ static void test_dealt_out(void **state)
            (const double[]){1.38, 0, 1.38, 1.38, 1.38});
 }
 
-static void test_refused(void **state)
+TEST(refused)
 {
     static const char *const bad[][2] = {
         {"", "there is no coating"},
@@ -147,7 +140,6 @@ static void test_refused(void **state)
         {"nan", "no coating is called 'nan'; there are none, v-coat, "
                 "broadband-3, broadband-4 and wavelengths"}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct glint_coating coating[GLINT_MAX_COATINGS] = {{.nm = 1}};
         struct glint_error error = {""};
@@ -160,14 +152,13 @@ static void test_refused(void **state)
     }
 }
 
-static void test_too_many(void **state)
+TEST(too_many)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     struct glint_error error = {""};
     char text[600] = "";
     int n;
 
-    (void)state;
     for (int i = 0; i < 65; i++)
         strcat(text, i ? ",500" : "500");
     assert_int_equal(glint_coatings_parse(coating, &n, text, &error),
@@ -194,7 +185,7 @@ static void expect_films(const char *text, double nm, int n,
     }
 }
 
-static void test_films(void **state)
+TEST(films)
 {
     static const double v[][2] = {{1.38, 1}, {1.69, 1}};
     static const double b3[][2] = {{1.38, 1}, {2.1, 2}, {1.63, 1}};
@@ -203,7 +194,6 @@ static void test_films(void **state)
     static const double own[][2] = {{1.46, 1}, {2.3, 0.25}, {1.46, 1.5}};
     static struct glint_prescription lens, other;
 
-    (void)state;
     expect_films("v-coat", 550, 2, v);
     expect_films("v-coat/600", 600, 2, v);
     expect_films("broadband-3", 520, 3, b3);
@@ -238,11 +228,10 @@ static double reflectance(const struct glint_prescription *lens, int k,
 /* A quarter-wave film must reflect least at its own wavelength (surfaces 0, 2
  * and 4). A half-wave film for 550 nm (surface 3) must reflect there as if it
  * were not there, and less on either side. */
-static void test_reflects(void **state)
+TEST(reflects)
 {
     static struct glint_prescription lens, bare;
 
-    (void)state;
     good(&lens, "");
     bare = lens;
     coat(&bare, "none");
@@ -258,13 +247,12 @@ static void test_reflects(void **state)
     assert_true(reflectance(&lens, 3, 680) < 0.9 * reflectance(&bare, 3, 680));
 }
 
-static void test_key(void **state)
+TEST(key)
 {
     static struct glint_prescription lens, other;
     struct glint_bake_options options;
     uint64_t key;
 
-    (void)state;
     glint_bake_defaults(&options);
     good(&lens, "");
     key = glint_bake_key(&lens, &options);
@@ -288,12 +276,11 @@ static void test_key(void **state)
     assert_true(glint_bake_key(&other, &options) != key);
 }
 
-static void test_standard(void **state)
+TEST(standard)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     const int n = glint_coatings_mixed(coating);
 
-    (void)state;
     assert_true(n >= 2 && n <= GLINT_MAX_COATINGS);
     for (int i = 0; i < n; i++)
         assert_true(coating[i].nm >= 100 && coating[i].nm <= 5000 &&
@@ -301,16 +288,4 @@ static void test_standard(void **state)
                     coating[i].film[0].index == 1.38 &&
                     coating[i].film[0].quarters == 1 &&
                     (i == 0 || coating[i].nm != coating[i - 1].nm));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mixed_line), cmocka_unit_test(test_mistakes),
-        cmocka_unit_test(test_dealt_out),  cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_too_many),   cmocka_unit_test(test_films),
-        cmocka_unit_test(test_reflects),   cmocka_unit_test(test_key),
-        cmocka_unit_test(test_standard)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,18 +3,14 @@
  * Scene texts: what the parser reads from a good one, and which place and cause
  * it names for each mistake. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/scene/description.h"
 #include "bake/scene/mesh.h"
+#include "support/test.h"
 
 /* This text is good. Each mistake below replaces one line of it. */
 static const char *const good[] = {
@@ -117,12 +113,11 @@ static void near_to(const double *a, double x, double y, double z)
     assert_true(fabs(a[2] - z) < 1e-12);
 }
 
-static void test_good(void **state)
+TEST(good)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
 
-    (void)state;
     assert_non_null(s);
     if (parse(s, 0, NULL, &error) != GLINT_OK)
         fail_msg("%s", error.text);
@@ -151,15 +146,14 @@ static void test_good(void **state)
 
 /* The quad becomes two triangles, half as large as the file has it; what oak is
  * in the file is oak in the scene. */
-static void test_mesh(void **state)
+TEST(mesh)
 {
     struct glint_description *s = malloc(sizeof *s);
     const struct glint_described_object *o;
     struct glint_error error;
 
-    (void)state;
     assert_non_null(s);
-    assert_int_equal(parse(s, 0, NULL, &error), GLINT_OK);
+    assert_ok(parse(s, 0, NULL, &error));
     o = &s->object[3];
     assert_int_equal(o->first_triangle, 1);
     assert_int_equal(o->n_triangles, 3);
@@ -177,15 +171,14 @@ static void test_mesh(void **state)
 }
 
 /* Six texels across become eight (nearest by ratio); light is kept. */
-static void test_texture(void **state)
+TEST(texture)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
     const uint8_t *row;
 
-    (void)state;
     assert_non_null(s);
-    assert_int_equal(parse(s, 0, NULL, &error), GLINT_OK);
+    assert_ok(parse(s, 0, NULL, &error));
     assert_int_equal(s->texture[0].image.width, 8);
     assert_int_equal(s->texture[0].image.height, 2);
     row = s->texture[0].image.plane[0];
@@ -316,11 +309,10 @@ static const struct mistake {
     {15, "flare stars", "15:7: flare takes off or lights [highlights N], not"},
 };
 
-static void test_mistakes(void **state)
+TEST(mistakes)
 {
     struct glint_description *s = malloc(sizeof *s);
 
-    (void)state;
     assert_non_null(s);
     for (size_t i = 0; i < sizeof mistakes / sizeof *mistakes; i++) {
         const struct mistake *m = &mistakes[i];
@@ -336,24 +328,22 @@ static void test_mistakes(void **state)
 }
 
 /* Hands: the same numbers are mirrored pictures, so x runs the other way. */
-static void test_hands(void **state)
+TEST(hands)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
 
-    (void)state;
     assert_non_null(s);
-    assert_int_equal(parse(s, 1, "hand right", &error), GLINT_OK);
+    assert_ok(parse(s, 1, "hand right", &error));
     near_to(s->camera.right, -1, 0, 0);
     near_to(s->camera.up, 0, 1, 0);
     glint_description_free(s);
-    assert_int_equal(
-        parse(s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0", &error),
-        GLINT_OK);
+    assert_ok(
+        parse(s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0", &error));
     near_to(s->camera.at, 2, 1, 0);
     near_to(s->camera.right, 0, 0, 1); /* x is to the right, z away */
     glint_description_free(s);
-    assert_int_equal(parse(s, 2, "camera corners", &error), GLINT_OK);
+    assert_ok(parse(s, 2, "camera corners", &error));
     near_to(s->camera.forward, 0, 0, 1);
     near_to(s->camera.right, 1, 0, 0);
     glint_description_free(s);
@@ -390,11 +380,10 @@ static const struct mesh_text {
     {"v 0 0 0\nf 1 1 -\n", 0, "2:7: corner '-' is none of V, V/T"},
 };
 
-static void test_mesh_texts(void **state)
+TEST(mesh_texts)
 {
     struct glint_mesh *mesh = malloc(sizeof *mesh);
 
-    (void)state;
     assert_non_null(mesh);
     for (size_t i = 0; i < sizeof mesh_texts / sizeof *mesh_texts; i++) {
         const struct mesh_text *m = &mesh_texts[i];
@@ -420,7 +409,7 @@ static void test_mesh_texts(void **state)
 
 /* A sun that no code would show, and weights that leave objects dark, must be
  * warned of, and what is as it should be must not. */
-static void test_warnings(void **state)
+TEST(warnings)
 {
     static const struct {
         int line;
@@ -433,25 +422,12 @@ static void test_warnings(void **state)
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
 
-    (void)state;
     assert_non_null(s);
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
-        assert_int_equal(parse(s, odd[i].line, odd[i].text, &error), GLINT_OK);
+        assert_ok(parse(s, odd[i].line, odd[i].text, &error));
         assert_int_equal(!s->warning[0], !odd[i].warning[0]);
         assert_non_null(strstr(s->warning, odd[i].warning));
         glint_description_free(s);
     }
     free(s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_good),     cmocka_unit_test(test_mesh),
-        cmocka_unit_test(test_texture),  cmocka_unit_test(test_mistakes),
-        cmocka_unit_test(test_hands),    cmocka_unit_test(test_mesh_texts),
-        cmocka_unit_test(test_warnings),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

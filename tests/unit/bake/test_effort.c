@@ -4,12 +4,7 @@
  * clock.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "bake/effort.h"
 #include "support/lens_check.h"
@@ -52,11 +47,10 @@ static void bake(const double *work, int n, bool wide, double expected,
 }
 
 /* Ghosts that take alike: what is reported is true within a quarter. */
-static void test_alike(void **state)
+TEST(alike)
 {
     double work[100], said[3];
 
-    (void)state;
     for (int g = 0; g < 100; g++)
         work[g] = 20;
     bake(work, 100, false, 0, said);
@@ -66,12 +60,11 @@ static void test_alike(void **state)
 
 /* Ghosts that differ a hundredfold, in any order: within three times at half
  * time, nearly always. By their number alone it was off by ten. */
-static void test_random(void **state)
+TEST(random)
 {
     uint32_t seed = 7;
     int off = 0;
 
-    (void)state;
     for (int round = 0; round < 200; round++) {
         double work[20], said[3] = {0};
 
@@ -84,11 +77,10 @@ static void test_random(void **state)
 }
 
 /* The last ghost takes nearly all: its angles tell. */
-static void test_long_ghost(void **state)
+TEST(long_ghost)
 {
     double work[20], said[3];
 
-    (void)state;
     for (int g = 0; g < 20; g++)
         work[g] = g < 19 ? 5 : 1000;
     bake(work, 20, true, 0, said);
@@ -97,11 +89,10 @@ static void test_long_ghost(void **state)
 }
 
 /* Several workers share what nobody began, but not what one is at. */
-static void test_workers(void **state)
+TEST(workers)
 {
     double done[2];
 
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct glint_effort e;
 
@@ -124,11 +115,10 @@ static void test_workers(void **state)
 
 /* The last ghosts take nearly all, as was expected: what is reported is true
  * within a factor of two from the first quarter on. */
-static void test_late(void **state)
+TEST(late)
 {
     double work[100], said[3];
 
-    (void)state;
     for (int g = 0; g < 100; g++)
         work[g] = g < 70 ? 1 : 70;
     bake(work, 100, false, 20, said);
@@ -152,7 +142,7 @@ static void note_done(void *ctx, double done)
 }
 
 /* A bake tells of each zone, and ends at all. */
-static void test_bake(void **state)
+TEST(bake)
 {
     static struct glint_setup setup;
     static struct glint_prescription heliar;
@@ -163,28 +153,15 @@ static void test_bake(void **state)
     unsigned char *model;
     size_t bytes;
 
-    (void)state;
     load_setup(&setup, &heliar, "heliar-tronnier");
     glint_bake_defaults(&o);
     o.tolerance = 5;
     o.max_deg = 12;
     o.progress = note_done;
     o.progress_ctx = &log;
-    assert_int_equal(glint_bake(&heliar, &o, &model, &bytes, &report, &error),
-                     GLINT_OK);
+    assert_ok(glint_bake(&heliar, &o, &model, &bytes, &report, &error));
     free(model);
     assert_true(log.n > 13);
     assert_true(log.last == 1);
     assert_true(log.most_step < 0.75);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_alike),      cmocka_unit_test(test_random),
-        cmocka_unit_test(test_long_ghost), cmocka_unit_test(test_workers),
-        cmocka_unit_test(test_late),       cmocka_unit_test(test_bake),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

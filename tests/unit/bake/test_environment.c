@@ -3,20 +3,16 @@
  * Environments: the octahedron, what is held and counted, blurs against sums
  * over all texels, lights that are known, codes, and files that are refused. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "bake/environment/sphere.h"
 #include "base/blob.h"
 #include "glint/view.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 enum { WIDTH = 128, HEIGHT = 64, SIDE_LOG2 = 5, SIDE = 1 << SIDE_LOG2 };
 
@@ -40,12 +36,11 @@ static void random_unit(uint32_t *seed, double d[3])
 
 /* ------------------------------------------------------------- octahedron */
 
-static void test_octahedron(void **state)
+TEST(octahedron)
 {
     uint32_t seed = 7;
     double sum = 0;
 
-    (void)state;
     for (int i = 0; i < 2000; i++) {
         double d[3], back[3], u, v;
 
@@ -65,11 +60,10 @@ static void test_octahedron(void **state)
 }
 
 /* What lies beyond an edge is near what lies before it. */
-static void test_edges_meet(void **state)
+TEST(edges_meet)
 {
     struct glint_sphere s;
 
-    (void)state;
     assert_true(glint_sphere_open(&s, SIDE));
     for (int k = -1; k <= SIDE; k++) {
         const int across[4][4] = {{-1, k, 0, k},
@@ -163,12 +157,11 @@ static double even(const double d[3])
 }
 
 /* Even light stays even. */
-static void test_even(void **state)
+TEST(even)
 {
     const struct glint_environment_options o = options_of();
     struct baked b;
 
-    (void)state;
     paint(even);
     bake(&b, &o);
     assert_string_equal(b.environment.header->name, "anight");
@@ -199,12 +192,11 @@ static double ahead(const double d[3])
     return 1 + d[2];
 }
 
-static void test_irradiance(void **state)
+TEST(irradiance)
 {
     struct glint_environment_options o = options_of();
     double worst = 0;
 
-    (void)state;
     for (int turned = 0; turned < 2; turned++) {
         struct baked b;
 
@@ -238,7 +230,7 @@ static double patches(const double d[3])
 
 /* Every level is the sum over all texels, none of them left out, to what lies
  * beyond four sigma. */
-static void test_blur(void **state)
+TEST(blur)
 {
     struct glint_environment_options o = options_of();
     struct glint_environment_report report = {0};
@@ -246,7 +238,6 @@ static void test_blur(void **state)
     struct baked b;
     double worst = 0;
 
-    (void)state;
     paint(patches);
     o.max_lights = 0;
     bake(&b, &o);
@@ -281,11 +272,10 @@ static void test_blur(void **state)
 }
 
 /* Row B5: texels of a side of 256, and that a level's side is twice a mip's. */
-static void test_b5_texels(void **state)
+TEST(b5_texels)
 {
     long mip = 0, full = 0, ours = 0;
 
-    (void)state;
     for (uint32_t k = 0; k <= 8; k++) {
         mip += 1L << (2 *
                       glint_environment_side_log2(GLINT_ENVIRONMENT_MIP, 8, k));
@@ -296,12 +286,11 @@ static void test_b5_texels(void **state)
     assert_true(mip == 87381 && full == 589824 && ours == 152928);
 }
 
-static void test_mips(void **state)
+TEST(mips)
 {
     struct glint_environment_options o = options_of();
     struct baked b;
 
-    (void)state;
     paint(patches);
     o.max_lights = 0;
     o.levels = GLINT_ENVIRONMENT_MIP;
@@ -336,7 +325,7 @@ static double day(const double d[3])
 
 /* A disc of 4 degrees is found where it is, with its light and size; what is
  * left there is as around. */
-static void test_light(void **state)
+TEST(light)
 {
     struct glint_environment_options o = options_of();
     const struct glint_environment_light *l;
@@ -344,7 +333,6 @@ static void test_light(void **state)
     struct baked b;
     double d[3], power, u, v;
 
-    (void)state;
     paint(day);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
@@ -393,12 +381,11 @@ static double window(const double d[3])
 }
 
 /* Wide light stays where it is, and of two discs that touch none is lost. */
-static void test_areas_stay(void **state)
+TEST(areas_stay)
 {
     const struct glint_environment_options o = options_of();
     struct baked b;
 
-    (void)state;
     paint(window);
     bake(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 0);
@@ -408,7 +395,7 @@ static void test_areas_stay(void **state)
 
 /* ------------------------------------------------------------------- held */
 
-static void test_held(void **state)
+TEST(held)
 {
     const struct glint_environment_options o = options_of();
     struct glint_environment_options odd;
@@ -416,7 +403,6 @@ static void test_held(void **state)
     struct glint_float_image narrow = image;
     struct baked b;
 
-    (void)state;
     paint(even);
     picture[3][4][1] = -1;
     picture[5][6][0] = -2e30f;
@@ -448,7 +434,7 @@ static void test_held(void **state)
 }
 
 /* Six faces, each of one light, lie where they are named. */
-static void test_cube(void **state)
+TEST(cube)
 {
     static const double middle[6][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},
                                         {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
@@ -458,7 +444,6 @@ static void test_cube(void **state)
     const struct glint_float_image cube = {24, 16, (float *)faces};
     struct glint_sphere s;
 
-    (void)state;
     for (int y = 0; y < 16; y++)
         for (int x = 0; x < 24; x++)
             for (int c = 0; c < 3; c++)
@@ -474,14 +459,13 @@ static void test_cube(void **state)
 
 /* ------------------------------------------------------------------- codes */
 
-static void test_codes(void **state)
+TEST(codes)
 {
     enum { N = 4096 };
     static double light[N][3];
     static uint32_t words[N];
     uint32_t seed = 3;
 
-    (void)state;
     for (int i = 0; i < N; i++)
         for (int c = 0; c < 3; c++)
             light[i][c] = ldexp(rng_below(&seed, 65536), -rng_below(&seed, 20));
@@ -521,13 +505,12 @@ static void refuse(const struct baked *b, size_t at, uint32_t value,
 
 #define AT(field) offsetof(struct glint_environment_header, field)
 
-static void test_refused(void **state)
+TEST(refused)
 {
     const struct glint_environment_options o = options_of();
     struct baked b;
     const struct glint_environment_header *h;
 
-    (void)state;
     paint(day);
     bake(&b, &o);
     h = b.environment.header;
@@ -576,18 +559,16 @@ static void wrong(const char *text, const char *why)
         fail_msg("%s\nnot\n%s", error.text, why);
 }
 
-static void test_text(void **state)
+TEST(text)
 {
     struct glint_environment_options o;
     char source[GLINT_ENVIRONMENT_FILE_BYTES];
     struct glint_error error;
 
-    (void)state;
-    assert_int_equal(parse("# night\nsource a night.exr\nsize 128\n"
-                           "levels mip\nturn -90\nscale .5\n"
-                           "lights 3 radius 2.5 above 20\n",
-                           &o, source, &error),
-                     GLINT_OK);
+    assert_ok(parse("# night\nsource a night.exr\nsize 128\n"
+                    "levels mip\nturn -90\nscale .5\n"
+                    "lights 3 radius 2.5 above 20\n",
+                    &o, source, &error));
     assert_string_equal(source, "a night.exr");
     assert_true(o.side_log2 == 7 && o.levels == GLINT_ENVIRONMENT_MIP &&
                 o.turn_deg == -90 && o.scale == .5 && o.max_lights == 3 &&
@@ -605,19 +586,4 @@ static void test_text(void **state)
     wrong("source x\nsource y\n",
           "2:1: a second source; the first is on line 1");
     wrong("sources x\n", "unknown word 'sources'; did you mean 'source'?");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_octahedron), cmocka_unit_test(test_edges_meet),
-        cmocka_unit_test(test_even),       cmocka_unit_test(test_irradiance),
-        cmocka_unit_test(test_blur),       cmocka_unit_test(test_b5_texels),
-        cmocka_unit_test(test_mips),       cmocka_unit_test(test_light),
-        cmocka_unit_test(test_areas_stay), cmocka_unit_test(test_held),
-        cmocka_unit_test(test_cube),       cmocka_unit_test(test_codes),
-        cmocka_unit_test(test_refused),    cmocka_unit_test(test_text),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,13 +5,9 @@
  * exact rays, against the exact picture.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/frame/frame.h"
 #include "glint/measure.h"
@@ -53,7 +49,7 @@ static void render(double *out, struct glint_view view,
                                            .only_ghost = -1,
                                            .workers = workers};
 
-    assert_int_equal(glint_exact_render(&cfg, out), GLINT_OK);
+    assert_ok(glint_exact_render(&cfg, out));
 }
 
 static struct glint_lamp lamp_at(double theta, double phi)
@@ -127,21 +123,18 @@ static void compare_golden(const struct golden *g)
     assert_true(m.psnr_db >= 50);
 }
 
-static void test_golden_heliar(void **state)
+TEST(golden_heliar)
 {
-    (void)state;
     compare_golden(&(struct golden){"heliar-tronnier", 7.58, 33.2, 128});
 }
 
-static void test_golden_angenieux(void **state)
+TEST(golden_angenieux)
 {
-    (void)state;
     compare_golden(&(struct golden){"double-gauss-angenieux", 5.33, -20.8, 96});
 }
 
-static void test_golden_canon(void **state)
+TEST(golden_canon)
 {
-    (void)state;
     if (getenv("GLINT_QUICK") &&
         *getenv("GLINT_QUICK")) /* Sanitizers take minutes. */
         skip();
@@ -150,14 +143,13 @@ static void test_golden_canon(void **state)
 
 /* -------------------------------------------------------------- symmetries */
 
-static void test_axis_light_is_symmetric(void **state)
+TEST(axis_light_is_symmetric)
 {
     const struct glint_view view = {
         .width = 160, .height = 160, .sensor_width_mm = 24};
     const struct glint_lamp lamp = lamp_at(0, 0);
     double worst = 0, peak = 0;
 
-    (void)state;
     load_setup(&setup, &lens, "heliar-tronnier");
     render(rgb, view, &lamp, 1, 128);
     for (int y = 0; y < 160; y++)
@@ -178,13 +170,12 @@ static void test_axis_light_is_symmetric(void **state)
 
 /* Turning the light by 90 degrees must turn the picture: a quarter turn leaves
  * an octagonal stop and a square picture as they are. */
-static void test_quarter_turn(void **state)
+TEST(quarter_turn)
 {
     const struct glint_view view = {
         .width = 160, .height = 160, .sensor_width_mm = 24};
     const struct glint_lamp lamp = lamp_at(6, 20), turned = lamp_at(6, 110);
 
-    (void)state;
     load_setup(&setup, &lens, "double-gauss-angenieux");
     render(rgb, view, &lamp, 1, 96);
     render(other, view, &turned, 1, 96);
@@ -200,14 +191,13 @@ static void test_quarter_turn(void **state)
 
 /* ---------------------------------------------------------------- accuracy */
 
-static void test_doubling_the_grid(void **state)
+TEST(doubling_the_grid)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
     const struct glint_lamp lamp = lamp_at(7.58, 33.2);
     double db;
 
-    (void)state;
     load_setup(&setup, &lens, "heliar-tronnier");
     render(rgb, view, &lamp, 1, 256);
     render(other, view, &lamp, 1, 512);
@@ -219,7 +209,7 @@ static void test_doubling_the_grid(void **state)
 /* 13 pairs of surfaces reflect at most 5 % each time, so that all ghosts
  * together must have less than 13 * 0.05^2 of the light that enters the
  * front. */
-static void test_flux_is_bounded(void **state)
+TEST(flux_is_bounded)
 {
     const struct glint_view view = {
         .width = 200, .height = 200, .sensor_width_mm = 2000};
@@ -227,7 +217,6 @@ static void test_flux_is_bounded(void **state)
     const double front = 3.14159265 * 14.5 * 14.5;
     double sum[3] = {0, 0, 0};
 
-    (void)state;
     load_setup(&setup, &lens, "heliar-tronnier");
     render(rgb, view, &lamp, 1, 64);
     for (int i = 0; i < 3 * 200 * 200; i++)
@@ -239,19 +228,18 @@ static void test_flux_is_bounded(void **state)
     }
 }
 
-static void test_threads_do_not_matter(void **state)
+TEST(threads_do_not_matter)
 {
     const struct glint_view view = {
         .width = 120, .height = 67, .sensor_width_mm = 36};
     const struct glint_lamp lamps[2] = {lamp_at(5, 33), lamp_at(9, -120)};
     struct glint_workers *const pool = workers;
 
-    (void)state;
     load_setup(&setup, &lens, "heliar-tronnier");
     workers = NULL;
     render(rgb, view, lamps, 2, 64);
     for (int n = 2; n <= 8; n += 3) {
-        assert_int_equal(glint_pool_create(&workers, n), GLINT_OK);
+        assert_ok(glint_pool_create(&workers, n));
         render(other, view, lamps, 2, 64);
         glint_pool_destroy(workers);
         assert_memory_equal(rgb, other, sizeof(double) * 3 * 120 * 67);
@@ -270,15 +258,14 @@ static void integers(struct glint_view view, const struct glint_lamp *lamps,
 
     glint_frame_init(&frame, &setup, view, workers);
     frame.trace = &glint_frame_traces;
-    assert_int_equal(
-        glint_frame_draw_alone(&frame, lamps, n_lamps, 1, linear, report),
-        GLINT_OK);
+    assert_ok(
+        glint_frame_draw_alone(&frame, lamps, n_lamps, 1, linear, report));
     for (int i = 0; i < 3 * view.width * view.height; i++)
         out[i] = (double)linear[i];
     glint_frame_finish(&frame);
 }
 
-static void test_integers_match(void **state)
+TEST(integers_match)
 {
     static const char *const names[] = {"heliar-tronnier",
                                         "double-gauss-angenieux"};
@@ -287,7 +274,6 @@ static void test_integers_match(void **state)
     const struct glint_lamp lamps[2] = {lamp_at(7.58, 33.2),
                                         lamp_at(3.1, -100)};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct glint_engine_report report;
         double db;
@@ -305,7 +291,7 @@ static void test_integers_match(void **state)
 
 /* A frame whose fields and edges find no room must be drawn in parts, to the
  * same bits. */
-static void test_memory_does_not_matter(void **state)
+TEST(memory_does_not_matter)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
@@ -314,7 +300,6 @@ static void test_memory_does_not_matter(void **state)
     static float linear[2][3 * 240 * 135];
     struct glint_engine_report report[2];
 
-    (void)state;
     load_setup(&setup, &lens, "heliar-tronnier");
     for (int i = 0; i < 2; i++) {
         struct glint_frame frame;
@@ -324,9 +309,8 @@ static void test_memory_does_not_matter(void **state)
         frame.cfg.tile_log2 = 4;
         if (i)
             frame.limits.most_bytes = 1 << 20;
-        assert_int_equal(
-            glint_frame_draw_alone(&frame, lamps, 2, 1, linear[i], &report[i]),
-            GLINT_OK);
+        assert_ok(
+            glint_frame_draw_alone(&frame, lamps, 2, 1, linear[i], &report[i]));
         glint_frame_finish(&frame);
     }
     print_message("%zu and %zu bytes\n", report[0].arena_bytes,
@@ -338,7 +322,7 @@ static void test_memory_does_not_matter(void **state)
 /* A lamp with a hundredth of green must give the same green light as a green
  * lamp alone of that power: a faint colour has steps of its own. The hot spot
  * of this lens is far fainter than the size of its box suggests. */
-static void test_faint_colour_keeps_steps(void **state)
+TEST(faint_colour_keeps_steps)
 {
     const struct glint_view view = {
         .width = 480, .height = 270, .sensor_width_mm = 36};
@@ -347,7 +331,6 @@ static void test_faint_colour_keeps_steps(void **state)
     struct glint_engine_report report;
     double apart = 0, sum = 0;
 
-    (void)state;
     load_setup(&setup, &lens, "itoh-zoom-short");
     integers(view, &green, 1, rgb, &report);
     integers(view, &reddish, 1, other, &report);
@@ -384,7 +367,7 @@ static void load_shaped(const char *before, const char *first,
 
 /* A toric of two equal radii is a sphere; its lens is traced as one that is not
  * round: over the whole pupil, turned by the light's azimuth. */
-static void test_torics_that_are_spheres(void **state)
+TEST(torics_that_are_spheres)
 {
     const struct glint_view view = {
         .width = 180, .height = 120, .sensor_width_mm = 36};
@@ -392,7 +375,6 @@ static void test_torics_that_are_spheres(void **state)
     struct glint_engine_report report;
     double db, flux;
 
-    (void)state;
     load_shaped("", "", "");
     flux = setup.direct_flux[1];
     render(rgb, view, &lamp, 1, 128);
@@ -411,14 +393,13 @@ static void test_torics_that_are_spheres(void **state)
 
 /* A decentre in x seen at 30 degrees is one in y at 60, mirrored at the
  * diagonal; and not what the centred lens makes. */
-static void test_decentred_at_the_diagonal(void **state)
+TEST(decentred_at_the_diagonal)
 {
     const struct glint_view view = {
         .width = 120, .height = 120, .sensor_width_mm = 30};
     const struct glint_lamp at[2] = {lamp_at(6, 30), lamp_at(6, 60)};
     double db;
 
-    (void)state;
     load_shaped("group decentre 0.7 0\n", "", "end\n");
     render(rgb, view, &at[0], 1, 64);
     load_shaped("group decentre 0 0.7\n", "", "end\n");
@@ -439,23 +420,4 @@ static void test_decentred_at_the_diagonal(void **state)
     assert_true(psnr(rgb, other, view) < 40);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_golden_heliar),
-        cmocka_unit_test(test_golden_angenieux),
-        cmocka_unit_test(test_golden_canon),
-        cmocka_unit_test(test_axis_light_is_symmetric),
-        cmocka_unit_test(test_quarter_turn),
-        cmocka_unit_test(test_doubling_the_grid),
-        cmocka_unit_test(test_flux_is_bounded),
-        cmocka_unit_test(test_threads_do_not_matter),
-        cmocka_unit_test(test_integers_match),
-        cmocka_unit_test(test_memory_does_not_matter),
-        cmocka_unit_test(test_faint_colour_keeps_steps),
-        cmocka_unit_test(test_torics_that_are_spheres),
-        cmocka_unit_test(test_decentred_at_the_diagonal),
-    };
-
-    return cmocka_run_group_tests_name("exact", tests, open_pool, close_pool);
-}
+TEST_GROUP(open_pool, close_pool);

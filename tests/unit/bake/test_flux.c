@@ -4,12 +4,7 @@
  * says of it against rays through the stop of each f-number.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include "bake/model_header.h"
 #include "support/lens_check.h"
@@ -31,25 +26,19 @@ static void set_up(const char *name, double f_number, struct glint_setup *model,
 
     load_lens(&lens, name);
     glint_bake_defaults(&options);
-    assert_int_equal(glint_setup_init(&whole, &lens, 0, 0, nm, 3, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_model_header_of(&lens, &options, &whole, &header),
-                     GLINT_OK);
+    assert_ok(glint_setup_init(&whole, &lens, 0, 0, nm, 3, &error));
+    assert_ok(glint_model_header_of(&lens, &options, &whole, &header));
     header.n_ghosts = header.n_parts = 0;
-    assert_int_equal(glint_setup_from_model(model, &file, 8, 0, nm, 3, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_setup_stop_down(model, &file, f_number, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_prescription_set_f_number(&lens, f_number, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_setup_init(exact, &lens, 8, 0, nm, 3, &error),
-                     GLINT_OK);
+    assert_ok(glint_setup_from_model(model, &file, 8, 0, nm, 3, &error));
+    assert_ok(glint_setup_stop_down(model, &file, f_number, &error));
+    assert_ok(glint_prescription_set_f_number(&lens, f_number, &error));
+    assert_ok(glint_setup_init(exact, &lens, 8, 0, nm, 3, &error));
 }
 
 /* Barrels cut the rim of these lenses' widest stops: of the circle's flux they
  * leave 1 / 1.027 and 1 / 1.10. Where they cease to cut, a quarter of a stop
  * further down, the flux has a corner that three openings do not show. */
-static void test_fast_lenses(void **state)
+TEST(fast_lenses)
 {
     static const struct {
         const char *name;
@@ -63,7 +52,6 @@ static void test_fast_lenses(void **state)
                  {"../tests/lenses/merte-biotar", 1.6, 0.025},
                  {"../tests/lenses/cooke-triplet", 5, 2e-3}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         static struct glint_setup model, exact;
 
@@ -72,11 +60,4 @@ static void test_fast_lenses(void **state)
             assert_near(model.direct_flux[k] / exact.direct_flux[k], 1,
                         cases[i].within);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_fast_lenses)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,16 +2,12 @@
  *
  * Glasses of the catalogue: their indices, their names in tables. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/bake.h"
+#include "support/test.h"
 
 /* Indices at the d, C and F lines as makers print them, to 5 decimals; not
  * computed from what glint has. */
@@ -100,11 +96,10 @@ static void near(double got, double want)
     assert_true(fabs(got - want) < 1.5e-5);
 }
 
-static void test_printed_indices(void **state)
+TEST(printed_indices)
 {
     struct glint_error error = {""};
 
-    (void)state;
     for (size_t i = 0; i < sizeof printed / sizeof *printed; i++) {
         if (read_medium(printed[i].name, &error) != GLINT_OK)
             fail_msg("%s", error.text);
@@ -119,11 +114,10 @@ static void test_printed_indices(void **state)
     }
 }
 
-static void test_printed_dispersions(void **state)
+TEST(printed_dispersions)
 {
     struct glint_error error = {""};
 
-    (void)state;
     for (size_t i = 0; i < sizeof printed_vd / sizeof *printed_vd; i++) {
         const double nd = printed_vd[i].nd;
         double apart;
@@ -139,13 +133,12 @@ static void test_printed_dispersions(void **state)
 }
 
 /* Every row is a glass: none is a slip of the hand. */
-static void test_all_rows_are_glasses(void **state)
+TEST(all_rows_are_glasses)
 {
     struct glint_error error = {""};
     const struct glint_glass *glass;
     int n = 0;
 
-    (void)state;
     for (; (glass = glint_glass_at(n)) != NULL; n++) {
         double last = 9;
 
@@ -153,7 +146,7 @@ static void test_all_rows_are_glasses(void **state)
                          glass);
         assert_ptr_equal(glint_glass_near(glass->name, strlen(glass->name)),
                          glass);
-        assert_int_equal(read_medium(glass->name, &error), GLINT_OK);
+        assert_ok(read_medium(glass->name, &error));
         assert_true(lens.surface[0].nd > 1.4 && lens.surface[0].nd < 2.1);
         assert_true(lens.surface[0].vd > 17 && lens.surface[0].vd < 96);
         for (int nm = 365; nm <= 1010; nm += 15) {
@@ -168,19 +161,18 @@ static void test_all_rows_are_glasses(void **state)
 }
 
 /* What a real glass does and two numbers cannot say: the violet of a flint. */
-static void test_beyond_two_terms(void **state)
+TEST(beyond_two_terms)
 {
     struct glint_error error = {""};
     double by_numbers;
 
-    (void)state;
-    assert_int_equal(read_medium("N-SF11", &error), GLINT_OK);
+    assert_ok(read_medium("N-SF11", &error));
     by_numbers = glint_index(lens.surface[0].nd, lens.surface[0].vd, 404.66);
     assert_true(glint_surface_index(&lens.surface[0], 404.66) - by_numbers >
                 4e-3);
 }
 
-static void test_names(void **state)
+TEST(names)
 {
     static const struct {
         const char *wrong, *meant;
@@ -195,7 +187,6 @@ static void test_names(void **state)
         "glass N-BK7 1.6 50\nsurface 60 5 10 N-BK7\nsurface -60 90 10 air\n";
     struct glint_error error;
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         error.text[0] = '\0';
         assert_int_equal(read_medium(cases[i].wrong, &error), GLINT_E_LENS);
@@ -204,37 +195,22 @@ static void test_names(void **state)
     }
     assert_null(strstr(error.text, "did you mean"));
     /* A glass of the table's own goes before the catalogue's. */
-    assert_int_equal(
-        glint_prescription_parse(&lens, own, sizeof own - 1, "t", &error),
-        GLINT_OK);
+    assert_ok(
+        glint_prescription_parse(&lens, own, sizeof own - 1, "t", &error));
     assert_true(lens.surface[0].nd == 1.6);
     assert_true(lens.surface[0].sellmeier[0] == 0);
 }
 
 /* Two glasses of the same nd and Vd are two models. */
-static void test_key(void **state)
+TEST(key)
 {
     struct glint_bake_options options;
     struct glint_error error = {""};
     uint64_t key;
 
-    (void)state;
     glint_bake_defaults(&options);
-    assert_int_equal(read_medium("N-SK16", &error), GLINT_OK);
+    assert_ok(read_medium("N-SK16", &error));
     key = glint_bake_key(&lens, &options);
     memset(lens.surface[0].sellmeier, 0, sizeof lens.surface[0].sellmeier);
     assert_true(glint_bake_key(&lens, &options) != key);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_printed_indices),
-        cmocka_unit_test(test_printed_dispersions),
-        cmocka_unit_test(test_all_rows_are_glasses),
-        cmocka_unit_test(test_beyond_two_terms),
-        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_key)};
-
-    return cmocka_run_group_tests_name("glass", tests, NULL, NULL);
 }

@@ -5,13 +5,8 @@
  */
 #include <complex.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "support/lens_check.h"
 #include "glint/bake.h"
@@ -23,9 +18,8 @@ static const double pi = 3.14159265358979323846;
 /* N-BK7 by its catalogue: nd 1.5168, Vd 64.17, nF - nC 0.008054, nF 1.52238, nC
  * 1.51432, ng (435.83 nm) 1.52668. Cauchy's two terms are less exact in the
  * violet. */
-static void test_glass(void **state)
+TEST(glass)
 {
-    (void)state;
     assert_near(glint_index(1.5168, 64.17, 587.5618), 1.5168, 1e-15);
     assert_near(glint_index(1.5168, 64.17, 486.1327) -
                     glint_index(1.5168, 64.17, 656.2725),
@@ -53,9 +47,8 @@ static double bare(double n1, double n2, double cosine)
     return glint_reflectance(n1, n2, cosine, NULL, 0);
 }
 
-static void test_bare_boundary(void **state)
+TEST(bare_boundary)
 {
-    (void)state;
     assert_near(bare(1.0, 1.5, 1.0), 0.04, 1e-16);
     assert_near(bare(1.5, 1.0, 1.0), 0.04, 1e-16);
     assert_near(bare(1.0, 2.0, 1.0), 1.0 / 9.0, 1e-16);
@@ -72,11 +65,10 @@ static void test_bare_boundary(void **state)
 
 /* From index 1.5 to 1 the critical angle has the cosine sqrt(5) / 3; smaller
  * cosines must give total reflection. */
-static void test_total_reflection(void **state)
+TEST(total_reflection)
 {
     static const double film[] = {0.0, 1.38};
 
-    (void)state;
     for (int f = 0; f < 2; f++) {
         assert_true(with_film(1.5, 1.0, 0.3, film[f], pi) == 1.0);
         assert_true(with_film(1.5, 1.0, sqrt(5.0) / 3.0 - 1e-9, film[f], pi) ==
@@ -89,11 +81,10 @@ static void test_total_reflection(void **state)
 /* At normal incidence a quarter-wave film of index f reflects ((n1 n2 - f^2) /
  * (n1 n2 + f^2))^2, so nothing where f^2 = n1 n2. A half-wave film acts as if
  * it were not there. */
-static void test_film_by_hand(void **state)
+TEST(film_by_hand)
 {
     const double quarter = pi, half = 2.0 * pi;
 
-    (void)state;
     assert_near(with_film(1.0, 2.25, 1.0, 1.5, quarter), 0.0, 1e-30);
     assert_near(with_film(2.25, 1.0, 1.0, 1.5, quarter), 0.0, 1e-30);
     assert_near(with_film(1.0, 1.52, 1.0, 1.38, quarter), 0.0126008, 5e-8);
@@ -125,7 +116,7 @@ static double airy(double n1, double n2, double c1, double nf, double phase)
     return 0.5 * (s * s + p * p);
 }
 
-static void test_film_against_airy(void **state)
+TEST(film_against_airy)
 {
     /* Indices before, of and behind the film. In the last three, light at
      * grazing angles passes only by frustrated total reflection. */
@@ -134,7 +125,6 @@ static void test_film_against_airy(void **state)
         {1.7, 1.2, 1.65}, {1.9, 1.01, 1.5}, {1.5, 1.38, 1.9}};
     int frustrated = 0;
 
-    (void)state;
     for (int k = 0; k < 7; k++)
         for (int i = 1; i <= 200; i++)
             for (double phase = 0.1; phase < 9.0; phase += 0.7) {
@@ -149,9 +139,8 @@ static void test_film_against_airy(void **state)
 }
 
 /* A thin gap must pass light that a thick one reflects totally. */
-static void test_frustrated_reflection(void **state)
+TEST(frustrated_reflection)
 {
-    (void)state;
     assert_true(with_film(1.7, 1.7, 0.6, 1.01, 1e-3) < 1e-4);
     assert_near(with_film(1.7, 1.7, 0.6, 1.01, 60.0), 1.0, 1e-12);
     assert_near(with_film(1.7, 1.7, 0.6, 1.01, 1e300), 1.0, 1e-12);
@@ -161,11 +150,10 @@ static void test_frustrated_reflection(void **state)
 }
 
 /* The reflectance must be 0 .. 1 and the same from both sides of a boundary. */
-static void test_reciprocity(void **state)
+TEST(reciprocity)
 {
     static const double film[] = {0.0, 1.38, 1.2, 2.4};
 
-    (void)state;
     for (int f = 0; f < 4; f++)
         for (double n2 = 1.3; n2 < 2.2; n2 += 0.17)
             for (int i = 0; i <= 1000; i++) {
@@ -206,12 +194,11 @@ static struct glint_prescription biconvex(void)
 #define BICONVEX_F    (1.0 / 0.0196)
 #define BICONVEX_BACK (0.96 / 0.0196)
 
-static void test_biconvex_with_stop_behind(void **state)
+TEST(biconvex_with_stop_behind)
 {
     const struct glint_prescription lens = biconvex();
     struct glint_optics optics;
 
-    (void)state;
     glint_optics_of(&lens, &optics);
     assert_near(optics.focal_mm, BICONVEX_F, 1e-12);
     assert_near(optics.back_focal_mm, BICONVEX_BACK, 1e-12);
@@ -228,12 +215,11 @@ static void test_biconvex_with_stop_behind(void **state)
                 1e-11);
 }
 
-static void test_biconvex_with_stop_in_front(void **state)
+TEST(biconvex_with_stop_in_front)
 {
     struct glint_prescription lens = biconvex();
     struct glint_optics optics;
 
-    (void)state;
     lens.stop_after = 0;
     lens.stop_thickness_mm = 7.0;
     glint_optics_of(&lens, &optics);
@@ -271,12 +257,11 @@ static const struct {
 
 #define N_TABLES ((int)(sizeof(tables) / sizeof(tables[0])))
 
-static void test_published_values(void **state)
+TEST(published_values)
 {
     static struct glint_prescription lens;
     struct glint_optics optics;
 
-    (void)state;
     for (int i = 0; i < N_TABLES; i++) {
         load_lens(&lens, tables[i].name);
         glint_optics_of(&lens, &optics);
@@ -301,7 +286,7 @@ static void test_published_values(void **state)
 
 /* Pairs must be listed in this order and not across the stop: five surfaces lie
  * before it, three after it. */
-static void test_ghost_order(void **state)
+TEST(ghost_order)
 {
     static const struct glint_ghost expected[] = {
         {0, 1}, {0, 2}, {0, 3}, {0, 4}, {1, 2}, {1, 3}, {1, 4},
@@ -309,7 +294,6 @@ static void test_ghost_order(void **state)
     static struct glint_prescription lens;
     struct glint_ghost ghosts[14];
 
-    (void)state;
     memset(ghosts, -1, sizeof(ghosts));
     load_lens(&lens, "heliar-tronnier");
     assert_int_equal(glint_ghost_list(&lens, ghosts, 14), 13);
@@ -319,23 +303,4 @@ static void test_ghost_order(void **state)
     assert_int_equal(glint_ghost_list(&lens, ghosts, 2), 13);
     assert_memory_equal(ghosts, expected, 2 * sizeof(expected[0]));
     assert_int_equal(ghosts[2].i, -1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_glass),
-        cmocka_unit_test(test_bare_boundary),
-        cmocka_unit_test(test_total_reflection),
-        cmocka_unit_test(test_film_by_hand),
-        cmocka_unit_test(test_film_against_airy),
-        cmocka_unit_test(test_frustrated_reflection),
-        cmocka_unit_test(test_reciprocity),
-        cmocka_unit_test(test_biconvex_with_stop_behind),
-        cmocka_unit_test(test_biconvex_with_stop_in_front),
-        cmocka_unit_test(test_published_values),
-        cmocka_unit_test(test_ghost_order),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

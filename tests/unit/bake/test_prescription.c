@@ -5,15 +5,10 @@
  */
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "bake/table/text.h"
 #include "support/lens_check.h"
@@ -121,12 +116,11 @@ static void expect_tiny(const struct glint_prescription *lens)
     assert_true(lens->check_focal_mm == 0.0 && lens->check_back_mm == 0.0);
 }
 
-static void test_good_table(void **state)
+TEST(good_table)
 {
     static struct glint_prescription lens;
     char text[4096];
 
-    (void)state;
     expect_good(&lens, text, compose(text, 0, NULL, "\n"));
     expect_tiny(&lens);
     expect_good(&lens, text, compose(text, 0, NULL, "\r\n"));
@@ -156,11 +150,10 @@ static void expect_coatings(int number, const char *line, const double nm[4],
     }
 }
 
-static void test_coatings(void **state)
+TEST(coatings)
 {
     static const double zero[4] = {0};
 
-    (void)state;
     expect_coatings(5, "coating none\nglass N-BK7 1.5 64", zero, zero);
     expect_coatings(10, "surface -80 40 10 air\ncoating 480", /* last line */
                     (const double[]){480, 480, 480, 480},
@@ -185,7 +178,7 @@ static void test_coatings(void **state)
                     (const double[]){1.38, 0, 1.38, 1.38});
 }
 
-static void test_stop_at_either_end(void **state)
+TEST(stop_at_either_end)
 {
     static struct glint_prescription lens;
     static const char last[] = "name a\nf-number 8\nfilm 36 24\n"
@@ -195,14 +188,13 @@ static void test_stop_at_either_end(void **state)
                                 "surface 50 6 12 1.5 60\n"
                                 "surface -50 45 12 air";
 
-    (void)state;
     expect_good(&lens, last, strlen(last));
     assert_int_equal(lens.stop_after, 2);
     expect_good(&lens, first, strlen(first));
     assert_int_equal(lens.stop_after, 0);
 }
 
-static void test_round_stops(void **state)
+TEST(round_stops)
 {
     static struct glint_prescription lens;
     static const char table[] = "name a\nf-number 8\nfilm 36 24\n"
@@ -210,7 +202,6 @@ static void test_round_stops(void **state)
                                 "surface -50 3 12 air\nstop 40 8";
     char text[sizeof table + 20];
 
-    (void)state;
     expect_good(&lens, table, strlen(table));
     assert_false(lens.stop_is_circle);
     snprintf(text, sizeof text, "%s  circle # always", table);
@@ -220,7 +211,7 @@ static void test_round_stops(void **state)
 }
 
 /* The parser must round decimals as the compiler does. */
-static void test_numbers_are_exact(void **state)
+TEST(numbers_are_exact)
 {
     static const struct {
         const char *word;
@@ -239,7 +230,6 @@ static void test_numbers_are_exact(void **state)
     static struct glint_prescription lens;
     char text[4096], line[100];
 
-    (void)state;
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         snprintf(line, sizeof(line), "film 36 %s", cases[i].word);
         expect_good(&lens, text, compose(text, 4, line, "\n"));
@@ -422,23 +412,21 @@ static const struct {
     {2, "# escape \xc2\x9b", "x.lens:2:10: byte 0xc2 is not text (UTF-8)"},
 };
 
-static void test_mistakes(void **state)
+TEST(mistakes)
 {
     char text[4096];
 
-    (void)state;
     for (size_t i = 0; i < sizeof(mistakes) / sizeof(mistakes[0]); i++)
         expect_error(text,
                      compose(text, mistakes[i].number, mistakes[i].line, "\n"),
                      mistakes[i].error);
 }
 
-static void test_bytes(void **state)
+TEST(bytes)
 {
     char text[4096], line[300];
     size_t bytes;
 
-    (void)state;
     expect_error(NULL, 0, "x.lens:1:1: there is no name line");
     expect_error("\n\n", 2, "x.lens:3:1: there is no name line");
     bytes = compose(text, 0, NULL, "\n");
@@ -454,13 +442,12 @@ static void test_bytes(void **state)
                  "x.lens:2:201: line is longer than 200 bytes");
 }
 
-static void test_longest_line_and_text(void **state)
+TEST(longest_line_and_text)
 {
     static struct glint_prescription lens;
     static char big[70000];
     char text[4096], line[300] = "source ";
 
-    (void)state;
     memset(line + 7, 'x', 193); /* a line of 200 bytes */
     expect_good(&lens, text, compose(text, 2, line, "\r\n"));
     assert_int_equal(strlen(lens.source), 193);
@@ -471,12 +458,11 @@ static void test_longest_line_and_text(void **state)
 }
 
 /* A comment may have any text in UTF-8; a # inside a word begins none. */
-static void test_utf8_and_comments(void **state)
+TEST(utf8_and_comments)
 {
     static struct glint_prescription lens;
     char text[4096];
 
-    (void)state;
     expect_good(&lens, text,
                 compose(text, 2,
                         "# \xe2\x82\xac \xf0\x9f\x93\xb7\n"
@@ -485,14 +471,13 @@ static void test_utf8_and_comments(void **state)
     assert_string_equal(lens.source, "Voigtl\xc3\xa4nder a#1");
 }
 
-static void test_too_many_surfaces(void **state)
+TEST(too_many_surfaces)
 {
     static struct glint_prescription lens;
     static char text[8192];
     int n = snprintf(text, sizeof(text),
                      "name a\nf-number 32\nfilm 36 24\nstop 1 9\n");
 
-    (void)state;
     for (int k = 0; k < 64; k++)
         n += snprintf(text + n, sizeof(text) - (size_t)n, "surface %s 1 9 %s\n",
                       k % 2 ? "-900" : "900", k % 2 ? "air" : "1.5 60");
@@ -511,9 +496,8 @@ static void expect_whole_lens_error(const char *elements, const char *expected)
     expect_error(text, strlen(text), expected);
 }
 
-static void test_power(void **state)
+TEST(power)
 {
-    (void)state;
     expect_whole_lens_error("stop 1 20\nsurface flat 3 9 1.5 60\n"
                             "surface flat 9 9 air\n",
                             "x.lens:7:1: the lens has no power");
@@ -538,12 +522,11 @@ static void test_power(void **state)
 }
 
 /* The focal lengths that a table states may be 0.1 % off. */
-static void test_stated_values(void **state)
+TEST(stated_values)
 {
     static struct glint_prescription lens;
     char text[4096];
 
-    (void)state;
     expect_good(
         &lens, text,
         compose(text, 2, "focal-length 38.15\nback-focal-length 29.41", "\n"));
@@ -555,13 +538,12 @@ static void test_stated_values(void **state)
 }
 
 /* The message must keep the cause however long the file's name is. */
-static void test_long_file_name(void **state)
+TEST(long_file_name)
 {
     static struct glint_prescription lens;
     static char name[2000];
     struct glint_error error;
 
-    (void)state;
     memset(name, 'd', sizeof(name) - 1);
     strcpy(name + 1900, "/a.lens");
     assert_int_equal(glint_prescription_parse(&lens, "bad", 3, name, &error),
@@ -571,7 +553,7 @@ static void test_long_file_name(void **state)
 }
 
 /* Nearest roundings of these are too small. */
-static void test_printed_widest(void **state)
+TEST(printed_widest)
 {
     static const char *const names[] = {"heliar-tronnier", "canon-zoom-long",
                                         "itoh-zoom-mid", "nikon-zoom-short"};
@@ -579,32 +561,28 @@ static void test_printed_widest(void **state)
     struct glint_error error;
     char text[32];
 
-    (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         double widest;
 
         load_lens(&lens, names[i]);
         widest = glint_prescription_widest(&lens);
         snprintf(text, sizeof text, "%.3g", widest);
-        assert_int_equal(
-            glint_prescription_set_f_number(&lens, strtod(text, NULL), &error),
-            GLINT_OK);
+        assert_ok(
+            glint_prescription_set_f_number(&lens, strtod(text, NULL), &error));
         assert_int_equal(
             glint_prescription_set_f_number(&lens, 0.99 * widest, &error),
             GLINT_E_ARGUMENT);
     }
 }
 
-static void test_set_f_number(void **state)
+TEST(set_f_number)
 {
     static struct glint_prescription lens;
     struct glint_error error;
     struct glint_optics optics;
 
-    (void)state;
     load_lens(&lens, "heliar-tronnier");
-    assert_int_equal(glint_prescription_set_f_number(&lens, 8.0, &error),
-                     GLINT_OK);
+    assert_ok(glint_prescription_set_f_number(&lens, 8.0, &error));
     assert_true(lens.f_number == 8.0);
     glint_optics_of(&lens, &optics); /* twice the stop radius at f/16 */
     assert_near(optics.stop_radius_mm, 2.0 * 2.4868, 1e-4);
@@ -627,14 +605,13 @@ static void test_set_f_number(void **state)
 }
 
 /* The example table of the manual must be good. */
-static void test_manual(void **state)
+TEST(manual)
 {
     static const char fence[] = "```lens\n";
     static struct glint_prescription lens;
     static char text[65536];
     const char *start, *end;
 
-    (void)state;
     text[read_file("lenses/README.md", text, sizeof(text) - 1)] = 0;
     start = strstr(text, fence);
     assert_non_null(start);
@@ -647,7 +624,7 @@ static void test_manual(void **state)
 
 /* Tables of the fuzzer's corpus must fit their names: good-* parse, bad-* do
  * not, others may do either. */
-static void test_corpus(void **state)
+TEST(corpus)
 {
     static struct glint_prescription lens;
     static char text[70000];
@@ -656,7 +633,6 @@ static void test_corpus(void **state)
     struct glint_error error;
     int n = 0;
 
-    (void)state;
     assert_non_null(folder);
     while ((entry = readdir(folder))) {
         char path[400];
@@ -676,7 +652,7 @@ static void test_corpus(void **state)
 }
 
 /* Numbers of any number of digits are the nearest doubles: the compiler's. */
-static void test_digits(void **state)
+TEST(digits)
 {
     static const struct {
         const char *text;
@@ -692,7 +668,6 @@ static void test_digits(void **state)
         {"2.2250738585072011e-5", 2.2250738585072011e-5},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
         const struct glint_word word = {.start = number[i].text,
                                         .length = (int)strlen(number[i].text)};
@@ -701,30 +676,4 @@ static void test_digits(void **state)
         assert_null(glint_word_number(&word, &value));
         assert_true(value == number[i].value);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_digits),
-        cmocka_unit_test(test_good_table),
-        cmocka_unit_test(test_coatings),
-        cmocka_unit_test(test_stop_at_either_end),
-        cmocka_unit_test(test_numbers_are_exact),
-        cmocka_unit_test(test_mistakes),
-        cmocka_unit_test(test_bytes),
-        cmocka_unit_test(test_longest_line_and_text),
-        cmocka_unit_test(test_utf8_and_comments),
-        cmocka_unit_test(test_round_stops),
-        cmocka_unit_test(test_too_many_surfaces),
-        cmocka_unit_test(test_power),
-        cmocka_unit_test(test_stated_values),
-        cmocka_unit_test(test_long_file_name),
-        cmocka_unit_test(test_set_f_number),
-        cmocka_unit_test(test_printed_widest),
-        cmocka_unit_test(test_manual),
-        cmocka_unit_test(test_corpus),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

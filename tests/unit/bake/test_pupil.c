@@ -4,11 +4,7 @@
  * whole front element finds them.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #include "bake/trace/spot.h"
 #include "support/lens_check.h"
@@ -79,29 +75,25 @@ static void scan_lens(const char *name, int step)
     assert_true(n_seen > 1000);
 }
 
-static void test_heliar(void **state)
+TEST(heliar)
 {
-    (void)state;
     scan_lens("heliar-tronnier", 1);
 }
 
-static void test_angenieux(void **state)
+TEST(angenieux)
 {
-    (void)state;
     scan_lens("double-gauss-angenieux", 3);
 }
 
-static void test_itoh(void **state)
+TEST(itoh)
 {
-    (void)state;
     scan_lens("itoh-zoom-long", 7);
 }
 
 /* Through this ghost the stop looks so small that all light enters by a spot of
  * a twentieth of a millimetre. */
-static void test_spot(void **state)
+TEST(spot)
 {
-    (void)state;
     load_lens(&lens, "nikon-zoom-short");
     glint_optics_of(&lens, &optics);
     glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
@@ -126,8 +118,7 @@ static void load_fisheye(struct glint_path *path, int ghost, double nm)
     struct glint_error error = {""};
 
     load_lens(&lens, "wide/fisheye-zuiko-8");
-    assert_int_equal(glint_prescription_set_f_number(&lens, 11, &error),
-                     GLINT_OK);
+    assert_ok(glint_prescription_set_f_number(&lens, 11, &error));
     glint_optics_of(&lens, &optics);
     glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
     glint_path_init(path, &lens, &ghosts[ghost], nm);
@@ -136,14 +127,13 @@ static void load_fisheye(struct glint_path *path, int ghost, double nm)
 /* Ghosts of a fisheye enter by spots of a twentieth of a millimetre in a front
  * of 80, about which all rays are invalid. Every colour has one, beside that of
  * the colour before. */
-static void test_spots_of_fisheye(void **state)
+TEST(spots_of_fisheye)
 {
     static const struct {
         int ghost;
         double deg;
     } spot[] = {{3, 61.13}, {6, 57.17}, {15, 12.74}, {15, 78.87}};
 
-    (void)state;
     for (int k = 0; k < 4; k++) {
         const double t = spot[k].deg * 3.14159265358979 / 180;
         const double direction[3] = {sin(t), 0, cos(t)};
@@ -171,12 +161,11 @@ static void test_spots_of_fisheye(void **state)
 }
 
 /* A crescent whose tips are thinner than the cells of the search. */
-static void test_tips(void **state)
+TEST(tips)
 {
     const double t = 12.74 * 3.14159265358979 / 180;
     const double direction[3] = {sin(t), 0, cos(t)};
 
-    (void)state;
     for (int nm = 400; nm <= 700; nm += 50) {
         struct glint_pupil box;
         struct glint_path path;
@@ -200,12 +189,11 @@ static void test_tips(void **state)
 }
 
 /* At 85 degrees no light of this ghost reaches the stop, so there is no box. */
-static void test_nothing_gets_through(void **state)
+TEST(nothing_gets_through)
 {
     struct glint_pupil box;
     struct glint_path path;
 
-    (void)state;
     load_lens(&lens, "canon-zoom-long");
     glint_optics_of(&lens, &optics);
     glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
@@ -246,33 +234,16 @@ static void grow_side(const struct glint_path *path, const double direction[3],
         }
 }
 
-static void test_sides(void **state)
+TEST(sides)
 {
     const double t = 12.74 * 3.14159265358979 / 180;
     const double direction[3] = {sin(t), 0, cos(t)};
     struct glint_pupil whole;
     struct glint_path path;
 
-    (void)state;
     load_fisheye(&path, 51, 550);
     assert_true(
         glint_pupil_find(&whole, &path, 12.74, optics.stop_radius_mm, NULL));
     for (int k = 0; k < 4; k++)
         grow_side(&path, direction, &whole, k);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_heliar),
-        cmocka_unit_test(test_angenieux),
-        cmocka_unit_test(test_itoh),
-        cmocka_unit_test(test_spot),
-        cmocka_unit_test(test_spots_of_fisheye),
-        cmocka_unit_test(test_tips),
-        cmocka_unit_test(test_sides),
-        cmocka_unit_test(test_nothing_gets_through),
-    };
-
-    return cmocka_run_group_tests_name("pupil", tests, NULL, NULL);
 }

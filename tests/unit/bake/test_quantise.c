@@ -4,13 +4,9 @@
  * proven of the integers must hold for every input that is tried.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "bake/fit/quantise.h"
 #include "bake/write_model.h"
@@ -167,10 +163,9 @@ static void make_model(struct made *m, enum glint_basis basis)
 
     setup.n_ghosts = 1;
     setup.ghost[0] = (struct glint_ghost){0, 1};
-    assert_int_equal(glint_quantise(m->fitted.system, &m->quantised), GLINT_OK);
-    assert_int_equal(
-        glint_draft_write(&m->draft, &setup, &header, &m->fitted, &quantised),
-        GLINT_OK);
+    assert_ok(glint_quantise(m->fitted.system, &m->quantised));
+    assert_ok(
+        glint_draft_write(&m->draft, &setup, &header, &m->fitted, &quantised));
     glint_blob_seal(m->draft.data, m->draft.bytes);
     if (glint_lens_open(&m->lens, m->draft.data, m->draft.bytes, &reason))
         fail_msg("%s", reason);
@@ -362,21 +357,19 @@ static struct used check_proofs(enum glint_basis basis, int systems)
 
 /* Some value must come near its bound, and some rounding error must be at least
  * 2 % of its bound. */
-static void test_proof_auto(void **state)
+TEST(proof_auto)
 {
     const struct used used = check_proofs(GLINT_BASIS_AUTO, 240);
 
-    (void)state;
     assert_true(used.n > 300000);
     assert_in_range((long)(1000 * used.bound), 800, 1000);
     assert_in_range((long)(1000 * used.rounding), 20, 1000);
 }
 
-static void test_proof_sparse(void **state)
+TEST(proof_sparse)
 {
     const struct used used = check_proofs(GLINT_BASIS_SPARSE, 240);
 
-    (void)state;
     assert_true(used.n > 300000);
     /* Less than for AUTO: the bound allows radii up to 1, and most rays of the
      * test have smaller ones. */
@@ -385,7 +378,7 @@ static void test_proof_sparse(void **state)
 }
 
 /* A coefficient that is off by a thousandth must exceed the proven rounding. */
-static void test_proof_can_fail(void **state)
+TEST(proof_can_fail)
 {
     struct glint_outputs out;
     struct glint_transfer t;
@@ -394,7 +387,6 @@ static void test_proof_can_fail(void **state)
     struct made m;
     int largest = 0;
 
-    (void)state;
     seed = 5;
     make_system(&m, GLINT_BASIS_AUTO);
     m.fitted.system->output[GLINT_OUT_ENERGY].roots = 0;
@@ -417,12 +409,11 @@ static void test_proof_can_fail(void **state)
 
 /* ------------------------------------------------------------------ numbers */
 
-static void test_reals(void **state)
+TEST(reals)
 {
     static const double exact[] = {
         1, -1, 0.5, 3, -0.1875, 0x1.fffffffcp+40, 0x1p-150, 123456789};
 
-    (void)state;
     for (size_t k = 0; k < sizeof exact / sizeof *exact; k++)
         assert_true(glint_real_value(glint_real_of(exact[k])) == exact[k]);
     assert_int_equal(glint_real_of(1).mantissa, ONE_Q30);
@@ -438,11 +429,10 @@ static void test_reals(void **state)
     }
 }
 
-static void test_odd_reals(void **state)
+TEST(odd_reals)
 {
     static const double odd[] = {0, -0.0, HUGE_VAL, -HUGE_VAL, (double)NAN};
 
-    (void)state;
     for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) {
         assert_int_equal(glint_real_of(odd[k]).mantissa, 0);
         assert_int_equal(glint_real_of(odd[k]).exponent, 0);
@@ -476,16 +466,14 @@ static int64_t hull(const struct glint_fitted_output *o,
 
 /* Sums of coefficients must fit, and use at least half of the room there is,
  * whatever the sets are. */
-static void test_exponents(void **state)
+TEST(exponents)
 {
-    (void)state;
     for (int k = 0; k < 1000; k++) {
         struct made m;
 
         seed = 7 + (uint32_t)k;
         make_system(&m, k % 2 ? GLINT_BASIS_SPARSE : GLINT_BASIS_AUTO);
-        assert_int_equal(glint_quantise(m.fitted.system, &m.quantised),
-                         GLINT_OK);
+        assert_ok(glint_quantise(m.fitted.system, &m.quantised));
         for (int i = 0; i < KINDS; i++) {
             const struct glint_quantised_output *q = &m.quantised.output[i];
             const int64_t sum = hull(&m.fitted.system->output[i], q,
@@ -505,11 +493,10 @@ static void test_exponents(void **state)
 
 /* The limit of an energy must be at least 1.2 times the largest one that gets
  * through. */
-static void test_head(void **state)
+TEST(head)
 {
     int cut = 0;
 
-    (void)state;
     for (int k = 0; k < 1000; k++) {
         const struct glint_fitted_output *o;
         const struct glint_quantised_output *q;
@@ -517,8 +504,7 @@ static void test_head(void **state)
 
         seed = 11 + (uint32_t)k;
         make_system(&m, GLINT_BASIS_AUTO);
-        assert_int_equal(glint_quantise(m.fitted.system, &m.quantised),
-                         GLINT_OK);
+        assert_ok(glint_quantise(m.fitted.system, &m.quantised));
         o = &m.fitted.system->output[GLINT_OUT_ENERGY];
         q = &m.quantised.output[GLINT_OUT_ENERGY];
         if (q->head > 0)
@@ -531,11 +517,10 @@ static void test_head(void **state)
 
 /* Coefficients too small for any exponent of the file must be rounded to steps
  * of the least exponent. */
-static void test_least_exponent(void **state)
+TEST(least_exponent)
 {
     struct made m;
 
-    (void)state;
     seed = 3;
     make_system(&m, GLINT_BASIS_AUTO);
     for (int k = 0; k < KINDS; k++)
@@ -555,11 +540,10 @@ static void refused(struct made *m)
     finish(m);
 }
 
-static void test_not_finite(void **state)
+TEST(not_finite)
 {
     static const double odd[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
 
-    (void)state;
     for (int k = 0; k < 6 * KINDS; k++) {
         const enum glint_basis basis =
             k % 2 ? GLINT_BASIS_SPARSE : GLINT_BASIS_AUTO;
@@ -576,21 +560,19 @@ static void test_not_finite(void **state)
     }
 }
 
-static void test_no_terms(void **state)
+TEST(no_terms)
 {
     struct made m;
 
-    (void)state;
     make_system(&m, GLINT_BASIS_AUTO);
     m.fitted.system->output[GLINT_OUT_STOP_Y].n_terms = 0;
     refused(&m);
 }
 
-static void test_box_of_no_power_of_two(void **state)
+TEST(box_of_no_power_of_two)
 {
     static const double odd[] = {3, 1.0000001, 0, -2, (double)NAN, HUGE_VAL};
 
-    (void)state;
     for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) {
         struct made m;
 
@@ -598,23 +580,4 @@ static void test_box_of_no_power_of_two(void **state)
         m.fitted.system->radius_mm = odd[k];
         refused(&m);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reals),
-        cmocka_unit_test(test_odd_reals),
-        cmocka_unit_test(test_exponents),
-        cmocka_unit_test(test_head),
-        cmocka_unit_test(test_least_exponent),
-        cmocka_unit_test(test_proof_auto),
-        cmocka_unit_test(test_proof_sparse),
-        cmocka_unit_test(test_proof_can_fail),
-        cmocka_unit_test(test_not_finite),
-        cmocka_unit_test(test_no_terms),
-        cmocka_unit_test(test_box_of_no_power_of_two),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,12 +3,7 @@
  * Sparse regression: terms that a greedy choice has to find.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "bake/regress/regress.h"
 #include "support/lens_check.h"
@@ -63,12 +58,11 @@ static double at(const struct glint_poly *poly, const double *x)
 
 /* On a grid that is symmetric in u odd powers explain nothing of an even
  * function, and the other way round: no term in between must be needed. */
-static void test_symmetric(void **state)
+TEST(symmetric)
 {
     const double x[GLINT_VARIABLES] = {0.3, -0.6, 0, 0};
     struct glint_poly poly;
 
-    (void)state;
     assert_true(fit(even, -1, &poly) <= 1);
     assert_int_equal(poly.n, 4);
     assert_near(at(&poly, x), even(x[0], x[1]), 1e-8);
@@ -86,22 +80,11 @@ static double cubic(double u, double v)
 /* Of a twentieth of the range powers of u are nearly alike: what u^3 has beside
  * the lower ones, 10^-5 of its length, is lost in differences of squares, and
  * is worked out again. */
-static void test_nearly_dependent(void **state)
+TEST(nearly_dependent)
 {
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};
     struct glint_poly poly;
 
-    (void)state;
     assert_true(fit(cubic, 0.95, &poly) <= 1);
     assert_near(at(&poly, x), cubic(x[0], x[1]), 1e-8);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_symmetric),
-        cmocka_unit_test(test_nearly_dependent),
-    };
-
-    return cmocka_run_group_tests_name("regress", tests, NULL, NULL);
 }

@@ -4,14 +4,9 @@
  */
 #include <dlfcn.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "bake/translucent/linear.h"
 #include "bake/translucent/slab.h"
@@ -32,8 +27,7 @@ static void chess(struct glint_scatter_rows *rows, int side, int kernel)
     stone.side = side;
     stone.kernel = kernel;
     stone.fields = side >= 16 ? side / 12 : 1;
-    assert_int_equal(glint_scatter_compute(&stone, NULL, rows, &error),
-                     GLINT_OK);
+    assert_ok(glint_scatter_compute(&stone, NULL, rows, &error));
 }
 
 static void fit_of(struct glint_scatter_rows *rows,
@@ -43,7 +37,7 @@ static void fit_of(struct glint_scatter_rows *rows,
     struct glint_scatter_options options;
 
     glint_scatter_defaults(&options, model);
-    assert_int_equal(glint_scatter_fit(rows, &options, NULL, fit), GLINT_OK);
+    assert_ok(glint_scatter_fit(rows, &options, NULL, fit));
 }
 
 /* Kernel J of made rows: no mirror leaves it as it is. */
@@ -75,13 +69,12 @@ static void make_rows(struct glint_scatter_rows *rows, double (*weight)[2],
 }
 
 /* Rows that are a model come back, those that no mirror leaves alone, too. */
-static void test_models_found(void **state)
+TEST(models_found)
 {
     uint32_t seed = 5;
     static const double bound[3] = {4e-3, 1e-6, 1e-5};
     double weight[TEXELS][2], in[TEXELS];
 
-    (void)state;
     for (int m = 0; m < 3; m++) {
         struct glint_scatter_options options = {models[m], m == 2 ? 1 : 2, 2};
         struct glint_scatter_rows rows;
@@ -99,8 +92,7 @@ static void test_models_found(void **state)
             in[x] = m == 0 ? 0.5 + rng_unit(&seed) : 1;
         }
         make_rows(&rows, weight, in);
-        assert_int_equal(glint_scatter_fit(&rows, &options, NULL, &fit),
-                         GLINT_OK);
+        assert_ok(glint_scatter_fit(&rows, &options, NULL, &fit));
         /* alternations end early, floats have seven digits */
         assert_true(fit.error.rmse < (bound[m]));
         glint_scatter_fit_close(&fit);
@@ -110,13 +102,12 @@ static void test_models_found(void **state)
 
 /* Light by a fit is light by its entries, even light is that of the data, and
  * factors are what h is made of. */
-static void test_light(void **state)
+TEST(light)
 {
     struct glint_scatter_rows rows, same;
     double light[3 * TEXELS], even[3 * TEXELS], want[3 * TEXELS],
         got[3 * TEXELS];
 
-    (void)state;
     chess(&rows, SIDE, KERNEL);
     assert_true(glint_scatter_open(&same, SIDE, KERNEL, false));
     glint_scatter_test_light(SIDE, light);
@@ -155,14 +146,13 @@ static void test_light(void **state)
 
 /* Chess of two marbles, 40 dB under lamps and shadows: what the run time may
  * lose begins there. More terms and ranks are nearer. */
-static void test_near(void **state)
+TEST(near)
 {
     static const int parts[4][2] = {{1, 3}, {3, 3}, {5, 1}, {5, 3}};
     struct glint_scatter_rows rows;
     struct glint_scatter_fit fit;
     double db[4];
 
-    (void)state;
     chess(&rows, 48, 15);
     fit_of(&rows, GLINT_SCATTER_CLUSTERED, &fit);
     assert_true(fit.error.light_db > 44 && fit.error.entry_db > 44);
@@ -171,7 +161,7 @@ static void test_near(void **state)
         const struct glint_scatter_options o = {GLINT_SCATTER_FACTORED,
                                                 parts[i][0], parts[i][1]};
 
-        assert_int_equal(glint_scatter_fit(&rows, &o, NULL, &fit), GLINT_OK);
+        assert_ok(glint_scatter_fit(&rows, &o, NULL, &fit));
         db[i] = fit.error.light_db;
         glint_scatter_fit_close(&fit);
     }
@@ -182,11 +172,10 @@ static void test_near(void **state)
 
 /* Black translucent media, one texel, kernels that lead beyond the square from
  * everywhere: finite, and exact where there is nothing to lose. */
-static void test_extremes(void **state)
+TEST(extremes)
 {
     static const int shape[3][2] = {{1, 9}, {3, 13}, {9, 1}};
 
-    (void)state;
     for (int i = 0; i < 6; i++)
         for (int m = 0; m < 3; m++) {
             const int side = shape[i % 3][0], kernel = shape[i % 3][1];
@@ -215,7 +204,7 @@ static bool at_once(void *ctx)
     return ++*(int *)ctx > 2;
 }
 
-static void test_refused(void **state)
+TEST(refused)
 {
     static const struct glint_scatter_options bad[] = {
         {GLINT_SCATTER_CLUSTERED, 0, 1}, {GLINT_SCATTER_CLUSTERED, 21, 1},
@@ -225,7 +214,6 @@ static void test_refused(void **state)
     struct glint_scatter_rows rows;
     struct glint_scatter_fit fit;
 
-    (void)state;
     chess(&rows, 8, 5);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_int_equal(glint_scatter_fit(&rows, &bad[i], NULL, &fit),
@@ -274,7 +262,7 @@ typedef int dgesdd_fn(int layout, char job, int m, int n, double *a, int lda,
                       double *s, double *u, int ldu, double *vt, int ldvt);
 
 /* Values and vectors of LAPACK's dgesdd, to 1e-10. */
-static void test_terms_lapacke(void **state)
+TEST(terms_lapacke)
 {
     double a[TALL * WIDE], copy[TALL * WIDE], s[WIDE], u[TALL * WIDE],
         vt[WIDE * WIDE];
@@ -283,9 +271,8 @@ static void test_terms_lapacke(void **state)
     struct glint_terms terms;
     dgesdd_fn *dgesdd;
 
-    (void)state;
     if (!library) {
-        fprintf(stderr, "test_terms_lapacke is skipped: no liblapacke\n");
+        fprintf(stderr, "terms of LAPACK are skipped: no liblapacke\n");
         skip();
     }
     *(void **)&dgesdd = dlsym(library, "LAPACKE_dgesdd");
@@ -313,13 +300,12 @@ static void test_terms_lapacke(void **state)
 
 /* Vectors are at right angles and what is left is as small as can be: the
  * squares of the values that are left out. Equal and missing values, too. */
-static void test_terms(void **state)
+TEST(terms)
 {
     double a[TALL * WIDE] = {0};
     const struct glint_tall m = {TALL, WIDE, fetch, a};
     struct glint_terms terms;
 
-    (void)state;
     a[0] = a[WIDE + 1] = a[2 * WIDE + 2] = 3;
     a[3 * WIDE + 3] = -0.5;
     assert_true(glint_terms_of(&m, 6, &terms));
@@ -340,27 +326,14 @@ static void test_terms(void **state)
 }
 
 /* A system, and one that leaves a direction open. */
-static void test_solve(void **state)
+TEST(solve)
 {
     double a[9] = {4, 2, 1, 2, 5, 3, 1, 3, 6}, b[3] = {7, 10, 10};
     double open[4] = {1, 1, 1, 1}, c[2] = {2, 2};
 
-    (void)state;
     glint_solve(a, 3, b);
     for (int i = 0; i < 3; i++)
         assert_near(b[i], 1, 1e-14);
     glint_solve(open, 2, c);
     assert_near(c[0] + c[1], 2, 1e-14);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_models_found),  cmocka_unit_test(test_light),
-        cmocka_unit_test(test_near),          cmocka_unit_test(test_extremes),
-        cmocka_unit_test(test_refused),       cmocka_unit_test(test_terms),
-        cmocka_unit_test(test_terms_lapacke), cmocka_unit_test(test_solve),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,13 +4,8 @@
  * rows. Tests are named by the rows of shared figures that they show: C1, C2.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "bake/translucent/slab.h"
 #include "support/lens_check.h"
@@ -34,8 +29,7 @@ static void compute(const struct glint_stone *stone,
 {
     struct glint_error error;
 
-    assert_int_equal(glint_scatter_compute(stone, NULL, rows, &error),
-                     GLINT_OK);
+    assert_ok(glint_scatter_compute(stone, NULL, rows, &error));
 }
 
 static double sum_of(const struct glint_scatter_rows *rows, int x, int c)
@@ -72,13 +66,12 @@ static double exitance(const struct glint_slab *s, double r)
 /* One translucent medium, away from its rim: within 2 % of the closed form,
  * entry by entry from two texels on and in the sum; modes alone from three
  * texels on. */
-static void test_closed_form(void **state)
+TEST(closed_form)
 {
     const struct glint_stone stone = stone_of(GLINT_STONE_EVEN);
     struct glint_scatter_rows rows;
     double modes[K2];
 
-    (void)state;
     compute(&stone, &rows);
     for (int c = 0; c < 3; c++) {
         const int x = SIDE / 2 * SIDE + SIDE / 2;
@@ -109,13 +102,12 @@ static void test_closed_form(void **state)
 
 /* The whole of what leaves a translucent medium without far face: the total of
  * [Jensen01], equation 6 of the dipole. */
-static void test_closed_total(void **state)
+TEST(closed_total)
 {
     struct glint_stone stone = stone_of(GLINT_STONE_EVEN);
     struct glint_slab slab;
     double loss, want, sum = 0, *entry = malloc(63 * 63 * sizeof *entry);
 
-    (void)state;
     assert_non_null(entry);
     stone.slab_mm = 1000;
     stone.texel_mm = 3;
@@ -135,12 +127,11 @@ static void test_closed_total(void **state)
 
 /* C1: light goes both ways alike, none is below 0, no more leaves than comes.
  */
-static void test_c1_reciprocal(void **state)
+TEST(c1_reciprocal)
 {
     static const enum glint_stone_pattern pattern[] = {GLINT_STONE_CHESS,
                                                        GLINT_STONE_VEINS};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         const struct glint_stone stone = stone_of(pattern[i]);
         struct glint_scatter_rows rows, turned;
@@ -163,7 +154,7 @@ static void test_c1_reciprocal(void **state)
 
 /* C2: an offset leads from the texel that is lit; outside the square it is
  * 0, and measured rows come back as they were. */
-static void test_c2_places(void **state)
+TEST(c2_places)
 {
     enum { S = 3, N = 5, WIDE = S * N };
     float rgb[WIDE * WIDE * 3];
@@ -173,13 +164,11 @@ static void test_c2_places(void **state)
     struct glint_error error;
     long long held;
 
-    (void)state;
     for (int i = 0; i < WIDE * WIDE * 3; i++)
         rgb[i] = (float)(i + 1);
     rgb[(2 * WIDE + 2) * 3] = -1;
     rgb[(2 * WIDE + 3) * 3 + 1] = (float)NAN;
-    assert_int_equal(glint_scatter_read(&picture, S, N, &rows, &held, &error),
-                     GLINT_OK);
+    assert_ok(glint_scatter_read(&picture, S, N, &rows, &held, &error));
     assert_int_equal(held, 2);
     for (int x = 0; x < S * S; x++)
         for (int d = 0; d < N * N; d++) {
@@ -202,14 +191,13 @@ static void test_c2_places(void **state)
 }
 
 /* A lamp on one texel shows that texel's row. */
-static void test_c2_light(void **state)
+TEST(c2_light)
 {
     const struct glint_stone stone = stone_of(GLINT_STONE_VEINS);
     double light[SIDE * SIDE * 3] = {0}, seen[SIDE * SIDE * 3];
     struct glint_scatter_rows rows;
     const int x = 2 * SIDE + 5;
 
-    (void)state;
     compute(&stone, &rows);
     light[3 * x + 1] = 2;
     glint_scatter_light_rows(&rows, light, seen);
@@ -228,13 +216,12 @@ static void test_c2_light(void **state)
  * and thick slabs: finite, not below 0, no more than all. Dark translucent
  * media are dark.
  */
-static void test_extremes(void **state)
+TEST(extremes)
 {
     static const double end[4][2] = {
         {1e-3, 0}, {1e3, 0}, {1e-3, 1e3}, {1e3, 1e3}};
     static const double slab[2] = {0.1, 1000}, texel[2] = {0.01, 100};
 
-    (void)state;
     for (int i = 0; i < 16; i++) {
         struct glint_stone stone = stone_of(GLINT_STONE_CHESS);
         struct glint_scatter_rows rows;
@@ -264,12 +251,11 @@ static void test_extremes(void **state)
     }
 }
 
-static void test_one_texel(void **state)
+TEST(one_texel)
 {
     struct glint_stone stone = stone_of(GLINT_STONE_CHESS);
     struct glint_scatter_rows rows;
 
-    (void)state;
     stone.side = stone.fields = 1;
     compute(&stone, &rows);
     for (int d = 0; d < K2; d++)
@@ -277,12 +263,11 @@ static void test_one_texel(void **state)
     glint_scatter_close(&rows);
 }
 
-static void test_refused(void **state)
+TEST(refused)
 {
     struct glint_scatter_rows rows;
     struct glint_error error;
 
-    (void)state;
     for (int i = 0; i < 9; i++) {
         struct glint_stone stone = stone_of(GLINT_STONE_CHESS);
 
@@ -328,7 +313,7 @@ static bool soon(void *ctx)
 
 /* The computation reports progress and can be cancelled; it then frees
  * everything. */
-static void test_watched(void **state)
+TEST(watched)
 {
     const struct glint_stone stone = stone_of(GLINT_STONE_CHESS);
     double seen[3] = {0, 0, 1e9};
@@ -336,9 +321,7 @@ static void test_watched(void **state)
     struct glint_scatter_rows rows;
     struct glint_error error;
 
-    (void)state;
-    assert_int_equal(glint_scatter_compute(&stone, &watch, &rows, &error),
-                     GLINT_OK);
+    assert_ok(glint_scatter_compute(&stone, &watch, &rows, &error));
     assert_true(seen[0] > 1 - 1e-9 && seen[1] > 100);
     glint_scatter_close(&rows);
     for (seen[2] = 1; seen[2] < 1000; seen[2] *= 8) {
@@ -347,21 +330,4 @@ static void test_watched(void **state)
                          GLINT_E_CLOSED);
         assert_null(rows.r);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_closed_form),
-        cmocka_unit_test(test_closed_total),
-        cmocka_unit_test(test_c1_reciprocal),
-        cmocka_unit_test(test_c2_places),
-        cmocka_unit_test(test_c2_light),
-        cmocka_unit_test(test_extremes),
-        cmocka_unit_test(test_one_texel),
-        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_watched),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,18 +3,14 @@
  * Conics, aspheres, cylinders, torics, shifted and tilted surfaces: text, rays
  * against a second method, and what can be known without tracing. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "bake/table/form.h"
 #include "bake/trace/beam.h"
 #include "glint/bake.h"
+#include "support/test.h"
 
 #define LINE_D_NM 587.5618
 
@@ -219,7 +215,7 @@ static int compare_rays(const char *surfaces, double span)
     return met;
 }
 
-static void test_against_second_method(void **state)
+TEST(against_second_method)
 {
     static const struct {
         const char *surfaces;
@@ -253,7 +249,6 @@ static void test_against_second_method(void **state)
          "shape conic -1\nend\nsurface flat 90 30 air",
          8}};
 
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const int met = compare_rays(cases[k].surfaces, cases[k].span);
 
@@ -266,13 +261,12 @@ static void test_against_second_method(void **state)
 
 /* A hyperboloid with the conic -n^2 behind a plane images without spherical
  * aberration. */
-static void test_hyperboloid_has_a_point_focus(void **state)
+TEST(hyperboloid_has_a_point_focus)
 {
     const double direction[3] = {0, 0, 1};
     struct glint_optics optics;
     struct glint_ray ray;
 
-    (void)state;
     load("surface flat 12 14 1.5 60\nsurface -25 50 14 air\nshape conic -2.25");
     glint_optics_of(&lens, &optics);
     assert_true(fabs(optics.back_focal_mm - 50) < 1e-9);
@@ -285,12 +279,11 @@ static void test_hyperboloid_has_a_point_focus(void **state)
     }
 }
 
-static void test_no_shape_is_a_sphere(void **state)
+TEST(no_shape_is_a_sphere)
 {
     const double direction[3] = {0.1, 0.05, sqrt(1 - 0.0125)};
     struct glint_ray ray, same;
 
-    (void)state;
     load("surface 30 9 9 1.5 60\nsurface -60 90 30 air");
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &ray, NULL), 0);
@@ -314,7 +307,7 @@ static void test_no_shape_is_a_sphere(void **state)
 
 /* Ghosts are mirrored alike by spheres that are written as conics, all but
  * bits, or as torics of two equal radii. */
-static void test_ghosts_of_spheres(void **state)
+TEST(ghosts_of_spheres)
 {
     static const char *const written[] = {
         TWO_LENSES("", "", "", ""),
@@ -327,7 +320,6 @@ static void test_ghosts_of_spheres(void **state)
     struct glint_ray want[GLINT_MAX_GHOSTS], got;
     int n = 0;
 
-    (void)state;
     for (int w = 0; w < 3; w++) {
         load(written[w]);
         n = glint_ghost_list(&lens, ghost, GLINT_MAX_GHOSTS);
@@ -349,11 +341,10 @@ static void test_ghosts_of_spheres(void **state)
 
 /* Two cylinders of an anamorphic front before a lens: focal lengths by rays
  * close to the axis in either plane. */
-static void test_squeeze(void **state)
+TEST(squeeze)
 {
     struct glint_optics optics;
 
-    (void)state;
     load("surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 55 20 air\n"
          "surface 120 4 20 1.6 50\nshape cylinder x\nsurface flat 5 20 air\n"
          "surface 50 8 20 1.6 50\nsurface -50 60 20 air");
@@ -377,7 +368,7 @@ static void test_squeeze(void **state)
 }
 
 /* Light in the plane at PHI sees the lens turned: the same ray by both ways. */
-static void test_turned_lens(void **state)
+TEST(turned_lens)
 {
     const double phi = 33, c = cos(phi * GLINT_PI / 180),
                  s = sin(phi * GLINT_PI / 180);
@@ -385,7 +376,6 @@ static void test_turned_lens(void **state)
     const double plain[3] = {0.2 * c, 0.2 * s, sqrt(0.96)};
     struct glint_ray a, b;
 
-    (void)state;
     load("surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 25 20 air\n"
          "group decentre 1 2 tilt 3 -2\n"
          "surface 50 9 20 1.6 50\nshape conic -1\nsurface -50 60 20 air\nend");
@@ -403,7 +393,7 @@ static void test_turned_lens(void **state)
 
 /* -------------------------------------------------------------------- text */
 
-static void test_mistakes(void **state)
+TEST(mistakes)
 {
     static const char *const rows[][2] = {
         {"shape conic 1", "t.lens:5:1: a shape stands below its surface"},
@@ -434,7 +424,6 @@ static void test_mistakes(void **state)
         {"group tilt 1 0\nsurface 20 9 9 1.5 60\nsurface flat 9 9 air",
          "t.lens:5:1: the group has no end"}};
 
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         struct glint_error error = {""};
 
@@ -446,7 +435,7 @@ static void test_mistakes(void **state)
 }
 
 /* Where a ray meets a surface is a point of both. */
-static void test_points_lie_on_rays(void **state)
+TEST(points_lie_on_rays)
 {
     static const char *const shapes[] = {
         "surface 30 9 9 1.5 60\nshape conic -2 A4 1e-5\nsurface flat 90 30 air",
@@ -457,7 +446,6 @@ static void test_points_lie_on_rays(void **state)
     double hits[GLINT_MAX_EVENTS + 1][2], at[3];
     struct glint_ray ray;
 
-    (void)state;
     for (int i = 0; i < 3; i++)
         for (int phi = 0; phi < 360; phi += 40) {
             double t;
@@ -487,7 +475,7 @@ static void test_points_lie_on_rays(void **state)
 
 /* A stop behind the front vertex, about the glass: its rays are those of a
  * plane there, as light before the glass runs straight. */
-static void test_stop_behind_the_vertex(void **state)
+TEST(stop_behind_the_vertex)
 {
     static const char text[] = "name t\nf-number 4\nfilm 9 9\nstop %s\n"
                                "surface 10 3 7 1.5 60\nshape A4 1e-5\n"
@@ -498,11 +486,9 @@ static void test_stop_behind_the_vertex(void **state)
     struct glint_ray ray;
     char table[300];
 
-    (void)state;
     snprintf(table, sizeof table, text, "-0.4 3");
-    assert_int_equal(
-        glint_prescription_parse(&lens, table, strlen(table), "t.lens", &error),
-        GLINT_OK);
+    assert_ok(glint_prescription_parse(&lens, table, strlen(table), "t.lens",
+                                       &error));
     glint_optics_of(&lens, &optics);
     assert_true(fabs(optics.entrance_z_mm - 0.4) < 1e-12);
     glint_path_init(&path, &lens, NULL, LINE_D_NM);
@@ -524,14 +510,13 @@ static void test_stop_behind_the_vertex(void **state)
 
 /* Rays that are met all at once and one by one hit the same place, with the
  * same bits however many are traced together. */
-static void test_lanes(void **state)
+TEST(lanes)
 {
     struct glint_launch from[19];
     struct glint_ray many[19], one;
     enum glint_ray_status status[19];
     int traced = 0;
 
-    (void)state;
     load("surface 20 6 9 1.5 60\nshape conic -2 A4 2e-5 A8 -3e-9\n"
          "surface -30 3 9 air\nsurface -25 2 9 1.6 40\nshape cylinder x\n"
          "surface flat 30 9 air\n");
@@ -558,7 +543,7 @@ static void test_lanes(void **state)
 /* Rays as steep as their profile, or over what lies beyond the glass, where the
  * first place that is found need not be the nearest: lanes agree with the
  * search that tells them one by one. */
-static void test_steep_rays(void **state)
+TEST(steep_rays)
 {
     static const char *const shapes[] = {
         "surface 10 9 9 1.5 60\nshape conic 0.2\nsurface flat 90 30 air",
@@ -569,7 +554,6 @@ static void test_steep_rays(void **state)
     };
     int met = 0;
 
-    (void)state;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         load(shapes[i]);
         glint_path_init(&path, &lens, NULL, LINE_D_NM);
@@ -599,22 +583,4 @@ static void test_steep_rays(void **state)
         }
     }
     assert_true(met > 2000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_against_second_method),
-        cmocka_unit_test(test_hyperboloid_has_a_point_focus),
-        cmocka_unit_test(test_no_shape_is_a_sphere),
-        cmocka_unit_test(test_ghosts_of_spheres),
-        cmocka_unit_test(test_squeeze),
-        cmocka_unit_test(test_turned_lens),
-        cmocka_unit_test(test_points_lie_on_rays),
-        cmocka_unit_test(test_stop_behind_the_vertex),
-        cmocka_unit_test(test_lanes),
-        cmocka_unit_test(test_steep_rays),
-        cmocka_unit_test(test_mistakes)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

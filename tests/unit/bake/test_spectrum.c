@@ -5,15 +5,11 @@
  * give.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include "engine/setup/spectrum.h"
 #include "glint/bake.h"
+#include "support/test.h"
 
 enum { ALL = 31 };
 
@@ -36,9 +32,8 @@ static void observe(double all[ALL][3])
             all[j][c] /= sum[c];
 }
 
-static void test_places(void **state)
+TEST(places)
 {
-    (void)state;
     for (int n = 1; n <= GLINT_MAX_WAVELENGTHS; n++) {
         glint_spectrum(n, nm, rgb, share);
         for (int i = 0; i < n; i++) {
@@ -53,9 +48,8 @@ static void test_places(void **state)
                 nm[2] > 590 && nm[2] < 630);
 }
 
-static void test_flat_is_white(void **state)
+TEST(flat_is_white)
 {
-    (void)state;
     for (int n = 1; n <= GLINT_MAX_WAVELENGTHS; n++) {
         double sum[4] = {0, 0, 0, 0};
 
@@ -106,7 +100,7 @@ static double colour_error(int n, double first_nm, double second_nm,
 
 /* Films of quarter waves and of half waves, as lens tables have them, must have
  * the right colours. */
-static void test_smooth_colours(void **state)
+TEST(smooth_colours)
 {
     static const double film[] = {430, 460, 520, 560, 640, 680, 1080};
     static const struct {
@@ -116,7 +110,6 @@ static void test_smooth_colours(void **state)
                  {10, 0.01, 0.06}, {17, 0.004, 0.03}, {28, 0.002, 0.01}};
     enum { FILMS = sizeof film / sizeof *film };
 
-    (void)state;
     for (size_t b = 0; b < sizeof bound / sizeof *bound; b++) {
         double sum = 0, worst = 0;
         int count = 0;
@@ -171,21 +164,11 @@ static double stairs(int n)
     return worst;
 }
 
-static void test_steps(void **state)
+TEST(steps)
 {
-    (void)state;
     assert_true(stairs(3) < 0.8);
     assert_true(stairs(5) < 0.5);
     assert_true(stairs(9) < 0.3);
     assert_true(stairs(17) < 0.22);
     assert_true(stairs(31) < 0.15);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_places), cmocka_unit_test(test_flat_is_white),
-        cmocka_unit_test(test_smooth_colours), cmocka_unit_test(test_steps)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,12 +7,7 @@
  */
 #include <complex.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include "glint/bake.h"
 #include "support/lens_check.h"
@@ -90,14 +85,13 @@ static void expect_as_rouard(double n1, double n2, double cosine,
 
 /* Each coating that has a name, on four glasses, from 380 to 780 nm and from 0
  * to 89 degrees, from the air and from the glass. */
-static void test_named(void **state)
+TEST(named)
 {
     static const double glass[] = {1.46, 1.52, 1.7, 1.95};
     struct glint_coating coating;
     struct glint_film_at film[GLINT_MAX_FILMS];
     int k;
 
-    (void)state;
     for (k = 0; glint_coating_named(k, &coating); k++)
         for (int g = 0; g < 4; g++)
             for (double nm = 380; nm <= 780; nm += 25)
@@ -117,14 +111,13 @@ static void test_named(void **state)
 /* At its design wavelength and straight on, two quarters reflect ((a^2 g - b^2)
  * / (a^2 g + b^2))^2, and a half wave between them is as if it were not
  * there. */
-static void test_by_hand(void **state)
+TEST(by_hand)
 {
     const double g = 1.52, a = 1.38 * 1.38 * g;
     struct glint_coating v, three;
     struct glint_film_at film[GLINT_MAX_FILMS];
     double b = 1.69 * 1.69;
 
-    (void)state;
     assert_string_equal(glint_coating_named(0, &v), "v-coat");
     assert_string_equal(glint_coating_named(1, &three), "broadband-3");
     assert_near(
@@ -138,13 +131,12 @@ static void test_by_hand(void **state)
 
 /* Broadband coatings must reflect less than a single film over the whole band,
  * a V-coat less at its wavelength and more at the band's ends. */
-static void test_what_for(void **state)
+TEST(what_for)
 {
     const struct glint_coating single = {550, 1, {{1.38, 1}}};
     struct glint_coating c[3];
     double mean[3] = {0}, of_single = 0;
 
-    (void)state;
     for (int k = 0; k < 3; k++)
         assert_non_null(glint_coating_named(k, &c[k]));
     for (double nm = 420; nm <= 680; nm += 10) {
@@ -173,12 +165,11 @@ static double drawn(uint32_t *seed, double lo, double hi)
 
 /* Stacks of 1 to 8 films of any index and thickness, also where light goes
  * through some of them only by frustrated total reflection. */
-static void test_any(void **state)
+TEST(any)
 {
     uint32_t seed = 1;
     int frustrated = 0;
 
-    (void)state;
     for (int i = 0; i < 40000; i++) {
         struct glint_film_at film[GLINT_MAX_FILMS];
         const int n = 1 + i % GLINT_MAX_FILMS;
@@ -203,7 +194,7 @@ static void test_any(void **state)
 }
 
 /* Films that nothing passes, grazing light and total reflection. */
-static void test_ends(void **state)
+TEST(ends)
 {
     const struct glint_film_at thick[8] = {
         {1.01, 1e300}, {1.01, 150}, {1.01, 150}, {1.01, 150},
@@ -212,7 +203,6 @@ static void test_ends(void **state)
     const struct glint_film_at beside[2] = {{1.36 - 1e-9, 3}, {1.5, 2}};
     double s, p;
 
-    (void)state;
     assert_near(glint_reflectance(1.7, 1.7, 0.6, thick, 8), 1, 1e-12);
     assert_near(glint_reflectance(1.7, 1.7, 0.6, critical, 2),
                 glint_reflectance(1.7, 1.7, 0.6, beside, 2), 1e-6);
@@ -226,7 +216,7 @@ static void test_ends(void **state)
 
 /* A ray through a coated pane must lose what two of its surfaces reflect, and a
  * ghost have the product of both, with stacks as with single films. */
-static void test_path(void **state)
+TEST(path)
 {
     struct glint_prescription lens = {
         .n_surfaces = 2,
@@ -241,7 +231,6 @@ static void test_path(void **state)
     static struct glint_path path;
     struct glint_film_at film[2][GLINT_MAX_FILMS];
 
-    (void)state;
     assert_non_null(glint_coating_named(2, &lens.surface[0].coating));
     assert_non_null(glint_coating_named(0, &lens.surface[1].coating));
     for (int slant = 0; slant < 2; slant++) {
@@ -266,14 +255,4 @@ static void test_path(void **state)
                          GLINT_RAY_OK);
         assert_near(ray.energy, (1 - r[0]) * r[1] * r[0] * (1 - r[1]), 1e-12);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_named),    cmocka_unit_test(test_by_hand),
-        cmocka_unit_test(test_what_for), cmocka_unit_test(test_any),
-        cmocka_unit_test(test_ends),     cmocka_unit_test(test_path)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

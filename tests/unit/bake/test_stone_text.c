@@ -3,17 +3,13 @@
  * Texts of translucent media: values, defaults, and errors with their places.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "bake/translucent/slab.h"
 #include "glint/scene/stone_bake.h"
+#include "support/test.h"
 
 #define TWO                                      \
     "stone pale scatter 2 3 4 absorb .1 .2 .3\n" \
@@ -33,11 +29,10 @@ static void good(struct glint_stone_text *t, const char *text)
         fail_msg("%s: %s", text, error.text);
 }
 
-static void test_all_lines(void **state)
+TEST(all_lines)
 {
     struct glint_stone_text t;
 
-    (void)state;
     good(&t, "# a comment\nsize 64\ntexel .25\nkernel 15\nslab 12\nindex 1.3\n"
              "\n" TWO "pattern chess 4 pale dark\nmodel factored\n");
     assert_int_equal(t.stone.side, 64);
@@ -56,11 +51,10 @@ static void test_all_lines(void **state)
 }
 
 /* What is not said is as the README has it. */
-static void test_defaults(void **state)
+TEST(defaults)
 {
     struct glint_stone_text t;
 
-    (void)state;
     good(&t, "stone pale scatter 2 3 4 absorb .1 .2 .3\n");
     assert_int_equal(t.stone.side, 128);
     assert_int_equal(t.stone.kernel, 29);
@@ -78,11 +72,10 @@ static void test_defaults(void **state)
 }
 
 /* A of a pattern is material 0, whichever line it stands on. */
-static void test_order(void **state)
+TEST(order)
 {
     struct glint_stone_text t;
 
-    (void)state;
     good(&t, TWO "pattern image a.pgm dark pale\n");
     assert_string_equal(t.mask, "a.pgm");
     assert_true(t.stone.material[0].scatter[0] == .5 &&
@@ -140,9 +133,8 @@ static const struct {
     {"data\n", "the name of the rows is missing"},
 };
 
-static void test_refused(void **state)
+TEST(refused)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         struct glint_error error = {.text = ""};
         struct glint_stone_text t;
@@ -173,14 +165,13 @@ static double mean_step(const double *share, int side, bool rows, bool edge)
 
 /* Around a ball a translucent medium meets itself: steps there are as those
  * within. */
-static void test_veins_go_on_at_edges(void **state)
+TEST(veins_go_on_at_edges)
 {
     enum { SIDE = 64, SEEDS = 20 };
     static double share[SIDE * SIDE];
     struct glint_stone stone = {.side = SIDE, .pattern = GLINT_STONE_VEINS};
     double edge = 0, within = 0;
 
-    (void)state;
     for (; stone.seed < SEEDS; stone.seed++) {
         glint_stone_shares(&stone, share);
         for (int rows = 0; rows < 2; rows++) {
@@ -190,17 +181,4 @@ static void test_veins_go_on_at_edges(void **state)
     }
     if (edge > 1.5 * within)
         fail_msg("steps at edges %g, within %g", edge, within);
-}
-
-int main(void)
-{
-    static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_lines),
-        cmocka_unit_test(test_defaults),
-        cmocka_unit_test(test_order),
-        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_veins_go_on_at_edges),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,15 +5,10 @@
  */
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "support/lens_check.h"
 #include "glint/bake.h"
@@ -130,14 +125,13 @@ static int compare_bundle(const struct bundle *bundle, FILE *file,
     return ok;
 }
 
-static void test_golden(void **state)
+TEST(golden)
 {
     DIR *folder = opendir(GOLDEN);
     const struct dirent *entry;
     struct bundle bundle;
     int n_files = 0, n_rays = 0;
 
-    (void)state;
     assert_non_null(folder);
     while ((entry = readdir(folder))) {
         char path[300];
@@ -196,14 +190,13 @@ static void expect_event(const struct glint_event *event,
 
 /* A ghost of two surfaces 5 mm apart, with the stop 5 mm behind them, must have
  * these five events. */
-static void test_ghost_path_events(void **state)
+TEST(ghost_path_events)
 {
     static const double radii[] = {40.0, -40.0};
     const struct glint_prescription lens = simple_lens(2, radii, 5.0);
     const struct glint_ghost ghost = {0, 1};
     struct glint_path path;
 
-    (void)state;
     glint_path_init(&path, &lens, &ghost, 550.0);
     assert_int_equal(path.n_events, 5);
     expect_event(&path.event[0], GLINT_REFRACT, 0, 0.0, 1.0, 1.5);
@@ -214,7 +207,7 @@ static void test_ghost_path_events(void **state)
     assert_true(path.to_sensor_mm == 50.0);
 }
 
-static void test_direct_path_of_front_stop(void **state)
+TEST(direct_path_of_front_stop)
 {
     static const double radii[] = {40.0, -40.0};
     static const struct glint_ghost none = {-1, -1};
@@ -223,7 +216,6 @@ static void test_direct_path_of_front_stop(void **state)
     struct glint_path path, same;
     struct glint_ray ray;
 
-    (void)state;
     lens.stop_after = 0;
     lens.stop_thickness_mm = 8.0;
     glint_path_init(&path, &lens, NULL, 550.0);
@@ -242,14 +234,13 @@ static void test_direct_path_of_front_stop(void **state)
 }
 
 /* The longest possible path, across the stop, must fit. */
-static void test_longest_path(void **state)
+TEST(longest_path)
 {
     static double radii[GLINT_MAX_SURFACES];
     struct glint_prescription lens = simple_lens(GLINT_MAX_SURFACES, radii, 1);
     const struct glint_ghost ghost = {0, GLINT_MAX_SURFACES - 1};
     struct glint_path path;
 
-    (void)state;
     lens.stop_after = 30;
     glint_path_init(&path, &lens, &ghost, 550.0);
     assert_int_equal(path.n_events, GLINT_MAX_EVENTS + 1);
@@ -269,7 +260,7 @@ static enum glint_ray_status trace_one(const struct glint_prescription *lens,
 
 /* A plane-parallel plate, 5 mm of n = 1.5: a ray of sine 0.6 has sine 0.4
  * inside, climbs by 5 tan(asin 0.4) there, and leaves parallel. */
-static void test_plate(void **state)
+TEST(plate)
 {
     static const double flat[2] = {0.0, 0.0};
     const struct glint_prescription lens = simple_lens(2, flat, 5.0);
@@ -277,7 +268,6 @@ static void test_plate(void **state)
     const double inside = 5.0 * 0.4 / sqrt(0.84);
     struct glint_ray ray;
 
-    (void)state;
     assert_int_equal(trace_one(&lens, 1.0, up, &ray), GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, 1.0 + inside + 5.0 * 0.75, 1e-14);
     assert_near(ray.sensor_y_mm, 1.0 + inside + 55.0 * 0.75, 1e-13);
@@ -288,7 +278,7 @@ static void test_plate(void **state)
 /* A radius of 1e7 mm differs from a plane by its sag, h^2 / 2R = 1.8e-6 mm,
  * and by its tilt, h / R = 6e-7: the bent ray lands lower by (n - 1) h / R *
  * ((5 - sag) / n + 55). */
-static void test_huge_radius(void **state)
+TEST(huge_radius)
 {
     static const double huge[2] = {1e7, 0.0};
     const struct glint_prescription lens = simple_lens(2, huge, 5.0);
@@ -296,7 +286,6 @@ static void test_huge_radius(void **state)
     const double height = 6.0;
     struct glint_ray ray;
 
-    (void)state;
     assert_int_equal(trace_one(&lens, height, along, &ray), GLINT_RAY_OK);
     assert_near(ray.sensor_y_mm,
                 height - 0.5 * height / 1e7 * ((5.0 - 1.8e-6) / 1.5 + 55.0),
@@ -307,14 +296,13 @@ static void test_huge_radius(void **state)
 
 /* A sphere of 0.01 mm radius: a ray to its centre must go straight on; rays
  * that are 0.01 mm or more from the axis must miss it. */
-static void test_tiny_radius(void **state)
+TEST(tiny_radius)
 {
     static const double tiny[1] = {0.01};
     const struct glint_prescription lens = simple_lens(1, tiny, 5.0);
     const double up[3] = {0.0, 0.6, 0.8}, along[3] = {0.0, 0.0, 1.0};
     struct glint_ray ray;
 
-    (void)state;
     assert_int_equal(trace_one(&lens, -0.0075, up, &ray), GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, -0.0075 + 0.75 * 5.0, 1e-12);
     assert_int_equal(trace_one(&lens, 0.00999, along, &ray), GLINT_RAY_OK);
@@ -325,13 +313,12 @@ static void test_tiny_radius(void **state)
 /* The aplanatic points of a sphere: rays that aim at R + n R behind the vertex
  * meet at R + R / n, without any aberration. With R = 10 and n = 1.5, rays that
  * aim at 25 must meet at 16.667 whatever their angle. */
-static void test_aplanatic_sphere(void **state)
+TEST(aplanatic_sphere)
 {
     static const double radius[1] = {10.0};
     struct glint_prescription lens = simple_lens(1, radius, 5.0);
     struct glint_ray ray;
 
-    (void)state;
     lens.stop_thickness_mm = 35.0 / 3.0;
     for (int i = -20; i <= 20; i++) {
         const double sine = 0.02 * i, cosine = sqrt(1.0 - sine * sine);
@@ -344,14 +331,13 @@ static void test_aplanatic_sphere(void **state)
 }
 
 /* From glass into air, 45 degrees are beyond the critical angle of 41.8. */
-static void test_total_reflection(void **state)
+TEST(total_reflection)
 {
     static const double curved[2] = {0.0, -10.0};
     const struct glint_prescription lens = simple_lens(2, curved, 5.0);
     const double along[3] = {0.0, 0.0, 1.0};
     struct glint_ray ray = {7.0, 7.0, 7.0, 7.0, 7.0, 7.0};
 
-    (void)state;
     assert_int_equal(trace_one(&lens, 10.0 * sqrt(0.5), along, &ray),
                      GLINT_RAY_TOTAL_REFLECTION);
     assert_true(ray.stop_x_mm == 7.0 && ray.rel_radius == 7.0);
@@ -362,7 +348,7 @@ static void test_total_reflection(void **state)
 /* A ghost of a plate: light that is reflected twice inside must land three
  * times as far within the plate as light that crosses it once, with energy (1 -
  * R)^2 R^2 for R = ((1.5 - 1) / 2.5)^2. */
-static void test_plate_ghost(void **state)
+TEST(plate_ghost)
 {
     static const double flat[2] = {0.0, 0.0};
     static const struct glint_ghost ghost = {0, 1};
@@ -373,7 +359,6 @@ static void test_plate_ghost(void **state)
     struct glint_ray ray;
     double hits[5][2];
 
-    (void)state;
     glint_path_init(&path, &lens, &ghost, 550.0);
     assert_int_equal(glint_trace(&path, 0.0, 0.0, up, &ray, hits),
                      GLINT_RAY_OK);
@@ -390,7 +375,7 @@ static void test_plate_ghost(void **state)
 
 /* Rays that go back, go sideways or are not finite must be reported as
  * missed. */
-static void test_hostile_rays(void **state)
+TEST(hostile_rays)
 {
     static const double flat[2] = {0.0, 0.0};
     const struct glint_prescription lens = simple_lens(2, flat, 5.0);
@@ -399,7 +384,6 @@ static void test_hostile_rays(void **state)
                  none[3] = {(double)NAN, (double)NAN, (double)NAN};
     struct glint_ray ray;
 
-    (void)state;
     assert_int_equal(trace_one(&lens, 0.0, back, &ray), GLINT_RAY_MISSED);
     assert_int_equal(trace_one(&lens, 0.0, across, &ray), GLINT_RAY_MISSED);
     assert_int_equal(trace_one(&lens, 0.0, none, &ray), GLINT_RAY_MISSED);
@@ -437,14 +421,13 @@ static void expect_same(const struct glint_path *path, int n,
     }
 }
 
-static void test_many_at_once(void **state)
+TEST(many_at_once)
 {
     static const char *const names[] = {"heliar-tronnier", "canon-zoom-short"};
     static struct glint_prescription lens;
     static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
     struct glint_path path;
 
-    (void)state;
     for (int l = 0; l < 2; l++) {
         load_lens(&lens, names[l]);
         const int n = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
@@ -468,7 +451,7 @@ static void test_many_at_once(void **state)
     }
 }
 
-static void test_row(void **state)
+TEST(row)
 {
     static struct glint_prescription lens;
     const struct glint_ghost ghost = {1, 4};
@@ -477,7 +460,6 @@ static void test_row(void **state)
     enum glint_ray_status status[21];
     struct glint_path path;
 
-    (void)state;
     load_lens(&lens, "heliar-tronnier");
     glint_path_init(&path, &lens, &ghost, 532);
     glint_trace_row(&path, &row, ray, status, NULL);
@@ -492,7 +474,7 @@ static void test_row(void **state)
 
 /* -------------------------------------------------------------- symmetries */
 
-static void test_axis_goes_straight(void **state)
+TEST(axis_goes_straight)
 {
     static const char *const names[] = {"heliar-tronnier", "canon-zoom-long",
                                         "itoh-zoom-short"};
@@ -502,7 +484,6 @@ static void test_axis_goes_straight(void **state)
     struct glint_path path;
     struct glint_ray ray;
 
-    (void)state;
     for (int l = 0; l < 3; l++) {
         load_lens(&lens, names[l]);
         const int n = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
@@ -557,7 +538,7 @@ static void expect_turned(const struct glint_path *path, double px, double py,
     assert_true(a.rel_radius == b.rel_radius);
 }
 
-static void test_symmetry_to_the_bit(void **state)
+TEST(symmetry_to_the_bit)
 {
     static struct glint_prescription lens;
     static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
@@ -565,7 +546,6 @@ static void test_symmetry_to_the_bit(void **state)
     struct glint_path path;
     int n;
 
-    (void)state;
     load_lens(&lens, "nikon-zoom-short");
     n = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
     for (int k = -1; k < n; k++) {
@@ -581,7 +561,7 @@ static void test_symmetry_to_the_bit(void **state)
 
 /* A distant point must be imaged f tan T from the axis by a narrow pencil near
  * it, where f is 49.992 mm by the table. */
-static void test_direct_image(void **state)
+TEST(direct_image)
 {
     static struct glint_prescription lens;
     struct glint_optics optics;
@@ -589,7 +569,6 @@ static void test_direct_image(void **state)
     const double sine = 1e-4;
     const double up[3] = {0.0, sine, sqrt(1.0 - sine * sine)};
 
-    (void)state;
     load_lens(&lens, "double-gauss-angenieux");
     glint_optics_of(&lens, &optics);
     for (int i = -4; i <= 4; i++) {
@@ -606,28 +585,4 @@ static void test_direct_image(void **state)
                                (const double[3]){0.0, 0.0, 1.0}, &ray),
                      GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, 1.32, 0.002);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_golden),
-        cmocka_unit_test(test_ghost_path_events),
-        cmocka_unit_test(test_direct_path_of_front_stop),
-        cmocka_unit_test(test_longest_path),
-        cmocka_unit_test(test_plate),
-        cmocka_unit_test(test_huge_radius),
-        cmocka_unit_test(test_tiny_radius),
-        cmocka_unit_test(test_aplanatic_sphere),
-        cmocka_unit_test(test_total_reflection),
-        cmocka_unit_test(test_plate_ghost),
-        cmocka_unit_test(test_hostile_rays),
-        cmocka_unit_test(test_many_at_once),
-        cmocka_unit_test(test_row),
-        cmocka_unit_test(test_axis_goes_straight),
-        cmocka_unit_test(test_symmetry_to_the_bit),
-        cmocka_unit_test(test_direct_image),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

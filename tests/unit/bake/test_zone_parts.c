@@ -3,11 +3,6 @@
  * Halves of the box of a zone, halves of these, and when a zone is halved.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
 
 #include "bake/fit/next.h"
 #include "bake/fit/zone_rays.h"
@@ -22,14 +17,13 @@ static bool part_has(const struct glint_zone_part *p, double u, double v)
 }
 
 /* However often a box is halved, each place must be in exactly one part. */
-static void test_halves(void **state)
+TEST(halves)
 {
     enum { DEPTH = 8, PARTS = 1 << DEPTH };
     static struct glint_zone_part part[PARTS] = {{-1, 1, 1, -1, 1, 0}};
     uint32_t seed = 5;
     double area = 0;
 
-    (void)state;
     for (int depth = 0; depth < DEPTH; depth++)
         for (int k = (1 << depth) - 1; k >= 0; k--) {
             const struct glint_zone_part whole = part[k];
@@ -95,7 +89,7 @@ static enum glint_next next_of(const struct attempted *c)
 
 /* Parts of wide zones of aspheric lenses do not meet, so that their zones are
  * halved where those of spheres are divided, and their parts further. */
-static void test_shaped(void **state)
+TEST(shaped)
 {
     static const struct attempted all[] = {
         {false, false, 5, 11, 9, -1, 4, GLINT_THOROUGH},
@@ -122,19 +116,8 @@ static void test_shaped(void **state)
         {false, true, 70, 72, 9, 4, 4, GLINT_KEEP},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (next_of(&all[i]) != all[i].next)
             fail_msg("attempt %d: %d, not %d", (int)i, (int)next_of(&all[i]),
                      (int)all[i].next);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_halves),
-        cmocka_unit_test(test_shaped),
-    };
-
-    return cmocka_run_group_tests_name("zone_parts", tests, NULL, NULL);
 }

@@ -3,14 +3,9 @@
  * Zooms and focus: tables of several positions against those of one, gaps
  * between columns, and exact rays near the axis of lenses that were focused. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "support/lens_check.h"
 #include "glint/bake.h"
@@ -47,9 +42,8 @@ static void focus(struct glint_prescription *lens, double metres)
 }
 
 /* At its columns a zoom is the lens of that table, to the last bit. */
-static void test_columns(void **state)
+TEST(columns)
 {
-    (void)state;
     for (int k = 0; k < 9; k++) {
         char name[64];
 
@@ -70,11 +64,10 @@ static void test_columns(void **state)
 
 /* Between columns focal lengths only rise, the image stays in focus, and a
  * focal length is found again. */
-static void test_between(void **state)
+TEST(between)
 {
     enum { STEPS = 40 };
 
-    (void)state;
     for (int z = 0; z < 3; z++) {
         double before = 0;
 
@@ -92,9 +85,8 @@ static void test_between(void **state)
                         optics.back_focal_mm, 1e-6);
             assert_true(zoom.surface[zoom.n_surfaces - 1].thickness_mm > 20);
             load_zoom(zooms[z]);
-            assert_int_equal(glint_prescription_zoom_to(&zoom, optics.focal_mm,
-                                                        &along, &error),
-                             GLINT_OK);
+            assert_ok(glint_prescription_zoom_to(&zoom, optics.focal_mm, &along,
+                                                 &error));
             assert_near(along, (double)k / STEPS, k % STEPS ? 1e-6 : 1e-12);
         }
     }
@@ -136,11 +128,10 @@ static void check_focus(struct glint_prescription *lens, double metres)
                 1e-3 * before.focal_mm);
 }
 
-static void test_focus(void **state)
+TEST(focus)
 {
     static const double metres[] = {1.5, 5, 30};
 
-    (void)state;
     for (int k = 0; k < 3; k++) {
         load_lens(&single, "heliar-tronnier");
         check_focus(&single, metres[k]);
@@ -155,12 +146,11 @@ static void test_focus(void **state)
 }
 
 /* Newton's formula, x x' = f^2, for a lens that moves as a whole. */
-static void test_newton(void **state)
+TEST(newton)
 {
     struct glint_optics optics;
     double before, moved;
 
-    (void)state;
     load_lens(&single, "heliar-tronnier");
     before = single.surface[single.n_surfaces - 1].thickness_mm;
     focus(&single, 2);
@@ -174,7 +164,7 @@ static void test_newton(void **state)
 
 /* A stop in front of the group that focuses keeps its distance to the sensor.
  */
-static void test_front_stop(void **state)
+TEST(front_stop)
 {
     static const char text[] =
         "name t\nfilm 36 24\nf-number 10\nstop 5 8\nfocus\n"
@@ -185,7 +175,6 @@ static void test_front_stop(void **state)
     struct glint_optics optics;
     double before;
 
-    (void)state;
     if (glint_prescription_parse(&single, text, strlen(text), "t.lens", &error))
         fail_msg("%s", error.text);
     glint_optics_of(&single, &optics);
@@ -198,7 +187,7 @@ static void test_front_stop(void **state)
 
 /* A stop in front leaves the glass behind it as solid: surfaces whose rims are
  * apart do not pass through each other's vertices. */
-static void test_solid(void **state)
+TEST(solid)
 {
     static const char text[] =
         "name t\nfilm 36 24\nf-number 10\nstop 5 8\n"
@@ -206,15 +195,12 @@ static void test_solid(void **state)
         "surface 100 4 12 1.5 60\nsurface -100 47 12 air\nend\n";
     struct glint_error error = {""};
 
-    (void)state;
-    assert_int_equal(
-        glint_prescription_parse(&single, text, strlen(text), "t.lens", &error),
-        GLINT_OK);
+    assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
+                                       &error));
     focus(&single, 20);
     assert_true(single.surface[1].thickness_mm > 0);
-    assert_int_equal(
-        glint_prescription_parse(&single, text, strlen(text), "t.lens", &error),
-        GLINT_OK);
+    assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
+                                       &error));
     assert_int_equal(glint_prescription_focus(&single, 3, &error),
                      GLINT_E_ARGUMENT);
     assert_non_null(strstr(error.text, "cannot focus at 3 m"));
@@ -238,9 +224,8 @@ static void refuses(const char *body, const char *cause)
 #define FRONT "surface 50 4 12 1.5 60\nsurface -50 "
 #define BACK  " 12 air\nsurface 40 4 12 1.5 60\nsurface -60 30 12 air\nstop 5 9"
 
-static void test_text(void **state)
+TEST(text)
 {
-    (void)state;
     refuses("f-number 10\n" FRONT "4/x" BACK, "t.lens:5:15: thickness 'x'");
     refuses("f-number 10\n" FRONT "4//6" BACK, "thickness");
     refuses("f-number 10/11/12\n" FRONT "4/6" BACK,
@@ -261,7 +246,7 @@ static void test_text(void **state)
 /* Where a lens is zoomed to does not depend on where it was before, though the
  * table has one last gap, which lies off the focus by another distance in each
  * column. */
-static void test_again(void **state)
+TEST(again)
 {
     static const char text[] =
         "name t\nfilm 36 24\nf-number 10\n" FRONT "4/6/7" BACK;
@@ -269,15 +254,12 @@ static void test_again(void **state)
     struct glint_error error = {""};
     const double places[] = {0.3, 0.75, 1, 0.2, 0};
 
-    (void)state;
-    assert_int_equal(
-        glint_prescription_parse(&once, text, strlen(text), "t.lens", &error),
-        GLINT_OK);
+    assert_ok(
+        glint_prescription_parse(&once, text, strlen(text), "t.lens", &error));
     zoom = once;
     for (int i = 0; i < 5; i++) {
         single = once;
-        assert_int_equal(glint_prescription_zoom(&single, places[i], &error),
-                         GLINT_OK);
+        assert_ok(glint_prescription_zoom(&single, places[i], &error));
         go_to(places[i]);
         assert_memory_equal(&zoom, &single, sizeof zoom);
     }
@@ -285,14 +267,13 @@ static void test_again(void **state)
 
 /* Of two columns f-numbers are in proportion; focal lengths that fall are found
  * as those that rise. */
-static void test_two_columns(void **state)
+TEST(two_columns)
 {
     static const char *const texts[] = {
         "name t\nfilm 36 24\nf-number 10/20\n" FRONT "4/6" BACK,
         "name t\nfilm 36 24\nf-number 10/20\n" FRONT "6/4" BACK};
     struct glint_error error = {""};
 
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct glint_optics optics;
         double along = -1;
@@ -304,19 +285,17 @@ static void test_two_columns(void **state)
         go_to(0.3);
         assert_near(zoom.f_number, 13, 1e-9);
         glint_optics_of(&zoom, &optics);
-        assert_int_equal(glint_prescription_zoom_to(&single, optics.focal_mm,
-                                                    &along, &error),
-                         GLINT_OK);
+        assert_ok(glint_prescription_zoom_to(&single, optics.focal_mm, &along,
+                                             &error));
         assert_near(along, 0.3, 1e-6);
     }
 }
 
-static void test_refusals(void **state)
+TEST(refusals)
 {
     struct glint_error error = {""};
     double along;
 
-    (void)state;
     load_lens(&single, "heliar-tronnier");
     assert_int_equal(glint_prescription_zoom(&single, 0.5, &error),
                      GLINT_E_ARGUMENT);
@@ -330,17 +309,4 @@ static void test_refusals(void **state)
     assert_int_equal(glint_prescription_zoom_to(&zoom, 300, &along, &error),
                      GLINT_E_ARGUMENT);
     assert_non_null(strstr(error.text, "from 72.12 mm to 193.9 mm"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_columns),    cmocka_unit_test(test_between),
-        cmocka_unit_test(test_focus),      cmocka_unit_test(test_newton),
-        cmocka_unit_test(test_front_stop), cmocka_unit_test(test_text),
-        cmocka_unit_test(test_solid),      cmocka_unit_test(test_again),
-        cmocka_unit_test(test_refusals),   cmocka_unit_test(test_two_columns),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,26 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #include "base/arena.h"
 #include "base/compiler.h"
 #include "base/q.h"
 #include "glint/image.h"
 #include "glint/workers.h"
+#include "support/test.h"
 
-static void test_measure_and_place(void **state)
+TEST(measure_and_place)
 {
     static uint8_t mem[256]; /* Aligning it is the caller's business. */
     struct glint_arena m = glint_arena_measure(), p;
 
-    (void)state;
     assert_null(glint_arena_take(&m, 3, 4));  /* 64 bytes */
     assert_null(glint_arena_take(&m, 0, 4));  /* 0 bytes */
     assert_null(glint_arena_take(&m, 65, 1)); /* 128 bytes */
@@ -33,20 +28,18 @@ static void test_measure_and_place(void **state)
     assert_true(p.used > p.size);
 }
 
-static void test_overflow_is_full(void **state)
+TEST(overflow_is_full)
 {
     struct glint_arena m = glint_arena_measure();
 
-    (void)state;
     assert_null(glint_arena_take(&m, SIZE_MAX / 2, 4));
     assert_null(glint_arena_take(&m, 1, 1));
     assert_true(m.used > SIZE_MAX - 256);
 }
 
 /* Rounding is to nearest, ties up, also below zero. */
-static void test_rounding(void **state)
+TEST(rounding)
 {
-    (void)state;
     assert_int_equal(q_shift(5, 1), 3);
     assert_int_equal(q_shift(-5, 1), -2);
     assert_int_equal(q_shift(-6, 2), -1);
@@ -66,9 +59,8 @@ static void test_rounding(void **state)
 
 /* CONFIG=qcheck must stop where a result does not fit. Other builds may wrap or
  * not, and skip this test. */
-static void test_overflow_traps(void **state)
+TEST(overflow_traps)
 {
-    (void)state;
 #ifdef GLINT_Q_CHECK
     {
         const pid_t child = fork();
@@ -89,12 +81,11 @@ static void test_overflow_traps(void **state)
 #endif
 }
 
-static void test_image_sizes(void **state)
+TEST(image_sizes)
 {
     struct glint_image image = {.format = GLINT_I420, .width = 5, .height = 3};
     uint8_t mem[27];
 
-    (void)state;
     assert_int_equal(glint_image_bytes(GLINT_I420, 5, 3), 15 + 2 * 6);
     assert_int_equal(glint_image_bytes(GLINT_I422, 5, 3), 15 + 2 * 9);
     assert_int_equal(glint_image_bytes(GLINT_RGB24, 5, 3), 45);
@@ -115,26 +106,11 @@ static void count(void *ctx, int job, int worker)
     *sum += job;
 }
 
-static void test_serial_workers(void **state)
+TEST(serial_workers)
 {
     int sum = 0;
 
-    (void)state;
     glint_workers_run(NULL, 5, count, &sum);
     assert_int_equal(sum, 10);
     assert_int_equal(glint_workers_count(NULL), 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_measure_and_place),
-        cmocka_unit_test(test_overflow_is_full),
-        cmocka_unit_test(test_rounding),
-        cmocka_unit_test(test_overflow_traps),
-        cmocka_unit_test(test_image_sizes),
-        cmocka_unit_test(test_serial_workers),
-    };
-
-    return cmocka_run_group_tests_name("base", tests, NULL, NULL);
 }

@@ -4,12 +4,9 @@
  * fault that they can have.
  */
 #include "base/blob.h"
+#include "support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { HEADER = 100, BYTES = 124 };
 
@@ -41,20 +38,18 @@ static enum glint_blob_fault opened(const struct file *f, size_t bytes)
     return glint_blob_open(&blob, &kind, f, bytes);
 }
 
-static void test_crc(void **state)
+TEST(crc)
 {
-    (void)state;
     assert_true(glint_blob_crc32("123456789", 9) == UINT32_C(0xcbf43926));
     assert_true(glint_blob_crc32("", 0) == 0);
 }
 
 /* Fields must lie where files on disk have them. */
-static void test_layout(void **state)
+TEST(layout)
 {
     struct glint_blob blob;
     struct file f;
 
-    (void)state;
     make(&f);
     assert_int_equal(f.word[2], BYTES);
     assert_true(f.word[3] == glint_blob_crc32(&f.word[4], BYTES - 16));
@@ -65,7 +60,7 @@ static void test_layout(void **state)
     assert_int_equal(glint_blob_check_name(&blob), GLINT_BLOB_OK);
 }
 
-static void test_faults(void **state)
+TEST(faults)
 {
     static const struct {
         int word;
@@ -79,7 +74,6 @@ static void test_faults(void **state)
               {2, BYTES - 4, GLINT_BLOB_LONGER}};
     struct file f;
 
-    (void)state;
     for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
         make(&f);
         f.word[of[k].word] = of[k].value;
@@ -95,11 +89,10 @@ static void test_faults(void **state)
 }
 
 /* Any bit that is wrong in the checksum or behind it must be noticed. */
-static void test_damage(void **state)
+TEST(damage)
 {
     struct file f;
 
-    (void)state;
     for (int bit = 8 * 12; bit < 8 * BYTES; bit++) {
         make(&f);
         ((unsigned char *)&f)[bit / 8] ^= (unsigned char)(1 << bit % 8);
@@ -120,11 +113,10 @@ static enum glint_blob_fault named(const char *name, size_t length)
     return glint_blob_check_name(&blob);
 }
 
-static void test_names(void **state)
+TEST(names)
 {
     char longest[64];
 
-    (void)state;
     memset(longest, '~', sizeof longest);
     assert_int_equal(named(longest, 63), GLINT_BLOB_OK);
     assert_int_equal(named(longest, 64), GLINT_BLOB_NAME_ENDLESS);
@@ -134,12 +126,11 @@ static void test_names(void **state)
     assert_int_equal(named("a\233", 2), GLINT_BLOB_NAME_FOREIGN);
 }
 
-static void test_sections(void **state)
+TEST(sections)
 {
     struct glint_blob blob;
     struct file f;
 
-    (void)state;
     make(&f);
     assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
     assert_ptr_equal(glint_blob_section(&blob, HEADER, 3, 8),
@@ -157,15 +148,4 @@ static void test_sections(void **state)
     assert_null(glint_blob_section(&blob, UINT32_MAX - 3, 1, 4));
     assert_null(
         glint_blob_section(&blob, HEADER, (UINT64_C(1) << 38) - 1, 1 << 25));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_crc),    cmocka_unit_test(test_layout),
-        cmocka_unit_test(test_faults), cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_names),  cmocka_unit_test(test_sections),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

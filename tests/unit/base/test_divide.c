@@ -3,12 +3,7 @@
  * Division that uses words of 32 bits, against the compiler's.
  */
 #include "base/divide.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
+#include "support/test.h"
 
 static uint64_t seed = 12345;
 
@@ -33,9 +28,8 @@ static int64_t draw_any(void)
     return draw() & 1 ? -size : size;
 }
 
-static void test_any(void **state)
+TEST(any)
 {
-    (void)state;
     for (int i = 0; i < 1000000; i++) {
         const int64_t n = draw_any(), d = draw_any();
 
@@ -46,9 +40,8 @@ static void test_any(void **state)
 
 /* Numerators at, below and above multiples of D, and powers of two, must be
  * divided exactly. */
-static void test_borders(void **state)
+TEST(borders)
 {
-    (void)state;
     for (int i = 0; i < 300000; i++) {
         const int64_t d = 1 + (int64_t)(draw() >> (2 + draw() % 62));
         const int64_t most = INT64_MAX / d - 1;
@@ -77,9 +70,8 @@ static void expect_reciprocal(uint32_t x)
     assert_int_equal(q_reciprocal(x), (UINT64_MAX >> 1) / x);
 }
 
-static void test_reciprocal(void **state)
+TEST(reciprocal)
 {
-    (void)state;
     for (uint32_t off = 0; off < 300000; off++) {
         expect_reciprocal(UINT32_C(0x80000000) + off);
         expect_reciprocal(UINT32_C(0xc0000000) - off);
@@ -89,9 +81,8 @@ static void test_reciprocal(void **state)
 }
 
 /* q_part_q30() must be off n / d by no more than 2^-30 up and 2^-29 down. */
-static void test_part(void **state)
+TEST(part)
 {
-    (void)state;
     for (int i = 0; i < 300000; i++) {
         const uint64_t d = 1 + (draw() >> (2 + draw() % 62));
         const uint64_t n = i % 16 ? draw() % (d + 1) : i % 32 ? d : 0;
@@ -101,13 +92,4 @@ static void test_part(void **state)
         assert_true(got <= 1 && (n > 0 || got == 0));
         assert_true(got <= part + 0x1p-30 && got >= part - 0x1p-29);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_any), cmocka_unit_test(test_borders),
-        cmocka_unit_test(test_reciprocal), cmocka_unit_test(test_part)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,13 +5,9 @@
  * never too many.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
 
 #include "glint/area.h"
+#include "support/test.h"
 
 static const double degree = 3.14159265358979323846 / 180;
 
@@ -64,7 +60,7 @@ static int sums_of(const struct glint_lamp *lamp, double thinning,
     return n;
 }
 
-static void test_a_point_stays_one(void **state)
+TEST(a_point_stays_one)
 {
     const struct glint_lamp lamp = lamp_of(0, 0);
     struct glint_area area;
@@ -73,7 +69,6 @@ static void test_a_point_stays_one(void **state)
     const struct glint_area_rule rule =
         glint_area_rule_of(&lamp, 1, PIXELS, MOST, 100, &total);
 
-    (void)state;
     assert_int_equal(glint_area_plan(&area, &lamp, &rule), 1);
     point = glint_area_point(&area, 0);
     /* A single point must be the lamp itself, to the bit. */
@@ -82,12 +77,11 @@ static void test_a_point_stays_one(void **state)
     assert_true(point.power == lamp.power);
 }
 
-static void test_sums_are_the_lamps(void **state)
+TEST(sums_are_the_lamps)
 {
     const struct glint_lamp lamp = lamp_of(30, 10);
     double sum[5];
 
-    (void)state;
     assert_int_equal(sums_of(&lamp, 1, sum), MOST);
     assert_true(fabs(sum[0] - 5) < 1e-9);
     assert_true(fabs(sum[1] - 0) < 1e-6);
@@ -99,11 +93,10 @@ static void test_sums_are_the_lamps(void **state)
 /* Points of a lamp must stay where they are when its turn goes over 90 degrees,
  * which is half a turn of its axes, and those of a round one whatever its axes
  * do. */
-static void test_axes_have_no_sign(void **state)
+TEST(axes_have_no_sign)
 {
     const struct glint_area_rule rule = {PIXELS, MOST, 5, 1};
 
-    (void)state;
     for (int k = 0; k < 3; k++) {
         struct glint_lamp lamp = lamp_of(12, k == 0 ? 4 : 12);
         struct glint_area a, b;
@@ -129,11 +122,10 @@ static void test_axes_have_no_sign(void **state)
 
 /* While a lamp grows by 0.005 px a step, its centroid must stay and the squares
  * of its spread must change little at each step. */
-static void test_it_grows_without_jumps(void **state)
+TEST(it_grows_without_jumps)
 {
     double last[5], sum[5];
 
-    (void)state;
     sums_of(&(struct glint_lamp){.power = 0}, 1, last);
     for (int step = 0; step <= 4000; step++) {
         const struct glint_lamp lamp = lamp_of(step * 0.005, step * 0.005);
@@ -150,12 +142,11 @@ static void test_it_grows_without_jumps(void **state)
     }
 }
 
-static void test_all_have_room(void **state)
+TEST(all_have_room)
 {
     struct glint_lamp lamps[10];
     int total;
 
-    (void)state;
     for (int i = 0; i < 10; i++)
         lamps[i] = lamp_of(3 * i, 2 * i);
     for (int room = 1; room < 700; room++) {
@@ -178,14 +169,13 @@ static void test_all_have_room(void **state)
 
 /* A lamp of a sixteenth of the power must get a quarter of the points, as steps
  * between faint points show less. */
-static void test_faint_lamps_get_fewer(void **state)
+TEST(faint_lamps_get_fewer)
 {
     struct glint_lamp lamps[2] = {lamp_of(30, 30), lamp_of(30, 30)};
     struct glint_area area;
     struct glint_area_rule rule;
     int total;
 
-    (void)state;
     lamps[1].power = lamps[0].power / 16;
     rule = glint_area_rule_of(lamps, 2, PIXELS, MOST, 1000, &total);
     assert_int_equal(glint_area_plan(&area, &lamps[0], &rule), MOST);
@@ -197,13 +187,12 @@ static void test_faint_lamps_get_fewer(void **state)
 /* The points of a disc must be as far apart as if each had an equal square of
  * it, and the distance must not jump as the disc grows and one point becomes
  * many. An ellipse a hundredth as wide must have a fifth of that distance. */
-static void test_how_far_they_are_apart(void **state)
+TEST(how_far_they_are_apart)
 {
     struct glint_area area;
     double last = 0;
     int total;
 
-    (void)state;
     for (int step = 0; step <= 4000; step++) {
         const double radius = step * 0.01; /* pixels, RMS of each axis */
         const struct glint_lamp lamp = lamp_of(radius, radius);
@@ -222,19 +211,4 @@ static void test_how_far_they_are_apart(void **state)
     assert_true(fabs(glint_area_apart(&area) * PIXELS - 80 / 6.2) < 0.1);
     area.lamp.axis[1] /= 100;
     assert_true(fabs(glint_area_apart(&area) * PIXELS - 80 / 6.2 / 5) < 0.1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_point_stays_one),
-        cmocka_unit_test(test_sums_are_the_lamps),
-        cmocka_unit_test(test_axes_have_no_sign),
-        cmocka_unit_test(test_it_grows_without_jumps),
-        cmocka_unit_test(test_all_have_room),
-        cmocka_unit_test(test_faint_lamps_get_fewer),
-        cmocka_unit_test(test_how_far_they_are_apart),
-    };
-
-    return cmocka_run_group_tests_name("area", tests, NULL, NULL);
 }

@@ -3,11 +3,7 @@
  * --budget on simulated machines: tool_seconds() returns the time that a
  * formula gives.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <math.h>
 #include <string.h>
@@ -16,6 +12,7 @@
 #include "engine/frame/cost.h"
 #include "glint/quality.h"
 #include "support/opened.h"
+#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 120, SETTLED = 40 };
 
@@ -65,15 +62,13 @@ static struct glint_engine_report run(struct glint_frame *frame,
     glint_budget_init(&frame->budget, budget_ms);
     frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
     for (int i = 0; i < n; i++)
-        assert_int_equal(glint_frame_draw(frame, lamps, 3, 1, &image, &report),
-                         GLINT_OK);
+        assert_ok(glint_frame_draw(frame, lamps, 3, 1, &image, &report));
     return report;
 }
 
 static void make(struct glint_frame *frame)
 {
-    assert_int_equal(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame),
-                     EXIT_OK);
+    assert_ok(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame));
 }
 
 static const struct machine machines[] = {
@@ -85,11 +80,10 @@ static const struct machine machines[] = {
 
 /* On each machine a frame must take 0.8 to 1.1 of its budget, and a larger
  * budget must not give less quality. */
-static void test_keeps_to_it(void **state)
+TEST(keeps_to_it)
 {
     static const double budget_ms[] = {4.2, 5, 7, 10};
 
-    (void)state;
     for (size_t m = 0; m < sizeof machines / sizeof *machines; m++) {
         double last = 0;
 
@@ -148,11 +142,10 @@ static int draw_whole(double ms, int from, double octaves, int n, bool *last)
 
 /* Wrong predictions of slow levels must not keep these out for good where they
  * fit. */
-static void test_tries_again(void **state)
+TEST(tries_again)
 {
     bool last;
 
-    (void)state;
     assert_in_range(draw_whole(4.6, 1, 1.5, 300, &last), 1, 299);
     assert_true(last);
 }
@@ -161,11 +154,10 @@ static void test_tries_again(void **state)
  * within some frames where the levels that are predicted to fit take far less.
  * A level that does not fit must not be tried again and again (14 of these 100
  * frames; 52 if there were no limit). */
-static void test_tries_next(void **state)
+TEST(tries_next)
 {
     bool last;
 
-    (void)state;
     assert_in_range(draw_whole(4.6, 2, 0.95, 20, &last), 1, 20);
     assert_true(last);
     /* A level that is predicted to miss by half must not be tried. */
@@ -175,11 +167,10 @@ static void test_tries_next(void **state)
     assert_false(last);
 }
 
-static void test_ends(void **state)
+TEST(ends)
 {
     struct glint_frame frame;
 
-    (void)state;
     machine = machines[0];
     make(&frame);
     machine.frame = &frame;
@@ -193,11 +184,10 @@ static void test_ends(void **state)
 
 /* A veil must be left out where there is no time for anything, and come back
  * where there is. */
-static void test_veil(void **state)
+TEST(veil)
 {
     struct glint_frame frame;
 
-    (void)state;
     machine = machines[0];
     make(&frame);
     frame.veil.glare = 0.02;
@@ -210,7 +200,7 @@ static void test_veil(void **state)
 
 /* The plan counts lights, so that the first frame with more of them must keep
  * to the budget, too. */
-static void test_new_lights(void **state)
+TEST(new_lights)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
@@ -218,7 +208,6 @@ static void test_new_lights(void **state)
     struct glint_engine_report one, three;
     struct glint_frame frame;
 
-    (void)state;
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
     make(&frame);
     glint_image_place(&image, px);
@@ -227,10 +216,8 @@ static void test_new_lights(void **state)
     frame.budget.ms_per_minsn = 0.1;
     frame.dials = glint_budget_dials(&frame.budget, &frame.dials);
     for (int i = 0; i < 4; i++)
-        assert_int_equal(glint_frame_draw(&frame, lamps, 1, 1, &image, &one),
-                         GLINT_OK);
-    assert_int_equal(glint_frame_draw(&frame, lamps, 3, 1, &image, &three),
-                     GLINT_OK);
+        assert_ok(glint_frame_draw(&frame, lamps, 1, 1, &image, &one));
+    assert_ok(glint_frame_draw(&frame, lamps, 3, 1, &image, &three));
     assert_true(one.predicted_ms <= 3 && three.predicted_ms <= 3);
     assert_true(three.quality < one.quality);
     glint_frame_finish(&frame);
@@ -238,7 +225,7 @@ static void test_new_lights(void **state)
 
 /* Counts of a plan must be those of the frame, and must scale with the dials as
  * the counts of another plan do. */
-static void test_counts(void **state)
+TEST(counts)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
@@ -249,7 +236,6 @@ static void test_counts(void **state)
     struct glint_dials then;
     struct glint_cost_plan plan;
 
-    (void)state;
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
     make(&frame);
     glint_image_place(&image, px);
@@ -298,15 +284,4 @@ static void test_counts(void **state)
     glint_frame_finish(&frame);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_keeps_to_it), cmocka_unit_test(test_tries_again),
-        cmocka_unit_test(test_tries_next),  cmocka_unit_test(test_ends),
-        cmocka_unit_test(test_new_lights),  cmocka_unit_test(test_counts),
-        cmocka_unit_test(test_veil),
-    };
-
-    return cmocka_run_group_tests_name("budget", tests, opened_heliar,
-                                       opened_close);
-}
+TEST_GROUP(opened_heliar, opened_close);

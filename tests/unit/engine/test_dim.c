@@ -5,16 +5,12 @@
  * workers.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/shuffle.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 enum { W = 240, H = 160, BYTES = 3 * W * H, LIGHTS = 16 };
 
@@ -73,12 +69,11 @@ static double psnr(const uint8_t *a, const uint8_t *b)
 /* Each larger dim_codes must give fewer bundles and a picture no nearer to that
  * of dim_codes 0, in which each ghost has its own three waves; still above
  * 40 dB, and with the same sum of codes within 1 %. */
-static void test_light_stays(void **state)
+TEST(light_stays)
 {
     int bundles;
     double before = 99;
 
-    (void)state;
     set_lamps(0);
     draw(0, plain);
     bundles = stage.drawn.stats.bundles;
@@ -95,11 +90,10 @@ static void test_light_stays(void **state)
 
 /* While lights move for 300 frames, the largest jump of a mean of 8 x 8 pixels
  * with dim ghosts must be less than half a code above that without them. */
-static void test_no_pops(void **state)
+TEST(no_pops)
 {
     double worst[2] = {0, 0};
 
-    (void)state;
     for (int frame = 0; frame < 300; frame++) {
         set_lamps(0.01 * frame);
         for (int k = 0; k < 2; k++) {
@@ -146,9 +140,8 @@ static double light_of(double codes)
     stage.frame.picture.for_codes = true;
     memset(light_q20, 0, sizeof light_q20);
     glint_image_place(&image, light_q20);
-    assert_int_equal(
-        glint_frame_draw(&stage.frame, lamps, LIGHTS, 1, &image, &stage.drawn),
-        GLINT_OK);
+    assert_ok(
+        glint_frame_draw(&stage.frame, lamps, LIGHTS, 1, &image, &stage.drawn));
     stage.frame.picture.for_codes = false;
     for (int i = 0; i < 3 * W * H; i++)
         sum += light_q20[i];
@@ -159,14 +152,13 @@ static double light_of(double codes)
  * half of the bundles, their light within 6 %, and no larger jumps of a mean of
  * 8 x 8 pixels by half a code than when each is drawn by itself. The account
  * must agree. */
-static void test_shared_rays(void **state)
+TEST(shared_rays)
 {
     struct glint_account account;
     double worst[2] = {0, 0};
     int of[GLINT_OUTCOMES] = {0}, bundles[2];
     uint64_t noise = 1;
 
-    (void)state;
     for (int frame = 0; frame < 300; frame++) {
         set_groups(0.01 * frame, &noise);
         for (int k = 0; k < 2; k++) {
@@ -203,11 +195,10 @@ static void test_shared_rays(void **state)
 
 /* A picture must have the same bits with 1, 3 or 5 workers, and after another
  * frame. */
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     struct shuffle shuffle;
 
-    (void)state;
     set_lamps(1.5);
     draw(4, plain);
     for (int n = 1; n <= 5; n += 2) {
@@ -225,11 +216,4 @@ static void test_same_bits(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_light_stays), cmocka_unit_test(test_no_pops),
-        cmocka_unit_test(test_shared_rays), cmocka_unit_test(test_same_bits)};
-
-    return cmocka_run_group_tests_name("dim", tests, open_stage, close_stage);
-}
+TEST_GROUP(open_stage, close_stage);

@@ -3,11 +3,7 @@
  * The engine as programs embed it: what it refuses, what it reports, and that
  * its own memory and the caller's give the same pictures; the table of options.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,6 +12,7 @@
 #include "glint/engine.h"
 #include "glint/options.h"
 #include "support/opened.h"
+#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
@@ -44,7 +41,7 @@ static struct glint_engine *make(void *arena, size_t bytes)
     cfg.model = &opened.lens.model.lens;
     cfg.arena = arena;
     cfg.arena_bytes = bytes;
-    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    assert_ok(glint_engine_create(&engine, &cfg, &error));
     return engine;
 }
 
@@ -57,18 +54,16 @@ static int run(struct glint_engine *engine, int32_t us, uint8_t *px,
     const struct glint_image image = picture(px);
     const int n = glint_engine_find(engine, &image, us, lamps, 8);
 
-    assert_int_equal(glint_engine_draw(engine, lamps, n, &image, report),
-                     GLINT_OK);
+    assert_ok(glint_engine_draw(engine, lamps, n, &image, report));
     return n;
 }
 
-static void test_draws(void **state)
+TEST(draws)
 {
     static uint8_t px[BYTES], plain[BYTES];
     struct glint_engine *engine = make(NULL, 0);
     struct glint_engine_report report;
 
-    (void)state;
     picture(plain);
     assert_int_equal(run(engine, 0, px, &report), 2);
     assert_int_equal(report.lights, 2);
@@ -83,14 +78,13 @@ static void test_draws(void **state)
 
 /* Memory of the engine and of the caller must give the same picture. Where it
  * is too little, the report must still say how much would do. */
-static void test_arena(void **state)
+TEST(arena)
 {
     static uint8_t want[BYTES], got[BYTES];
     struct glint_engine *engine = make(NULL, 16 << 20);
     struct glint_engine_report full, little, report;
     void *mem;
 
-    (void)state;
     run(engine, 0, want, &full);
     glint_engine_destroy(engine);
     assert_int_equal(posix_memalign(&mem, 64, 16 << 20), 0);
@@ -109,14 +103,13 @@ static void test_arena(void **state)
 
 /* Lamps that are followed must be there after 30 frames; with the dials turned
  * down, fewer bundles must be drawn. */
-static void test_follows(void **state)
+TEST(follows)
 {
     static uint8_t px[BYTES];
     struct glint_engine *engine = make(NULL, 0);
     struct glint_engine_report report;
     int n = 0, bundles;
 
-    (void)state;
     for (int i = 0; i < 30; i++)
         n = run(engine, 40000, px, &report);
     assert_int_equal(n, 2);
@@ -141,15 +134,14 @@ static double given(struct glint_engine *engine, const struct glint_lamp *lamp,
     memset(px, 40, BYTES);
     if (us >= 0)
         glint_engine_elapsed(engine, us);
-    assert_int_equal(glint_engine_draw(engine, &one, 1, &image, &report),
-                     GLINT_OK);
+    assert_ok(glint_engine_draw(engine, &one, 1, &image, &report));
     return report.scale;
 }
 
 /* A given lamp must be exposed as a found one: of a still picture by its
  * flare drawn small, whatever was drawn before; of a video from picture to
  * picture, in small steps. */
-static void test_given(void **state)
+TEST(given)
 {
     static uint8_t px[BYTES], found[BYTES], again[BYTES];
     const struct glint_image image = picture(px);
@@ -161,13 +153,11 @@ static void test_given(void **state)
     double alone, scale;
     int n;
 
-    (void)state;
     memcpy(found, px, BYTES);
     n = glint_engine_find(engine, &image, 0, lamps, 8);
     for (int i = 0; i < n; i++)
         lamps[i] = glint_engine_lamp_of(&lamps[i].lamp, 1); /* not found */
-    assert_int_equal(glint_engine_draw(engine, lamps, n, &image, &report),
-                     GLINT_OK);
+    assert_ok(glint_engine_draw(engine, lamps, n, &image, &report));
     scale = report.scale;
     run(engine, 0, found, &report);
     assert_true(fabs(report.scale / scale - 1) < 1e-6);
@@ -188,7 +178,7 @@ static void test_given(void **state)
 
 /* A stop that is set later must give the picture of an engine that is made with
  * it. A wider stop than the model's must be refused. */
-static void test_stop(void **state)
+TEST(stop)
 {
     static uint8_t open[BYTES], set[BYTES], made[BYTES];
     const double f = glint_real_value(opened.lens.model.lens.header->f_number);
@@ -197,23 +187,22 @@ static void test_stop(void **state)
     struct glint_engine_config cfg;
     struct glint_error error;
 
-    (void)state;
     run(engine, 0, open, &report);
     assert_int_equal(glint_engine_stop(engine, f / 2, &error),
                      GLINT_E_ARGUMENT);
     run(engine, 0, set, &report);
     assert_memory_equal(set, open, BYTES);
-    assert_int_equal(glint_engine_stop(engine, 3 * f, &error), GLINT_OK);
+    assert_ok(glint_engine_stop(engine, 3 * f, &error));
     run(engine, 0, set, &report);
     glint_engine_destroy(engine);
     assert_memory_not_equal(set, open, BYTES);
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &opened.lens.model.lens;
     cfg.camera.f_number = 3 * f;
-    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    assert_ok(glint_engine_create(&engine, &cfg, &error));
     run(engine, 0, made, &report);
     assert_memory_equal(set, made, BYTES);
-    assert_int_equal(glint_engine_stop(engine, f, &error), GLINT_OK);
+    assert_ok(glint_engine_stop(engine, f, &error));
     run(engine, 0, set, &report);
     assert_memory_equal(set, open, BYTES);
     glint_engine_destroy(engine);
@@ -221,7 +210,7 @@ static void test_stop(void **state)
 
 /* A picture of another size, or more lamps than there is room for, must be
  * refused at each stage, also of a picture that is exposed. */
-static void test_refuses_pictures(void **state)
+TEST(refuses_pictures)
 {
     static uint8_t px[BYTES];
     static float rgb[BYTES];
@@ -232,9 +221,7 @@ static void test_refuses_pictures(void **state)
     const int n = glint_engine_find(engine, &image, 0, lamps, 8);
     const int many = GLINT_ENGINE_MAX_LAMPS + 1;
 
-    (void)state;
-    assert_int_equal(glint_engine_expose(engine, lamps, n, &image, 1),
-                     GLINT_OK);
+    assert_ok(glint_engine_expose(engine, lamps, n, &image, 1));
     assert_int_equal(glint_engine_draw(engine, lamps, many, &image, &report),
                      GLINT_E_ARGUMENT);
     assert_int_equal(glint_engine_draw_layer(engine, lamps, many,
@@ -252,7 +239,7 @@ static void test_refuses_pictures(void **state)
 /* Layers must add up to all parts drawn together; a lamp that is given, none
  * being looked for, must give a render its light, twice as much at twice the
  * gain; and light set by hand must count from the next picture on. */
-static void test_layers(void **state)
+TEST(layers)
 {
     static uint8_t px[BYTES];
     static float part[BYTES], all[BYTES], sum[BYTES];
@@ -265,32 +252,25 @@ static void test_layers(void **state)
     struct glint_error error;
     double once = 0, twice = 0;
 
-    (void)state;
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &opened.lens.model.lens;
     cfg.search.max_found = 0;
     cfg.search.more_lamps = 1;
-    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    assert_ok(glint_engine_create(&engine, &cfg, &error));
     assert_int_equal(glint_engine_find(engine, &image, 0, &known, 1), 0);
-    assert_int_equal(glint_engine_expose(engine, &known, 1, &image, 1),
-                     GLINT_OK);
-    assert_int_equal(glint_engine_draw_layer(engine, &known, 1,
-                                             GLINT_ENGINE_ALL, all, &report),
-                     GLINT_OK);
+    assert_ok(glint_engine_expose(engine, &known, 1, &image, 1));
+    assert_ok(glint_engine_draw_layer(engine, &known, 1, GLINT_ENGINE_ALL, all,
+                                      &report));
     for (unsigned k = GLINT_ENGINE_GHOSTS; k <= GLINT_ENGINE_STAR; k *= 2) {
-        assert_int_equal(
-            glint_engine_draw_layer(engine, &known, 1, k, part, &report),
-            GLINT_OK);
+        assert_ok(glint_engine_draw_layer(engine, &known, 1, k, part, &report));
         for (int i = 0; i < BYTES; i++)
             sum[i] += part[i];
     }
     for (int i = 0; i < BYTES; i++)
         assert_true(fabsf(sum[i] - all[i]) <= 1e-4F * (1 + fabsf(all[i])));
     for (int k = 1; k <= 2; k++) {
-        assert_int_equal(glint_engine_render(engine, &lamp, 1, k,
-                                             GLINT_ENGINE_GHOSTS, part,
-                                             &report),
-                         GLINT_OK);
+        assert_ok(glint_engine_render(engine, &lamp, 1, k, GLINT_ENGINE_GHOSTS,
+                                      part, &report));
         for (int i = 0; i < BYTES; i++)
             *(k == 1 ? &once : &twice) += (double)part[i];
     }
@@ -298,13 +278,12 @@ static void test_layers(void **state)
     cfg.light.by_hand = 1;
     cfg.light.exposure_ev = 3;
     glint_engine_set_light(engine, &cfg.light);
-    assert_int_equal(glint_engine_expose(engine, &known, 1, &image, 1),
-                     GLINT_OK);
+    assert_ok(glint_engine_expose(engine, &known, 1, &image, 1));
     assert_true(glint_engine_exposed(engine)->scale == 8);
     glint_engine_destroy(engine);
 }
 
-static void test_refuses(void **state)
+TEST(refuses)
 {
     static uint8_t px[BYTES];
     struct glint_engine *engine = make(NULL, 0);
@@ -315,7 +294,6 @@ static void test_refuses(void **state)
     struct glint_image image = picture(px);
     struct glint_error error;
 
-    (void)state;
     image.height--;
     assert_int_equal(glint_engine_draw(engine, &lamp, 1, &image, &report),
                      GLINT_E_ARGUMENT);
@@ -343,25 +321,24 @@ static void test_refuses(void **state)
 
 /* A program of an older library, whose configuration ends earlier, must have
  * the defaults of what follows, whatever lies there. */
-static void test_older_program(void **state)
+TEST(older_program)
 {
     struct glint_engine *engine = NULL;
     struct glint_engine_config cfg;
     struct glint_error error;
     const size_t bytes = offsetof(struct glint_engine_config, cache);
 
-    (void)state;
     memset(&cfg, 0x55, sizeof cfg);
     glint_engine_defaults_sized(&cfg, bytes, WIDTH, HEIGHT);
     assert_int_equal(((unsigned char *)&cfg)[bytes], 0x55);
     cfg.model = &opened.lens.model.lens;
-    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    assert_ok(glint_engine_create(&engine, &cfg, &error));
     glint_engine_destroy(engine);
 }
 
 /* Options set by name must draw what the same configuration draws, and those
  * that are fixed, unknown or out of range must change nothing. */
-static void test_set_by_name(void **state)
+TEST(set_by_name)
 {
     static uint8_t set[BYTES], made[BYTES];
     const char *const bad[] = {"veil", "strengt", "gain"};
@@ -370,10 +347,8 @@ static void test_set_by_name(void **state)
     struct glint_engine *engine = make(NULL, 0);
     struct glint_error error;
 
-    (void)state;
-    assert_int_equal(glint_engine_set(engine, "exposure", 3, &error), GLINT_OK);
-    assert_int_equal(glint_engine_set_text(engine, "gain", "2", &error),
-                     GLINT_OK);
+    assert_ok(glint_engine_set(engine, "exposure", 3, &error));
+    assert_ok(glint_engine_set_text(engine, "gain", "2", &error));
     for (int k = 0; k < 3; k++) {
         assert_int_equal(glint_engine_set(engine, bad[k], -1, &error),
                          GLINT_E_ARGUMENT);
@@ -386,7 +361,7 @@ static void test_set_by_name(void **state)
     cfg.light.by_hand = 1;
     cfg.light.exposure_ev = 3;
     cfg.light.gain = 2;
-    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    assert_ok(glint_engine_create(&engine, &cfg, &error));
     run(engine, 0, made, &report);
     glint_engine_destroy(engine);
     assert_memory_equal(set, made, BYTES);
@@ -395,12 +370,11 @@ static void test_set_by_name(void **state)
 /* Each number of the table accepts its limits alone, and counts as given only
  * once it was set. Of strength and exposure, and of quality and error, the one
  * that was set last counts. */
-static void test_options(void **state)
+TEST(options)
 {
     struct glint_options o;
     struct glint_error error;
 
-    (void)state;
     glint_options_defaults(&o);
     for (int i = 0; i < GLINT_N_OPTIONS; i++) {
         const struct glint_option *const row = glint_option(i);
@@ -415,17 +389,16 @@ static void test_options(void **state)
                 glint_options_set(&o, row->name, row->high + 1, &error),
                 GLINT_E_ARGUMENT);
         assert_true(*error.text != '\0' && !o.given[i]);
-        assert_int_equal(glint_options_set(&o, row->name, row->low, &error),
-                         GLINT_OK);
+        assert_ok(glint_options_set(&o, row->name, row->low, &error));
         assert_true(o.given[i]);
     }
-    assert_int_equal(glint_options_set(&o, "strength", 1, &error), GLINT_OK);
+    assert_ok(glint_options_set(&o, "strength", 1, &error));
     assert_false(GLINT_OPTION_GIVEN(&o, exposure));
-    assert_int_equal(glint_options_set(&o, "exposure", 1, &error), GLINT_OK);
+    assert_ok(glint_options_set(&o, "exposure", 1, &error));
     assert_false(GLINT_OPTION_GIVEN(&o, strength));
-    assert_int_equal(glint_options_set(&o, "quality", 1, &error), GLINT_OK);
+    assert_ok(glint_options_set(&o, "quality", 1, &error));
     assert_false(GLINT_OPTION_GIVEN(&o, error));
-    assert_int_equal(glint_options_set(&o, "error", 1, &error), GLINT_OK);
+    assert_ok(glint_options_set(&o, "error", 1, &error));
     assert_false(GLINT_OPTION_GIVEN(&o, quality));
 }
 
@@ -441,13 +414,12 @@ static bool accepts(struct glint_options *o, const char *name, const char *text)
 
 /* Every default can be set again; numbers are finite; an empty text restores
  * the default; a flag knows yes from no; blanks may stand before numbers. */
-static void test_option_values(void **state)
+TEST(option_values)
 {
     struct glint_options o, initial;
     struct glint_error error;
     double v[3];
 
-    (void)state;
     glint_options_defaults(&o);
     initial = o;
     for (int i = 0; i < GLINT_N_OPTIONS; i++) {
@@ -478,25 +450,9 @@ static void test_option_values(void **state)
     assert_false(accepts(&o, "no-such-option", "1"));
     assert_int_equal(glint_option_numbers("-1.25, 3", v, 3), 2);
     assert_true(v[0] == -1.25 && v[1] == 3);
-    assert_int_equal(glint_options_set(&o, "veil", 0.5, &error), GLINT_OK);
+    assert_ok(glint_options_set(&o, "veil", 0.5, &error));
     assert_int_equal(glint_options_set(&o, "haze", 0.5, &error),
                      GLINT_E_ARGUMENT);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_draws),
-                                       cmocka_unit_test(test_arena),
-                                       cmocka_unit_test(test_follows),
-                                       cmocka_unit_test(test_stop),
-                                       cmocka_unit_test(test_given),
-                                       cmocka_unit_test(test_refuses),
-                                       cmocka_unit_test(test_older_program),
-                                       cmocka_unit_test(test_set_by_name),
-                                       cmocka_unit_test(test_layers),
-                                       cmocka_unit_test(test_refuses_pictures),
-                                       cmocka_unit_test(test_options),
-                                       cmocka_unit_test(test_option_values)};
-
-    return cmocka_run_group_tests(tests, opened_heliar, opened_close);
-}
+TEST_GROUP(opened_heliar, opened_close);

@@ -5,11 +5,7 @@
  * touched tiles.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +13,7 @@
 #include "explain/explain.h"
 #include "engine/explain_frame.h"
 #include "support/opened.h"
+#include "support/test.h"
 
 enum { WIDTH = 320, HEIGHT = 200, BYTES = 3 * WIDTH * HEIGHT, SIDE = 16 };
 
@@ -35,8 +32,7 @@ enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
 static void make(struct glint_frame *frame)
 {
-    assert_int_equal(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame),
-                     EXIT_OK);
+    assert_ok(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame));
     frame->cfg.tile_log2 = 4;
 }
 
@@ -44,8 +40,7 @@ static void draw(struct glint_frame *frame, const struct glint_lamp *lamp,
                  int n, struct glint_engine_report *report)
 {
     memset(rgb, 0, sizeof rgb);
-    assert_int_equal(glint_frame_draw(frame, lamp, n, 1, &image, report),
-                     GLINT_OK);
+    assert_ok(glint_frame_draw(frame, lamp, n, 1, &image, report));
 }
 
 static double sum(const struct glint_explain_part *part, int n, int cost)
@@ -105,16 +100,15 @@ static void assert_agrees(const struct glint_explain *e,
 
 /* Of three lights one is beyond the model and two are drawn, each of them
  * without some ghosts. */
-static void test_frame(void **state)
+TEST(frame)
 {
     struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
 
-    (void)state;
     make(&frame);
     draw(&frame, lamps, N_LAMPS, &report);
-    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
+    assert_ok(glint_explain_frame(&e, &frame, 1));
     assert_agrees(&e, &report);
     assert_int_equal(e.n_lights, 2);
     assert_int_equal(glint_explain_bundles(&e.all), 2 * 13 * 3);
@@ -132,14 +126,13 @@ static void test_frame(void **state)
 
 /* The brightest light must be in the range that the codes mean, and light must
  * be linear in UNIT. */
-static void test_light(void **state)
+TEST(light)
 {
     struct glint_engine_report report;
     struct glint_explain e, twice;
     struct glint_frame frame;
     int most = 0;
 
-    (void)state;
     make(&frame);
     frame.only_ghost = 11;
     draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
@@ -149,8 +142,8 @@ static void test_light(void **state)
                    ? rgb[i] + rgb[i + 1] + rgb[i + 2]
                    : most;
     assert_true(most > 60);
-    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
-    assert_int_equal(glint_explain_frame(&twice, &frame, 2), GLINT_OK);
+    assert_ok(glint_explain_frame(&e, &frame, 1));
+    assert_ok(glint_explain_frame(&twice, &frame, 2));
     assert_true(e.all.brightest > 0.001 && e.all.brightest < 0.2);
     assert_true(fabs(twice.all.brightest - 2 * e.all.brightest) < 1e-12);
     assert_true(fabs(twice.all.flux - 2 * e.all.flux) < 1e-6 * e.all.flux);
@@ -163,7 +156,7 @@ static void test_light(void **state)
 
 /* Each of these outcomes must occur in a frame of its own. A frame whose only
  * lamp lies beyond the model must have no bundles. */
-static void test_reasons(void **state)
+TEST(reasons)
 {
     static const struct {
         struct glint_lamp lamp;
@@ -181,12 +174,11 @@ static void test_reasons(void **state)
     struct glint_frame frame;
     struct glint_explain e;
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         make(&frame);
         frame.only_ghost = cases[i].only_ghost;
         draw(&frame, &cases[i].lamp, 1, &report);
-        assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
+        assert_ok(glint_explain_frame(&e, &frame, 1));
         assert_true(e.all.of[cases[i].outcome] > 0);
         if (e.all.edges)
             assert_agrees(&e, &report);
@@ -195,48 +187,45 @@ static void test_reasons(void **state)
     }
     make(&frame);
     draw(&frame, &lamps[2], 1, &report);
-    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
+    assert_ok(glint_explain_frame(&e, &frame, 1));
     assert_int_equal(glint_explain_bundles(&e.all), 0);
     assert_true(e.all.flux == 0);
     glint_explain_close(&e);
     glint_frame_finish(&frame);
 }
 
-static void test_room(void **state)
+TEST(room)
 {
     struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
     size_t need;
 
-    (void)state;
     make(&frame);
     draw(&frame, lamps, N_LAMPS, &report);
     need = report.peak_bytes;
     glint_frame_finish(&frame);
     make(&frame);
-    assert_int_equal(
-        glint_frame_reserve(&frame, NULL, need * 9 / 10, N_LAMPS, N_LAMPS),
-        GLINT_OK);
+    assert_ok(
+        glint_frame_reserve(&frame, NULL, need * 9 / 10, N_LAMPS, N_LAMPS));
     draw(&frame, lamps, N_LAMPS, &report);
     assert_true(report.stats.dropped_bundles > 0);
-    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
+    assert_ok(glint_explain_frame(&e, &frame, 1));
     assert_agrees(&e, &report);
     glint_explain_close(&e);
     glint_frame_finish(&frame);
 }
 
-static void test_order(void **state)
+TEST(order)
 {
     int at[3][GLINT_MAX_GHOSTS];
     struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
 
-    (void)state;
     make(&frame);
     draw(&frame, lamps, N_LAMPS, &report);
-    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
+    assert_ok(glint_explain_frame(&e, &frame, 1));
     glint_explain_sort(&e, GLINT_EXPLAIN_LIGHT, at[0]);
     glint_explain_sort(&e, GLINT_EXPLAIN_WORK, at[1]);
     glint_explain_sort(&e, GLINT_EXPLAIN_NUMBER, at[2]);
@@ -264,7 +253,7 @@ static int is_shaded(const struct glint_image *marked, int x0, int y0)
 }
 
 /* The picture must shade the tiles that one ghost touches and no others. */
-static void test_picture(void **state)
+TEST(picture)
 {
     struct explain_title title = {.lens = "heliar", .top = 20};
     struct glint_image marked, unmarked;
@@ -273,15 +262,14 @@ static void test_picture(void **state)
     struct glint_explain e;
     int n = 0, outlined = 0;
 
-    (void)state;
     make(&frame);
     frame.only_ghost = 4;
     draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
          &report);
     assert_true(report.tiles > 10 && report.tiles < 200);
-    assert_int_equal(glint_explain_frame(&e, &frame, 1), GLINT_OK);
+    assert_ok(glint_explain_frame(&e, &frame, 1));
     memset(rgb, 0, sizeof rgb);
-    assert_int_equal(explain_mark(&e, &title, &image, &marked), GLINT_OK);
+    assert_ok(explain_mark(&e, &title, &image, &marked));
     assert_int_equal(marked.width, WIDTH);
     assert_int_equal(marked.height, HEIGHT + 8 * 2 + 3);
     for (int y = 0; y < HEIGHT; y += SIDE)
@@ -290,7 +278,7 @@ static void test_picture(void **state)
     /* A tile that label and outline mostly cover is not counted. */
     assert_true(n <= report.tiles && n >= report.tiles - 2);
     title.top = 0;
-    assert_int_equal(explain_mark(&e, &title, &image, &unmarked), GLINT_OK);
+    assert_ok(explain_mark(&e, &title, &image, &unmarked));
     assert_int_equal(unmarked.height, HEIGHT + 8 + 3);
     for (int i = 0; i < BYTES; i += 3)
         outlined += memcmp(marked.plane[0] + i, unmarked.plane[0] + i, 3) != 0;
@@ -301,14 +289,4 @@ static void test_picture(void **state)
     glint_frame_finish(&frame);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_frame),   cmocka_unit_test(test_light),
-        cmocka_unit_test(test_reasons), cmocka_unit_test(test_room),
-        cmocka_unit_test(test_order),   cmocka_unit_test(test_picture),
-    };
-
-    return cmocka_run_group_tests_name("explain", tests, opened_heliar,
-                                       opened_close);
-}
+TEST_GROUP(opened_heliar, opened_close);

@@ -4,11 +4,7 @@
  * a frame that takes memory as it needs it; else something is left out and
  * counted. It must never request memory.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <errno.h>
 #include <stdlib.h>
@@ -19,6 +15,7 @@
 #include "options/tool.h"
 #include "support/fakes/wrapped.h"
 #include "support/shuffle.h"
+#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
@@ -72,7 +69,7 @@ enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
 static void make_of(const struct opened *of, struct glint_frame *frame)
 {
-    assert_int_equal(settings_frame(&tool, of, WIDTH, HEIGHT, frame), EXIT_OK);
+    assert_ok(settings_frame(&tool, of, WIDTH, HEIGHT, frame));
     frame->dials.fineness = 16;
 }
 
@@ -98,8 +95,7 @@ static void draw(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
 
     memset(rgb, 20, BYTES);
     glint_image_place(&image, rgb);
-    assert_int_equal(glint_frame_draw(frame, lamps, n, 1, &image, report),
-                     GLINT_OK);
+    assert_ok(glint_frame_draw(frame, lamps, n, 1, &image, report));
 }
 
 static int n_different(const uint8_t *a, const uint8_t *b)
@@ -121,18 +117,15 @@ static int n_brighter(const uint8_t *a, const uint8_t *b)
 }
 
 /* Frames of more lamps and of fewer must be as a new frame draws them. */
-static void test_same_as_grown(void **state)
+TEST(same_as_grown)
 {
     static const int n_of[] = {1, 5, 0, 2, 5, 3};
     static uint8_t want[BYTES], got[BYTES];
     struct glint_frame reserved, grown;
     struct glint_engine_report report, other;
 
-    (void)state;
     make(&reserved);
-    assert_int_equal(
-        glint_frame_reserve(&reserved, NULL, 8 << 20, N_LAMPS, N_LAMPS),
-        GLINT_OK);
+    assert_ok(glint_frame_reserve(&reserved, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     assert_true(reserved.memory.bytes <= 8 << 20);
     for (size_t i = 0; i < sizeof n_of / sizeof *n_of; i++) {
         n_asked = 0;
@@ -159,14 +152,13 @@ static void test_same_as_grown(void **state)
 /* Where grids are coarsest, ever less must be drawn with ever less memory, and
  * all that is left out be counted. It may make the picture darker, never
  * brighter. */
-static void test_too_little(void **state)
+TEST(too_little)
 {
     static uint8_t full[BYTES], got[BYTES];
     struct glint_frame frame;
     struct glint_engine_report report;
     int n_lost = 0, n_darker = 0;
 
-    (void)state;
     make_even(&frame, 8);
     draw(&frame, N_LAMPS, full, &report);
     glint_frame_finish(&frame);
@@ -199,13 +191,12 @@ static void test_too_little(void **state)
 
 /* Limits of work and of memory must make a frame coarser or leave objects out
  * of it, and say so; without them the next frame must be as before. */
-static void test_bounds(void **state)
+TEST(bounds)
 {
     static uint8_t want[BYTES], got[BYTES];
     struct glint_frame frame;
     struct glint_engine_report full, held;
 
-    (void)state;
     make(&frame);
     draw(&frame, N_LAMPS, want, &full);
     assert_false(full.coarsened);
@@ -235,13 +226,12 @@ static void test_bounds(void **state)
 
 /* A frame that needs too much memory must be drawn completely with coarser
  * grids, report it, and be the same again in the same memory. */
-static void test_tight(void **state)
+TEST(tight)
 {
     static uint8_t want[BYTES], got[BYTES], coarse[BYTES];
     struct glint_frame frame;
     struct glint_engine_report full, held;
 
-    (void)state;
     make_even(&frame, 64);
     draw(&frame, N_LAMPS, want, &full);
     assert_false(full.tight);
@@ -285,13 +275,12 @@ static bool is_tight(int n, size_t bytes, uint8_t rgb[BYTES],
 /* The limit below which grids get coarser must be the same with all numbers of
  * workers, not less than is needed nor more than uneven shares take, and grids
  * not coarser than has to be. */
-static void test_tight_edge(void **state)
+TEST(tight_edge)
 {
     static uint8_t want[BYTES], got[BYTES];
     struct glint_engine_report full, held;
     size_t low, high;
 
-    (void)state;
     assert_false(is_tight(1, 0, want, &full));
     low = full.need_bytes * 3 / 4;
     for (high = full.need_bytes * 3 / 2; high - low > high / 10;) {
@@ -314,11 +303,10 @@ static void test_tight_edge(void **state)
 }
 
 /* So must what reserved memory has no room for, with all numbers of workers. */
-static void test_tight_reserved(void **state)
+TEST(tight_reserved)
 {
     static uint8_t got[2][BYTES];
 
-    (void)state;
     for (int n = 1; n <= 5; n += 2) {
         struct glint_engine_report report;
         struct glint_frame frame;
@@ -327,9 +315,7 @@ static void test_tight_reserved(void **state)
         shuffle_init(&shuffle, n, 7);
         make_even(&frame, 192);
         frame.cfg.workers = &shuffle.workers;
-        assert_int_equal(
-            glint_frame_reserve(&frame, NULL, 4 << 20, N_LAMPS, N_LAMPS),
-            GLINT_OK);
+        assert_ok(glint_frame_reserve(&frame, NULL, 4 << 20, N_LAMPS, N_LAMPS));
         draw(&frame, n, got[n > 1], &report);
         draw(&frame, N_LAMPS, got[n > 1], &report);
         assert_true(report.tight && report.stats.dropped_bundles == 0);
@@ -340,17 +326,15 @@ static void test_tight_reserved(void **state)
 
 /* More lamps than the dial allows must be merged as ever, without a request
  * for memory. */
-static void test_more_lamps(void **state)
+TEST(more_lamps)
 {
     static uint8_t got[BYTES];
     struct glint_frame frame;
     struct glint_engine_report report;
 
-    (void)state;
     make(&frame);
     frame.dials.max_lights = 2;
-    assert_int_equal(
-        glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS), GLINT_OK);
+    assert_ok(glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     n_asked = 0;
     draw(&frame, N_LAMPS, got, &report);
     assert_int_equal(n_asked, 0);
@@ -361,7 +345,7 @@ static void test_more_lamps(void **state)
 
 /* Settings that change between frames must give the picture of a frame that has
  * them from the start. */
-static void test_retune(void **state)
+TEST(retune)
 {
     static const struct {
         int cells, steps, lights;
@@ -376,10 +360,8 @@ static void test_retune(void **state)
     struct glint_frame frame, fresh;
     int n_changed = 0;
 
-    (void)state;
     make(&frame);
-    assert_int_equal(
-        glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS), GLINT_OK);
+    assert_ok(glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     for (size_t i = 0; i < sizeof setting / sizeof *setting; i++) {
         struct glint_frame *const both[2] = {&frame, &fresh};
 
@@ -407,10 +389,9 @@ static void test_retune(void **state)
 /* Whichever request for memory fails, a flare alone must be drawn whole or
  * refused, never drawn as if there were no light: by a model and by exact
  * rays. */
-static void test_no_memory(void **state)
+TEST(no_memory)
 {
     static float want[BYTES], got[BYTES];
-    (void)state;
     for (int exact = 0; exact < 2; exact++) {
         struct glint_engine_report report;
         struct glint_frame frame;
@@ -441,7 +422,7 @@ static void test_no_memory(void **state)
 
 /* Lamps, ghosts and wavelengths whose product does not fit an int must be
  * refused before any of them is written. */
-static void test_too_many_feeds(void **state)
+TEST(too_many_feeds)
 {
     enum { N = 66577 };
     struct glint_lamp *many = malloc(N * sizeof *many);
@@ -450,7 +431,6 @@ static void test_too_many_feeds(void **state)
     struct glint_engine_report report;
     struct glint_frame frame;
 
-    (void)state;
     assert_non_null(many);
     for (int i = 0; i < N; i++)
         many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1,
@@ -471,7 +451,7 @@ static void test_too_many_feeds(void **state)
 /* The points of wide lamps may be point_room lights where the lamps fit
  * max_lights, but no more than max_lights in reserved memory or with more
  * lamps. */
-static void test_room_for_points(void **state)
+TEST(room_for_points)
 {
     static const struct {
         int max_lights, point_room, least, most;
@@ -484,7 +464,6 @@ static void test_room_for_points(void **state)
     struct glint_lamp wide[3];
     struct glint_engine_report report;
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         wide[i] = lamps[i];
         wide[i].axis[0] = wide[i].axis[1] = 0.05;
@@ -497,11 +476,9 @@ static void test_room_for_points(void **state)
         frame.dials.area_points = 61;
         frame.picture.point_room = setting[k].point_room;
         if (setting[k].reserved)
-            assert_int_equal(glint_frame_reserve(&frame, NULL, 16 << 20, 100,
-                                                 setting[k].max_lights),
-                             GLINT_OK);
-        assert_int_equal(
-            glint_frame_draw_alone(&frame, wide, 3, 1, rgb, &report), GLINT_OK);
+            assert_ok(glint_frame_reserve(&frame, NULL, 16 << 20, 100,
+                                          setting[k].max_lights));
+        assert_ok(glint_frame_draw_alone(&frame, wide, 3, 1, rgb, &report));
         assert_in_range(frame.lights.n, setting[k].least, setting[k].most);
         glint_frame_finish(&frame);
     }
@@ -531,21 +508,4 @@ static int leave(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_as_grown),
-        cmocka_unit_test(test_too_little),
-        cmocka_unit_test(test_bounds),
-        cmocka_unit_test(test_tight),
-        cmocka_unit_test(test_tight_edge),
-        cmocka_unit_test(test_tight_reserved),
-        cmocka_unit_test(test_more_lamps),
-        cmocka_unit_test(test_retune),
-        cmocka_unit_test(test_no_memory),
-        cmocka_unit_test(test_too_many_feeds),
-        cmocka_unit_test(test_room_for_points),
-    };
-
-    return cmocka_run_group_tests_name("frame", tests, enter, leave);
-}
+TEST_GROUP(enter, leave);

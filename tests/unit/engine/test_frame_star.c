@@ -3,11 +3,7 @@
  * The starburst of a frame: power and extent that its lamps are taken to have,
  * how many are drawn, and limits of memory and time.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <math.h>
 #include <string.h>
@@ -16,6 +12,7 @@
 #include "support/settings_frame.h"
 #include "options/tool.h"
 #include "support/night.h"
+#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 120 }; /* 200 pixels of diagonal */
 
@@ -33,11 +30,9 @@ static int open_frame(void **state)
     (void)state;
     settings_defaults(&opened.settings);
     opened.settings.options.starburst = 1;
-    assert_int_equal(opened_lens_open(&tool, &opened.lens, &opened.settings,
-                                      "lenses/heliar-tronnier.lens"),
-                     EXIT_OK);
-    assert_int_equal(settings_frame(&tool, &opened, WIDTH, HEIGHT, &frame),
-                     EXIT_OK);
+    assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
+                               "lenses/heliar-tronnier.lens"));
+    assert_ok(settings_frame(&tool, &opened, WIDTH, HEIGHT, &frame));
     glint_image_place(&image, rgb);
     return 0;
 }
@@ -62,8 +57,7 @@ static double power_of(double power, double seen_px, double level)
     known.seen_px = seen_px;
     known.level = level;
     frame.known = &known;
-    assert_int_equal(glint_frame_star_set(&frame, &lamp, 1, 1, &image),
-                     GLINT_OK);
+    assert_ok(glint_frame_star_set(&frame, &lamp, 1, 1, &image));
     frame.known = NULL;
     return glint_real_value(frame.star.light[0].power);
 }
@@ -83,9 +77,8 @@ static double white_of(double seen_px)
     return pow(GLINT_PI * sqrt(2) * seen_px, 3) / airy_px / 2;
 }
 
-static void test_power(void **state)
+TEST(power)
 {
-    (void)state;
     /* The power of a lamp that does not clip must stay. */
     assert_true(is_near(power_of(1000, 0, 1), 1000));
     /* A lamp that clips must get more power, 32 times at most, and no more than
@@ -113,9 +106,8 @@ static double hidden_of(double seen_px)
 /* A lamp that the picture shows no wider than its own star must be as wide as
  * its rim may hide, like that of a still; one that fills what is seen must be a
  * disc. */
-static void test_extent(void **state)
+TEST(extent)
 {
-    (void)state;
     assert_true(radius_of(100, 0) == 0);
     assert_true(radius_of(1e7, 2) == hidden_of(2));
     assert_true(radius_of(1e9, 6) < 0.6 * sqrt(2) * 6);
@@ -128,12 +120,11 @@ static void test_extent(void **state)
 /* A spot that is wide by the glare of a lamp far over white must throw spikes
  * as a small lamp does, one that is hardly over white those of a disc, and all
  * between must have no step. A fading lamp must keep its extent. */
-static void test_glare(void **state)
+TEST(glare)
 {
     const double white = GLINT_PI * 2 * 50 * 50;
     double before = 1e9;
 
-    (void)state;
     assert_true(radius_of(0.9 * white, 50) > 0.6 * sqrt(2) * 50);
     assert_true(radius_of(6 * white, 50) == hidden_of(50));
     for (double over = 0.5; over < 6; over += 0.1) {
@@ -150,17 +141,15 @@ static void test_glare(void **state)
 
 /* Of too many lamps the brightest must be drawn, the brightest first, whatever
  * order they have. */
-static void test_most(void **state)
+TEST(most)
 {
     enum { N = GLINT_STAR_MAX_LIGHTS + 100 };
     static struct glint_lamp lamps[N];
 
-    (void)state;
     for (int i = 0; i < N; i++)
         lamps[i] =
             (struct glint_lamp){5, i * 0.05, i + 1, {1, 1, 1}, {0, 0}, 0};
-    assert_int_equal(glint_frame_star_set(&frame, lamps, N, 1, &image),
-                     GLINT_OK);
+    assert_ok(glint_frame_star_set(&frame, lamps, N, 1, &image));
     assert_true(is_near(glint_real_value(frame.star.light[0].power), N));
     assert_true(is_near(
         glint_real_value(frame.star.light[GLINT_STAR_MAX_LIGHTS - 1].power),
@@ -168,14 +157,13 @@ static void test_most(void **state)
 }
 
 /* After room was taken for many lamps, a frame must take no more memory. */
-static void test_hold(void **state)
+TEST(hold)
 {
     const struct glint_star *star;
     const struct glint_star_tables *tables;
     size_t bytes;
 
-    (void)state;
-    assert_int_equal(glint_frame_star_hold(&frame, 5000), GLINT_OK);
+    assert_ok(glint_frame_star_hold(&frame, 5000));
     star = frame.star.star;
     tables = frame.star.tables;
     bytes = glint_frame_star_bytes(&frame);
@@ -191,12 +179,11 @@ static void test_hold(void **state)
 
 /* With a budget stars must keep to a quarter of it, however many and bright
  * they are. */
-static void test_budget(void **state)
+TEST(budget)
 {
     const struct glint_budget none = frame.budget;
     double pixels;
 
-    (void)state;
     power_of(1e7, 0, 1);
     pixels = frame.star.pixels;
     frame.budget.ms_per_minsn = 0.1;
@@ -217,12 +204,11 @@ static void test_budget(void **state)
  * frame once the lamp is there, and by 7 % in four seconds. In noise of 8
  * codes, which hides the rim of the smallest, that is 6 % and 25 %: a star's
  * power goes with the cube of the extent. */
-static void test_noise(void **state)
+TEST(noise)
 {
     enum { FRAMES = 100, SETTLED = 25 };
     static const double radius[] = {2, 3, 6};
 
-    (void)state;
     for (int k = 0; k < 9; k++) {
         const struct night_lamp lamp = {80.3, 60.6, radius[k % 3], 6};
         struct night night;
@@ -257,12 +243,11 @@ static void test_noise(void **state)
 }
 
 /* The more is left out of stars, the fewer pixels they must take. */
-static void test_cull(void **state)
+TEST(cull)
 {
     const double cull = frame.dials.star_cull;
     double last = HUGE_VAL;
 
-    (void)state;
     for (frame.dials.star_cull = 0.5; frame.dials.star_cull < 300;
          frame.dials.star_cull *= 8) {
         power_of(1e4, 0, 1);
@@ -274,13 +259,4 @@ static void test_cull(void **state)
     frame.dials.star_cull = cull;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_power),  cmocka_unit_test(test_extent),
-        cmocka_unit_test(test_glare),  cmocka_unit_test(test_most),
-        cmocka_unit_test(test_cull),   cmocka_unit_test(test_noise),
-        cmocka_unit_test(test_budget), cmocka_unit_test(test_hold)};
-
-    return cmocka_run_group_tests(tests, open_frame, close_frame);
-}
+TEST_GROUP(open_frame, close_frame);

@@ -8,17 +8,13 @@
 #include "engine/setup/iris.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/setup/setup.h"
 #include "flare/edges/outline.h"
 #include "glint/view.h"
+#include "support/test.h"
 
 static const int blades[] = {3, 4, 5, 6, 8, 9, 31, 64};
 static const double roundness[] = {0, 0.01, 0.3, 0.75, 0.99, 1};
@@ -92,9 +88,8 @@ static void check_corners(const struct glint_setup *s,
     }
 }
 
-static void test_corners(void **state)
+TEST(corners)
 {
-    (void)state;
     each(check_corners);
 }
 
@@ -122,9 +117,8 @@ static void check_convex(const struct glint_setup *s,
     assert_true(fabs(area / GLINT_PI - glint_iris_share(s)) < 2e-4);
 }
 
-static void test_convex_and_area(void **state)
+TEST(convex_and_area)
 {
-    (void)state;
     each(check_convex);
 }
 
@@ -156,16 +150,14 @@ static void check_integers(const struct glint_setup *s,
     }
 }
 
-static void test_integers(void **state)
+TEST(integers)
 {
-    (void)state;
     each(check_integers);
 }
 
 /* A rounder stop must let more light through, up to the circle's. */
-static void test_area_grows(void **state)
+TEST(area_grows)
 {
-    (void)state;
     for (int i = 0; i < N_BLADES; i++) {
         double last = 0;
 
@@ -180,14 +172,13 @@ static void test_area_grows(void **state)
 }
 
 /* A setup must refuse what is out of range, and measure its light again. */
-static void test_setup(void **state)
+TEST(setup)
 {
     struct glint_setup s = setup_of(6, 0, 0);
     struct glint_iris iris = {.roundness = 1.5};
     struct glint_dirt *dirt;
     struct glint_error error;
 
-    (void)state;
     s.n_wavelengths = 1;
     s.direct_flux[0] = glint_iris_share(&s);
     assert_int_equal(glint_setup_iris(&s, &iris, &dirt, &error),
@@ -196,21 +187,10 @@ static void test_setup(void **state)
     assert_int_equal(glint_setup_iris(&s, &iris, &dirt, &error),
                      GLINT_E_ARGUMENT);
     iris.roundness = 1;
-    assert_int_equal(glint_setup_iris(&s, &iris, &dirt, &error), GLINT_OK);
+    assert_ok(glint_setup_iris(&s, &iris, &dirt, &error));
     assert_true(fabs(s.direct_flux[0] - 1) < 1e-9);
     iris.roundness = 0;
-    assert_int_equal(glint_setup_iris(&s, &iris, &dirt, &error), GLINT_OK);
+    assert_ok(glint_setup_iris(&s, &iris, &dirt, &error));
     assert_true(fabs(s.direct_flux[0] - glint_iris_share(&s)) < 1e-9);
     assert_true(s.direct_flux[0] < 0.83);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_corners),  cmocka_unit_test(test_convex_and_area),
-        cmocka_unit_test(test_integers), cmocka_unit_test(test_area_grows),
-        cmocka_unit_test(test_setup),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

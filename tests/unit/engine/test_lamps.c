@@ -4,13 +4,9 @@
  * power.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/detector.h"
 #include "lamp_files/lamp_list.h"
@@ -21,7 +17,7 @@ enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };
 
 /* A white square of 10 x 10 pixels on black: its middle is at (225, 45), its
  * flux 100, and each pixel stands for 2^3 times white. */
-static void test_found_lamp(void **state)
+TEST(found_lamp)
 {
     static uint8_t rgb[3 * WIDTH * HEIGHT];
     const struct glint_view view = glint_view_fit(WIDTH, HEIGHT, 36, 24);
@@ -34,12 +30,11 @@ static void test_found_lamp(void **state)
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     double x, y;
 
-    (void)state;
     glint_image_place(&image, rgb);
     for (int i = 0; i < SIDE; i++)
         memset(rgb + 3 * ((Y0 + i) * WIDTH + X0), 255, 3 * SIDE);
     glint_lamp_finder_defaults(&cfg, WIDTH, HEIGHT);
-    assert_int_equal(glint_lamp_detector_open(&finder, &cfg), GLINT_OK);
+    assert_ok(glint_lamp_detector_open(&finder, &cfg));
     assert_int_equal(
         glint_lamp_detector_frame(&finder, &image, 0, &view, 50, lamp), 1);
     glint_lamp_detector_close(&finder);
@@ -63,7 +58,7 @@ static void draw_square(struct glint_image *image, int x0, int y0, int side)
 /* In a video, a lamp that stands still must be as in a still picture, to
  * the last bit; a new lamp must rise; after a restart a lamp must have its full
  * power at once. */
-static void test_tracked_lamps(void **state)
+TEST(tracked_lamps)
 {
     static uint8_t grey[W * H];
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX],
@@ -73,11 +68,10 @@ static void test_tracked_lamps(void **state)
     struct glint_lamp_detector finder = {.headroom_ev = 12, .max = 8};
     struct glint_lamp_finder_config cfg;
 
-    (void)state;
     glint_image_place(&image, grey);
     draw_square(&image, 50, 60, 9);
     glint_lamp_finder_defaults(&cfg, W, H);
-    assert_int_equal(glint_lamp_detector_open(&finder, &cfg), GLINT_OK);
+    assert_ok(glint_lamp_detector_open(&finder, &cfg));
     for (int frame = 0; frame < 5; frame++)
         assert_int_equal(
             glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp),
@@ -103,7 +97,7 @@ static void test_tracked_lamps(void **state)
 /* A lamp in a glare whose clipped core falls off over as much as its radius: in
  * a video it may be a point, but in a still picture its axes must be a
  * sixth of its size. */
-static void test_lamp_in_glare(void **state)
+TEST(lamp_in_glare)
 {
     static uint8_t grey[W * H];
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
@@ -113,7 +107,6 @@ static void test_lamp_in_glare(void **state)
     struct glint_lamp_finder_config cfg;
     double least;
 
-    (void)state;
     glint_image_place(&image, grey);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) {
@@ -122,7 +115,7 @@ static void test_lamp_in_glare(void **state)
             grey[y * W + x] = (uint8_t)canvas_srgb_code(fmin(1, 80 / (1 + r2)));
         }
     glint_lamp_finder_defaults(&cfg, W, H);
-    assert_int_equal(glint_lamp_detector_open(&finder, &cfg), GLINT_OK);
+    assert_ok(glint_lamp_detector_open(&finder, &cfg));
     assert_int_equal(
         glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp), 1);
     assert_true(finder.track[0].axis_q8[0] < finder.track[0].size_q8 / 6);
@@ -137,7 +130,7 @@ static void test_lamp_in_glare(void **state)
 }
 
 /* Of twelve lamps the four largest must be given, tracked or not. */
-static void test_most_lamps(void **state)
+TEST(most_lamps)
 {
     static uint8_t grey[W * H];
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
@@ -146,13 +139,12 @@ static void test_most_lamps(void **state)
     struct glint_lamp_detector finder = {.headroom_ev = 0, .max = 4};
     struct glint_lamp_finder_config cfg;
 
-    (void)state;
     glint_image_place(&image, grey);
     for (int i = 0; i < 12; i++)
         draw_square(&image, 20 + 50 * (i % 6), 40 + 100 * (i / 6),
                     3 + i * 5 % 12);
     glint_lamp_finder_defaults(&cfg, W, H);
-    assert_int_equal(glint_lamp_detector_open(&finder, &cfg), GLINT_OK);
+    assert_ok(glint_lamp_detector_open(&finder, &cfg));
     for (int us = 0; us <= 40000; us += 40000) {
         assert_int_equal(
             glint_lamp_detector_frame(&finder, &image, us, &view, 50, lamp), 4);
@@ -171,13 +163,13 @@ static void read_text(struct lamp_list *list, const char *text)
     assert_non_null(file);
     fputs(text, file);
     fclose(file);
-    assert_int_equal(lamp_list_read(list, path, &error), GLINT_OK);
+    assert_ok(lamp_list_read(list, path, &error));
     remove(path);
 }
 
 /* CSV and JSON lines must read the same; a row belongs to its frame, or to all
  * frames. */
-static void test_lists(void **state)
+TEST(lists)
 {
     static const char *const texts[2] = {
         "frame,x,y,power\n# a lamp\n0,10,20,5\r\n\n*,-30,40,6,1,0.5,0.25\n"
@@ -188,7 +180,6 @@ static void test_lists(void **state)
     const struct glint_view view = {
         .width = WIDTH, .height = HEIGHT, .sensor_width_mm = 36};
 
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct lamp_list list;
         struct glint_engine_lamp lamp[4];
@@ -212,7 +203,7 @@ static void test_lists(void **state)
 
 /* A text that is not a list must be refused, with the line of its mistake. In
  * the third text power times colour is too large for a picture. */
-static void test_refused_lists(void **state)
+TEST(refused_lists)
 {
     static const char *const text_and_error[][2] = {
         {"0,1,2,nan\n", "list:1: expected 4, 7 or 8 numbers"},
@@ -226,7 +217,6 @@ static void test_refused_lists(void **state)
     struct lamp_list list;
     struct glint_error error;
 
-    (void)state;
     for (size_t k = 0; k < sizeof text_and_error / sizeof *text_and_error;
          k++) {
         const char *const text = text_and_error[k][0];
@@ -241,20 +231,6 @@ static void test_refused_lists(void **state)
     assert_int_equal(lamp_list_parse(&list, "0,1,2,3\0", 8, "list", &error),
                      GLINT_E_FORMAT);
     assert_string_equal(error.text, "list: not a text file");
-    assert_int_equal(lamp_list_parse(&list, NULL, 0, "list", &error), GLINT_OK);
+    assert_ok(lamp_list_parse(&list, NULL, 0, "list", &error));
     assert_int_equal(list.n, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_found_lamp),
-        cmocka_unit_test(test_tracked_lamps),
-        cmocka_unit_test(test_lamp_in_glare),
-        cmocka_unit_test(test_most_lamps),
-        cmocka_unit_test(test_lists),
-        cmocka_unit_test(test_refused_lists),
-    };
-
-    return cmocka_run_group_tests_name("lamps", tests, NULL, NULL);
 }

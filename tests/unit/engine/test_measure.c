@@ -4,14 +4,10 @@
  * known.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "glint/measure.h"
+#include "support/test.h"
 
 enum { SIDE = 64, N = 3 * SIDE * SIDE };
 
@@ -25,11 +21,10 @@ static void fill(float value)
         a[i] = b[i] = value;
 }
 
-static void test_equal(void **state)
+TEST(equal)
 {
     struct glint_measure m;
 
-    (void)state;
     for (int i = 0; i < N; i++)
         a[i] = b[i] = (float)(i % 37);
     assert_true(glint_measure_compare(&image_a, &image_b, false, &m));
@@ -38,11 +33,10 @@ static void test_equal(void **state)
 }
 
 /* White against linear 0.5, which is sRGB code 188: 67 codes apart. */
-static void test_known_difference(void **state)
+TEST(known_difference)
 {
     struct glint_measure m;
 
-    (void)state;
     fill(2);
     for (int i = 0; i < N; i++)
         b[i] = 1;
@@ -55,11 +49,10 @@ static void test_known_difference(void **state)
 }
 
 /* A difference that rounding to codes hides must still be measured. */
-static void test_less_than_a_code(void **state)
+TEST(less_than_a_code)
 {
     struct glint_measure m;
 
-    (void)state;
     fill(0.5f);
     b[0] = 0.50001f;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
@@ -74,25 +67,12 @@ static void test_less_than_a_code(void **state)
 }
 
 /* The brightest thousandth of all pixels must not set the exposure. */
-static void test_exposure_is_a_percentile(void **state)
+TEST(exposure_is_a_percentile)
 {
-    (void)state;
     fill(0.25f);
     for (int i = 0; i < 3 * 4; i++) /* 4 of 4096 pixels */
         a[i] = 1000;
     assert_true(fabs(glint_measure_exposure(&image_a) - 4) < 1e-6);
     fill(0);
     assert_true(glint_measure_exposure(&image_a) == 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_equal),
-        cmocka_unit_test(test_known_difference),
-        cmocka_unit_test(test_less_than_a_code),
-        cmocka_unit_test(test_exposure_is_a_percentile),
-    };
-
-    return cmocka_run_group_tests_name("measure", tests, NULL, NULL);
 }

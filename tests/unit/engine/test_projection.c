@@ -4,12 +4,7 @@
  * back again, and what is known of each lens.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/setup/degrees.h"
 #include "glint/bake.h"
@@ -28,11 +23,10 @@ static struct glint_projection projection_of(struct glint_prescription *lens,
 }
 
 /* A view without a projection is that of a pinhole, to the bit. */
-static void zeros_are_tangents(void **state)
+TEST(zeros_are_tangents)
 {
     const struct glint_projection none = {.reach = 0};
 
-    (void)state;
     for (int deg = 0; deg < 90; deg++) {
         const double tangent = glint_sin_deg(deg) / glint_cos_deg(deg);
 
@@ -43,7 +37,7 @@ static void zeros_are_tangents(void **state)
 }
 
 /* Angles to places and back, within and beyond what was traced. */
-static void there_and_back(void **state)
+TEST(there_and_back)
 {
     static const char *const names[] = {"heliar-tronnier", "phone/phone-six",
                                         "wide/fisheye-nikkor-6",
@@ -51,7 +45,6 @@ static void there_and_back(void **state)
     struct glint_prescription lens;
     double miss_deg;
 
-    (void)state;
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         const struct glint_projection p =
             projection_of(&lens, names[k], &miss_deg);
@@ -70,13 +63,12 @@ static void there_and_back(void **state)
 }
 
 /* Lights at a pixel go back to it. */
-static void pixels_go_back(void **state)
+TEST(pixels_go_back)
 {
     struct glint_prescription lens;
     struct glint_view view;
     double miss_deg;
 
-    (void)state;
     view = glint_view_fit(1920, 1080, 18.58, 13.93);
     view.projection = projection_of(&lens, "wide/fisheye-nikkor-6", &miss_deg);
     for (int k = 0; k < 50; k++) {
@@ -92,13 +84,12 @@ static void pixels_go_back(void **state)
 }
 
 /* What polynomials miss, and what kind of lens each is. */
-static void lenses_are_as_known(void **state)
+TEST(lenses_are_as_known)
 {
     struct glint_prescription lens;
     struct glint_projection p;
     double miss_deg;
 
-    (void)state;
     /* Equidistant to a tenth, as fisheyes of 220 degrees are. */
     p = projection_of(&lens, "wide/fisheye-nikkor-6", &miss_deg);
     assert_true(miss_deg < 0.1);
@@ -114,7 +105,7 @@ static void lenses_are_as_known(void **state)
 }
 
 /* Chief rays between the whole degrees that were fitted. */
-static void between_degrees(void **state)
+TEST(between_degrees)
 {
     const double degrees[] = {3.5, 11.5, 19.5};
     struct glint_prescription lens;
@@ -124,7 +115,6 @@ static void between_degrees(void **state)
     const struct glint_projection p =
         projection_of(&lens, "heliar-tronnier", &miss_deg);
 
-    (void)state;
     glint_optics_of(&lens, &optics);
     glint_path_init(&path, &lens, NULL, 588);
     for (int k = 0; k < 3; k++) {
@@ -151,30 +141,15 @@ static void between_degrees(void **state)
     }
 }
 
-static void others_are_refused(void **state)
+TEST(others_are_refused)
 {
     struct glint_prescription lens;
     struct glint_projection p;
     struct glint_error error = {""};
     double miss_deg;
 
-    (void)state;
     load_lens(&lens, "anamorphic/anamorphic-schneider");
     assert_int_equal(glint_projection_of(&p, &lens, &miss_deg, &error),
                      GLINT_E_LENS);
     assert_non_null(strstr(error.text, "not symmetric"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(zeros_are_tangents),
-        cmocka_unit_test(there_and_back),
-        cmocka_unit_test(pixels_go_back),
-        cmocka_unit_test(lenses_are_as_known),
-        cmocka_unit_test(between_degrees),
-        cmocka_unit_test(others_are_refused),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,17 +7,13 @@
  * light that they have, and never farther off than that.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "glint/flare.h"
 #include "support/shuffle.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 enum { W = 240, H = 160, BYTES = 3 * W * H, LIGHTS = 6, FRAMES = 48 };
 
@@ -63,8 +59,7 @@ static void draw_one(struct glint_frame *frame, int n, double scale,
 
     memset(codes, 20, BYTES);
     glint_image_place(&image, codes);
-    assert_int_equal(glint_frame_draw(frame, lamps, n, scale, &image, report),
-                     GLINT_OK);
+    assert_ok(glint_frame_draw(frame, lamps, n, scale, &image, report));
 }
 
 /* Draws both ways. Returns whether the frame was reused. */
@@ -141,11 +136,10 @@ static void same_video(void)
     close_frames();
 }
 
-static void test_same_as_fresh(void **state)
+TEST(same_as_fresh)
 {
     struct shuffle shuffle;
 
-    (void)state;
     same_video();
     for (int n = 2; n <= 5; n += 3) {
         shuffle_init(&shuffle, n, (uint32_t)n);
@@ -212,11 +206,10 @@ static bool turn(int k)
 }
 
 /* Whatever a frame is planned from makes another one of it. */
-static void test_everything_counts(void **state)
+TEST(everything_counts)
 {
     const int things = 14;
 
-    (void)state;
     open_frames(0);
     for (int i = 0; i < GLINT_MAX_GHOSTS; i++)
         tints[i] =
@@ -234,9 +227,8 @@ static void test_everything_counts(void **state)
 }
 
 /* What restricts a frame to some of its bundles is gone in the next one. */
-static void test_restricted(void **state)
+TEST(restricted)
 {
-    (void)state;
     open_frames(0);
     draw(3);
     assert_true(draw(3));
@@ -248,17 +240,15 @@ static void test_restricted(void **state)
 
 /* In reserved memory more lights than it remembers are drawn again, and a
  * linear picture after one in codes is another frame. */
-static void test_memory(void **state)
+TEST(memory)
 {
     static int32_t linear[2][3 * W * H];
     struct glint_image image = {
         .format = GLINT_LINEAR_Q20, .width = W, .height = H};
 
-    (void)state;
     open_frames(0);
     reusing.cfg.reuse_lights = 2;
-    assert_int_equal(
-        glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS), GLINT_OK);
+    assert_ok(glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS));
     draw(4);
     assert_true(draw(4));
     reusing.cfg.reuse_lights = 3;
@@ -269,9 +259,8 @@ static void test_memory(void **state)
     assert_true(draw(3));
     for (int i = 0; i < 2; i++) {
         glint_image_place(&image, linear[i]);
-        assert_int_equal(glint_frame_draw(i ? &fresh : &reusing, lamps, 3, 1,
-                                          &image, &of_reusing),
-                         GLINT_OK);
+        assert_ok(glint_frame_draw(i ? &fresh : &reusing, lamps, 3, 1, &image,
+                                   &of_reusing));
         assert_int_equal(of_reusing.stats.reused, 0);
     }
     assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
@@ -305,12 +294,11 @@ static bool draw_still(int n, double scale)
 
 /* Noise of place, power and colour of lamps in any order traces no ray, and
  * power and colour are drawn as they are. */
-static void test_noise(void **state)
+TEST(noise)
 {
     const double degree = 0.02; /* 0.1 pixel */
     uint64_t noise = 1;
 
-    (void)state;
     open_frames(0.5);
     fresh.cfg.reuse = &glint_reuse;
     fresh.dials = reusing.dials;
@@ -367,11 +355,10 @@ static double apart(const struct glint_lamp *lamp)
 
 /* A lamp that continues, ever so slowly, is traced again before it is farther
  * off than the tolerance; so is a new one, but not where one goes out. */
-static void test_moves(void **state)
+TEST(moves)
 {
     int n_reused = 0;
 
-    (void)state;
     open_frames(0.5);
     fresh.cfg.reuse = &glint_reuse;
     fresh.dials = reusing.dials;
@@ -393,14 +380,11 @@ static void test_moves(void **state)
 }
 
 /* Memory that is reserved has room for lights that stand, or they do not. */
-static void test_reserved(void **state)
+TEST(reserved)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         open_frames(i ? 0.5 : 0);
-        assert_int_equal(
-            glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS),
-            GLINT_OK);
+        assert_ok(glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS));
         reusing.dials.still_px = 0.5;
         draw_one(&reusing, LIGHTS, 1, got, &of_reusing);
         assert_int_equal(reusing.still.n, i ? LIGHTS : 0);
@@ -426,7 +410,7 @@ static struct glint_light light_at(double theta_deg, double power,
 }
 
 /* Factors by hand. Chords: a degree is 0.01745. */
-static void test_factors(void **state)
+TEST(factors)
 {
     static const double red[3] = {1, 0.5, 0}, other[3] = {1, 0.25, 0.01},
                         blue[3] = {1, 0.5, 0.1}, dark[3] = {0.5, 0.25, 0};
@@ -436,7 +420,6 @@ static void test_factors(void **state)
     int64_t sum_q20[2][3];
     struct glint_still s = {2, 0, at, gain_q14, sum_q20};
 
-    (void)state;
     light[0] = light_at(5, 1000, red);
     light[1] = light_at(8, 3, red);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
@@ -483,18 +466,4 @@ static void test_factors(void **state)
     assert_int_equal(glint_lights_still(&s, light, 0, near_q30), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_as_fresh),
-        cmocka_unit_test(test_everything_counts),
-        cmocka_unit_test(test_restricted),
-        cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_noise),
-        cmocka_unit_test(test_moves),
-        cmocka_unit_test(test_reserved),
-        cmocka_unit_test(test_factors),
-    };
-
-    return cmocka_run_group_tests(tests, open_stage, close_stage);
-}
+TEST_GROUP(open_stage, close_stage);

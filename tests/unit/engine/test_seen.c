@@ -3,16 +3,12 @@
  * Visibility of a flare on the picture under it, and the exposure that follows.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/strength.h"
 #include "support/canvas.h"
+#include "support/test.h"
 
 enum { WIDTH = 64, HEIGHT = 36 };
 
@@ -43,12 +39,11 @@ static struct glint_seen look(void)
 
 /* A light that takes 32 codes on black must count as 1 there, as a ninth on
  * code 120, and not at all on code 240. */
-static void test_ground(void **state)
+TEST(ground)
 {
     struct glint_seen dark, lit;
     const double each = canvas_linear(32);
 
-    (void)state;
     set_ground(0);
     set_flare(4, each);
     dark = look();
@@ -62,9 +57,8 @@ static void test_ground(void **state)
     assert_true(look().few == 0); /* Nothing shows on white. */
 }
 
-static void test_area(void **state)
+TEST(area)
 {
-    (void)state;
     set_ground(0);
     set_flare(0, 1);
     assert_true(look().few == 0 && look().many == 0);
@@ -77,11 +71,10 @@ static void test_area(void **state)
 
 /* The ground of a picture whose left half is white must be white in its left
  * half. */
-static void test_taken(void **state)
+TEST(taken)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 50);
 
-    (void)state;
     canvas_fill_grey(&image, 0, 0, 50, 50, 255);
     glint_ground_take(&ground, &image);
     assert_int_equal(ground.rgb[90][159][0], 255);
@@ -106,12 +99,11 @@ static double exposed(double asked, double peak, double mean,
     return s.light.peak[0];
 }
 
-static void test_lifted(void **state)
+TEST(lifted)
 {
     const double peak = 1 / 32.0, mean = peak / 300;
     const struct glint_seen plain = {1, 0}, hidden = {0, 0}, half = {0.0625, 0};
 
-    (void)state;
     /* A flare that is seen keeps a quarter of white. */
     assert_true(fabs(exposed(0.5, peak, mean, plain) - 0.25) < 0.001);
     /* A flare that is not must be lifted until it is, to 0.6 of white at
@@ -125,25 +117,13 @@ static void test_lifted(void **state)
     assert_true(fabs(exposed(0.5, peak, peak / 10, hidden) - 0.4) < 0.001);
 }
 
-static void test_lowered(void **state)
+TEST(lowered)
 {
     const double peak = 1 / 32.0, mean = peak / 20;
     const struct glint_seen veil = {0.5, 0.125}, thick = {9, 9},
                             thin = {1, 0.05};
 
-    (void)state;
     assert_true(fabs(exposed(0.5, peak, mean, veil) - 0.125) < 0.001);
     assert_true(fabs(exposed(0.5, peak, mean, thick) - 0.1) < 0.001);
     assert_true(exposed(0.5, peak, mean, thin) > 0.24);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ground),  cmocka_unit_test(test_area),
-        cmocka_unit_test(test_taken),   cmocka_unit_test(test_lifted),
-        cmocka_unit_test(test_lowered),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

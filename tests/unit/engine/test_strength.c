@@ -3,11 +3,7 @@
  * The automatic exposure: how bright it makes the flare of one lamp and of
  * many, how it changes from frame to frame, and the response of a lens.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <math.h>
 #include <string.h>
@@ -15,6 +11,7 @@
 #include "engine/setup/spectrum.h"
 #include "engine/strength.h"
 #include "support/settings_frame.h"
+#include "support/test.h"
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
@@ -72,23 +69,21 @@ static double still(double asked, const struct glint_response *r, double theta,
 
 /* ------------------------------------------------------------------- stills */
 
-static void test_a_quarter_of_white_by_default(void **state)
+TEST(a_quarter_of_white_by_default)
 {
     const struct glint_response r = response_of(0, 7);
 
-    (void)state;
     assert_true(fabs(still(0.5, &r, 5, common) - 0.25) < 1e-4);
     assert_true(fabs(still(1, &r, 5, common) - 1) < 1e-3);
     assert_true(fabs(still(0.25, &r, 5, common) - 0.0625) < 1e-4);
     assert_true(still(0, &r, 5, common) == 0);
 }
 
-static void test_rises_with_strength(void **state)
+TEST(rises_with_strength)
 {
     const struct glint_response r = response_of(3, 4);
     double last = 0;
 
-    (void)state;
     for (double asked = 0.01; asked < 4; asked *= 1.1) {
         const double peak = still(asked, &r, 12, 1e5);
 
@@ -99,12 +94,11 @@ static void test_rises_with_strength(void **state)
 
 /* The flare of a lamp of any power must be within a stop of a quarter of white,
  * and grow with the power. */
-static void test_any_power_is_seen(void **state)
+TEST(any_power_is_seen)
 {
     const struct glint_response r = response_of(8, 7);
     double last = 0;
 
-    (void)state;
     for (double stops = -4; stops <= 40; stops++) {
         const double peak = still(0.5, &r, 12, exp2(stops));
 
@@ -114,41 +108,38 @@ static void test_any_power_is_seen(void **state)
     }
 }
 
-static void test_a_veil_is_held_by_its_mean(void **state)
+TEST(a_veil_is_held_by_its_mean)
 {
     const struct glint_response r = response_of(0, 0.5);
     struct glint_engine_lamp lamp = lamp_of(5, PIXELS);
     const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
     struct glint_strength s;
 
-    (void)state;
     glint_strength_defaults(&s);
     glint_strength_expose(&s, &r, &all, 0);
     assert_true(glint_largest_channel(s.light.mean) < 0.081);
     assert_true(glint_largest_channel(s.light.peak) > 1 / 16.0);
 }
 
-static void test_ratios_between_lamps_stay(void **state)
+TEST(ratios_between_lamps_stay)
 {
     const struct glint_response r = response_of(5, 7);
     struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e6), lamp_of(9, 1e3)};
     const struct glint_strength_lamps all = {lamps, 2, PIXELS};
     struct glint_strength s;
 
-    (void)state;
     glint_strength_defaults(&s);
     glint_strength_expose(&s, &r, &all, 0);
     assert_true(lamps[0].lamp.power == 1e6 && lamps[1].lamp.power == 1e3);
 }
 
-static void test_many_equal_lamps_share(void **state)
+TEST(many_equal_lamps_share)
 {
     const struct glint_response r = response_of(0, 9);
     struct glint_engine_lamp lamps[16];
     struct glint_strength s;
     double one, each;
 
-    (void)state;
     for (int i = 0; i < 16; i++)
         lamps[i] = lamp_of(i, 1e4);
     glint_strength_defaults(&s);
@@ -157,14 +148,13 @@ static void test_many_equal_lamps_share(void **state)
     assert_true(each > one / 2.2 && each < one);
 }
 
-static void test_by_hand(void **state)
+TEST(by_hand)
 {
     const struct glint_response r = response_of(0, 7);
     struct glint_engine_lamp lamp = lamp_of(5, common);
     const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
     struct glint_strength s;
 
-    (void)state;
     glint_strength_defaults(&s);
     s.is_physical = true;
     s.exposure_ev = 3;
@@ -180,7 +170,7 @@ static void test_by_hand(void **state)
     assert_true(fabs(glint_largest_channel(s.light.peak) - 0.5) < 1e-3);
 }
 
-static void test_lamps_without_light(void **state)
+TEST(lamps_without_light)
 {
     const struct glint_response r = response_of(0, 7);
     struct glint_engine_lamp lamp = lamp_of(5, 0);
@@ -188,7 +178,6 @@ static void test_lamps_without_light(void **state)
     const struct glint_strength_lamps none = {NULL, 0, PIXELS};
     struct glint_strength s;
 
-    (void)state;
     glint_strength_defaults(&s);
     glint_strength_expose(&s, &r, &all, 0);
     assert_true(isfinite(s.scale));
@@ -220,9 +209,8 @@ static double corrected(double asked, double stops, double mean_stops)
     return s.light.peak[1];
 }
 
-static void test_as_it_was_drawn(void **state)
+TEST(as_it_was_drawn)
 {
-    (void)state;
     assert_true(fabs(corrected(0.5, 0, 7) - 0.25) < 1e-4);
     for (double stops = -12; stops <= 12; stops++) {
         const double peak = corrected(0.5, stops, 7);
@@ -234,7 +222,7 @@ static void test_as_it_was_drawn(void **state)
 }
 
 /* A physical exposure, and a flare without light, must not be corrected. */
-static void test_not_as_it_was_drawn(void **state)
+TEST(not_as_it_was_drawn)
 {
     const struct glint_response_light bright = {{9, 9, 9}, {1, 1, 1}};
     const struct glint_response_light none = {{0}, {0}};
@@ -243,7 +231,6 @@ static void test_not_as_it_was_drawn(void **state)
     struct glint_strength s;
     double scale;
 
-    (void)state;
     glint_strength_defaults(&s);
     peak_of(&s, &r, &lamp, NULL, 1, 0);
     scale = s.scale;
@@ -258,13 +245,12 @@ static void test_not_as_it_was_drawn(void **state)
 
 /* A lamp crosses the picture in 200 frames: its flare may change by no more
  * than its own response and the largest step of the factor between frames. */
-static void test_a_lamp_that_crosses(void **state)
+TEST(a_lamp_that_crosses)
 {
     const struct glint_response r = response_of(7, 7);
     struct glint_strength s;
     double last = 0;
 
-    (void)state;
     glint_strength_defaults(&s);
     for (int i = 0; i <= 200; i++) {
         struct glint_engine_lamp lamp = lamp_of(fabs(20 - i * 0.2), 1e5);
@@ -279,13 +265,12 @@ static void test_a_lamp_that_crosses(void **state)
 
 /* A sun appears among lamps: the factor of all must fall gently, and the sun
  * must be limited until it has fallen. */
-static void test_a_lamp_that_rises(void **state)
+TEST(a_lamp_that_rises)
 {
     const struct glint_response r = response_of(0, 7);
     struct glint_strength s;
     double scale = 0;
 
-    (void)state;
     glint_strength_defaults(&s);
     for (int i = 0; i < 250; i++) {
         struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
@@ -305,13 +290,12 @@ static void test_a_lamp_that_rises(void **state)
 }
 
 /* The sun leaves: the factor must rise again, slower than it fell. */
-static void test_a_lamp_that_leaves(void **state)
+TEST(a_lamp_that_leaves)
 {
     const struct glint_response r = response_of(0, 7);
     struct glint_strength s;
     double scale, first;
 
-    (void)state;
     glint_strength_defaults(&s);
     {
         struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
@@ -331,13 +315,12 @@ static void test_a_lamp_that_leaves(void **state)
 
 /* The flare of a lamp that is alone must follow its level: no gain may make up
  * for it. */
-static void test_rising_alone(void **state)
+TEST(rising_alone)
 {
     const struct glint_response r = response_of(0, 7);
     struct glint_strength s;
     double last = 0;
 
-    (void)state;
     glint_strength_defaults(&s);
     for (int i = 1; i <= 8; i++) {
         const double level = i / 8.0;
@@ -352,14 +335,13 @@ static void test_rising_alone(void **state)
 
 /* After a cut, and after frames without a lamp, the exposure must fit at
  * once. */
-static void test_begins_anew(void **state)
+TEST(begins_anew)
 {
     const struct glint_response r = response_of(0, 7);
     struct glint_engine_lamp faint = lamp_of(5, 10),
                              bright = lamp_of(5, common);
     struct glint_strength s;
 
-    (void)state;
     glint_strength_defaults(&s);
     peak_of(&s, &r, &faint, NULL, 1, FRAME_US);
     assert_true(peak_of(&s, &r, &bright, NULL, 1, FRAME_US) > 0.3);
@@ -381,10 +363,9 @@ static void check_lens(const char *lens, double corner_deg)
     struct glint_frame frame;
 
     settings_defaults(&opened.settings);
-    assert_int_equal(
-        opened_lens_open(&tool, &opened.lens, &opened.settings, lens), EXIT_OK);
-    assert_int_equal(settings_frame(&tool, &opened, 640, 360, &frame), EXIT_OK);
-    assert_int_equal(glint_response_measure(&frame, 0, &r), GLINT_OK);
+    assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings, lens));
+    assert_ok(settings_frame(&tool, &opened, 640, 360, &frame));
+    assert_ok(glint_response_measure(&frame, 0, &r));
     assert_true(r.n == GLINT_RESPONSE_ANGLES);
     for (int i = 0; i < 6; i++) {
         struct glint_engine_lamp lamp =
@@ -396,10 +377,8 @@ static void check_lens(const char *lens, double corner_deg)
         lamp.lamp.phi_deg = 29 + 180 * (i % 2); /* stays within the picture */
         glint_strength_defaults(&s);
         glint_strength_expose(&s, &r, &all, 0);
-        assert_int_equal(glint_response_draw(&frame, &lamp.lamp, 1,
-                                             GLINT_RESPONSE_FINE, NULL, &drawn,
-                                             NULL),
-                         GLINT_OK);
+        assert_ok(glint_response_draw(&frame, &lamp.lamp, 1,
+                                      GLINT_RESPONSE_FINE, NULL, &drawn, NULL));
         /* FINE takes the brightest ten-thousandth of all pixels, the response a
          * thousandth, so that the bounds are wide. */
         assert_true(s.scale * glint_largest_channel(drawn.peak) > 1 / 16.0);
@@ -410,29 +389,26 @@ static void check_lens(const char *lens, double corner_deg)
     opened_lens_close(&opened.lens);
 }
 
-static void test_lenses(void **state)
+TEST(lenses)
 {
-    (void)state;
     check_lens("lenses/heliar-tronnier.lens", 11.8);
     check_lens("lenses/double-gauss-angenieux.lens", 22.4);
     check_lens("lenses/nikon-zoom-mid.lens", 12.5);
 }
 
 /* The response must be the same within the limits of memory that live has. */
-static void test_little_memory(void **state)
+TEST(little_memory)
 {
     struct opened opened = {.lens = {.tints = NULL}};
     struct glint_response r, free;
     struct glint_frame frame;
 
-    (void)state;
     settings_defaults(&opened.settings);
-    assert_int_equal(opened_lens_open(&tool, &opened.lens, &opened.settings,
-                                      "lenses/heliar-tronnier.lens"),
-                     EXIT_OK);
-    assert_int_equal(settings_frame(&tool, &opened, 640, 360, &frame), EXIT_OK);
-    assert_int_equal(glint_response_measure(&frame, 2 << 20, &r), GLINT_OK);
-    assert_int_equal(glint_response_measure(&frame, 0, &free), GLINT_OK);
+    assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
+                               "lenses/heliar-tronnier.lens"));
+    assert_ok(settings_frame(&tool, &opened, 640, 360, &frame));
+    assert_ok(glint_response_measure(&frame, 2 << 20, &r));
+    assert_ok(glint_response_measure(&frame, 0, &free));
     glint_frame_finish(&frame);
     for (int i = 0; i < r.n; i++)
         assert_memory_equal(&r.log2_of[i], &free.log2_of[i],
@@ -440,12 +416,11 @@ static void test_little_memory(void **state)
     opened_lens_close(&opened.lens);
 }
 
-static void test_interpolates(void **state)
+TEST(interpolates)
 {
     const struct glint_response r = response_of(4, 6);
     struct glint_response_light light;
 
-    (void)state;
     glint_response_at(&r, 10, &light);
     assert_true(fabs(log2(light.peak[0]) + 4) < 1e-9);
     glint_response_at(&r, 15, &light);
@@ -455,12 +430,11 @@ static void test_interpolates(void **state)
     assert_true(fabs(log2(light.peak[2]) + 6) < 1e-9);
 }
 
-static void test_looks(void **state)
+TEST(looks)
 {
     float rgb[3 * 4000];
     struct glint_response_light light;
 
-    (void)state;
     for (int i = 0; i < 4000; i++) {
         rgb[3 * i] = (float)i;
         rgb[3 * i + 1] = i == 7 ? 8 : 0;
@@ -472,30 +446,10 @@ static void test_looks(void **state)
     assert_true(light.peak[2] == 2 && light.mean[2] == 2);
 }
 
-int main(void)
+static int start_tool(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_quarter_of_white_by_default),
-        cmocka_unit_test(test_rises_with_strength),
-        cmocka_unit_test(test_any_power_is_seen),
-        cmocka_unit_test(test_a_veil_is_held_by_its_mean),
-        cmocka_unit_test(test_ratios_between_lamps_stay),
-        cmocka_unit_test(test_many_equal_lamps_share),
-        cmocka_unit_test(test_by_hand),
-        cmocka_unit_test(test_lamps_without_light),
-        cmocka_unit_test(test_as_it_was_drawn),
-        cmocka_unit_test(test_not_as_it_was_drawn),
-        cmocka_unit_test(test_a_lamp_that_crosses),
-        cmocka_unit_test(test_a_lamp_that_rises),
-        cmocka_unit_test(test_a_lamp_that_leaves),
-        cmocka_unit_test(test_rising_alone),
-        cmocka_unit_test(test_begins_anew),
-        cmocka_unit_test(test_lenses),
-        cmocka_unit_test(test_little_memory),
-        cmocka_unit_test(test_interpolates),
-        cmocka_unit_test(test_looks),
-    };
-
-    tool_start(&tool);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    (void)state;
+    return tool_start(&tool);
 }
+
+TEST_GROUP(start_tool, NULL);

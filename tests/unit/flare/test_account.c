@@ -5,18 +5,15 @@
  * the whole.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/real.h"
 #include "flare/by_edges.h"
 #include "glint/flare.h"
 #include "support/model_builder.h"
 #include "support/models/frame_parts.h"
+#include "support/test.h"
 
 enum {
     WIDTH = 160,
@@ -67,8 +64,7 @@ static void bin(struct fixture *f)
 
     free(f->mem);
     assert_int_equal(posix_memalign(&f->mem, 64, bytes), 0);
-    assert_int_equal(glint_flare_init(&f->flare, &f->cfg, f->mem, bytes),
-                     GLINT_OK);
+    assert_ok(glint_flare_init(&f->flare, &f->cfg, f->mem, bytes));
     glint_flare_plan(f->flare, &f->rays, f->light, f->n_lights);
     glint_flare_bin(f->flare, &f->stats);
 }
@@ -157,11 +153,10 @@ static void assert_outcome(struct fixture *f, enum glint_outcome outcome, int n)
 /* ------------------------------------------------------------------- tests */
 
 /* Ghost 1 must never be drawn, ghost 2 not at sines below 1/8. */
-static void test_drawn_and_closed(void **state)
+TEST(drawn_and_closed)
 {
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 3);
     assert_outcome(&f, GLINT_OUTCOME_DRAWN, 3 * 2 * WAVES);
     assert_int_equal(accounts(&f).of[GLINT_OUTCOME_CLOSED], 3 * WAVES);
@@ -170,22 +165,20 @@ static void test_drawn_and_closed(void **state)
     close_fixture(&f);
 }
 
-static void test_other(void **state)
+TEST(other)
 {
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 2);
     f.rays.only_ghost = 2;
     assert_outcome(&f, GLINT_OUTCOME_OTHER, 2 * 2 * WAVES);
     close_fixture(&f);
 }
 
-static void test_beyond(void **state)
+TEST(beyond)
 {
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 3);
     for (int i = 0; i < 3; i++) {
         f.light[i].sine_q30 = 1 << 29; /* 30 degrees */
@@ -195,11 +188,10 @@ static void test_beyond(void **state)
     close_fixture(&f);
 }
 
-static void test_dark(void **state)
+TEST(dark)
 {
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 2);
     f.light[1].rgb_q14[0] = 0; /* Without red the light lacks wave 0. */
     assert_outcome(&f, GLINT_OUTCOME_DARK, 2);
@@ -208,11 +200,10 @@ static void test_dark(void **state)
     close_fixture(&f);
 }
 
-static void test_blocked(void **state)
+TEST(blocked)
 {
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 2);
     *coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001; /* above 1: none
                                                              * pass */
@@ -223,11 +214,10 @@ static void test_blocked(void **state)
 
 /* Ghost 0 is moved to the right of the picture, which is 2.5 mm wide: far off
  * it must be outside, nearer it must be empty, then drawn. */
-static void test_outside(void **state)
+TEST(outside)
 {
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 1);
     f.light[0].sine_q30 = 1 << 26;
     *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 510027366; /* 1.9 mm */
@@ -241,11 +231,10 @@ static void test_outside(void **state)
 
 /* Bundles fainter than FAINTEST must be counted as faint: those of one light,
  * which counts by itself, and those of several, which are counted together. */
-static void test_faint(void **state)
+TEST(faint)
 {
     struct fixture f;
 
-    (void)state;
     for (int n = 1; n <= MAX_LIGHTS; n++) {
         open_fixture(&f, n);
         f.rays.faintest = real_of(1, 60);
@@ -254,12 +243,11 @@ static void test_faint(void **state)
     }
 }
 
-static void test_no_room(void **state)
+TEST(no_room)
 {
     struct glint_flare_stats all;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 4);
     bin(&f);
     all = f.stats;
@@ -296,14 +284,13 @@ static void draw(struct fixture *f, int32_t *px_q20)
 /* Pictures of single ghosts, of single lights and of single wavelengths must
  * each add up to the whole, but for the rounding of each to 2^-20. Ghost 1,
  * which is closed, must be dark. */
-static void test_parts(void **state)
+TEST(parts)
 {
     static int32_t whole[3 * N], part[3 * N];
     static int64_t sum[3 * N];
     const int parts[3] = {3, 2, WAVES};
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 2);
     bin(&f);
     draw(&f, whole);
@@ -331,12 +318,11 @@ static void test_parts(void **state)
 }
 
 /* Asking for accounts must not change the picture. */
-static void test_asking(void **state)
+TEST(asking)
 {
     static int32_t before[3 * N], after[3 * N];
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 4);
     bin(&f);
     draw(&f, before);
@@ -350,12 +336,11 @@ static void test_asking(void **state)
 /* The account must have the terms of ghost 0: sensor x 2, and v^2 s except in
  * the middle of the range of angles; sensor y 2, stop x 1 and stop y 2, energy
  * 1 for a given wavelength, barrel 2. */
-static void test_terms(void **state)
+TEST(terms)
 {
     struct glint_account a;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f, 1);
     for (int off = 0; off < 2; off++) {
         f.light[0].sine_q30 = (1 << 27) - (off << 26);
@@ -371,12 +356,11 @@ static void test_terms(void **state)
 
 /* Rows must be those of a count that looks at each row: does any part of it lie
  * between the ends of an edge? */
-static void test_rows(void **state)
+TEST(rows)
 {
     struct fixture f;
     int64_t want = 0, got = 0;
 
-    (void)state;
     open_fixture(&f, 2);
     f.rays.pixels_per_mm = real_of(200, 0); /* beyond the picture */
     bin(&f);
@@ -472,30 +456,8 @@ static void check_outside(int small_stop)
     close_fixture(&f);
 }
 
-static void test_outside_is_outside(void **state)
+TEST(outside_is_outside)
 {
-    (void)state;
     check_outside(0);
     check_outside(1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_drawn_and_closed),
-        cmocka_unit_test(test_other),
-        cmocka_unit_test(test_beyond),
-        cmocka_unit_test(test_dark),
-        cmocka_unit_test(test_blocked),
-        cmocka_unit_test(test_outside),
-        cmocka_unit_test(test_faint),
-        cmocka_unit_test(test_no_room),
-        cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_asking),
-        cmocka_unit_test(test_terms),
-        cmocka_unit_test(test_rows),
-        cmocka_unit_test(test_outside_is_outside),
-    };
-
-    return cmocka_run_group_tests_name("account", tests, NULL, NULL);
 }

@@ -4,18 +4,14 @@
  * those that the engine computes in doubles, within the bounds of flare.h.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/frame/light.h"
 #include "glint/flare.h"
 #include "glint/setup.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 enum { N_PIXELS = 20000, NEAR_Q30 = 4 };
 
@@ -57,11 +53,10 @@ static void same(const struct glint_light *a, const struct glint_light *b)
 /* Pixels of pictures of any shape, also far beside them, must have the right
  * direction through lenses from fisheyes to telescopes and through those that
  * mirror (negative focal lengths). */
-static void test_pixels(void **state)
+TEST(pixels)
 {
     uint32_t seed = 7;
 
-    (void)state;
     for (int i = 0; i < N_PIXELS; i++) {
         const int width = 1 + (int)(rng_xorshift(&seed) % GLINT_MAX_SIDE);
         const int height = 1 + (int)(rng_xorshift(&seed) % GLINT_MAX_SIDE);
@@ -89,12 +84,11 @@ static void test_pixels(void **state)
 
 /* By hand: a pixel 45 degrees to the left. Pixels so far to the upper right
  * that their distance is clamped must all have one direction. */
-static void test_by_hand(void **state)
+TEST(by_hand)
 {
     const int32_t half_q30 = 759250125; /* sqrt(2) / 2 */
     struct glint_light light, farther;
 
-    (void)state;
     set_lens(18, 36, 36);
     light = glint_light_from_pixel(&lens, 200, 200, 0, 100 * 256);
     assert_in_range(labs((long)light.sine_q30 - half_q30), 0, 1);
@@ -109,9 +103,8 @@ static void test_by_hand(void **state)
     same(&light, &farther);
 }
 
-static void test_pixels_per_mm(void **state)
+TEST(pixels_per_mm)
 {
-    (void)state;
     set_lens(50, 36, 24);
     assert_true(glint_real_value(glint_flare_pixels_per_mm(&lens, 720, 480)) ==
                 20);
@@ -130,9 +123,8 @@ static void waves_are(const double flux[6])
 
     for (int k = 0; k < 6; k++)
         header.direct_flux[k] = glint_real_of(flux[k]);
-    assert_int_equal(glint_setup_from_model(&setup, &lens, 0, 0, nm,
-                                            GLINT_FLARE_WAVES, &error),
-                     GLINT_OK);
+    assert_ok(glint_setup_from_model(&setup, &lens, 0, 0, nm, GLINT_FLARE_WAVES,
+                                     &error));
     glint_setup_balance(&setup);
     glint_flare_waves(wave, &lens);
     for (int i = 0; i < GLINT_FLARE_WAVES; i++) {
@@ -150,12 +142,11 @@ static void waves_are(const double flux[6])
 /* Weights of wavelengths must be those in doubles: for a flux polynomial as
  * lenses have it, for a flat one, and for wavelengths beyond the band, which
  * count as its nearer end. */
-static void test_waves(void **state)
+TEST(waves)
 {
     static const double lens_flux[6] = {312.4, -41.2, -10.7, 2.9, -0.4, 0.01};
     static const double flat[6] = {1e-3};
 
-    (void)state;
     set_lens(50, 36, 24);
     waves_are(lens_flux);
     waves_are(flat);
@@ -165,24 +156,12 @@ static void test_waves(void **state)
 }
 
 /* Where the model has no light, weights must be 0 and not undefined. */
-static void test_no_light(void **state)
+TEST(no_light)
 {
     struct glint_wave wave[GLINT_FLARE_WAVES];
 
-    (void)state;
     set_lens(50, 36, 24);
     glint_flare_waves(wave, &lens);
     for (int i = 0; i < GLINT_FLARE_WAVES; i++)
         assert_int_equal(wave[i].weight.mantissa, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pixels),        cmocka_unit_test(test_by_hand),
-        cmocka_unit_test(test_pixels_per_mm), cmocka_unit_test(test_waves),
-        cmocka_unit_test(test_no_light),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,13 +4,9 @@
  * lies at the same place of the screen, one pixel to a stop radius.
  */
 #include "flare/edges/cuts.h"
+#include "support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { ONE_Q16 = 1 << 16 };
 
@@ -45,9 +41,8 @@ static struct glint_edge_part part_of(const struct glint_vertex *a,
 
 /* An edge from inside to beyond the right side must be cut at x = 1, in both
  * directions. */
-static void test_part(void **state)
+TEST(part)
 {
-    (void)state;
     for (int from = -ONE_Q16 + 64; from < ONE_Q16; from += 1777)
         for (int to = ONE_Q16; to < 40 * ONE_Q16; to += to / 3) {
             const struct glint_vertex in = at(from, 0), out = at(to, 5 * 256);
@@ -67,7 +62,7 @@ static void test_part(void **state)
 
 /* An edge through the whole stop and one over a corner of it must be cut twice;
  * an edge past a corner must be invisible. */
-static void test_part_of_two_cuts(void **state)
+TEST(part_of_two_cuts)
 {
     const struct glint_vertex left = at(-2 * ONE_Q16, 0);
     const struct glint_vertex right = at(3 * ONE_Q16 / 2, 0);
@@ -76,7 +71,6 @@ static void test_part_of_two_cuts(void **state)
     const struct glint_edge_part through = part_of(&left, &right);
     const struct glint_edge_part over = part_of(&right, &high);
 
-    (void)state;
     assert_true(through.visible && over.visible);
     assert_int_equal(through.cut[0], 2);
     assert_int_equal(through.cut[1], 0);
@@ -91,11 +85,10 @@ static void test_part_of_two_cuts(void **state)
 
 /* The corner of the right and the upper side must be found by cells whose
  * middle is within three quarters of a cell of it, and by no others. */
-static void test_cross(void **state)
+TEST(cross)
 {
     const int wide = ONE_Q16 / 4;
 
-    (void)state;
     for (int u = -100; u <= 100; u++)
         for (int v = -100; v <= 100; v += 10) {
             const int x = ONE_Q16 - wide * u / 100,
@@ -116,15 +109,4 @@ static void test_cross(void **state)
                 assert_false(crosses);
             }
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_part),
-        cmocka_unit_test(test_part_of_two_cuts),
-        cmocka_unit_test(test_cross),
-    };
-
-    return cmocka_run_group_tests_name("cuts", tests, NULL, NULL);
 }

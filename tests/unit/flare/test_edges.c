@@ -3,17 +3,14 @@
  * The area to the right of an edge, against values worked out by hand: rounded
  * to 1/256 pixel for pictures in codes, to 1/65536 for linear ones.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/rng.h"
 #include "kernels/kernels.h"
 #include "flare/edges/edge.h"
+#include "support/test.h"
 
 enum { LOG2 = 3, SIDE = 1 << LOG2, STRIDE = GLINT_EDGE_STRIDE(LOG2) };
 
@@ -64,9 +61,8 @@ static int code_light(struct glint_edge_sums *s, int x, int y)
 
 /* An upright edge, FROM_Q8 from the pixel's left side and HEIGHT_Q8 high, must
  * light the area to its right. */
-static void test_upright(void **state)
+TEST(upright)
 {
-    (void)state;
     for (int from_q8 = 0; from_q8 < 256; from_q8 += 5)
         for (int height_q8 = 1; height_q8 <= 256; height_q8 += 3) {
             const int area_q16 = height_q8 * (256 - from_q8);
@@ -89,12 +85,11 @@ static void test_upright(void **state)
 
 /* An edge from the upper right corner of pixel 3 to the lower left corner of
  * pixel 2 must light a quarter of pixel 2 and three quarters of pixel 3. */
-static void test_slanted(void **state)
+TEST(slanted)
 {
     struct glint_edge_sums s = sums_of(0);
     uint16_t light_q16[STRIDE];
 
-    (void)state;
     add(&s, 4 * 256, 0, 2 * 256, 256, 1 << 19);
     glint_edge_light(&s, 0, 0, glint_kernels_of(0), light_q16);
     assert_int_equal(light_q16[1], 0);
@@ -113,11 +108,10 @@ static int draw_below(int n)
 /* A random edge must give the same light, to the last bit, in a whole tile and
  * in both halves of it, through which it takes other ways: none to its left,
  * and that of its full height to its right. */
-static void test_parts_of_tiles(void **state)
+TEST(parts_of_tiles)
 {
     enum { FROM = 4 };
 
-    (void)state;
     for (int i = 0; i < 20000; i++) {
         const int wide = i % 2 ? 256 * (SIDE + 4) : 600;
         const int x0 = draw_below(wide) - 512, x1 = draw_below(wide) - 512;
@@ -191,9 +185,8 @@ static void draw_many(int fine, int64_t light_q20, int bright,
 
 /* Light must not depend on how wide the sums are, up to and beyond what narrow
  * ones hold. */
-static void test_wide_or_narrow(void **state)
+TEST(wide_or_narrow)
 {
-    (void)state;
     for (int fine = 0; fine < 2; fine++)
         for (int64_t light_q20 = 1; light_q20 < 1 << 26;
              light_q20 += 1 + light_q20 / 16) {
@@ -206,9 +199,8 @@ static void test_wide_or_narrow(void **state)
         }
 }
 
-static void test_packing(void **state)
+TEST(packing)
 {
-    (void)state;
     for (int bit = 0; bit < 40; bit++)
         for (int k = 0; k < 64; k++) {
             const int64_t light =
@@ -220,17 +212,4 @@ static void test_packing(void **state)
             assert_true(glint_light_q20(glint_light_pack(-light)) < 0);
         }
     assert_int_equal(glint_light_q20(glint_light_pack(0)), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_upright),
-        cmocka_unit_test(test_slanted),
-        cmocka_unit_test(test_parts_of_tiles),
-        cmocka_unit_test(test_wide_or_narrow),
-        cmocka_unit_test(test_packing),
-    };
-
-    return cmocka_run_group_tests_name("edges", tests, NULL, NULL);
 }

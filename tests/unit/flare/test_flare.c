@@ -3,20 +3,17 @@
  * The integer rasteriser on grids made by hand: settings that must not matter,
  * and goldens.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "glint/kernels.h"
 #include "linux/sets.h"
 #include "posix/workers.h"
 #include "support/ghosts.h"
 #include "support/shuffle.h"
+#include "support/test.h"
 
 static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 
@@ -28,33 +25,30 @@ static void same_as_want(struct glint_flare_config c)
     assert_memory_equal(pixels, want, sizeof pixels);
 }
 
-static void test_tiles_do_not_matter(void **state)
+TEST(tiles_do_not_matter)
 {
     struct glint_flare_config c = base_config();
 
-    (void)state;
     draw_scene(c, want);
     assert_true(total(want, 0) > 1);
     for (c.tile_log2 = 4; c.tile_log2 <= 6; c.tile_log2++)
         same_as_want(c);
 }
 
-static void test_threads_do_not_matter(void **state)
+TEST(threads_do_not_matter)
 {
-    (void)state;
     for (int n = 1; n <= 8; n++) {
         struct glint_flare_config c = base_config();
 
         draw_scene(c, want);
-        assert_int_equal(glint_pool_create(&c.workers, n), GLINT_OK);
+        assert_ok(glint_pool_create(&c.workers, n));
         same_as_want(c);
         glint_pool_destroy(c.workers);
     }
 }
 
-static void test_order_does_not_matter(void **state)
+TEST(order_does_not_matter)
 {
-    (void)state;
     for (uint32_t seed = 1; seed <= 8; seed++) {
         struct glint_flare_config c = base_config();
         struct shuffle shuffle;
@@ -115,12 +109,11 @@ static unsigned random_sets(void)
 
 /* Light that grows from far below a code to far beyond 32-bit sums must never
  * make a pixel darker. */
-static void test_bright_stays_bright(void **state)
+TEST(bright_stays_bright)
 {
     struct glint_flare_config c = base_config();
     int before = 0;
 
-    (void)state;
     for (int exponent = -12; exponent < 40; exponent++) {
         const struct ghost g = {
             16, 100, 75, 40, 0, 1, 0, exponent, {16384, 16384, 16384}};
@@ -141,9 +134,8 @@ static void test_bright_stays_bright(void **state)
 
 /* The promise of the rasteriser: the same bytes for any tiles, kernels, workers
  * and order of jobs, over many random scenes. */
-static void test_random_scenes(void **state)
+TEST(random_scenes)
 {
-    (void)state;
     for (int k = 0; k < 240; k++) {
         const enum glint_pixel_format format =
             (enum glint_pixel_format)draw_number(GLINT_RGB565 + 1);
@@ -182,11 +174,10 @@ static void test_random_scenes(void **state)
     }
 }
 
-static void test_bundle_order_does_not_matter(void **state)
+TEST(bundle_order_does_not_matter)
 {
     struct ghost turned[N_GHOSTS];
 
-    (void)state;
     for (int i = 0; i < N_GHOSTS; i++)
         turned[i] = ghosts[N_GHOSTS - 1 - i];
     draw_scene(base_config(), want);
@@ -196,7 +187,7 @@ static void test_bundle_order_does_not_matter(void **state)
 
 /* Drawing in place on 8 bits must keep the bytes of pixels that no ghost
  * touches, and padding. */
-static void test_untouched_stays(void **state)
+TEST(untouched_stays)
 {
     enum { STRIDE = WIDTH * 3 + 13 };
     static uint8_t bytes[STRIDE * HEIGHT], before[STRIDE * HEIGHT];
@@ -211,7 +202,6 @@ static void test_untouched_stays(void **state)
     void *mem;
     struct glint_flare *f = open_flare(&c, &mem);
 
-    (void)state;
     for (int i = 0; i < STRIDE * HEIGHT; i++)
         before[i] = bytes[i] = (uint8_t)(i * 7 + i / 251);
     draw_list(c, ghosts, 1, want);
@@ -233,7 +223,7 @@ static void test_untouched_stays(void **state)
 
 /* Drawing into NULL must do all but touch a picture, and must not change the
  * next frame. */
-static void test_into_nothing(void **state)
+TEST(into_nothing)
 {
     static uint8_t bytes[2][3 * WIDTH * HEIGHT];
     struct glint_image image = {
@@ -245,7 +235,6 @@ static void test_into_nothing(void **state)
     struct glint_flare *const f = open_flare(&c, &mem);
     int tiles;
 
-    (void)state;
     for (int i = 0; i < 3; i++)
         add_ghost(f, &ghosts[i]);
     glint_flare_bin(f, &stats);
@@ -294,13 +283,12 @@ static void golden_case(FILE *file, bool update, const char *name,
 
 /* Hashes must be the same on every CPU; GLINT_GOLDEN_UPDATE=1 writes them
  * again. */
-static void test_golden(void **state)
+TEST(golden)
 {
     const bool update = getenv("GLINT_GOLDEN_UPDATE") != NULL;
     FILE *file = fopen("tests/golden/flare.txt", update ? "w" : "r");
     struct glint_flare_config c = base_config();
 
-    (void)state;
     assert_non_null(file);
     golden_case(file, update, "edges", c);
     c.irradiance_steps = 35;
@@ -309,21 +297,4 @@ static void test_golden(void **state)
     c.stop.n_blades = 0;
     golden_case(file, update, "edges-circle", c);
     fclose(file);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tiles_do_not_matter),
-        cmocka_unit_test(test_threads_do_not_matter),
-        cmocka_unit_test(test_order_does_not_matter),
-        cmocka_unit_test(test_bright_stays_bright),
-        cmocka_unit_test(test_random_scenes),
-        cmocka_unit_test(test_bundle_order_does_not_matter),
-        cmocka_unit_test(test_untouched_stays),
-        cmocka_unit_test(test_into_nothing),
-        cmocka_unit_test(test_golden),
-    };
-
-    return cmocka_run_group_tests_name("flare", tests, NULL, NULL);
 }

@@ -3,16 +3,13 @@
  * The integer rasteriser on grids made by hand: where light falls and how much
  * of it, also of ghosts that are clipped or folded.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/ghosts.h"
+#include "support/test.h"
 
 static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 
@@ -21,14 +18,13 @@ static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 /* The ghost must have the light of an octagonal stop of radius 1 in a grid of
  * 2.5 x 2.5 radii: area 2 sqrt 2 of 6.25, flux 16 x 16 cells x 1.5e9 / 2^31 x
  * 50000 / 65536, as the slope of the energy cancels. */
-static void test_energy(void **state)
+TEST(energy)
 {
     const struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
     const double flux =
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
     struct glint_flare_config c = base_config();
 
-    (void)state;
     /* The stop's corners lie on the rim of the barrel, so the stop alone
      * cuts. */
     c.stop.apothem_q16 = 60547;
@@ -40,13 +36,12 @@ static void test_energy(void **state)
 
 /* A ghost only two pixels wide, at several places and bent or not, must keep
  * its light. */
-static void test_focused_light_arrives(void **state)
+TEST(focused_light_arrives)
 {
     struct glint_flare_config c = base_config();
     const double flux =
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
 
-    (void)state;
     for (int k = 0; k < 32; k++) {
         const struct ghost g = {16, 50 + k / 2, 70,           1, 4 * k, 1,
                                 0,  0,          {16384, 0, 0}};
@@ -64,14 +59,13 @@ static int32_t at(const int32_t *p, int x, int y)
 
 /* A flat ghost must have an even irradiance away from its rim, that of each
  * cell: flux over the cell's area in pixels. */
-static void test_flat_inside(void **state)
+TEST(flat_inside)
 {
     struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
     const double cell = 2.5 * 40 / 16;
     const double irradiance = 1.5e9 / 2147483648.0 / (cell * cell);
     struct glint_flare_config c = base_config();
 
-    (void)state;
     draw_list(c, &g, 1, pixels);
     for (int y = 65; y < 85; y++) {
         /* Energy at the pixel: 50000 + sx / 8, sx = 65536 (x - 100) / 40. */
@@ -89,9 +83,8 @@ static void test_flat_inside(void **state)
 
 /* If an outline did not close to the last bit, it would leave a streak to the
  * right end of its rows. */
-static void test_outlines_close(void **state)
+TEST(outlines_close)
 {
-    (void)state;
     for (int k = 0; k < 400; k++) {
         struct glint_flare_config c = base_config();
         const struct ghost g = random_ghost();
@@ -109,14 +102,13 @@ static void test_outlines_close(void **state)
 
 /* A cell has a corner so far outside the stop that the visible parts of the
  * sides to it are shorter than 1/256 pixel: its outline must still close. */
-static void test_far_corner_closes(void **state)
+TEST(far_corner_closes)
 {
     static const int32_t far_q16[] = {70000, 1 << 20, 700000000, 1000000000,
                                       0x3fffffff};
     const struct glint_image image = linear_image(pixels);
     const int32_t half = 759250125; /* sqrt(1/2) */
 
-    (void)state;
     for (size_t k = 0; k < sizeof far_q16 / sizeof *far_q16; k++) {
         struct glint_flare_config c = base_config();
         const struct glint_bundle b = {.n_cells = 1,
@@ -154,13 +146,12 @@ static void test_far_corner_closes(void **state)
 
 /* Steps of irradiance must change the light of a cell by at most half a
  * step. */
-static void test_steps(void **state)
+TEST(steps)
 {
     static int32_t stepped[3 * WIDTH * HEIGHT];
     struct glint_flare_config c = base_config();
     const struct ghost g = {24, 100, 75, 55, 60, 1, 200, 4, {16384, 0, 0}};
 
-    (void)state;
     draw_list(c, &g, 1, pixels);
     c.irradiance_steps = 10;
     draw_list(c, &g, 1, stepped);
@@ -226,13 +217,12 @@ static void assert_flux(double flux)
 
 /* A rectangle from (10.25, 10.5) to (14.25, 12.5) must spread its flux of 64
  * over eight pixels of area. */
-static void test_rectangle_by_hand(void **state)
+TEST(rectangle_by_hand)
 {
     struct quad q = {{{2624, 2688}, {3648, 2688}, {3648, 3200}, {2624, 3200}},
                      {0, 0, 0, 0},
                      0};
 
-    (void)state;
     draw_quad(&q);
     assert_light(9, 11, 0);
     assert_light(10, 10, 3);
@@ -256,12 +246,11 @@ static void test_rectangle_by_hand(void **state)
 
 /* With one corner lost a cell becomes a triangle with legs of 8 pixels: area 32
  * and half of the flux, so that each pixel must have light 1. */
-static void test_triangle_by_hand(void **state)
+TEST(triangle_by_hand)
 {
     const struct quad q = {
         {{2048, 2048}, {4096, 2048}, {9, 9}, {2048, 4096}}, {0, 0, 0, 0}, 4};
 
-    (void)state;
     assert_int_equal(draw_quad(&q).dropped_cells, 1);
     assert_light(8, 8, 1);
     assert_light(10, 12, 1);
@@ -273,7 +262,7 @@ static void test_triangle_by_hand(void **state)
 }
 
 /* Slivers, folds, lines and points must keep their light wherever they lie. */
-static void test_thin_light_arrives(void **state)
+TEST(thin_light_arrives)
 {
     static const struct quad quads[] = {
         /* 1/256 px wide and 80 px long: upright, lying, aslant */
@@ -291,7 +280,6 @@ static void test_thin_light_arrives(void **state)
         {{{5000, 5000}, {5002, 5000}, {5002, 5002}, {5000, 5002}}, {0}, 0},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof quads / sizeof *quads; i++) {
         assert_int_equal(draw_quad(&quads[i]).dropped_cells, 0);
         assert_flux(64);
@@ -306,12 +294,11 @@ static void test_thin_light_arrives(void **state)
 
 /* Light must be linear: eight times the flux is eight times the picture, within
  * rounding. */
-static void test_linear_in_light(void **state)
+TEST(linear_in_light)
 {
     struct ghost g = ghosts[1];
     struct glint_flare_config c = base_config();
 
-    (void)state;
     draw_list(c, &g, 1, want);
     g.flux_exponent += 3;
     draw_list(c, &g, 1, pixels);
@@ -321,7 +308,7 @@ static void test_linear_in_light(void **state)
 
 /* Cells without area, invalid ray, and light beyond all bounds must do no
  * harm. */
-static void test_hostile_bundles(void **state)
+TEST(hostile_bundles)
 {
     struct glint_flare_config c = base_config();
     const struct glint_image image = linear_image(pixels);
@@ -334,7 +321,6 @@ static void test_hostile_bundles(void **state)
     struct glint_flare *f = open_flare(&c, &mem);
     struct glint_vertex *v = glint_flare_add(f, &b);
 
-    (void)state;
     for (int i = 0; i < 25; i++)
         v[i] = (struct glint_vertex){5000, 5000, 0, 0, {0, 0}, 65536};
     v = glint_flare_add(f, &b);
@@ -358,23 +344,4 @@ static void test_hostile_bundles(void **state)
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         assert_true(i % 3 == 1 ? pixels[i] <= 0 : pixels[i] >= 0);
     free(mem);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_energy),
-        cmocka_unit_test(test_focused_light_arrives),
-        cmocka_unit_test(test_flat_inside),
-        cmocka_unit_test(test_outlines_close),
-        cmocka_unit_test(test_far_corner_closes),
-        cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_rectangle_by_hand),
-        cmocka_unit_test(test_triangle_by_hand),
-        cmocka_unit_test(test_thin_light_arrives),
-        cmocka_unit_test(test_linear_in_light),
-        cmocka_unit_test(test_hostile_bundles),
-    };
-
-    return cmocka_run_group_tests_name("flare_light", tests, NULL, NULL);
 }

@@ -3,17 +3,14 @@
  * The integer rasteriser on grids made by hand: capacities, settings that are
  * refused, and counts that reach the largest int.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "flare/state.h"
 #include "support/ghosts.h"
+#include "support/test.h"
 
 static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 
@@ -27,7 +24,7 @@ static void same_as_want(struct glint_flare_config c)
 
 /* The capacities that glint_flare_bin() requested must do exactly; one byte of
  * memory less must be refused. */
-static void test_exact_capacity(void **state)
+TEST(exact_capacity)
 {
     struct glint_flare_config c = base_config();
     struct glint_flare_stats s = draw_scene(c, want);
@@ -35,7 +32,6 @@ static void test_exact_capacity(void **state)
     void *mem;
     size_t bytes;
 
-    (void)state;
     assert_int_equal(s.dropped_bundles, 0);
     c.max_bundles = s.need_bundles;
     c.max_vertices = s.need_vertices;
@@ -45,18 +41,17 @@ static void test_exact_capacity(void **state)
     bytes = glint_flare_bytes(&c);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
     assert_int_equal(glint_flare_init(&f, &c, mem, bytes - 1), GLINT_E_MEMORY);
-    assert_int_equal(glint_flare_init(&f, &c, mem, bytes), GLINT_OK);
+    assert_ok(glint_flare_init(&f, &c, mem, bytes));
     free(mem);
 }
 
 /* With any capacity one less, one whole bundle must be left out and counted,
  * and all others drawn right. */
-static void test_too_little_capacity(void **state)
+TEST(too_little_capacity)
 {
     struct glint_flare_config full = base_config();
     struct glint_flare_stats s, less;
 
-    (void)state;
     s = draw_scene(full, pixels);
     draw_list(full, ghosts, N_GHOSTS - 1, want);
     for (int k = 0; k < 4; k++) {
@@ -90,11 +85,10 @@ static void test_too_little_capacity(void **state)
     }
 }
 
-static void test_config_is_checked(void **state)
+TEST(config_is_checked)
 {
     struct glint_flare_config c = base_config();
 
-    (void)state;
     assert_int_not_equal(glint_flare_bytes(&c), 0);
     c.tile_log2 = 7;
     assert_int_equal(glint_flare_bytes(&c), 0);
@@ -123,14 +117,13 @@ void __wrap_glint_edges_bin(struct glint_flare *f)
 }
 
 /* Counts of a frame must stop at the largest int instead of wrapping. */
-static void test_counts_are_held(void **state)
+TEST(counts_are_held)
 {
     struct glint_flare_config c = base_config();
     struct glint_flare_stats stats;
     struct glint_flare *f;
     void *mem;
 
-    (void)state;
     f = open_flare(&c, &mem);
     for (int i = 0; i < 3; i++)
         add_ghost(f, &ghosts[i]);
@@ -140,16 +133,4 @@ static void test_counts_are_held(void **state)
     assert_int_equal(stats.dropped_cells, INT32_MAX);
     assert_int_equal(stats.held_cells, INT32_MAX);
     free(mem);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_exact_capacity),
-        cmocka_unit_test(test_too_little_capacity),
-        cmocka_unit_test(test_config_is_checked),
-        cmocka_unit_test(test_counts_are_held),
-    };
-
-    return cmocka_run_group_tests_name("flare_room", tests, NULL, NULL);
 }

@@ -4,18 +4,15 @@
  * lights where they were, and at most as many as requested.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/real.h"
 #include "glint/flare.h"
 #include "support/shuffle.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 /* This is about 1/8 pixel where a tangent of 1 is 2000 pixels. */
 enum { MANY = 3000, NEAR_Q30 = 60000 };
@@ -117,12 +114,11 @@ static void assert_sound(const struct glint_light *b)
 
 /* ------------------------------------------------------------------- tests */
 
-static void test_none_and_one(void **state)
+TEST(none_and_one)
 {
     struct glint_light b = beam_at(0.1, -0.2, 3), was = b;
     int apart = 7;
 
-    (void)state;
     b.rgb_q14[1] = 12345;
     was = b;
     assert_int_equal(glint_lights_merge(&b, 0, NEAR_Q30, 5, &apart), 0);
@@ -139,9 +135,8 @@ static void test_none_and_one(void **state)
 
 /* A merged light must be as far from its neighbours as the wider of the two,
  * in any order. */
-static void test_how_far_they_are_apart(void **state)
+TEST(how_far_they_are_apart)
 {
-    (void)state;
     for (int order = 0; order < 2; order++) {
         struct glint_light b[2] = {beam_at(0.1, 0, 3), beam_at(0.1, 0, 3)};
         int apart;
@@ -153,12 +148,11 @@ static void test_how_far_they_are_apart(void **state)
 }
 
 /* Lights that are too few and too far apart to merge must keep every bit. */
-static void test_untouched(void **state)
+TEST(untouched)
 {
     static struct glint_light b[200], was[200];
     int apart, found = 0;
 
-    (void)state;
     for (int i = 0; i < 200; i++) {
         b[i] = beam_at(0.001 * (i % 20), 0.003 * (i / 20) - 0.01, 1 + i);
         b[i].rgb_q14[i % 3] = i;
@@ -174,13 +168,12 @@ static void test_untouched(void **state)
     assert_int_equal(found, 200);
 }
 
-static void test_identical(void **state)
+TEST(identical)
 {
     static struct glint_light b[MANY];
     const struct glint_light one = beam_at(-0.11, 0.23, 0.5);
     int apart;
 
-    (void)state;
     for (int i = 0; i < MANY; i++)
         b[i] = one;
     assert_int_equal(glint_lights_merge(b, MANY, 0, MANY, &apart), 1);
@@ -201,13 +194,12 @@ static double chord(double x, double y, double p, double q)
 
 /* Two lights nearer than NEAR must become one that lies in between by their
  * powers; two that are farther apart must not. */
-static void test_near(void **state)
+TEST(near)
 {
     const double near = NEAR_Q30 * 0x1p-30;
     uint32_t seed = 5;
     int apart, n_merged = 0;
 
-    (void)state;
     for (int k = 0; k < 2000; k++) {
         const double x = uniform(&seed) - 0.5, y = uniform(&seed) - 0.5;
         const double dx = 2 * near * (uniform(&seed) - 0.5);
@@ -233,7 +225,7 @@ static void test_near(void **state)
     assert_true(n_merged > 500 && n_merged < 1800);
 }
 
-static void test_axis(void **state)
+TEST(axis)
 {
     struct glint_light b[4] = {beam_at(0, 0, 1), beam_at(0, 0, 1),
                                beam_at(2e-9, 0, 1), beam_at(-2e-9, 0, 1)};
@@ -241,7 +233,6 @@ static void test_axis(void **state)
     struct glint_light aside[2] = {beam_at(2e-9, 0, 1), beam_at(0, 2e-9, 1)};
     int apart;
 
-    (void)state;
     b[1].cos_q30 = -(1 << 29);
     b[1].sin_q30 = 929887697; /* azimuth of 120 degrees */
     assert_int_equal(glint_lights_merge(b, 4, NEAR_Q30, 4, &apart), 1);
@@ -256,13 +247,12 @@ static void test_axis(void **state)
     assert_sound(aside);
 }
 
-static void test_horizon(void **state)
+TEST(horizon)
 {
     struct glint_light b[3] = {beam_at(1, 0, 1), beam_at(-1, 0, 1),
                                beam_at(0, 1, 1)};
     int apart;
 
-    (void)state;
     assert_int_equal(glint_lights_merge(b, 2, 1 << 30, 1, &apart), 1);
     assert_sound(b);
     b[0] = beam_at(1, 0, 1);
@@ -273,11 +263,10 @@ static void test_horizon(void **state)
 
 /* The result must not depend on the order, bit for bit, for any number of
  * lights requested. */
-static void test_order(void **state)
+TEST(order)
 {
     static struct glint_light want[MANY], got[MANY];
 
-    (void)state;
     for (uint32_t k = 0; k < 24; k++) {
         const int n = k < 12 ? MANY : 400, most = 1 + (int)(k * k) % n;
         int apart, apart_again, left;
@@ -293,11 +282,10 @@ static void test_order(void **state)
     }
 }
 
-static void test_cap_and_flux(void **state)
+TEST(cap_and_flux)
 {
     static struct glint_light b[MANY];
 
-    (void)state;
     for (int most = 1; most <= 4096; most *= 2) {
         double before[3], after[3];
         int apart, left;
@@ -317,13 +305,12 @@ static void test_cap_and_flux(void **state)
 
 /* The colour of many faint lights must not be lost in the rounding of a bright
  * light's. */
-static void test_faint_colour(void **state)
+TEST(faint_colour)
 {
     static struct glint_light b[MANY];
     double flux[3];
     int apart;
 
-    (void)state;
     for (int i = 0; i < MANY; i++) {
         b[i] = beam_at(0.1, 0.1, 1e-5);
         b[i].rgb_q14[1] = b[i].rgb_q14[2] = 0;
@@ -337,11 +324,10 @@ static void test_faint_colour(void **state)
 
 /* Powers at the ends of their range, far beyond it, and both together must add
  * up. */
-static void test_powers(void **state)
+TEST(powers)
 {
     static const double powers[] = {1e-6, 1e9, 1e-55, 1e55};
 
-    (void)state;
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) {
             struct glint_light b[3] = {beam_at(0.1, 0.1, powers[i]),
@@ -357,12 +343,11 @@ static void test_powers(void **state)
 }
 
 /* A few bright lights among many faint ones must stay where they are. */
-static void test_bright_ones_stay(void **state)
+TEST(bright_ones_stay)
 {
     static struct glint_light b[MANY];
     int apart;
 
-    (void)state;
     scatter(b, MANY, 4);
     for (int i = 0; i < MANY; i++)
         b[i].power = real(0.01);
@@ -380,24 +365,4 @@ static void test_bright_ones_stay(void **state)
                                         (0.15 - 0.01 * i)));
         assert_true(nearest < 1e-5);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_none_and_one),
-        cmocka_unit_test(test_how_far_they_are_apart),
-        cmocka_unit_test(test_untouched),
-        cmocka_unit_test(test_identical),
-        cmocka_unit_test(test_near),
-        cmocka_unit_test(test_axis),
-        cmocka_unit_test(test_horizon),
-        cmocka_unit_test(test_order),
-        cmocka_unit_test(test_cap_and_flux),
-        cmocka_unit_test(test_faint_colour),
-        cmocka_unit_test(test_powers),
-        cmocka_unit_test(test_bright_ones_stay),
-    };
-
-    return cmocka_run_group_tests_name("lights", tests, NULL, NULL);
 }

@@ -4,13 +4,9 @@
  * are computed one by one must give the picture of a stored grid.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/real.h"
 #include "flare/plan.h"
@@ -20,6 +16,7 @@
 #include "support/models/frame_parts.h"
 #include "support/shuffle.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 120 };
 
@@ -36,11 +33,10 @@ static void assert_near(struct glint_real got, double want)
     assert_true(got.mantissa == 0 || llabs(got.mantissa) >= 1 << 30);
 }
 
-static void test_reals(void **state)
+TEST(reals)
 {
     uint32_t seed = 3;
 
-    (void)state;
     for (int k = 0; k < 20000; k++) {
         int64_t a, b;
         int e, f;
@@ -105,8 +101,7 @@ static void start(struct fixture *f)
     const size_t bytes = glint_flare_bytes(&f->cfg);
 
     assert_int_equal(posix_memalign(&f->mem, 64, bytes), 0);
-    assert_int_equal(glint_flare_init(&f->flare, &f->cfg, f->mem, bytes),
-                     GLINT_OK);
+    assert_ok(glint_flare_init(&f->flare, &f->cfg, f->mem, bytes));
 }
 
 static void close_fixture(struct fixture *f)
@@ -127,12 +122,11 @@ static struct glint_flare_stats planned(struct fixture *f, int n_lights)
     return s;
 }
 
-static void test_what_is_seen(void **state)
+TEST(what_is_seen)
 {
     struct fixture f;
     int all;
 
-    (void)state;
     open_fixture(&f);
     all = planned(&f, 1).bundles;
     assert_true(all >= 1);
@@ -150,13 +144,12 @@ static void test_what_is_seen(void **state)
 }
 
 /* An annular box has no rays in its middle; these must not is invalid. */
-static void test_a_hole_loses_no_cells(void **state)
+TEST(a_hole_loses_no_cells)
 {
     struct glint_model_system *system;
     struct glint_flare_stats s;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     system =
         (struct glint_model_system *)(void *)(f.m.data +
@@ -193,12 +186,11 @@ static double peak(struct fixture *f)
 
 /* A ghost that is left out must be fainter than FAINTEST in every pixel; one
  * that is drawn must have at least an eighth of it somewhere. */
-static void test_faint(void **state)
+TEST(faint)
 {
     struct fixture f;
     int n_left_out = 0, n_kept = 0;
 
-    (void)state;
     open_fixture(&f);
     f.rays.n_waves = 1;
     for (int e = -24; e < 10; e++) {
@@ -244,13 +236,12 @@ static void draw(struct fixture *f, int32_t *px_q20,
 
 /* For codes, faint light must be drawn with fewer edges and nearly the same
  * codes, 50 dB. In linear light it must have as many edges as bright light. */
-static void test_steps_follow_codes(void **state)
+TEST(steps_follow_codes)
 {
     static int32_t linear[3 * WIDTH * HEIGHT], coded[3 * WIDTH * HEIGHT];
     int n_fewer = 0;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     f.cfg.irradiance_steps = 70;
     for (int e = 8; e > -12; e--) {
@@ -305,14 +296,13 @@ static struct extent extent_of(const int32_t *px_q20)
 /* Points of a lamp that are far apart must have wider ghosts, at the same place
  * and with the same light; points near each other must have the ghost of a
  * single light. */
-static void test_points_of_a_lamp(void **state)
+TEST(points_of_a_lamp)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
     struct glint_flare_stats s;
     struct extent alone, near, far;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     f.cfg.stop.apothem_q16 /= 3;
     f.light.sine_q30 = 1 << 27;
@@ -336,14 +326,13 @@ static void test_points_of_a_lamp(void **state)
 
 /* Edges on whole pixels must keep all light, and codes must be nearly the
  * same. */
-static void test_whole_edges(void **state)
+TEST(whole_edges)
 {
     static int32_t smooth[3 * WIDTH * HEIGHT], whole[3 * WIDTH * HEIGHT];
     struct glint_flare_stats s;
     struct fixture f;
     int n_changed = 0;
 
-    (void)state;
     open_fixture(&f);
     f.rays.faintest = real_of(1, -20);
     f.cfg.irradiance_steps = 70;
@@ -395,14 +384,13 @@ static void draw_half(struct fixture *f, int half, struct glint_image *image,
 }
 
 /* With half as many pixels each way, nearly all light must be where it was. */
-static void test_half(void **state)
+TEST(half)
 {
     static uint8_t codes[2][3 * WIDTH * HEIGHT];
     const int width = WIDTH - 7, height = HEIGHT - 3, n = 3 * width * height;
     double flux[2] = {0, 0}, sum = 0;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     for (int half = 0; half < 2; half++) {
         struct glint_image image = {
@@ -425,14 +413,13 @@ static void test_half(void **state)
 
 /* With half as many pixels each way, every 2 x 2 pixels must have one light, up
  * to the last row and column. */
-static void test_half_of_linear(void **state)
+TEST(half_of_linear)
 {
     static int32_t light_q20[2][3 * WIDTH * HEIGHT];
     const int width = WIDTH - 7, height = HEIGHT - 3;
     double sum[2] = {0, 0};
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     for (int half = 0; half < 2; half++) {
         struct glint_image image = {
@@ -455,13 +442,12 @@ static void test_half_of_linear(void **state)
 
 /* On an uneven picture, light that four pixels share must be near the light of
  * each pixel. */
-static void test_half_of_yuyv(void **state)
+TEST(half_of_yuyv)
 {
     static uint8_t px[2][2 * WIDTH * HEIGHT];
     double sum = 0, changed = 0;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     for (int half = 0; half < 2; half++) {
         struct glint_image image = {
@@ -484,7 +470,7 @@ static void test_half_of_yuyv(void **state)
 
 /* With every setting of the plan a picture must have the same bits whatever the
  * tiles, the workers, the order of jobs and the kernels. */
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     static const int whole_q8[] = {0, 64, 1024, 1 << 15};
     static const enum glint_pixel_format formats[] = {GLINT_RGB24, GLINT_YUYV,
@@ -493,7 +479,6 @@ static void test_same_bits(void **state)
     uint32_t seed = 7;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     f.cfg.irradiance_steps = 70;
     f.light.power = real_of(1, 2);
@@ -578,13 +563,12 @@ static double faint_lights(struct fixture *f, int n)
 
 /* Lights that are too faint to be seen alone must be seen together, in codes,
  * too, and fewer of them whose soft edges draw them as many outlines. */
-static void test_many_faint_lights(void **state)
+TEST(many_faint_lights)
 {
     const struct glint_shade soft = {.method = &glint_shade_method,
                                      .soft_q16 = 6554};
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     assert_true(faint_lights(&f, 1024) < 0.1);
     free(f.mem);
@@ -593,12 +577,11 @@ static void test_many_faint_lights(void **state)
     close_fixture(&f);
 }
 
-static void test_room(void **state)
+TEST(room)
 {
     struct fixture f;
     struct glint_flare_stats all, less;
 
-    (void)state;
     open_fixture(&f);
     all = planned(&f, 1);
     f.cfg.max_bundles = 1;
@@ -669,9 +652,8 @@ static void check_rows_and_grids(int32_t opening_q30)
     close_fixture(&f);
 }
 
-static void test_rows_and_grids(void **state)
+TEST(rows_and_grids)
 {
-    (void)state;
     check_rows_and_grids(1 << 30);
     check_rows_and_grids(1 << 28);
 }
@@ -679,7 +661,7 @@ static void test_rows_and_grids(void **state)
 /* A hole of 0.4 of the model's stop is 0.8 of a stop half as wide: both must
  * have the same light but for the corners of cells, and a stop that is closed
  * further must have less of it. */
-static void test_opening(void **state)
+TEST(opening)
 {
     static int32_t whole[3 * WIDTH * HEIGHT], half[3 * WIDTH * HEIGHT];
     static int32_t less[3 * WIDTH * HEIGHT];
@@ -687,7 +669,6 @@ static void test_opening(void **state)
     struct glint_flare_stats s;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     f.light.power = real_of(1000, 4); /* many steps of 2^-20 */
     draw(&f, whole, &s);
@@ -714,7 +695,7 @@ static void test_opening(void **state)
 
 /* A stop that is set between frames must give the picture of a flare that has
  * it from the start; openings out of range must be refused. */
-static void test_set_stop(void **state)
+TEST(set_stop)
 {
     static const int32_t bad[] = {-1, 1, (1 << 20) - 1, (1 << 30) + 1};
     static int32_t set[3 * WIDTH * HEIGHT], first[3 * WIDTH * HEIGHT];
@@ -722,7 +703,6 @@ static void test_set_stop(void **state)
     struct glint_stop stop;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     start(&f);
     stop = f.cfg.stop;
@@ -732,7 +712,7 @@ static void test_set_stop(void **state)
                          GLINT_E_ARGUMENT);
     }
     stop.opening_q30 = 1 << 28;
-    assert_int_equal(glint_flare_set_stop(f.flare, &stop), GLINT_OK);
+    assert_ok(glint_flare_set_stop(f.flare, &stop));
     glint_flare_plan(f.flare, &f.rays, &f.light, 1);
     picture(&f, set);
     free(f.mem);
@@ -746,14 +726,13 @@ static void test_set_stop(void **state)
 
 /* The finest grid must have as many cells as a row has room for, however much a
  * ghost bends. */
-static void test_finest_grid(void **state)
+TEST(finest_grid)
 {
     static struct glint_plan_scratch scratch;
     struct fixture f;
     struct glint_plan plan;
     int most = 0;
 
-    (void)state;
     open_fixture(&f);
     f.rays.pixels_per_mm = real_of(12000, 0);
     f.rays.fineness = GLINT_MAX_CELLS;
@@ -776,7 +755,7 @@ static void test_finest_grid(void **state)
 
 /* The barrel's 0.5 + u^2 / 2 bends by 4 over the box, across only, so straight
  * lines between rays must lie 4 / 12 / n^2 above it in the mean. */
-static void test_sag(void **state)
+TEST(sag)
 {
     static struct glint_plan_scratch scratch;
     struct glint_bundle_plan planned = {.ghost = 0};
@@ -785,7 +764,6 @@ static void test_sag(void **state)
     struct fixture f;
     double sag;
 
-    (void)state;
     open_fixture(&f);
     plan = (struct glint_plan){.frame = &f.rays,
                                .light = &f.light,
@@ -803,13 +781,12 @@ static void test_sag(void **state)
 
 /* No light beyond the angles of the lens model may be drawn, whatever the
  * polynomials say; it must request no room unless another light follows. */
-static void test_beyond(void **state)
+TEST(beyond)
 {
     const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;
     struct fixture f;
     int alone;
 
-    (void)state;
     open_fixture(&f);
     f.light.sine_q30 = inside_q30;
     alone = planned(&f, 1).bundles;
@@ -835,7 +812,7 @@ static void test_beyond(void **state)
 
 /* A frame without light must leave the picture alone, also after a frame with
  * light. */
-static void test_dark_frame(void **state)
+TEST(dark_frame)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
     struct glint_image image = {
@@ -843,7 +820,6 @@ static void test_dark_frame(void **state)
     struct glint_flare_stats s;
     struct fixture f;
 
-    (void)state;
     open_fixture(&f);
     start(&f);
     glint_flare_plan(f.flare, &f.rays, &f.light, 1);
@@ -859,32 +835,4 @@ static void test_dark_frame(void **state)
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         assert_int_equal(px_q20[i], 0);
     close_fixture(&f);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reals),
-        cmocka_unit_test(test_sag),
-        cmocka_unit_test(test_what_is_seen),
-        cmocka_unit_test(test_a_hole_loses_no_cells),
-        cmocka_unit_test(test_faint),
-        cmocka_unit_test(test_steps_follow_codes),
-        cmocka_unit_test(test_points_of_a_lamp),
-        cmocka_unit_test(test_whole_edges),
-        cmocka_unit_test(test_half),
-        cmocka_unit_test(test_half_of_linear),
-        cmocka_unit_test(test_half_of_yuyv),
-        cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_many_faint_lights),
-        cmocka_unit_test(test_room),
-        cmocka_unit_test(test_rows_and_grids),
-        cmocka_unit_test(test_opening),
-        cmocka_unit_test(test_set_stop),
-        cmocka_unit_test(test_finest_grid),
-        cmocka_unit_test(test_beyond),
-        cmocka_unit_test(test_dark_frame),
-    };
-
-    return cmocka_run_group_tests_name("plan", tests, NULL, NULL);
 }

@@ -6,16 +6,12 @@
  * soft edge has the light of its profile; workers and tiles change no bit.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/setup/dirt.h"
 #include "support/ghosts.h"
+#include "support/test.h"
 
 static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 
@@ -33,7 +29,7 @@ static struct glint_dirt *give(struct glint_setup *setup, int n_blades,
     setup->n_blades = n_blades;
     setup->n_wavelengths = 1;
     setup->direct_flux[0] = 1;
-    assert_int_equal(glint_setup_iris(setup, iris, &dirt, &error), GLINT_OK);
+    assert_ok(glint_setup_iris(setup, iris, &dirt, &error));
     return dirt;
 }
 
@@ -95,9 +91,8 @@ static double difference(const struct ghost *g, const struct glint_iris *iris)
 }
 
 /* Dust must be seen where it is, and as dark as it is, whatever the grid. */
-static void test_dust(void **state)
+TEST(dust)
 {
-    (void)state;
     for (int seed = 1; seed < 5; seed++)
         for (int n = 8; n <= 64; n *= 2) {
             const struct glint_iris iris = {.dust = 0.05, .dust_seed = seed};
@@ -111,26 +106,24 @@ static void test_dust(void **state)
 
 /* A mask must be seen upright: the top row of its picture at the highest y of
  * the stop. */
-static void test_mask(void **state)
+TEST(mask)
 {
     uint8_t mask[32 * 32];
     const struct glint_iris iris = {
         .mask = mask, .mask_width = 32, .mask_height = 32};
 
-    (void)state;
     for (int i = 0; i < 32 * 32; i++)
         mask[i] = (uint8_t)(64 + 5 * (i / 32) + (i % 32 > 20 ? 20 : 0));
     assert_true(difference(&plain, &iris) < 0.005);
 }
 
 /* What lies in the stop must turn with the blades, from x towards y. */
-static void test_turn(void **state)
+TEST(turn)
 {
     const uint8_t mask[4] = {0, 255, 0, 255};
     const struct glint_iris iris = {
         .mask = mask, .mask_width = 2, .mask_height = 2};
 
-    (void)state;
     for (int turn = 0; turn < 360; turn += 30) {
         const double phi = turn * 3.14159265358979323846 / 180;
         struct glint_setup setup;
@@ -142,8 +135,7 @@ static void test_turn(void **state)
         setup.n_wavelengths = 1;
         setup.direct_flux[0] = 1;
         setup.blade_rotation_deg = turn;
-        assert_int_equal(glint_setup_iris(&setup, &iris, &dirt, &error),
-                         GLINT_OK);
+        assert_ok(glint_setup_iris(&setup, &iris, &dirt, &error));
         assert_true(glint_dirt_light(dirt, 0.8 * cos(phi), 0.8 * sin(phi)) >
                     0.99);
         assert_true(glint_dirt_light(dirt, -0.8 * cos(phi), -0.8 * sin(phi)) <
@@ -153,13 +145,12 @@ static void test_turn(void **state)
 }
 
 /* A white mask must change next to nothing, a black one leave nothing. */
-static void test_white_and_black(void **state)
+TEST(white_and_black)
 {
     uint8_t mask[4] = {255, 255, 255, 255};
     struct glint_iris iris = {.mask = mask, .mask_width = 2, .mask_height = 2};
     const struct glint_iris clear = {0};
 
-    (void)state;
     draw(&plain, &clear, 8, 5, want);
     draw(&plain, &iris, 8, 5, pixels);
     assert_memory_equal(pixels, want, sizeof pixels);
@@ -170,13 +161,12 @@ static void test_white_and_black(void **state)
 
 /* Dust must take few places: a patch for each cell at most, whatever lies in
  * it. */
-static void test_few(void **state)
+TEST(few)
 {
     const struct glint_iris iris = {.dust = 0.3, .dust_seed = 5};
     const struct glint_iris clear = {0};
     int plain_edges, dusty;
 
-    (void)state;
     plain_edges = draw(&plain, &clear, 8, 5, want).primitives;
     dusty = draw(&plain, &iris, 8, 5, pixels).primitives;
     /* cells that are cut are two triangles, of up to five corners */
@@ -186,7 +176,7 @@ static void test_few(void **state)
 
 /* A mask that is black but for one half must leave all of that, and nothing of
  * the other, sharply. */
-static void test_half(void **state)
+TEST(half)
 {
     uint8_t mask[64 * 64];
     const struct glint_iris iris = {
@@ -194,7 +184,6 @@ static void test_half(void **state)
     const struct glint_iris clear = {0};
     double kept, all;
 
-    (void)state;
     for (int i = 0; i < 64 * 64; i++)
         mask[i] = i / 64 < 32 ? 255 : 0;
     draw(&plain, &clear, 8, 5, want);
@@ -208,9 +197,8 @@ static void test_half(void **state)
 
 /* A soft edge must have as much light as its profile says, for sides, arcs and
  * circles. */
-static void test_soft_edge(void **state)
+TEST(soft_edge)
 {
-    (void)state;
     for (int k = 0; k < 12; k++) {
         const struct glint_iris clear = {.roundness = k % 3 == 2 ? 0.6 : 0};
         const int n = k % 3 ? 6 : 0;
@@ -231,12 +219,11 @@ static void test_soft_edge(void **state)
 }
 
 /* Tiles must change no bit. */
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     const struct glint_iris iris = {
         .roundness = 0.4, .softness = 0.1, .dust = 0.1, .dust_seed = 9};
 
-    (void)state;
     draw(&ghosts[1], &iris, 7, 5, want);
     assert_true(total(want, 0) + total(want, 1) + total(want, 2) > 0);
     for (int log2 = 3; log2 <= 6; log2++) {
@@ -246,12 +233,11 @@ static void test_same_bits(void **state)
 }
 
 /* What is out of range must be refused. */
-static void test_refused(void **state)
+TEST(refused)
 {
     struct glint_flare_config c = base_config();
     struct glint_shade shade = {.method = &glint_shade_method};
 
-    (void)state;
     c.stop.shade = &shade;
     assert_true(glint_flare_bytes(&c) > 0);
     shade.soft_q16 = 65537;
@@ -264,21 +250,4 @@ static void test_refused(void **state)
     assert_int_equal(glint_flare_bytes(&c), 0);
     c.stop.off_q30 = 1 << 29;
     assert_true(glint_flare_bytes(&c) > 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_dust),
-        cmocka_unit_test(test_mask),
-        cmocka_unit_test(test_turn),
-        cmocka_unit_test(test_white_and_black),
-        cmocka_unit_test(test_few),
-        cmocka_unit_test(test_half),
-        cmocka_unit_test(test_soft_edge),
-        cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_refused),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

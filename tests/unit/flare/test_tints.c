@@ -4,17 +4,14 @@
  * nothing, and tints of one must change no bit.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/real.h"
 #include "glint/flare.h"
 #include "support/model_builder.h"
 #include "support/models/frame_parts.h"
+#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 120, SAMPLES = 3 * WIDTH * HEIGHT, GHOSTS = 16 };
 
@@ -70,7 +67,7 @@ static void draw(struct fixture *f)
     memset(f->sum, 0, sizeof f->sum);
     glint_image_place(&image, f->px_q20);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_flare_init(&flare, &f->cfg, mem, bytes), GLINT_OK);
+    assert_ok(glint_flare_init(&flare, &f->cfg, mem, bytes));
     glint_flare_plan(flare, &f->rays, &f->light, 1);
     glint_flare_bin(flare, &f->stats);
     glint_flare_draw(flare, &image);
@@ -84,12 +81,11 @@ static void assert_share(double got, double want)
     assert_true(fabs(got - want) <= 1e-3 * fabs(want));
 }
 
-static void test_ones_change_no_bit(void **state)
+TEST(ones_change_no_bit)
 {
     static int32_t plain[SAMPLES];
     struct fixture *f = open_fixture();
 
-    (void)state;
     draw(f);
     assert_true(f->sum[0] > 1);
     memcpy(plain, f->px_q20, sizeof plain);
@@ -99,12 +95,11 @@ static void test_ones_change_no_bit(void **state)
     close_fixture(f);
 }
 
-static void test_gain_and_tint(void **state)
+TEST(gain_and_tint)
 {
     struct fixture *f = open_fixture();
     double plain[3];
 
-    (void)state;
     draw(f);
     memcpy(plain, f->sum, sizeof plain);
     f->rays.tints = f->tint;
@@ -119,14 +114,13 @@ static void test_gain_and_tint(void **state)
 
 /* Ghosts that are muted one after the other must leave the sum of the others,
  * and all of them nothing to plan. */
-static void test_mute(void **state)
+TEST(mute)
 {
     struct fixture *f = open_fixture();
     const int n = (int)f->lens.header->n_ghosts;
     double all, left = 0;
     int bundles;
 
-    (void)state;
     draw(f);
     all = f->sum[0];
     bundles = f->stats.bundles;
@@ -148,11 +142,10 @@ static void test_mute(void **state)
 }
 
 /* A gain must lift a ghost that no code would show. */
-static void test_faint(void **state)
+TEST(faint)
 {
     struct fixture *f = open_fixture();
 
-    (void)state;
     f->light.power = real_of(1, -30);
     f->rays.faintest = real_of(1, -10);
     draw(f);
@@ -163,16 +156,4 @@ static void test_faint(void **state)
     draw(f);
     assert_true(f->stats.bundles > 0);
     close_fixture(f);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ones_change_no_bit),
-        cmocka_unit_test(test_gain_and_tint),
-        cmocka_unit_test(test_mute),
-        cmocka_unit_test(test_faint),
-    };
-
-    return cmocka_run_group_tests_name("tints", tests, NULL, NULL);
 }

@@ -5,17 +5,13 @@
  * wavelengths as they are given.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/frame/frame.h"
 #include "support/settings_frame.h"
+#include "support/test.h"
 
 enum { WIDTH = 640, HEIGHT = 360, SAMPLES = 3 * WIDTH * HEIGHT };
 
@@ -36,12 +32,10 @@ static struct glint_engine_report drawn(struct glint_frame *frame,
     struct glint_engine_report report;
 
     light.power *= power;
-    assert_int_equal(
-        settings_frame(&tool, opened, width, width * 9 / 16, frame), EXIT_OK);
+    assert_ok(settings_frame(&tool, opened, width, width * 9 / 16, frame));
     memset(rgb, 0, (size_t)width * (size_t)(width * 9 / 16) * 3);
     glint_image_place(&image, rgb);
-    assert_int_equal(glint_frame_draw(frame, &light, 1, 1, &image, &report),
-                     GLINT_OK);
+    assert_ok(glint_frame_draw(frame, &light, 1, 1, &image, &report));
     return report;
 }
 
@@ -84,13 +78,13 @@ static void count(struct glint_frame *frame,
 
 static uint8_t picture[SAMPLES], other[SAMPLES], truth[SAMPLES];
 
-static void test_small_picture(void **state)
+TEST(small_picture)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles;
     struct glint_frame frame;
     struct glint_engine_report report;
 
-    (void)state; /* 32 pixels are too few for an outline to move by a pixel. */
+    /* 32 pixels are too few for an outline to move by a pixel. */
     report = drawn(&frame, &chosen, 32, 1, picture);
     count(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
@@ -99,13 +93,12 @@ static void test_small_picture(void **state)
     glint_frame_finish(&frame);
 }
 
-static void test_large_picture(void **state)
+TEST(large_picture)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, more;
     struct glint_frame frame;
     struct glint_engine_report report;
 
-    (void)state;
     report = drawn(&frame, &chosen, WIDTH, 100, picture);
     count(&frame, ghosts, &bundles);
     more = ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28];
@@ -122,13 +115,12 @@ static void test_large_picture(void **state)
     glint_frame_finish(&frame);
 }
 
-static void test_dial(void **state)
+TEST(dial)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], least, bundles, before = 0;
     struct opened set = chosen;
     struct glint_frame frame;
 
-    (void)state;
     set.lens.setup.lens = &chosen.lens.table;
     for (double px = 8; px > 0.1; px /= 2) {
         set.settings.dials.dispersion_q8 = (int)(px * 256);
@@ -143,12 +135,11 @@ static void test_dial(void **state)
 }
 
 /* A dispersion of 0 must give the three default wavelengths, bit for bit. */
-static void test_off(void **state)
+TEST(off)
 {
     struct opened set = chosen;
     struct glint_frame frame;
 
-    (void)state;
     set.settings.dials.dispersion_q8 = 0;
     drawn(&frame, &set, WIDTH, 1, picture);
     glint_frame_finish(&frame);
@@ -158,12 +149,11 @@ static void test_off(void **state)
 }
 
 /* A single set must give the picture of the list of its wavelengths. */
-static void test_one_set(void **state)
+TEST(one_set)
 {
     struct opened set = chosen, list = three;
     struct glint_frame frame;
 
-    (void)state;
     set.lens.setup.n_sets = 1;
     assert_true(settings_set(&list.settings, "wavelengths", "4"));
     set.settings.dials.cull_codes = list.settings.dials.cull_codes = 0;
@@ -184,7 +174,7 @@ static void test_one_set(void **state)
 
 /* Ghosts without room for a larger set must take the first set, and nothing may
  * be dropped. */
-static void test_little_room(void **state)
+TEST(little_room)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, most = 0;
     struct glint_flare_stats stats;
@@ -193,7 +183,6 @@ static void test_little_room(void **state)
     size_t bytes;
     void *mem;
 
-    (void)state;
     set.settings.dials.dispersion_q8 = 64;
     drawn(&frame, &set, WIDTH, 100, picture);
     most = frame.cfg.max_bundles;
@@ -205,9 +194,7 @@ static void test_little_room(void **state)
     free(frame.memory.mem);
     frame.memory.mem = mem;
     frame.memory.bytes = bytes;
-    assert_int_equal(
-        glint_flare_init(&frame.memory.flare, &frame.cfg, mem, bytes),
-        GLINT_OK);
+    assert_ok(glint_flare_init(&frame.memory.flare, &frame.cfg, mem, bytes));
     glint_flare_plan(frame.memory.flare, &frame.plan.rays, frame.lights.light,
                      frame.lights.n);
     glint_flare_bin(frame.memory.flare, &stats);
@@ -222,7 +209,7 @@ static void test_little_room(void **state)
 
 /* Pictures must have the same bits whether one worker plans them or several,
  * with three lamps. */
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     const struct glint_lamp lamps[3] = {
         lamp,
@@ -231,7 +218,6 @@ static void test_same_bits(void **state)
     struct glint_workers *pool = tool.workers;
     uint8_t *rgb[2] = {picture, other};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct glint_image image = {.format = GLINT_RGB24,
                                     .width = WIDTH,
@@ -241,12 +227,10 @@ static void test_same_bits(void **state)
         struct glint_frame frame;
 
         tool.workers = i ? NULL : pool;
-        assert_int_equal(settings_frame(&tool, &chosen, WIDTH, HEIGHT, &frame),
-                         EXIT_OK);
+        assert_ok(settings_frame(&tool, &chosen, WIDTH, HEIGHT, &frame));
         memset(rgb[i], 0, SAMPLES);
         glint_image_place(&image, rgb[i]);
-        assert_int_equal(glint_frame_draw(&frame, lamps, 3, 1, &image, &report),
-                         GLINT_OK);
+        assert_ok(glint_frame_draw(&frame, lamps, 3, 1, &image, &report));
         glint_frame_finish(&frame);
     }
     tool.workers = pool;
@@ -299,14 +283,13 @@ static double psnr(const uint8_t *rgb)
     return 10 * log10(255. * 255 * SAMPLES / squares);
 }
 
-static void test_outlines(void **state)
+TEST(outlines)
 {
     static uint8_t few[SAMPLES];
     struct glint_frame frame;
     double db[2];
     int step[2];
 
-    (void)state;
     drawn(&frame, &all, WIDTH, 20, truth);
     glint_frame_finish(&frame);
     drawn(&frame, &three, WIDTH, 20, few);
@@ -323,11 +306,10 @@ static void test_outlines(void **state)
 
 /* ------------------------------------------------------------------- words */
 
-static void test_words(void **state)
+TEST(words)
 {
     struct settings s;
 
-    (void)state;
     settings_defaults(&s);
     assert_true(s.waves == GLINT_WAVES_LIST && s.n_wavelengths == 3);
     assert_true(settings_set(&s, "wavelengths", "auto") &&
@@ -352,7 +334,7 @@ static void test_words(void **state)
 }
 
 /* All ghosts of a white lamp must be white together behind an uncoated lens. */
-static void test_white(void **state)
+TEST(white)
 {
     static float rgb[SAMPLES];
     static struct opened bare;
@@ -360,17 +342,13 @@ static void test_white(void **state)
     struct glint_engine_report report;
     struct glint_frame frame;
 
-    (void)state;
     settings_defaults(&bare.settings);
     bare.settings.waves = GLINT_WAVES_AUTO;
     assert_int_equal(coating_take(&tool, &bare.settings.coating, "none"), -1);
-    assert_int_equal(opened_lens_open(&tool, &bare.lens, &bare.settings,
-                                      "lenses/heliar-tronnier.lens"),
-                     EXIT_OK);
-    assert_int_equal(settings_frame(&tool, &bare, WIDTH, HEIGHT, &frame),
-                     EXIT_OK);
-    assert_int_equal(glint_frame_draw_alone(&frame, &lamp, 1, 1, rgb, &report),
-                     GLINT_OK);
+    assert_ok(opened_lens_open(&tool, &bare.lens, &bare.settings,
+                               "lenses/heliar-tronnier.lens"));
+    assert_ok(settings_frame(&tool, &bare, WIDTH, HEIGHT, &frame));
+    assert_ok(glint_frame_draw_alone(&frame, &lamp, 1, 1, rgb, &report));
     for (int i = 0; i < SAMPLES; i++)
         sum[i % 3] += (double)rgb[i];
     print_message("uncoated: %.3f 1 %.3f\n", sum[0] / sum[1], sum[2] / sum[1]);
@@ -413,18 +391,4 @@ static int leave(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_small_picture),
-                                       cmocka_unit_test(test_large_picture),
-                                       cmocka_unit_test(test_dial),
-                                       cmocka_unit_test(test_off),
-                                       cmocka_unit_test(test_one_set),
-                                       cmocka_unit_test(test_little_room),
-                                       cmocka_unit_test(test_same_bits),
-                                       cmocka_unit_test(test_outlines),
-                                       cmocka_unit_test(test_words),
-                                       cmocka_unit_test(test_white)};
-
-    return cmocka_run_group_tests_name("waves", tests, enter, leave);
-}
+TEST_GROUP(enter, leave);

@@ -5,15 +5,12 @@
  * stop closes.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "flare/window.h"
 #include "support/model_builder.h"
+#include "support/test.h"
 
 enum { ONE = 1 << 30, ACROSS = 240, DOWN = 120 };
 
@@ -222,9 +219,8 @@ static void check(const struct shape *s, const struct glint_lens *lens,
                  want.right, want.low, want.high);
 }
 
-static void test_holds_what_is_seen(void **state)
+TEST(holds_what_is_seen)
 {
-    (void)state;
     for (size_t k = 0; k < sizeof shape / sizeof *shape; k++) {
         struct model_image m;
         const struct glint_lens lens =
@@ -237,9 +233,8 @@ static void test_holds_what_is_seen(void **state)
 }
 
 /* The height of a whole box, 2^31, is more than 32 bits hold. */
-static void test_whole_box(void **state)
+TEST(whole_box)
 {
-    (void)state;
     for (size_t k = 0; k < sizeof whole_shape / sizeof *whole_shape; k++) {
         struct model_image m;
         const struct glint_lens lens = open_shape(
@@ -254,7 +249,7 @@ static void test_whole_box(void **state)
 
 /* While the stop closes by 0.002 of itself, sides must move by less than a
  * hundredth of it. */
-static void test_moves_smoothly(void **state)
+TEST(moves_smoothly)
 {
     static struct glint_window_nodes nodes;
     static struct glint_transfer t;
@@ -263,7 +258,6 @@ static void test_moves_smoothly(void **state)
     struct seen last = {-1, 1, 0, 1, 0};
     double worst = 0;
 
-    (void)state;
     for (double opening = 0.9; opening > 0.005; opening *= 0.998) {
         struct seen now;
 
@@ -283,7 +277,7 @@ static void test_moves_smoothly(void **state)
 }
 
 /* Where nothing gets through, there must be no window. */
-static void test_closed(void **state)
+TEST(closed)
 {
     static const struct shape beside = {
         "beside", {P(0, 0), P(1, 0)}, {P(0, 1)}, {0.9, 0.1}, {0.5}, {0}, 1};
@@ -292,7 +286,6 @@ static void test_closed(void **state)
     struct model_image m;
     const struct glint_lens lens = open_shape(&beside, GLINT_BASIS_AUTO, &m);
 
-    (void)state;
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
     assert_int_equal(glint_window_find(&nodes, &t, (int32_t)(0.79 * ONE)), 0);
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
@@ -303,7 +296,7 @@ static void test_closed(void **state)
 }
 
 /* In an annular box the window must have a lower and an upper end. */
-static void test_annulus(void **state)
+TEST(annulus)
 {
     static struct glint_window_nodes nodes;
     static struct glint_transfer t;
@@ -314,7 +307,6 @@ static void test_annulus(void **state)
     const struct glint_lens lens = open_shape(&aside, GLINT_BASIS_AUTO, &m);
     double low, high;
 
-    (void)state;
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
     t.annulus = 1; /* The annulus begins at v = 1/2. */
     assert_int_equal(glint_window_find(&nodes, &t, ONE / 20), 1);
@@ -322,17 +314,4 @@ static void test_annulus(void **state)
     high = ldexp(glint_transfer_v(&t, 8, 8), -30);
     assert_true(low > 0.7 && low < 0.76 && high > 0.83 && high < 0.89);
     free(m.data);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_holds_what_is_seen),
-        cmocka_unit_test(test_whole_box),
-        cmocka_unit_test(test_moves_smoothly),
-        cmocka_unit_test(test_closed),
-        cmocka_unit_test(test_annulus),
-    };
-
-    return cmocka_run_group_tests_name("window", tests, NULL, NULL);
 }

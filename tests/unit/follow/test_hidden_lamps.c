@@ -6,14 +6,10 @@
 #include "glint/lamp_tracker.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/night.h"
+#include "support/test.h"
 
 enum { FPS30 = 33333 };
 
@@ -94,27 +90,24 @@ static void pass_behind_a_pole(int n_lamps)
     }
 }
 
-static void test_a_pole_makes_nothing_pop(void **state)
+TEST(a_pole_makes_nothing_pop)
 {
-    (void)state;
     pass_behind_a_pole(2);
 }
 
 /* The glow that remains must not count as white, though nothing in the picture
  * is brighter. */
-static void test_a_pole_hides_a_lamp_alone(void **state)
+TEST(a_pole_hides_a_lamp_alone)
 {
-    (void)state;
     pass_behind_a_pole(1);
 }
 
 /* White must be kept, ever less of it, for as long as a lamp is remembered. */
-static void test_white_is_kept_for_a_while(void **state)
+TEST(white_is_kept_for_a_while)
 {
     const struct night_lamp lamp = {160, 100, 5, 3};
     int frame = 0;
 
-    (void)state;
     open_night(320, 200, 1);
     assert_int_equal(glint_lamp_tracker_white_q15(night.tracks, FPS30), 0);
     night_step(&night, &lamp, 1, FPS30);
@@ -132,14 +125,13 @@ static void test_white_is_kept_for_a_while(void **state)
 
 /* Two lamps meet, until the finder takes them for one, and part again. Their
  * energy together must stay within bounds, and neither may jump. */
-static void test_merging_and_splitting(void **state)
+TEST(merging_and_splitting)
 {
     struct steps energy = {0, 0, 0, 0};
     double least = HUGE_VAL, both = 0, jump = 0;
     struct glint_lamp_track last[8];
     int n_last = 0, n_merged = 0;
 
-    (void)state;
     night_init(&night, 640, 200);
     night.sigma = 2;
     night.lights.merge_q15 = 32768 * 30 / 640;
@@ -174,16 +166,4 @@ static void test_merging_and_splitting(void **state)
     assert_true(least > 0.8 * both && energy.most < 1.2 * both);
     assert_true(jump < 5);
     night_close(&night);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_pole_makes_nothing_pop),
-        cmocka_unit_test(test_a_pole_hides_a_lamp_alone),
-        cmocka_unit_test(test_white_is_kept_for_a_while),
-        cmocka_unit_test(test_merging_and_splitting),
-    };
-
-    return cmocka_run_group_tests_name("hidden lamps", tests, NULL, NULL);
 }

@@ -6,17 +6,13 @@
 #include "glint/lamp_tracker.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/night.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 enum { FPS30 = 33333, FPS60 = 16667, FULL = 32768 };
 
@@ -37,19 +33,17 @@ static const struct glint_lamp_track *only_track(void)
 
 /* ------------------------------------------------------------ configuration */
 
-static void test_memory_is_exact(void **state)
+TEST(memory_is_exact)
 {
     struct glint_lamp_tracker_config cfg;
     struct glint_lamp_tracker *tracks;
     size_t bytes;
     void *mem;
 
-    (void)state;
     glint_lamp_tracker_defaults(&cfg, 1920, 1080);
     bytes = glint_lamp_tracker_bytes(&cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_lamp_tracker_init(&tracks, &cfg, mem, bytes),
-                     GLINT_OK);
+    assert_ok(glint_lamp_tracker_init(&tracks, &cfg, mem, bytes));
     assert_int_equal(glint_lamp_tracker_init(&tracks, &cfg, mem, bytes - 1),
                      GLINT_E_MEMORY);
     assert_int_equal(glint_lamp_tracker_init(&tracks, &cfg, mem, 1),
@@ -70,11 +64,10 @@ static void assert_refused(struct glint_lamp_tracker_config cfg)
                      GLINT_E_ARGUMENT);
 }
 
-static void test_bad_configurations_are_refused(void **state)
+TEST(bad_configurations_are_refused)
 {
     struct glint_lamp_tracker_config good, bad;
 
-    (void)state;
     glint_lamp_tracker_defaults(&good, 640, 480);
     assert_true(glint_lamp_tracker_bytes(&good) > 0);
     bad = good, bad.width = 0, assert_refused(bad);
@@ -121,7 +114,7 @@ static double mean(const struct moments *m)
 
 /* Six lamps must stand still over 300 frames with noise of 3 codes. The columns
  * printed are spots and tracks. */
-static void test_static_scene_stands_still(void **state)
+TEST(static_scene_stands_still)
 {
     static const struct night_lamp lamp[] = {
         {60.3, 50.7, 14, 3}, {160.8, 40.2, 8, 2},  {250.4, 60.9, 5, 4},
@@ -131,7 +124,6 @@ static void test_static_scene_stands_still(void **state)
     struct moments power[N][2] = {{{0, 0, 0}}}, total[2] = {{0, 0, 0}};
     uint32_t id[N];
 
-    (void)state;
     open_night(320, 200, 3);
     for (int frame = 0; frame < 300; frame++) {
         double sum = 0;
@@ -216,11 +208,10 @@ static double turns_of(double degrees)
     return deviation(&turn);
 }
 
-static void test_axes_are_steady_however_they_lie(void **state)
+TEST(axes_are_steady_however_they_lie)
 {
     const double lying = turns_of(0), standing = turns_of(90);
 
-    (void)state;
     print_message("axes: %.2f degrees lying, %.2f standing\n", lying, standing);
     assert_true(lying < 1 && standing < 1);
 }
@@ -258,11 +249,10 @@ static double sparkle_moves(int every, uint32_t seed)
     return furthest;
 }
 
-static void test_sparkle_moves_less_than_a_pixel(void **state)
+TEST(sparkle_moves_less_than_a_pixel)
 {
     double always = 0, rarely = 0;
 
-    (void)state;
     for (uint32_t seed = 1; seed <= 20; seed++) {
         always = fmax(always, sparkle_moves(1, seed));
         rarely = fmax(rarely, sparkle_moves(7, seed));
@@ -275,12 +265,11 @@ static void test_sparkle_moves_less_than_a_pixel(void **state)
 
 /* The brightest pixels of a lamp are about the upper threshold, so that its
  * spot is often faint: the track must stay. */
-static void test_hysteresis(void **state)
+TEST(hysteresis)
 {
     uint32_t id = 0;
     int n_faint = 0;
 
-    (void)state;
     open_night(320, 200, 0);
     for (int frame = 0; frame < 100; frame++) {
         const int code = frame == 0 ? 255 : 246 + rng_below(&night.seed, 4);
@@ -301,7 +290,7 @@ static void test_hysteresis(void **state)
 
 /* A spot that is faint from the start must begin no track, and a faint spot
  * much larger than a lamp, such as a wall, must not continue its track. */
-static void test_faint_spots_begin_no_track(void **state)
+TEST(faint_spots_begin_no_track)
 {
     struct glint_spot spot[2] = {{.x_q8 = 100 << 8,
                                   .y_q8 = 100 << 8,
@@ -309,7 +298,6 @@ static void test_faint_spots_begin_no_track(void **state)
                                   .flux_q16 = 40 << 16,
                                   .faint = 1}};
 
-    (void)state;
     open_night(320, 200, 0);
     assert_int_equal(glint_lamp_tracker_step(night.tracks, spot, 1, FPS30,
                                              night.track, NIGHT_MAX),
@@ -366,12 +354,11 @@ static bool all_settled(void)
 /* Whatever noise or motion there was before, tracks must be exactly the spots
  * of a picture that repeats: after attack + 1 s or five pictures, at any
  * rate. */
-static void test_repeated_pictures_are_met_exactly(void **state)
+TEST(repeated_pictures_are_met_exactly)
 {
     static const int32_t rates[] = {1000, FPS60, FPS30, 200000, 1000000};
     double slowest = 0;
 
-    (void)state;
     for (int k = 0; k < 5 * 20; k++) {
         struct night_lamp lamp[3] = {
             {80, 60, 7, 2}, {200, 110, 4, 1.2}, {130, 150, 2, 5}};
@@ -409,11 +396,10 @@ static void test_repeated_pictures_are_met_exactly(void **state)
 
 /* A lamp that moves must be followed within half a pixel, at speeds of 0.05 to
  * 12 pixels a frame, without noise and with it. */
-static void test_a_moving_lamp_does_not_lag(void **state)
+TEST(a_moving_lamp_does_not_lag)
 {
     static const double speeds[] = {0.05, 0.1, 0.2, 0.5, 1, 2, 4, 8, 12};
 
-    (void)state;
     for (int k = 0; k < 18; k++) {
         const double speed = speeds[k % 9];
         struct moments lag = {0, 0, 0};
@@ -445,9 +431,8 @@ static void test_a_moving_lamp_does_not_lag(void **state)
 
 /* A lamp that stood still for two seconds and then moves by 2 pixels a frame
  * must be followed from the first frame on. */
-static void test_a_lamp_that_starts_is_followed(void **state)
+TEST(a_lamp_that_starts_is_followed)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         open_night(320, 200, 2 * k);
         for (int frame = 0; frame < 80; frame++) {
@@ -464,9 +449,8 @@ static void test_a_lamp_that_starts_is_followed(void **state)
 /* After a second a lamp may come back 25 pixels off, which is too far from one
  * picture to the next (0.06 of 320 is 19 pixels). Its track must rise from
  * where the lamp is now. */
-static void test_a_lamp_that_comes_back(void **state)
+TEST(a_lamp_that_comes_back)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct night_lamp lamp[2] = {{60, 60, 5, 3}, {200, 100, 5, 3}};
 
@@ -498,11 +482,10 @@ static void test_a_lamp_that_comes_back(void **state)
 
 /* Two lamps that meet and pass must keep their numbers, as their motion
  * distinguishes them. */
-static void test_lamps_that_pass_keep_their_numbers(void **state)
+TEST(lamps_that_pass_keep_their_numbers)
 {
     uint32_t id[2] = {0, 0};
 
-    (void)state;
     open_night(640, 200, 2);
     for (int frame = 0; frame < 100; frame++) {
         const struct night_lamp lamp[2] = {{120 + 4.0 * frame, 92, 4, 3},
@@ -524,12 +507,11 @@ static void test_lamps_that_pass_keep_their_numbers(void **state)
 
 /* A fast lamp leaves to the right: its track must continue outside at that
  * speed, and fade in 400 ms by steps of at most 1 / 12. */
-static void test_leaving_lamp_moves_on_and_fades(void **state)
+TEST(leaving_lamp_moves_on_and_fades)
 {
     double last_x = 0, last_power = 0;
     int n_outside = 0, n_leaving = 0;
 
-    (void)state;
     open_night(320, 200, 2);
     for (int frame = 0; frame < 50; frame++) {
         const struct night_lamp lamp = {100 + 9.0 * frame, 100, 5, 3};
@@ -581,9 +563,8 @@ static double level_after(int32_t us, int32_t elapsed_us, int32_t attack_ms)
     return level;
 }
 
-static void test_rise_does_not_depend_on_the_rate(void **state)
+TEST(rise_does_not_depend_on_the_rate)
 {
-    (void)state;
     for (int k = 1; k <= 10; k++) {
         const double at30 = level_after(k * FPS30, FPS30, 300);
         const double at60 = level_after(k * FPS30, FPS60, 300);
@@ -598,14 +579,13 @@ static void test_rise_does_not_depend_on_the_rate(void **state)
 
 /* Where lamps are elsewhere from one picture to the next, all old tracks must
  * be gone and all new ones at full level at once. */
-static void test_cut_restarts_in_one_frame(void **state)
+TEST(cut_restarts_in_one_frame)
 {
     static const struct night_lamp before[] = {
         {60, 50, 6, 3}, {200, 120, 5, 2}, {120, 160, 3, 4}};
     static const struct night_lamp after[] = {
         {110, 60, 4, 3}, {260, 40, 7, 2}, {62, 120, 3, 4}, {202, 124, 2, 3}};
 
-    (void)state;
     open_night(320, 200, 3);
     for (int frame = 0; frame < 20; frame++) {
         night_step(&night, before, 3, FPS30);
@@ -636,12 +616,11 @@ static void test_cut_restarts_in_one_frame(void **state)
 
 /* Three lamps that go or come at once must be a cut to the dark or from it; two
  * may be hidden, and must fade. */
-static void test_cut_to_the_dark(void **state)
+TEST(cut_to_the_dark)
 {
     static const struct night_lamp lamp[] = {
         {60, 50, 6, 3}, {200, 120, 5, 2}, {120, 160, 4, 4}};
 
-    (void)state;
     for (int n = 2; n <= 3; n++) {
         open_night(320, 200, 2);
         for (int frame = 0; frame < 5; frame++)
@@ -663,9 +642,8 @@ static void test_cut_to_the_dark(void **state)
 
 /* A lamp of three that goes out, another one that comes on, and a pan must be
  * no cuts. */
-static void test_what_is_no_cut(void **state)
+TEST(what_is_no_cut)
 {
-    (void)state;
     open_night(640, 200, 3);
     for (int frame = 0; frame < 60; frame++) {
         const double pan = frame < 20 ? 0 : 7.0 * (frame - 20);
@@ -696,12 +674,11 @@ static double star_of(const struct glint_lamp_track *t)
 /* The power of a clipped lamp in noise of 8 codes, which is a guess from what
  * is left of its rim, must neither jump nor wander; where it halves for good
  * the tracks must have it within a second. */
-static void test_power_in_noise(void **state)
+TEST(power_in_noise)
 {
     static const struct night_lamp lamps[] = {
         {80, 60, 4, 1.5}, {80, 60, 1.5, 6}, {80, 60, 2, 6}};
 
-    (void)state;
     for (int k = 0; k < 3; k++) {
         struct night_lamp lamp = lamps[k];
         double last = 0, least = HUGE_VAL, most = 0, step = 0;
@@ -738,13 +715,12 @@ static void test_power_in_noise(void **state)
 /* Of ten lamps four are shown: these must stay the same four while noise makes
  * others take the fourth place of the finder in turns. A lamp that gets much
  * brighter must fade in while another one fades out. */
-static void test_cap_does_not_flicker(void **state)
+TEST(cap_does_not_flicker)
 {
     struct night_lamp lamp[10];
     int turns = 0, n = 0;
     uint32_t last = 0;
 
-    (void)state;
     night_init(&night, 320, 200);
     night.sigma = 3;
     night.cfg.max_shown = 4;
@@ -776,11 +752,10 @@ static void test_cap_does_not_flicker(void **state)
 
 /* With more lights than tracks, the five brightest must be shown in each
  * picture. */
-static void test_more_lights_than_tracks(void **state)
+TEST(more_lights_than_tracks)
 {
     static struct glint_spot spot[NIGHT_MAX];
 
-    (void)state;
     night_init(&night, 640, 480);
     night.cfg.max_tracks = night.cfg.max_shown = 8;
     assert_true(night_open(&night));
@@ -798,32 +773,4 @@ static void test_more_lights_than_tracks(void **state)
             assert_true(night.track[i].flux_q16 >= 97 << 16);
     }
     night_close(&night);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_memory_is_exact),
-        cmocka_unit_test(test_bad_configurations_are_refused),
-        cmocka_unit_test(test_static_scene_stands_still),
-        cmocka_unit_test(test_axes_are_steady_however_they_lie),
-        cmocka_unit_test(test_sparkle_moves_less_than_a_pixel),
-        cmocka_unit_test(test_hysteresis),
-        cmocka_unit_test(test_faint_spots_begin_no_track),
-        cmocka_unit_test(test_repeated_pictures_are_met_exactly),
-        cmocka_unit_test(test_a_moving_lamp_does_not_lag),
-        cmocka_unit_test(test_a_lamp_that_starts_is_followed),
-        cmocka_unit_test(test_a_lamp_that_comes_back),
-        cmocka_unit_test(test_lamps_that_pass_keep_their_numbers),
-        cmocka_unit_test(test_leaving_lamp_moves_on_and_fades),
-        cmocka_unit_test(test_rise_does_not_depend_on_the_rate),
-        cmocka_unit_test(test_cut_restarts_in_one_frame),
-        cmocka_unit_test(test_cut_to_the_dark),
-        cmocka_unit_test(test_what_is_no_cut),
-        cmocka_unit_test(test_power_in_noise),
-        cmocka_unit_test(test_cap_does_not_flicker),
-        cmocka_unit_test(test_more_lights_than_tracks),
-    };
-
-    return cmocka_run_group_tests_name("tracks", tests, NULL, NULL);
 }

@@ -5,16 +5,12 @@
  */
 #include "glint/lamp_tracker.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/night.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 static struct night night;
 
@@ -91,14 +87,13 @@ static void mix(struct glint_spot *mixed, const struct glint_spot *spot, int n)
 
 /* Two trackers get the same spots, one of them shuffled, and must give the same
  * tracks. Some spots come back from step to step, moved a little. */
-static void test_order_of_spots_changes_nothing(void **state)
+TEST(order_of_spots_changes_nothing)
 {
     static struct glint_spot spot[NIGHT_MAX], mixed[NIGHT_MAX];
     static struct glint_lamp_track track[NIGHT_MAX];
     struct glint_lamp_tracker *other;
     void *mem;
 
-    (void)state;
     for (int round = 0; round < 40; round++) {
         int n = 0;
 
@@ -110,10 +105,8 @@ static void test_order_of_spots_changes_nothing(void **state)
         assert_int_equal(
             posix_memalign(&mem, 64, glint_lamp_tracker_bytes(&night.cfg)), 0);
         memset(mem, 0xa5, glint_lamp_tracker_bytes(&night.cfg));
-        assert_int_equal(
-            glint_lamp_tracker_init(&other, &night.cfg, mem,
-                                    glint_lamp_tracker_bytes(&night.cfg)),
-            GLINT_OK);
+        assert_ok(glint_lamp_tracker_init(
+            &other, &night.cfg, mem, glint_lamp_tracker_bytes(&night.cfg)));
         for (int step = 0; step < 50; step++) {
             const int32_t us = any_time();
             const int n_new =
@@ -146,13 +139,4 @@ static void test_order_of_spots_changes_nothing(void **state)
         free(mem);
         night_close(&night);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order_of_spots_changes_nothing),
-    };
-
-    return cmocka_run_group_tests_name("lamp_tracker_any", tests, NULL, NULL);
 }

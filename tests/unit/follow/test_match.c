@@ -6,16 +6,12 @@
 #include "support/rng.h"
 #include "follow/match.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/arena.h"
+#include "support/test.h"
 
 enum { MAX = 1024 };
 
@@ -109,12 +105,11 @@ static int match_slowly(int n_spots, int32_t *partner)
 
 /* No two costs are equal here, so the pairs must be those of the slow
  * search. */
-static void test_against_all_pairs(void **state)
+TEST(against_all_pairs)
 {
     static int32_t partner[MAX];
     int n_matched = 0;
 
-    (void)state;
     for (int round = 0; round < 300; round++) {
         const int is_near = round % 3 == 0; /* up to eight for the same spots */
         const int n_seekers = rng_below(&seed, is_near ? 9 : 40);
@@ -150,12 +145,11 @@ static int count_nearer(const struct glint_seeker *s, int at)
 /* With as many seekers and spots as there can be, all in reach of each other,
  * no spot may be given twice, and each must be one of its seeker's eight
  * nearest. */
-static void test_crowd(void **state)
+TEST(crowd)
 {
     static uint8_t seen[MAX];
     int n = 0;
 
-    (void)state;
     scatter(MAX, MAX, 30 << 8);
     for (int i = 0; i < MAX; i++)
         match.seeker[i].reach_q8 = 1 << 23;
@@ -177,11 +171,10 @@ static void test_crowd(void **state)
 
 /* A spot as far away as a seeker reaches must be taken, and one farther away
  * must not. */
-static void test_reach(void **state)
+TEST(reach)
 {
     static const int32_t way[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
 
-    (void)state;
     for (int k = 0; k < 4; k++)
         for (int more = 0; more < 2; more++) {
             match.n_seekers = 1;
@@ -239,11 +232,10 @@ static void take_powers(int64_t power[MAX + 1])
 
 /* Among pairs that cost the same, ids and the members of spots must decide, and
  * not the order in which seekers and spots come. */
-static void test_order_is_no_matter(void **state)
+TEST(order_is_no_matter)
 {
     static int64_t power[MAX + 1], again[MAX + 1];
 
-    (void)state;
     for (int round = 0; round < 100; round++) {
         const int n = 1 + rng_below(&seed, 60);
 
@@ -260,14 +252,4 @@ static void test_order_is_no_matter(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_against_all_pairs),
-        cmocka_unit_test(test_crowd),
-        cmocka_unit_test(test_reach),
-        cmocka_unit_test(test_order_is_no_matter),
-    };
-
-    return cmocka_run_group_tests_name("match", tests, set_up, tear_down);
-}
+TEST_GROUP(set_up, tear_down);

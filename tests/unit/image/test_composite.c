@@ -4,16 +4,13 @@
  * and size, and change nothing else.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/composite.h"
 #include "glint/kernels.h"
+#include "support/test.h"
 
 enum { MOST = 150, N_MOST = MOST * MOST };
 
@@ -43,8 +40,7 @@ static struct glint_composite *make(const struct glint_image *image,
     struct glint_composite *c;
 
     assert_int_equal(posix_memalign(mem, 64, bytes), 0);
-    assert_int_equal(glint_composite_init(&c, image, sets, 0, *mem, bytes),
-                     GLINT_OK);
+    assert_ok(glint_composite_init(&c, image, sets, 0, *mem, bytes));
     return c;
 }
 
@@ -71,13 +67,12 @@ static double code_of(double x)
                                           : 1.055 * pow(x, 1 / 2.4) - 0.055);
 }
 
-static void test_definition(void **state)
+TEST(definition)
 {
     static uint8_t rgb[3 * N_MOST];
     struct glint_image image = {
         .format = GLINT_RGB24, .width = 131, .height = 77};
 
-    (void)state;
     for (int code = 0; code < 256; code += 15) {
         memset(rgb, code, sizeof rgb);
         glint_image_place(&image, rgb);
@@ -97,12 +92,11 @@ static void test_definition(void **state)
 
 /* All instruction sets must give the same bits; pixels without light and guard
  * bytes must stay. */
-static void test_formats(void **state)
+TEST(formats)
 {
     enum { GUARD = 256, BYTES = 3 * N_MOST + 2 * GUARD };
     static uint8_t plain[BYTES], fast[BYTES];
 
-    (void)state;
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         if (format == GLINT_LINEAR_Q20 || format == GLINT_XRGB8888)
             continue;
@@ -132,7 +126,7 @@ static void test_formats(void **state)
     }
 }
 
-static void test_refusals(void **state)
+TEST(refusals)
 {
     const struct glint_image linear = {
         .format = GLINT_LINEAR_Q20, .width = 8, .height = 8};
@@ -142,7 +136,6 @@ static void test_refusals(void **state)
     struct glint_composite *c;
     void *mem;
 
-    (void)state;
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
     assert_int_equal(glint_composite_init(&c, &linear, 0, 0, mem, bytes),
                      GLINT_E_ARGUMENT);
@@ -151,18 +144,6 @@ static void test_refusals(void **state)
         GLINT_E_ARGUMENT);
     assert_int_equal(glint_composite_init(&c, &image, 0, 0, mem, bytes - 1),
                      GLINT_E_MEMORY);
-    assert_int_equal(glint_composite_init(&c, &image, 0, 0, mem, bytes),
-                     GLINT_OK);
+    assert_ok(glint_composite_init(&c, &image, 0, 0, mem, bytes));
     free(mem);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_definition),
-        cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_refusals),
-    };
-
-    return cmocka_run_group_tests_name("composite", tests, NULL, NULL);
 }

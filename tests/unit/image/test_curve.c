@@ -6,15 +6,11 @@
 #include "image/curve.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "kernels/kernels.h"
 #include "image/mix.h"
+#include "support/test.h"
 
 static const enum glint_tone transfers[2] = {GLINT_TONE_SRGB, GLINT_TONE_BT709};
 
@@ -35,11 +31,10 @@ static double code_of(enum glint_tone transfer, double light)
     return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
 }
 
-static void test_codes_by_hand(void **state)
+TEST(codes_by_hand)
 {
     struct glint_curve curve;
 
-    (void)state;
     glint_curve_init(&curve, GLINT_TONE_SRGB);
     assert_int_equal(curve.decode_q20[0], 0);
     assert_int_equal(curve.decode_q20[10], 3183);    /* 10 / 255 / 12.92 */
@@ -51,9 +46,8 @@ static void test_codes_by_hand(void **state)
     assert_int_equal(curve.decode_q20[255], 1 << 20);
 }
 
-static void test_decode_is_the_standard_at_codes(void **state)
+TEST(decode_is_the_standard_at_codes)
 {
-    (void)state;
     for (int t = 0; t < 2; t++) {
         struct glint_curve curve;
 
@@ -68,9 +62,8 @@ static void test_decode_is_the_standard_at_codes(void **state)
     }
 }
 
-static void test_decode_rises(void **state)
+TEST(decode_rises)
 {
-    (void)state;
     for (int t = 0; t < 2; t++) {
         struct glint_curve curve;
 
@@ -121,9 +114,8 @@ static struct errors errors_of(enum glint_tone transfer)
 
 /* Added light must be right within 0.62 code and 0.3 RMS; rounding alone takes
  * 0.5 and 0.289. */
-static void test_added_light(void **state)
+TEST(added_light)
 {
-    (void)state;
     for (int t = 0; t < 2; t++) {
         const struct errors e = errors_of(transfers[t]);
         const double rms = sqrt(e.squares / e.n);
@@ -148,11 +140,10 @@ static void assert_rgb(const struct glint_ycc *ycc, int y, int cb, int cr,
 
 /* The standards' colour bars of 100 %, which they round to whole codes, must be
  * right within 1.5 codes. */
-static void test_ycc_bars(void **state)
+TEST(ycc_bars)
 {
     struct glint_ycc ycc;
 
-    (void)state;
     glint_ycc_init(&ycc, GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
     assert_rgb(&ycc, 16, 128, 128, 0, 0, 0, 0);
     assert_rgb(&ycc, 235, 128, 128, 255, 255, 255, 0);
@@ -188,11 +179,10 @@ static void check_inverse(const struct glint_ycc *ycc, int y_q15)
     }
 }
 
-static void test_ycc_matrices_are_inverse(void **state)
+TEST(ycc_matrices_are_inverse)
 {
     struct glint_ycc ycc;
 
-    (void)state;
     for (int m = 0; m < 2; m++) {
         const enum glint_matrix matrix =
             m ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
@@ -202,18 +192,4 @@ static void test_ycc_matrices_are_inverse(void **state)
         glint_ycc_init(&ycc, matrix, GLINT_RANGE_LIMITED);
         check_inverse(&ycc, 28142); /* 219 / 255 */
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_codes_by_hand),
-        cmocka_unit_test(test_decode_is_the_standard_at_codes),
-        cmocka_unit_test(test_decode_rises),
-        cmocka_unit_test(test_added_light),
-        cmocka_unit_test(test_ycc_bars),
-        cmocka_unit_test(test_ycc_matrices_are_inverse),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

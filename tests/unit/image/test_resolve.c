@@ -8,16 +8,12 @@
 #include "image/quads.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/kernels.h"
 #include "linux/sets.h"
+#include "support/test.h"
 
 enum {
     MAX_SIDE = 40,
@@ -346,17 +342,15 @@ static void check_random(int chroma, double within)
             }
 }
 
-static void test_light_adds_up(void **state)
+TEST(light_adds_up)
 {
-    (void)state;
     for (int round = 0; round < 4; round++)
         check_random(40, 0.65);
 }
 
 /* All codes must do, also those of colours far outside the RGB cube. */
-static void test_wild_codes(void **state)
+TEST(wild_codes)
 {
-    (void)state;
     for (int round = 0; round < 4; round++)
         check_random(128, 0.65);
 }
@@ -378,17 +372,15 @@ static void check_untouched(int dither)
         }
 }
 
-static void test_untouched_pixels_stay(void **state)
+TEST(untouched_pixels_stay)
 {
-    (void)state;
     check_untouched(0);
     check_untouched(1);
 }
 
 /* Light that is too faint to move a code by half must change nothing. */
-static void test_faint_light_changes_nothing(void **state)
+TEST(faint_light_changes_nothing)
 {
-    (void)state;
     for (int f = 0; f < 5; f++) {
         set_up(formats[f], 33, 18, 0);
         for (int i = 0; i < glint_image_planes(formats[f]); i++)
@@ -402,9 +394,8 @@ static void test_faint_light_changes_nothing(void **state)
     }
 }
 
-static void test_white_saturates(void **state)
+TEST(white_saturates)
 {
-    (void)state;
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 16; k++) {
             set_up(formats[f], 7, 5, k & 8);
@@ -428,9 +419,8 @@ static void test_white_saturates(void **state)
 
 /* sRGB by hand: code 128 has a light of 226346 / 2^20; two and a half times
  * that is code 194, four times is 239, and a quarter of white is 137. */
-static void test_codes_by_hand(void **state)
+TEST(codes_by_hand)
 {
-    (void)state;
     set_up(GLINT_RGB24, 1, 1, 0);
     memset(sample(0, 0, 0), 128, 3);
     fixture.light_q20[0][0] = 3 * 226346 / 2;
@@ -444,9 +434,8 @@ static void test_codes_by_hand(void **state)
 
 /* A lit pixel of four must move their chroma sample by a quarter, and one that
  * is alone in the corner of an odd picture by all of it. */
-static void test_chroma_is_the_mean_of_those_that_exist(void **state)
+TEST(chroma_is_the_mean_of_those_that_exist)
 {
-    (void)state;
     set_up(GLINT_I420, 3, 3, 0);
     for (int i = 0; i < 3; i++)
         fill(i, i ? 128 : 0, i ? 128 : 0);
@@ -463,9 +452,8 @@ static void test_chroma_is_the_mean_of_those_that_exist(void **state)
 }
 
 /* With dither, the mean of an even picture must be right within 0.1 code. */
-static void test_dither_has_the_right_mean(void **state)
+TEST(dither_has_the_right_mean)
 {
-    (void)state;
     for (int light = 0; light < 9000; light += 97) {
         int total = 0;
         double want;
@@ -486,11 +474,10 @@ static void test_dither_has_the_right_mean(void **state)
 
 /* The pattern must have each of 64 thresholds once, and neighbours far
  * apart. */
-static void test_dither_pattern(void **state)
+TEST(dither_pattern)
 {
     int seen[64] = {0};
 
-    (void)state;
     set_up(GLINT_GREY, 8, 8, 0);
     glint_resolve_init(&resolve, &fixture.image, 1, 0);
     for (int k = 0; k < 64; k++)
@@ -503,9 +490,8 @@ static void test_dither_pattern(void **state)
     assert_int_equal(resolve.round_q7[1][0], 97);
 }
 
-static void test_dither_in_ycc_stays_within_a_code(void **state)
+TEST(dither_in_ycc_stays_within_a_code)
 {
-    (void)state;
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 16; k++) {
             set_up(formats[f], 33, 18, k & 8);
@@ -521,7 +507,7 @@ static void test_dither_in_ycc_stays_within_a_code(void **state)
         }
 }
 
-static void test_linear_adds_and_saturates(void **state)
+TEST(linear_adds_and_saturates)
 {
     static int32_t px_q20[2][9]; /* three pixels a row, the third unused */
     const int32_t light_q20[3][2][2] = {{{5, INT32_MAX}, {-7, 1}},
@@ -536,7 +522,6 @@ static void test_linear_adds_and_saturates(void **state)
                                       .plane = {(uint8_t *)px_q20},
                                       .stride_bytes = {sizeof px_q20[0]}};
 
-    (void)state;
     for (int k = 0; k < 18; k++)
         px_q20[k / 9][k % 9] = 10;
     for (int y = 0; y < 2; y++)
@@ -567,10 +552,9 @@ static void copy_codes(const struct glint_image *to,
                     *glint_layout_at(lf, from, i, x, y);
 }
 
-static void test_layouts_agree(void **state)
+TEST(layouts_agree)
 {
     static uint8_t twin_mem[4 * 34 * 18], back_mem[4 * 34 * 18];
-    (void)state;
     for (size_t t = 0; t < sizeof twins / sizeof *twins; t++)
         for (int s = 0; s < N_SIZES; s++) {
             struct glint_image twin, back;
@@ -606,14 +590,13 @@ static void test_layouts_agree(void **state)
 
 /* A row of packed pixels must be the same in one stretch, in which vectors end
  * anywhere, and in stretches of eight. */
-static void test_long_stretches_are_short_ones(void **state)
+TEST(long_stretches_are_short_ones)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
     static struct glint_light_rows light, part;
     static struct glint_resolve_rows rows;
     uint8_t want[2 * 64], got[2 * 64];
 
-    (void)state;
     for (int n = 2; n <= 64; n += 2)
         for (int k = 0; k < 4; k++) {
             struct glint_image image = {
@@ -675,14 +658,13 @@ static void add_quads(const struct glint_image *image, int dither,
     }
 }
 
-static void test_quads_of_even_pictures(void **state)
+TEST(quads_of_even_pictures)
 {
     static const enum glint_pixel_format every[] = {
         GLINT_YUYV, GLINT_UYVY,  GLINT_I420,     GLINT_NV12,
         GLINT_I422, GLINT_RGB24, GLINT_XRGB8888, GLINT_GREY};
     static uint8_t even[3][PLANE_BYTES], want[3][PLANE_BYTES];
 
-    (void)state;
     for (size_t f = 0; f < sizeof every / sizeof *every; f++)
         for (int size = 0; size < 40; size++) {
             set_up(every[f], 1 + size, 1 + (size * 7) % 40, 0);
@@ -711,11 +693,10 @@ static void test_quads_of_even_pictures(void **state)
 /* Where the four pixels differ, their change falls towards white: no light may
  * make one darker or whiter than white, or change their order, and much light
  * must make all four white. */
-static void test_quads_of_edges(void **state)
+TEST(quads_of_edges)
 {
     static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};
 
-    (void)state;
     for (int strength = 0; strength <= 24; strength++) {
         set_up(GLINT_YUYV, 32, 2, 0);
         fixture.image.range = GLINT_RANGE_LIMITED;
@@ -769,9 +750,8 @@ static double quads_off(int differ)
     return sqrt(sum2 / n);
 }
 
-static void test_quads_are_near(void **state)
+TEST(quads_are_near)
 {
-    (void)state;
     assert_true(quads_off(0) < 1e-9);
     assert_true(quads_off(8) < 0.5);
     assert_true(quads_off(40) < 1.5);
@@ -779,7 +759,7 @@ static void test_quads_are_near(void **state)
 
 /* A stretch of quads must be as many short ones, whatever remains at its
  * end. */
-static void test_long_quads_are_short_ones(void **state)
+TEST(long_quads_are_short_ones)
 {
     static const enum glint_pixel_format some[] = {GLINT_YUYV, GLINT_UYVY,
                                                    GLINT_I420};
@@ -787,7 +767,6 @@ static void test_long_quads_are_short_ones(void **state)
     static struct glint_quads_rows rows;
     static uint8_t want[PLANE_BYTES], got[PLANE_BYTES];
 
-    (void)state;
     for (int n = 1; n <= 64; n++)
         for (int k = 0; k < 6; k++) {
             struct glint_image image = {
@@ -822,13 +801,12 @@ static void test_long_quads_are_short_ones(void **state)
 
 /* All codes of RGB565 must stay without light, and have the largest green under
  * much green light. */
-static void test_565(void **state)
+TEST(writes_565)
 {
     static uint8_t mem[2 * 32 * 32], before_mem[2 * 32 * 32];
     struct glint_image image = {
         .format = GLINT_RGB565, .width = 32, .height = 32};
 
-    (void)state;
     glint_image_place(&image, mem);
     for (int block = 0; block < 64; block++) {
         for (int k = 0; k < 1024; k++) {
@@ -850,11 +828,10 @@ static void test_565(void **state)
 }
 
 /* The bytes of fixed pictures must be the same on every machine. */
-static void test_same_on_every_machine(void **state)
+TEST(same_on_every_machine)
 {
     uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */
 
-    (void)state;
     seed = 12345;
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 8; k++) {
@@ -870,31 +847,4 @@ static void test_same_on_every_machine(void **state)
         }
     if (hash != UINT64_C(0x771b307552988e33))
         fail_msg("the bytes are %llx", (unsigned long long)hash);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_light_adds_up),
-        cmocka_unit_test(test_wild_codes),
-        cmocka_unit_test(test_untouched_pixels_stay),
-        cmocka_unit_test(test_faint_light_changes_nothing),
-        cmocka_unit_test(test_white_saturates),
-        cmocka_unit_test(test_codes_by_hand),
-        cmocka_unit_test(test_chroma_is_the_mean_of_those_that_exist),
-        cmocka_unit_test(test_dither_has_the_right_mean),
-        cmocka_unit_test(test_dither_pattern),
-        cmocka_unit_test(test_dither_in_ycc_stays_within_a_code),
-        cmocka_unit_test(test_linear_adds_and_saturates),
-        cmocka_unit_test(test_layouts_agree),
-        cmocka_unit_test(test_long_stretches_are_short_ones),
-        cmocka_unit_test(test_quads_of_even_pictures),
-        cmocka_unit_test(test_quads_of_edges),
-        cmocka_unit_test(test_quads_are_near),
-        cmocka_unit_test(test_long_quads_are_short_ones),
-        cmocka_unit_test(test_565),
-        cmocka_unit_test(test_same_on_every_machine),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

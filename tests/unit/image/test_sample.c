@@ -2,15 +2,11 @@
  *
  * Codes that are sampled at a few places of pictures of every format.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/canvas.h"
+#include "support/test.h"
 
 enum { WIDTH = 50, HEIGHT = 30, COLUMNS = 10, ROWS = 3 };
 
@@ -61,9 +57,8 @@ static void check_format(enum glint_pixel_format format, enum glint_range range)
     free(image.plane[0]);
 }
 
-static void test_formats(void **state)
+TEST(formats)
 {
-    (void)state;
     for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++)
         if (f != GLINT_LINEAR_Q20)
             check_format((enum glint_pixel_format)f, GLINT_RANGE_FULL);
@@ -87,13 +82,12 @@ static void check_orange(enum glint_pixel_format format, const uint8_t *bytes,
     free(image.plane[0]);
 }
 
-static void test_colours(void **state)
+TEST(colours)
 {
     static const uint8_t rgb[] = {255, 96, 24}, bgrx[] = {24, 96, 255, 0};
     static const uint8_t rgbx[] = {255, 96, 24, 0};
     static const uint8_t packed[] = {0x03, 0xfb}; /* RGB565 31, 24, 3 */
 
-    (void)state;
     check_orange(GLINT_RGB24, rgb, 3);
     check_orange(GLINT_BGR24, bgrx, 3);
     check_orange(GLINT_XRGB8888, bgrx, 4);
@@ -103,13 +97,12 @@ static void test_colours(void **state)
 
 /* A picture smaller than the samples must give its pixel everywhere; a linear
  * one has no codes and must give 0. */
-static void test_sizes(void **state)
+TEST(sizes)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 1, 1);
     static int32_t linear[3] = {1 << 20, 1 << 20, 1 << 20};
     uint8_t rgb[ROWS][COLUMNS][3];
 
-    (void)state;
     canvas_set_grey(&image, 0, 0, 77);
     glint_image_sample(&image, COLUMNS, ROWS, rgb[0][0]);
     assert_int_equal(rgb[0][0][0], 77);
@@ -120,15 +113,4 @@ static void test_sizes(void **state)
     glint_image_place(&image, linear);
     glint_image_sample(&image, 1, 1, rgb[0][0]);
     assert_int_equal(rgb[0][0][1], 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_colours),
-        cmocka_unit_test(test_sizes),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

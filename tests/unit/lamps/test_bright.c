@@ -8,16 +8,12 @@
 #include "lamps/bright_code.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/arena.h"
+#include "support/test.h"
 
 enum { HEIGHT = 6 };
 
@@ -203,12 +199,11 @@ static void check_scan(struct glint_bright *b, const struct glint_image *image,
         assert_int_equal(n_marked, 0);
 }
 
-static void test_scan_against_every_pixel(void **state)
+TEST(scan_against_every_pixel)
 {
     static const int widths[] = {1, 2, 31, 32, 33, 64, 97, 160};
     static const int rares[] = {2, 50, 2000};
 
-    (void)state;
     for (int round = 0; round < N_FORMATS * 8 * 3 * 2; round++) {
         struct glint_image image = canvas_new(
             formats[round % N_FORMATS], widths[round / N_FORMATS % 8], HEIGHT);
@@ -230,13 +225,12 @@ static void test_scan_against_every_pixel(void **state)
 
 /* A single pixel of exactly the threshold must be found anywhere, and a pixel
  * of a code less must not. */
-static void test_no_pixel_is_missed(void **state)
+TEST(no_pixel_is_missed)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 96, HEIGHT);
     struct glint_bright *b;
     void *mem;
 
-    (void)state;
     b = new_bright(image.width, &mem);
     for (int low = 1; low <= 250; low++)
         for (int x = 0; x < 96; x++) {
@@ -260,11 +254,10 @@ static void test_no_pixel_is_missed(void **state)
 
 /* In a row of one dim grey the one code that differs must be judged, in the
  * four blocks that are looked at together and in the fifth. */
-static void test_no_colour_is_missed(void **state)
+TEST(no_colour_is_missed)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
 
-    (void)state;
     for (int round = 0; round < 2000; round++) {
         struct glint_image image = canvas_new(packed[round % 2], 160, HEIGHT);
         const int chroma_at = round % 2 ? 0 : 1;
@@ -288,15 +281,4 @@ static void test_no_colour_is_missed(void **state)
         free(mem);
         free(image.plane[0]);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scan_against_every_pixel),
-        cmocka_unit_test(test_no_pixel_is_missed),
-        cmocka_unit_test(test_no_colour_is_missed),
-    };
-
-    return cmocka_run_group_tests_name("bright", tests, NULL, NULL);
 }

@@ -6,19 +6,15 @@
 #include "glint/lamps.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "lamps/regions.h"
 #include "support/canvas.h"
 #include "support/finder.h"
 #include "support/region_pixels.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 /* Returns noise of standard deviation SIGMA, nearly normal: a sum of eight
  * uniform numbers. */
@@ -32,19 +28,17 @@ static double draw_noise(double sigma)
 }
 /* ------------------------------------------------------------ configuration */
 
-static void test_memory_is_exact(void **state)
+TEST(memory_is_exact)
 {
     struct glint_lamp_finder *finder;
     struct glint_lamp_finder_config cfg;
     size_t bytes;
     void *mem;
 
-    (void)state;
     glint_lamp_finder_defaults(&cfg, 1302, 953);
     bytes = glint_lamp_finder_bytes(&cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem, bytes),
-                     GLINT_OK);
+    assert_ok(glint_lamp_finder_init(&finder, &cfg, mem, bytes));
     assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem, bytes - 1),
                      GLINT_E_MEMORY);
     assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem, 1),
@@ -65,11 +59,10 @@ static void assert_refused(struct glint_lamp_finder_config cfg)
                      GLINT_E_ARGUMENT);
 }
 
-static void test_bad_configurations_are_refused(void **state)
+TEST(bad_configurations_are_refused)
 {
     struct glint_lamp_finder_config good, bad;
 
-    (void)state;
     glint_lamp_finder_defaults(&good, 640, 480);
     assert_true(glint_lamp_finder_bytes(&good) > 0);
     bad = good, bad.width = 0, assert_refused(bad);
@@ -90,11 +83,10 @@ static void test_bad_configurations_are_refused(void **state)
     bad = good, bad.keep_faint = 2, assert_refused(bad);
 }
 
-static void test_defaults_are_valid_for_every_size(void **state)
+TEST(defaults_are_valid_for_every_size)
 {
     static const int sides[] = {1, 2, 100, 1080, GLINT_MAX_SIDE};
 
-    (void)state;
     for (int i = 0; i < 25; i++) {
         struct glint_lamp_finder_config cfg;
 
@@ -105,12 +97,11 @@ static void test_defaults_are_valid_for_every_size(void **state)
 
 /* ---------------------------------------------------------------- one light */
 
-static void test_one_pixel(void **state)
+TEST(one_pixel)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 1, 1);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
 
-    (void)state;
     assert_int_equal(finder_find(&cfg, &image), 0);
     canvas_set_rgb(&image, 0, 0, 255, 255, 255);
     assert_int_equal(finder_find(&cfg, &image), 1);
@@ -126,12 +117,11 @@ static void test_one_pixel(void **state)
 }
 
 /* sRGB code 188 is linear 0.5029: three such pixels touch a white one. */
-static void test_moments_by_hand(void **state)
+TEST(moments_by_hand)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 16, 8);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 180, 250);
 
-    (void)state;
     canvas_set_grey(&image, 10, 5, 188);
     canvas_set_grey(&image, 11, 5, 255);
     canvas_set_grey(&image, 12, 5, 188);
@@ -149,9 +139,8 @@ static void test_moments_by_hand(void **state)
     free(image.plane[0]);
 }
 
-static void test_disc_is_found_to_a_sixteenth(void **state)
+TEST(disc_is_found_to_a_sixteenth)
 {
-    (void)state;
     for (int round = 0; round < 100; round++) {
         struct glint_image image = canvas_new(GLINT_GREY, 64, 48);
         struct glint_lamp_finder_config cfg = finder_plain(&image, 2, 250);
@@ -193,9 +182,8 @@ static void draw_lamp(const struct glint_image *image, double cx, double cy,
 
 /* With the defaults, which cut off the rim evenly, a lamp must be found within
  * 0.35 pixels. */
-static void test_disc_with_defaults(void **state)
+TEST(disc_with_defaults)
 {
-    (void)state;
     for (int round = 0; round < 100; round++) {
         struct glint_image image = canvas_new(GLINT_GREY, 640, 480);
         struct glint_lamp_finder_config cfg = finder_defaults(&image);
@@ -214,11 +202,10 @@ static void test_disc_with_defaults(void **state)
 
 /* A lamp with a blurred rim must be found within 0.25 pixels RMS in 100 frames
  * with camera noise of 3 codes. */
-static void test_noise_does_not_move_a_light(void **state)
+TEST(noise_does_not_move_a_light)
 {
     double square = 0;
 
-    (void)state;
     for (int frame = 0; frame < 100; frame++) {
         struct glint_image image = canvas_new(GLINT_GREY, 100, 80);
         struct glint_lamp_finder_config cfg = finder_defaults(&image);
@@ -243,13 +230,12 @@ static void test_noise_does_not_move_a_light(void **state)
 
 /* One pixel of a lamp of 8 x 8 that flickers to white, any of them, must move
  * the lamp by less than 0.1 pixels. */
-static void test_sparkle_does_not_move_a_light(void **state)
+TEST(sparkle_does_not_move_a_light)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 64, 64);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 200);
     double furthest = 0;
 
-    (void)state;
     for (int k = 0; k < 64; k++) {
         canvas_fill_grey(&image, 20, 30, 28, 38, 200);
         canvas_set_grey(&image, 20 + k % 8, 30 + k / 8, 255);
@@ -263,12 +249,11 @@ static void test_sparkle_does_not_move_a_light(void **state)
 
 /* One hot pixel, 40 times as bright as the other 63 of the darkest lamp that
  * can be found, must move the lamp by less than a pixel. */
-static void test_hot_pixel_among_dim_ones(void **state)
+TEST(hot_pixel_among_dim_ones)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 64, 64);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 40, 43);
 
-    (void)state;
     canvas_fill_grey(&image, 20, 30, 28, 38, 43); /* linear 0.0242 */
     canvas_set_grey(&image, 24, 34, 255);
     assert_int_equal(finder_find(&cfg, &image), 1);
@@ -276,14 +261,13 @@ static void test_hot_pixel_among_dim_ones(void **state)
     free(image.plane[0]);
 }
 
-static void test_same_every_time(void **state)
+TEST(same_every_time)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 300, 200);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
     static struct glint_spot first[FINDER_SPOTS];
     int n, dropped;
 
-    (void)state;
     cfg.merge_q15 = 300;
     for (int i = 0; i < 3 * 300 * 200; i++)
         image.plane[0][i] = (uint8_t)rng_below(&finder_seed, 256);
@@ -299,12 +283,11 @@ static void test_same_every_time(void **state)
 
 /* ------------------------------------------------------------ what is light */
 
-static void test_black_and_white(void **state)
+TEST(black_and_white)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 50);
     struct glint_lamp_finder_config cfg = finder_defaults(&image);
 
-    (void)state;
     assert_int_equal(finder_find(&cfg, &image), 0);
     canvas_fill_grey(&image, 0, 0, 100, 50, 255);
     assert_int_equal(finder_find(&cfg, &image), 0);
@@ -321,13 +304,12 @@ static void test_black_and_white(void **state)
 }
 
 /* A large picture that is all white is the worst case for sums of moments. */
-static void test_large_picture(void **state)
+TEST(large_picture)
 {
     enum { SIDE = 8192 };
     struct glint_image image = canvas_new(GLINT_GREY, SIDE, SIDE);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
 
-    (void)state;
     memset(image.plane[0], 255, (size_t)SIDE * SIDE);
     assert_int_equal(finder_find(&cfg, &image), 1);
     assert_int_equal(finder_spot[0].x_q8, 4096 * 256);
@@ -356,7 +338,7 @@ static struct glint_region region_of(int x0, int y0, int x1, int y1)
 
 /* White rectangles of the largest picture, and all of it, must have the right
  * place, size and light. */
-static void test_largest_regions(void **state)
+TEST(largest_regions)
 {
     enum { S = GLINT_MAX_SIDE };
     static const int box[][4] = {{0, 0, S, S},          {0, 0, S, S / 2},
@@ -364,7 +346,6 @@ static void test_largest_regions(void **state)
                                  {S - 1, 0, S, S},      {S - 4096, 0, S, 4096},
                                  {S - 4097, 0, S, 4097}};
 
-    (void)state;
     for (size_t k = 0; k < sizeof box / sizeof *box; k++) {
         const int *b = box[k];
         const double w = b[2] - b[0], h = b[3] - b[1];
@@ -384,11 +365,10 @@ static void test_largest_regions(void **state)
 }
 
 /* Lamps at both ends of the longest pictures must be found where they are. */
-static void test_longest_pictures(void **state)
+TEST(longest_pictures)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, OFF = 20, SIDE = 6 };
 
-    (void)state;
     for (int turned = 0; turned < 2; turned++) {
         const int width = turned ? SHORT : LONG, height = turned ? LONG : SHORT;
         struct glint_image image = canvas_new(GLINT_GREY, width, height);
@@ -417,12 +397,11 @@ static void test_longest_pictures(void **state)
     }
 }
 
-static void test_sky_is_no_light(void **state)
+TEST(sky_is_no_light)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 100);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
 
-    (void)state;
     cfg.max_share_q15 = 32768 / 10; /* 999.8 pixels, rounded up */
     canvas_fill_grey(&image, 0, 0, 100, 10, 255);
     canvas_fill_grey(&image, 40, 50, 44, 54, 255);
@@ -435,12 +414,11 @@ static void test_sky_is_no_light(void **state)
 
 /* A lit surface must be no lamp while fewer than one pixel in 8 reach the upper
  * threshold; the glow of a lamp has as many. */
-static void test_few_seeds_are_no_light(void **state)
+TEST(few_seeds_are_no_light)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 100);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
 
-    (void)state;
     canvas_fill_grey(&image, 10, 10, 42, 42, 240); /* 1024 pixels */
     canvas_fill_grey(&image, 10, 10, 42, 14, 255); /* 128 of these pixels */
     canvas_set_grey(&image, 41, 13, 240);
@@ -452,13 +430,12 @@ static void test_few_seeds_are_no_light(void **state)
 
 /* A ring around a core belongs to the lamp; a darker ring around that does not,
  * nor does a bright one beyond it, which has no seed. */
-static void test_hysteresis(void **state)
+TEST(hysteresis)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 60, 60);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
     int area = 0;
 
-    (void)state;
     for (int y = 0; y < 60; y++)
         for (int x = 0; x < 60; x++) {
             const double r = hypot(x + 0.5 - 30, y + 0.5 - 30);
@@ -478,12 +455,11 @@ static void test_hysteresis(void **state)
 
 /* When faint regions are kept too, the lamps must be as before, and the faint
  * regions must come after them, marked as faint. */
-static void test_faint_regions_come_last(void **state)
+TEST(faint_regions_come_last)
 {
     static struct glint_spot light[FINDER_SPOTS];
     int most_faint = 0;
 
-    (void)state;
     for (int round = 0; round < 50; round++) {
         struct glint_image image = canvas_new(GLINT_GREY, 256, 256);
         struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 200);
@@ -523,9 +499,8 @@ static void test_faint_regions_come_last(void **state)
 
 /* The sums of a region that fills the picture, drawn of noise and of patches of
  * one code, must be those in double precision. */
-static void test_sums_of_a_large_region(void **state)
+TEST(sums_of_a_large_region)
 {
-    (void)state;
     for (int round = 0; round < 20; round++) {
         struct glint_image image = canvas_new(GLINT_GREY, 320, 200);
         struct glint_lamp_finder_config cfg = finder_plain(&image, 1, 1);
@@ -561,12 +536,11 @@ static void test_sums_of_a_large_region(void **state)
     }
 }
 
-static void test_small_ones_are_noise(void **state)
+TEST(small_ones_are_noise)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 60, 60);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
 
-    (void)state;
     cfg.min_area = 5;
     canvas_fill_grey(&image, 10, 10, 12, 12, 255);
     assert_int_equal(finder_find(&cfg, &image), 0);
@@ -578,12 +552,11 @@ static void test_small_ones_are_noise(void **state)
 
 /* ----------------------------------------------------------- several lights */
 
-static void test_two_discs_by_flux(void **state)
+TEST(two_discs_by_flux)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 60);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
 
-    (void)state;
     canvas_disc(&image, 20.5, 20.5, 4, 1);
     canvas_disc(&image, 70.5, 40.5, 6, 1);
     assert_int_equal(finder_find(&cfg, &image), 2);
@@ -593,12 +566,11 @@ static void test_two_discs_by_flux(void **state)
     free(image.plane[0]);
 }
 
-static void test_ties_go_by_position(void **state)
+TEST(ties_go_by_position)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 60);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
 
-    (void)state;
     canvas_fill_grey(&image, 50, 20, 52, 22, 255);
     canvas_fill_grey(&image, 80, 10, 82, 12, 255);
     canvas_fill_grey(&image, 10, 20, 12, 22, 255);
@@ -609,12 +581,11 @@ static void test_ties_go_by_position(void **state)
 
 /* Nine white pixels and three, 4 apart, must merge into one lamp, 1 pixel from
  * the greater. */
-static void test_near_ones_merge(void **state)
+TEST(near_ones_merge)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 128, 64);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
 
-    (void)state;
     canvas_fill_grey(&image, 20, 20, 23, 23, 255);
     canvas_fill_grey(&image, 25, 20, 26, 23, 255);
     cfg.merge_q15 = 4 * 32768 / 128;
@@ -631,13 +602,12 @@ static void test_near_ones_merge(void **state)
     free(image.plane[0]);
 }
 
-static void test_merged_ones_keep_their_distance(void **state)
+TEST(merged_ones_keep_their_distance)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 256, 256);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
     int n, area = 0;
 
-    (void)state;
     cfg.merge_q15 = 12 * 32768 / 256;
     for (int i = 0; i < 1000; i++)
         canvas_set_grey(&image, rng_below(&finder_seed, 256),
@@ -657,13 +627,12 @@ static void test_merged_ones_keep_their_distance(void **state)
 
 /* Of four lights two are wanted: the third is near the first and must join it,
  * the fourth is far from all and must be dropped. */
-static void test_cap(void **state)
+TEST(cap)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 256, 64);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
     int dropped;
 
-    (void)state;
     cfg.merge_q15 = 4 * 32768 / 256;
     canvas_fill_grey(&image, 20, 20, 26, 26, 255);   /* 36 px */
     canvas_fill_grey(&image, 100, 20, 105, 25, 255); /* 25 px */
@@ -677,13 +646,12 @@ static void test_cap(void **state)
     free(image.plane[0]);
 }
 
-static void test_joining_can_change_the_order(void **state)
+TEST(joining_can_change_the_order)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 256, 64);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 250);
     int dropped;
 
-    (void)state;
     cfg.merge_q15 = 4 * 32768 / 256;
     canvas_fill_grey(&image, 20, 20, 26, 26, 255);   /* 36 px */
     canvas_fill_grey(&image, 100, 20, 105, 25, 255); /* 25 px */
@@ -696,13 +664,12 @@ static void test_joining_can_change_the_order(void **state)
 }
 
 /* Of 4096 lights the finder keeps the 2048 brightest and must give 1024. */
-static void test_more_lights_than_can_be_held(void **state)
+TEST(more_lights_than_can_be_held)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 256, 256);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 100, 150);
     int dropped, bright = 0;
 
-    (void)state;
     for (int y = 0; y < 256; y += 4)
         for (int x = 0; x < 256; x += 4)
             canvas_set_grey(&image, x, y, 150 + rng_below(&finder_seed, 106));
@@ -720,40 +687,4 @@ static void test_more_lights_than_can_be_held(void **state)
         }
     assert_true(bright < 1024);
     free(image.plane[0]);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_memory_is_exact),
-        cmocka_unit_test(test_bad_configurations_are_refused),
-        cmocka_unit_test(test_defaults_are_valid_for_every_size),
-        cmocka_unit_test(test_one_pixel),
-        cmocka_unit_test(test_moments_by_hand),
-        cmocka_unit_test(test_disc_is_found_to_a_sixteenth),
-        cmocka_unit_test(test_disc_with_defaults),
-        cmocka_unit_test(test_noise_does_not_move_a_light),
-        cmocka_unit_test(test_sparkle_does_not_move_a_light),
-        cmocka_unit_test(test_hot_pixel_among_dim_ones),
-        cmocka_unit_test(test_same_every_time),
-        cmocka_unit_test(test_black_and_white),
-        cmocka_unit_test(test_large_picture),
-        cmocka_unit_test(test_largest_regions),
-        cmocka_unit_test(test_longest_pictures),
-        cmocka_unit_test(test_sky_is_no_light),
-        cmocka_unit_test(test_few_seeds_are_no_light),
-        cmocka_unit_test(test_hysteresis),
-        cmocka_unit_test(test_faint_regions_come_last),
-        cmocka_unit_test(test_sums_of_a_large_region),
-        cmocka_unit_test(test_small_ones_are_noise),
-        cmocka_unit_test(test_two_discs_by_flux),
-        cmocka_unit_test(test_ties_go_by_position),
-        cmocka_unit_test(test_near_ones_merge),
-        cmocka_unit_test(test_merged_ones_keep_their_distance),
-        cmocka_unit_test(test_cap),
-        cmocka_unit_test(test_joining_can_change_the_order),
-        cmocka_unit_test(test_more_lights_than_can_be_held),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

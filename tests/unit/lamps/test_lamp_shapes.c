@@ -6,17 +6,13 @@
 #include "glint/lamps.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "support/canvas.h"
 #include "support/finder.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 /* ------------------------------------------------------------------- shapes */
 
@@ -35,9 +31,8 @@ static void assert_one_region(const struct glint_image *image)
 
 /* A pixel must touch those at its corners, on both sides and across the blocks
  * in which runs are found, and none farther away. */
-static void test_corners(void **state)
+TEST(corners)
 {
-    (void)state;
     for (int x = 4; x < 68; x++)
         for (int off = -3; off <= 3; off++) {
             struct glint_image image = canvas_new(GLINT_GREY, 72, 8);
@@ -51,11 +46,10 @@ static void test_corners(void **state)
         }
 }
 
-static void test_u_shape(void **state)
+TEST(u_shape)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 20, 20);
 
-    (void)state;
     canvas_fill_grey(&image, 2, 2, 4, 18, 255);
     canvas_fill_grey(&image, 15, 2, 17, 18, 255);
     canvas_fill_grey(&image, 2, 17, 17, 18, 255);
@@ -63,13 +57,12 @@ static void test_u_shape(void **state)
 }
 
 /* A spiral, its walls 1 pixel wide and 1 apart, must be one region. */
-static void test_spiral(void **state)
+TEST(spiral)
 {
     static const int step[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     struct glint_image image = canvas_new(GLINT_GREY, 43, 41);
     int x = 0, y = 0, left = 42, down = 40;
 
-    (void)state;
     canvas_set_grey(&image, 0, 0, 255);
     for (int turn = 0; left > 0 && down > 0; turn++) {
         for (int n = turn & 1 ? down : left; n > 0; n--) {
@@ -87,9 +80,8 @@ static void test_spiral(void **state)
 
 /* As many runs as a row can have must be one region: a checkerboard, which is
  * joined by corners alone, and a comb, which is joined by its last row. */
-static void test_checkerboard_and_comb(void **state)
+TEST(checkerboard_and_comb)
 {
-    (void)state;
     for (int width = 254; width <= 255; width++) {
         struct glint_image board = canvas_new(GLINT_GREY, width, 100);
         struct glint_image comb = canvas_new(GLINT_GREY, width, 100);
@@ -148,9 +140,8 @@ static void check_against_flood(int width, int height, int percent)
     free(image.plane[0]);
 }
 
-static void test_random_shapes(void **state)
+TEST(random_shapes)
 {
-    (void)state;
     for (int round = 0; round < 300; round++)
         check_against_flood(1 + rng_below(&finder_seed, 64),
                             1 + rng_below(&finder_seed, 64),
@@ -180,12 +171,11 @@ static void fill_rgb(const struct glint_image *image, int x0, int y0, int x1,
 
 /* The codes (240, 200, 120) are linear (0.8714, 0.5776, 0.1878), of luminance
  * 0.6119. */
-static void test_colour_unclipped(void **state)
+TEST(colour_unclipped)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 200);
 
-    (void)state;
     fill_rgb(&image, 10, 10, 20, 20, 240, 200, 120);
     assert_int_equal(finder_find(&cfg, &image), 1);
     assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 - 61.19) < 0.05);
@@ -195,12 +185,11 @@ static void test_colour_unclipped(void **state)
 
 /* A core that is clipped to white must have the colour of its rim; without a
  * rim it must be white. */
-static void test_colour_of_the_rim(void **state)
+TEST(colour_of_the_rim)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 60, 40);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 200);
 
-    (void)state;
     fill_rgb(&image, 9, 9, 21, 21, 240, 200, 120);
     fill_rgb(&image, 10, 10, 20, 20, 255, 255, 255);
     fill_rgb(&image, 30, 10, 39, 19, 255, 255, 255);
@@ -212,12 +201,11 @@ static void test_colour_of_the_rim(void **state)
 }
 
 /* Where a channel is clipped everywhere, the colour must be the mean. */
-static void test_colour_partly_clipped(void **state)
+TEST(colour_partly_clipped)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 50, 50);
 
-    (void)state;
     fill_rgb(&image, 10, 10, 20, 20, 255, 0, 0);
     assert_int_equal(finder_find(&cfg, &image), 1);
     assert_colour(0, 1 / 0.2126, 0, 0);
@@ -226,12 +214,11 @@ static void test_colour_partly_clipped(void **state)
 
 /* In limited range 235 is white, and code 200 of 255 is 16 + 219 * 200 / 255 =
  * 187.8. */
-static void test_ycc_formats(void **state)
+TEST(ycc_formats)
 {
     static const enum glint_pixel_format formats[3] = {GLINT_I420, GLINT_I422,
                                                        GLINT_I444};
 
-    (void)state;
     for (int f = 0; f < 3; f++) {
         struct glint_image image = canvas_new(formats[f], 41, 31);
         struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
@@ -262,12 +249,11 @@ static void test_ycc_formats(void **state)
 }
 
 /* BT.601 limited Y, Cb, Cr 169, 90, 166 is R'G'B' 238.8, 162.1, 101.5. */
-static void test_ycc_colour(void **state)
+TEST(ycc_colour)
 {
     struct glint_image image = canvas_new(GLINT_I444, 20, 20);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 170);
 
-    (void)state;
     image.range = GLINT_RANGE_LIMITED;
     for (int i = 0; i < 3; i++) {
         struct glint_image plane = image;
@@ -285,35 +271,15 @@ static void test_ycc_colour(void **state)
     free(image.plane[0]);
 }
 
-static void test_negative_stride(void **state)
+TEST(negative_stride)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 40, 30);
     struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
 
-    (void)state;
     canvas_fill_grey(&image, 5, 2, 8, 5, 255);
     image.plane[0] += 29 * 40;
     image.stride_bytes[0] = -40;
     assert_int_equal(finder_find(&cfg, &image), 1);
     assert_true(finder_x(0) == 6.5 && finder_y(0) == 30 - 3.5);
     free(image.plane[0] - 29 * 40);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_corners),
-        cmocka_unit_test(test_u_shape),
-        cmocka_unit_test(test_spiral),
-        cmocka_unit_test(test_checkerboard_and_comb),
-        cmocka_unit_test(test_random_shapes),
-        cmocka_unit_test(test_colour_unclipped),
-        cmocka_unit_test(test_colour_of_the_rim),
-        cmocka_unit_test(test_colour_partly_clipped),
-        cmocka_unit_test(test_ycc_formats),
-        cmocka_unit_test(test_ycc_colour),
-        cmocka_unit_test(test_negative_stride),
-    };
-
-    return cmocka_run_group_tests_name("lamp_shapes", tests, NULL, NULL);
 }

@@ -8,17 +8,13 @@
 #include "support/rng.h"
 #include "lamps/row_light.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/arena.h"
 #include "lamps/score.h"
+#include "support/test.h"
 
 enum { WIDTH = 70, HEIGHT = 48, ROUNDS = 300, CANDIDATES = 400 };
 
@@ -137,9 +133,8 @@ static void check_row(struct fixture *f, int y)
     assert_memory_equal(&sum, &plain, sizeof sum);
 }
 
-static void test_light_of_runs(void **state)
+TEST(light_of_runs)
 {
-    (void)state;
     for (int round = 0; round < ROUNDS; round++) {
         struct fixture f;
 
@@ -180,11 +175,10 @@ static struct glint_candidate draw_candidate(void)
 
 /* Where the full score is -SCORE_DOUBT or more, the brief one must be equal;
  * else it must lie between the full one and -SCORE_DOUBT. */
-static void test_brief_scores(void **state)
+TEST(brief_scores)
 {
     int n_kept = 0, n_brief = 0;
 
-    (void)state;
     for (int round = 0; round < CANDIDATES; round++) {
         static const struct glint_level level = {200, 230, 250, 0};
         struct glint_candidate c[2];
@@ -211,14 +205,4 @@ static void test_brief_scores(void **state)
     }
     print_message("%d of %d kept, %d brief\n", n_kept, CANDIDATES, n_brief);
     assert_true(n_kept > 0 && n_brief > 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_light_of_runs),
-        cmocka_unit_test(test_brief_scores),
-    };
-
-    return cmocka_run_group_tests_name("light_rows", tests, NULL, NULL);
 }

@@ -4,17 +4,14 @@
  * of the light around them.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/log2.h"
 #include "glint/glint.h"
 #include "support/power_picture.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 enum { W = 160, H = 120, MAX_SPOTS = 64 };
 
@@ -47,7 +44,7 @@ static void measure(const struct glint_image *image, int n)
 
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
     memset(mem, 0xa5, bytes);
-    assert_int_equal(glint_profile_init(&profile, mem, bytes), GLINT_OK);
+    assert_ok(glint_profile_init(&profile, mem, bytes));
     glint_profile_measure(profile, image, spot, n);
     free(mem);
 }
@@ -71,8 +68,7 @@ static int look(const struct glint_image *image)
     cfg.white_code = 255;
     bytes = glint_lamp_finder_bytes(&cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem, bytes),
-                     GLINT_OK);
+    assert_ok(glint_lamp_finder_init(&finder, &cfg, mem, bytes));
     n = glint_lamp_finder_find(finder, image, spot, MAX_SPOTS);
     free(mem);
     measure(image, n);
@@ -109,9 +105,8 @@ static double power(void)
 
 /* ------------------------------------------------------------------- tests */
 
-static void test_logarithms(void **state)
+TEST(logarithms)
 {
-    (void)state;
     assert_int_equal(q_log2_q16(1), 0);
     assert_int_equal(q_log2_q16(1024), 10 << 16);
     assert_int_equal(q_exp2_q16(0), 65536);
@@ -129,13 +124,27 @@ static void test_logarithms(void **state)
     }
 }
 
+TEST(memory)
+{
+    const size_t bytes = glint_profile_bytes();
+    struct glint_profile *profile;
+    uint8_t *mem;
+
+    assert_int_equal(posix_memalign((void **)&mem, 64, bytes + 64), 0);
+    assert_int_equal(glint_profile_init(&profile, mem, bytes - 1),
+                     GLINT_E_MEMORY);
+    assert_int_equal(glint_profile_init(&profile, mem + 8, bytes),
+                     GLINT_E_ARGUMENT);
+    assert_ok(glint_profile_init(&profile, mem, bytes));
+    free(mem);
+}
+
 /* A lamp that is not clipped must have its flux for a power: 13 and 45 white
  * pixels, blurred by bell curves of 1.6 and 3 pixels. */
-static void test_unclipped_is_the_flux(void **state)
+TEST(unclipped_is_the_flux)
 {
     struct power_lamp lamp = lamp_of(POWER_DISC, 0.4);
 
-    (void)state;
     lamp.glare = 0;
     lamp.sigma = 1.6;
     power_draw(light, W, H, &lamp);
@@ -151,11 +160,10 @@ static void test_unclipped_is_the_flux(void **state)
 
 /* A tube 36 pixels long, turned clockwise by 30 degrees, must have a longer RMS
  * semi-axis of 18 / sqrt(3); a disc must have two of half its radius. */
-static void test_extent(void **state)
+TEST(extent)
 {
     struct power_lamp lamp = lamp_of(POWER_TUBE, 18);
 
-    (void)state;
     lamp.glare = 0.002;
     lamp.angle = 3.14159265 / 6;
     power_draw(light, W, H, &lamp);
@@ -176,11 +184,10 @@ static void test_extent(void **state)
 
 /* A lamp two pixels wide with the light of 16384 white ones has a core of
  * clipped glare some pixels wide; its extent must not be that of the core. */
-static void test_glare_is_no_extent(void **state)
+TEST(glare_is_no_extent)
 {
     struct power_lamp lamp = lamp_of(POWER_DISC, 1);
 
-    (void)state;
     lamp.glare = 0.1;
     power_draw(light, W, H, &lamp);
     assert_int_equal(expose(&lamp, 16384, 0.002, 0), 1);
@@ -202,50 +209,12 @@ static void draw_core(double radius, double rim, double fall)
         }
 }
 
-/* The face of a large lamp that lights what is around it to half of white must
- * be as wide as it is, 18 pixels, or up to twice as wide with that light; the
- * glare of a point that clips as far must not. */
-static void test_face_in_its_own_light(void **state)
-{
-    const struct power_lamp lamp = lamp_of(POWER_DISC, 36);
-
-    (void)state;
-    for (double rim = 0.05; rim < 0.57; rim += 0.05) {
-        draw_core(36, rim, 0.5);
-        assert_int_equal(expose(&lamp, 1, 0, 0), 1);
-        for (int k = 0; k < 2; k++)
-            assert_in_range(spot[0].axis_q8[k], 17 * 256, 36 * 256);
-    }
-    for (double fall = 1; fall < 2.6; fall += 0.25) {
-        draw_core(36, 1, fall);
-        assert_int_equal(expose(&lamp, 1, 0, 0), 1);
-        assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
-    }
-}
-
-/* A ring that lights what is around it has a dark middle. The light missing
- * there is not missing at a rim, and must not make the lamp wider. */
-static void test_ring_is_no_face(void **state)
-{
-    const struct power_lamp lamp = lamp_of(POWER_DISC, 50);
-
-    (void)state;
-    draw_core(50, 0.49, 0.1);
-    for (int y = 0; y < H; y++)
-        for (int x = 0; x < W; x++)
-            if (hypot(x + 0.5 - W / 2.0, y + 0.5 - H / 2.0) < 30)
-                light[y * W + x] = 0.49;
-    assert_int_equal(expose(&lamp, 1, 0, 0), 1);
-    assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
-}
-
 /* Sodium light, clipped to yellow and white, must have the colour of its
  * fringe: 1.99, 0.79, 0.04 at luminance 1. */
-static void test_colour_is_that_of_the_fringe(void **state)
+TEST(colour_is_that_of_the_fringe)
 {
     struct power_lamp lamp = lamp_of(POWER_DISC, 3);
 
-    (void)state;
     lamp.rgb[0] = 1.99;
     lamp.rgb[1] = 0.79;
     lamp.rgb[2] = 0.04;
@@ -264,11 +233,10 @@ static void test_colour_is_that_of_the_fringe(void **state)
 
 /* Lamps of 2^4 .. 2^14 white pixels, several sizes and shapes: no power may be
  * off by more than 4.5 stops, and half of them must be within one. */
-static void test_power_of_clipped_lamps(void **state)
+TEST(power_of_clipped_lamps)
 {
     int n = 0, n_near = 0;
 
-    (void)state;
     for (int shape = 0; shape < POWER_SHAPES; shape++)
         for (double radius = 1; radius < 12; radius *= 2) {
             const struct power_lamp lamp =
@@ -293,9 +261,8 @@ static void test_power_of_clipped_lamps(void **state)
 /* While exposure rises by 1/32 of a stop at a time, from where nothing is
  * clipped to where all is, each step must raise the power by less than 0.4
  * stops and lower it by less than 0.1. */
-static void test_power_rises_smoothly(void **state)
+TEST(power_rises_smoothly)
 {
-    (void)state;
     for (int shape = 0; shape < POWER_SHAPES; shape++)
         for (int radius = 1; radius <= 9; radius += 4) {
             const struct power_lamp lamp =
@@ -321,7 +288,7 @@ static void test_power_rises_smoothly(void **state)
 /* While a sun comes in over the left border, half a pixel at a time, each step
  * must raise its power by less than 0.1 of the whole, and lower it by less than
  * 0.13. */
-static void test_a_sun_that_enters(void **state)
+TEST(a_sun_that_enters)
 {
     enum { OUT = 48, WIDE = W + OUT };
     struct power_lamp lamp = lamp_of(POWER_DISC, 6);
@@ -329,7 +296,6 @@ static void test_a_sun_that_enters(void **state)
     const double full = 4000;
     double last = 0, most = 0, least = 0;
 
-    (void)state;
     for (double x = -20; x < 40; x += 0.5) {
         lamp.x = OUT + x;
         power_draw(wide, WIDE, H, &lamp);
@@ -347,13 +313,12 @@ static void test_a_sun_that_enters(void **state)
 }
 
 /* Noise of 3 codes must scatter the power by less than a tenth. */
-static void test_noise(void **state)
+TEST(noise)
 {
     const struct power_lamp lamp = lamp_of(POWER_DISC, 4);
     double sum = 0, sum2 = 0, still;
     const int n = 40;
 
-    (void)state;
     power_draw(light, W, H, &lamp);
     expose(&lamp, 600, 0.03, 0);
     still = power();
@@ -370,13 +335,12 @@ static void test_noise(void **state)
 
 /* Two lamps side by side must have the power of one that is alone, not twice as
  * much. */
-static void test_neighbours(void **state)
+TEST(neighbours)
 {
     struct power_lamp lamp = lamp_of(POWER_DISC, 3);
     static double other[W * H];
     double alone;
 
-    (void)state;
     lamp.x = 60;
     power_draw(light, W, H, &lamp);
     expose(&lamp, 500, 0.01, 0);
@@ -393,13 +357,12 @@ static void test_neighbours(void **state)
 
 /* A white lamp must have nearly the same power in all formats: within 0.1
  * stops, but within one in RGB565. */
-static void test_formats(void **state)
+TEST(formats)
 {
     static uint8_t px[4 * W * H];
     const struct power_lamp lamp = lamp_of(POWER_DISC, 4);
     double expected;
 
-    (void)state;
     power_draw(light, W, H, &lamp);
     expose(&lamp, 600, 0.05, 0);
     expected = power();
@@ -444,12 +407,11 @@ static void test_formats(void **state)
 
 /* ---------------------------------------------------------------- extremes */
 
-static void test_white_pictures(void **state)
+TEST(white_pictures)
 {
     static const int sides[][2] = {{1, 1}, {2, 1}, {1, 7}, {64, 64}};
     static uint8_t white[3 * 64 * 64];
 
-    (void)state;
     memset(white, 255, sizeof white);
     for (int i = 0; i < 4; i++) {
         const struct glint_image image =
@@ -465,11 +427,10 @@ static void test_white_pictures(void **state)
     }
 }
 
-static void test_a_lamp_of_one_pixel(void **state)
+TEST(a_lamp_of_one_pixel)
 {
     const struct glint_image image = picture_of(codes, W, H);
 
-    (void)state;
     memset(codes, 0, sizeof codes);
     memset(codes + 3 * (50 * W + 40), 255, 3);
     assert_int_equal(look(&image), 1);
@@ -479,12 +440,11 @@ static void test_a_lamp_of_one_pixel(void **state)
 }
 
 /* Whatever the spots say, and in any picture, results must be in bounds. */
-static void test_any_spots(void **state)
+TEST(any_spots)
 {
     static const int32_t any[] = {INT32_MIN, -1, 0, 1, 256, 40000, INT32_MAX};
     struct glint_image image = picture_of(codes, W, H);
 
-    (void)state;
     for (int round = 0; round < 60; round++) {
         for (int i = 0; i < 3 * W * H; i++)
             codes[i] = (uint8_t)(round % 3 ? 255 * rng_unit(&seed)
@@ -512,43 +472,37 @@ static void test_any_spots(void **state)
     }
 }
 
-static void test_memory(void **state)
+/* The face of a large lamp that lights what is around it to half of white must
+ * be as wide as it is, 18 pixels, or up to twice as wide with that light; the
+ * glare of a point that clips as far must not. */
+TEST(face_in_its_own_light)
 {
-    const size_t bytes = glint_profile_bytes();
-    struct glint_profile *profile;
-    uint8_t *mem;
+    const struct power_lamp lamp = lamp_of(POWER_DISC, 36);
 
-    (void)state;
-    assert_int_equal(posix_memalign((void **)&mem, 64, bytes + 64), 0);
-    assert_int_equal(glint_profile_init(&profile, mem, bytes - 1),
-                     GLINT_E_MEMORY);
-    assert_int_equal(glint_profile_init(&profile, mem + 8, bytes),
-                     GLINT_E_ARGUMENT);
-    assert_int_equal(glint_profile_init(&profile, mem, bytes), GLINT_OK);
-    free(mem);
+    for (double rim = 0.05; rim < 0.57; rim += 0.05) {
+        draw_core(36, rim, 0.5);
+        assert_int_equal(expose(&lamp, 1, 0, 0), 1);
+        for (int k = 0; k < 2; k++)
+            assert_in_range(spot[0].axis_q8[k], 17 * 256, 36 * 256);
+    }
+    for (double fall = 1; fall < 2.6; fall += 0.25) {
+        draw_core(36, 1, fall);
+        assert_int_equal(expose(&lamp, 1, 0, 0), 1);
+        assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
+    }
 }
 
-int main(void)
+/* A ring that lights what is around it has a dark middle. The light missing
+ * there is not missing at a rim, and must not make the lamp wider. */
+TEST(ring_is_no_face)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_logarithms),
-        cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_unclipped_is_the_flux),
-        cmocka_unit_test(test_extent),
-        cmocka_unit_test(test_glare_is_no_extent),
-        cmocka_unit_test(test_colour_is_that_of_the_fringe),
-        cmocka_unit_test(test_power_of_clipped_lamps),
-        cmocka_unit_test(test_power_rises_smoothly),
-        cmocka_unit_test(test_a_sun_that_enters),
-        cmocka_unit_test(test_noise),
-        cmocka_unit_test(test_neighbours),
-        cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_white_pictures),
-        cmocka_unit_test(test_a_lamp_of_one_pixel),
-        cmocka_unit_test(test_any_spots),
-        cmocka_unit_test(test_face_in_its_own_light),
-        cmocka_unit_test(test_ring_is_no_face),
-    };
+    const struct power_lamp lamp = lamp_of(POWER_DISC, 50);
 
-    return cmocka_run_group_tests_name("profile", tests, NULL, NULL);
+    draw_core(50, 0.49, 0.1);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            if (hypot(x + 0.5 - W / 2.0, y + 0.5 - H / 2.0) < 30)
+                light[y * W + x] = 0.49;
+    assert_int_equal(expose(&lamp, 1, 0, 0), 1);
+    assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
 }

@@ -5,17 +5,13 @@
  * text, snow, skies and noise, which have none.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "support/rng.h"
 #include "glint/lamps.h"
 #include "lamps/score.h"
+#include "support/test.h"
 
 enum { MOST = 64 };
 
@@ -137,9 +133,8 @@ static int find(const struct settings *s, enum glint_pixel_format format,
     glint_lamp_finder_defaults(&cfg, s->width, s->height);
     assert_int_equal(posix_memalign(&mem, 64, glint_lamp_finder_bytes(&cfg)),
                      0);
-    assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem,
-                                            glint_lamp_finder_bytes(&cfg)),
-                     GLINT_OK);
+    assert_ok(glint_lamp_finder_init(&finder, &cfg, mem,
+                                     glint_lamp_finder_bytes(&cfg)));
     for (int i = 0; i < n_before; i++) {
         glint_lamp_finder_keep_white(finder, 0);
         n_video = glint_lamp_finder_find(finder, &image, spot, MOST);
@@ -171,7 +166,7 @@ static void assert_none(struct settings *s)
 
 /* A lamp of any colour must be found, and nothing else. Most clip one channel
  * or two, and by luma only the yellow and the white one come near white. */
-static void test_lamps_of_every_colour(void **state)
+TEST(lamps_of_every_colour)
 {
     static const double colours[][3] = {
         {3, 0.1, 0.05}, {0.05, 3, 0.3}, {0.1, 0.15, 3}, {3, 1.2, 0.2},
@@ -179,7 +174,6 @@ static void test_lamps_of_every_colour(void **state)
     static const enum glint_pixel_format formats[] = {GLINT_RGB24, GLINT_YUYV,
                                                       GLINT_I444};
 
-    (void)state;
     for (size_t i = 0; i < sizeof colours / sizeof *colours; i++) {
         struct settings s = new_settings(400, 260, 0.01);
 
@@ -193,11 +187,10 @@ static void test_lamps_of_every_colour(void **state)
 }
 
 /* Two lamps of 0.1 to 0.4 of white must be found where nothing clips. */
-static void test_underexposed_night(void **state)
+TEST(underexposed_night)
 {
     static const double colour[3] = {0.25, 0.22, 0.15};
 
-    (void)state;
     for (double gain = 0.5; gain <= 1.5; gain += 0.5) {
         const double light[3] = {gain * colour[0], gain * colour[1],
                                  gain * colour[2]};
@@ -212,12 +205,11 @@ static void test_underexposed_night(void **state)
     }
 }
 
-static void test_lamp_before_a_bright_wall(void **state)
+TEST(lamp_before_a_bright_wall)
 {
     static const double white[3] = {4, 4, 4};
     struct settings s = new_settings(400, 260, 0.35);
 
-    (void)state;
     add_lamp(&s, 0.4, 0.3, 0.03, 0.02, white);
     assert_int_equal(find(&s, GLINT_RGB24, 1), 1);
     assert_at(&s, 0.4, 0.3);
@@ -226,12 +218,11 @@ static void test_lamp_before_a_bright_wall(void **state)
 
 /* The sun must be found where the sky is brighter than the glow of any lamp,
  * and red clips far around it. */
-static void test_sun_in_haze(void **state)
+TEST(sun_in_haze)
 {
     static const double sun[3] = {3, 3, 3}, haze[3] = {0.8, 0.35, 0.1};
     struct settings s = new_settings(400, 260, 0.25);
 
-    (void)state;
     add_lamp(&s, 0.5, 0.25, 0.04, 0.02, sun);
     add_lamp(&s, 0.5, 0.25, 0.04, 0.2, haze);
     assert_int_equal(find(&s, GLINT_RGB24, 1), 1);
@@ -240,11 +231,10 @@ static void test_sun_in_haze(void **state)
 }
 
 /* The same scene must have the same lamps at widths of 320 to 2000 pixels. */
-static void test_every_resolution(void **state)
+TEST(every_resolution)
 {
     static const double lamp[3] = {4, 3, 1.5};
 
-    (void)state;
     for (int width = 320; width <= 2000; width = width * 5 / 2) {
         struct settings s = new_settings(width, width * 5 / 8, 0.02);
 
@@ -278,13 +268,12 @@ static void write_text(const struct settings *s, double light)
         }
 }
 
-static void test_paper_and_text(void **state)
+TEST(paper_and_text)
 {
     struct settings page = new_settings(600, 400, 1);
     struct settings terminal = new_settings(600, 400, 0.0);
     struct settings desk = new_settings(600, 400, 0.12);
 
-    (void)state;
     write_text(&page, 0.02);
     write_text(&terminal, 1);
     fill_box(&desk, 0.1, 0.1, 0.6, 0.5, 0.85);
@@ -311,11 +300,10 @@ static void draw_bars(const struct settings *s, int rows)
 
 /* The white bar of a test pattern must be no lamp, nor a white box below the
  * bars; a round lamp in place of the box must be one. */
-static void test_test_patterns(void **state)
+TEST(test_patterns)
 {
     static const double white[3] = {1, 1, 1};
 
-    (void)state;
     for (int width = 320; width <= 1280; width += 320) {
         struct settings bars = new_settings(width, width * 9 / 16, 0);
         struct settings box = new_settings(width, width * 9 / 16, 0.005);
@@ -337,11 +325,10 @@ static void test_test_patterns(void **state)
 }
 
 /* Grains of every brightness, many of them white, must give no lamp. */
-static void test_snow(void **state)
+TEST(snow)
 {
     struct settings s = new_settings(600, 400, 0.7);
 
-    (void)state;
     for (int i = 0; i < 3 * 600 * 400; i += 3) {
         const double light = 0.45 + 0.7 * rng_unit(&seed);
 
@@ -352,12 +339,11 @@ static void test_snow(void **state)
 
 /* A sky from blue to white at the horizon, over dark ground, and an even sky
  * must give no lamp. */
-static void test_skies(void **state)
+TEST(skies)
 {
     struct settings s = new_settings(600, 400, 0.03);
     struct settings overcast = new_settings(600, 400, 0.95);
 
-    (void)state;
     for (int y = 0; y < 260; y++)
         for (int x = 0; x < 600; x++) {
             double *const px = &s.light[3 * (y * 600 + x)];
@@ -371,11 +357,10 @@ static void test_skies(void **state)
 }
 
 /* With the lens cap on, noise of up to 9 codes must give no lamp. */
-static void test_noise_in_the_dark(void **state)
+TEST(noise_in_the_dark)
 {
     struct settings s = new_settings(600, 400, 0.001);
 
-    (void)state;
     for (double sigma = 0; sigma < 10; sigma += 3)
         assert_int_equal(find(&s, GLINT_RGB24, sigma), 0);
     free(s.light);
@@ -409,12 +394,11 @@ static int32_t least_of(struct glint_candidate *candidate, int n)
 
 /* Only two sure lamps may lower the limit for others: not one, nor a lamp and
  * its own core, nor one lamp and a faint one. */
-static void test_company(void **state)
+TEST(company)
 {
     struct glint_candidate c[4] = {one_at(0, 0, -50), one_at(10, 0, 80),
                                    one_at(20, 0, -300), one_at(30, 0, -1)};
 
-    (void)state;
     assert_int_equal(least_of(c, 4), 0);
     c[3] = one_at(10, 1, 60);
     assert_int_equal(least_of(c, 4), 0);
@@ -427,13 +411,12 @@ static void test_company(void **state)
 
 /* Where no lamp is sure, the best candidate must pass a little below the limit,
  * but not if it is faint, nor the second best, nor one beside a sure lamp. */
-static void test_best_one_alone(void **state)
+TEST(best_one_alone)
 {
     struct glint_candidate c[4] = {
         one_at(0, 0, -300), one_at(10, 0, -ALONE - 1), one_at(20, 0, -ALONE),
         one_at(30, 0, -ALONE + 1)};
 
-    (void)state;
     assert_int_equal(least_of(c, 2), 0);
     assert_int_equal(least_of(c, 3), -ALONE);
     assert_int_equal(least_of(c, 4), -ALONE + 1);
@@ -447,12 +430,11 @@ static void test_best_one_alone(void **state)
 /* As the wall behind a lamp becomes brighter, a single picture must show the
  * lamp longer than a video does; a video before that picture must not
  * matter. */
-static void test_video_needs_more(void **state)
+TEST(video_needs_more)
 {
     static const double white[3] = {4, 4, 4};
     int n_alone = 0, n_after = 0, n_of_video = 0;
 
-    (void)state;
     for (double wall = 0.2; wall < 0.9; wall += 0.01) {
         struct settings s = new_settings(300, 200, wall);
 
@@ -467,25 +449,4 @@ static void test_video_needs_more(void **state)
     n_before = 0;
     assert_int_equal(n_after, n_alone);
     assert_in_range(n_of_video, 1, n_alone - 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lamps_of_every_colour),
-        cmocka_unit_test(test_underexposed_night),
-        cmocka_unit_test(test_lamp_before_a_bright_wall),
-        cmocka_unit_test(test_sun_in_haze),
-        cmocka_unit_test(test_every_resolution),
-        cmocka_unit_test(test_paper_and_text),
-        cmocka_unit_test(test_test_patterns),
-        cmocka_unit_test(test_snow),
-        cmocka_unit_test(test_skies),
-        cmocka_unit_test(test_noise_in_the_dark),
-        cmocka_unit_test(test_company),
-        cmocka_unit_test(test_best_one_alone),
-        cmocka_unit_test(test_video_needs_more),
-    };
-
-    return cmocka_run_group_tests_name("score", tests, NULL, NULL);
 }

@@ -2,19 +2,15 @@
  *
  * The checks of the model file, rule by rule.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/model.h"
 #include "support/model_builder.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 /* Returns why a model is refused; NULL: it is accepted. */
 static const char *reason_of(const void *data, size_t bytes)
@@ -32,19 +28,17 @@ static const char *reason_of(const void *data, size_t bytes)
     return reason;
 }
 
-static void test_crc(void **state)
+TEST(crc)
 {
-    (void)state;
     assert_true(glint_model_crc32("123456789", 9) == UINT32_C(0xcbf43926));
     assert_true(glint_model_crc32("", 0) == 0);
 }
 
-static void test_accepted(void **state)
+TEST(accepted)
 {
     struct model_image a = model_auto(), s = model_sparse();
     struct glint_lens lens = model_open(&a);
 
-    (void)state;
     assert_int_equal(lens.header->n_ghosts, 3);
     assert_int_equal(lens.ghost[2].j, 3);
     assert_int_equal(lens.system[1].sine_lo_q30, 1 << 28);
@@ -57,11 +51,10 @@ static void test_accepted(void **state)
 /* ------------------------------------------------------------------- damage */
 
 /* Each cut copy has memory of exactly its size, so that an overrun shows. */
-static void test_truncated(void **state)
+TEST(truncated)
 {
     struct model_image m = model_auto();
 
-    (void)state;
     for (size_t bytes = 0; bytes < m.bytes; bytes++) {
         void *copy = malloc(bytes ? bytes : 1);
         const char *expected =
@@ -87,14 +80,13 @@ static void check_flips(struct model_image m)
     free(m.data);
 }
 
-static void test_flipped_bits(void **state)
+TEST(flipped_bits)
 {
-    (void)state;
     check_flips(model_auto());
     check_flips(model_sparse());
 }
 
-static void test_not_a_model(void **state)
+TEST(not_a_model)
 {
     struct model_image m = model_auto();
     uint32_t *word = (uint32_t *)(void *)m.data;
@@ -103,7 +95,6 @@ static void test_not_a_model(void **state)
     uint32_t *copy = malloc(sizeof text);
     size_t bytes;
 
-    (void)state;
     assert_non_null(file);
     bytes = fread(text, 1, sizeof text, file);
     fclose(file);
@@ -378,31 +369,28 @@ static void check_rule(struct model_image m, const struct rule *r,
     free(m.data);
 }
 
-static void test_rules(void **state)
+TEST(rules)
 {
-    (void)state;
     for (size_t k = 0; k < sizeof auto_rules / sizeof *auto_rules; k++)
         check_rule(model_auto(), &auto_rules[k], k);
     for (size_t k = 0; k < sizeof sparse_rules / sizeof *sparse_rules; k++)
         check_rule(model_sparse(), &sparse_rules[k], 1000 + k);
 }
 
-static void test_endless_name(void **state)
+TEST(endless_name)
 {
     struct model_image m = model_auto();
 
-    (void)state;
     memset(model_header(&m)->name, 'x', 64);
     model_seal(&m);
     assert_string_equal(reason_of(m.data, m.bytes), "the name does not end");
     free(m.data);
 }
 
-static void test_no_ghosts(void **state)
+TEST(no_ghosts)
 {
     struct model_image m = model_auto();
 
-    (void)state;
     model_header(&m)->n_ghosts = model_header(&m)->n_systems = 0;
     model_seal(&m);
     assert_null(reason_of(m.data, m.bytes));
@@ -410,14 +398,13 @@ static void test_no_ghosts(void **state)
 }
 
 /* Many systems with the same tables would take quadratic time to check. */
-static void test_shared_tables(void **state)
+TEST(shared_tables)
 {
     enum { N = 1000 };
     static struct glint_model_system s[N];
     const struct glint_model_ghost ghost = {0, 1, 0, N};
     struct model_image m;
 
-    (void)state;
     model_begin(&m, GLINT_BASIS_AUTO, "shared");
     for (int k = 0; k < N; k++) {
         s[k] = k ? s[0]
@@ -453,27 +440,8 @@ static void check_corpus(const char *path, struct model_image m)
 
 /* Models that the fuzzer starts from must have today's layout;
  * GLINT_GOLDEN_UPDATE=1 writes them again. */
-static void test_corpus(void **state)
+TEST(corpus)
 {
-    (void)state;
     check_corpus("tests/fuzz/corpus/model/auto", model_auto());
     check_corpus("tests/fuzz/corpus/model/sparse", model_sparse());
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_crc),
-        cmocka_unit_test(test_accepted),
-        cmocka_unit_test(test_truncated),
-        cmocka_unit_test(test_flipped_bits),
-        cmocka_unit_test(test_not_a_model),
-        cmocka_unit_test(test_rules),
-        cmocka_unit_test(test_endless_name),
-        cmocka_unit_test(test_no_ghosts),
-        cmocka_unit_test(test_shared_tables),
-        cmocka_unit_test(test_corpus),
-    };
-
-    return cmocka_run_group_tests_name("model", tests, NULL, NULL);
 }

@@ -3,20 +3,16 @@
  * Rays through models, and the vertices they become: integers that are worked
  * out by hand.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "glint/flare.h"
 #include "glint/transfer.h"
 #include "support/model_builder.h"
 #include "support/rng.h"
 #include "support/shuffle.h"
+#include "support/test.h"
 
 /* --------------------------------------------------------------------- rays */
 
@@ -32,14 +28,13 @@ static struct glint_outputs ray(const struct glint_transfer *t, int32_t u,
 }
 
 /* Rays of the first range of angles: s is -1 .. 1 over sines of 0 .. 1/4. */
-static void test_rays(void **state)
+TEST(rays)
 {
     struct model_image m = model_auto();
     const struct glint_lens lens = model_open(&m);
     static struct glint_transfer t;
     struct glint_outputs out;
 
-    (void)state;
     /* s = -1, w = -1: sensor x is 0.25 + 0.5 u + 0.125 v^2 */
     assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24),
                      1);
@@ -73,13 +68,12 @@ static void test_rays(void **state)
 /* An energy is its polynomial, the square of it or the square of the square,
  * and counts 2^head times: half of the most must give a half, a quarter or a
  * sixteenth, and what is below 0 must give 0. */
-static void test_roots(void **state)
+TEST(roots)
 {
     const int32_t half = (1 << 28) / 2; /* half of 2^(29 - head), head 1 */
     /* The polynomial is 2^-8, so that energies are 2^-8, 2^-16 and 2^-32. */
     static const int scale[3] = {-8 - 28, -16 - 27, -32 - 25};
 
-    (void)state;
     for (int roots = 0; roots <= 2; roots++)
         for (int sign = -1; sign <= 1; sign += 2) {
             struct model_image m = model_auto();
@@ -127,14 +121,13 @@ static void narrow(struct model_image *m, struct glint_model_output *o, int n,
 }
 
 /* Coefficients of 16 bits must give the rays of the same ones of 32. */
-static void test_narrow(void **state)
+TEST(narrow)
 {
     struct model_image wide = model_auto(), m = model_auto();
     const struct glint_lens lens = model_open(&wide);
     struct glint_lens narrowed;
     static struct glint_transfer t[2];
 
-    (void)state;
     for (uint32_t k = 0; k < lens.system->n_outputs; k++) {
         struct glint_model_output *const o =
             (struct glint_model_output *)(void *)(m.data +
@@ -161,14 +154,13 @@ static void test_narrow(void **state)
 }
 
 /* A transfer must take system and box by the ranges of angles and bands. */
-static void test_init(void **state)
+TEST(init)
 {
     struct model_image m = model_auto();
     const struct glint_lens lens = model_open(&m);
     static struct glint_transfer t;
     const int32_t middle = (MODEL_WAVE_LO_Q24 + MODEL_WAVE_HI_Q24) / 2;
 
-    (void)state;
     assert_int_equal(
         glint_transfer_init(&t, &lens, 0, ONE / 2 + 1, MODEL_WAVE_LO_Q24), 0);
     assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE, middle), 0);
@@ -200,7 +192,7 @@ static void test_init(void **state)
 
 /* The half width, (s - 1/32)^2 - 1/2048, is above 0 at all places that the
  * check of a model looks at, and below 0 between two. */
-static void test_half_size_below_0(void **state)
+TEST(half_size_below_0)
 {
     struct model_image m = model_auto();
     struct glint_model_system *s =
@@ -212,7 +204,6 @@ static void test_half_size_below_0(void **state)
     static struct glint_transfer t;
     struct glint_lens lens;
 
-    (void)state;
     s->box_terms = 1 | 2 | 4;
     s->box_at = model_put(&m, box, sizeof box);
     model_seal(&m);
@@ -226,14 +217,13 @@ static void test_half_size_below_0(void **state)
     free(m.data);
 }
 
-static void test_sparse_rays(void **state)
+TEST(sparse_rays)
 {
     struct model_image m = model_sparse();
     const struct glint_lens lens = model_open(&m);
     static struct glint_transfer t;
     struct glint_outputs out;
 
-    (void)state;
     assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, 1), 1);
     out = ray(&t, ONE, ONE);                                 /* x = y = r = 1 */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592); /* 0.75 mm */
@@ -292,13 +282,12 @@ static void fill_up(struct model_image *m, uint32_t *seed)
 }
 
 /* No output may leave its range; CONFIG=qcheck looks at every step. */
-static void test_extremes(void **state)
+TEST(extremes)
 {
     struct model_image m[2] = {model_auto(), model_sparse()};
     static struct glint_transfer t;
     uint32_t seed = 1;
 
-    (void)state;
     for (int k = 0; k < 20000; k++) {
         const int32_t sine_q30 = (int32_t)(rng_xorshift(&seed) % (ONE / 4));
         const int32_t wave_q24 = (int32_t)(rng_xorshift(&seed) >> 4);
@@ -334,7 +323,7 @@ static struct glint_place upright(void)
     return place;
 }
 
-static void test_grid(void **state)
+TEST(grid)
 {
     struct model_image m = model_auto();
     const struct glint_lens lens = model_open(&m);
@@ -342,7 +331,6 @@ static void test_grid(void **state)
     static struct glint_transfer t;
     struct glint_vertex v[9], turned[9];
 
-    (void)state;
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
     glint_transfer_grid(&t, &place, 2, v);
     /* u = v = 1: sensor (0.875, 0.75) mm, stop (0.5, 0.375) */
@@ -380,7 +368,7 @@ static void test_grid(void **state)
 /* Rows of an annular grid lie between the inner rim and the edge of the box, on
  * both sides of the middle. Their vertices must be those of a finer grid of the
  * whole box. */
-static void test_hollow_grid(void **state)
+TEST(hollow_grid)
 {
     enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };
     struct model_image m = model_auto();
@@ -389,7 +377,6 @@ static void test_hollow_grid(void **state)
     static struct glint_transfer t;
     static struct glint_vertex whole[NODES][NODES], shell[SHELL + 1][SHELL + 1];
 
-    (void)state;
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
     glint_transfer_grid(&t, &place, N, whole[0]);
     t.annulus = ANNULUS;
@@ -413,7 +400,7 @@ static void test_hollow_grid(void **state)
 }
 
 /* A grid of the sparse basis is not mirrored, and squares its radius. */
-static void test_sparse_grid(void **state)
+TEST(sparse_grid)
 {
     struct model_image m = model_sparse();
     const struct glint_lens lens = model_open(&m);
@@ -421,7 +408,6 @@ static void test_sparse_grid(void **state)
     static struct glint_transfer t;
     struct glint_vertex v[4];
 
-    (void)state;
     glint_transfer_init(&t, &lens, 0, 0, 1);
     glint_transfer_grid(&t, &place, 1, v);
     for (int k = 0; k < 4; k++) {
@@ -433,7 +419,7 @@ static void test_sparse_grid(void **state)
     free(m.data);
 }
 
-static void test_lost(void **state)
+TEST(lost)
 {
     struct model_image m = model_auto();
     const struct glint_lens lens = model_open(&m);
@@ -441,7 +427,6 @@ static void test_lost(void **state)
     static struct glint_transfer t;
     struct glint_vertex v[4];
 
-    (void)state;
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
     place.pixels_per_mm.exponent = -10; /* 2^20 pixels a millimetre */
     glint_transfer_grid(&t, &place, 1, v);
@@ -457,7 +442,7 @@ static void test_lost(void **state)
 
 /* Between two knots with sums of 2^30 - 1 the sum is 2^30, as two coefficients
  * are rounded up: shifted by 31 it must round to 1/65536. */
-static void test_strays_between_knots(void **state)
+TEST(strays_between_knots)
 {
     static const int32_t sum[2][2] = {{1, ONE - 2}, {2, ONE - 3}};
     struct model_image m = model_sparse();
@@ -470,7 +455,6 @@ static void test_strays_between_knots(void **state)
     struct glint_vertex v[4];
     struct glint_lens lens;
 
-    (void)state;
     for (int knot = 0; knot < MODEL_KNOTS; knot++)
         memcpy(coef[knot], sum[knot % 2], sizeof sum[0]);
     o[5].kind = GLINT_OUT_BARREL_0; /* in place of the radius */
@@ -490,24 +474,4 @@ static void test_strays_between_knots(void **state)
         assert_int_equal(v[k].barrel_q16[0], 1);
     }
     free(m.data);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rays),
-        cmocka_unit_test(test_roots),
-        cmocka_unit_test(test_narrow),
-        cmocka_unit_test(test_init),
-        cmocka_unit_test(test_half_size_below_0),
-        cmocka_unit_test(test_sparse_rays),
-        cmocka_unit_test(test_extremes),
-        cmocka_unit_test(test_grid),
-        cmocka_unit_test(test_hollow_grid),
-        cmocka_unit_test(test_sparse_grid),
-        cmocka_unit_test(test_lost),
-        cmocka_unit_test(test_strays_between_knots),
-    };
-
-    return cmocka_run_group_tests_name("transfer", tests, NULL, NULL);
 }

@@ -4,18 +4,14 @@
  * by hand: barrels find their like, others open towards the side that lacks
  * them, and energies are in proportion in the coordinates of their roots. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "lens/blend.h"
 #include "lens/terms.h"
 #include "support/model_builder.h"
+#include "support/test.h"
 
 enum { ONE = MODEL_ONE_Q30, MOST = 3, EXPONENT = -28 };
 
@@ -156,9 +152,8 @@ static const struct barrel more_right = {0.34, 0.54, 0.1};
 static const struct barrel more_left = {0.34, -0.58, 0.14};
 static const struct barrel high = {0.2, 0, 1.2};
 
-static void outputs_are_in_proportion(void **state)
+TEST(outputs_are_in_proportion)
 {
-    (void)state;
     for (int k = 1; k < 4; k++) {
         const double part = 0.25 * k;
 
@@ -170,13 +165,12 @@ static void outputs_are_in_proportion(void **state)
 }
 
 /* Barrels go with their like, in whatever order they stand. */
-static void barrels_find_their_like(void **state)
+TEST(barrels_find_their_like)
 {
     const struct barrel a[] = {right, left};
     const struct barrel same[] = {more_right, more_left};
     const struct barrel turned[] = {more_left, more_right};
 
-    (void)state;
     for (int k = 0; k < 2; k++) {
         mix(a, 2, k ? turned : same, 2, 0.25);
         is_barrel(0, (struct barrel){0.31, 0.51, 0.1});
@@ -187,13 +181,12 @@ static void barrels_find_their_like(void **state)
 
 /* A barrel that the first position lacks is whole from a quarter of the way on,
  * and opens to 1/2 before. */
-static void barrels_that_come(void **state)
+TEST(barrels_that_come)
 {
     const struct barrel a[] = {right}, b[] = {more_right, high};
     const struct barrel twice[] = {more_right, more_right};
     const struct barrel other[] = {left};
 
-    (void)state;
     mix(a, 1, b, 2, 0.5);
     is_barrel(0, (struct barrel){0.32, 0.52, 0.1});
     is_barrel(1, high);
@@ -208,11 +201,10 @@ static void barrels_that_come(void **state)
 }
 
 /* One that the second lacks opens behind three quarters of the way. */
-static void barrels_that_go(void **state)
+TEST(barrels_that_go)
 {
     const struct barrel a[] = {high, right}, b[] = {more_right};
 
-    (void)state;
     mix(a, 2, b, 1, 0.5);
     is_barrel(0, high);
     is_barrel(1, (struct barrel){0.32, 0.52, 0.1});
@@ -257,13 +249,12 @@ static void stays(struct stop ours, struct stop theirs, struct barrel b,
 
 /* A barrel that one position lacks cuts of the stop what it cut at the other,
  * or of the box, if that is less, or the stop moves by more than half a box. */
-static void barrels_stay_in_the_stop(void **state)
+TEST(barrels_stay_in_the_stop)
 {
     const struct stop wide = {-0.1, 0.8, 0.8}, aside = {0.3, 0.5, 0.5};
     const struct barrel r = {0.9, 0.5, 0}, l = {0.9, -0.5, 0};
     const struct barrel up = {0.4, 0, 0.5};
 
-    (void)state;
     stays(usual, wide, r, (struct barrel){0.93125, 0.40625, 0});
     stays(wide, usual, r, r);
     stays(wide, usual, l, l);
@@ -277,12 +268,11 @@ static void barrels_stay_in_the_stop(void **state)
 
 /* The two that differ least go together, whichever comes first; what is left
  * over comes out from behind its like. */
-static void barrels_find_the_nearest(void **state)
+TEST(barrels_find_the_nearest)
 {
     const struct barrel one[] = {right};
     const struct barrel two[] = {{0.3, 0.5, 0.5}, more_right};
 
-    (void)state;
     mix(one, 1, two, 2, 0.25);
     is_barrel(0, (struct barrel){0.31, 0.51, 0.1});
     is_barrel(1, (struct barrel){0.3, 0.5, 0.2});
@@ -292,11 +282,10 @@ static void barrels_find_the_nearest(void **state)
 }
 
 /* The mix has room under the smaller of both heads alone. */
-static void energies_have_heads_and_roots(void **state)
+TEST(energies_have_heads_and_roots)
 {
     const double value = 0.375;
 
-    (void)state;
     for (int k = 0; k < 6; k++) {
         roots = (uint8_t)(k / 3);
         head[0] = (uint8_t)(k % 3 ? 3 : 0);
@@ -348,13 +337,12 @@ static struct glint_lens open_box(struct model_image *m, double middle,
 
 /* Straight lines over places in the pupil are in proportion at each place, even
  * where boxes lie and reach elsewhere. */
-static void boxes_move(void **state)
+TEST(boxes_move)
 {
     struct model_image at[2];
     const struct glint_lens a = open_box(&at[0], 0, 4, 3, 0.125);
     const struct glint_lens b = open_box(&at[1], 0.5, 4.5, 4, 0.0625);
 
-    (void)state;
     for (int k = 1; k < 4; k++) {
         const double part = 0.25 * k, slope = 0.125 - 0.0625 * part;
 
@@ -380,14 +368,13 @@ static void is_circle(double u, double v, double x, double y)
 }
 
 /* And so it is where it goes along with its box. */
-static void barrels_go_along_with_boxes(void **state)
+TEST(barrels_go_along_with_boxes)
 {
     const struct barrel a = {0.3, 0.5, 0.1}, b = {0.3, 0.9, 0.1};
     struct model_image at[2];
     const struct glint_lens first = open_position(&at[0], 0.5, 0.25, 0, &a, 1);
     struct glint_lens second;
 
-    (void)state;
     box_middle = 1 << 22; /* half a box on */
     second = open_position(&at[1], 0.5, 0.25, 0, &b, 1);
     box_middle = 0;
@@ -400,14 +387,13 @@ static void barrels_go_along_with_boxes(void **state)
 
 /* A barrel is the same where boxes are so different that its polynomials are;
  * that of a box far away is another. */
-static void barrels_are_the_same_on_the_pupil(void **state)
+TEST(barrels_are_the_same_on_the_pupil)
 {
     struct model_image at[3];
     const struct glint_lens a = open_box(&at[0], 0, 4, 2, 0);
     const struct glint_lens b = open_box(&at[1], 1, 6.5, 3, 0);
     const struct glint_lens c = open_box(&at[2], 7, 0.5, 2, 0);
 
-    (void)state;
     for (int k = 0; k < 2; k++) { /* either may be the first */
         mix_models(k ? &b : &a, k ? &a : &b, 0.5);
         assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
@@ -448,7 +434,7 @@ static struct glint_lens open_coarse(struct model_image *m,
 
 /* The other box is half a unit of this one, so that roundings move its places
  * by more than it is wide; barrels are looked at in it all the same. */
-static void places_stay_in_both_boxes(void **state)
+TEST(places_stay_in_both_boxes)
 {
     static const int32_t wide[3] = {0, 5, 5};
     static const int32_t narrow[3] = {4 << 20, (1 << 19) + 1000,
@@ -464,7 +450,6 @@ static void places_stay_in_both_boxes(void **state)
     const struct glint_lens first = open_coarse(&at[0], wide, 0, &a);
     const struct glint_lens second = open_coarse(&at[1], narrow, -20, &b);
 
-    (void)state;
     mix_models(&first, &second, 0.5);
     assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
     free(at[0].data);
@@ -572,7 +557,7 @@ static void forget(const struct model_image *at, int n)
 }
 
 /* Where one side is dark, the other fades. */
-static void ghosts_fade(void **state)
+TEST(ghosts_fade)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
     static const struct part b[] = {{0, 1, 0, 0}, {0, 2, 0.75, 0}};
@@ -587,14 +572,13 @@ static void ghosts_fade(void **state)
                                           {1, 1, 0.75, 0.25}};
     struct model_image at[MOST_POSITIONS];
 
-    (void)state;
     join(at, both, 2);
     SHOWS(sights);
     forget(at, 2);
 }
 
 /* Where two positions show how it continues, it does so into the dark one. */
-static void ghosts_go_on(void **state)
+TEST(ghosts_go_on)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
     static const struct part b[] = {{0, 1, 0.4, 0}, {0, 2, 0.25, 0}};
@@ -610,7 +594,6 @@ static void ghosts_go_on(void **state)
                                           {1, 0, 0, 0}};
     struct model_image at[MOST_POSITIONS];
 
-    (void)state;
     join(at, all, 3);
     SHOWS(sights);
     forget(at, 3);
@@ -618,7 +601,7 @@ static void ghosts_go_on(void **state)
 
 /* It does not where that would be for more than the way between both, nor with
  * parts, whose number may change, nor where boxes lie too far apart. */
-static void ghosts_that_cannot_go_on(void **state)
+TEST(ghosts_that_cannot_go_on)
 {
     static const struct part a[] = {
         {0, 1, 0.5, 0}, {0, 2, 0.5, 0}, {0, 1, 0.5, 0}};
@@ -632,7 +615,6 @@ static void ghosts_that_cannot_go_on(void **state)
     static const struct sight half[] = {
         {0, 0.7, 0.4, 0.125}, {0, 0.75, 0.4, 0.125}, {0, 0.75, 0.4, 0.125}};
 
-    (void)state;
     for (int t = 0; t < 3; t++) {
         struct model_image at[MOST_POSITIONS];
 
@@ -644,7 +626,7 @@ static void ghosts_that_cannot_go_on(void **state)
 
 /* Sums of magnitudes stay below 2^30, which vectors and heads rely on, also
  * where a ghost moves to three times the largest that a model may have. */
-static void going_on_stays_small(void **state)
+TEST(going_on_stays_small)
 {
     static const struct part a[] = {{0, 1, -3.9, 0}, {0, 2, 0.5, 0}};
     static const struct part b[] = {{0, 1, 3.9, 0}, {0, 2, 0.5, 0}};
@@ -655,7 +637,6 @@ static void going_on_stays_small(void **state)
         {0, 0.96875, 3 * 3.9 - 2 * 3.9 / 16, 0.25}};
     struct model_image at[MOST_POSITIONS];
 
-    (void)state;
     join(at, all, 3);
     SHOWS(sights);
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
@@ -671,7 +652,7 @@ static void going_on_stays_small(void **state)
 
 /* Where both divide the pupil otherwise, the nearer one is drawn; parts are
  * mixed with those of the same ghost, wherever these stand. */
-static void parts_go_with_their_ghost(void **state)
+TEST(parts_go_with_their_ghost)
 {
     static const struct part a[] = {
         {0, 1, 0.5, 0}, {0, 2, 0.25, 0}, {0, 2, 0.375, 0}};
@@ -684,7 +665,6 @@ static void parts_go_with_their_ghost(void **state)
         {3, 0.75, 0.75, 0.25}};
     struct model_image at[MOST_POSITIONS];
 
-    (void)state;
     join(at, both, 2);
     assert_int_equal(zoom.header.n_ghosts, 4);
     assert_int_equal(zoom.header.n_parts, 2);
@@ -698,7 +678,7 @@ static double between(double a, double b)
 }
 
 /* Numbers of the whole lens go from one to the other, each its own way. */
-static void numbers_are_in_proportion(void **state)
+TEST(numbers_are_in_proportion)
 {
     static const struct part part[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}};
     static const struct position both[] = {{0, part, 2, 0}, {1, part, 2, 0}};
@@ -707,7 +687,6 @@ static void numbers_are_in_proportion(void **state)
     const struct glint_model_header *const z = &zoom.header;
     const char *reason = "";
 
-    (void)state;
     join(at, both, 2);
     for (int k = 0; k < 2; k++) {
         struct glint_model_header *const h = model_header(&at[k]);
@@ -741,29 +720,4 @@ static void numbers_are_in_proportion(void **state)
                     -(i + 30) * between(96, 1));
     }
     forget(at, 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(outputs_are_in_proportion),
-        cmocka_unit_test(barrels_find_their_like),
-        cmocka_unit_test(barrels_that_come),
-        cmocka_unit_test(barrels_find_the_nearest),
-        cmocka_unit_test(barrels_that_go),
-        cmocka_unit_test(barrels_stay_in_the_stop),
-        cmocka_unit_test(places_stay_in_both_boxes),
-        cmocka_unit_test(energies_have_heads_and_roots),
-        cmocka_unit_test(boxes_move),
-        cmocka_unit_test(barrels_are_the_same_on_the_pupil),
-        cmocka_unit_test(barrels_go_along_with_boxes),
-        cmocka_unit_test(ghosts_fade),
-        cmocka_unit_test(ghosts_go_on),
-        cmocka_unit_test(ghosts_that_cannot_go_on),
-        cmocka_unit_test(going_on_stays_small),
-        cmocka_unit_test(parts_go_with_their_ghost),
-        cmocka_unit_test(numbers_are_in_proportion),
-    };
-
-    return cmocka_run_group_tests_name("zoom_mix", tests, NULL, NULL);
 }

@@ -4,19 +4,15 @@
  * that position, between them its rays land where exact ones do, and files that
  * are not zooms are rejected. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/blob.h"
 #include "glint/bake.h"
 #include "glint/transfer.h"
+#include "support/test.h"
 
 enum { POSITIONS = 3 };
 
@@ -87,19 +83,17 @@ static int free_all(void **state)
 static const int32_t middle_q24 = (int32_t)(1e6 / (532. * 532.) * (1 << 24));
 
 /* Gives the same bits at a position as its own model. */
-static void test_positions(void **state)
+TEST(positions)
 {
     static struct glint_transfer a, b;
 
-    (void)state;
     for (int k = 0; k < POSITIONS; k++) {
         struct glint_lens alone;
         const char *reason;
         int lit = 0;
 
-        assert_int_equal(
-            glint_lens_open(&alone, model[k].data, model[k].bytes, &reason),
-            GLINT_OK);
+        assert_ok(
+            glint_lens_open(&alone, model[k].data, model[k].bytes, &reason));
         glint_zoom_set(&zoom, model[k].along_q30);
         assert_int_equal(zoom.header.n_ghosts - zoom.header.n_parts,
                          alone.header->n_ghosts - alone.header->n_parts);
@@ -185,9 +179,8 @@ static struct off off_at(double along)
     return (struct off){sqrt(sum / n) * 1920 / 24, sqrt(energies / n)};
 }
 
-static void test_between(void **state)
+TEST(between)
 {
-    (void)state;
     for (int k = 0; k <= 4; k++) {
         const struct off off = off_at(0.25 * k);
 
@@ -225,7 +218,7 @@ static void check_alike(struct glint_zoom_lens *a, struct glint_zoom_lens *b,
 
 /* Of a position that has one ghost, that one is mixed of three positions, and
  * the others of two. */
-static void test_some(void **state)
+TEST(some)
 {
     static struct glint_zoom_lens some, two;
     static struct glint_prescription at;
@@ -240,28 +233,21 @@ static void test_some(void **state)
     struct glint_lens alone;
     size_t n_some, n_two;
 
-    (void)state;
     glint_bake_defaults(&options);
     options.max_deg = 8;
     options.ghosts = three[1].ghosts = ghosts;
     move_to(&at, 0.5);
-    assert_int_equal(glint_bake(&at, &options, &three[1].data, &three[1].bytes,
-                                &report, &error),
-                     GLINT_OK);
-    assert_int_equal(
-        glint_lens_open(&alone, three[1].data, three[1].bytes, &reason),
-        GLINT_OK);
+    assert_ok(glint_bake(&at, &options, &three[1].data, &three[1].bytes,
+                         &report, &error));
+    assert_ok(glint_lens_open(&alone, three[1].data, three[1].bytes, &reason));
     for (uint32_t g = 0; g < alone.header->n_ghosts; g++)
         assert_int_equal(alone.ghost[g].n_systems > 0,
                          g == 1 || g + alone.header->n_parts >=
                                        alone.header->n_ghosts);
-    assert_int_equal(glint_bake_zoom(three, 3, &of_some, &n_some, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_bake_zoom(pair, 2, &of_two, &n_two, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_zoom_open(&some, of_some, n_some, &reason),
-                     GLINT_OK);
-    assert_int_equal(glint_zoom_open(&two, of_two, n_two, &reason), GLINT_OK);
+    assert_ok(glint_bake_zoom(three, 3, &of_some, &n_some, &error));
+    assert_ok(glint_bake_zoom(pair, 2, &of_two, &n_two, &error));
+    assert_ok(glint_zoom_open(&some, of_some, n_some, &reason));
+    assert_ok(glint_zoom_open(&two, of_two, n_two, &reason));
     check_alike(&some, &two, 0);
     check_alike(&some, &zoom, 1);
     free(three[1].data);
@@ -282,14 +268,13 @@ static void refuses(const char *cause)
         fail_msg("'%s' does not say '%s'", reason, cause);
 }
 
-static void test_refusals(void **state)
+TEST(refusals)
 {
     struct glint_zoom_header *const h = (void *)file;
     struct glint_zoom_model *const m = (void *)(file + h->model_at);
     const struct glint_zoom_model kept = m[1];
     const char *reason = "";
 
-    (void)state;
     assert_int_equal(glint_zoom_open(&zoom, file, bytes - 4, &reason),
                      GLINT_E_LENS);
     file[bytes / 2] ^= 1;
@@ -320,17 +305,7 @@ static void test_refusals(void **state)
     refuses("or too many");
     h->n_models = POSITIONS;
     glint_blob_seal(file, bytes);
-    assert_int_equal(glint_zoom_open(&zoom, file, bytes, &reason), GLINT_OK);
+    assert_ok(glint_zoom_open(&zoom, file, bytes, &reason));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_positions),
-        cmocka_unit_test(test_between),
-        cmocka_unit_test(test_some),
-        cmocka_unit_test(test_refusals),
-    };
-
-    return cmocka_run_group_tests(tests, bake_all, free_all);
-}
+TEST_GROUP(bake_all, free_all);

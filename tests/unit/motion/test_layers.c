@@ -3,16 +3,12 @@
  * Shells and lines of recorded motion, pixel by pixel, against their definition
  * in double; and what is nearer hides them. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "scene/motion/play.h"
 #include "support/rng.h"
+#include "support/test.h"
 #include "support/tracks/moving.h"
 
 enum { WIDTH = MOVING_WIDTH, HEIGHT = MOVING_HEIGHT, SAMPLES = 4 };
@@ -105,7 +101,7 @@ static void compare(struct moving *d)
         fail_msg("%d layers, off by %.4f", m->n_layers, worst);
 }
 
-static void layers_are_as_defined(void **state)
+TEST(layers_are_as_defined)
 {
     double food[4][3] = {{5, 0, 0}, {0, 5, .5}, {0, 0, 5}, {-5, -1, 0}};
     static const char *const camera[] = {
@@ -114,7 +110,6 @@ static void layers_are_as_defined(void **state)
         "camera fov 30 at 0 3 30 toward 0 1 0\n",
         "camera fov 53 at 1 14 0 toward 0 0 0.5\n"};
 
-    (void)state;
     moving_of_foods(food, 4, 50);
     for (int i = 0; i < 4; i++)
         for (int tile_log2 = 4; tile_log2 <= 6; tile_log2++) {
@@ -136,12 +131,11 @@ static void layers_are_as_defined(void **state)
 
 /* A food that no sensor sees stands before one that is seen, in its shell or
  * before it: where it is, there is no shell. */
-static void nearer_things_hide_layers(void **state)
+TEST(nearer_things_hide_layers)
 {
     double food[3][3] = {{5, 0, 0}, {5, 3, 3}, {0, -9, 9}};
     const int middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
 
-    (void)state;
     moving_of_foods(food, 3, 50);
     for (int i = 0; i < 2; i++) {
         struct moving *d =
@@ -164,13 +158,4 @@ static void nearer_things_hide_layers(void **state)
             assert_memory_not_equal(with[0], with[1], sizeof with[0]);
         moving_close(d);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_are_as_defined),
-        cmocka_unit_test(nearer_things_hide_layers)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,17 +3,13 @@
  * Where a body is that sees foods: rows D1 to D6 of recorded motion, on the
  * four motions of tests/support/tracks. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "bake/motion/localise.h"
 #include "support/rng.h"
+#include "support/test.h"
 #include "support/tracks/tracks.h"
 
 enum { FRAMES = 20000, SEED = 163635 };
@@ -77,9 +73,8 @@ static struct track_options track_of(int motion, int reset_every, int digits)
 
 /* Row D1: weights in four foods miss by some 1e-6 in float32, and do not grow.
  */
-static void row_d1_four_foods_do_not_drift(void **state)
+TEST(row_d1_four_foods_do_not_drift)
 {
-    (void)state;
     for (int m = 0; m < TRACK_MOTIONS; m++) {
         const struct track_options o = track_of(m, 0, 0);
         const struct errors f =
@@ -97,9 +92,8 @@ static void row_d1_four_foods_do_not_drift(void **state)
 }
 
 /* Row D2: the chain of motions from frame to frame drifts. */
-static void row_d2_the_chain_drifts(void **state)
+TEST(row_d2_the_chain_drifts)
 {
-    (void)state;
     for (int m = 0; m < TRACK_MOTIONS; m++) {
         const struct track_options o = track_of(m, 0, 0);
         const struct errors c =
@@ -117,9 +111,8 @@ static void row_d2_the_chain_drifts(void **state)
 
 /* Row D5: foods end and others appear: rigid fits and means over lives keep the
  * error below 1e-4, where the published solve loses three orders more. */
-static void row_d5_resets(void **state)
+TEST(row_d5_resets)
 {
-    (void)state;
     for (int m = 0; m < TRACK_MOTIONS; m++) {
         const struct track_options o = track_of(m, 200, 6);
         const struct errors life =
@@ -142,9 +135,8 @@ static void row_d5_resets(void **state)
 }
 
 /* Row D6: errors and mean distances of foods go together, weakly. */
-static void row_d6_distance_of_foods(void **state)
+TEST(row_d6_distance_of_foods)
 {
-    (void)state;
     for (int m = 0; m < TRACK_MOTIONS; m++) {
         const struct track_options o = track_of(m, 0, 0);
         const struct errors e =
@@ -156,7 +148,7 @@ static void row_d6_distance_of_foods(void **state)
 }
 
 /* Two foods that vanish at once leave three; of four foods one may go. */
-static void two_may_vanish_at_once(void **state)
+TEST(two_may_vanish_at_once)
 {
     struct track_options o = track_of(0, 0, 0);
     struct glint_localiser l;
@@ -166,7 +158,6 @@ static void two_may_vanish_at_once(void **state)
     const bool two[5] = {false, true, false, true, false};
     const bool three[5] = {true, true, false, true, false};
 
-    (void)state;
     glint_localiser_init(&l, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
     track_begin(&track, &o);
     for (int i = 0; i < 100; i++) {
@@ -189,7 +180,7 @@ static void two_may_vanish_at_once(void **state)
 
 /* Foods on a line, or in a plane for four, are refused at 2^-20 of the bound.
  */
-static void flat_bases_are_refused(void **state)
+TEST(flat_bases_are_refused)
 {
     const double line[4][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}};
     double flat[5][3] = {
@@ -198,7 +189,6 @@ static void flat_bases_are_refused(void **state)
     struct glint_localiser l;
     struct glint_located located;
 
-    (void)state;
     glint_localiser_init(&l, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
     assert_null(glint_localise(&l, 4, line, none, &located));
     assert_non_null(
@@ -219,11 +209,10 @@ static void flat_bases_are_refused(void **state)
 }
 
 /* float32 by rounding doubles has the bits of float. */
-static void rounded_doubles_are_floats(void **state)
+TEST(rounded_doubles_are_floats)
 {
     uint32_t seed = 3;
 
-    (void)state;
     for (int i = 0; i < 100000; i++) {
         const float a = (float)(rng_unit(&seed) * 30 - 15);
         const float b = (float)(rng_unit(&seed) * 30 - 15);
@@ -236,18 +225,4 @@ static void rounded_doubles_are_floats(void **state)
         assert_true(glint_rounded(GLINT_FLOAT32, (double)a / (double)b) ==
                     (double)ratio);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(row_d1_four_foods_do_not_drift),
-        cmocka_unit_test(row_d2_the_chain_drifts),
-        cmocka_unit_test(row_d5_resets),
-        cmocka_unit_test(row_d6_distance_of_foods),
-        cmocka_unit_test(two_may_vanish_at_once),
-        cmocka_unit_test(flat_bases_are_refused),
-        cmocka_unit_test(rounded_doubles_are_floats)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,19 +3,15 @@
  * The file of a motion: any frame by few blocks, the same in memory and by
  * blocks, and damage that is found. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/blob.h"
 #include "glint/scene/motion_bake.h"
 #include "support/rng.h"
+#include "support/test.h"
 #include "support/tracks/tracks.h"
 
 enum { FRAMES = 5000, FOODS = 5 };
@@ -47,7 +43,7 @@ static void bake(struct baked *baked, int n_frames, int reset_every,
     glint_motion_defaults(&options);
     baker = glint_motion_baker_open(&options);
     assert_non_null(baker);
-    assert_int_equal(glint_motion_baker_body(baker, &body, &error), GLINT_OK);
+    assert_ok(glint_motion_baker_body(baker, &body, &error));
     track_begin(&track, &o);
     for (int i = 0; i < n_frames; i++) {
         static struct glint_motion_sight s;
@@ -65,17 +61,14 @@ static void bake(struct baked *baked, int n_frames, int reset_every,
             for (int axis = 0; axis < 3; axis++)
                 s.food[k][axis] = scale * f.seen[k][axis];
         }
-        assert_int_equal(glint_motion_baker_frame(baker, &s, &error), GLINT_OK);
+        assert_ok(glint_motion_baker_frame(baker, &s, &error));
     }
     memset(baked, 0, sizeof *baked);
-    assert_int_equal(glint_motion_baker_finish(baker, "a track", 1,
-                                               &baked->data, &baked->bytes,
-                                               &report, &error),
-                     GLINT_OK);
+    assert_ok(glint_motion_baker_finish(baker, "a track", 1, &baked->data,
+                                        &baked->bytes, &report, &error));
     glint_motion_baker_close(baker);
-    assert_int_equal(
-        glint_motion_open(&baked->motion, baked->data, baked->bytes, &reason),
-        GLINT_OK);
+    assert_ok(
+        glint_motion_open(&baked->motion, baked->data, baked->bytes, &reason));
 }
 
 static int read_block(void *ctx, uint32_t block, uint8_t *to)
@@ -88,18 +81,17 @@ static int read_block(void *ctx, uint32_t block, uint8_t *to)
     return 1;
 }
 
-static void poses_are_the_true_ones(void **state)
+TEST(poses_are_the_true_ones)
 {
     struct baked baked;
     double at = 0, turn = 0;
 
-    (void)state;
     bake(&baked, FRAMES, 50, 1);
     for (uint32_t k = 0; k < FRAMES; k++) {
         struct glint_motion_frame f;
         double same = 0, square = 0, off = 0;
 
-        assert_int_equal(glint_motion_frame(&baked.motion, k, &f), GLINT_OK);
+        assert_ok(glint_motion_frame(&baked.motion, k, &f));
         for (int i = 0; i < 3; i++)
             at = fmax(at, fabs(ldexp(f.pose.at[i], -24) - truth[k].at[i]));
         for (int i = 0; i < 4; i++)
@@ -128,7 +120,7 @@ static void poses_are_the_true_ones(void **state)
 
 /* Read by blocks, a frame is that of memory, and takes as many blocks at the
  * end as at the beginning. */
-static void any_frame_by_few_blocks(void **state)
+TEST(any_frame_by_few_blocks)
 {
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
     uint8_t *const buffer = (uint8_t *)words;
@@ -139,20 +131,18 @@ static void any_frame_by_few_blocks(void **state)
     const char *reason;
     uint32_t seed = 1;
 
-    (void)state;
     memset(&f, 0, sizeof f);
     memset(&g, 0, sizeof g);
     bake(&baked, FRAMES, 50, 1);
     blocks.ctx = &baked;
     blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
-    assert_int_equal(glint_motion_over(&streamed, &blocks, buffer, &reason),
-                     GLINT_OK);
+    assert_ok(glint_motion_over(&streamed, &blocks, buffer, &reason));
     for (int i = 0; i < 2000; i++) {
         const uint32_t k = (uint32_t)rng_below(&seed, FRAMES);
 
         baked.reads = 0;
-        assert_int_equal(glint_motion_frame(&streamed, k, &f), GLINT_OK);
-        assert_int_equal(glint_motion_frame(&baked.motion, k, &g), GLINT_OK);
+        assert_ok(glint_motion_frame(&streamed, k, &f));
+        assert_ok(glint_motion_frame(&baked.motion, k, &g));
         assert_memory_equal(&f, &g, sizeof f);
         assert_true(baked.reads <= 4); /* poses, index, events, intensities */
     }
@@ -163,7 +153,7 @@ static void any_frame_by_few_blocks(void **state)
 
 /* A byte that changes anywhere is found: at once in memory, when its block is
  * read by blocks. */
-static void damage_is_found(void **state)
+TEST(damage_is_found)
 {
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
     uint8_t *const buffer = (uint8_t *)words;
@@ -174,7 +164,6 @@ static void damage_is_found(void **state)
     const char *reason;
     uint32_t seed = 2;
 
-    (void)state;
     bake(&baked, 1000, 50, 1);
     blocks.ctx = &baked;
     blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
@@ -210,7 +199,7 @@ static void damage_is_found(void **state)
 /* Blocks read one by one: a name that would do harm on a terminal is refused as
  * it is of a whole file, and of a frame whose block cannot be read nothing is
  * taken on trust, whichever block it is. */
-static void blocks_are_not_trusted(void **state)
+TEST(blocks_are_not_trusted)
 {
     static uint8_t buffer[GLINT_MOTION_BLOCK] __attribute__((aligned(8)));
     struct baked baked;
@@ -221,11 +210,9 @@ static void blocks_are_not_trusted(void **state)
     const char *reason[2];
     uint32_t *end;
 
-    (void)state;
     bake(&baked, 1000, 50, 1);
     blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
-    assert_int_equal(glint_motion_over(&motion, &blocks, buffer, &reason[0]),
-                     GLINT_OK);
+    assert_ok(glint_motion_over(&motion, &blocks, buffer, &reason[0]));
     header = (void *)baked.data;
     for (uint32_t i = 0; i < blocks.n_blocks; i++) {
         uint8_t *const block = baked.data + (size_t)i * GLINT_MOTION_BLOCK;
@@ -261,14 +248,13 @@ static void blocks_are_not_trusted(void **state)
 }
 
 /* Whatever words a file holds, sealed, it is refused or can be read. */
-static void hostile_words_do_no_harm(void **state)
+TEST(hostile_words_do_no_harm)
 {
     struct baked baked;
     unsigned char *copy;
     uint32_t seed = 4;
     int opened = 0;
 
-    (void)state;
     bake(&baked, 300, 50, 1);
     copy = malloc(baked.bytes);
     assert_non_null(copy);
@@ -289,7 +275,7 @@ static void hostile_words_do_no_harm(void **state)
         for (uint32_t k = 0; k < motion.header.n_frames; k++) {
             struct glint_motion_frame f;
 
-            assert_int_equal(glint_motion_frame(&motion, k, &f), GLINT_OK);
+            assert_ok(glint_motion_frame(&motion, k, &f));
         }
     }
     print_message("  %d of 3000 open\n", opened);
@@ -299,9 +285,8 @@ static void hostile_words_do_no_harm(void **state)
 }
 
 /* Sizes from 1e-6 to 1e6. */
-static void units_follow_the_size(void **state)
+TEST(units_follow_the_size)
 {
-    (void)state;
     for (int power = -6; power <= 4; power++) {
         const double scale = pow(10, power);
         double worst = 0;
@@ -311,8 +296,7 @@ static void units_follow_the_size(void **state)
         for (uint32_t k = 0; k < 200; k++) {
             struct glint_motion_frame f;
 
-            assert_int_equal(glint_motion_frame(&baked.motion, k, &f),
-                             GLINT_OK);
+            assert_ok(glint_motion_frame(&baked.motion, k, &f));
             for (int i = 0; i < 3; i++)
                 worst = fmax(worst, fabs(ldexp(f.pose.at[i],
                                                -baked.motion.header.unit_log2) /
@@ -324,17 +308,4 @@ static void units_follow_the_size(void **state)
         assert_true(worst < 1e-6);
         free(baked.data);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(poses_are_the_true_ones),
-        cmocka_unit_test(any_frame_by_few_blocks),
-        cmocka_unit_test(damage_is_found),
-        cmocka_unit_test(blocks_are_not_trusted),
-        cmocka_unit_test(hostile_words_do_no_harm),
-        cmocka_unit_test(units_follow_the_size)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,17 +3,13 @@
  * Recordings in JSON: both spellings, what is tolerated, and what is refused
  * with which line. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/scene/motion_bake.h"
+#include "support/test.h"
 #include "support/tracks/tracks.h"
 
 struct text {
@@ -63,9 +59,8 @@ static enum glint_status bake(const char *text, size_t most,
                                            &baked->error);
     glint_motion_baker_close(baker);
     if (status == GLINT_OK)
-        assert_int_equal(glint_motion_open(&baked->motion, baked->data,
-                                           baked->bytes, &reason),
-                         GLINT_OK);
+        assert_ok(glint_motion_open(&baked->motion, baked->data, baked->bytes,
+                                    &reason));
     return status;
 }
 
@@ -93,9 +88,8 @@ static void refused(const char *text, const char *why)
     assert_null(baked.data);
 }
 
-static void bad_recordings_are_refused(void **state)
+TEST(bad_recordings_are_refused)
 {
-    (void)state;
     refused("", "run.json:1:1: the text ends within the recording");
     refused("[]", "run.json:1:1: '{' is expected here");
     refused("{" BODY ", \"frames\": [" FRAME "]}", "invalid token");
@@ -149,7 +143,7 @@ static void bad_recordings_are_refused(void **state)
 }
 
 /* Collinear foods, and three that vanish at once. */
-static void what_cannot_be_localised_is_refused(void **state)
+TEST(what_cannot_be_localised_is_refused)
 {
 #define LINE                                                             \
     "{\"foods\": [{\"x\":0,\"y\":0,\"z\":0},{\"x\":1,\"y\":0,\"z\":0},{" \
@@ -160,20 +154,18 @@ static void what_cannot_be_localised_is_refused(void **state)
     "},{\"x\":1,\"y\":1,\"z\":1}]}"
     struct baked baked;
 
-    (void)state;
     refused(RUN(LINE ", " LINE),
             "frame 1: the foods that are known lie on a line");
     refused(RUN(FRAME ", " GONE("true", "1")),
             "frame 1: fewer than three foods are known");
-    assert_int_equal(bake(RUN(FRAME ", " GONE("true", "false")), 9, &baked),
-                     GLINT_OK);
+    assert_ok(bake(RUN(FRAME ", " GONE("true", "false")), 9, &baked));
     assert_int_equal(baked.report.n_resets, 1);
     free(baked.data);
 }
 
 /* Unknown keys, also deep ones, commas that trail, any order, pieces of any
  * size, brackets and escapes in strings. */
-static void what_is_tolerated(void **state)
+TEST(what_is_tolerated)
 {
     static const char text[] =
         "\n{\"made by\": \"a \\\" ] tool, }\", \"notes\": [1, {\"x\": [[], "
@@ -183,9 +175,8 @@ static void what_is_tolerated(void **state)
                                                " ,\n],\n" BODY_0 ",\n}\n";
     struct baked whole, bits;
 
-    (void)state;
-    assert_int_equal(bake(text, 1 << 20, &whole), GLINT_OK);
-    assert_int_equal(bake(text, 1, &bits), GLINT_OK);
+    assert_ok(bake(text, 1 << 20, &whole));
+    assert_ok(bake(text, 1, &bits));
     assert_int_equal(whole.bytes, bits.bytes);
     assert_memory_equal(whole.data, bits.data, whole.bytes);
     assert_int_equal(whole.motion.header.n_frames, 2);
@@ -216,25 +207,24 @@ static char *written(const struct track_options *o, bool is_second)
 
 /* Both spellings say the same; `reset` in the first frame means nothing; row
  * D11: what rv and tv sum up to. */
-static void both_spellings(void **state)
+TEST(both_spellings)
 {
     const struct track_options o = {2, 500, 5, 60, 6, 11};
     char *first = written(&o, false), *second = written(&o, true);
     char *reset = strstr(first, "false");
     struct baked a, b;
 
-    (void)state;
     memcpy(reset, "true ", 5);
-    assert_int_equal(bake(first, 4096, &a), GLINT_OK);
-    assert_int_equal(bake(second, 4096, &b), GLINT_OK);
+    assert_ok(bake(first, 4096, &a));
+    assert_ok(bake(second, 4096, &b));
     assert_int_equal(a.motion.header.n_frames, 500);
     assert_int_equal(a.motion.header.n_events, b.motion.header.n_events);
     assert_int_equal(a.report.n_resets, 8);
     for (uint32_t k = 0; k < 500; k++) {
         struct glint_motion_frame f, g;
 
-        assert_int_equal(glint_motion_frame(&a.motion, k, &f), GLINT_OK);
-        assert_int_equal(glint_motion_frame(&b.motion, k, &g), GLINT_OK);
+        assert_ok(glint_motion_frame(&a.motion, k, &f));
+        assert_ok(glint_motion_frame(&b.motion, k, &g));
         assert_memory_equal(&f.pose, &g.pose, sizeof f.pose);
         assert_memory_equal(f.food, g.food, 5 * sizeof *f.food);
         assert_int_equal(f.intensity[4][1], 191);
@@ -253,29 +243,15 @@ static void both_spellings(void **state)
 }
 
 /* A food that moves without a reset is reported as a residual. */
-static void a_food_that_moves_is_told(void **state)
+TEST(a_food_that_moves_is_told)
 {
     struct baked baked;
 
-    (void)state;
-    assert_int_equal(
-        bake(RUN(FRAME ", {\"foods\": " FOODS("2.1") "}"), 4096, &baked),
-        GLINT_OK);
+    assert_ok(bake(RUN(FRAME ", {\"foods\": " FOODS("2.1") "}"), 4096, &baked));
     assert_int_equal(baked.report.bad_frames, 1);
     assert_int_equal(baked.report.residual_frame, 1);
     assert_true(baked.report.residual > .02 && baked.report.residual < .1);
     assert_true(baked.motion.header.residual >=
                 (uint32_t)(baked.report.residual * 0x1p24));
     free(baked.data);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_recordings_are_refused),
-        cmocka_unit_test(what_cannot_be_localised_is_refused),
-        cmocka_unit_test(what_is_tolerated), cmocka_unit_test(both_spellings),
-        cmocka_unit_test(a_food_that_moves_is_told)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

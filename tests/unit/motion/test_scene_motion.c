@@ -2,15 +2,10 @@
  *
  * Recorded motion in scenes: rows D7 to D10. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "control/steer.h"
 #include "glint/scene/bake.h"
@@ -19,6 +14,7 @@
 #include "scene/motion/play.h"
 #include "scenes/scene_frame.h"
 #include "support/rng.h"
+#include "support/test.h"
 #include "support/tracks/moving.h"
 
 enum {
@@ -48,14 +44,13 @@ static uint64_t hash_of(const struct moving *d)
 
 /* A frame is the same after any other, by play, step and jumps both ways, and
  * for all sizes of tiles. */
-static void row_d8_seek_is_play(void **state)
+TEST(row_d8_seek_is_play)
 {
     enum { N = 40 };
     uint64_t played[N];
     struct moving *d;
     uint32_t seed = 3;
 
-    (void)state;
     moving_of_track(3, N, 60);
     d = moving_open(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_frames(d->frame.scene), N);
@@ -128,13 +123,12 @@ static double margin_of(const struct glint_motion_frame *frame, double size,
 
 /* 10 000 frames of random steps, turns and foods, six sensors and five foods
  * each, by angle and by intensity too: the same as by brute force. */
-static void row_d7_detection_is_brute_force(void **state)
+TEST(row_d7_detection_is_brute_force)
 {
     enum { N = 10000 };
     struct moving *d[2];
     int seen[2] = {0, 0}, close = 0;
 
-    (void)state;
     moving_of_track(3, N, 75);
     d[0] = moving_open(LOOK RUN "detect angle", 5, 1);
     d[1] = moving_open(LOOK RUN "detect both .3", 5, 1);
@@ -174,12 +168,11 @@ static void row_d7_detection_is_brute_force(void **state)
 }
 
 /* The comparison by squares is that of whole numbers, also for wide angles. */
-static void angles_are_compared_exactly(void **state)
+TEST(angles_are_compared_exactly)
 {
     uint32_t seed = 5;
     int seen = 0;
 
-    (void)state;
     for (int i = 0; i < 200000; i++) {
         const int bits = 1 + rng_below(&seed, 29);
         int32_t axis[3], d[3], c = (int32_t)rng_bits(&seed) >> 1;
@@ -217,7 +210,7 @@ static void angles_are_compared_exactly(void **state)
 
 /* A line that cannot be obeyed leaves the camera in its sensor, or free, and
  * looks as they were; the one that comes next is obeyed. */
-static void lines_that_fail_change_nothing(void **state)
+TEST(lines_that_fail_change_nothing)
 {
     static const struct control_line bright = {
         .verb = CONTROL_COLOUR, .v = {.6, .6, .6}, .n = 3}; /* of all metals */
@@ -227,17 +220,15 @@ static void lines_that_fail_change_nothing(void **state)
     struct steer steer;
     struct moving *d;
 
-    (void)state;
     moving_of_track(3, 20, 60);
     d = moving_open(LOOK METALS RUN, 5, 4);
-    assert_int_equal(steer_open(&steer, &d->model), GLINT_OK);
+    assert_ok(steer_open(&steer, &d->model));
     for (int i = 0; i < 2; i++) {
         struct steer was;
         uint64_t hash;
 
         control_parse(before[i], "f:1", &line, &error);
-        assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
-                         GLINT_OK);
+        assert_ok(steer_take(&steer, d->frame.scene, &line, "", &error));
         moving_draw(d);
         hash = hash_of(d);
         was = steer;
@@ -255,8 +246,7 @@ static void lines_that_fail_change_nothing(void **state)
         assert_true(hash_of(d) == hash);
     }
     control_parse("orbit 30 20", "f:3", &line, &error);
-    assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
-                     GLINT_OK);
+    assert_ok(steer_take(&steer, d->frame.scene, &line, "", &error));
     steer_close(&steer);
     moving_close(d);
 }
@@ -284,7 +274,7 @@ static double middle_of_foods(const struct moving *d, int *n)
 
 /* A camera in a sensor sees what is ahead of it in the middle, as wide as the
  * sensor sees; outside it all is as before. */
-static void row_d9_a_camera_in_a_sensor(void **state)
+TEST(row_d9_a_camera_in_a_sensor)
 {
     /* ahead of sensor 0, 20 degrees up its side, behind it; and one more */
     double food[4][3] = {{6, 0, 0}, {0, 6, 0}, {0, -3, 7}, {-9, 1, 2}};
@@ -292,13 +282,12 @@ static void row_d9_a_camera_in_a_sensor(void **state)
     struct moving *d;
     int n;
 
-    (void)state;
     moving_of_foods(food, 4, 60);
     d = moving_open(LOOK RUN, 5, 4);
     moving_draw(d);
     outside = hash_of(d);
     for (int k = 0; k < 2; k++) { /* food k is ahead of sensor k */
-        assert_int_equal(glint_scene_enter(d->frame.scene, k), GLINT_OK);
+        assert_ok(glint_scene_enter(d->frame.scene, k));
         glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
         moving_draw(d);
         assert_true(fabs(middle_of_foods(d, &n) - (WIDTH - 1) / 2.) < .5);
@@ -308,7 +297,7 @@ static void row_d9_a_camera_in_a_sensor(void **state)
     }
     assert_int_equal(glint_scene_enter(d->frame.scene, SENSORS),
                      GLINT_E_ARGUMENT);
-    assert_int_equal(glint_scene_enter(d->frame.scene, -1), GLINT_OK);
+    assert_ok(glint_scene_enter(d->frame.scene, -1));
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 1);
     moving_draw(d);
     assert_true(hash_of(d) == outside);
@@ -328,14 +317,13 @@ static void row_d9_a_camera_in_a_sensor(void **state)
 
 /* Three foods that one sensor sees each, two that all see, and two that two
  * see. */
-static void row_d10_who_sees_what(void **state)
+TEST(row_d10_who_sees_what)
 {
     double three[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
     double corner[4][3] = {{5, 5, 0}, {-5, 5, 0}, {5, -5, 7}, {3, 3, -8}};
     double any[3][3] = {{4, 5, 3}, {-5, 4, 6}, {5, 3, -4}};
     struct moving *d;
 
-    (void)state;
     moving_of_foods(three, 3, 50);
     d = moving_open(LOOK RUN, 5, 4);
     assert_int_equal(glint_scene_seen_by(d->frame.scene, 0), 1);
@@ -356,13 +344,12 @@ static void row_d10_who_sees_what(void **state)
 }
 
 /* Each kind is in the picture, can be hidden and comes back, and has a size. */
-static void kinds_are_hidden_and_sized(void **state)
+TEST(kinds_are_hidden_and_sized)
 {
     double food[4][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}, {-5, -4, 6}};
     uint64_t whole;
     struct moving *d;
 
-    (void)state;
     moving_of_foods(food, 4, 50);
     d = moving_open(LOOK RUN, 5, 4);
     moving_draw(d);
@@ -376,10 +363,8 @@ static void kinds_are_hidden_and_sized(void **state)
         glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 1);
         moving_draw(d);
         assert_true(hash_of(d) == whole);
-        assert_int_equal(glint_scene_size_kind(d->frame.scene,
-                                               (enum glint_scene_kind)kind,
-                                               steps),
-                         GLINT_OK);
+        assert_ok(glint_scene_size_kind(d->frame.scene,
+                                        (enum glint_scene_kind)kind, steps));
         moving_draw(d);
         assert_true(hash_of(d) != whole);
         whole = hash_of(d);
@@ -392,13 +377,12 @@ static void kinds_are_hidden_and_sized(void **state)
 
 /* A shell over black has the fraction of light that its material does not let
  * pass, half of that in the middle; a food in it is seen through it. */
-static void shells_let_light_pass(void **state)
+TEST(shells_let_light_pass)
 {
     double food[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
     const int middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
     struct moving *d;
 
-    (void)state;
     moving_of_foods(food, 3, 50);
     d = moving_open("camera fov 30 at 5 0 10 toward 5 0 0\n"
                     "material shells phong 1 0 0 colour 0 .5 1 pass .5\n"
@@ -421,7 +405,7 @@ static void shells_let_light_pass(void **state)
 
 /* Lines that leave the widest of pictures continue until all of their width is
  * outside: an edge of the box, 200 pixels wide, leaves it aslant. */
-static void wide_lines_leave_wide_pictures(void **state)
+TEST(wide_lines_leave_wide_pictures)
 {
     enum { WIDE = 8192, LOW = 16 };
     static int32_t light_q20[3 * WIDE * LOW];
@@ -439,11 +423,9 @@ static void wide_lines_leave_wide_pictures(void **state)
     int32_t at[3], away, aside;
     struct moving *d;
 
-    (void)state;
     moving_of_foods(food, 3, 50);
     d = moving_open(LOOK "motion run x lines .1 box 1\n", 5, 1);
-    assert_int_equal(scene_frame_open(&frame, &tool, &d->model, &dials),
-                     EXIT_OK);
+    assert_ok(scene_frame_open(&frame, &tool, &d->model, &dials));
     m = frame.scene->motion;
     away = m->high[0] / 4;
     aside = (int32_t)(WIDE / 2 * 256. * away /
@@ -451,15 +433,12 @@ static void wide_lines_leave_wide_pictures(void **state)
     at[0] = (m->low[0] + m->high[0]) / 2 - aside;
     at[1] = m->low[1] - aside;
     at[2] = m->high[2] + away;
-    assert_int_equal(glint_scene_set_camera(frame.scene, at, axis_q30),
-                     GLINT_OK);
-    assert_int_equal(
-        glint_scene_size_kind(frame.scene, GLINT_KIND_BOX,
-                              (int32_t)(200 * 256. * away /
-                                        (double)frame.scene->view.per_tan_q8)),
-        GLINT_OK);
+    assert_ok(glint_scene_set_camera(frame.scene, at, axis_q30));
+    assert_ok(glint_scene_size_kind(
+        frame.scene, GLINT_KIND_BOX,
+        (int32_t)(200 * 256. * away / (double)frame.scene->view.per_tan_q8)));
     glint_image_place(&image, light_q20);
-    assert_int_equal(scene_frame_draw(&frame, &image), EXIT_OK);
+    assert_ok(scene_frame_draw(&frame, &image));
     for (int y = 0; y < LOW; y++)
         for (int x = WIDE - 20; x < WIDE; x++)
             assert_memory_equal(light_q20 + 3 * (y * WIDE + x),
@@ -471,12 +450,11 @@ static void wide_lines_leave_wide_pictures(void **state)
 }
 
 /* Lamps ride on the body: the lens gets their places. */
-static void lamps_ride_on_the_body(void **state)
+TEST(lamps_ride_on_the_body)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct moving *d;
 
-    (void)state;
     moving_of_track(0, 100, 60);
     d = moving_open("camera fov 60 at 0 0 30 toward 0 0 0\n"
                     "light lamp at 0 1 0 colour 5 5 5 on run\nflare lights\n"
@@ -504,12 +482,11 @@ static void lamps_ride_on_the_body(void **state)
 
 /* ------------------------------------------------------------------ hostile */
 
-static void a_part_that_is_absent_is_named(void **state)
+TEST(a_part_that_is_absent_is_named)
 {
     struct glint_scene_parts parts;
     struct moving *d;
 
-    (void)state;
     moving_of_track(0, 10, 60);
     d = moving_open(LOOK RUN, 5, 1);
     parts = d->frame.cfg.parts;
@@ -521,12 +498,11 @@ static void a_part_that_is_absent_is_named(void **state)
 
 /* Cameras anywhere, also within shells and lines, and objects from a step to a
  * quarter of the space: nothing wraps (CONFIG=qcheck), nothing is endless. */
-static void extremes_of_places_and_sizes(void **state)
+TEST(extremes_of_places_and_sizes)
 {
     struct moving *d;
     uint32_t seed = 8;
 
-    (void)state;
     moving_of_track(3, 60, 170);
     d = moving_open(LOOK RUN, 5, 4);
     for (int i = 0; i < 400; i++) {
@@ -541,9 +517,7 @@ static void extremes_of_places_and_sizes(void **state)
         }
         if (i % 4 == 1) /* in a food, or in the body */
             memcpy(at, s->motion->food_at[i % FOODS], sizeof at);
-        assert_int_equal(
-            glint_scene_set_camera(s, at, (const int32_t(*)[3])axis_q30),
-            GLINT_OK);
+        assert_ok(glint_scene_set_camera(s, at, (const int32_t(*)[3])axis_q30));
         glint_scene_size_kind(s, (enum glint_scene_kind)rng_below(&seed, 6),
                               1 << rng_below(&seed, 27));
         moving_draw(d);
@@ -552,23 +526,4 @@ static void extremes_of_places_and_sizes(void **state)
         if (glint_scene_enter(d->frame.scene, k) == GLINT_OK)
             moving_draw(d);
     moving_close(d);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(row_d7_detection_is_brute_force),
-        cmocka_unit_test(angles_are_compared_exactly),
-        cmocka_unit_test(row_d8_seek_is_play),
-        cmocka_unit_test(lines_that_fail_change_nothing),
-        cmocka_unit_test(row_d9_a_camera_in_a_sensor),
-        cmocka_unit_test(row_d10_who_sees_what),
-        cmocka_unit_test(kinds_are_hidden_and_sized),
-        cmocka_unit_test(shells_let_light_pass),
-        cmocka_unit_test(wide_lines_leave_wide_pictures),
-        cmocka_unit_test(lamps_ride_on_the_body),
-        cmocka_unit_test(a_part_that_is_absent_is_named),
-        cmocka_unit_test(extremes_of_places_and_sizes)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

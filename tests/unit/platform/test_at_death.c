@@ -2,11 +2,7 @@
  *
  * Functions for the end of a process must run whatever ends it.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <fcntl.h>
 #include <signal.h>
@@ -18,6 +14,7 @@
 #include <unistd.h>
 
 #include "posix/at_death.h"
+#include "support/test.h"
 
 static int told[2]; /* pipe from the child */
 
@@ -142,14 +139,13 @@ static void by_ignored(int number)
     _exit(5);
 }
 
-static void test_signals(void **state)
+TEST(signals)
 {
     static const int deadly[] = {SIGHUP,  SIGINT,  SIGTERM, SIGQUIT, SIGUSR1,
                                  SIGUSR2, SIGALRM, SIGABRT, SIGSEGV, SIGBUS,
                                  SIGILL,  SIGFPE,  SIGTRAP};
     char text[8];
 
-    (void)state;
     for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++) {
         int how;
 
@@ -160,12 +156,11 @@ static void test_signals(void **state)
     }
 }
 
-static void test_faults(void **state)
+TEST(faults)
 {
     char text[8];
     int how;
 
-    (void)state;
     how = end_of(by_fault, 0, text);
     assert_true(WIFSIGNALED(how));
     assert_int_equal(WTERMSIG(how), SIGSEGV);
@@ -177,12 +172,11 @@ static void test_faults(void **state)
 }
 
 /* An abort in a library is an exit with 1, one of glint itself a death. */
-static void test_library(void **state)
+TEST(library)
 {
     char text[8];
     int how;
 
-    (void)state;
     how = end_of(by_library, 1, text);
     assert_true(WIFEXITED(how));
     assert_int_equal(WEXITSTATUS(how), 1);
@@ -197,12 +191,11 @@ static void test_library(void **state)
     assert_string_equal(text, "21");
 }
 
-static void test_exit(void **state)
+TEST(exit)
 {
     char text[8];
     int how;
 
-    (void)state;
     how = end_of(by_exit, 3, text);
     assert_true(WIFEXITED(how));
     assert_int_equal(WEXITSTATUS(how), 3);
@@ -213,24 +206,22 @@ static void test_exit(void **state)
 
 /* A handler of the application's own that ends the process by
  * glint_at_death_by() must have the functions run. */
-static void test_own_handler(void **state)
+TEST(own_handler)
 {
     char text[8];
     int how;
 
-    (void)state;
     how = end_of(by_own_handler, SIGINT, text);
     assert_true(WIFSIGNALED(how));
     assert_int_equal(WTERMSIG(how), SIGINT);
     assert_string_equal(text, "h21");
 }
 
-static void test_ignored(void **state)
+TEST(ignored)
 {
     char text[8];
     int how;
 
-    (void)state;
     how = end_of(by_ignored, SIGHUP, text);
     assert_true(WIFEXITED(how));
     assert_int_equal(WEXITSTATUS(how), 5);
@@ -241,15 +232,4 @@ static void test_ignored(void **state)
     assert_int_equal(WEXITSTATUS(how), 0);
     how = end_of(by_raise, SIGXFSZ, text);
     assert_true(WIFEXITED(how));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_signals), cmocka_unit_test(test_faults),
-        cmocka_unit_test(test_exit),    cmocka_unit_test(test_own_handler),
-        cmocka_unit_test(test_ignored), cmocka_unit_test(test_library),
-    };
-
-    return cmocka_run_group_tests_name("at_death", tests, NULL, NULL);
 }

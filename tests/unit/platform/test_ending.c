@@ -2,18 +2,14 @@
  *
  * File types by the ending of a name.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include "posix/ending.h"
+#include "support/test.h"
 #include "video/y4m.h"
 
-static void letters_of_any_case_end_a_name(void **state)
+TEST(letters_of_any_case_end_a_name)
 {
-    (void)state;
     assert_true(glint_ends_in("clip.y4m", ".y4m"));
     assert_true(glint_ends_in("in.d/CLIP.Y4M", ".y4m"));
     assert_true(glint_y4m_is_name("CLIP.Y4m"));
@@ -24,9 +20,8 @@ static void letters_of_any_case_end_a_name(void **state)
     assert_false(glint_ends_in("", ".y4m"));
 }
 
-static void the_ending_is_that_of_the_last_part(void **state)
+TEST(the_ending_is_that_of_the_last_part)
 {
-    (void)state;
     assert_string_equal(glint_ending_of("a.b/flare.tar.gz"), ".gz");
     assert_string_equal(glint_ending_of("X.BMP"), ".BMP");
     assert_string_equal(glint_ending_of("x."), ".");
@@ -36,14 +31,4 @@ static void the_ending_is_that_of_the_last_part(void **state)
     assert_string_equal(glint_ending_of("planar-f1.4"), "");
     assert_string_equal(glint_ending_of("-"), "");
     assert_string_equal(glint_ending_of(""), "");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(letters_of_any_case_end_a_name),
-        cmocka_unit_test(the_ending_is_that_of_the_last_part),
-    };
-
-    return cmocka_run_group_tests_name("ending", tests, NULL, NULL);
 }

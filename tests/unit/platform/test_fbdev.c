@@ -3,11 +3,7 @@
  * A framebuffer and a console that are files, and an ioctl() that answers for
  * them: what is drawn where, and that any call may fail.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <errno.h>
 #include <fcntl.h>
@@ -25,6 +21,7 @@
 #include "linux/fbdev.h"
 #include "support/fakes/fake_fb.h"
 #include "support/scratch.h"
+#include "support/test.h"
 
 /* ---------------------------------------------------------------- scenery */
 
@@ -139,11 +136,64 @@ static void expect_screen(size_t first, int code)
 
 /* ------------------------------------------------------------------- tests */
 
-static void test_draws(void **state)
+/* Runs in a child: shows the second screen, then ends by signal HOW; 0: by
+ * exit(). */
+static void end_child(int how)
+{
+    static const struct glint_fbdev_options options = {.console = true};
+    struct glint_fbdev fb;
+
+    for (int i = 1; i < SIGRTMIN; i++)
+        signal(i, SIG_DFL);
+    must_open(&fb, NULL); /* so that lists are in another order */
+    fb.sink.close(&fb.sink);
+    must_open(&fb, &options);
+    must_put(&fb, grey(8, 6, 1));
+    if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
+        _exit(99);
+    if (fork() == 0)
+        exit(0); /* The end of its own child changes nothing. */
+    while (wait(NULL) < 0)
+        ;
+    if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
+        _exit(98);
+    if (how == 0)
+        exit(0);
+    raise(how);
+}
+
+/* Whatever ends a process, the console must be text and the first screen in
+ * view. This test must come first: the first open takes the signals for the
+ * whole process. */
+TEST(every_end)
+{
+    static const int ends[] = {0,       SIGINT,  SIGTERM, SIGHUP,
+                               SIGQUIT, SIGSEGV, SIGABRT};
+
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        int how;
+        pid_t child;
+
+        reset_pages();
+        child = fork();
+        if (child == 0)
+            end_child(ends[i]);
+        assert_int_equal(waitpid(child, &how, 0), child);
+        if (ends[i] == 0)
+            assert_int_equal(how, 0);
+        else
+            assert_int_equal(WTERMSIG(how), ends[i]);
+        assert_int_equal(fake_fb->tty_mode, KD_TEXT);
+        assert_int_equal(fake_fb->var.yoffset, 0);
+        /* Panning back must come before text. */
+        assert_int_equal(fake_fb->yoffset_at_text, 0);
+    }
+}
+
+TEST(draws)
 {
     struct glint_fbdev fb;
 
-    (void)state;
     reset();
     must_open(&fb, NULL);
     assert_string_equal(fb.id, "fake");
@@ -161,12 +211,11 @@ static void test_draws(void **state)
 
 /* Where the picture does not reach, black must be drawn, whatever the last
  * picture covered. */
-static void test_borders(void **state)
+TEST(borders)
 {
     struct glint_fbdev fb;
     const uint8_t *mem;
 
-    (void)state;
     reset();
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 100));
@@ -180,11 +229,10 @@ static void test_borders(void **state)
     fb.sink.close(&fb.sink);
 }
 
-static void test_odd_start(void **state)
+TEST(odd_start)
 {
     struct glint_fbdev fb;
 
-    (void)state;
     reset();
     fake_fb->fix.smem_start = 0xfd000064;
     must_open(&fb, NULL);
@@ -208,11 +256,10 @@ static void test_odd_start(void **state)
     fb.sink.close(&fb.sink);
 }
 
-static void test_pages(void **state)
+TEST(pages)
 {
     struct glint_fbdev fb;
 
-    (void)state;
     reset_pages();
     must_open(&fb, NULL);
     assert_int_equal(fb.n_pages, 2);
@@ -236,11 +283,10 @@ static void test_pages(void **state)
     assert_int_equal(fake_fb->var.yoffset, 0);
 }
 
-static void test_no_pages(void **state)
+TEST(no_pages)
 {
     struct glint_fbdev fb;
 
-    (void)state;
     reset_pages();
     fake_fb->can_pan = false;
     must_open(&fb, NULL);
@@ -275,12 +321,11 @@ static void test_no_pages(void **state)
     fb.sink.close(&fb.sink);
 }
 
-static void test_vsync(void **state)
+TEST(vsync)
 {
     const struct glint_fbdev_options options = {.vsync = true};
     struct glint_fbdev fb;
 
-    (void)state;
     reset();
     must_open(&fb, &options);
     for (int i = 0; i < 3; i++)
@@ -302,13 +347,12 @@ static void test_vsync(void **state)
     fb.sink.close(&fb.sink);
 }
 
-static void test_goes_away(void **state)
+TEST(goes_away)
 {
     struct glint_fbdev fb;
     struct glint_error error;
     char want[128];
 
-    (void)state;
     reset();
     snprintf(want, sizeof want, "%s: the framebuffer went away", fake_fb_path);
     must_open(&fb, NULL);
@@ -324,12 +368,11 @@ static void test_goes_away(void **state)
 
 /* Another program sets 16 bits, then two screens of 32: both must be
  * followed. */
-static void test_mode_changes(void **state)
+TEST(mode_changes)
 {
     struct glint_fbdev fb;
     const uint8_t *mem;
 
-    (void)state;
     reset();
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 255));
@@ -355,12 +398,11 @@ static void test_mode_changes(void **state)
 }
 
 /* A driver that reports no bit fields must get the usual ones. */
-static void test_no_fields(void **state)
+TEST(no_fields)
 {
     static const struct fb_bitfield none;
     struct glint_fbdev fb;
 
-    (void)state;
     reset();
     fake_fb->var.red = fake_fb->var.green = fake_fb->var.blue = none;
     must_open(&fb, NULL);
@@ -392,13 +434,12 @@ static void expect_refused(const char *part)
     assert_int_equal(fake_fb->tty_mode, KD_TEXT);
 }
 
-static void test_refuses(void **state)
+TEST(refuses)
 {
     static const struct glint_fbdev_options none;
     struct glint_fbdev fb;
     struct glint_error error;
 
-    (void)state;
     reset();
     fake_fb->open_errno = ENOENT;
     expect_refused("there is no framebuffer");
@@ -440,16 +481,15 @@ static void test_refuses(void **state)
     assert_string_equal(error.text, "/dev/null: is not a framebuffer");
 }
 
-static void test_names(void **state)
+TEST(names)
 {
     static const struct glint_fbdev_options none;
     struct glint_fbdev fb;
     struct glint_error error;
 
-    (void)state;
     reset();
     setenv("FRAMEBUFFER", fake_fb_path, 1);
-    assert_int_equal(glint_fbdev_open(&fb, NULL, &none, &error), GLINT_OK);
+    assert_ok(glint_fbdev_open(&fb, NULL, &none, &error));
     fb.sink.close(&fb.sink);
     setenv("FRAMEBUFFER", "/nowhere/fb", 1);
     assert_int_equal(glint_fbdev_open(&fb, NULL, &none, &error),
@@ -475,9 +515,8 @@ static void check_console(bool taken, int during, int after)
         assert_non_null(strstr(fb.note.text, "may show in the picture"));
 }
 
-static void test_console(void **state)
+TEST(console)
 {
-    (void)state;
     reset();
     check_console(true, KD_GRAPHICS, KD_TEXT);
     fake_fb->tty_mode = KD_GRAPHICS; /* A killed program left it so. */
@@ -492,12 +531,11 @@ static void test_console(void **state)
 
 /* A console that was given back must be left alone at the end of the process,
  * even though another file has its descriptor. */
-static void test_let_go(void **state)
+TEST(let_go)
 {
     int how;
     pid_t child;
 
-    (void)state;
     reset();
     child = fork();
     if (child == 0) {
@@ -510,61 +548,6 @@ static void test_let_go(void **state)
     assert_int_equal(waitpid(child, &how, 0), child);
     assert_int_equal(how, 0);
     assert_int_equal(fake_fb->tty_mode, KD_GRAPHICS);
-}
-
-/* Runs in a child: shows the second screen, then ends by signal HOW; 0: by
- * exit(). */
-static void end_child(int how)
-{
-    static const struct glint_fbdev_options options = {.console = true};
-    struct glint_fbdev fb;
-
-    for (int i = 1; i < SIGRTMIN; i++)
-        signal(i, SIG_DFL);
-    must_open(&fb, NULL); /* so that lists are in another order */
-    fb.sink.close(&fb.sink);
-    must_open(&fb, &options);
-    must_put(&fb, grey(8, 6, 1));
-    if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
-        _exit(99);
-    if (fork() == 0)
-        exit(0); /* The end of its own child changes nothing. */
-    while (wait(NULL) < 0)
-        ;
-    if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
-        _exit(98);
-    if (how == 0)
-        exit(0);
-    raise(how);
-}
-
-/* Whatever ends a process, the console must be text and the first screen in
- * view. This test must come first: the first open takes the signals for the
- * whole process. */
-static void test_every_end(void **state)
-{
-    static const int ends[] = {0,       SIGINT,  SIGTERM, SIGHUP,
-                               SIGQUIT, SIGSEGV, SIGABRT};
-
-    (void)state;
-    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
-        int how;
-        pid_t child;
-
-        reset_pages();
-        child = fork();
-        if (child == 0)
-            end_child(ends[i]);
-        assert_int_equal(waitpid(child, &how, 0), child);
-        if (ends[i] == 0)
-            assert_int_equal(how, 0);
-        else
-            assert_int_equal(WTERMSIG(how), ends[i]);
-        assert_int_equal(fake_fb->tty_mode, KD_TEXT);
-        assert_int_equal(fake_fb->var.yoffset, 0);
-        /* Panning back must come before text. */
-        assert_int_equal(fake_fb->yoffset_at_text, 0);
-    }
 }
 
 /* ---------------------------------------------------------------- failures */
@@ -621,9 +604,8 @@ static void check_failures(bool pages)
     assert_true(n > 15);
 }
 
-static void test_every_failure(void **state)
+TEST(every_failure)
 {
-    (void)state;
     check_failures(false);
     check_failures(true);
 }
@@ -644,18 +626,4 @@ static int leave(void **state)
     return unlink(fake_fb_path) | unlink(fake_tty_path);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_end),     cmocka_unit_test(test_draws),
-        cmocka_unit_test(test_borders),       cmocka_unit_test(test_odd_start),
-        cmocka_unit_test(test_pages),         cmocka_unit_test(test_no_pages),
-        cmocka_unit_test(test_vsync),         cmocka_unit_test(test_goes_away),
-        cmocka_unit_test(test_mode_changes),  cmocka_unit_test(test_no_fields),
-        cmocka_unit_test(test_refuses),       cmocka_unit_test(test_names),
-        cmocka_unit_test(test_console),       cmocka_unit_test(test_let_go),
-        cmocka_unit_test(test_every_failure),
-    };
-
-    return cmocka_run_group_tests_name("fbdev", tests, enter, leave);
-}
+TEST_GROUP(enter, leave);

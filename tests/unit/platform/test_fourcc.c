@@ -2,13 +2,10 @@
  *
  * FOURCCs and colours of V4L2, to formats of glint and back.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include "linux/fourcc.h"
+#include "support/test.h"
 
 #include <linux/videodev2.h>
 
@@ -28,9 +25,8 @@ static void expect_format(const char *text, enum glint_pixel_format want)
     assert_int_equal(format, want);
 }
 
-static void test_formats(void **state)
+TEST(formats)
 {
-    (void)state;
     expect_format("YUYV", GLINT_YUYV);
     expect_format("yuyv422", GLINT_YUYV);
     expect_format("UYVY", GLINT_UYVY);
@@ -54,9 +50,8 @@ static void test_formats(void **state)
 }
 
 /* FOURCCs by hand: 'Y' is the lowest byte. */
-static void test_words(void **state)
+TEST(words)
 {
-    (void)state;
     assert_int_equal(glint_fourcc_of(GLINT_YUYV), 0x56595559);
     assert_int_equal(glint_fourcc_of(GLINT_I420), 0x32315559);
     assert_int_equal(glint_fourcc_of(GLINT_XRGB8888), 0x34325258);
@@ -68,9 +63,8 @@ static void test_words(void **state)
     assert_int_equal(parsed("pRAA"), 0x41415270);
 }
 
-static void test_there_and_back(void **state)
+TEST(there_and_back)
 {
-    (void)state;
     for (int i = GLINT_RGB24; i <= GLINT_XBGR8888; i++) {
         const uint32_t fourcc = glint_fourcc_of((enum glint_pixel_format)i);
         enum glint_pixel_format format;
@@ -85,13 +79,12 @@ static void test_there_and_back(void **state)
     }
 }
 
-static void test_refuses(void **state)
+TEST(refuses)
 {
     enum glint_pixel_format format;
     uint32_t fourcc;
     char text[5];
 
-    (void)state;
     assert_false(glint_fourcc_to_format(parsed("MJPG"), &format));
     assert_false(glint_fourcc_to_format(0, &format));
     assert_false(glint_fourcc_parse("", &fourcc));
@@ -114,11 +107,10 @@ static bool read_colour(struct glint_image *image,
     return glint_v4l2_colour_read(&colour, image);
 }
 
-static void test_colour_defaults(void **state)
+TEST(colour_defaults)
 {
     struct glint_image i;
 
-    (void)state;
     /* vivid and most webcams say sRGB, and leave the rest to defaults. */
     assert_true(read_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_LIMITED);
@@ -142,11 +134,10 @@ static void test_colour_defaults(void **state)
     assert_int_equal(i.range, GLINT_RANGE_FULL);
 }
 
-static void test_colour_stated(void **state)
+TEST(colour_stated)
 {
     struct glint_image i;
 
-    (void)state;
     assert_true(read_colour(&i, GLINT_UYVY, V4L2_COLORSPACE_SRGB,
                             V4L2_YCBCR_ENC_709, V4L2_QUANTIZATION_FULL_RANGE,
                             V4L2_XFER_FUNC_709));
@@ -163,9 +154,8 @@ static void test_colour_stated(void **state)
     assert_false(read_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_RAW, 0, 0, 0));
 }
 
-static void test_colour_there_and_back(void **state)
+TEST(colour_there_and_back)
 {
-    (void)state;
     for (int i = 0; i < 8; i++) {
         const struct glint_image image = {
             .format = GLINT_YUYV,
@@ -182,19 +172,4 @@ static void test_colour_there_and_back(void **state)
         assert_int_equal(back.matrix, image.matrix);
         assert_int_equal(back.transfer, image.transfer);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_words),
-        cmocka_unit_test(test_there_and_back),
-        cmocka_unit_test(test_refuses),
-        cmocka_unit_test(test_colour_defaults),
-        cmocka_unit_test(test_colour_stated),
-        cmocka_unit_test(test_colour_there_and_back),
-    };
-
-    return cmocka_run_group_tests_name("fourcc", tests, NULL, NULL);
 }

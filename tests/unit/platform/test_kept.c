@@ -3,11 +3,7 @@
  * Picture files that are opened, lit and written must keep all that they hold:
  * PNM and PFM, which need no plug-in.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +12,7 @@
 
 #include "formats/picture.h"
 #include "support/scratch.h"
+#include "support/test.h"
 
 static struct glint_error error;
 
@@ -41,8 +38,7 @@ static void light_up(const char *name, const char *to, float light)
 
     for (int i = 0; i < 36; i++)
         layer[i] = light;
-    assert_int_equal(glint_kept_open(&kept, scratch_path(name), &error),
-                     GLINT_OK);
+    assert_ok(glint_kept_open(&kept, scratch_path(name), &error));
     glint_samples_add(&kept.samples, layer);
     if (glint_kept_save(&kept, scratch_path(to), NULL, &options, &error))
         fail_msg("%s", error.text);
@@ -66,9 +62,8 @@ static void check_same(const char *name, const char *data, size_t bytes)
 }
 
 /* Comments, depth, byte order and bytes behind the picture must stay. */
-static void test_stays(void **state)
+TEST(stays)
 {
-    (void)state;
     check_same("x.ppm", BYTES("P6 #hello\n2 1 #x\n255\nabcdef"));
     check_same("x.ppm", BYTES("P6 1 1 1023\n\x03\xff\x01\x02\x00\x01P6 tail"));
     check_same("x.ppm", BYTES("P6 1 1 100\nabc"));
@@ -78,9 +73,8 @@ static void test_stays(void **state)
     check_same("a.pfm", BYTES("PF 1 1 1 \x7f\xc0\0\1\x80\0\0\0\xff\x80\0\0"));
 }
 
-static void test_light(void **state)
+TEST(light)
 {
-    (void)state;
     scratch_put("x.pfm", BYTES("Pf 1 2 1 \x40\0\0\0\xbf\x80\0\0"));
     light_up("x.pfm", "y.pfm", 1);
     expect_file("y.pfm", BYTES("Pf 1 2 1 \x40\x40\0\0\0\0\0\0"));
@@ -91,21 +85,18 @@ static void test_light(void **state)
 
 /* A file of another type must have a depth that this type takes, and losses
  * must be reported. */
-static void test_converts(void **state)
+TEST(converts)
 {
     struct glint_kept kept;
     struct glint_kept_options options = {.quality = 0};
 
-    (void)state;
     scratch_put("x.pfm", BYTES("PF 1 1 1 \x40\0\0\0\x3f\x80\0\0\0\0\0\0"));
-    assert_int_equal(glint_kept_open(&kept, scratch_path("x.pfm"), &error),
-                     GLINT_OK);
+    assert_ok(glint_kept_open(&kept, scratch_path("x.pfm"), &error));
     assert_true(kept.is_float);
     assert_false(glint_kept_is_same_type(&kept, "x.ppm"));
     assert_true(glint_kept_is_same_type(&kept, "y.pfm"));
-    assert_int_equal(
-        glint_kept_save(&kept, scratch_path("y.ppm"), NULL, &options, &error),
-        GLINT_OK);
+    assert_ok(
+        glint_kept_save(&kept, scratch_path("y.ppm"), NULL, &options, &error));
     assert_non_null(strstr(options.said, "clipped"));
     glint_kept_close(&kept);
     unlink(scratch_path("x.pfm"));
@@ -115,16 +106,13 @@ static void test_converts(void **state)
     expect_file("y.ppm", BYTES("P6\n1 1\n255\n\xbc\xbc\xbc"));
 }
 
-static void test_copy(void **state)
+TEST(copy)
 {
     struct glint_kept kept;
 
-    (void)state;
     scratch_put("x.ppm", BYTES("P6 1 1 255\nabc and more"));
-    assert_int_equal(glint_kept_open(&kept, scratch_path("x.ppm"), &error),
-                     GLINT_OK);
-    assert_int_equal(glint_kept_copy(&kept, scratch_path("y.ppm"), &error),
-                     GLINT_OK);
+    assert_ok(glint_kept_open(&kept, scratch_path("x.ppm"), &error));
+    assert_ok(glint_kept_copy(&kept, scratch_path("y.ppm"), &error));
     glint_kept_close(&kept);
     unlink(scratch_path("x.ppm"));
     expect_file("y.ppm", BYTES("P6 1 1 255\nabc and more"));
@@ -142,12 +130,11 @@ static void refuse(enum glint_status status, const char *data, size_t bytes,
     unlink(scratch_path("x"));
 }
 
-static void test_refuses(void **state)
+TEST(refuses)
 {
     struct glint_kept kept;
     char *const stated = getenv("GLINT_OIIO");
 
-    (void)state;
     refuse(GLINT_E_FORMAT, BYTES(""), "is empty");
     refuse(GLINT_E_FORMAT, BYTES("P6 2 2 65535 abcdef"), "ends after");
     refuse(GLINT_E_FORMAT, BYTES("PF 2 2 x abc"), "malformed");
@@ -161,13 +148,4 @@ static void test_refuses(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stays),    cmocka_unit_test(test_light),
-        cmocka_unit_test(test_converts), cmocka_unit_test(test_copy),
-        cmocka_unit_test(test_refuses),
-    };
-
-    return cmocka_run_group_tests(tests, scratch_open_dir, scratch_close_dir);
-}
+TEST_GROUP(scratch_open_dir, scratch_close_dir);

@@ -4,11 +4,7 @@
  * were made of, and as libjpeg's own scan lines; then habits of cameras, and
  * damage on the way.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <malloc.h>
 #include <stdio.h>
@@ -20,6 +16,7 @@
 
 #include "support/rng.h"
 #include "jpeg/mjpeg.h"
+#include "support/test.h"
 
 #define NAME "cam"
 
@@ -167,8 +164,7 @@ static struct glint_mjpeg *open_decoder(int width, int height)
 {
     struct glint_mjpeg *d;
 
-    assert_int_equal(glint_mjpeg_open(&d, NAME, width, height, &error),
-                     GLINT_OK);
+    assert_ok(glint_mjpeg_open(&d, NAME, width, height, &error));
     return d;
 }
 
@@ -267,7 +263,7 @@ static void check_coding(const struct coding *c, enum glint_pixel_format format)
     glint_mjpeg_close(d);
 }
 
-static void test_codings(void **state)
+TEST(codings)
 {
     static const struct {
         int factor[3][2];
@@ -288,7 +284,6 @@ static void test_codings(void **state)
         {40, 72}, {128, 40},  {16, 64},  {1280, 31},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof way / sizeof *way; i++)
         for (size_t s = 0; s < sizeof size / sizeof *size; s++) {
             struct coding c = {.width = size[s][0], .height = size[s][1]};
@@ -302,7 +297,7 @@ static void test_codings(void **state)
  * steps of the quantiser 1. The difference of DC is 400: class 9, 1111110;
  * 110010000; then end of block, 1010; padding. All samples must be 128 + 400 /
  * 8 = 178. */
-static void test_by_hand(void **state)
+TEST(by_hand)
 {
     static const uint8_t head[] = {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0};
     static const uint8_t tail[] = {
@@ -314,7 +309,6 @@ static void test_by_hand(void **state)
     struct bytes b;
     struct glint_image image;
 
-    (void)state;
     memcpy(frame, head, sizeof head);
     memset(frame + sizeof head, 1, 64);
     memcpy(frame + sizeof head + 64, tail, sizeof tail);
@@ -331,14 +325,13 @@ static void test_by_hand(void **state)
 
 /* ---------------------------------------------------------- what cameras do */
 
-static void test_no_huffman_tables(void **state)
+TEST(no_huffman_tables)
 {
     struct glint_mjpeg *const d = open_decoder(64, 48);
     struct coding own = y420;
     struct bytes b = encode(&y422, NULL), other;
     struct glint_image image;
 
-    (void)state;
     own.optimised = true;
     other = encode(&own, NULL);
     strip(&b, 0xc4, 4);
@@ -353,12 +346,11 @@ static void test_no_huffman_tables(void **state)
     glint_mjpeg_close(d);
 }
 
-static void test_nothing_is_kept(void **state)
+TEST(nothing_is_kept)
 {
     struct glint_mjpeg *const d = open_decoder(64, 48);
     struct bytes whole = encode(&y422, NULL), bare = encode(&y422, NULL);
 
-    (void)state;
     strip(&bare, 0xdb, 2);
     decode(d, &whole);
     expect_refusal(d, &bare, GLINT_E_FORMAT, "Quantization table");
@@ -369,7 +361,7 @@ static void test_nothing_is_kept(void **state)
 }
 
 /* Frames must decode with every combination of these habits of cameras. */
-static void test_camera_habits(void **state)
+TEST(camera_habits)
 {
     static const uint8_t avi1[] = {0xff, 0xe0, 0, 16, 'A', 'V', 'I', '1', 0,
                                    0,    0,    0, 0,  0,   0,   0,   0,   0};
@@ -379,7 +371,6 @@ static void test_camera_habits(void **state)
     struct coding c = y422;
     struct glint_mjpeg *const d = open_decoder(64, 48);
 
-    (void)state;
     c.restart = 4;
     c.noisy = true;
     for (int habits = 1; habits < 128; habits++) {
@@ -412,14 +403,13 @@ static void test_camera_habits(void **state)
     glint_mjpeg_close(d);
 }
 
-static void test_sizes_change(void **state)
+TEST(sizes_change)
 {
     struct coding small = y420, high = grey;
     struct glint_mjpeg *const d = open_decoder(64, 48);
     struct bytes b[3];
     struct glint_image image;
 
-    (void)state;
     small.width = 31;
     small.height = 17;
     high.height = 49;
@@ -477,7 +467,7 @@ static void refuse(struct coding c, void (*tune)(struct jpeg_compress_struct *),
     glint_mjpeg_close(d);
 }
 
-static void test_refusals(void **state)
+TEST(refusals)
 {
     static const struct coding y444 = {64, 48, {{1, 1}, {1, 1}, {1, 1}},
                                        0,  0,  0};
@@ -488,7 +478,6 @@ static void test_refusals(void **state)
     };
     struct coding c = y444;
 
-    (void)state;
     refuse(y444, tune_progressive, "several scans");
     refuse(y444, tune_scans, "several scans");
     refuse(y420, tune_arithmetic, "arithmetic");
@@ -501,13 +490,12 @@ static void test_refusals(void **state)
                         NAME ": MJPEG: subsampling 2x1,1x1,2x1 is not handled");
 }
 
-static void test_deep_and_odd_processes(void **state)
+TEST(deep_and_odd_processes)
 {
     struct glint_mjpeg *const d = open_decoder(64, 48);
     struct bytes b = encode(&y420, NULL);
     const size_t frame = find(&b, 0xc0, 0);
 
-    (void)state;
     b.data[frame + 4] = 12;
     expect_refusal(d, &b, GLINT_E_UNSUPPORTED, "precision 12");
     b.data[frame + 4] = 8;
@@ -520,11 +508,10 @@ static void test_deep_and_odd_processes(void **state)
     glint_mjpeg_close(d);
 }
 
-static void test_open(void **state)
+TEST(open)
 {
     struct glint_mjpeg *d = (struct glint_mjpeg *)&error;
 
-    (void)state;
     assert_true(glint_mjpeg_available());
     assert_int_equal(glint_mjpeg_open(&d, NAME, 0, 8, &error),
                      GLINT_E_ARGUMENT);
@@ -567,11 +554,10 @@ static void check_truncations(struct coding c)
     glint_mjpeg_close(d);
 }
 
-static void test_every_truncation(void **state)
+TEST(every_truncation)
 {
     struct coding c = {33, 17, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 1};
 
-    (void)state;
     check_truncations(c);
     c.restart = 2;
     check_truncations(c);
@@ -593,7 +579,7 @@ static int divert(FILE *file)
 
 /* Whatever the damage, decoding must return without a message, and the next
  * frame must be right. */
-static void test_damage(void **state)
+TEST(damage)
 {
     struct coding c = {48, 32, {{2, 1}, {1, 1}, {1, 1}}, 3, 0, 1};
     struct glint_mjpeg *const d = open_decoder(48, 32);
@@ -603,7 +589,6 @@ static void test_damage(void **state)
     uint32_t seed = 1;
     struct glint_image image;
 
-    (void)state;
     assert_non_null(said);
     kept = divert(said);
     for (int i = 0; i < 3000; i++) {
@@ -631,12 +616,11 @@ static void test_damage(void **state)
     glint_mjpeg_close(d);
 }
 
-static void test_garbage(void **state)
+TEST(garbage)
 {
     struct glint_mjpeg *const d = open_decoder(64, 64);
     uint32_t seed = 2;
 
-    (void)state;
     for (size_t n = 0; n < 600; n++) {
         struct bytes b = copy_of("", 0);
         uint8_t noise[600];
@@ -660,14 +644,13 @@ static void test_garbage(void **state)
 
 /* A restart interval that is lost shifts all that follow: the numbers of the
  * restart markers must show it. */
-static void test_lost_interval(void **state)
+TEST(lost_interval)
 {
     struct coding c = y422;
     struct glint_mjpeg *const d = open_decoder(64, 48);
     struct bytes b;
     size_t from;
 
-    (void)state;
     c.restart = 4;
     c.noisy = true;
     b = encode(&c, NULL);
@@ -679,7 +662,7 @@ static void test_lost_interval(void **state)
 }
 
 /* The heap after a hundred frames, good and bad, must be that after ten. */
-static void test_memory_is_constant(void **state)
+TEST(memory_is_constant)
 {
     struct glint_mjpeg *const d = open_decoder(720, 405);
     struct coding c = {720, 405, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 1};
@@ -687,7 +670,6 @@ static void test_memory_is_constant(void **state)
     const struct bytes half = copy_of(whole.data, whole.n / 2);
     struct mallinfo2 early = {0}, late;
 
-    (void)state;
     for (int i = 0; i < 100; i++) {
         if (i == 10)
             early = mallinfo2();
@@ -701,26 +683,4 @@ static void test_memory_is_constant(void **state)
     free(whole.data);
     free(half.data);
     glint_mjpeg_close(d);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_codings),
-        cmocka_unit_test(test_by_hand),
-        cmocka_unit_test(test_no_huffman_tables),
-        cmocka_unit_test(test_nothing_is_kept),
-        cmocka_unit_test(test_camera_habits),
-        cmocka_unit_test(test_sizes_change),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_deep_and_odd_processes),
-        cmocka_unit_test(test_open),
-        cmocka_unit_test(test_every_truncation),
-        cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_garbage),
-        cmocka_unit_test(test_lost_interval),
-        cmocka_unit_test(test_memory_is_constant),
-    };
-
-    return cmocka_run_group_tests_name("mjpeg", tests, NULL, NULL);
 }

@@ -3,17 +3,14 @@
  * A file that another process replaces just when it is opened, as shards do
  * that end together, is replaced all the same.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <stdio.h>
 #include <string.h>
 
 #include "posix/output.h"
 #include "support/scratch.h"
+#include "support/test.h"
 
 static int others; /* processes that come between, one each time */
 
@@ -42,19 +39,16 @@ static void put(const char *path, const char *text)
     struct glint_error error = {""};
     struct glint_output out;
 
-    assert_int_equal(glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_output_write(&out, text, strlen(text), &error),
-                     GLINT_OK);
-    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    assert_ok(glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error));
+    assert_ok(glint_output_write(&out, text, strlen(text), &error));
+    assert_ok(glint_output_commit(&out, &error));
 }
 
-static void test_together(void **state)
+TEST(together)
 {
     char path[96], text[16] = "";
     FILE *f;
 
-    (void)state;
     snprintf(path, sizeof path, "%s/manifest.jsonl", scratch_dir);
     put(path, "first");
     others = 3;
@@ -68,12 +62,4 @@ static void test_together(void **state)
     remove(path);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_together, scratch_open_dir,
-                                        scratch_close_dir),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_GROUP(scratch_open_dir, scratch_close_dir);

@@ -2,11 +2,7 @@
  *
  * Pictures on panels of every layout: colours, places, sizes.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -15,6 +11,7 @@
 
 #include "support/rng.h"
 #include "panel/panel.h"
+#include "support/test.h"
 
 static const struct glint_pixel_layout xrgb8888 = {
     4, {16, 8}, {8, 8}, {0, 8}, {0, 0}};
@@ -105,9 +102,8 @@ static void check_mix(enum glint_matrix matrix, enum glint_range range)
     assert_true(t.n_equal > t.n / 1000 * 996);
 }
 
-static void test_every_colour(void **state)
+TEST(every_colour)
 {
-    (void)state;
     check_mix(GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
     check_mix(GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
     check_mix(GLINT_MATRIX_BT709, GLINT_RANGE_FULL);
@@ -188,7 +184,7 @@ static void expect_words(const struct layout_case *c, const uint8_t *mem)
     assert_memory_equal(mem + 6 * bytes, &beyond, 4);
 }
 
-static void test_layouts(void **state)
+TEST(layouts)
 {
     static uint8_t bars[] = {255, 0,   0,   0, 255, 0, 0,   0,   255,
                              255, 255, 255, 0, 0,   0, 128, 128, 128};
@@ -196,7 +192,6 @@ static void test_layouts(void **state)
     struct glint_panel_config cfg = {
         .width = 6, .height = 1, .image_width = 6, .image_height = 1};
 
-    (void)state;
     glint_image_place(&image, bars);
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
         struct glint_error error;
@@ -204,7 +199,7 @@ static void test_layouts(void **state)
         uint8_t mem[28];
 
         cfg.layout = layouts[i].layout;
-        assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+        assert_ok(glint_panel_open(&panel, &cfg, &error));
         memset(mem, 0xa5, sizeof mem);
         glint_panel_draw(&panel, &image, mem, 6 * cfg.layout.bytes);
         expect_words(&layouts[i], mem);
@@ -217,7 +212,7 @@ static void test_layouts(void **state)
 
 /* Codes of RGB565, which are widened to 8 bits on the way, must come back on a
  * panel of 16 bits. */
-static void test_565_there_and_back(void **state)
+TEST(writes_565_there_and_back)
 {
     static uint8_t codes[2 * 65536], mem[2 * 65536];
     const struct glint_panel_config cfg = {
@@ -231,24 +226,22 @@ static void test_565_there_and_back(void **state)
     struct glint_error error;
     struct glint_panel panel;
 
-    (void)state;
     glint_image_place(&image, codes);
     for (int i = 0; i < 65536; i++) {
         codes[2 * i] = (uint8_t)(i & 255);
         codes[2 * i + 1] = (uint8_t)(i >> 8);
     }
-    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    assert_ok(glint_panel_open(&panel, &cfg, &error));
     glint_panel_draw(&panel, &image, mem, 512);
     assert_memory_equal(mem, codes, sizeof mem);
     glint_panel_close(&panel);
 }
 
 /* Each code of 8 bits must become the nearest one of 1 to 8 bits. */
-static void test_fewer_bits(void **state)
+TEST(fewer_bits)
 {
     uint8_t ramp[256], mem[2 * 256];
 
-    (void)state;
     for (int i = 0; i < 256; i++)
         ramp[i] = (uint8_t)i;
     for (int n = 1; n <= 8; n++) {
@@ -271,7 +264,7 @@ static void test_fewer_bits(void **state)
     }
 }
 
-static void test_refuses_layouts(void **state)
+TEST(refuses_layouts)
 {
     static const struct glint_pixel_layout bad[] = {
         {1, {5, 3}, {2, 3}, {0, 2}, {0, 0}},      /* 8 bits a pixel */
@@ -292,7 +285,6 @@ static void test_refuses_layouts(void **state)
     struct glint_error error;
     struct glint_panel panel;
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         cfg.layout = bad[i];
         assert_int_equal(glint_panel_open(&panel, &cfg, &error),
@@ -444,7 +436,7 @@ static void check_format(enum glint_pixel_format format, int width, int height,
     uint8_t *const codes = make_picture(&image, format, width, height, pad);
 
     assert_non_null(mem);
-    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    assert_ok(glint_panel_open(&panel, &cfg, &error));
     glint_panel_clear(&panel, mem, stride);
     glint_panel_draw(&panel, &image, mem, stride);
     for (int y = 0; y < panel.shown.height; y++)
@@ -458,9 +450,8 @@ static void check_format(enum glint_pixel_format format, int width, int height,
 
 /* Every format must be shown right. Blocks from malloc end where the picture
  * ends, so that a sanitizer sees reads beyond it. */
-static void test_formats(void **state)
+TEST(formats)
 {
-    (void)state;
     for (int f = GLINT_RGB24; f <= GLINT_XBGR8888; f++) {
         const enum glint_pixel_format format = (enum glint_pixel_format)f;
 
@@ -491,7 +482,7 @@ static void expect_area(int panel_width, int panel_height, int width,
     struct glint_error error;
     struct glint_panel p;
 
-    assert_int_equal(glint_panel_open(&p, &cfg, &error), GLINT_OK);
+    assert_ok(glint_panel_open(&p, &cfg, &error));
     assert_int_equal(p.shown.x, x);
     assert_int_equal(p.shown.y, y);
     assert_int_equal(p.shown.width, shown_width);
@@ -499,9 +490,8 @@ static void expect_area(int panel_width, int panel_height, int width,
     glint_panel_close(&p);
 }
 
-static void test_areas(void **state)
+TEST(areas)
 {
-    (void)state;
     expect_area(640, 480, 640, 480, GLINT_PANEL_FIT, 0, 0, 640, 480);
     expect_area(480, 320, 640, 360, GLINT_PANEL_FIT, 0, 25, 480, 270);
     expect_area(800, 480, 640, 480, GLINT_PANEL_FIT, 80, 0, 640, 480);
@@ -533,7 +523,7 @@ static void draw_ramp(uint8_t *shown, bool down, int panel_width,
     struct glint_panel panel;
 
     glint_image_place(&image, ramp);
-    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    assert_ok(glint_panel_open(&panel, &cfg, &error));
     memset(mem, 99, sizeof mem);
     glint_panel_draw(&panel, &image, mem, stride);
     for (int i = 0; i < panel_width * panel_height; i++)
@@ -541,7 +531,7 @@ static void draw_ramp(uint8_t *shown, bool down, int panel_width,
     glint_panel_close(&panel);
 }
 
-static void test_nearest(void **state)
+TEST(nearest)
 {
     static const uint8_t third[] = {1, 4, 7},
                          twice[] = {0, 0, 1, 1, 2, 2, 3, 3, 4,
@@ -551,7 +541,6 @@ static void test_nearest(void **state)
                                      6, 6, 7, 7, 8, 8, 6, 6, 7, 7, 8, 8};
     uint8_t shown[36];
 
-    (void)state;
     for (int bytes = 2; bytes <= 4; bytes++) {
         draw_ramp(shown, false, 3, 1, bytes);
         assert_memory_equal(shown, third, sizeof third);
@@ -564,7 +553,7 @@ static void test_nearest(void **state)
 }
 
 /* Nothing may be touched around the picture and behind the rows. */
-static void test_borders(void **state)
+TEST(borders)
 {
     enum { STRIDE = 53, ROWS = 12 };
     const struct glint_panel_config cfg = {
@@ -579,11 +568,10 @@ static void test_borders(void **state)
     struct glint_error error;
     struct glint_panel panel;
 
-    (void)state;
     glint_image_place(&image, codes);
     memset(codes, 77, sizeof codes);
     memset(mem, 200, sizeof mem);
-    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    assert_ok(glint_panel_open(&panel, &cfg, &error));
     glint_panel_draw(&panel, &image, mem, STRIDE);
     for (int i = 0; i < STRIDE * ROWS; i++) {
         const int x = i % STRIDE / 3, y = i / STRIDE;
@@ -601,7 +589,7 @@ static void test_borders(void **state)
 
 /* Over 8 x 8 pixels of one code, the mean of the codes of 5 bits must be code *
  * 31 / 255 within 1/64. */
-static void test_dither(void **state)
+TEST(dither)
 {
     struct glint_panel_config cfg = {
         .width = 8,
@@ -615,9 +603,8 @@ static void test_dither(void **state)
     struct glint_error error;
     struct glint_panel panel;
 
-    (void)state;
     glint_image_place(&image, codes);
-    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    assert_ok(glint_panel_open(&panel, &cfg, &error));
     for (int code = 0; code < 256; code++) {
         int sum = 0;
 
@@ -629,22 +616,4 @@ static void test_dither(void **state)
             fail_msg("code %d: %d / 64", code, sum);
     }
     glint_panel_close(&panel);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_colour),
-        cmocka_unit_test(test_layouts),
-        cmocka_unit_test(test_565_there_and_back),
-        cmocka_unit_test(test_fewer_bits),
-        cmocka_unit_test(test_refuses_layouts),
-        cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_areas),
-        cmocka_unit_test(test_nearest),
-        cmocka_unit_test(test_borders),
-        cmocka_unit_test(test_dither),
-    };
-
-    return cmocka_run_group_tests_name("panel", tests, NULL, NULL);
 }

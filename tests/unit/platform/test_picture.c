@@ -3,11 +3,7 @@
  * Picture files are identified by content and saved by extension. Tests of the
  * image plug-in are skipped where $GLINT_OIIO does not name it.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +12,7 @@
 
 #include "formats/picture.h"
 #include "support/scratch.h"
+#include "support/test.h"
 
 static struct glint_error error;
 
@@ -25,8 +22,7 @@ static void expect_load(const char *name, const char *data, size_t bytes,
     struct glint_image image;
 
     scratch_put(name, data, bytes);
-    assert_int_equal(glint_picture_load(scratch_path(name), &image, &error),
-                     GLINT_OK);
+    assert_ok(glint_picture_load(scratch_path(name), &image, &error));
     assert_int_equal(image.format, GLINT_RGB24);
     assert_int_equal(image.stride_bytes[0], 3 * image.width);
     assert_memory_equal(image.plane[0], rgb,
@@ -36,9 +32,8 @@ static void expect_load(const char *name, const char *data, size_t bytes,
     unlink(scratch_path(name));
 }
 
-static void test_by_content(void **state)
+TEST(by_content)
 {
-    (void)state;
     expect_load("a.png", BYTES("P6 2 1 255 abcdef"), "abcdef");
     expect_load("a", BYTES("P5 2 1 255 ab"), "aaabbb");
     /* Linear 0, 0.5 and 1; then -1, 2 and not a number. */
@@ -62,11 +57,10 @@ static void refuse_load(enum glint_status status, const char *data,
     unlink(scratch_path("a.x"));
 }
 
-static void test_refuses_to_load(void **state)
+TEST(refuses_to_load)
 {
     struct glint_image image;
 
-    (void)state;
     refuse_load(GLINT_E_FORMAT, BYTES(""), "is empty");
     refuse_load(GLINT_E_FORMAT, BYTES("P6 2 2 255 abc"), "ends after");
     refuse_load(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"), "is a video");
@@ -76,19 +70,16 @@ static void test_refuses_to_load(void **state)
                      GLINT_E_IO);
 }
 
-static void test_load_float(void **state)
+TEST(load_float)
 {
     struct glint_float_image floats;
 
-    (void)state;
     scratch_put("a", BYTES("Pf 1 1 -1 \0\0\x40\x40"));
-    assert_int_equal(
-        glint_picture_load_float(scratch_path("a"), &floats, &error), GLINT_OK);
+    assert_ok(glint_picture_load_float(scratch_path("a"), &floats, &error));
     assert_true(floats.rgb[2] > 2.999F && floats.rgb[2] < 3.001F);
     free(floats.rgb);
     scratch_put("a", BYTES("P5 3 1 255 \0\xbc\xff"));
-    assert_int_equal(
-        glint_picture_load_float(scratch_path("a"), &floats, &error), GLINT_OK);
+    assert_ok(glint_picture_load_float(scratch_path("a"), &floats, &error));
     assert_int_equal(floats.width, 3);
     assert_true(floats.rgb[0] <= 0 && floats.rgb[8] >= 1);
     assert_true(floats.rgb[4] > 0.502F && floats.rgb[4] < 0.504F);
@@ -105,9 +96,8 @@ static void refuse_save(const char *path, enum glint_picture_kind kind,
         fail_msg("%s", error.text);
 }
 
-static void test_extensions(void **state)
+TEST(extensions)
 {
-    (void)state;
     refuse_save("a", GLINT_PICTURE_8BIT, "unknown extension");
     refuse_save("a.b/c", GLINT_PICTURE_8BIT, "unknown extension");
     refuse_save("a.y4m", GLINT_PICTURE_FLOAT, "unknown extension");
@@ -115,10 +105,8 @@ static void test_extensions(void **state)
     refuse_save("a.EXR", GLINT_PICTURE_8BIT, ".exr holds linear light");
     refuse_save("a.png", GLINT_PICTURE_FLOAT, ".png holds 8-bit codes");
     refuse_save("a.ppm", GLINT_PICTURE_FLOAT, ".ppm holds 8-bit codes");
-    assert_int_equal(glint_picture_check("-", GLINT_PICTURE_8BIT, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_picture_check("-", GLINT_PICTURE_FLOAT, &error),
-                     GLINT_OK);
+    assert_ok(glint_picture_check("-", GLINT_PICTURE_8BIT, &error));
+    assert_ok(glint_picture_check("-", GLINT_PICTURE_FLOAT, &error));
     assert_true(glint_picture_is_float("x/a.PFM"));
     assert_true(glint_picture_is_float("a.exr"));
     assert_false(glint_picture_is_float("a.tif"));
@@ -138,10 +126,8 @@ static void check_8bit(const char *name)
 {
     struct glint_image again;
 
-    assert_int_equal(glint_picture_save(scratch_path(name), &picture, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_picture_load(scratch_path(name), &again, &error),
-                     GLINT_OK);
+    assert_ok(glint_picture_save(scratch_path(name), &picture, &error));
+    assert_ok(glint_picture_load(scratch_path(name), &again, &error));
     assert_int_equal(again.width, 3);
     assert_int_equal(again.height, 2);
     assert_memory_equal(again.plane[0], codes, 18);
@@ -157,11 +143,8 @@ static void check_float(const char *name)
     const struct glint_float_image floats = {2, 1, values};
     struct glint_float_image again;
 
-    assert_int_equal(
-        glint_picture_save_float(scratch_path(name), &floats, &error),
-        GLINT_OK);
-    assert_int_equal(
-        glint_picture_load_float(scratch_path(name), &again, &error), GLINT_OK);
+    assert_ok(glint_picture_save_float(scratch_path(name), &floats, &error));
+    assert_ok(glint_picture_load_float(scratch_path(name), &again, &error));
     assert_int_equal(again.width, 2);
     assert_int_equal(again.height, 1);
     for (int i = 0; i < 6; i++)
@@ -171,17 +154,15 @@ static void check_float(const char *name)
     unlink(scratch_path(name));
 }
 
-static void test_native_round_trips(void **state)
+TEST(native_round_trips)
 {
-    (void)state;
     check_8bit("a.ppm");
     check_8bit("a.PNM");
     check_float("a.pfm");
 }
 
-static void test_full_device(void **state)
+TEST(full_device)
 {
-    (void)state;
     assert_int_equal(symlink("/dev/full", scratch_path("a.ppm")), 0);
     assert_int_equal(
         glint_picture_save(scratch_path("a.ppm"), &picture, &error),
@@ -189,12 +170,11 @@ static void test_full_device(void **state)
     unlink(scratch_path("a.ppm"));
 }
 
-static void test_plugin_missing(void **state)
+TEST(plugin_missing)
 {
     char *const stated = getenv("GLINT_OIIO");
     char *const kept = stated ? strdup(stated) : NULL;
 
-    (void)state;
     setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
     refuse_save("a.png", GLINT_PICTURE_8BIT,
                 "a.png: .png needs glint's image plug-in: ");
@@ -208,9 +188,8 @@ static void test_plugin_missing(void **state)
     free(kept);
 }
 
-static void test_plugin(void **state)
+TEST(plugin)
 {
-    (void)state;
     if (!getenv("GLINT_OIIO"))
         skip();
     check_8bit("a.png");
@@ -229,19 +208,4 @@ static void test_plugin(void **state)
     unlink(scratch_path("a.png"));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_by_content),
-        cmocka_unit_test(test_refuses_to_load),
-        cmocka_unit_test(test_load_float),
-        cmocka_unit_test(test_extensions),
-        cmocka_unit_test(test_native_round_trips),
-        cmocka_unit_test(test_full_device),
-        cmocka_unit_test(test_plugin_missing),
-        cmocka_unit_test(test_plugin),
-    };
-
-    return cmocka_run_group_tests_name("picture", tests, scratch_open_dir,
-                                       scratch_close_dir);
-}
+TEST_GROUP(scratch_open_dir, scratch_close_dir);

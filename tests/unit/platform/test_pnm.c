@@ -3,11 +3,7 @@
  * PPM, PGM and PFM: files written by hand, hostile headers, every
  * truncation.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +14,7 @@
 #include "formats/pnm.h"
 #include "posix/input.h"
 #include "support/scratch.h"
+#include "support/test.h"
 
 static struct glint_error error;
 
@@ -61,7 +58,7 @@ static void expect_pnm(const char *data, size_t bytes,
 {
     struct glint_image image;
 
-    assert_int_equal(read_pnm(&image, data, bytes), GLINT_OK);
+    assert_ok(read_pnm(&image, data, bytes));
     assert_int_equal(image.format, format);
     assert_int_equal(image.width, width);
     assert_int_equal(image.height, height);
@@ -72,9 +69,8 @@ static void expect_pnm(const char *data, size_t bytes,
     free(image.plane[0]);
 }
 
-static void test_kinds(void **state)
+TEST(kinds)
 {
-    (void)state;
     expect_pnm(BYTES("P6\n2 1\n255\nabcdef"), GLINT_RGB24, 2, 1, "abcdef");
     expect_pnm(BYTES("P5\n2 3\n255\nabcdef"), GLINT_GREY, 2, 3, "abcdef");
     /* Another picture follows in the same file. */
@@ -83,9 +79,8 @@ static void test_kinds(void **state)
     expect_pnm(BYTES("P5\n3 1\n255\n\n #"), GLINT_GREY, 3, 1, "\n #");
 }
 
-static void test_comments(void **state)
+TEST(comments)
 {
-    (void)state;
     expect_pnm(BYTES("P5#made by\n# GIMP\n 2\t\r\n#x\n1#y\n255\nab"),
                GLINT_GREY, 2, 1, "ab");
     /* a comment may end the header; its line feed is the white space */
@@ -93,9 +88,8 @@ static void test_comments(void **state)
     expect_pnm(BYTES("P5 0002 01 00255 ab"), GLINT_GREY, 2, 1, "ab");
 }
 
-static void test_maxima(void **state)
+TEST(maxima)
 {
-    (void)state;
     /* 1 of 2 is 127.5, which rounds up; 3 counts as 2 */
     expect_pnm(BYTES("P5 4 1 2 \x00\x01\x02\x03"), GLINT_GREY, 4, 1,
                "\x00\x80\xff\xff");
@@ -118,9 +112,8 @@ static void refuse_pnm(enum glint_status status, const char *data, size_t bytes)
     assert_int_equal(image.width, 77);
 }
 
-static void test_hostile_headers(void **state)
+TEST(hostile_headers)
 {
-    (void)state;
     refuse_pnm(GLINT_E_UNSUPPORTED, BYTES(""));
     refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P"));
     refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6"));
@@ -148,16 +141,15 @@ static void test_hostile_headers(void **state)
         "x.ppm: ends after 3 of 402653184 bytes of a 8192 x 8192 picture");
 }
 
-static void test_truncated_pnm(void **state)
+TEST(truncated_pnm)
 {
     static const char ppm[] =
         "P6\n# x\n2 1\n65535\n\0\1\2\3\4\5\6\7\10\11\12\13";
     struct glint_image image;
 
-    (void)state;
     for (size_t n = 0; n < sizeof ppm - 1; n++)
         refuse_pnm(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, ppm, n);
-    assert_int_equal(read_pnm(&image, ppm, sizeof ppm - 1), GLINT_OK);
+    assert_ok(read_pnm(&image, ppm, sizeof ppm - 1));
     free(image.plane[0]);
 }
 
@@ -180,7 +172,7 @@ static void expect_pfm(const char *data, size_t bytes, int width, int height,
 {
     struct glint_float_image floats;
 
-    assert_int_equal(read_pfm(&floats, data, bytes), GLINT_OK);
+    assert_ok(read_pfm(&floats, data, bytes));
     assert_int_equal(floats.width, width);
     assert_int_equal(floats.height, height);
     assert_memory_equal(floats.rgb, values,
@@ -188,11 +180,10 @@ static void expect_pfm(const char *data, size_t bytes, int width, int height,
     free(floats.rgb);
 }
 
-static void test_floats(void **state)
+TEST(floats)
 {
     static const float grey[6] = {3, 3, 3, 4, 4, 4};
 
-    (void)state;
     expect_pfm(BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF), 1, 2,
                two_pixels);
     expect_pfm(BYTES("PF\n2 1\n-1.0\n" ONE TWO HALF ZERO THREE FOUR), 2, 1,
@@ -202,15 +193,13 @@ static void test_floats(void **state)
                grey);
 }
 
-static void test_special_floats(void **state)
+TEST(special_floats)
 {
     struct glint_float_image floats;
 
-    (void)state;
-    assert_int_equal(read_pfm(&floats, BYTES("PF 1 1 -1 \x00\x00\xc0\x7f"
-                                             "\x00\x00\x80\x7f"
-                                             "\x01\x00\x00\x00")),
-                     GLINT_OK);
+    assert_ok(read_pfm(&floats, BYTES("PF 1 1 -1 \x00\x00\xc0\x7f"
+                                      "\x00\x00\x80\x7f"
+                                      "\x01\x00\x00\x00")));
     assert_true(isnan(floats.rgb[0]));
     assert_true(isinf(floats.rgb[1]));
     assert_true(floats.rgb[2] > 0 && floats.rgb[2] < 1e-44F);
@@ -227,9 +216,8 @@ static void refuse_pfm(enum glint_status status, const char *data, size_t bytes)
     assert_int_equal(floats.width, 77);
 }
 
-static void test_hostile_pfm(void **state)
+TEST(hostile_pfm)
 {
-    (void)state;
     refuse_pfm(GLINT_E_UNSUPPORTED, BYTES(""));
     refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("PF"));
     refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("PG\n1 1\n-1\n"));
@@ -249,11 +237,10 @@ static void test_hostile_pfm(void **state)
     refuse_pfm(GLINT_E_FORMAT, BYTES("PF 8192 8192 -1 " ONE));
 }
 
-static void test_truncated_pfm(void **state)
+TEST(truncated_pfm)
 {
     static const char pfm[] = "PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF;
 
-    (void)state;
     for (size_t n = 0; n < sizeof pfm - 1; n++)
         refuse_pfm(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, pfm, n);
 }
@@ -262,9 +249,8 @@ static void test_truncated_pfm(void **state)
 
 static void open_path(struct glint_output *out)
 {
-    assert_int_equal(
-        glint_output_open(out, scratch_file, GLINT_OUTPUT_BINARY, &error),
-        GLINT_OK);
+    assert_ok(
+        glint_output_open(out, scratch_file, GLINT_OUTPUT_BINARY, &error));
 }
 
 static void expect_path(struct glint_output *out, const char *want,
@@ -273,16 +259,14 @@ static void expect_path(struct glint_output *out, const char *want,
     uint8_t *data;
     size_t bytes;
 
-    assert_int_equal(glint_output_commit(out, &error), GLINT_OK);
-    assert_int_equal(
-        glint_input_slurp(&data, &bytes, scratch_file, 10000, &error),
-        GLINT_OK);
+    assert_ok(glint_output_commit(out, &error));
+    assert_ok(glint_input_slurp(&data, &bytes, scratch_file, 10000, &error));
     assert_int_equal(bytes, want_bytes);
     assert_memory_equal(data, want, bytes);
     free(data);
 }
 
-static void test_write_ppm(void **state)
+TEST(write_ppm)
 {
     uint8_t padded[] = "abcdef--ghijkl--";
     struct glint_image image = {.format = GLINT_RGB24,
@@ -292,34 +276,32 @@ static void test_write_ppm(void **state)
                                 .stride_bytes = {8, 0, 0}};
     struct glint_output out;
 
-    (void)state;
     open_path(&out);
-    assert_int_equal(glint_pnm_write(&out, &image, &error), GLINT_OK);
+    assert_ok(glint_pnm_write(&out, &image, &error));
     expect_path(&out, BYTES("P6\n2 2\n255\nabcdefghijkl"));
 
     image.plane[0] = padded + 8; /* upside down */
     image.stride_bytes[0] = -8;
     open_path(&out);
-    assert_int_equal(glint_pnm_write(&out, &image, &error), GLINT_OK);
+    assert_ok(glint_pnm_write(&out, &image, &error));
     expect_path(&out, BYTES("P6\n2 2\n255\nghijklabcdef"));
 }
 
-static void test_write_pfm(void **state)
+TEST(write_pfm)
 {
     float values[6];
     const struct glint_float_image floats = {1, 2, values};
     struct glint_output out;
 
-    (void)state;
     memcpy(values, two_pixels, sizeof values);
     open_path(&out);
-    assert_int_equal(glint_pfm_write(&out, &floats, &error), GLINT_OK);
+    assert_ok(glint_pfm_write(&out, &floats, &error));
     expect_path(&out, BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF));
 }
 
 /* Rows of odd width, more of them than are encoded at a time, must come
  * back. */
-static void test_pfm_round_trip(void **state)
+TEST(pfm_round_trip)
 {
     enum { W = 333, H = 3, N = W * H * 3 };
     static float values[N];
@@ -329,39 +311,16 @@ static void test_pfm_round_trip(void **state)
     uint8_t *data;
     size_t bytes;
 
-    (void)state;
     for (int i = 0; i < N; i++)
         values[i] = (float)i * 0.37F - 100;
     open_path(&out);
-    assert_int_equal(glint_pfm_write(&out, &floats, &error), GLINT_OK);
-    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
-    assert_int_equal(
-        glint_input_slurp(&data, &bytes, scratch_file, 100000, &error),
-        GLINT_OK);
-    assert_int_equal(glint_pfm_read(&again, data, bytes, scratch_file, &error),
-                     GLINT_OK);
+    assert_ok(glint_pfm_write(&out, &floats, &error));
+    assert_ok(glint_output_commit(&out, &error));
+    assert_ok(glint_input_slurp(&data, &bytes, scratch_file, 100000, &error));
+    assert_ok(glint_pfm_read(&again, data, bytes, scratch_file, &error));
     assert_memory_equal(again.rgb, values, sizeof values);
     free(again.rgb);
     free(data);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kinds),
-        cmocka_unit_test(test_comments),
-        cmocka_unit_test(test_maxima),
-        cmocka_unit_test(test_hostile_headers),
-        cmocka_unit_test(test_truncated_pnm),
-        cmocka_unit_test(test_floats),
-        cmocka_unit_test(test_special_floats),
-        cmocka_unit_test(test_hostile_pfm),
-        cmocka_unit_test(test_truncated_pfm),
-        cmocka_unit_test(test_write_ppm),
-        cmocka_unit_test(test_write_pfm),
-        cmocka_unit_test(test_pfm_round_trip),
-    };
-
-    return cmocka_run_group_tests_name("pnm", tests, scratch_open_file,
-                                       scratch_close_file);
-}
+TEST_GROUP(scratch_open_file, scratch_close_file);

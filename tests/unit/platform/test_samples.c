@@ -3,17 +3,14 @@
  * Pixels as files hold them: what is seen of them, what light changes, and what
  * stays.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "formats/samples.h"
+#include "support/test.h"
 
 /* Returns WIDTH x HEIGHT pixels over MEM, of three channels of SAMPLE, or of
  * four with alpha. */
@@ -43,9 +40,8 @@ static struct glint_samples samples_of(int width, int height,
     return s;
 }
 
-static void test_half(void **state)
+TEST(half)
 {
-    (void)state;
     for (unsigned i = 0; i < 65536; i++) {
         const float value = glint_half_decode((uint16_t)i);
 
@@ -61,11 +57,10 @@ static void test_half(void **state)
 }
 
 /* Curves by hand: sRGB of 0.5 is 0.21404, BT.709 of 0.5 is 0.25959. */
-static void test_curves(void **state)
+TEST(curves)
 {
     struct glint_tone_curve t;
 
-    (void)state;
     glint_tone_curve_set(&t, GLINT_TONE_IS_SRGB, 0);
     assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.21404) < 1e-5);
     assert_true(fabs(glint_tone_curve_decode(&t, 0.02) - 0.001548) < 1e-6);
@@ -114,12 +109,11 @@ static size_t make_profile(uint8_t p[400], unsigned gamma_q8)
 
 /* Adobe RGB by hand: a half is 0.5^2.19922 = 0.21776, and its green has -0.398
  * of sRGB's red. */
-static void test_profile(void **state)
+TEST(profile)
 {
     struct glint_colours c;
     uint8_t p[400];
 
-    (void)state;
     make_profile(p, 563);
     assert_true(glint_icc_read(&c, p, sizeof p));
     assert_false(c.is_srgb);
@@ -142,12 +136,11 @@ static void test_profile(void **state)
 }
 
 /* A curve of entries must take any float, also one beyond its ends. */
-static void test_tables_of_any_float(void **state)
+TEST(tables_of_any_float)
 {
     struct glint_tone_curve t = {
         .gamma = 1, .a = 1, .n_entries = 3, .entry = {0, 16384, 65535}};
 
-    (void)state;
     assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.25) < 1e-4);
     assert_true(fabs(glint_tone_curve_decode(&t, -0.5) + 0.25) < 1e-4);
     assert_true(glint_tone_curve_decode(&t, 1) == 1);
@@ -156,14 +149,13 @@ static void test_tables_of_any_float(void **state)
     assert_true(isnan(glint_tone_curve_decode(&t, (double)NAN)));
 }
 
-static void test_light_is_added(void **state)
+TEST(light_is_added)
 {
     uint16_t mem[] = {0, 1000, 65535, 32768, 32768, 32768};
     uint16_t before[6];
     struct glint_samples s = samples_of(2, 1, GLINT_SAMPLE_U16, false, mem);
     float layer[6] = {0};
 
-    (void)state;
     memcpy(before, mem, sizeof mem);
     glint_samples_add(&s, layer);
     assert_memory_equal(mem, before, sizeof mem);
@@ -176,7 +168,7 @@ static void test_light_is_added(void **state)
 }
 
 /* Floats must go beyond white; a value that is no number must stay. */
-static void test_floats(void **state)
+TEST(floats)
 {
     float mem[] = {2, -0.25F, NAN};
     struct glint_samples s = samples_of(1, 1, GLINT_SAMPLE_FLOAT, false, mem);
@@ -184,8 +176,7 @@ static void test_floats(void **state)
     struct glint_image proxy;
     double white;
 
-    (void)state;
-    assert_int_equal(glint_samples_proxy(&s, &proxy, &white), GLINT_OK);
+    assert_ok(glint_samples_proxy(&s, &proxy, &white));
     assert_true(white >= 2); /* the brightest hundredth is this pixel */
     assert_int_equal(proxy.plane[0][1], 0);
     assert_int_equal(proxy.plane[0][2], 0);
@@ -198,7 +189,7 @@ static void test_floats(void **state)
 
 /* Transparent pixels must show no lamps unless they are premultiplied, and
  * alpha must not change. */
-static void test_alpha(void **state)
+TEST(alpha)
 {
     uint8_t mem[] = {255, 255, 255, 0, 200, 200, 200, 255};
     struct glint_samples s = samples_of(2, 1, GLINT_SAMPLE_U8, true, mem);
@@ -206,13 +197,12 @@ static void test_alpha(void **state)
     struct glint_image proxy;
     double white;
 
-    (void)state;
-    assert_int_equal(glint_samples_proxy(&s, &proxy, &white), GLINT_OK);
+    assert_ok(glint_samples_proxy(&s, &proxy, &white));
     assert_int_equal(proxy.plane[0][0], 0);
     assert_int_equal(proxy.plane[0][3], 200);
     free(proxy.plane[0]);
     s.is_premultiplied = true;
-    assert_int_equal(glint_samples_proxy(&s, &proxy, &white), GLINT_OK);
+    assert_ok(glint_samples_proxy(&s, &proxy, &white));
     assert_int_equal(proxy.plane[0][0], 255);
     free(proxy.plane[0]);
     glint_samples_add(&s, layer);
@@ -229,12 +219,11 @@ static void expect_near(float is, double wanted)
 /* What an object covers becomes as opaque as it covers, straight or
  * premultiplied: half of an object of light 0.5 over a pixel of alpha 0.25 and
  * light 0.2. */
-static void test_cover(void **state)
+TEST(cover)
 {
     const double behind = 0.25 * 0.2, light = 0.5 * behind + 0.5 * 0.5;
     const double rgb[3] = {light, light, light}, alpha = 1 - 0.75 * 0.5;
 
-    (void)state;
     for (int premultiplied = 0; premultiplied < 2; premultiplied++) {
         float mem[8] = {0, 0, 0, 0.25F, 9, 9, 9, 0.5F}, seen[3];
         struct glint_samples s =
@@ -262,14 +251,13 @@ static void test_cover(void **state)
 
 /* A picture stored as 2 x 3 pixels must stand upright by each orientation of
  * EXIF. Each string has the letters of the upright pixels. */
-static void test_orientations(void **state)
+TEST(orientations)
 {
     static const char *const upright[] = {"abcdef", "badcfe", "fedcba",
                                           "efcdab", "acebdf", "ecafdb",
                                           "fdbeca", "bdface"};
     uint8_t mem[18];
 
-    (void)state;
     for (int i = 0; i < 18; i++)
         mem[i] = (uint8_t)("abcdef"[i / 3]);
     for (int o = 1; o <= 8; o++) {
@@ -278,7 +266,7 @@ static void test_orientations(void **state)
         double white;
 
         s.orientation = o;
-        assert_int_equal(glint_samples_proxy(&s, &proxy, &white), GLINT_OK);
+        assert_ok(glint_samples_proxy(&s, &proxy, &white));
         assert_int_equal(proxy.width, o < 5 ? 2 : 3);
         for (int i = 0; i < 6; i++)
             assert_int_equal(proxy.plane[0][3 * i], upright[o - 1][i]);
@@ -288,7 +276,7 @@ static void test_orientations(void **state)
 
 /* The data window is smaller than the part that is seen, and reaches beyond
  * it. */
-static void test_windows(void **state)
+TEST(windows)
 {
     float mem[] = {1, 1, 1, 0.5F, 0.5F, 0.5F};
     struct glint_samples s = samples_of(2, 1, GLINT_SAMPLE_FLOAT, false, mem);
@@ -296,7 +284,6 @@ static void test_windows(void **state)
     struct glint_image image;
     float rgb[3];
 
-    (void)state;
     s.x = -1; /* The second pixel is the first in view. */
     s.window_width = 1;
     s.window_height = 2;
@@ -311,7 +298,7 @@ static void test_windows(void **state)
 
 /* Straight alpha in 8 bits must become premultiplied floats and come back;
  * without alpha, pixels must be as over black. */
-static void test_convert(void **state)
+TEST(convert)
 {
     uint8_t mem[] = {188, 0, 255, 128}, back[4], flat[3];
     float floats[4];
@@ -322,7 +309,6 @@ static void test_convert(void **state)
     struct glint_samples opaque =
         samples_of(1, 1, GLINT_SAMPLE_U8, false, flat);
 
-    (void)state;
     to.is_premultiplied = true;
     glint_samples_convert(&to, &from);
     assert_true(fabsf(floats[0] - 0.50289F * 0.50196F) < 1e-4F);
@@ -331,23 +317,4 @@ static void test_convert(void **state)
     assert_memory_equal(back, mem, 4);
     glint_samples_convert(&opaque, &from);
     assert_int_equal(flat[2], 188); /* half of white */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_half),
-        cmocka_unit_test(test_curves),
-        cmocka_unit_test(test_tables_of_any_float),
-        cmocka_unit_test(test_profile),
-        cmocka_unit_test(test_light_is_added),
-        cmocka_unit_test(test_floats),
-        cmocka_unit_test(test_alpha),
-        cmocka_unit_test(test_cover),
-        cmocka_unit_test(test_orientations),
-        cmocka_unit_test(test_windows),
-        cmocka_unit_test(test_convert),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

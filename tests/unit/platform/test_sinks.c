@@ -2,11 +2,8 @@
  *
  * Sinks that write: planes, Y4M, V4L2 outputs.
  */
-#include <setjmp.h>
 #include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <errno.h>
 #include <fcntl.h>
@@ -25,6 +22,7 @@
 #include "panel/sinks.h"
 #include "support/fakes/wrapped.h"
 #include "support/scratch.h"
+#include "support/test.h"
 
 /* Returns an image over MEM. */
 static struct glint_image image_of(enum glint_pixel_format format, int width,
@@ -68,9 +66,8 @@ static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
 }
 
 /* Letters stand for samples: luma a.., Cb A.., Cr 1.. */
-static void test_planes(void **state)
+TEST(planes)
 {
-    (void)state;
     expect_planes(GLINT_YUYV, (const uint8_t *)"aAb1cB.2dCe3fD.4gEh5iF.6",
                   GLINT_I422, "abcdefghiABCDEF123456");
     expect_planes(GLINT_UYVY, (const uint8_t *)"Aa1bBc2.Cd3eDf4.Eg5hFi6.",
@@ -150,7 +147,7 @@ static void check_last_codes(void)
     assert_int_equal(ycc[5], 255);
 }
 
-static void test_from_rgb(void **state)
+TEST(from_rgb)
 {
     static const uint8_t colours[] = {255, 255, 255, 0, 0, 0,   255, 0,   0,
                                       0,   255, 0,   0, 0, 255, 128, 128, 128,
@@ -160,7 +157,6 @@ static void test_from_rgb(void **state)
                                "\x80\x80\x5a\x36\xf0\x80\x80\x80\x80"
                                "\x80\x80\xf0\x22\x6e\x80\x80\x80\x80";
 
-    (void)state;
     expect_planes(GLINT_RGB24, colours, GLINT_I444, want);
     check_last_codes();
     check_colours(GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
@@ -182,7 +178,7 @@ static void expect_file(const char *want, size_t bytes)
     assert_memory_equal(got, want, bytes);
 }
 
-static void test_y4m(void **state)
+TEST(y4m)
 {
     static const char want[] =
         "YUV4MPEG2 W4 H2 F25:1 Ip A1:1 C422 XCOLORRANGE=FULL\n"
@@ -192,22 +188,21 @@ static void test_y4m(void **state)
     struct glint_y4m_sink y4m;
     struct glint_error error;
 
-    (void)state;
     image.range = GLINT_RANGE_FULL;
     glint_y4m_sink_open(&y4m, scratch_file, 25, 1);
     for (int i = 0; i < 2; i++)
-        assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+        assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     assert_int_equal(y4m.n_frames, 2);
     image.width = 2;
     assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_OUTPUT);
-    assert_int_equal(glint_y4m_sink_finish(&y4m, &error), GLINT_OK);
-    assert_int_equal(glint_y4m_sink_finish(&y4m, &error), GLINT_OK);
+    assert_ok(glint_y4m_sink_finish(&y4m, &error));
+    assert_ok(glint_y4m_sink_finish(&y4m, &error));
     expect_file(want, sizeof want - 1);
 }
 
 /* A format that Y4M has must not be copied first; RGB must be converted and
  * declared limited. */
-static void test_y4m_formats(void **state)
+TEST(y4m_formats)
 {
     static const char planes[] = "YUV4MPEG2 W2 H2 F0:0 Ip A1:1 C420jpeg "
                                  "XCOLORRANGE=LIMITED\nFRAME\nabcdA1";
@@ -217,9 +212,8 @@ static void test_y4m_formats(void **state)
     struct glint_y4m_sink y4m;
     struct glint_error error;
 
-    (void)state;
     glint_y4m_sink_open(&y4m, scratch_file, 0, 0);
-    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     assert_null(y4m.mem);
     y4m.sink.close(&y4m.sink);
     y4m.sink.close(&y4m.sink);
@@ -227,14 +221,14 @@ static void test_y4m_formats(void **state)
     image = image_of(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
     image.range = GLINT_RANGE_FULL;
     glint_y4m_sink_open(&y4m, scratch_file, 30, 1);
-    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     y4m.sink.close(&y4m.sink);
     expect_file(white, sizeof white - 1);
 }
 
 /* A pipe of 64 KiB that nobody reads: frames must be dropped, not waited
  * for. */
-static void test_y4m_slow_reader(void **state)
+TEST(y4m_slow_reader)
 {
     static uint8_t mem[4096 * 3], sink_hole[65536];
     const struct glint_image image = image_of(GLINT_GREY, 96, 128, mem);
@@ -243,22 +237,21 @@ static void test_y4m_slow_reader(void **state)
     char name[32];
     int fd[2];
 
-    (void)state;
     assert_int_equal(pipe(fd), 0);
     snprintf(name, sizeof name, "/dev/fd/%d", fd[1]);
     glint_y4m_sink_open(&y4m, name, 25, 1);
     for (int i = 0; i < 4; i++) /* 12288 bytes and a line each */
-        assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+        assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     assert_int_equal(y4m.n_dropped, 0);
     assert_int_equal(fcntl(fd[1], F_SETFL, O_NONBLOCK), 0);
     while (write(fd[1], mem, 100) > 0)
         ;
-    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     assert_int_equal(y4m.n_dropped, 1);
     assert_int_equal(y4m.n_frames, 4);
     while (read(fd[0], sink_hole, sizeof sink_hole) == sizeof sink_hole)
         ;
-    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     assert_int_equal(y4m.n_frames, 5);
     close(fd[0]);
     assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_CLOSED);
@@ -266,28 +259,26 @@ static void test_y4m_slow_reader(void **state)
     close(fd[1]);
 }
 
-static void test_y4m_refused(void **state)
+TEST(y4m_refused)
 {
     const struct glint_image image = image_of(GLINT_YUYV, 2, 1, (void *)"aAb1");
     struct glint_y4m_sink y4m;
     struct glint_error error;
 
-    (void)state;
     glint_y4m_sink_open(&y4m, "/nowhere/x.y4m", 25, 1);
     assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_OUTPUT);
     assert_null(y4m.mem);
     y4m.sink.close(&y4m.sink);
 }
 
-static void test_null(void **state)
+TEST(null)
 {
     const struct glint_image image = image_of(GLINT_YUYV, 2, 1, (void *)"aAb1");
     struct glint_null_sink null;
     struct glint_error error;
 
-    (void)state;
     glint_null_sink_open(&null);
-    assert_int_equal(null.sink.put(&null.sink, &image, &error), GLINT_OK);
+    assert_ok(null.sink.put(&null.sink, &image, &error));
     assert_int_equal(null.n_frames, 1);
     null.sink.close(&null.sink);
 }
@@ -378,13 +369,12 @@ static void must_open(struct glint_v4l2_sink *out,
         fail_msg("%s", error.text);
 }
 
-static void test_v4l2(void **state)
+TEST(v4l2)
 {
     struct glint_image image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
-    (void)state;
     reset_node();
     image.matrix = GLINT_MATRIX_BT709;
     must_open(&out, &image);
@@ -395,7 +385,7 @@ static void test_v4l2(void **state)
                      V4L2_QUANTIZATION_LIM_RANGE);
     assert_int_equal(node.set.fmt.pix.priv, V4L2_PIX_FMT_PRIV_MAGIC);
     assert_int_equal(node.parm.parm.output.timeperframe.denominator, 30);
-    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    assert_ok(out.sink.put(&out.sink, &image, &error));
     expect_file("aAb1cBd2", 8);
     assert_int_equal(out.n_frames, 1);
     assert_int_equal(node.n_streaming, 1);
@@ -405,7 +395,7 @@ static void test_v4l2(void **state)
 }
 
 /* Rows of the device or of the picture may be longer than they need be. */
-static void test_v4l2_strides(void **state)
+TEST(v4l2_strides)
 {
     static const uint8_t zero;
     struct glint_image image =
@@ -414,7 +404,6 @@ static void test_v4l2_strides(void **state)
     struct glint_error error;
     char want[] = "abcd..efgh..AB.CD.";
 
-    (void)state;
     for (char *c = want; *c; c++)
         if (*c == '.')
             *c = (char)zero;
@@ -422,7 +411,7 @@ static void test_v4l2_strides(void **state)
     node.stride = 6;
     node.size = 100;
     must_open(&out, &image);
-    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    assert_ok(out.sink.put(&out.sink, &image, &error));
     expect_file(want, 18);
     out.sink.close(&out.sink);
 
@@ -430,7 +419,7 @@ static void test_v4l2_strides(void **state)
     image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1..cBd2");
     image.stride_bytes[0] = 6;
     must_open(&out, &image);
-    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    assert_ok(out.sink.put(&out.sink, &image, &error));
     expect_file("aAb1cBd2", 8);
     out.sink.close(&out.sink);
 
@@ -438,7 +427,7 @@ static void test_v4l2_strides(void **state)
     image = image_of(GLINT_NV12, 2, 2, (void *)"abcdA1");
     node.stride = 3;
     must_open(&out, &image);
-    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    assert_ok(out.sink.put(&out.sink, &image, &error));
     expect_file("ab\0cd\0A1", 9);
     out.sink.close(&out.sink);
 
@@ -446,22 +435,21 @@ static void test_v4l2_strides(void **state)
     image = image_of(GLINT_NV12, 2, 2, (void *)"abcd..A1");
     image.plane[1] += 2;
     must_open(&out, &image);
-    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    assert_ok(out.sink.put(&out.sink, &image, &error));
     expect_file("abcdA1", 6);
     out.sink.close(&out.sink);
 }
 
-static void test_v4l2_no_room(void **state)
+TEST(v4l2_no_room)
 {
     const struct glint_image image = image_of(GLINT_GREY, 4, 1, (void *)"abcd");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
-    (void)state;
     reset_node();
     must_open(&out, &image);
     node.write_errno = EAGAIN;
-    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    assert_ok(out.sink.put(&out.sink, &image, &error));
     assert_int_equal(out.n_dropped, 1);
     node.write_errno = ENODEV;
     assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_E_DEVICE);
@@ -491,13 +479,12 @@ static void expect_refused(enum glint_status status, const char *part)
     assert_null(out.mem);
 }
 
-static void test_v4l2_refuses(void **state)
+TEST(v4l2_refuses)
 {
     struct glint_image image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
-    (void)state;
     reset_node();
     node.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
     expect_refused(GLINT_E_DEVICE, "fake is no video output");
@@ -547,22 +534,4 @@ static void test_v4l2_refuses(void **state)
     out.sink.close(&out.sink);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_planes),
-        cmocka_unit_test(test_from_rgb),
-        cmocka_unit_test(test_y4m),
-        cmocka_unit_test(test_y4m_formats),
-        cmocka_unit_test(test_y4m_slow_reader),
-        cmocka_unit_test(test_y4m_refused),
-        cmocka_unit_test(test_null),
-        cmocka_unit_test(test_v4l2),
-        cmocka_unit_test(test_v4l2_strides),
-        cmocka_unit_test(test_v4l2_no_room),
-        cmocka_unit_test(test_v4l2_refuses),
-    };
-
-    return cmocka_run_group_tests_name("sinks", tests, scratch_open_file,
-                                       scratch_close_file);
-}
+TEST_GROUP(scratch_open_file, scratch_close_file);

@@ -3,11 +3,7 @@
  * Text from files: what of it reaches a terminal, and what is written in
  * JSON.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -15,6 +11,7 @@
 
 #include "posix/error.h"
 #include "options/json_writer.h"
+#include "support/test.h"
 
 static const struct {
     const char *text, *clean, *json;
@@ -36,9 +33,8 @@ static const struct {
     {"\"\\", "\"\\", "\"\\\"\\\\\""},
 };
 
-static void test_clean(void **state)
+TEST(clean)
 {
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char text[64];
 
@@ -48,9 +44,8 @@ static void test_clean(void **state)
     }
 }
 
-static void test_errors(void **state)
+TEST(errors)
 {
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct glint_error error;
         char want[80];
@@ -61,9 +56,8 @@ static void test_errors(void **state)
     }
 }
 
-static void test_json(void **state)
+TEST(json)
 {
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         FILE *file = tmpfile();
         char got[128];
@@ -77,14 +71,13 @@ static void test_json(void **state)
     }
 }
 
-static void test_writer(void **state)
+TEST(writer)
 {
     FILE *file = tmpfile();
     struct json_writer json = {.to = file};
     const char *volatile const none = NULL; /* unknown to the compiler */
     char got[256];
 
-    (void)state;
     assert_non_null(file);
     json_write(&json, "{name: %s, none: %s, x: %.2f, y: %.2f, list: [", "a\"b",
                none, 0.5, (double)NAN);
@@ -100,16 +93,4 @@ static void test_writer(void **state)
              "{\"n\": 1, \"draw_ms\": 7, \"is\": true}\n], \"empty\": {}, "
              "\"zero\": 0, \"big\": -1099511627776}\n");
     fclose(file);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clean),
-        cmocka_unit_test(test_errors),
-        cmocka_unit_test(test_json),
-        cmocka_unit_test(test_writer),
-    };
-
-    return cmocka_run_group_tests_name("utf8", tests, NULL, NULL);
 }

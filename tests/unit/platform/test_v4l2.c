@@ -28,7 +28,7 @@ static uint32_t chosen(const struct fake_mode *list, int n, int fps)
     return fourcc;
 }
 
-static void test_cheapest(void **state)
+TEST(cheapest)
 {
     static const struct fake_mode equal[] = {
         {V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1},
@@ -45,7 +45,6 @@ static void test_cheapest(void **state)
     static const struct fake_mode foreign[] = {
         {V4L2_PIX_FMT_H264, 64, 48, 30, 1}, {V4L2_PIX_FMT_GREY, 64, 48, 30, 1}};
 
-    (void)state;
     assert_int_equal(chosen(equal, 4, 30), V4L2_PIX_FMT_YUYV);
     assert_int_equal(chosen(equal, 3, 30), V4L2_PIX_FMT_NV12);
     assert_int_equal(chosen(equal, 2, 30), V4L2_PIX_FMT_RGB24);
@@ -58,11 +57,10 @@ static void test_cheapest(void **state)
 
 /* Without a size, a rate must be looked for at the size that the camera is set
  * to. */
-static void test_rate_alone(void **state)
+TEST(rate_alone)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    (void)state;
     fake_camera_reset();
     camera.mode[0].fps_num = 10;
     camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1};
@@ -77,7 +75,7 @@ static void test_rate_alone(void **state)
 /* Intervals of 333334 units of 100 ns, as some USB cameras say it, must count
  * as 30 frames a second, and so must those of 1001/30000 s; 24 frames a second
  * must not count as 25. */
-static void test_almost_the_rate(void **state)
+TEST(almost_the_rate)
 {
     static const struct fake_mode usb[] = {
         {V4L2_PIX_FMT_YUYV, 64, 48, 10000000, 333334},
@@ -89,17 +87,15 @@ static void test_almost_the_rate(void **state)
         {V4L2_PIX_FMT_YUYV, 64, 48, 24, 1},
         {V4L2_PIX_FMT_MJPEG, 64, 48, 25, 1}};
 
-    (void)state;
     assert_int_equal(chosen(usb, 2, 30), V4L2_PIX_FMT_YUYV);
     assert_int_equal(chosen(ntsc, 2, 30), V4L2_PIX_FMT_YUYV);
     assert_int_equal(chosen(film, 2, 25), V4L2_PIX_FMT_MJPEG);
 }
 
-static void test_stepwise(void **state)
+TEST(stepwise)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    (void)state;
     fake_camera_reset();
     camera.is_stepwise = true;
     camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_RGB24, 256, 128, 60, 1};
@@ -117,9 +113,8 @@ static void test_stepwise(void **state)
 }
 
 /* Without libjpeg MJPG must not be chosen. */
-static void test_no_jpeg(void **state)
+TEST(no_jpeg)
 {
-    (void)state;
     fake_camera_reset();
     fake_lacks_jpeg = true;
     camera.mode[0].fourcc = V4L2_PIX_FMT_MJPEG;
@@ -129,11 +124,10 @@ static void test_no_jpeg(void **state)
     must_close();
 }
 
-static void test_unread_format(void **state)
+TEST(unread_format)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    (void)state;
     fake_camera_reset();
     camera.mode[0].fourcc = camera.now.fourcc = V4L2_PIX_FMT_H264;
     must_refuse(NULL, GLINT_E_UNSUPPORTED,
@@ -145,11 +139,10 @@ static void test_unread_format(void **state)
 }
 
 /* A camera that chooses another format than was requested must be believed. */
-static void test_believes(void **state)
+TEST(believes)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    (void)state;
     fake_camera_reset();
     camera.rounds = true;
     wish.width = 50;
@@ -168,12 +161,11 @@ static void test_believes(void **state)
     must_close();
 }
 
-static void test_odd_rates(void **state)
+TEST(odd_rates)
 {
     static const struct v4l2_fract odd[] = {
         {1, 0}, {1, UINT32_MAX}, {UINT32_MAX, 1}, {UINT32_MAX, UINT32_MAX}};
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         fake_camera_reset();
         camera.rate = odd[i];
@@ -184,11 +176,10 @@ static void test_odd_rates(void **state)
     }
 }
 
-static void test_inputs(void **state)
+TEST(inputs)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    (void)state;
     fake_camera_reset();
     camera.n_inputs = 2;
     wish.input = 1;
@@ -202,11 +193,10 @@ static void test_inputs(void **state)
                 "VIDIOC_S_INPUT: Device or resource busy; another program");
 }
 
-static void test_colours(void **state)
+TEST(colours)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    (void)state;
     fake_camera_reset();
     camera.quantization = V4L2_QUANTIZATION_FULL_RANGE;
     camera.ycbcr_enc = V4L2_YCBCR_ENC_709;
@@ -227,12 +217,11 @@ static void test_colours(void **state)
 
 /* A device may have a long name, as udev makes them, but not a longer one than
  * there is room for. */
-static void test_long_names(void **state)
+TEST(long_names)
 {
     struct glint_v4l2_config wish = any_camera;
     char name[400];
 
-    (void)state;
     fake_camera_reset();
     memset(name, 'x', sizeof name);
     memcpy(name, "/dev/", 5);
@@ -272,9 +261,8 @@ static const uint8_t *block_of(int k)
     return camera.buffer[0].map[k];
 }
 
-static void test_strides(void **state)
+TEST(strides)
 {
-    (void)state;
     use_format(V4L2_PIX_FMT_YUYV, false);
     camera.stride_more = 24;
     must_open(NULL);
@@ -293,9 +281,8 @@ static void test_strides(void **state)
     must_close();
 }
 
-static void test_one_block(void **state)
+TEST(one_block)
 {
-    (void)state;
     use_format(V4L2_PIX_FMT_NV12, false);
     camera.stride_more = 16;
     must_open(NULL);
@@ -317,11 +304,10 @@ static void test_one_block(void **state)
     must_close();
 }
 
-static void test_several_blocks(void **state)
+TEST(several_blocks)
 {
     struct fake_frame *f;
 
-    (void)state;
     use_format(V4L2_PIX_FMT_NV12M, true);
     camera.stride_more = 16;
     must_open(NULL);
@@ -353,11 +339,10 @@ static void test_several_blocks(void **state)
 }
 
 /* Data of the driver's own may come before the picture. */
-static void test_data_offset(void **state)
+TEST(data_offset)
 {
     struct fake_frame *f;
 
-    (void)state;
     use_format(V4L2_PIX_FMT_YUYV, true);
     camera.sizeimage = 2 * 64 * 48 + 32;
     must_open(NULL);
@@ -383,9 +368,8 @@ static void test_data_offset(void **state)
     must_close();
 }
 
-static void test_too_small(void **state)
+TEST(too_small)
 {
-    (void)state;
     fake_camera_reset();
     camera.sizeimage = 2 * 64 * 48 - 1;
     must_refuse(NULL, GLINT_E_DEVICE,
@@ -412,9 +396,8 @@ static void deliver_odd(uint32_t sequence, uint32_t bytesused)
     f->bytesused[0] = bytesused;
 }
 
-static void test_damaged(void **state)
+TEST(damaged)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     deliver_odd(0, 0);
@@ -433,9 +416,8 @@ static void test_damaged(void **state)
 
 /* A damaged frame must not take the place of a whole one that comes after or
  * before it. */
-static void test_damaged_among_whole(void **state)
+TEST(damaged_among_whole)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 9)->flags = V4L2_BUF_FLAG_ERROR;
@@ -448,9 +430,8 @@ static void test_damaged_among_whole(void **state)
     must_close();
 }
 
-static void test_newest(void **state)
+TEST(newest)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     must_get_nothing();
@@ -484,11 +465,10 @@ static int64_t stamp_of(int64_t stamp_us, bool unknown_clock)
 
 /* A stamp of an unknown clock must be believed if it can be right; no stamp may
  * be later than now. */
-static void test_stamps(void **state)
+TEST(stamps)
 {
     const int64_t now_us = fake_camera_now();
 
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     assert_int_equal(stamp_of(now_us - 30000, false), now_us - 30000);
@@ -500,11 +480,10 @@ static void test_stamps(void **state)
 }
 
 /* A lent frame must stay as it is while others come and go. */
-static void test_lent(void **state)
+TEST(lent)
 {
     struct glint_source_frame kept;
 
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 50);
@@ -523,9 +502,8 @@ static void test_lent(void **state)
 
 /* A camera that is open must not stream, but its format must be locked, until
  * start; after a restart likewise. A call of next starts it, too. */
-static void test_streams_when_started(void **state)
+TEST(streams_when_started)
 {
-    (void)state;
     fake_camera_reset();
     assert_int_equal(
         glint_v4l2_open(&v4l2, &any_camera, GLINT_V4L2_AUTO, 4, &said),
@@ -557,9 +535,8 @@ static int dropped(uint32_t sequence)
     return frame.n_dropped;
 }
 
-static void test_sequence(void **state)
+TEST(sequence)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     assert_int_equal(dropped(1000), 0); /* A count may begin anywhere. */
@@ -587,9 +564,8 @@ static void test_sequence(void **state)
 }
 
 /* Gaps and damage before the frame that is shown must be added up. */
-static void test_gaps_add_up(void **state)
+TEST(gaps_add_up)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     assert_int_equal(dropped(6), 0); /* a number from before */
@@ -606,9 +582,8 @@ static void test_gaps_add_up(void **state)
 
 /* Leaps of the sequence must not count as gaps, and their sum must not
  * overflow. */
-static void test_leaps(void **state)
+TEST(leaps)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     assert_int_equal(dropped(0), 0);
@@ -619,11 +594,10 @@ static void test_leaps(void **state)
     must_close();
 }
 
-static void test_jpeg(void **state)
+TEST(jpeg)
 {
     static const char garbage[] = "not a JPEG at all";
 
-    (void)state;
     fake_camera_reset();
     if (!glint_mjpeg_available())
         skip();
@@ -658,9 +632,8 @@ static void check_io(enum glint_v4l2_io wish, enum glint_v4l2_io got)
     must_close();
 }
 
-static void test_memory(void **state)
+TEST(memory)
 {
-    (void)state;
     fake_camera_reset();
     check_io(GLINT_V4L2_AUTO, GLINT_V4L2_MMAP);
     check_io(GLINT_V4L2_MMAP, GLINT_V4L2_MMAP);
@@ -677,9 +650,8 @@ static void test_memory(void **state)
 
 /* A kind of memory that the device lacks must be reported as such, not as a
  * failed request. */
-static void test_no_such_memory(void **state)
+TEST(no_such_memory)
 {
-    (void)state;
     fake_camera_reset();
     assert_int_equal(try_open(NULL, GLINT_V4L2_READ), GLINT_E_DEVICE);
     assert_non_null(
@@ -691,9 +663,8 @@ static void test_no_such_memory(void **state)
     must_be_closed();
 }
 
-static void test_few_buffers(void **state)
+TEST(few_buffers)
 {
-    (void)state;
     fake_camera_reset();
     camera.max_buffers = 2;
     must_open(NULL);
@@ -709,9 +680,8 @@ static void test_few_buffers(void **state)
 
 /* The message must name the request that failed, even where another way was
  * tried after it or something was put right. */
-static void test_names_what_failed(void **state)
+TEST(names_what_failed)
 {
-    (void)state;
     fake_camera_reset();
     fake_camera_refuse(VIDIOC_QUERYBUF, EIO, 1);
     must_refuse(NULL, GLINT_E_DEVICE,
@@ -723,42 +693,4 @@ static void test_names_what_failed(void **state)
     must_refuse(NULL, GLINT_E_DEVICE,
                 "VIDIOC_REQBUFS: Device or resource busy; another program is "
                 "using it");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cheapest),
-        cmocka_unit_test(test_rate_alone),
-        cmocka_unit_test(test_almost_the_rate),
-        cmocka_unit_test(test_stepwise),
-        cmocka_unit_test(test_no_jpeg),
-        cmocka_unit_test(test_unread_format),
-        cmocka_unit_test(test_believes),
-        cmocka_unit_test(test_odd_rates),
-        cmocka_unit_test(test_inputs),
-        cmocka_unit_test(test_colours),
-        cmocka_unit_test(test_long_names),
-        cmocka_unit_test(test_strides),
-        cmocka_unit_test(test_one_block),
-        cmocka_unit_test(test_several_blocks),
-        cmocka_unit_test(test_data_offset),
-        cmocka_unit_test(test_too_small),
-        cmocka_unit_test(test_damaged),
-        cmocka_unit_test(test_damaged_among_whole),
-        cmocka_unit_test(test_newest),
-        cmocka_unit_test(test_stamps),
-        cmocka_unit_test(test_lent),
-        cmocka_unit_test(test_streams_when_started),
-        cmocka_unit_test(test_sequence),
-        cmocka_unit_test(test_gaps_add_up),
-        cmocka_unit_test(test_leaps),
-        cmocka_unit_test(test_jpeg),
-        cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_no_such_memory),
-        cmocka_unit_test(test_few_buffers),
-        cmocka_unit_test(test_names_what_failed),
-    };
-
-    return cmocka_run_group_tests_name("v4l2", tests, NULL, NULL);
 }

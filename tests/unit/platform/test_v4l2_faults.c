@@ -11,9 +11,8 @@
 
 /* ---------------------------------------------------------------- requests */
 
-static void test_queueing_fails_once(void **state)
+TEST(queueing_fails_once)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 1);
@@ -33,11 +32,10 @@ static void test_queueing_fails_once(void **state)
     must_close();
 }
 
-static void test_opens_at_second_try(void **state)
+TEST(opens_at_second_try)
 {
     static const unsigned long request[] = {VIDIOC_REQBUFS, VIDIOC_STREAMON};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         fake_camera_reset();
         fake_camera_refuse(request[i], EINVAL, 1);
@@ -49,7 +47,7 @@ static void test_opens_at_second_try(void **state)
     }
 }
 
-static void test_refuses(void **state)
+TEST(refuses)
 {
     static const struct {
         unsigned long request;
@@ -70,7 +68,6 @@ static void test_refuses(void **state)
         {VIDIOC_S_FMT, ENODEV, "; the device is gone"},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof failure / sizeof *failure; i++) {
         fake_camera_reset();
         fake_camera_refuse(failure[i].request, failure[i].number, -1);
@@ -82,14 +79,13 @@ static void test_refuses(void **state)
 }
 
 /* The source must do without these requests. */
-static void test_does_without(void **state)
+TEST(does_without)
 {
     static const unsigned long request[] = {
         VIDIOC_G_PARM,   VIDIOC_S_PARM,          VIDIOC_G_INPUT,
         VIDIOC_ENUM_FMT, VIDIOC_SUBSCRIBE_EVENT, VIDIOC_DQEVENT,
         VIDIOC_EXPBUF,   VIDIOC_ENUM_FRAMESIZES, VIDIOC_ENUM_FRAMEINTERVALS};
 
-    (void)state;
     for (size_t i = 0; i < sizeof request / sizeof *request; i++) {
         fake_camera_reset();
         fake_camera_refuse(request[i], ENOTTY, -1);
@@ -114,9 +110,8 @@ static void must_get_wide(int width, int code)
 
 /* A stream that breaks must be begun again, at the size that another program
  * has set meanwhile. */
-static void test_broken_stream(void **state)
+TEST(broken_stream)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(41, 1);
@@ -135,9 +130,8 @@ static void test_broken_stream(void **state)
 
 /* When it is begun again, the format may be another one that is read, and
  * change back. */
-static void test_other_format(void **state)
+TEST(other_format)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     for (int i = 0; i < 3; i++) {
@@ -158,12 +152,11 @@ static void test_other_format(void **state)
 
 /* Requests that fail while the stream is begun again must be tried again for a
  * while. */
-static void test_stubborn(void **state)
+TEST(stubborn)
 {
     static const unsigned long request[] = {VIDIOC_REQBUFS, VIDIOC_STREAMON,
                                             VIDIOC_S_FMT, VIDIOC_QBUF};
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         int failed_ms;
 
@@ -180,7 +173,7 @@ static void test_stubborn(void **state)
 
 /* Where the stream cannot be begun again, this must end with a message that
  * names the request. */
-static void test_never_again(void **state)
+TEST(never_again)
 {
     static const struct {
         unsigned long request;
@@ -200,7 +193,6 @@ static void test_never_again(void **state)
         {VIDIOC_DQBUF, EPIPE, "restarting does not help"},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof failure / sizeof *failure; i++) {
         int failed_ms;
 
@@ -218,9 +210,8 @@ static void test_never_again(void **state)
 
 /* After each frame there must again be the whole time for trying to begin the
  * stream again. */
-static void test_patience(void **state)
+TEST(patience)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     for (int i = 1; i <= 20; i++) {
@@ -234,12 +225,11 @@ static void test_patience(void **state)
     must_close();
 }
 
-static void test_gone(void **state)
+TEST(gone)
 {
     static const unsigned long request[] = {VIDIOC_DQBUF, VIDIOC_QUERYCAP};
     int failed_ms;
 
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 1);
@@ -297,18 +287,16 @@ static void damaged_to_the_end(bool as_jpeg)
     must_close();
 }
 
-static void test_all_damaged(void **state)
+TEST(all_damaged)
 {
-    (void)state;
     damaged_to_the_end(false);
     if (glint_mjpeg_available())
         damaged_to_the_end(true);
 }
 
 /* One whole frame in thirty must be enough to continue without a restart. */
-static void test_many_damaged(void **state)
+TEST(many_damaged)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     for (uint32_t i = 0; i < 300; i++) {
@@ -326,11 +314,10 @@ static void test_many_damaged(void **state)
 
 /* A driver that gives back a buffer which it does not have must lead to a
  * restart. */
-static void test_wrong_index(void **state)
+TEST(wrong_index)
 {
     struct glint_source_frame kept;
 
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 1);
@@ -356,11 +343,10 @@ static void test_wrong_index(void **state)
 
 /* ----------------------------------------------------------------- silence */
 
-static void test_silence(void **state)
+TEST(silence)
 {
     int failed_ms;
 
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     fake_camera_pass(2100000);
@@ -379,9 +365,8 @@ static void test_silence(void **state)
     must_close();
 }
 
-static void test_slow_camera(void **state)
+TEST(slow_camera)
 {
-    (void)state;
     fake_camera_reset();
     camera.mode[0].fps_num = camera.now.fps_num = 1;
     camera.mode[0].fps_den = camera.now.fps_den = 3;
@@ -398,9 +383,8 @@ static void test_slow_camera(void **state)
 
 /* ------------------------------------------------------------------ source */
 
-static void test_source_changes(void **state)
+TEST(source_changes)
 {
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 1);
@@ -420,9 +404,8 @@ static void use_hdmi(void)
     camera.has_dv = true;
 }
 
-static void test_timings_change(void **state)
+TEST(timings_change)
 {
-    (void)state;
     use_hdmi();
     must_open(NULL);
     assert_true(v4l2.device.has_signal);
@@ -442,11 +425,10 @@ static void test_timings_change(void **state)
 
 /* A signal may be away for as long as it likes, and come back, with events or
  * without. */
-static void test_signal_lost(void **state)
+TEST(signal_lost)
 {
     int failed_ms;
 
-    (void)state;
     for (int with_events = 0; with_events < 2; with_events++) {
         use_hdmi();
         must_open(NULL);
@@ -470,9 +452,8 @@ static void test_signal_lost(void **state)
 
 /* Without a signal there are no timings to set, and those of the input must
  * do. */
-static void test_no_signal_yet(void **state)
+TEST(no_signal_yet)
 {
-    (void)state;
     use_hdmi();
     camera.has_signal = false;
     must_open(NULL);
@@ -485,11 +466,10 @@ static void test_no_signal_yet(void **state)
 
 /* The signal comes and goes without a frame between, for longer than the time
  * for trying: a cable is being plugged in. */
-static void test_signal_wavers(void **state)
+TEST(signal_wavers)
 {
     int failed_ms;
 
-    (void)state;
     use_hdmi();
     must_open(NULL);
     for (uint32_t i = 0; i < 8; i++) {
@@ -513,11 +493,10 @@ static void test_signal_wavers(void **state)
 
 /* A driver that reports a change at every start must not keep the program
  * busy. */
-static void test_endless_changes(void **state)
+TEST(endless_changes)
 {
     int64_t start;
 
-    (void)state;
     fake_camera_reset();
     must_open(NULL);
     start = fake_camera_now();
@@ -550,9 +529,8 @@ static void check_anew(enum glint_v4l2_io io)
     must_close();
 }
 
-static void test_anew_otherwise(void **state)
+TEST(anew_otherwise)
 {
-    (void)state;
     fake_camera_reset();
     check_anew(GLINT_V4L2_USERPTR);
     camera.caps |= V4L2_CAP_READWRITE;
@@ -617,11 +595,10 @@ static void check_failures(int number, bool forever, enum glint_v4l2_io io,
     assert_true(n_failed >= 4);
 }
 
-static void test_every_failure(void **state)
+TEST(every_failure)
 {
     static const int number[] = {EIO, EINVAL, EBUSY, ENOMEM, ENODEV, EAGAIN};
 
-    (void)state;
     for (int i = 0; i < 6; i++)
         for (int forever = 0; forever < 2; forever++) {
             check_failures(number[i], forever, GLINT_V4L2_AUTO, false,
@@ -635,35 +612,4 @@ static void test_every_failure(void **state)
             check_failures(number[i], forever, GLINT_V4L2_AUTO, false,
                            V4L2_PIX_FMT_MJPEG);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_queueing_fails_once),
-        cmocka_unit_test(test_opens_at_second_try),
-        cmocka_unit_test(test_refuses),
-        cmocka_unit_test(test_does_without),
-        cmocka_unit_test(test_broken_stream),
-        cmocka_unit_test(test_other_format),
-        cmocka_unit_test(test_stubborn),
-        cmocka_unit_test(test_never_again),
-        cmocka_unit_test(test_patience),
-        cmocka_unit_test(test_gone),
-        cmocka_unit_test(test_all_damaged),
-        cmocka_unit_test(test_many_damaged),
-        cmocka_unit_test(test_wrong_index),
-        cmocka_unit_test(test_silence),
-        cmocka_unit_test(test_slow_camera),
-        cmocka_unit_test(test_source_changes),
-        cmocka_unit_test(test_timings_change),
-        cmocka_unit_test(test_signal_lost),
-        cmocka_unit_test(test_no_signal_yet),
-        cmocka_unit_test(test_signal_wavers),
-        cmocka_unit_test(test_endless_changes),
-        cmocka_unit_test(test_anew_otherwise),
-        cmocka_unit_test(test_every_failure),
-    };
-
-    return cmocka_run_group_tests_name("v4l2_faults", tests, NULL, NULL);
 }

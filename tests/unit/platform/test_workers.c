@@ -2,11 +2,7 @@
  *
  * The pool must run every job exactly once, whatever the number of threads.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <errno.h>
 #include <fcntl.h>
@@ -23,6 +19,7 @@
 #include "posix/at_death.h"
 #include "posix/process.h"
 #include "posix/workers.h"
+#include "support/test.h"
 
 #define MAX_JOBS 1000
 
@@ -51,7 +48,7 @@ static void check_rounds(int n_threads)
     static const int n_jobs[] = {0, 1, 2, 3, 7, 64, MAX_JOBS};
     struct glint_workers *workers;
 
-    assert_int_equal(glint_pool_create(&workers, n_threads), GLINT_OK);
+    assert_ok(glint_pool_create(&workers, n_threads));
     assert_int_equal(workers->n, n_threads);
     for (int round = 0; round < 300; round++) {
         const int n = n_jobs[round % 7];
@@ -67,11 +64,10 @@ static void check_rounds(int n_threads)
     glint_pool_destroy(workers);
 }
 
-static void test_every_job_once(void **state)
+TEST(every_job_once)
 {
     static const int n_threads[] = {1, 2, 3, 8, GLINT_MAX_WORKERS};
 
-    (void)state;
     for (size_t i = 0; i < sizeof n_threads / sizeof *n_threads; i++)
         check_rounds(n_threads[i]);
 }
@@ -84,12 +80,11 @@ static void add(void *ctx, int job, int worker)
 }
 
 /* Results of jobs must be there when run() returns, round after round. */
-static void test_results_are_visible(void **state)
+TEST(results_are_visible)
 {
     struct glint_workers *workers;
 
-    (void)state;
-    assert_int_equal(glint_pool_create(&workers, 4), GLINT_OK);
+    assert_ok(glint_pool_create(&workers, 4));
     for (int round = 0; round < 2000; round++) {
         uint64_t sums[4] = {0, 0, 0, 0};
 
@@ -99,32 +94,29 @@ static void test_results_are_visible(void **state)
     glint_pool_destroy(workers);
 }
 
-static void test_idle_pools(void **state)
+TEST(idle_pools)
 {
     struct glint_workers *workers;
 
-    (void)state;
     for (int i = 0; i < 50; i++) {
-        assert_int_equal(glint_pool_create(&workers, 1 + i % 8), GLINT_OK);
+        assert_ok(glint_pool_create(&workers, 1 + i % 8));
         glint_pool_destroy(workers);
     }
     glint_pool_destroy(NULL);
 }
 
-static void test_refuses(void **state)
+TEST(refuses)
 {
     struct glint_workers *workers = NULL;
 
-    (void)state;
     assert_int_equal(glint_pool_create(&workers, 0), GLINT_E_ARGUMENT);
     assert_int_equal(glint_pool_create(&workers, GLINT_MAX_WORKERS + 1),
                      GLINT_E_ARGUMENT);
     assert_null(workers);
 }
 
-static void test_cpu_count(void **state)
+TEST(cpu_count)
 {
-    (void)state;
     assert_in_range(glint_cpu_count(), 1, GLINT_MAX_WORKERS);
 }
 
@@ -147,15 +139,14 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
 }
 
 /* Where no more threads can start, those that did must do all the work. */
-static void test_fewer_threads(void **state)
+TEST(fewer_threads)
 {
-    (void)state;
     for (int left = 0; left < 4; left++) {
         struct glint_workers *workers;
         uint64_t sums[8] = {0}, sum = 0;
 
         threads_left = left;
-        assert_int_equal(glint_pool_create(&workers, 8), GLINT_OK);
+        assert_ok(glint_pool_create(&workers, 8));
         threads_left = -1;
         assert_int_equal(workers->n, left + 1);
         workers->run(workers, 100, add, sums);
@@ -228,9 +219,8 @@ static int dig_on_stack(void)
     return glint_process_on_stack(GLINT_WORKER_STACK_BYTES, dig, &two) != 3;
 }
 
-static void test_stacks(void **state)
+TEST(stacks)
 {
-    (void)state;
     with_little(dig_in_pool);
     with_little(dig_on_stack);
     threads_left = 0; /* Without threads dig() must be called directly. */
@@ -260,7 +250,7 @@ static void fault_job(void *ctx, int job, int worker)
 }
 
 /* A fault of a helper must run the functions for the end of a process. */
-static void test_fault_in_helper(void **state)
+TEST(fault_in_helper)
 {
     const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);
     void *const nowhere =
@@ -271,7 +261,6 @@ static void test_fault_in_helper(void **state)
     pid_t child;
     int how;
 
-    (void)state;
     assert_int_equal(pipe(told), 0);
     child = fork();
     if (child == 0) {
@@ -290,20 +279,4 @@ static void test_fault_in_helper(void **state)
     assert_int_equal(read(told[0], text, sizeof text), 1);
     close(told[0]);
     munmap(nowhere, bytes);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_job_once),
-        cmocka_unit_test(test_results_are_visible),
-        cmocka_unit_test(test_idle_pools),
-        cmocka_unit_test(test_refuses),
-        cmocka_unit_test(test_cpu_count),
-        cmocka_unit_test(test_fewer_threads),
-        cmocka_unit_test(test_stacks),
-        cmocka_unit_test(test_fault_in_helper),
-    };
-
-    return cmocka_run_group_tests_name("workers", tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
  *
  * YUV4MPEG2: headers, odd sizes, every truncation, round trips.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <errno.h>
 #include <math.h>
@@ -16,6 +12,7 @@
 #include <unistd.h>
 
 #include "support/scratch.h"
+#include "support/test.h"
 #include "video/y4m.h"
 
 /* Two frames of 9 bytes of luma and 4 and 4 of chroma, 17 in all. */
@@ -57,7 +54,7 @@ static enum glint_status parse(struct glint_y4m_header *header,
 
 /* ------------------------------------------------------------------ header */
 
-static void test_ffmpeg_header(void **state)
+TEST(ffmpeg_header)
 {
     static const char line[] = "YUV4MPEG2 W720 H405 F25:1 Ip A1:1 C420mpeg2 "
                                "XYSCSS=420MPEG2 XCOLORRANGE=LIMITED";
@@ -65,8 +62,7 @@ static void test_ffmpeg_header(void **state)
     char printed[GLINT_Y4M_PRINTED];
     size_t len;
 
-    (void)state;
-    assert_int_equal(parse(&h, line), GLINT_OK);
+    assert_ok(parse(&h, line));
     assert_int_equal(h.width, 720);
     assert_int_equal(h.height, 405);
     assert_int_equal(h.format, GLINT_I420);
@@ -94,7 +90,7 @@ static void expect_format(const char *tag, enum glint_pixel_format format)
 
     snprintf(line, sizeof line, "YUV4MPEG2 W5 H3 F30000:1001%s\n", tag);
     line[strlen(line) - 1] = 0;
-    assert_int_equal(parse(&h, line), GLINT_OK);
+    assert_ok(parse(&h, line));
     assert_int_equal(h.format, format);
     assert_int_equal(h.range, GLINT_RANGE_LIMITED);
     assert_int_equal(h.fps_num, 30000);
@@ -104,9 +100,8 @@ static void expect_format(const char *tag, enum glint_pixel_format format)
     assert_string_equal(printed + strlen(line), "\n");
 }
 
-static void test_formats(void **state)
+TEST(formats)
 {
-    (void)state;
     expect_format("", GLINT_I420);
     expect_format(" C420", GLINT_I420);
     expect_format(" C420jpeg", GLINT_I420);
@@ -124,30 +119,25 @@ static void test_formats(void **state)
     expect_format(" C444alpha", GLINT_I444);
 }
 
-static void test_range_and_matrix(void **state)
+TEST(range_and_matrix)
 {
     struct glint_y4m_header h;
 
-    (void)state;
-    assert_int_equal(
-        parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"), GLINT_OK);
+    assert_ok(parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"));
     assert_int_equal(h.range, GLINT_RANGE_FULL);
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
     assert_int_equal(h.fps_num, 0);
     assert_int_equal(h.fps_den, 0);
-    assert_int_equal(parse(&h, "YUV4MPEG2 W1280 H719 XCOLORRANGE=OTHER"),
-                     GLINT_OK);
+    assert_ok(parse(&h, "YUV4MPEG2 W1280 H719 XCOLORRANGE=OTHER"));
     assert_int_equal(h.range, GLINT_RANGE_LIMITED);
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
     assert_string_equal(h.extra, " XCOLORRANGE=OTHER");
     /* Full range in C420jpeg is BT.601 at any size. */
-    assert_int_equal(
-        parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"), GLINT_OK);
+    assert_ok(parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"));
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
-    assert_int_equal(
-        parse(&h, "YUV4MPEG2 W1280 H720 C420mpeg2 XCOLORRANGE=FULL"), GLINT_OK);
+    assert_ok(parse(&h, "YUV4MPEG2 W1280 H720 C420mpeg2 XCOLORRANGE=FULL"));
     assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
-    assert_int_equal(parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg"), GLINT_OK);
+    assert_ok(parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg"));
     assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
 }
 
@@ -161,7 +151,7 @@ static void refuse(enum glint_status status, const char *line)
     assert_int_equal(h.width, 77);
 }
 
-static void test_hostile_headers(void **state)
+TEST(hostile_headers)
 {
     static const char *const malformed[] = {
         "",
@@ -191,7 +181,6 @@ static void test_hostile_headers(void **state)
         "YUV4MPEG2 W3 H3\r",
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof malformed / sizeof *malformed; i++)
         refuse(GLINT_E_FORMAT, malformed[i]);
     refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W32769 H3");
@@ -208,12 +197,11 @@ static void test_hostile_headers(void **state)
                         "411, 444alpha and mono (to mono16)");
 }
 
-static void test_own_header(void **state)
+TEST(own_header)
 {
     struct glint_y4m_header h;
     char printed[GLINT_Y4M_PRINTED];
 
-    (void)state;
     glint_y4m_header_init(&h, 640, 480, GLINT_I420, 30, 1);
     glint_y4m_header_print(printed, &h);
     assert_string_equal(printed,
@@ -228,19 +216,16 @@ static void test_own_header(void **state)
 
 /* ----------------------------------------------------------------- reading */
 
-static void test_frames(void **state)
+TEST(frames)
 {
-    (void)state;
     for (size_t chunk = 1; chunk < 90; chunk++) {
         struct memory memory = {BYTES(SMALL), 0, chunk, false};
         struct glint_y4m_reader reader;
         const struct glint_image *frame;
 
-        assert_int_equal(
-            glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error),
-            GLINT_OK);
-        assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error),
-                         GLINT_OK);
+        assert_ok(
+            glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error));
+        assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
         assert_int_equal(frame->format, GLINT_I420);
         assert_int_equal(frame->transfer, GLINT_TONE_BT709);
         assert_int_equal(frame->stride_bytes[0], 3);
@@ -249,13 +234,11 @@ static void test_frames(void **state)
         assert_memory_equal(frame->plane[1], "CDEF", 4);
         assert_memory_equal(frame->plane[2], "cdef", 4);
         assert_string_equal(reader.frame_tags, "");
-        assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error),
-                         GLINT_OK);
+        assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
         assert_memory_equal(frame->plane[2], "4567", 4);
         assert_string_equal(reader.frame_tags, " Ip Xq=1");
         assert_int_equal(reader.n_frames, 2);
-        assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error),
-                         GLINT_OK);
+        assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
         assert_null(frame);
         glint_y4m_reader_close(&reader);
         glint_y4m_reader_close(&reader);
@@ -283,11 +266,10 @@ static enum glint_status read_all(const char *data, size_t bytes, long *frames,
 
 /* Cut at any byte, the stream must end with the right message. The header has
  * 22 bytes, the first frame 6 + 17, the second 14 + 17. */
-static void test_every_truncation(void **state)
+TEST(every_truncation)
 {
     long frames;
 
-    (void)state;
     for (size_t n = 0; n < sizeof SMALL; n++) {
         const int whole = n == 22 || n == 45 || n == 76;
 
@@ -309,13 +291,12 @@ static void test_every_truncation(void **state)
     assert_string_equal(error.text, "x.y4m: is not a YUV4MPEG2 stream");
 }
 
-static void test_long_lines(void **state)
+TEST(long_lines)
 {
     static char text[2000];
     const size_t magic = strlen("YUV4MPEG2 W1 H1 C444 X");
     long frames;
 
-    (void)state;
     memset(text, 'x', sizeof text);
     memcpy(text, "YUV4MPEG2 W1 H1 C444 X", magic);
     assert_int_equal(read_all(text, sizeof text, &frames, false),
@@ -330,14 +311,12 @@ static void test_long_lines(void **state)
                      GLINT_E_FORMAT);
     assert_string_equal(error.text, "x.y4m: frame 0: malformed FRAME line");
     text[GLINT_Y4M_LINE + 5 + GLINT_Y4M_FRAME_TAGS - 1] = '\n';
-    assert_int_equal(read_all(text,
-                              GLINT_Y4M_LINE + 5 + GLINT_Y4M_FRAME_TAGS + 3,
-                              &frames, false),
-                     GLINT_OK);
+    assert_ok(read_all(text, GLINT_Y4M_LINE + 5 + GLINT_Y4M_FRAME_TAGS + 3,
+                       &frames, false));
     assert_int_equal(frames, 1);
 }
 
-static void test_hostile_frames(void **state)
+TEST(hostile_frames)
 {
     static const struct {
         const char *text;
@@ -354,7 +333,6 @@ static void test_hostile_frames(void **state)
     };
     long frames;
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         if (read_all(bad[i].text, bad[i].bytes, &frames, false) !=
             GLINT_E_FORMAT)
@@ -368,9 +346,7 @@ static void expect_path(const char *want, size_t want_bytes)
     uint8_t *data;
     size_t bytes;
 
-    assert_int_equal(
-        glint_input_slurp(&data, &bytes, scratch_file, 1 << 24, &error),
-        GLINT_OK);
+    assert_ok(glint_input_slurp(&data, &bytes, scratch_file, 1 << 24, &error));
     assert_int_equal(bytes, want_bytes);
     assert_memory_equal(data, want, bytes);
     free(data);
@@ -384,25 +360,20 @@ static void check_copy(const char *data, size_t bytes)
     struct glint_y4m_writer writer;
     const struct glint_image *frame;
 
-    assert_int_equal(
-        glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error),
-        GLINT_OK);
-    assert_int_equal(
-        glint_y4m_writer_open(&writer, scratch_file, &reader.header, &error),
-        GLINT_OK);
+    assert_ok(glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error));
+    assert_ok(
+        glint_y4m_writer_open(&writer, scratch_file, &reader.header, &error));
     while (!glint_y4m_reader_next(&reader, &frame, &error) && frame)
-        assert_int_equal(
-            glint_y4m_writer_put(&writer, frame, reader.frame_tags, &error),
-            GLINT_OK);
+        assert_ok(
+            glint_y4m_writer_put(&writer, frame, reader.frame_tags, &error));
     assert_int_equal(writer.n_frames, reader.n_frames);
-    assert_int_equal(glint_y4m_writer_commit(&writer, &error), GLINT_OK);
+    assert_ok(glint_y4m_writer_commit(&writer, &error));
     glint_y4m_reader_close(&reader);
     expect_path(data, bytes);
 }
 
-static void test_copies(void **state)
+TEST(copies)
 {
-    (void)state;
     check_copy(BYTES(SMALL));
     check_copy(BYTES("YUV4MPEG2 W3 H1 F0:0 It A1:1 C422 XYSCSS=422\n"
                      "FRAME\nabcBCbc"));
@@ -424,17 +395,15 @@ static void check_planes(const char *data, size_t bytes, const char *seen,
     struct memory m = {data, bytes, 0, 7, false};
     struct glint_y4m_reader reader;
 
-    assert_int_equal(glint_y4m_reader_start(&reader, pull, &m, "x.y4m", &error),
-                     GLINT_OK);
-    assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error), GLINT_OK);
+    assert_ok(glint_y4m_reader_start(&reader, pull, &m, "x.y4m", &error));
+    assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
     assert_non_null(frame);
     assert_memory_equal(frame->plane[0], seen, n_seen);
     glint_y4m_reader_close(&reader);
 }
 
-static void test_deep_frames(void **state)
+TEST(deep_frames)
 {
-    (void)state;
     /* 3 x 1 of 10 bits: luma 3, chroma 2 and 2 samples of two bytes */
     check_planes(BYTES("YUV4MPEG2 W3 H1 C420p10\nFRAME\n"
                        "\x40\x00\xac\x03\xff\x03"
@@ -462,7 +431,7 @@ static void light_up(const char *tag, int code, int middle, const float *layer,
     size_t n;
 
     snprintf(line, sizeof line, "YUV4MPEG2 W3 H3 %s", tag);
-    assert_int_equal(parse(&h, line), GLINT_OK);
+    assert_ok(parse(&h, line));
     wide = h.layout.bits > 8;
     n = glint_y4m_layout_bytes(&h.layout, 3, 3) / (wide ? 2 : 1);
     for (size_t i = 0; i < n; i++) {
@@ -483,12 +452,11 @@ static int wide_at(const uint8_t *planes, int i)
 
 /* White light of 0.18 must become 0.409 by BT.709 (by hand: 1.099 * 0.18^0.45 -
  * 0.099 = 0.4090), which is 64 + 876 * 0.4090 = 422.3 in 10 bits. */
-static void test_light(void **state)
+TEST(light)
 {
     float layer[27] = {0};
     uint8_t planes[72];
 
-    (void)state;
     light_up("C420p10", 500, 512, layer, planes);
     for (int i = 0; i < 9; i++)
         assert_int_equal(wide_at(planes, i), 500);
@@ -508,12 +476,11 @@ static void test_light(void **state)
 }
 
 /* A code that is white or beyond must stay, and alpha, too. */
-static void test_light_stays(void **state)
+TEST(light_stays)
 {
     float layer[27];
     uint8_t planes[72];
 
-    (void)state;
     for (int i = 0; i < 27; i++)
         layer[i] = 0.5F;
     light_up("C444p12 XCOLORRANGE=LIMITED", 3760, 2048, layer, planes);
@@ -563,9 +530,8 @@ static double reference(enum glint_transfer_curve curve, double v)
 }
 
 /* The tables must be those of the formulas. */
-static void test_transfers(void **state)
+TEST(transfers)
 {
-    (void)state;
     for (int t = 0; t < GLINT_TRANSFERS; t++)
         for (int i = 0; i <= GLINT_Y4M_STEPS; i++) {
             const double want =
@@ -608,8 +574,7 @@ static void check_added(enum glint_transfer_curve curve,
     float layer[3] = {(float)light, is_red ? 0 : (float)light,
                       is_red ? 0 : (float)light};
 
-    assert_int_equal(parse(&h, "YUV4MPEG2 W1 H1 C444p16 XCOLORRANGE=FULL"),
-                     GLINT_OK);
+    assert_ok(parse(&h, "YUV4MPEG2 W1 H1 C444p16 XCOLORRANGE=FULL"));
     h.matrix = GLINT_MATRIX_BT2020;
     h.transfer = curve;
     h.primaries = primaries;
@@ -642,9 +607,8 @@ static void check_added(enum glint_transfer_curve curve,
 
 /* Light must be added in the light of the stated transfer and primaries, within
  * 2 % and the steps of 16 bits. */
-static void test_light_of_transfers(void **state)
+TEST(light_of_transfers)
 {
-    (void)state;
     for (int t = 0; t < GLINT_TRANSFERS; t++)
         for (double light = 0.02; light < 1; light *= 3) {
             check_added((enum glint_transfer_curve)t, GLINT_PRIMARIES_BT709,
@@ -658,7 +622,7 @@ static void test_light_of_transfers(void **state)
 
 /* Writes a stream of PQ to a file and compares the copy that is seen: white of
  * 203 cd/m2 and all above must be white of BT.709, of 8 bits too. */
-static void test_graded_copy(void **state)
+TEST(graded_copy)
 {
     static const double nits[] = {0, 20.3, 203, 4000};
     static const int want[] = {16, 80, 235, 235};
@@ -668,7 +632,6 @@ static void test_graded_copy(void **state)
     const size_t at = strlen(bytes);
     struct memory memory = {bytes, at + 8, 0, 7, false};
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         const int code = (int)(64.5 + 876 * reference_code(GLINT_TRANSFER_PQ,
                                                            nits[i] / 203));
@@ -676,11 +639,10 @@ static void test_graded_copy(void **state)
         bytes[at + 2 * (size_t)i] = (char)code;
         bytes[at + 2 * (size_t)i + 1] = (char)(code >> 8);
     }
-    assert_int_equal(glint_y4m_reader_start(&in, pull, &memory, "pq", &error),
-                     GLINT_OK);
+    assert_ok(glint_y4m_reader_start(&in, pull, &memory, "pq", &error));
     in.header.transfer = GLINT_TRANSFER_PQ;
     in.header.primaries = GLINT_PRIMARIES_BT2020;
-    assert_int_equal(glint_y4m_reader_next(&in, &frame, &error), GLINT_OK);
+    assert_ok(glint_y4m_reader_next(&in, &frame, &error));
     for (int i = 0; i < 4; i++)
         assert_in_range(frame->plane[0][i], want[i] - 1, want[i] + 1);
     glint_y4m_reader_close(&in);
@@ -688,13 +650,12 @@ static void test_graded_copy(void **state)
 
 /* 720 x 405 pixels as ffmpeg writes them, with 203 rows of chroma, must be
  * copied. */
-static void test_odd_video(void **state)
+TEST(odd_video)
 {
     enum { FRAME = 720 * 405 + 2 * 360 * 203, HEADER = 80 };
     const size_t bytes = HEADER + 2 * (6 + FRAME);
     char *const data = malloc(bytes + 1);
 
-    (void)state;
     assert_non_null(data);
     assert_int_equal(snprintf(data, bytes, "%s%s\n",
                               "YUV4MPEG2 W720 H405 F25:1 Ip A1:1 C420mpeg2 ",
@@ -710,7 +671,7 @@ static void test_odd_video(void **state)
 }
 
 /* Rows with padding, and rows upside down, must be written without it. */
-static void test_strides(void **state)
+TEST(strides)
 {
     uint8_t luma[] = "ab--cd--ef--", cb[] = "y-z-", cr[] = "Y-Z-";
     const struct glint_image frame = {.format = GLINT_I420,
@@ -721,19 +682,15 @@ static void test_strides(void **state)
     struct glint_y4m_header header;
     struct glint_y4m_writer writer;
 
-    (void)state;
     glint_y4m_header_init(&header, 2, 3, GLINT_I420, 1, 1);
-    assert_int_equal(
-        glint_y4m_writer_open(&writer, scratch_file, &header, &error),
-        GLINT_OK);
-    assert_int_equal(glint_y4m_writer_put(&writer, &frame, "", &error),
-                     GLINT_OK);
-    assert_int_equal(glint_y4m_writer_commit(&writer, &error), GLINT_OK);
+    assert_ok(glint_y4m_writer_open(&writer, scratch_file, &header, &error));
+    assert_ok(glint_y4m_writer_put(&writer, &frame, "", &error));
+    assert_ok(glint_y4m_writer_commit(&writer, &error));
     expect_path(BYTES("YUV4MPEG2 W2 H3 F1:1 Ip A1:1 C420jpeg\n"
                       "FRAME\nefcdabyzYZ"));
 }
 
-static void test_full_device(void **state)
+TEST(full_device)
 {
     struct glint_y4m_header header;
     struct glint_y4m_writer writer;
@@ -744,21 +701,18 @@ static void test_full_device(void **state)
                                       .plane = {&sample, NULL, NULL},
                                       .stride_bytes = {1, 0, 0}};
 
-    (void)state;
     glint_y4m_header_init(&header, 1, 1, GLINT_GREY, 1, 1);
-    assert_int_equal(
-        glint_y4m_writer_open(&writer, "/dev/full", &header, &error), GLINT_OK);
+    assert_ok(glint_y4m_writer_open(&writer, "/dev/full", &header, &error));
     assert_int_equal(glint_y4m_writer_put(&writer, &frame, "", &error),
                      GLINT_E_OUTPUT);
     assert_int_equal(writer.n_frames, 0);
     glint_y4m_writer_abort(&writer);
 }
 
-static void test_missing_file(void **state)
+TEST(missing_file)
 {
     struct glint_y4m_reader reader;
 
-    (void)state;
     assert_int_equal(glint_y4m_reader_open(&reader, "/nowhere/x.y4m", &error),
                      GLINT_E_IO);
     assert_string_equal(error.text,
@@ -766,31 +720,4 @@ static void test_missing_file(void **state)
     glint_y4m_reader_close(&reader);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ffmpeg_header),
-        cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_range_and_matrix),
-        cmocka_unit_test(test_hostile_headers),
-        cmocka_unit_test(test_own_header),
-        cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_every_truncation),
-        cmocka_unit_test(test_long_lines),
-        cmocka_unit_test(test_hostile_frames),
-        cmocka_unit_test(test_copies),
-        cmocka_unit_test(test_deep_frames),
-        cmocka_unit_test(test_light),
-        cmocka_unit_test(test_light_stays),
-        cmocka_unit_test(test_transfers),
-        cmocka_unit_test(test_light_of_transfers),
-        cmocka_unit_test(test_graded_copy),
-        cmocka_unit_test(test_odd_video),
-        cmocka_unit_test(test_strides),
-        cmocka_unit_test(test_full_device),
-        cmocka_unit_test(test_missing_file),
-    };
-
-    return cmocka_run_group_tests_name("y4m", tests, scratch_open_file,
-                                       scratch_close_file);
-}
+TEST_GROUP(scratch_open_file, scratch_close_file);

@@ -5,12 +5,8 @@
  * with one quotient. That is enough, as a quotient never falls when its number
  * rises.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 
-#include <cmocka.h>
-
+#include "support/test.h"
 #include "video/y4m_divide.h"
 
 /* Returns N / D to nearest, ties away from 0; D is above 0. */
@@ -32,9 +28,8 @@ static long wrong_shares(int32_t most, int up, int32_t d)
 }
 
 /* Codes of all depths must be divided right, in full and limited range. */
-static void test_codes(void **state)
+TEST(codes)
 {
-    (void)state;
     for (int bits = 8; bits <= 16; bits++) {
         const int32_t most = (1 << bits) - 1;
 
@@ -47,9 +42,8 @@ static void test_codes(void **state)
 static const int32_t kr_q16[2] = {13933, 19595}, kb_q16[2] = {4732, 7471};
 
 /* Differences of colour must be divided right, for BT.709 and BT.601. */
-static void test_differences(void **state)
+TEST(differences)
 {
-    (void)state;
     for (int m = 0; m < 2; m++) {
         assert_int_equal(wrong_shares(1 << 20, 15, 65536 - kr_q16[m]), 0);
         assert_int_equal(wrong_shares(1 << 20, 15, 65536 - kb_q16[m]), 0);
@@ -61,11 +55,10 @@ static int32_t held(int64_t v)
     return v < 0 ? 0 : v > 1 << 20 ? 1 << 20 : (int32_t)v;
 }
 
-static void test_green(void **state)
+TEST(green)
 {
     long wrong = 0;
 
-    (void)state;
     for (int m = 0; m < 2; m++) {
         const int32_t d = 65536 - kr_q16[m] - kb_q16[m];
         const int64_t factor = y4m_part_factor(d);
@@ -82,23 +75,10 @@ static void test_green(void **state)
     assert_int_equal(wrong, 0);
 }
 
-static void test_halves(void **state)
+TEST(halves)
 {
-    (void)state;
     for (int s = 1; s < 24; s++)
         for (int64_t n = -70000; n < 70000; n++)
             assert_true(y4m_halve(16 * n, s) ==
                         divide(16 * n, INT64_C(1) << s));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_codes),
-        cmocka_unit_test(test_differences),
-        cmocka_unit_test(test_green),
-        cmocka_unit_test(test_halves),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,16 +5,13 @@
  * lights on pixel borders.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 enum { W = 240, H = 160, SIDE = 192 };
 
@@ -58,13 +55,12 @@ static double against_exact(struct stage *s, const struct glint_lamp *lamp)
  * away must look the same: its ghosts move by 1e-6 pixel, and a cell whose
  * irradiance lies between two steps of a percent, 1.2 codes where it is bright,
  * may take the other step. */
-static void test_near_the_axis(void **state)
+TEST(near_the_axis)
 {
     static const double theta[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
     struct glint_lamp lamp = stage_lamp(0, 0, 1);
     double worst = 999, jump = 0;
 
-    (void)state;
     stage_view(&heliar, W, H, 0);
     for (int i = 0; i < 5; i++) {
         lamp = stage_lamp(theta[i], 77, 1);
@@ -86,12 +82,11 @@ static void test_near_the_axis(void **state)
 
 /* On the axis the azimuth must change nothing but the way that rows of the grid
  * run. */
-static void test_azimuth_on_the_axis(void **state)
+TEST(azimuth_on_the_axis)
 {
     struct glint_lamp lamp = stage_lamp(0, 0, 1);
     double jump = 0;
 
-    (void)state;
     stage_view(&heliar, W, H, 0);
     lamp.power = stage_power(&heliar, &lamp);
     draw(&heliar, &lamp, codes[0]);
@@ -109,11 +104,10 @@ static void test_azimuth_on_the_axis(void **state)
 /* Where all light falls into the picture, its sum must not depend on the
  * azimuth. Half a percent is left to steps of irradiance and to chords of
  * outlines, where ghosts are ten pixels wide as here. */
-static void test_flux_of_all_azimuths(void **state)
+TEST(flux_of_all_azimuths)
 {
     double least = HUGE_VAL, most = 0;
 
-    (void)state;
     stage_view(&heliar, SIDE, SIDE, 400);
     for (int k = 0; k < 4 * 24; k++) {
         /* Azimuths just beside the quarters are tried, too. */
@@ -137,11 +131,10 @@ static void test_flux_of_all_azimuths(void **state)
 /* A quarter turn of the light must turn the picture: stop (an octagon) and
  * picture (a square) stay as they are. Rows and columns change places, which
  * shows in how edges are rounded. */
-static void test_quarter_turns(void **state)
+TEST(quarter_turns)
 {
     double worst = 0;
 
-    (void)state;
     stage_view(&heliar, 160, 160, 24);
     for (int k = 0; k < 6; k++) {
         struct glint_lamp lamp = stage_lamp(3 + 2 * k, 61 * k, 1);
@@ -222,13 +215,12 @@ static double jump_at(int32_t sine_q30, double *flux)
  * 2 codes at their border, and by 2 more where a side falls on the next step of
  * irradiance. A ghost begins and ends where none of it is left in the field, so
  * those borders must not show. */
-static void test_zone_borders(void **state)
+TEST(zone_borders)
 {
     const struct glint_lens *lens;
     double inner = 0, outer = 0, flux = 0, flux_outer = 0;
     int n = 0;
 
-    (void)state;
     stage_view(&heliar, W, H, 0);
     lens = &heliar.file.lens;
     for (uint32_t g = 0; g < lens->header->n_ghosts; g++)
@@ -269,12 +261,11 @@ static void test_zone_borders(void **state)
 
 /* Up to 60 degrees the model must draw what is there; a light beyond must be
  * counted and draw nothing, and no pixel may be undefined up to the horizon. */
-static void test_wide(void **state)
+TEST(wide)
 {
     static const double theta[] = {59.9, 60, 60.0001, 89, 89.9, 90};
     double worst = 999;
 
-    (void)state;
     stage_view(&heliar, W, H, 0);
     for (int i = 0; i < 6; i++) {
         const struct glint_lamp lamp = stage_lamp(theta[i], 20, 1e6);
@@ -289,13 +280,12 @@ static void test_wide(void **state)
 }
 
 /* A ball lens, which sees to all sides, must be drawn with 45 dB, too. */
-static void test_wide_ball(void **state)
+TEST(wide_ball)
 {
     static struct stage ball;
     double worst = 999;
     int lit = 0;
 
-    (void)state;
     assert_true(stage_parse(&ball, "name ball\nf-number 4\nfilm 40 30\n"
                                    "surface 6 6 5.9 1.5168 64.17\n"
                                    "stop 6 1.2\n"
@@ -322,14 +312,13 @@ static void test_wide_ball(void **state)
 
 /* A light whose image lies on the corner of a pixel or of a tile must be drawn
  * as exactly as any other, and must not jump where it crosses. */
-static void test_pixel_borders(void **state)
+TEST(pixel_borders)
 {
     static const double at[][2] = {{120, 80},  {64, 64},   {128, 64},  {0, 0},
                                    {240, 160}, {64.5, 64}, {63.5, 0.5}};
     const double step = 1.0 / 512;
     double worst = 999, jump = 0;
 
-    (void)state;
     stage_view(&heliar, W, H, 0);
     for (int i = 0; i < 7; i++) {
         struct glint_lamp lamp = stage_lamp(0, 0, 1);
@@ -353,21 +342,11 @@ static void test_pixel_borders(void **state)
                                 GRID_CODES, "codes"));
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_near_the_axis),
-        cmocka_unit_test(test_azimuth_on_the_axis),
-        cmocka_unit_test(test_flux_of_all_azimuths),
-        cmocka_unit_test(test_quarter_turns),
-        cmocka_unit_test(test_zone_borders),
-        cmocka_unit_test(test_wide),
-        cmocka_unit_test(test_wide_ball),
-        cmocka_unit_test(test_pixel_borders),
-    };
-    const int failed = cmocka_run_group_tests_name("extremes: angles", tests,
-                                                   open_stage, NULL);
-
+    (void)state;
     stage_close(&heliar);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(open_stage, close_stage);

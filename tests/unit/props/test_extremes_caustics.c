@@ -5,16 +5,13 @@
  * frame.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 enum { W = 144, H = 96, N = 3 * W * H };
 
@@ -34,11 +31,10 @@ static double peak(const float *rgb)
  * picture's within 1 %, as outlines are 0.1 pixel off and ghosts some twenty
  * pixels wide. At its edge the light of a fold grows without bound, but a pixel
  * has a mean of it, which a grid may miss by a tenth. */
-static void test_folds(void **state)
+TEST(folds)
 {
     double flux = 0, high = 0;
 
-    (void)state;
     assert_true(stage_load(&stage, "heliar-tronnier"));
     assert_true(stage_prepare(&stage, 8) && stage_model(&stage, 1, 60));
     stage_view(&stage, W, H, 0);
@@ -100,11 +96,10 @@ static double focus_mm(void)
  * point with a halo of aberrations. 6 % are allowed: the outermost part of the
  * halo comes from next to rays that vanish by total reflection, and cells that
  * have lost two corners are not drawn. */
-static void test_focus(void **state)
+TEST(focus)
 {
     double flux = 0;
 
-    (void)state;
     open_singlet(focus_mm(), 16);
     stage_view(&stage, W, H, 36);
     for (int k = 0; k < 6; k++) {
@@ -148,13 +143,12 @@ static int brightest(const float *rgb)
  * light far away, for which the exact picture needs a grid of a thousand. 2 %
  * are allowed, as the exact grid has six rays across the stop at f/400; exact
  * rays, which are interpolated, lose up to 6.3 % there. */
-static void test_point(void **state)
+TEST(point)
 {
     static const double f_number[] = {80, 150, 400};
     const double focus = focus_mm();
     double apart[3] = {0, 0, 0}; /* exact rays, models; exact rays at f/400 */
 
-    (void)state;
     for (int k = 0; k < 6; k++) {
         const int modelled = k & 1;
         const int which = k == 4 ? 2 : modelled;
@@ -187,12 +181,11 @@ static void test_point(void **state)
 
 /* The frame shows a hundredth of a ghost: a few cells, drawn thousands of
  * pixels wide, must have the light of the exact picture. */
-static void test_huge(void **state)
+TEST(huge)
 {
     const struct glint_lamp lamp = stage_lamp(2, 33, 1);
     struct glint_measure m;
 
-    (void)state;
     open_singlet(90, 16);
     assert_true(stage_model(&stage, 4, 3));
     stage_view(&stage, W, H, 0.15);
@@ -207,17 +200,11 @@ static void test_huge(void **state)
                                  m.psnr_db, 40, "dB"));
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_folds),
-        cmocka_unit_test(test_focus),
-        cmocka_unit_test(test_point),
-        cmocka_unit_test(test_huge),
-    };
-    const int failed =
-        cmocka_run_group_tests_name("extremes: caustics", tests, NULL, NULL);
-
+    (void)state;
     stage_close(&stage);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(NULL, close_stage);

@@ -4,16 +4,13 @@
  * than rows and negative ones.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 static struct stage heliar;
 
@@ -54,9 +51,8 @@ static void draw(enum glint_pixel_format format, int width, int height,
 
     stage_view(&heliar, width, height, width / px_mm);
     glint_image_place(&image, bytes);
-    assert_int_equal(
-        glint_frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn),
-        GLINT_OK);
+    assert_ok(
+        glint_frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn));
 }
 
 /* ------------------------------------------------------------------- sizes */
@@ -83,7 +79,7 @@ static int differing(int width, int height, const uint8_t *large, int large_w,
     return n;
 }
 
-static void test_every_size(void **state)
+TEST(every_size)
 {
     static const int sizes[][2] = {{1, 1},   {1, 199},   {301, 1},  {3, 199},
                                    {65, 63}, {301, 3},   {17, 129}, {127, 65},
@@ -92,7 +88,6 @@ static void test_every_size(void **state)
     uint8_t *large = take(3 * W * H);
     int n = 0, lit = 0;
 
-    (void)state;
     memset(large, 40, 3 * W * H);
     draw(GLINT_RGB24, W, H, 7, large);
     for (int i = 0; i < 3 * W * H; i++)
@@ -108,13 +103,12 @@ static void test_every_size(void **state)
 
 /* The largest frame must have the same middle as a small frame: places far from
  * the middle must not lose bits, and nothing may overflow. */
-static void test_largest(void **state)
+TEST(largest)
 {
     enum { SIDE = 8192, MIDDLE = 512 };
     uint8_t *large = take((size_t)SIDE * SIDE), *small = take(MIDDLE * MIDDLE);
     int n = 0, corners = 0;
 
-    (void)state;
     memset(large, 0, (size_t)SIDE * SIDE);
     memset(small, 0, MIDDLE * MIDDLE);
     draw(GLINT_GREY, SIDE, SIDE, 250, large);
@@ -135,13 +129,12 @@ static void test_largest(void **state)
 }
 
 /* The longest frames must have the same middles as short ones. */
-static void test_longest(void **state)
+TEST(longest)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, MIDDLE = 512 };
     uint8_t *large = take(LONG * SHORT), *small = take(MIDDLE * SHORT);
     int n = 0, lit[2] = {0, 0};
 
-    (void)state;
     for (int turned = 0; turned < 2; turned++) {
         const int w = turned ? SHORT : LONG, h = turned ? LONG : SHORT;
         const int sw = turned ? SHORT : MIDDLE, sh = turned ? MIDDLE : SHORT;
@@ -186,9 +179,8 @@ static int strided(enum glint_pixel_format format, int pad, int down)
     stage_view(&heliar, W, H, 24);
     memset(want, 90, sizeof want);
     glint_image_place(&plain, want);
-    assert_int_equal(
-        glint_frame_draw(&heliar.frame, &lamp, 1, 1, &plain, &heliar.drawn),
-        GLINT_OK);
+    assert_ok(
+        glint_frame_draw(&heliar.frame, &lamp, 1, 1, &plain, &heliar.drawn));
     memset(got, 90, sizeof got);
     for (int p = 0; p < glint_image_planes(format); p++) {
         const int rows = glint_image_plane_height(format, p, H);
@@ -200,9 +192,8 @@ static int strided(enum glint_pixel_format format, int pad, int down)
         at += rows * stride + 64;
     }
     assert_true(at < got + ROOM);
-    assert_int_equal(
-        glint_frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn),
-        GLINT_OK);
+    assert_ok(
+        glint_frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn));
     for (int p = 0; p < glint_image_planes(format); p++)
         for (int y = 0; y < glint_image_plane_height(format, p, H); y++) {
             const size_t bytes = glint_image_row_bytes(format, p, W);
@@ -217,11 +208,10 @@ static int strided(enum glint_pixel_format format, int pad, int down)
     return n;
 }
 
-static void test_strides(void **state)
+TEST(strides)
 {
     int n = 0;
 
-    (void)state;
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         /* YUYV and UYVY need even strides, int32 multiples of 4. */
         n += strided((enum glint_pixel_format)format, 52, 1);
@@ -238,14 +228,13 @@ static void test_strides(void **state)
 /* A cell whose sides lie exactly on borders of tiles and of pixels must light
  * the pixels within it and no others, whatever the tiles are, with exactly its
  * flux. */
-static void test_on_tile_borders(void **state)
+TEST(on_tile_borders)
 {
     enum { W = 192, H = 192 };
     static int32_t pixels[3 * W * H], first[3 * W * H];
     double worst = 0;
     int outside = 0, differ = 0;
 
-    (void)state;
     for (int log2 = 3; log2 <= 6; log2++) {
         struct glint_flare_config c = {.width = W,
                                        .height = H,
@@ -268,7 +257,7 @@ static void test_on_tile_borders(void **state)
         void *mem;
 
         assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-        assert_int_equal(glint_flare_init(&f, &c, mem, bytes), GLINT_OK);
+        assert_ok(glint_flare_init(&f, &c, mem, bytes));
         v = glint_flare_add(f, &b);
         assert_non_null(v);
         for (int k = 0; k < 4; k++)
@@ -298,16 +287,11 @@ static void test_on_tile_borders(void **state)
                                 worst, 1e-6, ""));
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_size),      cmocka_unit_test(test_largest),
-        cmocka_unit_test(test_longest),         cmocka_unit_test(test_strides),
-        cmocka_unit_test(test_on_tile_borders),
-    };
-    const int failed = cmocka_run_group_tests_name("extremes: frames", tests,
-                                                   open_stage, NULL);
-
+    (void)state;
     stage_close(&heliar);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(open_stage, close_stage);

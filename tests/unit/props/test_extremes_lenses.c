@@ -6,17 +6,14 @@
  * thousand. Pictures of models are compared with exact ones.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 /* Pictures are so small that each takes a tenth of a second. A draft (tolerance
  * 4) may be off by 0.12 pixel, in faint ghosts by a pixel, and by 2.4 % of
@@ -88,13 +85,12 @@ static void bake(double max_deg)
 
 /* ---------------------------------------------------------------- the stop */
 
-static void test_f_numbers(void **state)
+TEST(f_numbers)
 {
     static const double f[] = {5.1, 8, 16, 45, 128, 1000};
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
     struct worst worst = fresh();
 
-    (void)state;
     for (int k = 0; k < 6; k++) {
         struct glint_error error;
 
@@ -109,12 +105,11 @@ static void test_f_numbers(void **state)
     assert_true(report("f/5.1 (open) to f/1000", worst));
 }
 
-static void test_blades(void **state)
+TEST(blades)
 {
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
     struct worst worst = fresh();
 
-    (void)state;
     open_text(doublet, 0);
     bake(8);
     for (int n = 0; n <= 64; n += n == 0 ? 3 : n < 12 ? 1 : 13) {
@@ -129,7 +124,7 @@ static void test_blades(void **state)
 /* The outline of a round stop 300 pixels wide, whose ghost hardly bends
  * elsewhere, must show no chords. The bound of 50 dB is between the 44.4 dB of
  * 8 cells across and the 54.5 dB of the cells that are planned. */
-static void test_round_stop(void **state)
+TEST(round_stop)
 {
     enum { WIDE = 432, HIGH = 288 };
     const size_t bytes = sizeof(float) * 3 * WIDE * HIGH;
@@ -138,12 +133,10 @@ static void test_round_stop(void **state)
     struct glint_error error;
     double db;
 
-    (void)state;
     assert_true(drawn && want);
     stage_close(&stage);
     assert_true(stage_parse(&stage, doublet));
-    assert_int_equal(glint_prescription_set_f_number(&stage.lens, 64, &error),
-                     GLINT_OK);
+    assert_ok(glint_prescription_set_f_number(&stage.lens, 64, &error));
     assert_true(stage_prepare(&stage, 0) && stage_model(&stage, 2, 8));
     stage_view(&stage, WIDE, HIGH, 0);
     assert_true(stage_linear(&stage, &lamp, 1, drawn));
@@ -158,7 +151,7 @@ static void test_round_stop(void **state)
 /* Barrels that cut away half of the light must have nearly the same outline by
  * 8 cells across as by 128: chords lie on both sides of it. 48 dB lie between
  * the 46.0 of chords within the outline and the 49.9 of chords about it. */
-static void test_barrels(void **state)
+TEST(barrels)
 {
     static const char narrow[] = "name narrow\nf-number 5.6\nfilm 36 24\n"
                                  "surface 61.47 6 7 1.5168 64.17\n"
@@ -171,7 +164,6 @@ static void test_barrels(void **state)
     float *drawn = malloc(bytes), *want = malloc(bytes);
     double db;
 
-    (void)state;
     assert_true(drawn && want);
     open_text(narrow, 8);
     assert_true(stage_model(&stage, 1, 8));
@@ -193,13 +185,12 @@ static void test_barrels(void **state)
 
 /* A model is good for its film and a tenth more, so a larger sensor needs
  * another, as tools/glint/model/settings.c bakes it. */
-static void test_sensors(void **state)
+TEST(sensors)
 {
     static const double mm[] = {1, 2.5, 6.4, 36, 100};
     const struct glint_lamp lamp = stage_lamp(4, 25, 1);
     struct worst worst = fresh();
 
-    (void)state;
     for (int k = 0; k < 5; k++) {
         stage_close(&stage);
         assert_true(stage_parse(&stage, doublet));
@@ -244,14 +235,13 @@ static void open_scaled(double factor, double max_deg)
  * the same bits; with 1000 rays differ by 1e-15, and single ones may fall on
  * the other side of a threshold. Models are fitted again and must agree to 50
  * dB: less would hide a length in mm in the bake. */
-static void test_scaled(void **state)
+TEST(scaled)
 {
     static const double factor[] = {0x1p-10, 0x1p10, 1e-3, 1e3};
     static float exact_one[3 * W * H], test_one[3 * W * H];
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
     double bits = 0, db_exact = 999, db_model = 999, db_bits = 999;
 
-    (void)state;
     open_scaled(1, 8);
     assert_true(stage_linear(&stage, &lamp, 1, test_one));
     assert_true(stage_exact(&stage, &lamp, 1, 128, exact_one));
@@ -284,13 +274,12 @@ static void test_scaled(void **state)
                                  db_model, 50, "dB"));
 }
 
-static void test_focal_lengths(void **state)
+TEST(focal_lengths)
 {
     static const double focal[] = {1, 10, 1000, 10000};
     struct worst worst = fresh();
     struct glint_optics o;
 
-    (void)state;
     for (int k = 0; k < 4; k++) {
         const struct glint_lamp lamp = stage_lamp(6, 25, 1);
 
@@ -307,12 +296,11 @@ static void test_focal_lengths(void **state)
 
 /* ------------------------------------------------------------------- radii */
 
-static void test_smallest_ball(void **state)
+TEST(smallest_ball)
 {
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
     struct worst worst = fresh();
 
-    (void)state;
     stage_close(&stage);
     /* Radii of 1/100 mm, scaled from 1.1, are the smallest that a table
      * takes. */
@@ -330,7 +318,7 @@ static void test_smallest_ball(void **state)
 
 /* A surface 28 mm wide with a radius of 1e7 mm differs from a plane by 1e-5 mm,
  * a fiftieth of a wavelength, and must give the picture of the plane. */
-static void test_nearly_planes(void **state)
+TEST(nearly_planes)
 {
     static const char *const radius[] = {"flat", "1e7", "-1e7", "1e9"};
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
@@ -338,7 +326,6 @@ static void test_nearly_planes(void **state)
     struct worst worst = fresh();
     double db = 999;
 
-    (void)state;
     for (int k = 0; k < 4; k++) {
         char text[400];
 
@@ -401,7 +388,7 @@ static void open_many(int n, int split)
 /* A single surface has the same medium on both sides, and its table must be
  * refused. Two surfaces with the stop between have no ghost; more must be drawn
  * with the right picture. */
-static void test_surfaces(void **state)
+TEST(surfaces)
 {
     static const int n[] = {2, 4, 8, 16, 32, 64};
     const struct glint_lamp lamp = stage_lamp(2, 25, 1);
@@ -411,7 +398,6 @@ static void test_surfaces(void **state)
     static const char one[] = "name one\nf-number 8\nfilm 36 24\n"
                               "surface 50 100 5 air\nstop 5 5\n";
 
-    (void)state;
     assert_int_equal(
         glint_prescription_parse(&lens, one, sizeof one - 1, "one", &error),
         GLINT_E_LENS);
@@ -427,13 +413,12 @@ static void test_surfaces(void **state)
 }
 
 /* With a model without ghosts the picture must stay as it was. */
-static void test_no_ghosts(void **state)
+TEST(no_ghosts)
 {
     const struct glint_lamp lamp = stage_lamp(2, 25, 1e9);
     static uint8_t codes[3 * W * H];
     int changed = 0;
 
-    (void)state;
     open_many(2, 1);
     bake(3);
     memset(codes, 77, sizeof codes);
@@ -446,12 +431,11 @@ static void test_no_ghosts(void **state)
 
 /* 64 surfaces before the stop have 2016 pairs. Rays are exact here, as a bake
  * of so many takes an hour; plan, bins and sums have as much to do. */
-static void test_two_thousand_ghosts(void **state)
+TEST(two_thousand_ghosts)
 {
     const struct glint_lamp lamp = stage_lamp(2, 25, 1);
     struct worst worst = fresh();
 
-    (void)state;
     if (!extreme_long()) {
         skip();
         return;
@@ -472,25 +456,11 @@ static void test_two_thousand_ghosts(void **state)
     assert_true(report("2016 ghosts, exact rays", worst));
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_f_numbers),
-        cmocka_unit_test(test_blades),
-        cmocka_unit_test(test_round_stop),
-        cmocka_unit_test(test_barrels),
-        cmocka_unit_test(test_sensors),
-        cmocka_unit_test(test_scaled),
-        cmocka_unit_test(test_focal_lengths),
-        cmocka_unit_test(test_smallest_ball),
-        cmocka_unit_test(test_nearly_planes),
-        cmocka_unit_test(test_surfaces),
-        cmocka_unit_test(test_no_ghosts),
-        cmocka_unit_test(test_two_thousand_ghosts),
-    };
-    const int failed =
-        cmocka_run_group_tests_name("extremes: lenses", tests, NULL, NULL);
-
+    (void)state;
     stage_close(&stage);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(NULL, close_stage);

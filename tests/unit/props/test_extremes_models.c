@@ -5,17 +5,13 @@
  * may. Work is counted, not timed.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "support/extreme.h"
 #include "support/models/hostile.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 static struct stage stage;
 
@@ -36,12 +32,11 @@ static bool is_drawn(int family, int number)
  * too. */
 #define MOST_WORK 1.5
 
-static void test_hostile_models(void **state)
+TEST(hostile_models)
 {
     double work = 0, memory = 0;
     int n_of[HOSTILE_OUTCOMES] = {0}, n_failed = 0;
 
-    (void)state;
     assert_true(stage_open(&stage, "heliar-tronnier", 96, 64));
     for (int family = 0; family < HOSTILE_FAMILIES; family++)
         for (int number = 0; number < HOSTILE_EACH; number++) {
@@ -70,11 +65,4 @@ static void test_hostile_models(void **state)
                                 "of the bound"));
     assert_true(extreme_at_most("models: hostile ones, memory", memory, 1,
                                 "of the bound"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_hostile_models)};
-
-    return cmocka_run_group_tests_name("extremes_models", tests, NULL, NULL);
 }

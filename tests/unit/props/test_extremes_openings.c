@@ -6,17 +6,14 @@
  * f/22.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 enum { W = 216, H = 144, BLOCKS = W / 8 * (H / 8) };
 
@@ -49,23 +46,20 @@ static void draw_native(double f_number, int n_blades,
 
     stage_close(&stage);
     assert_true(stage_parse(&stage, doublet));
-    assert_int_equal(
-        glint_prescription_set_f_number(&stage.lens, f_number, &error),
-        GLINT_OK);
+    assert_ok(glint_prescription_set_f_number(&stage.lens, f_number, &error));
     assert_true(stage_prepare(&stage, n_blades));
     assert_true(stage_model(&stage, 1, 12));
     stage_view(&stage, W, H, 0);
     assert_true(stage_linear(&stage, lamp, 1, native));
 }
 
-static void test_against_exact(void **state)
+TEST(against_exact)
 {
     static const double f[] = {OPEN_F, 5.3, 5.6, 8, 11, 16, 22, 45, 128};
     static const double angle[][2] = {{0.1, 10}, {6, 25}, {11, 80}};
     double worst = 999, flux = 0;
     bool is_near;
 
-    (void)state;
     for (int blades = 0; blades <= 8; blades += 8) {
         open_wide(blades);
         for (int k = 0; k < 9; k++) {
@@ -95,14 +89,13 @@ static void test_against_exact(void **state)
 
 /* A model that is stopped down must have the picture of one baked there, with
  * at most a third more edges. */
-static void test_against_native(void **state)
+TEST(against_native)
 {
     static const double f[] = {8, 22};
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
     double worst = 999, more = 0;
     bool is_near;
 
-    (void)state;
     for (int k = 0; k < 2; k++) {
         int n;
 
@@ -141,14 +134,13 @@ static void set_blocks(const float *rgb, double exposure, double *mean)
 /* As the stop closes, ghosts shrink: the error of a block against the exact
  * picture must change by at most 1.5 codes from frame to frame, where blocks of
  * the exact picture change by tens. */
-static void test_closing(void **state)
+TEST(closing)
 {
     const int frames = extreme_long() ? 100 : 34;
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
     static double got[2][BLOCKS], want[2][BLOCKS];
     double pop = 0, own = 0, exposure = 1;
 
-    (void)state;
     open_wide(8);
     for (int k = 0; k < frames; k++) {
         const double f = OPEN_F * pow(11, k / (frames - 1.0));
@@ -176,16 +168,11 @@ static void test_closing(void **state)
                                 pop, 1.5, "codes"));
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_against_exact),
-        cmocka_unit_test(test_against_native),
-        cmocka_unit_test(test_closing),
-    };
-    const int failed =
-        cmocka_run_group_tests_name("openings", tests, NULL, NULL);
-
+    (void)state;
     stage_close(&stage);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(NULL, close_stage);

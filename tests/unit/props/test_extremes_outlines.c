@@ -4,18 +4,15 @@
  * ends in pictures of the grids that it requests, against the finest grid.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/quality.h"
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 enum { W = 640, H = 360, N = 3 * W * H, ERRORS = 5, INSIDE = 5, OUTSIDE = 3 };
 
@@ -153,9 +150,8 @@ static void outlines(const char *lens)
     assert_true(ok);
 }
 
-static void test_outlines(void **state)
+TEST(outlines)
 {
-    (void)state;
     outlines("heliar-tronnier");
     if (!extreme_long())
         return;
@@ -163,14 +159,11 @@ static void test_outlines(void **state)
     outlines("nikon-zoom-mid");
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_outlines),
-    };
-    const int failed =
-        cmocka_run_group_tests_name("extremes: outlines", tests, NULL, NULL);
-
+    (void)state;
     stage_close(&stage);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(NULL, close_stage);

@@ -4,19 +4,16 @@
  * what files may say in place of a number.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "lamp_files/lamp_list.h"
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 enum { W = 240, H = 160, N = 3 * W * H };
 
@@ -36,12 +33,11 @@ static int open_stage(void **state)
  * each picture must be that of power 1 to the last bit of a float. For powers
  * of ten, irradiance falls on other steps of a percent, and pixels are off by
  * up to half a step; their sum must be within 0.1 %. */
-static void test_linear_in_power(void **state)
+TEST(linear_in_power)
 {
     const struct glint_lamp lamp = stage_lamp(7.5, 33, 1);
     double apart = 0, flux = 0, of_one;
 
-    (void)state;
     assert_true(stage_linear(&heliar, &lamp, 1, one));
     of_one = stage_flux(&heliar, one);
     assert_true(of_one > 0);
@@ -72,13 +68,12 @@ static void test_linear_in_power(void **state)
  * code shows to what saturates all, no sample may get darker than the ground,
  * as from a sum that wraps, nor darker than at the power before. The brightest
  * light must leave white what it reaches. */
-static void test_codes_never_fall(void **state)
+TEST(codes_never_fall)
 {
     uint64_t r = 5;
     int fallen = 0, white = 0, lit = 0;
     static uint8_t ground[N], last[N];
 
-    (void)state;
     for (int i = 0; i < N; i++)
         last[i] = ground[i] = (uint8_t)stage_random(&r);
     for (double power = 1e-6; power < 1e31; power *= power < 1e9 ? 4 : 1e4) {
@@ -107,14 +102,13 @@ static void test_codes_never_fall(void **state)
 
 /* A power of 0, below 0 or that is no number must draw nothing, alone and
  * beside a light, in codes and in linear light. */
-static void test_no_power(void **state)
+TEST(no_power)
 {
     const double none[] = {
         0, -1, -1e9, (double)NAN, (double)INFINITY, -(double)INFINITY, 1e-300};
     struct glint_lamp pair[2] = {stage_lamp(7.5, 33, 100)};
     int changed = 0;
 
-    (void)state;
     memset(codes[1], 0, N);
     assert_true(stage_codes(&heliar, pair, 1, codes[1]));
     for (int k = 0; k < 7; k++) {
@@ -154,7 +148,7 @@ static enum glint_status read_text(const char *text, struct lamp_list *list,
 
 /* A power in a file must be one that can be drawn, else its line must be
  * refused. */
-static void test_files(void **state)
+TEST(files)
 {
     static const char *const bad[] = {"nan",       "inf",   "-inf", "-1",
                                       "1e999",     "1e400", "",     "x",
@@ -166,7 +160,6 @@ static void test_files(void **state)
     struct glint_error error;
     int wrong = 0;
 
-    (void)state;
     for (int k = 0; k < 10; k++)
         for (int json = 0; json < 2; json++) {
             snprintf(text, sizeof text,
@@ -198,17 +191,11 @@ static void test_files(void **state)
                                 wrong, 0, "texts"));
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_linear_in_power),
-        cmocka_unit_test(test_codes_never_fall),
-        cmocka_unit_test(test_no_power),
-        cmocka_unit_test(test_files),
-    };
-    const int failed = cmocka_run_group_tests_name("extremes: powers", tests,
-                                                   open_stage, NULL);
-
+    (void)state;
     stage_close(&heliar);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(open_stage, close_stage);

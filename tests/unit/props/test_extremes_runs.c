@@ -5,18 +5,15 @@
  * GLINT_LONG.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 enum { W = 80, H = 54, N = 3 * W * H, ROUND = 200 };
 
@@ -56,7 +53,7 @@ static int lamps_at(int k, struct glint_lamp *lamp)
     return k % ROUND < ROUND / 3 ? 2 : 1;
 }
 
-static void test_round_and_round(void **state)
+TEST(round_and_round)
 {
     const int n = extreme_long() ? 100000 : 600;
     static uint64_t first[ROUND];
@@ -65,7 +62,6 @@ static void test_round_and_round(void **state)
     long resident = 0;
     int differ = 0;
 
-    (void)state;
     assert_true(stage_load(&heliar, "heliar-tronnier"));
     assert_true(stage_prepare(&heliar, 8) && stage_model(&heliar, 1, 60));
     stage_view(&heliar, W, H, 0);
@@ -108,14 +104,11 @@ static void test_round_and_round(void **state)
 #endif
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_and_round),
-    };
-    const int failed =
-        cmocka_run_group_tests_name("extremes: runs", tests, NULL, NULL);
-
+    (void)state;
     stage_close(&heliar);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(NULL, close_stage);

@@ -6,20 +6,16 @@
  * silhouettes and edges of shadows.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/scene/bake.h"
 #include "scenes/scene_frame.h"
 #include "reference/scenes/twin.h"
 #include "support/extreme.h"
+#include "support/test.h"
 
 /* Light that the run time holds: what is more is saturated. */
 #define MOST_LIGHT 2047.0
@@ -64,10 +60,10 @@ static void draw(const struct glint_description *scene, int width, int height,
     if (glint_scene_bake(scene, "x", 1, &data, &bytes, &report, &error) !=
         GLINT_OK)
         fail_msg("%s", error.text);
-    assert_int_equal(glint_scene_open(&model, data, bytes, &reason), GLINT_OK);
-    assert_int_equal(scene_frame_open(&frame, &tool, &model, &dials), EXIT_OK);
+    assert_ok(glint_scene_open(&model, data, bytes, &reason));
+    assert_ok(scene_frame_open(&frame, &tool, &model, &dials));
     glint_image_place(&image, light_q20);
-    assert_int_equal(scene_frame_draw(&frame, &image), EXIT_OK);
+    assert_ok(scene_frame_draw(&frame, &image));
     scene_frame_close(&frame);
     free(data);
 }
@@ -110,7 +106,7 @@ static void compare(const char *text, int width, int height,
     assert_true(scene && exact && light_q20);
     read_text(scene, text);
     draw(scene, width, height, light_q20);
-    assert_int_equal(twin_open(&twin, scene), GLINT_OK);
+    assert_ok(twin_open(&twin, scene));
     twin_render(&twin, &view, NULL, exact);
     twin_close(&twin);
     for (size_t i = 0; i < n; i++) {
@@ -141,12 +137,11 @@ static void compare(const char *text, int width, int height,
     }
 
 /* A floor that is seen and lit ever flatter, and a ball that rays graze. */
-static void test_grazing(void **state)
+TEST(grazing)
 {
     struct outcome worst = NOTHING_YET;
     char text[600];
 
-    (void)state;
     for (double flat = 1; flat > 1e-5; flat /= 10) {
         snprintf(text, sizeof text,
                  "camera fov 53 at 0 %.9f 0 toward 0 0 -1\n"
@@ -174,12 +169,11 @@ static void test_grazing(void **state)
 }
 
 /* The same ball and pyramid, from 1e-6 to 1e5 wide. */
-static void test_sizes(void **state)
+TEST(sizes)
 {
     struct outcome worst = NOTHING_YET;
     char text[900];
 
-    (void)state;
     for (double r = 1e-6; r < 2e5; r *= 10) {
         snprintf(text, sizeof text,
                  "camera fov 53 at 0 %.9g %.9g toward 0 0 0\n"
@@ -203,12 +197,11 @@ static void test_sizes(void **state)
 }
 
 /* A sun, whose light does not request places, on objects up to 1e6 wide. */
-static void test_large(void **state)
+TEST(large)
 {
     struct outcome worst = NOTHING_YET;
     char text[600];
 
-    (void)state;
     for (double r = 1e3; r < 5e5; r *= 5) {
         snprintf(text, sizeof text,
                  "camera fov 53 at 0 %.9g %.9g toward 0 0 0\n"
@@ -226,12 +219,11 @@ static void test_large(void **state)
 
 /* Lamps and suns of any power: what an object shows is that, as far as light is
  * held. */
-static void test_powers(void **state)
+TEST(powers)
 {
     struct outcome worst = NOTHING_YET;
     char text[600];
 
-    (void)state;
     for (double c = 1e-6; c < 2e9; c *= 10) {
         snprintf(text, sizeof text,
                  "light lamp at 0 2 2 colour %.9g %.9g %.9g\n"
@@ -251,7 +243,7 @@ static void test_powers(void **state)
 }
 
 /* Objects behind, around and across the camera. */
-static void test_behind(void **state)
+TEST(behind)
 {
     static const char head[] =
         "light lamp at 0 3 1 colour 6 6 6\nlight lamp at 1 1 9 colour 50 50 "
@@ -272,7 +264,6 @@ static void test_behind(void **state)
         "plane p at 0 -1e-3 0 normal 0 1 .001 material m\n"};
     struct outcome worst = NOTHING_YET;
 
-    (void)state;
     for (size_t i = 0; i < sizeof things / sizeof *things; i++) {
         char text[400];
 
@@ -288,13 +279,12 @@ static void test_behind(void **state)
 }
 
 /* Pictures of one pixel, and as wide and as high as pictures are. */
-static void test_pictures(void **state)
+TEST(pictures)
 {
     static const int size[][2] = {{1, 1},    {1, 2},    {2, 1},
                                   {8192, 8}, {8, 4096}, {1, 333}};
     struct outcome worst = NOTHING_YET;
 
-    (void)state;
     for (size_t i = 0; i < sizeof size / sizeof *size; i++)
         compare("camera fov 3 at 0 1 4 toward 0 .5 0\n"
                 "light sun direction .35 .55 .75 colour 4e4 4e4 4e4\n"
@@ -311,7 +301,7 @@ static void test_pictures(void **state)
 }
 
 /* Powers of 1 and 4096, glass of index 1/4 to 4, mirrors of mirrors. */
-static void test_surfaces(void **state)
+TEST(surfaces)
 {
     static const char *const materials[] = {
         "0 0 1 power 1",
@@ -324,7 +314,6 @@ static void test_surfaces(void **state)
         "0 0 0 reflect .5 pass .5 refract 1.5"};
     struct outcome worst = NOTHING_YET;
 
-    (void)state;
     for (size_t i = 0; i < sizeof materials / sizeof *materials; i++) {
         char text[500];
 
@@ -345,15 +334,4 @@ static void test_surfaces(void **state)
     assert_true(extreme_at_least("scenes: powers 1 to 4096, glass 1/4 to 4, "
                                  "also from within, against the reference",
                                  worst.db, 60, "dB"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grazing), cmocka_unit_test(test_sizes),
-        cmocka_unit_test(test_large),   cmocka_unit_test(test_powers),
-        cmocka_unit_test(test_behind),  cmocka_unit_test(test_pictures),
-        cmocka_unit_test(test_surfaces)};
-
-    return cmocka_run_group_tests_name("extremes: scenes", tests, NULL, NULL);
 }

@@ -4,19 +4,15 @@
  * to 1000 pixels off-screen, of stops of 3 to 64 blades and a circle.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/star/core_table.h"
 #include "engine/star/star_tables.h"
 #include "support/extreme.h"
 #include "support/stars/canvas.h"
+#include "support/test.h"
 
 enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
 
@@ -56,11 +52,10 @@ static double most_off(const struct glint_star_tables *t, const double at[2],
     return most;
 }
 
-static void test_far_powers(void **state)
+TEST(far_powers)
 {
     double most = 0;
 
-    (void)state;
     for (int i = 0; i < 12; i++) {
         struct glint_star_tables *t =
             star_canvas_tables(blades[i % 4], 7 * i, airy_px[i / 4]);
@@ -85,13 +80,12 @@ static void test_far_powers(void **state)
 }
 
 /* Where a light lies within its pixel must not change its star's light. */
-static void test_corners(void **state)
+TEST(corners)
 {
     static const double within[][2] = {
         {0, 0}, {0.5, 0.5}, {0, 0.5}, {0.25, 0.75}, {0.996, 0.004}};
     double most = 0;
 
-    (void)state;
     for (int i = 0; i < 12; i++) {
         struct glint_star_tables *t =
             star_canvas_tables(blades[i % 4], 3, airy_px[i / 4] / 4);
@@ -122,12 +116,11 @@ static void test_corners(void **state)
 
 /* Twice the power must nowhere give less light, and what cannot be seen
  * nothing. */
-static void test_rising(void **state)
+TEST(rising)
 {
     double most = 0;
     int dark = 0;
 
-    (void)state;
     for (int i = 0; i < 4 * PLACES; i++) {
         struct glint_star_tables *t =
             star_canvas_tables(blades[i % 4], 1, airy_px[i % 3]);
@@ -156,13 +149,4 @@ static void test_rising(void **state)
                                 most, 1, "codes"));
     assert_true(
         extreme_at_most("stars: codes lit below 2^-12", dark, 0, "codes"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_far_powers),
-                                       cmocka_unit_test(test_corners),
-                                       cmocka_unit_test(test_rising)};
-
-    return cmocka_run_group_tests_name("extremes: stars", tests, NULL, NULL);
 }

@@ -4,20 +4,17 @@
  * that a picture holds and beyond, and the traps of CONFIG=qcheck.
  */
 #include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "base/q.h"
 #include "support/extreme.h"
 #include "support/stage.h"
+#include "support/test.h"
 
 enum { W = 96, H = 64, N = 3 * W * H, LIGHTS = 10000 };
 
@@ -35,12 +32,11 @@ static int open_stage(void **state)
 
 /* 10 000 lights at one place must give the picture of one light of 10 000 times
  * the power; their powers are added with 31 bits. */
-static void test_same_place(void **state)
+TEST(same_place)
 {
     const struct glint_lamp sum = stage_lamp(7.5, 33, LIGHTS);
     double apart = 0, most = 0;
 
-    (void)state;
     for (int i = 0; i < LIGHTS; i++)
         lamp[i] = stage_lamp(7.5, 33, 1);
     assert_true(stage_linear(&heliar, lamp, LIGHTS, test));
@@ -57,13 +53,12 @@ static void test_same_place(void **state)
 /* Spread over the frame, lights must merge to 128 without losing any light.
  * Merged ones draw their ghosts in one place, so that some leave the frame that
  * would have stayed: 3 % are allowed. */
-static void test_spread(void **state)
+TEST(spread)
 {
     const int n = extreme_long() ? LIGHTS : 1000;
     uint64_t r = 11;
     double whole = 0;
 
-    (void)state;
     for (int i = 0; i < n; i++)
         lamp[i] =
             stage_lamp(stage_uniform(&r, 0, 12), stage_uniform(&r, -180, 180),
@@ -84,13 +79,12 @@ static void test_spread(void **state)
 }
 
 /* 10 000 suns must leave white everywhere, and no sum that wraps. */
-static void test_ten_thousand_suns(void **state)
+TEST(ten_thousand_suns)
 {
     static uint8_t codes[N];
     uint64_t r = 12;
     int dark = 0;
 
-    (void)state;
     for (int i = 0; i < LIGHTS; i++)
         lamp[i] = stage_lamp(stage_uniform(&r, 0, 10),
                              stage_uniform(&r, -180, 180), 1e9);
@@ -134,7 +128,7 @@ static double pile(int count, int log2, int held[2])
     void *mem;
 
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_flare_init(&f, &c, mem, bytes), GLINT_OK);
+    assert_ok(glint_flare_init(&f, &c, mem, bytes));
     for (int i = 0; i < count; i++) {
         struct glint_vertex *v = glint_flare_add(f, &b);
 
@@ -167,7 +161,7 @@ static double pile(int count, int log2, int held[2])
  * must be exact, and all others must saturate there. A cell gives a pixel 2048
  * at most, and all cells together 2^24; more is cut down before it is added
  * (by_edges.c). Both must be counted. */
-static void test_piles(void **state)
+TEST(piles)
 {
     static const struct {
         int count, log2;
@@ -183,7 +177,6 @@ static void test_piles(void **state)
     double worst = 0;
     int miscounted = 0;
 
-    (void)state;
     for (int k = 0; k < 15; k++) {
         int held[2];
         const double got = pile(piles[k].count, piles[k].log2, held);
@@ -255,7 +248,7 @@ static void multiply_above(void)
 
 /* The bounds of each range must pass everywhere; one more must trap where
  * ranges are checked, and only there. */
-static void test_traps(void **state)
+TEST(traps)
 {
 #ifdef GLINT_Q_CHECK
     const int checked = 1;
@@ -264,7 +257,6 @@ static void test_traps(void **state)
 #endif
     int wrong = 0;
 
-    (void)state;
     wrong += traps(narrow_most) + traps(shift_most) + traps(multiply_most);
     wrong += traps(narrow_above) != checked;
     wrong += traps(narrow_below) != checked;
@@ -275,18 +267,11 @@ static void test_traps(void **state)
                                 wrong, 0, "cases"));
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_place),
-        cmocka_unit_test(test_spread),
-        cmocka_unit_test(test_ten_thousand_suns),
-        cmocka_unit_test(test_piles),
-        cmocka_unit_test(test_traps),
-    };
-    const int failed =
-        cmocka_run_group_tests_name("extremes: sums", tests, open_stage, NULL);
-
+    (void)state;
     stage_close(&heliar);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(open_stage, close_stage);

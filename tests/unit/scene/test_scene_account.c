@@ -4,15 +4,12 @@
  * counts that are known beforehand.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/scene/account.h"
 #include "support/models/scene_builder.h"
+#include "support/test.h"
 
 enum { UNIT = 1 << 16, WIDTH = 200, HEIGHT = 120, MOST = 8 };
 
@@ -36,17 +33,16 @@ static struct glint_scene *account(int edge_samples, int half)
     bytes = glint_scene_bytes(&cfg, &model);
     free(mem);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_scene_init(&s, &cfg, &model, mem, bytes), GLINT_OK);
+    assert_ok(glint_scene_init(&s, &cfg, &model, mem, bytes));
     glint_scene_begin(s, &stats);
     glint_scene_account(s, object, &all, seen);
     return s;
 }
 
-static void test_fates(void **state)
+TEST(fates)
 {
     uint32_t m;
 
-    (void)state;
     scene_begin(&file);
     m = scene_material(&file, "m");
     scene_sphere(&file, "near", m, 0, 0, 4 * UNIT, UNIT);
@@ -72,7 +68,7 @@ static void test_fates(void **state)
 
 /* A ball at 4 of radius 1 has tan = 1 / sqrt 15 about it: with 100 pixels a
  * unit of tangent 2095 of them, under a lamp and a sun that see half of it. */
-static void test_counts(void **state)
+TEST(counts)
 {
     static const int32_t toward_q30[3] = {1 << 30, 0, 0};
     static const int32_t at[3] = {0, 0, -1000 * UNIT};
@@ -80,7 +76,6 @@ static void test_counts(void **state)
     int64_t full[GLINT_SCENE_ITEMS];
     uint32_t m;
 
-    (void)state;
     scene_begin(&file);
     m = scene_material(&file, "m");
     scene_sphere(&file, "ball", m, 0, 0, 4 * UNIT, UNIT);
@@ -113,13 +108,12 @@ static void test_counts(void **state)
                      full[GLINT_SCENE_SAMPLED]);
 }
 
-static void test_hider(void **state)
+TEST(hider)
 {
     static const int32_t toward_q30[3] = {0, 0, 1 << 30};
     struct glint_scene *s;
     uint32_t m;
 
-    (void)state;
     scene_begin(&file);
     m = scene_material(&file, "m");
     scene_sphere(&file, "aside", m, 2 * UNIT, 0, 4 * UNIT, UNIT);
@@ -131,15 +125,11 @@ static void test_hider(void **state)
     assert_int_equal(glint_scene_hider(s, 0), -1);
 }
 
-int main(void)
+static int close_stage(void **state)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fates),
-        cmocka_unit_test(test_counts),
-        cmocka_unit_test(test_hider),
-    };
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-
+    (void)state;
     free(mem);
-    return failed;
+    return 0;
 }
+
+TEST_GROUP(NULL, close_stage);

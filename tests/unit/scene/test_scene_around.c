@@ -4,18 +4,15 @@
  * doubles, of every format; and that nothing pays for it who has none.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "scene/around.h"
 #include "scene/state.h"
 #include "support/models/scene_builder.h"
 #include "support/shuffle.h"
+#include "support/test.h"
 
 enum { UNIT = 1 << 16, WIDTH = 96, HEIGHT = 64, BYTES = 3 * WIDTH * HEIGHT };
 
@@ -70,7 +67,7 @@ static struct glint_scene *start(struct glint_workers *workers)
     free(mem);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
     memset(mem, 0xa5, bytes);
-    assert_int_equal(glint_scene_init(&s, &cfg, &model, mem, bytes), GLINT_OK);
+    assert_ok(glint_scene_init(&s, &cfg, &model, mem, bytes));
     glint_scene_begin(s, &stats);
     return s;
 }
@@ -127,12 +124,11 @@ static void place(const double d[3], double at[2])
     at[1] = over > 0 ? y / over : 0;
 }
 
-static void test_mirror(void **state)
+TEST(mirror)
 {
     int n = 0, behind = 0;
     double worst = 0;
 
-    (void)state;
     put_ball(1, 0, 1);
     fill();
     draw(start(NULL));
@@ -160,12 +156,11 @@ static void test_mirror(void **state)
 }
 
 /* Glass that hardly bends shows what is behind it. */
-static void test_glass(void **state)
+TEST(glass)
 {
     double worst = 0;
     int n = 0;
 
-    (void)state;
     put_ball(0, 1, 1.0001);
     fill();
     draw(start(NULL));
@@ -181,12 +176,11 @@ static void test_glass(void **state)
     assert_true(worst < .01 * 0x1p20);
 }
 
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     static int32_t serial_q20[BYTES];
     struct shuffle shuffle;
 
-    (void)state;
     put_ball(.7, .3, 1.5);
     fill();
     draw(start(NULL));
@@ -199,13 +193,12 @@ static void test_same_bits(void **state)
 }
 
 /* Only those pay that show it; without it they show black. */
-static void test_pay_for_use(void **state)
+TEST(pay_for_use)
 {
     struct glint_image image = linear_of(drawn_q20);
     struct glint_scene *s;
     size_t without;
 
-    (void)state;
     put_ball(0, .5, 1);
     s = start(NULL);
     without = bytes;
@@ -226,12 +219,11 @@ static void test_pay_for_use(void **state)
 }
 
 /* A grey picture of each format gives that grey everywhere, of any size. */
-static void test_formats(void **state)
+TEST(formats)
 {
     static const int side[][2] = {{2, 2}, {8, 4}, {66, 34}, {700, 6}, {2, 642}};
     static uint8_t picture[1 << 17], block[1 << 20];
 
-    (void)state;
     for (int format = 0; format <= GLINT_RGB565; format++)
         for (size_t i = 0; i < sizeof side / sizeof *side; i++) {
             struct glint_image image = {.format = (uint8_t)format,
@@ -266,12 +258,4 @@ static int finish(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mirror), cmocka_unit_test(test_glass),
-        cmocka_unit_test(test_same_bits), cmocka_unit_test(test_pay_for_use),
-        cmocka_unit_test(test_formats)};
-
-    return cmocka_run_group_tests(tests, NULL, finish);
-}
+TEST_GROUP(NULL, finish);

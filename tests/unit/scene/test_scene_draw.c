@@ -4,13 +4,9 @@
  * format; that meshes do not leak; the lights that the lens gets.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "glint/flare.h"
 #include "scene/state.h"
@@ -18,6 +14,7 @@
 #include "support/models/scene_builder.h"
 #include "support/rng.h"
 #include "support/shuffle.h"
+#include "support/test.h"
 
 enum {
     UNIT = 1 << 16,
@@ -58,7 +55,7 @@ static struct glint_scene *start(const struct glint_scene_config *cfg,
                      GLINT_E_MEMORY);
     assert_null(s);
     memset(mem, 0xa5, bytes); /* dirty memory shows what is left unset */
-    assert_int_equal(glint_scene_init(&s, cfg, &model, mem, bytes), GLINT_OK);
+    assert_ok(glint_scene_init(&s, cfg, &model, mem, bytes));
     glint_scene_begin(s, stats);
     return s;
 }
@@ -145,11 +142,10 @@ static void draw(struct glint_scene_config cfg, enum glint_pixel_format format,
     assert_int_equal(stats.dropped_objects, 0);
 }
 
-static void test_any_order(void **state)
+TEST(any_order)
 {
     static uint8_t px[2][BYTES];
 
-    (void)state;
     make();
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         static const int samples[4] = {4, 16, 8, 1};
@@ -180,7 +176,7 @@ static void test_any_order(void **state)
 
 /* ------------------------------------------------------------------- cover */
 
-static void test_nothing(void **state)
+TEST(nothing)
 {
     static uint8_t px[BYTES], before[BYTES];
     struct glint_image image = {
@@ -188,7 +184,6 @@ static void test_nothing(void **state)
     const struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
 
-    (void)state;
     fill(px, BYTES);
     fill(before, BYTES);
     glint_image_place(&image, px);
@@ -221,7 +216,7 @@ static void test_nothing(void **state)
 
 /* A scene of a ball alone takes no part: as many pixels are covered as the ball
  * has, and the memory of the picture hardly counts. */
-static void test_ball_alone(void **state)
+TEST(ball_alone)
 {
     static uint8_t px[BYTES];
     struct glint_image image = {
@@ -231,7 +226,6 @@ static void test_ball_alone(void **state)
     struct glint_scene *s;
     int64_t sum = 0;
 
-    (void)state;
     scene_begin(&file);
     scene_material(&file, "m");
     scene_sphere(&file, "ball", 0, 0, 0, 100 * UNIT, 40 * UNIT);
@@ -250,7 +244,7 @@ static void test_ball_alone(void **state)
 
 /* Bounds of memory at 320x240 with two workers: balls of Phong and planes alone
  * take 120 KiB at most, a sun that throws shadows 60 more. */
-static void test_memory(void **state)
+TEST(memory)
 {
     static const int32_t toward_q30[3] = {0, 0, -(1 << 30)};
     struct glint_workers two = {.n = 2};
@@ -258,7 +252,6 @@ static void test_memory(void **state)
     struct glint_scene_model model;
     size_t bytes;
 
-    (void)state;
     scene_begin(&file);
     scene_material(&file, "m");
     for (int i = 0; i < 8; i++)
@@ -280,7 +273,7 @@ static void test_memory(void **state)
 
 /* From inside a closed mesh, wherever, no sample sees past it, although some
  * vertices are behind the camera. */
-static void test_no_leaks(void **state)
+TEST(no_leaks)
 {
     static uint8_t px[BYTES];
     struct glint_image image = {
@@ -289,7 +282,6 @@ static void test_no_leaks(void **state)
     struct glint_scene_stats stats;
     uint32_t seed = 1;
 
-    (void)state;
     glint_image_place(&image, px);
     cfg.max_refs = 1 << 18;
     for (int i = 0; i < 60; i++) {
@@ -314,14 +306,13 @@ static void test_no_leaks(void **state)
 }
 
 /* What a sample sees is what its ray meets first. */
-static void test_samples(void **state)
+TEST(samples)
 {
     const struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
     const struct glint_scene *s;
     int n = 0, other = 0;
 
-    (void)state;
     make();
     s = start(&cfg, &stats);
     for (int y = 0; y < HEIGHT; y += 32)
@@ -382,13 +373,12 @@ static double rms(const int32_t *a_q20, const int32_t *b_q20)
 
 /* More samples of a pixel come nearer to 16 of them; of pixels that are shaded
  * two by two those alone change whose neighbours see the same thing. */
-static void test_dials(void **state)
+TEST(dials)
 {
     static int32_t all[3 * WIDTH * HEIGHT], some[3 * WIDTH * HEIGHT];
     double last = 1;
     int changed = 0;
 
-    (void)state;
     make();
     draw_dials(16, 0, all);
     for (int n = 1; n <= 8; n *= n == 1 ? 4 : 2) {
@@ -420,13 +410,12 @@ static void test_dials(void **state)
     assert_in_range(changed, 500, WIDTH * HEIGHT / 4);
 }
 
-static void test_capacity(void **state)
+TEST(capacity)
 {
     struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
     const struct glint_scene_model model = (make(), scene_open(&file));
 
-    (void)state;
     start(&cfg, &stats);
     assert_true(stats.need_refs == stats.refs && stats.refs > 0);
     cfg.max_refs = stats.need_refs;
@@ -449,7 +438,7 @@ static void test_capacity(void **state)
     assert_int_equal(glint_scene_bytes(&cfg, &model), 0);
 }
 
-static void test_poses(void **state)
+TEST(poses)
 {
     const struct glint_scene_config cfg = defaults();
     const int32_t at[4] = {UNIT, 0, 9 * UNIT}, far[3] = {GLINT_SCENE_SPAN - 9};
@@ -460,10 +449,9 @@ static void test_poses(void **state)
     struct glint_scene *s;
     int32_t x[3] = {1 << 20, 0, 0}, to[3];
 
-    (void)state;
     make();
     s = start(&cfg, &stats);
-    assert_int_equal(glint_scene_set_pose(s, 0, at, turn), GLINT_OK);
+    assert_ok(glint_scene_set_pose(s, 0, at, turn));
     assert_int_equal(glint_scene_set_pose(s, 0, far, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 4, at, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 0, at, at), GLINT_E_ARGUMENT);
@@ -472,9 +460,9 @@ static void test_poses(void **state)
     assert_true(abs(to[0] + 293601) <= 1 && to[1] == 0 &&
                 abs(to[2] + 1006633) <= 1);
     assert_int_equal(s->placed[0].at[2], 9 * UNIT);
-    assert_int_equal(glint_scene_set_camera(s, at, axes), GLINT_OK);
+    assert_ok(glint_scene_set_camera(s, at, axes));
     assert_int_equal(glint_scene_set_camera(s, at, crooked), GLINT_E_ARGUMENT);
-    assert_int_equal(glint_scene_set_light(s, 1, at), GLINT_OK);
+    assert_ok(glint_scene_set_light(s, 1, at));
     assert_int_equal(glint_scene_set_light(s, 0, at), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_light(s, 2, at), GLINT_E_ARGUMENT);
 }
@@ -495,12 +483,11 @@ static void random_place(uint32_t *seed, struct glint_met_surface *surface)
 
 /* The grid of a sun's shadows states what rays say that ask all there is: also
  * far below objects, beside the grid, and from points that lean. */
-static void test_shadows(void **state)
+TEST(shadows)
 {
     uint32_t seed = 1;
     int n = 0, other = 0, partly = 0, dark = 0;
 
-    (void)state;
     for (int points = 1; points <= 16; points *= 4) {
         struct glint_scene_config cfg = defaults();
         struct glint_scene_stats stats;
@@ -537,7 +524,7 @@ static void test_shadows(void **state)
 
 /* Catchers are looked at where shadows may be, and balls by one depth: pictures
  * are those of all pixels and of exact depths. */
-static void test_confined(void **state)
+TEST(confined)
 {
     static uint8_t px[2][BYTES];
     struct glint_image image = {
@@ -547,7 +534,6 @@ static void test_confined(void **state)
     uint32_t seed = 1;
     int less = 0, flat = 0;
 
-    (void)state;
     for (int i = 0; i < 40; i++) {
         struct glint_scene_stats stats;
         struct glint_scene *s;
@@ -596,14 +582,13 @@ static double value(struct glint_real x)
 
 /* Places and light of the lights that the lens gets, and both again through the
  * same pinhole, in doubles. */
-static void test_lights(void **state)
+TEST(lights)
 {
     const struct glint_scene_config cfg = defaults();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct glint_scene_stats stats;
     uint32_t seed = 1;
 
-    (void)state;
     for (int i = 0; i < 200; i++) {
         const double x = 3 * rng_unit(&seed) - 1.5, y = rng_unit(&seed) - .5;
         const double f = WIDTH / 2., cosine = 1 / sqrt(1 + x * x + y * y);
@@ -636,7 +621,7 @@ static void test_lights(void **state)
 
 /* Scene and lens agree on where a light is: the flare's own pinhole, from the
  * pixel that the scene gives, has the direction that the scene has. */
-static void test_lens_agrees(void **state)
+TEST(lens_agrees)
 {
     struct model_image image = model_auto();
     const struct glint_lens lens = model_open(&image);
@@ -648,7 +633,6 @@ static void test_lens_agrees(void **state)
     struct glint_scene_stats stats;
     uint32_t seed = 1;
 
-    (void)state;
     cfg.focal_q16 = llround(ldexp(f, 16));
     for (int i = 0; i < 300; i++) {
         const double x = .7 * rng_unit(&seed) - .35, y = rng_unit(&seed) - .5;
@@ -673,14 +657,13 @@ static void test_lens_agrees(void **state)
 }
 
 /* Behind a ball a sun's share falls to nothing, and comes back. */
-static void test_hidden_light(void **state)
+TEST(hidden_light)
 {
     const struct glint_scene_config cfg = defaults();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct glint_scene_stats stats;
     int last = 16, levels = 0;
 
-    (void)state;
     make();
     file.header.n_lights = 1;
     for (int k = 1; k < 4; k++)
@@ -699,7 +682,7 @@ static void test_hidden_light(void **state)
 }
 
 /* Lamps of the picture go by what covers them. */
-static void test_cover(void **state)
+TEST(cover)
 {
     static uint8_t px[BYTES];
     struct glint_image image = {
@@ -708,7 +691,6 @@ static void test_cover(void **state)
     struct glint_scene_stats stats;
     struct glint_scene *s;
 
-    (void)state;
     glint_image_place(&image, px);
     make();
     file.object[2].hidden = 1;
@@ -737,7 +719,7 @@ static int64_t drawn_cover(const struct glint_image *image)
 }
 
 /* A shadow on a catcher darkens the picture, but hides no lamp in it. */
-static void test_shadow_hides_nothing(void **state)
+TEST(shadow_hides_nothing)
 {
     static uint8_t px[BYTES], alone[BYTES];
     struct glint_image image = {
@@ -745,7 +727,6 @@ static void test_shadow_hides_nothing(void **state)
     int64_t cover;
     int n_dark = 0;
 
-    (void)state;
     glint_image_place(&image, px);
     make();
     file.header.n_lights = 1;
@@ -769,25 +750,4 @@ static int tear_down(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_any_order),
-        cmocka_unit_test(test_nothing),
-        cmocka_unit_test(test_no_leaks),
-        cmocka_unit_test(test_ball_alone),
-        cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_dials),
-        cmocka_unit_test(test_capacity),
-        cmocka_unit_test(test_poses),
-        cmocka_unit_test(test_lights),
-        cmocka_unit_test(test_lens_agrees),
-        cmocka_unit_test(test_hidden_light),
-        cmocka_unit_test(test_cover),
-        cmocka_unit_test(test_shadow_hides_nothing),
-        cmocka_unit_test(test_shadows),
-        cmocka_unit_test(test_confined)};
-
-    return cmocka_run_group_tests(tests, NULL, tear_down);
-}
+TEST_GROUP(NULL, tear_down);

@@ -4,15 +4,10 @@
  * double precision, their lines in a scene text, and the light of a highlight.
  * */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/blob.h"
 #include "glint/scene/bake.h"
@@ -21,6 +16,7 @@
 #include "scenes/account.h"
 #include "support/models/drawn_scene.h"
 #include "reference/scenes/twin.h"
+#include "support/test.h"
 
 enum {
     SKY_WIDTH = 128,
@@ -105,7 +101,7 @@ static void open_text(struct drawn *d, const char *text,
     "sphere c at 1.2 .5 0 radius .5 material old\n"                 \
     "plane p at 0 0 0 normal .1 1 0 material "
 
-static void test_twin(void **state)
+TEST(twin)
 {
     static const struct {
         const char *what, *text;
@@ -124,7 +120,6 @@ static void test_twin(void **state)
                                "light sun direction -1 1 .5 colour 2e4 2e4 "
                                "2e4\n" BALLS "old\n"}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         const double db = drawn_near_twin(row[i].text, &files);
 
@@ -136,18 +131,16 @@ static void test_twin(void **state)
 /* ------------------------------------------------------------------- texts */
 
 /* Row B7: a ratio over 10 is clamped to 10, with a warning. */
-static void test_held(void **state)
+TEST(held)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
 
-    (void)state;
     assert_non_null(s);
-    assert_int_equal(
+    assert_ok(
         parse("material m ward specular .9 .9 .9 alpha .002 .4 norm 1992\n"
               "environment 9e5\nsphere s at 0 0 -3 radius 1 material m\n",
-              s, &error),
-        GLINT_OK);
+              s, &error));
     assert_non_null(strstr(s->warning, "held to a ratio of 10"));
     assert_true(fabs(s->material[0].alpha[0] - .04) < 1e-12);
     assert_true(s->material[0].norm == GLINT_DESCRIBED_1992);
@@ -159,7 +152,7 @@ static void test_held(void **state)
 
 /* A model opens only where the part that it needs is named, and its environment
  * is whole. */
-static void test_part(void **state)
+TEST(part)
 {
     static const struct scene_dials dials = {
         .width = 16, .height = 9, .edge_samples = 1, .shadow_points = 1};
@@ -168,12 +161,10 @@ static void test_part(void **state)
     struct drawn d;
     void *mem;
 
-    (void)state;
     open_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
     cfg = d.frame.cfg;
     assert_int_equal(posix_memalign(&mem, 64, d.frame.bytes), 0);
-    assert_int_equal(
-        glint_scene_init(&scene, &cfg, &d.model, mem, d.frame.bytes), GLINT_OK);
+    assert_ok(glint_scene_init(&scene, &cfg, &d.model, mem, d.frame.bytes));
     cfg.parts.wards = NULL;
     assert_string_equal(glint_scene_lacks(&cfg.parts, &d.model), "wards");
     assert_int_equal(glint_scene_bytes(&cfg, &d.model), 0);
@@ -194,7 +185,7 @@ static void test_part(void **state)
 
 /* Row B2: colours and alphas change from one frame to the next: the picture is
  * that of a scene that was baked so. */
-static void test_b2_looks(void **state)
+TEST(b2_looks)
 {
     static const char *const text[2] = {
         STAGE "environment 9e5\nlight sun direction 1 1 1 colour 1e4 1e4 1e4\n"
@@ -210,22 +201,18 @@ static void test_b2_looks(void **state)
     struct drawn d;
     int material;
 
-    (void)state;
     open_text(&d, text[0], &dials);
     drawn_draw(&d, 64, 36, want);
     material = glint_scene_find_material(&d.model, "m");
-    assert_int_equal(glint_scene_get_look(d.frame.scene, material, &look),
-                     GLINT_OK);
+    assert_ok(glint_scene_get_look(d.frame.scene, material, &look));
     drawn_close(&d);
     open_text(&d, text[1], &dials);
     drawn_draw(&d, 64, 36, got);
     assert_memory_not_equal(got, want, sizeof want);
-    assert_int_equal(glint_scene_set_look(d.frame.scene, material, &look),
-                     GLINT_OK);
+    assert_ok(glint_scene_set_look(d.frame.scene, material, &look));
     drawn_draw(&d, 64, 36, got);
     assert_memory_equal(got, want, sizeof want);
-    assert_int_equal(glint_scene_get_look(d.frame.scene, material, &now),
-                     GLINT_OK);
+    assert_ok(glint_scene_get_look(d.frame.scene, material, &now));
     assert_memory_equal(&now, &look, sizeof now);
     look.alpha_q24[0] = 1 << 13;
     assert_int_equal(glint_scene_set_look(d.frame.scene, material, &look),
@@ -247,7 +234,7 @@ static void test_b2_looks(void **state)
 
 /* Material, radius and environment change from one frame to the next: the
  * picture is that of a scene that was baked so. */
-static void test_b8_steered(void **state)
+TEST(b8_steered)
 {
     static const struct scene_dials dials = {
         .width = 64, .height = 36, .edge_samples = 4, .shadow_points = 4};
@@ -256,7 +243,6 @@ static void test_b8_steered(void **state)
     struct glint_scene *s;
     struct drawn d;
 
-    (void)state;
     open_text(&d, STEERED("90", ".25", "mirror"), &dials);
     drawn_draw(&d, 64, 36, want);
     drawn_close(&d);
@@ -264,12 +250,10 @@ static void test_b8_steered(void **state)
     s = d.frame.scene;
     drawn_draw(&d, 64, 36, got);
     assert_memory_not_equal(got, want, sizeof want);
-    assert_int_equal(glint_scene_turn_environment(s, right_q30), GLINT_OK);
-    assert_int_equal(glint_scene_set_radius(s, 1, d.model.object[1].radius / 2),
-                     GLINT_OK);
-    assert_int_equal(glint_scene_set_material(
-                         s, 1, glint_scene_find_material(&d.model, "mirror")),
-                     GLINT_OK);
+    assert_ok(glint_scene_turn_environment(s, right_q30));
+    assert_ok(glint_scene_set_radius(s, 1, d.model.object[1].radius / 2));
+    assert_ok(glint_scene_set_material(
+        s, 1, glint_scene_find_material(&d.model, "mirror")));
     drawn_draw(&d, 64, 36, got);
     assert_memory_equal(got, want, sizeof want);
     assert_int_equal(glint_scene_turn_environment(s, none_q30),
@@ -297,7 +281,7 @@ static void test_b8_steered(void **state)
 
 /* Other environments are shown, and as bright as wanted, from one frame to the
  * next: the picture is that of a scene that has that one alone. */
-static void test_b8_environments(void **state)
+TEST(b8_environments)
 {
     static const struct scene_dials dials = {
         .width = 64, .height = 36, .edge_samples = 4, .shadow_points = 4};
@@ -309,7 +293,6 @@ static void test_b8_environments(void **state)
     struct glint_scene *s;
     struct drawn d;
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         open_text(&d, alone[i], &dials);
         assert_int_equal(d.model.header->n_lights, i ? 4 : 2);
@@ -324,13 +307,13 @@ static void test_b8_environments(void **state)
     assert_int_equal(d.model.header->n_lights, 4);
     assert_int_equal(glint_scene_find_environment(&d.model, "dusk"), 1);
     for (int round = 0; round < 2; round++) {
-        assert_int_equal(glint_scene_set_environment(s, 0), GLINT_OK);
+        assert_ok(glint_scene_set_environment(s, 0));
         drawn_draw(&d, 64, 36, got);
         assert_memory_equal(got, want[0], sizeof got);
-        assert_int_equal(glint_scene_set_environment(s, 1), GLINT_OK);
+        assert_ok(glint_scene_set_environment(s, 1));
         drawn_draw(&d, 64, 36, got);
         assert_memory_equal(got, want[1], sizeof got);
-        assert_int_equal(glint_scene_scale_environment(s, three), GLINT_OK);
+        assert_ok(glint_scene_scale_environment(s, three));
         drawn_draw(&d, 64, 36, got);
         assert_memory_equal(got, want[2], sizeof got);
     }
@@ -363,7 +346,7 @@ static const char *refused(struct drawn *d)
         memcpy(&(field), &was, sizeof(field));    \
     } while (0)
 
-static void test_environment_tables(void **state)
+TEST(environment_tables)
 {
     static const struct scene_dials dials = {.width = 16, .height = 9};
     static const char range[] =
@@ -372,7 +355,6 @@ static void test_environment_tables(void **state)
     struct glint_scene_light *light;
     struct drawn d;
 
-    (void)state;
     open_text(&d, UNDER("environment 9e5\n"), &dials);
     e = (void *)(d.data + d.model.header->environment_at);
     light = (void *)(d.data + d.model.header->light_at);
@@ -391,13 +373,12 @@ static void test_environment_tables(void **state)
 }
 
 /* Environments that cannot be distinguished, and too many. */
-static void test_environment_names(void **state)
+TEST(environment_names)
 {
     char text[32 * 17 + 1] = "";
     struct glint_description description;
     struct glint_error error;
 
-    (void)state;
     assert_int_equal(
         parse("environment a/9e5.hdr\nenvironment 9e5\n", &description, &error),
         GLINT_E_LENS);
@@ -424,8 +405,7 @@ static double shine_of(struct drawn *d, double dx, double dy)
                            o->at[1] + (int32_t)(dy * steps), o->at[2]};
     double sum = 0;
 
-    assert_int_equal(glint_scene_set_pose(d->frame.scene, 0, at, o->turn_q30),
-                     GLINT_OK);
+    assert_ok(glint_scene_set_pose(d->frame.scene, 0, at, o->turn_q30));
     drawn_draw(d, SIDE, SIDE, light_q20);
     for (int i = 0; i < SIDE * SIDE; i++)
         sum += light_q20[3 * i + 1] * 0x1p-20;
@@ -434,14 +414,13 @@ static double shine_of(struct drawn *d, double dx, double dy)
 
 /* The highlight of the sun is smaller than a pixel and moves by parts of one:
  * its light stays within 5 %. */
-static void test_highlight_steady(void **state)
+TEST(highlight_steady)
 {
     static const struct scene_dials dials = {
         .width = 64, .height = 64, .edge_samples = 1, .shadow_points = 1};
     double least = HUGE_VAL, most = 0;
     struct drawn d;
 
-    (void)state;
     open_text(&d,
               "camera fov 20 at 0 0 4 toward 0 0 0\n"
               "material m ward specular .9 .9 .9 alpha .002 .002\n"
@@ -460,7 +439,7 @@ static void test_highlight_steady(void **state)
 }
 
 /* What the account of a frame reports of metal: lookups of each place. */
-static void test_account(void **state)
+TEST(account)
 {
     static const struct scene_dials dials = {.width = 32,
                                              .height = 32,
@@ -471,10 +450,9 @@ static void test_account(void **state)
     struct scene_account account;
     struct drawn d;
 
-    (void)state;
     open_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
     drawn_draw(&d, 32, 32, light_q20);
-    assert_int_equal(scene_account_make(&account, &d.frame), GLINT_OK);
+    assert_ok(scene_account_make(&account, &d.frame));
     for (int i = 0; i < 4; i++) { /* steel, brushed, old, white */
         const int64_t *n = account.objects[i].count;
 
@@ -487,21 +465,4 @@ static void test_account(void **state)
     }
     scene_account_free(&account);
     drawn_close(&d);
-}
-
-int main(void)
-{
-    static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),
-        cmocka_unit_test(test_held),
-        cmocka_unit_test(test_part),
-        cmocka_unit_test(test_b2_looks),
-        cmocka_unit_test(test_b8_steered),
-        cmocka_unit_test(test_b8_environments),
-        cmocka_unit_test(test_environment_names),
-        cmocka_unit_test(test_environment_tables),
-        cmocka_unit_test(test_highlight_steady),
-        cmocka_unit_test(test_account)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,15 +3,10 @@
  * Highlights: against the reference in double precision, over parts of a pixel,
  * tiles and workers; what is none; what is one; extremes. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "glint/scene/bake.h"
 #include "glint/scene/highlights.h"
@@ -20,6 +15,7 @@
 #include "scene/parts.h"
 #include "scenes/scene_frame.h"
 #include "reference/scenes/twin_highlights.h"
+#include "support/test.h"
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE, MOST = GLINT_SCENE_MAX_HIGHLIGHTS };
 
@@ -50,7 +46,7 @@ static void open_text(const char *text, const struct scene_dials *with)
         fail_msg("%s", error.text);
     if (glint_scene_open(&model, data, bytes, &reason) != GLINT_OK)
         fail_msg("%s", reason);
-    assert_int_equal(scene_frame_open(&frame, &tool, &model, with), EXIT_OK);
+    assert_ok(scene_frame_open(&frame, &tool, &model, with));
 }
 
 static void close_text(void)
@@ -70,7 +66,7 @@ static void draw(void)
     memset(light_q20, 0, sizeof light_q20);
     memset(found, 0x55, sizeof found);
     glint_image_place(&image, light_q20);
-    assert_int_equal(scene_frame_draw(&frame, &image), EXIT_OK);
+    assert_ok(scene_frame_draw(&frame, &image));
     n = glint_scene_find_highlights(frame.scene, found);
 }
 
@@ -89,7 +85,7 @@ static double power(int i)
 
 /* --------------------------------------------------------------- reference */
 
-static void test_twin(void **state)
+TEST(twin)
 {
     static const struct {
         const char *what, *text;
@@ -109,7 +105,6 @@ static void test_twin(void **state)
                        "light sun direction .5 .6 1 colour 3e5 2e5 1e5\n",
                 .03}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         const struct twin_view view = {SIDE, SIDE, 0, 1};
         struct twin_highlight exact[TWIN_HIGHLIGHTS];
@@ -118,7 +113,7 @@ static void test_twin(void **state)
 
         open_text(row[i].text, &dials);
         draw();
-        assert_int_equal(twin_open(&twin, &description), GLINT_OK);
+        assert_ok(twin_open(&twin, &description));
         all = twin_highlights(&twin, &view, exact);
         twin_close(&twin);
         assert_int_equal(n, all);
@@ -155,14 +150,13 @@ static void move(double dx, double dy)
     const int32_t at[3] = {o->at[0] + (int32_t)(dx * steps),
                            o->at[1] - (int32_t)(dy * steps), o->at[2]};
 
-    assert_int_equal(glint_scene_set_pose(frame.scene, 0, at, o->turn_q30),
-                     GLINT_OK);
+    assert_ok(glint_scene_set_pose(frame.scene, 0, at, o->turn_q30));
 }
 
 /* Over parts of a pixel the power stays within 5 %, and the place follows. What
  * is hardly over white, the last, in part counts more or less: it is too faint
  * for any lens. */
-static void test_steady(void **state)
+TEST(steady)
 {
     enum { TEXTS = 5 };
     static const char *const text[TEXTS] = {
@@ -173,7 +167,6 @@ static void test_steady(void **state)
         CAMERA STEEL(".002 .002") SUN
         "sphere s at 0 0 0 radius .1 material m\n"};
 
-    (void)state;
     for (int i = 0; i < TEXTS; i++)
         for (int samples = 1; samples <= 4; samples += 3) {
             struct scene_dials with = dials;
@@ -205,7 +198,7 @@ static void test_steady(void **state)
 }
 
 /* The same bits, whatever draws them. */
-static void test_same(void **state)
+TEST(same)
 {
     static const char text[] = CAMERA STEEL(".03 .2") SUN BALL
         "light sun direction -1 -.3 1 colour 1e4 1e4 1e4\n"
@@ -214,7 +207,6 @@ static void test_same(void **state)
     double full = 0; /* power of the brightest, each pixel shaded */
     int n_first = 0;
 
-    (void)state;
     for (int half = 0; half < 2; half++)
         for (int tile = 3; tile <= 6; tile++)
             for (int threads = 1; threads <= 3; threads += 2) {
@@ -222,8 +214,7 @@ static void test_same(void **state)
 
                 with.tile_log2 = tile;
                 with.half_shading = half;
-                assert_int_equal(glint_pool_create(&tool.workers, threads),
-                                 GLINT_OK);
+                assert_ok(glint_pool_create(&tool.workers, threads));
                 open_text(text, &with);
                 draw();
                 if (tile == 3 && threads == 1) {
@@ -256,9 +247,8 @@ static int count(const char *text)
 
 /* Discs of lights, backgrounds, catchers and pixels up to white are none; a
  * scene that requests none has none. */
-static void test_none(void **state)
+TEST(none)
 {
-    (void)state;
     assert_int_equal(count(CAMERA STEEL(".05 .05") SUN BALL), 1);
     assert_int_equal(
         count("camera fov 20 at 0 0 4 toward 0 0 0\nflare lights\n" STEEL(
@@ -280,7 +270,7 @@ static void test_none(void **state)
 
 /* Squares that touch and middles within 12 pixels are one; more than are
  * requested are the brightest. Two that are one stand by the light of both. */
-static void test_one(void **state)
+TEST(one)
 {
     static const char two[] = CAMERA STEEL(".01 .01") BRIGHT
         "sphere a at -.01 0 0 radius .012 material m\n"
@@ -288,7 +278,6 @@ static void test_one(void **state)
     static char text[2000];
     double before = HUGE_VAL;
 
-    (void)state;
     snprintf(text, sizeof text, two, ".1");
     assert_int_equal(count(text), 1);
     assert_int_equal(found[0].object, 0);
@@ -323,12 +312,11 @@ static void test_one(void **state)
 /* The power of a highlight goes with its light up to where that saturates, and
  * a ball of a pixel, or one whose highlight is at the picture's border, has
  * what is there. */
-static void test_extremes(void **state)
+TEST(extremes)
 {
     static char text[400];
     double last = 0;
 
-    (void)state;
     for (int e = -6; e <= 9; e++) {
         snprintf(text, sizeof text,
                  CAMERA STEEL(".1 .1") BALL
@@ -370,11 +358,10 @@ static void test_extremes(void **state)
 }
 
 /* As bright as the sums of a square have room for: its colour is white. */
-static void test_brightest(void **state)
+TEST(brightest)
 {
     static const int32_t max_q15[3] = {1 << 30, 1 << 30, 1 << 30};
 
-    (void)state;
     open_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
     draw();
     glint_scene_highlights.begin(frame.scene->bright);
@@ -385,15 +372,4 @@ static void test_brightest(void **state)
     for (int c = 0; c < 3; c++)
         assert_true(abs(found[0].spot.rgb_q15[c] - (1 << 15)) <= 8);
     close_text();
-}
-
-int main(void)
-{
-    static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),     cmocka_unit_test(test_steady),
-        cmocka_unit_test(test_same),     cmocka_unit_test(test_none),
-        cmocka_unit_test(test_one),      cmocka_unit_test(test_extremes),
-        cmocka_unit_test(test_brightest)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,16 +2,13 @@
  *
  * The checks of a baked scene, rule by rule.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/blob.h"
 #include "support/rng.h"
 #include "support/models/scene_builder.h"
+#include "support/test.h"
 
 static struct scene_file file;
 
@@ -63,11 +60,10 @@ static void refuses(struct scene_file *s, const char *expected)
     assert_string_equal(reason, expected);
 }
 
-static void test_accepted(void **state)
+TEST(accepted)
 {
     struct glint_scene_model m = scene_open(make());
 
-    (void)state;
     assert_ptr_equal(m.header, file.data);
     assert_string_equal(m.object[2].name, "cup");
     assert_int_equal(glint_scene_find(&m, "floor"), 1);
@@ -76,12 +72,11 @@ static void test_accepted(void **state)
     assert_true(m.mesh[0].uv_at && m.light[1].kind == GLINT_LIGHT_LAMP);
 }
 
-static void test_truncated(void **state)
+TEST(truncated)
 {
     struct glint_scene_model model;
     const char *reason;
 
-    (void)state;
     scene_seal(make());
     for (size_t bytes = 8; bytes < file.bytes; bytes++) {
         void *copy = malloc(bytes);
@@ -101,9 +96,8 @@ static void test_truncated(void **state)
 #define REFUSES(member, value, reason) \
     (make(), file.member = (value), refuses(&file, (reason)))
 
-static void test_header(void **state)
+TEST(header)
 {
-    (void)state;
     REFUSES(header.variant, 2, "the scene's variant is unknown");
     REFUSES(header.unit_log2, 61, "the scene's unit is out of range");
     REFUSES(header.shadow, 2, "the scene's settings are unknown");
@@ -120,9 +114,8 @@ static void test_header(void **state)
     REFUSES(header.camera.tan_y_q24, 1, "the camera's field is out of range");
 }
 
-static void test_lights(void **state)
+TEST(lights)
 {
-    (void)state;
     REFUSES(light[0].kind, 2, "a light's kind is unknown");
     REFUSES(light[0].name[0], 0,
             "a light's name is empty, endless or not printable");
@@ -135,9 +128,8 @@ static void test_lights(void **state)
             "a light is negative or not normalised");
 }
 
-static void test_materials(void **state)
+TEST(materials)
 {
-    (void)state;
     REFUSES(material[0].name[2], ' ',
             "a material's name is empty, endless or not printable");
     REFUSES(material[0].ambient_q15, 1,
@@ -161,12 +153,11 @@ static void test_materials(void **state)
 }
 
 /* A list of a grid that lacks a triangle, or has one twice, is refused. */
-static void test_grid_lists(void **state)
+TEST(grid_lists)
 {
     const struct glint_scene_mesh *m = &file.mesh[0];
     uint32_t *start, *ref, cells, end;
 
-    (void)state;
     make();
     cells = m->cells[0] * m->cells[1] * m->cells[2];
     start = file.data + m->start_at / 4;
@@ -184,9 +175,8 @@ static void test_grid_lists(void **state)
     assert_null(reason_of(&file));
 }
 
-static void test_meshes(void **state)
+TEST(meshes)
 {
-    (void)state;
     REFUSES(mesh[0].radius, 2000, "a vertex is outside its mesh's ball");
     REFUSES(mesh[0].radius, GLINT_SCENE_SPAN / 2,
             "a mesh is too large or too far out");
@@ -208,9 +198,8 @@ static void test_meshes(void **state)
     refuses(&file, "tables share bytes");
 }
 
-static void test_objects(void **state)
+TEST(objects)
 {
-    (void)state;
     REFUSES(object[0].kind, 3, "an object's kind is unknown");
     REFUSES(object[0].material, 1, "an object's material is out of range");
     REFUSES(object[0].mesh, 1, "an object's mesh is out of range");
@@ -229,12 +218,11 @@ static void test_objects(void **state)
 
 /* Whatever one word of a sealed file becomes, opening reads nothing outside
  * it (asan) and ends. */
-static void test_any_word(void **state)
+TEST(any_word)
 {
     static const uint32_t value[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff};
     uint32_t seed = 1;
 
-    (void)state;
     scene_seal(make());
     for (size_t i = 4; i < file.bytes / 4; i++)
         for (int k = 0; k < 6; k++) {
@@ -248,16 +236,4 @@ static void test_any_word(void **state)
             glint_scene_open(&model, copy, file.bytes, &reason);
             free(copy);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_accepted),  cmocka_unit_test(test_truncated),
-        cmocka_unit_test(test_header),    cmocka_unit_test(test_lights),
-        cmocka_unit_test(test_materials), cmocka_unit_test(test_grid_lists),
-        cmocka_unit_test(test_meshes),    cmocka_unit_test(test_objects),
-        cmocka_unit_test(test_any_word)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

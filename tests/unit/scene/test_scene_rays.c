@@ -5,17 +5,14 @@
  * Q16.16, fail where they are known to.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "scene/ray.h"
 #include "support/models/scene_builder.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 enum { ONE = 1 << 16, ONE_Q30 = 1 << 30 };
 
@@ -70,13 +67,12 @@ static struct glint_scene_ray ray_to(const double from[3], const double to[3])
 
 /* ------------------------------------------------------------- A1, A2, A3 */
 
-static void test_a1_unit(void **state)
+TEST(a1_unit)
 {
     const int64_t v[3] = {0, 6, 8}, zero[3] = {0};
     uint32_t seed = 1;
     int32_t unit_q30[3];
 
-    (void)state;
     assert_int_equal(glint_root(100), 10);
     assert_true(glint_unit(v, unit_q30));
     is_near(unit_q30, 0, .6, .8, 1);
@@ -102,11 +98,10 @@ static void test_a1_unit(void **state)
     }
 }
 
-static void test_roots(void **state)
+TEST(roots)
 {
     uint32_t seed = 1;
 
-    (void)state;
     for (uint64_t x = 0; x < 70000; x++)
         assert_int_equal(glint_root(x), q_root(x));
     for (int i = 0; i < 300000; i++) {
@@ -120,11 +115,10 @@ static void test_roots(void **state)
     assert_true(glint_root(UINT64_MAX) == UINT32_MAX);
 }
 
-static void test_ratios(void **state)
+TEST(ratios)
 {
     uint32_t seed = 1;
 
-    (void)state;
     assert_int_equal(glint_ratio(5, 0), GLINT_FAR);
     assert_int_equal(glint_ratio(0, 5), 0);
     assert_int_equal(glint_ratio(UINT64_MAX >> 2, 1), GLINT_FAR);
@@ -142,14 +136,13 @@ static void test_ratios(void **state)
     }
 }
 
-static void test_a2_normal(void **state)
+TEST(a2_normal)
 {
     int32_t v[3][3], normal_q30[3], a[3], b[3];
     const int32_t *const clockwise[3] = {v[0], v[1], v[2]};
     const int32_t *const back[3] = {v[0], v[2], v[1]};
     int64_t n[3];
 
-    (void)state;
     for (int i = 0; i < 9; i++)
         v[i / 3][i % 3] = (int32_t)first[i];
     v3_minus(v[1], v[0], a);
@@ -162,13 +155,12 @@ static void test_a2_normal(void **state)
     is_near(normal_q30, 0, -.6, .8, 1);
 }
 
-static void test_a3_plane(void **state)
+TEST(a3_plane)
 {
     const int32_t *vertex[3];
     int32_t v[3][3], normal_q30[3], hit[3];
     struct glint_spot_on spot;
 
-    (void)state;
     triangle(v, first, 1);
     for (int k = 0; k < 3; k++)
         vertex[k] = v[k];
@@ -240,11 +232,10 @@ static double area_errors(double size)
     return (double)wrong / n;
 }
 
-static void test_a4_areas(void **state)
+TEST(a4_areas)
 {
     const double p[3] = {0, 0, 90};
 
-    (void)state;
     near(llround(area2(first, first + 3, first + 6) * 16), 6000 * 16, 0);
     near(llround(area2(first, first + 3, p) * 16), 1500 * 16, 0);
     near(llround(area2(first + 6, first, p) * 16), 1500 * 16, 0);
@@ -259,7 +250,7 @@ static void test_a4_areas(void **state)
     }
 }
 
-static void test_a5_nearest(void **state)
+TEST(a5_nearest)
 {
     static const double u[9] = {0, 30, 40, 40, -30, 120, -40, -30, 120},
                         y[9] = {-50, 30, 124, 50, 30, 124, 0, -30, 44},
@@ -269,7 +260,6 @@ static void test_a5_nearest(void **state)
     struct glint_spot_on spot;
     int32_t v[3][3];
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         triangle(v, each[i], 1);
         assert_true(meets(&ahead, v, &spot));
@@ -279,7 +269,7 @@ static void test_a5_nearest(void **state)
 
 /* Edges and vertices belong to a triangle, whichever of them the ray goes
  * through, seen from either side. */
-static void test_on_edges(void **state)
+TEST(on_edges)
 {
     static const double on_edge[9] = {0, -9, 50, 0, 9, 40, 9, 0, 30},
                         on_vertex[9] = {0, 0, 50, 9, 9, 40, 9, -9, 30};
@@ -287,7 +277,6 @@ static void test_on_edges(void **state)
     const int expected[2] = {45, 50};
     struct glint_spot_on spot;
 
-    (void)state;
     for (int i = 0; i < 12; i++) {
         int32_t v[3][3], turned[3][3];
 
@@ -302,11 +291,10 @@ static void test_on_edges(void **state)
 
 /* ----------------------------------------------------------- A9, A12, A14 */
 
-static void test_a9_mirror(void **state)
+TEST(a9_mirror)
 {
     uint32_t seed = 1;
 
-    (void)state;
     for (int i = 0; i < 100000; i++) {
         int32_t d[3], n[3], r[3], back[3];
         int64_t v[3], w[3];
@@ -328,12 +316,11 @@ static void test_a9_mirror(void **state)
     }
 }
 
-static void test_a12_bend(void **state)
+TEST(a12_bend)
 {
     const int32_t n[3] = {0, 0, -ONE_Q30};
     uint32_t seed = 1;
 
-    (void)state;
     for (int i = 0; i < 100000; i++) {
         const double index = .25 + 3.75 * rng_unit(&seed);
         const uint32_t eta_q28 = (uint32_t)ldexp(1 / index, 28);
@@ -357,7 +344,7 @@ static void test_a12_bend(void **state)
     }
 }
 
-static void test_a14_misses(void **state)
+TEST(a14_misses)
 {
     const int32_t up[3] = {0, ONE_Q30, 0}, ground[3] = {0, -ONE, 0};
     static const double flat[9] = {-9, 0, 10, 9, 0, 10, 0, 0, 30},
@@ -369,7 +356,6 @@ static void test_a14_misses(void **state)
     struct glint_spot_on spot;
     int32_t v[3][3], n[3];
 
-    (void)state;
     assert_int_equal(glint_ray_plane(&ahead, ground, up), 0); /* parallel */
     assert_int_equal(glint_ray_plane(&falling, ground, up), GLINT_PLANE_END);
     assert_int_equal(glint_ray_plane(&ahead, ahead.at, up), 0); /* within */
@@ -389,14 +375,13 @@ static void test_a14_misses(void **state)
 
 /* --------------------------------------------------------------------- A15 */
 
-static void test_a15_sphere(void **state)
+TEST(a15_sphere)
 {
     const int32_t centre[3] = {0, 0, 10 * ONE}, far[3] = {0, 0, -10 * ONE};
     const int32_t aside[3] = {3 * ONE, 0, 10 * ONE}, me[3] = {0, 0, ONE};
     struct glint_chord c;
     int32_t place[3], n[3];
 
-    (void)state;
     /* both roots */
     assert_true(glint_ray_sphere(&ahead, centre, 2 * ONE, &c));
     assert_true(c.t[0] == 8 * ONE && c.t[1] == 12 * ONE);
@@ -457,9 +442,8 @@ static double rim_errors(double distance)
     return (double)wrong / RAYS;
 }
 
-static void test_a15_rim(void **state)
+TEST(a15_rim)
 {
-    (void)state;
     for (double distance = 1; distance < 2e4; distance *= 10) {
         const double share = rim_errors(distance);
 
@@ -588,9 +572,8 @@ static int misses(double size, int is_naive)
     return n;
 }
 
-static void test_no_leaks(void **state)
+TEST(no_leaks)
 {
-    (void)state;
     for (double size = .01; size < 3000; size *= 7)
         assert_int_equal(misses(size, 0), 0);
     assert_true(misses(.01, 1) > 400);
@@ -598,12 +581,11 @@ static void test_no_leaks(void **state)
 }
 
 /* Plain Q16.16 wraps where the tutorial's first triangle is. */
-static void test_naive_wraps(void **state)
+TEST(naive_wraps)
 {
     int32_t v[3][3], a[3], b[3], n[3];
     int64_t d = 0;
 
-    (void)state;
     triangle(v, first, 1);
     v3_minus(v[1], v[0], a);
     v3_minus(v[2], v[0], b);
@@ -614,11 +596,10 @@ static void test_naive_wraps(void **state)
 }
 
 /* Weights of a hit place it where it is. */
-static void test_weights(void **state)
+TEST(weights)
 {
     uint32_t seed = 9;
 
-    (void)state;
     for (int i = 0; i < 20000; i++) {
         double w[3], from[3], to[3] = {0}, sum = 0;
         struct glint_spot_on spot;
@@ -647,19 +628,4 @@ static void test_weights(void **state)
             near(q_shift(at, 30), hit[k], 2);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a1_unit),     cmocka_unit_test(test_roots),
-        cmocka_unit_test(test_ratios),      cmocka_unit_test(test_a2_normal),
-        cmocka_unit_test(test_a3_plane),    cmocka_unit_test(test_a4_areas),
-        cmocka_unit_test(test_a5_nearest),  cmocka_unit_test(test_on_edges),
-        cmocka_unit_test(test_a9_mirror),   cmocka_unit_test(test_a12_bend),
-        cmocka_unit_test(test_a14_misses),  cmocka_unit_test(test_a15_sphere),
-        cmocka_unit_test(test_a15_rim),     cmocka_unit_test(test_no_leaks),
-        cmocka_unit_test(test_naive_wraps), cmocka_unit_test(test_weights)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,17 +4,14 @@
  * doubles.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "scene/state.h"
 #include "support/models/scene_builder.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 enum { UNIT = 1 << 16, ONE_Q30 = 1 << 30, SIDE = 64 };
 
@@ -38,7 +35,7 @@ static struct glint_scene *start(int shadow_points)
     bytes = glint_scene_bytes(&cfg, &model);
     free(mem);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_scene_init(&s, &cfg, &model, mem, bytes), GLINT_OK);
+    assert_ok(glint_scene_init(&s, &cfg, &model, mem, bytes));
     glint_scene_begin(s, &stats);
     return s;
 }
@@ -82,7 +79,7 @@ static int32_t red_of(const struct glint_scene *s, struct glint_scene_ray ray)
 
 /* Of three triangles behind each other the nearest is seen, whatever their
  * order; and one that is missed, whose distance is none, is not near. */
-static void test_a5_seen(void **state)
+TEST(a5_seen)
 {
     static const int at[4][9] = {
         {0, 30, 40, 40, -30, 120, -40, -30, 120},
@@ -92,7 +89,6 @@ static void test_a5_seen(void **state)
     static const uint32_t t[1][3] = {{0, 1, 2}};
     const struct glint_scene_ray ahead = ray_of(0, 0, 0, 0, 0, 1);
 
-    (void)state;
     for (int first = 0; first < 4; first++) {
         struct glint_scene *s;
         struct glint_met met;
@@ -117,7 +113,7 @@ static void test_a5_seen(void **state)
 
 /* -------------------------------------------------------------------- A6 */
 
-static void test_a6_corners(void **state)
+TEST(a6_corners)
 {
     const struct glint_scene_camera camera = {
         .kind = GLINT_CAMERA_CORNERS,
@@ -126,7 +122,6 @@ static void test_a6_corners(void **state)
         .tan_y_q24 = (int32_t)lround(.45 * (1 << 24))};
     struct glint_scene_view view;
 
-    (void)state;
     assert_true(glint_view_init(&view, &camera, 640, 360, 0));
     for (int x = 0; x < 640; x += 71)
         for (int y = 0; y < 360; y += 359) {
@@ -143,11 +138,10 @@ static void test_a6_corners(void **state)
 }
 
 /* Places go to the pixel whose ray goes to them. */
-static void test_view_and_back(void **state)
+TEST(view_and_back)
 {
     uint32_t seed = 3;
 
-    (void)state;
     scene_begin(&file);
     for (int i = 0; i < 20000; i++) {
         const int x_q8 = rng_below(&seed, 1 << 16) - (1 << 15);
@@ -175,14 +169,13 @@ static void test_view_and_back(void **state)
 
 /* ---------------------------------------------------------------- A7, A8 */
 
-static void test_a7_lamp(void **state)
+TEST(a7_lamp)
 {
     const int32_t lamp[3] = {0, 40 * UNIT, 0};
     struct glint_scene *s;
     struct glint_met_shade to;
     const struct glint_scene_ray down = ray_of(0, 10, 30, 0, -1, 0);
 
-    (void)state;
     scene_begin(&file);
     scene_plane(&file, "floor", scene_material(&file, "red"), 0);
     file.material[0].rgb_q15[1] = file.material[0].rgb_q15[2] = 0;
@@ -194,11 +187,10 @@ static void test_a7_lamp(void **state)
     assert_true(to.rgb_q15[1] == 0 && to.rgb_q15[2] == 0);
 }
 
-static void test_power(void **state)
+TEST(power)
 {
     double worst = 0;
 
-    (void)state;
     for (int32_t k_q8 = 256; k_q8 <= 1 << 20; k_q8 += k_q8 / 7 + 1)
         for (int i = 0; i < 20000; i++) {
             const int32_t x_q30 =
@@ -216,13 +208,12 @@ static void test_power(void **state)
 }
 
 /* A ball under a sun, anywhere on it, against the formula in doubles. */
-static void test_a8_phong(void **state)
+TEST(a8_phong)
 {
     const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
     struct glint_scene *s;
     uint32_t seed = 1;
 
-    (void)state;
     scene_begin(&file);
     scene_sphere(&file, "ball", scene_material(&file, "m"), 0, 0, 10 * UNIT,
                  2 * UNIT);
@@ -268,11 +259,10 @@ static int32_t under_ball(double h, int hidden)
     return red_of(start(1), ray_of(2, .5, 10, -2, -.5, 0));
 }
 
-static void test_a10_shadow(void **state)
+TEST(a10_shadow)
 {
     const int32_t lit = under_ball(2, 1);
 
-    (void)state;
     assert_in_range(lit, 32760, 32768);
     assert_int_equal(under_ball(2, 0), 0);      /* before the lamp */
     assert_int_equal(under_ball(5.01, 0), lit); /* beyond it */
@@ -282,7 +272,7 @@ static void test_a10_shadow(void **state)
 }
 
 /* Surfaces that nothing hides are lit, to the last bit, as without shadows. */
-static void test_a10_no_acne(void **state)
+TEST(a10_no_acne)
 {
     static const int32_t at[4][3] = {{-90000, -70000, 600000},
                                      {80000, -60000, 610000},
@@ -294,7 +284,6 @@ static void test_a10_no_acne(void **state)
     uint32_t seed = 1;
     int n = 0;
 
-    (void)state;
     for (int kind = 0; kind < 3; kind++)
         for (int i = 0; i < 3000; i++) {
             struct glint_scene_ray ray;
@@ -333,13 +322,12 @@ static void test_a10_no_acne(void **state)
 
 /* Across the edge of the shadow of a wide light comes all of it, then less and
  * less, then none. */
-static void test_a10_soft(void **state)
+TEST(a10_soft)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
     int32_t last = 0, levels = 0;
     struct glint_scene *s;
 
-    (void)state;
     scene_begin(&file);
     file.header.shadow = 1;
     scene_material(&file, "m");
@@ -370,14 +358,13 @@ static void clear(struct glint_scene_material *m)
 
 /* A ball that lets all light through hides nothing: of a ball behind it, and of
  * the picture. */
-static void test_a11_pass(void **state)
+TEST(a11_pass)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
     struct glint_scene *s;
     uint32_t seed = 1;
     int behind = 0, within = 0, rim = 0;
 
-    (void)state;
     scene_begin(&file);
     scene_material(&file, "m");
     clear(&file.material[scene_material(&file, "clear")]);
@@ -437,13 +424,12 @@ static int is_outside(const double middle[3], double radius, const double d[3],
 
 /* A ball that half of the light goes through, by itself: it is entered and left
  * once by each ray, where the baselines meet it again. */
-static void test_a11_left_once(void **state)
+TEST(a11_left_once)
 {
     enum { RAYS = 100000 };
     int n = 0, outside = 0, farther = 0;
     uint32_t seed = 1;
 
-    (void)state;
     while (n < RAYS) {
         const double middle[3] = {20 * rng_unit(&seed) - 10,
                                   20 * rng_unit(&seed) - 10,
@@ -483,14 +469,13 @@ static void test_a11_left_once(void **state)
 
 /* A glass ball bends rays as doubles say: what is seen in a texture behind it
  * lies there. */
-static void test_a12_ball(void **state)
+TEST(a12_ball)
 {
     uint8_t rgb[3 * 256];
     struct glint_scene *s;
     uint32_t seed = 1;
     int n = 0;
 
-    (void)state;
     for (int i = 0; i < 256; i++)
         rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = (uint8_t)i;
     scene_begin(&file);
@@ -540,13 +525,12 @@ static void test_a12_ball(void **state)
 
 /* From within a ball of index 1.5, on rays that meet it beyond the critical
  * angle of 41.8 degrees: such light never leaves it, and nothing is seen. */
-static void test_a12_within(void **state)
+TEST(a12_within)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
     struct glint_scene *s;
     int dark = 0;
 
-    (void)state;
     scene_begin(&file);
     file.header.background = GLINT_BACKGROUND_COLOUR;
     file.header.background_q15[0] = 8192;
@@ -568,7 +552,7 @@ static void test_a12_within(void **state)
 
 /* --------------------------------------------------------------------- A13 */
 
-static void test_a13_texture(void **state)
+TEST(a13_texture)
 {
     static const int32_t at[3][3] = {{-300000, -200000, 900000},
                                      {400000, -100000, 1200000},
@@ -580,7 +564,6 @@ static void test_a13_texture(void **state)
     struct glint_scene *s;
     uint32_t seed = 1;
 
-    (void)state;
     scene_begin(&file);
     scene_material(&file, "m");
     file.material[0].ambient_q15 = 32768;
@@ -630,14 +613,13 @@ static void test_a13_texture(void **state)
 }
 
 /* Far away a texture is its mean. */
-static void test_a13_levels(void **state)
+TEST(a13_levels)
 {
     uint8_t rgb[3 * 64 * 64];
     int32_t lowest = 32768, highest = 0;
     struct glint_scene *s;
     uint32_t seed = 1;
 
-    (void)state;
     for (int i = 0; i < 64 * 64; i++)
         for (int c = 0; c < 3; c++)
             rgb[3 * i + c] = (uint8_t)(((i ^ i >> 6) & 1) * 255);
@@ -676,23 +658,4 @@ static int tear_down(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_a5_seen),
-                                       cmocka_unit_test(test_a11_left_once),
-                                       cmocka_unit_test(test_a6_corners),
-                                       cmocka_unit_test(test_view_and_back),
-                                       cmocka_unit_test(test_a7_lamp),
-                                       cmocka_unit_test(test_power),
-                                       cmocka_unit_test(test_a8_phong),
-                                       cmocka_unit_test(test_a10_shadow),
-                                       cmocka_unit_test(test_a10_no_acne),
-                                       cmocka_unit_test(test_a10_soft),
-                                       cmocka_unit_test(test_a11_pass),
-                                       cmocka_unit_test(test_a12_ball),
-                                       cmocka_unit_test(test_a12_within),
-                                       cmocka_unit_test(test_a13_texture),
-                                       cmocka_unit_test(test_a13_levels)};
-
-    return cmocka_run_group_tests(tests, NULL, tear_down);
-}
+TEST_GROUP(NULL, tear_down);

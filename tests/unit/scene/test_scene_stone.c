@@ -4,15 +4,10 @@
  * precision, the same bits for all workers and tiles, updates of maps,
  * extremes, and errors. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "glint/scene/account.h"
 #include "glint/scene/bake.h"
@@ -21,6 +16,7 @@
 #include "support/models/stone_builder.h"
 #include "support/shuffle.h"
 #include "reference/scenes/twin.h"
+#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
@@ -158,7 +154,7 @@ static const struct scene_dials one_sample = {
           " " #specular " " #specular " alpha .1 .1\nenvironment sky\n"
 #define BRIGHT_BALL "sphere a at 0 .6 0 radius .8 material b\n"
 
-static void test_twin(void **state)
+TEST(twin)
 {
     static const struct {
         const char *what, *text, *mesh;
@@ -184,7 +180,6 @@ static void test_twin(void **state)
                "sphere b at 0 .7 0 radius .3 material grey\n",
          quad_text}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         double db;
 
@@ -210,13 +205,12 @@ static double near_to(const int32_t *a, const int32_t *b)
 /* The pattern comes again twice round a ball, and after half of that, so that
  * where it is turned by quarters the same is seen, across a seam or inside
  * the square. */
-static void test_seams(void **state)
+TEST(seams)
 {
     static int32_t first[3 * PIXELS], light[3 * PIXELS];
     static const char model[] = "cfa";
     struct tool tool = {.name = "test"};
 
-    (void)state;
     for (int k = 0; k < 3 * 4; k++) {
         char text[900];
         struct drawn d;
@@ -235,14 +229,13 @@ static void test_seams(void **state)
 
 /* Charts that are stretched, sheared or mirrored on the map are lit and shown
  * by where their texels are. */
-static void test_stretch(void **state)
+TEST(stretch)
 {
     static const char *const places[] = {
         "vt 0 .4\nvt 1 .4\nvt 1 .6\nvt 0 .6\n",
         "vt .3 0\nvt .8 .1\nvt .7 1\nvt .2 .9\n",
         "vt 1 0\nvt 0 0\nvt 0 1\nvt 1 1\n"};
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         char mesh[200];
         double db;
@@ -263,9 +256,8 @@ static void test_stretch(void **state)
 
 /* A kernel of 63 texels on a map of 32 reaches beyond every edge, and twice
  * round a ball's pole. */
-static void test_kernel_beyond_map(void **state)
+TEST(kernel_beyond_map)
 {
-    (void)state;
     side = 32;
     kernel = 63;
     mesh_text = quad_text;
@@ -292,14 +284,13 @@ static void test_kernel_beyond_map(void **state)
           "mesh m cube.obj scale .2 at .5 .2 .9 turn 0 1 0 30 material c\n"
 
 /* No thread, tile, kernel or order of updates changes a bit. */
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     static int32_t want[3 * PIXELS], got[3 * PIXELS];
     struct shuffle shuffle;
     struct tool tool = {.name = "test", .sets_off = ~0U};
     struct drawn d;
 
-    (void)state;
     shuffle_init(&shuffle, 3, 7);
     mesh_text = cube_text;
     open_text(&d, MIXED, &one_sample, &tool);
@@ -332,21 +323,19 @@ static void look_from(struct drawn *d, double angle, int32_t *light_q20)
                            (int32_t)(.6 * unit),
                            (int32_t)(-4 * unit * cos(angle))};
 
-    assert_int_equal(glint_scene_set_camera(d->frame.scene, at, axis_q30),
-                     GLINT_OK);
+    assert_ok(glint_scene_set_camera(d->frame.scene, at, axis_q30));
     draw(d, light_q20);
 }
 
 /* Texels are computed when they become visible, once, and all pictures equal
  * those of newly opened scenes; no work is wasted. */
-static void test_updates(void **state)
+TEST(updates)
 {
     static int32_t turned[3 * PIXELS], fresh[3 * PIXELS];
     struct tool tool = {.name = "test"};
     struct drawn d, other;
     int first, sum = 0;
 
-    (void)state;
     mesh_text = cube_text;
     side = 128;
     open_text(&d, MIXED, &one_sample, &tool);
@@ -372,7 +361,7 @@ static void test_updates(void **state)
 
 /* A coat that becomes another is drawn as if it had been that from the first.
  */
-static void test_coat_changes(void **state)
+TEST(coat_changes)
 {
     static int32_t changed[3 * PIXELS], fresh[3 * PIXELS];
     enum { MATERIAL = 4 }; /* behind those of LOOKS */
@@ -380,24 +369,21 @@ static void test_coat_changes(void **state)
     struct glint_scene_look look;
     struct drawn d;
 
-    (void)state;
     open_text(&d, BRIGHT(.75) BRIGHT_BALL, &one_sample, &tool);
     draw(&d, fresh);
-    assert_int_equal(glint_scene_get_look(d.frame.scene, MATERIAL, &look),
-                     GLINT_OK);
+    assert_ok(glint_scene_get_look(d.frame.scene, MATERIAL, &look));
     drawn_close(&d);
     open_text(&d, BRIGHT(.25) BRIGHT_BALL, &one_sample, &tool);
     draw(&d, changed);
     assert_true(memcmp(changed, fresh, sizeof fresh) != 0);
-    assert_int_equal(glint_scene_set_look(d.frame.scene, MATERIAL, &look),
-                     GLINT_OK);
+    assert_ok(glint_scene_set_look(d.frame.scene, MATERIAL, &look));
     draw(&d, changed);
     assert_memory_equal(changed, fresh, sizeof fresh);
     drawn_close(&d);
 }
 
 /* What maps take is counted where they were worked out, and not again. */
-static void test_account(void **state)
+TEST(account)
 {
     static int32_t light[3 * PIXELS];
     static int16_t seen[PIXELS];
@@ -405,7 +391,6 @@ static void test_account(void **state)
     struct glint_scene_part object[2], all;
     struct drawn d;
 
-    (void)state;
     open_text(&d,
               "camera fov 30 at 0 0 4 toward 0 0 0\nlight lamp at 3 3 9 colour "
               "9 9 9\nmaterial m translucent c.glint\nmaterial g phong .1 .7 "
@@ -437,13 +422,12 @@ static double brightest(const int32_t *light_q20)
 
 /* A medium that absorbs everything is black; one that absorbs nothing returns
  * at most the light it receives, at any strength. */
-static void test_albedo_0_and_1(void **state)
+TEST(albedo_0_and_1)
 {
     static int32_t light[3 * PIXELS];
     static const char *const model[] = {"c", "f", "a"};
     struct tool tool = {.name = "test"};
 
-    (void)state;
     for (int k = 0; k < 3 * 8; k++) {
         const double power = pow(10, 2 * (k % 8) - 6);
         char text[400];
@@ -502,7 +486,7 @@ static void expect_refused(const char *text, const char *reason)
     free(s);
 }
 
-static void test_refused(void **state)
+TEST(refused)
 {
     static const char stretched[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n"
                                     "vt 0 0\nvt .4 0\nvt .4 1\nvt 0 1\n"
@@ -516,7 +500,6 @@ static void test_refused(void **state)
     static const char point[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nvt .5 .5\n"
                                 "f 1/1 2/1 3/1\n";
 
-    (void)state;
     expect_refused(STAGE "plane p at 0 0 0 normal 0 1 0 material c\n",
                    "a plane has no end");
     expect_refused(STAGE "triangle t 0 0 0 1 0 0 0 1 0 material c\n",
@@ -539,13 +522,12 @@ static void test_refused(void **state)
 }
 
 /* Programs without the part say which one a scene needs. */
-static void test_lacks(void **state)
+TEST(lacks)
 {
     struct tool tool = {.name = "test"};
     struct glint_scene_config cfg;
     struct drawn d;
 
-    (void)state;
     open_text(&d, STAGE BALLS, &one_sample, &tool);
     cfg = d.frame.cfg;
     assert_true(glint_scene_bytes(&cfg, &d.model) > 0);
@@ -553,23 +535,4 @@ static void test_lacks(void **state)
     assert_string_equal(glint_scene_lacks(&cfg.parts, &d.model), "stones");
     assert_int_equal(glint_scene_bytes(&cfg, &d.model), 0);
     drawn_close(&d);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),
-        cmocka_unit_test(test_seams),
-        cmocka_unit_test(test_stretch),
-        cmocka_unit_test(test_kernel_beyond_map),
-        cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_updates),
-        cmocka_unit_test(test_coat_changes),
-        cmocka_unit_test(test_account),
-        cmocka_unit_test(test_albedo_0_and_1),
-        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_lacks),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

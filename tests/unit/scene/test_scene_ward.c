@@ -4,18 +4,14 @@
  * furnace, and
  * the same lookups in double. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/view.h"
 #include "support/models/ward_ball.h"
+#include "support/test.h"
 
 enum { WIDTH = 128, HEIGHT = 64, SIDE_LOG2 = 6 };
 
@@ -52,11 +48,9 @@ static void open_map(struct map *m, int levels)
     o.side_log2 = SIDE_LOG2;
     o.levels = (enum glint_environment_levels)levels;
     o.max_lights = 0;
-    assert_int_equal(glint_environment_bake(&image, &o, "x", 0, &m->data,
-                                            &bytes, &report, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_environment_open(&m->e, m->data, bytes, &reason),
-                     GLINT_OK);
+    assert_ok(glint_environment_bake(&image, &o, "x", 0, &m->data, &bytes,
+                                     &report, &error));
+    assert_ok(glint_environment_open(&m->e, m->data, bytes, &reason));
 }
 
 static struct glint_ward_material material_of(double x, double y)
@@ -92,7 +86,7 @@ static double albedo(int norm, double no, double alpha)
     return sum * 2 * GLINT_PI / (N * N);
 }
 
-static void test_furnace(void **state)
+TEST(furnace)
 {
     static const double cosine[4] = {1, .7, .3, .1};
     /* Of the bounded norm, whose lobe is below 1 at grazing angles. */
@@ -102,7 +96,6 @@ static void test_furnace(void **state)
     struct glint_ward_options o = {32, GLINT_WARD_PUBLISHED, 0, 0};
     struct map m;
 
-    (void)state;
     paint(1);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int norm = 0; norm < 2; norm++)
@@ -232,14 +225,13 @@ static void twin_pixel(const struct glint_environment *e, const double alpha[2],
     }
 }
 
-static void test_twin(void **state)
+TEST(twin)
 {
     static const int samples[5] = {1, 4, 8, 16, 32};
     static ward_picture want, got;
     double least = 200;
     struct map m;
 
-    (void)state;
     paint(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int k = 0; k < 10; k++) {
@@ -317,7 +309,7 @@ static void sum_of(const double alpha[2], struct reference *r)
 /* Row B1: half vectors of the lobe's density, as published, beat directions of
  * the whole hemisphere at every number of samples, up to alphas of .2. Row B4:
  * Gaussian levels beat mips with 8 samples. */
-static void test_b1_b4(void **state)
+TEST(b1_b4)
 {
     static const double alphas[3][2] = {{.05, .05}, {.2, .2}, {.05, .2}};
     static const int samples[4] = {1, 4, 8, 32};
@@ -325,7 +317,6 @@ static void test_b1_b4(void **state)
     static ward_picture got;
     struct map gauss, mip;
 
-    (void)state;
     paint(0);
     open_map(&gauss, GLINT_ENVIRONMENT_GAUSS);
     open_map(&mip, GLINT_ENVIRONMENT_MIP);
@@ -362,14 +353,13 @@ static void test_b1_b4(void **state)
 
 /* Row B2: colours and alphas change over one baked environment: each lobe is
  * that of its material, and colours are factors. */
-static void test_b2_changes(void **state)
+TEST(b2_changes)
 {
     static ward_picture red, white, wide;
     struct glint_ward_material material = material_of(.05, .1);
     struct map m;
     double differ = 0;
 
-    (void)state;
     paint(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     ward_look(&m.e, &material, &eight, white);
@@ -389,14 +379,13 @@ static void test_b2_changes(void **state)
 
 /* Row B8: 8 samples are acceptable, 30 dB and more of what a display is sent,
  * on a map of spots and waves. */
-static void test_b8_eight(void **state)
+TEST(b8_eight)
 {
     static const double alphas[3][2] = {{.05, .05}, {.1, .1}, {.05, .2}};
     static struct reference r;
     static ward_picture got;
     struct map m;
 
-    (void)state;
     paint(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int a = 0; a < 3; a++) {
@@ -415,7 +404,7 @@ static void test_b8_eight(void **state)
 }
 
 /* Row B6: more samples are nearer to the sum over all texels. */
-static void test_b6_samples(void **state)
+TEST(b6_samples)
 {
     static const int samples[3] = {1, 8, 32};
     static const double alpha[2] = {.1, .1};
@@ -425,7 +414,6 @@ static void test_b6_samples(void **state)
     struct map m;
     double last = 0;
 
-    (void)state;
     paint(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     sum_of(alpha, &r);
@@ -445,13 +433,12 @@ static void test_b6_samples(void **state)
 
 /* No light is black, one texel of 1e9 or a scale of 1e-6 .. 1e9 is light times
  * that: a ball's picture is the same but for its scale. */
-static void test_extreme_lights(void **state)
+TEST(extreme_lights)
 {
     static ward_picture one, got;
     const struct glint_ward_material material = material_of(.1, .1);
     struct map m;
 
-    (void)state;
     memset(pixels, 0, sizeof pixels);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     ward_look(&m.e, &material, &eight, got);
@@ -484,13 +471,12 @@ static void test_extreme_lights(void **state)
 }
 
 /* Row B7: a ratio of 200 becomes one of 10, and the call reports it. */
-static void test_b7_held(void **state)
+TEST(b7_held)
 {
     struct glint_ward_lobe held, plain;
     struct glint_ward_material material = material_of(.001, .2);
     struct map m;
 
-    (void)state;
     paint(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     memset(&held, 0, sizeof held);
@@ -505,13 +491,12 @@ static void test_b7_held(void **state)
 }
 
 /* Any material, view and file that is allowed: light within its range. */
-static void test_extremes(void **state)
+TEST(extremes)
 {
     static const double alpha[4] = {.001, .01, .5, 1};
     struct map m;
     int32_t most = 0;
 
-    (void)state;
     paint(0);
     pixels[9][9][0] = 1e9f;
     open_map(&m, GLINT_ENVIRONMENT_MIP);
@@ -542,21 +527,4 @@ static void test_extremes(void **state)
     }
     assert_int_equal(most, 1 << 30);
     free(m.data);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_furnace),
-        cmocka_unit_test(test_twin),
-        cmocka_unit_test(test_b1_b4),
-        cmocka_unit_test(test_b2_changes),
-        cmocka_unit_test(test_b7_held),
-        cmocka_unit_test(test_extremes),
-        cmocka_unit_test(test_b6_samples),
-        cmocka_unit_test(test_b8_eight),
-        cmocka_unit_test(test_extreme_lights),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

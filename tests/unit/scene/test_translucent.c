@@ -4,15 +4,10 @@
  * that are refused.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/blob.h"
 #include "glint/kernels.h"
@@ -21,6 +16,7 @@
 #include "support/models/stone_builder.h"
 #include "support/models/psnr.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 static const enum glint_scatter_model models[] = {
     GLINT_SCATTER_CLUSTERED, GLINT_SCATTER_FACTORED, GLINT_SCATTER_ALBEDO};
@@ -36,8 +32,7 @@ static double close_by(const struct built_stone *b)
     assert_non_null(light);
     glint_scatter_test_light(b->fit.side, light);
     glint_scatter_light(&b->fit, light, light + n);
-    assert_int_equal(glint_stone_light(&b->stone, light, light + 2 * n),
-                     GLINT_OK);
+    assert_ok(glint_stone_light(&b->stone, light, light + 2 * n));
     for (size_t i = 0; i < n; i++)
         light[n + i] = fmax(light[n + i], 0);
     db = peak_psnr(light + 2 * n, light + n, n);
@@ -45,9 +40,8 @@ static double close_by(const struct built_stone *b)
     return db;
 }
 
-static void test_close_to_fit(void **state)
+TEST(close_to_fit)
 {
-    (void)state;
     for (int m = 0; m < 3; m++) {
         struct built_stone b;
         double db;
@@ -70,20 +64,16 @@ static double close_of_rank(struct built_stone *b, int rank)
     free(b->data);
     b->data = NULL;
     b->text.fit.rank = rank;
-    assert_int_equal(glint_stone_bake(&b->fit, &b->text, "test", 7, &b->data,
-                                      &b->bytes, &b->report, &error),
-                     GLINT_OK);
-    assert_int_equal(
-        glint_translucent_open(&b->stone, b->data, b->bytes, &reason),
-        GLINT_OK);
+    assert_ok(glint_stone_bake(&b->fit, &b->text, "test", 7, &b->data,
+                               &b->bytes, &b->report, &error));
+    assert_ok(glint_translucent_open(&b->stone, b->data, b->bytes, &reason));
     return close_by(b);
 }
 
 /* Two products are as good as four where light changes slowly: the largest
  * singular values of entries alone have 51 dB, and 37 by one. */
-static void test_ranks(void **state)
+TEST(ranks)
 {
-    (void)state;
     for (int m = 0; m < 3; m += 2) {
         struct built_stone b;
         double db[2];
@@ -185,7 +175,7 @@ static void move_taps(struct glint_translucent_header *h, unsigned char *data)
 }
 
 /* Every sum that the loops rely on is looked at, as are their places. */
-static void test_refused(void **state)
+TEST(refused)
 {
     static const struct {
         damage_fn *damage;
@@ -203,7 +193,6 @@ static void test_refused(void **state)
         {make_even, "the stone's side or kernel is out of range"},
         {move_taps, "a table lies outside the stone"}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         const char *reason = "nothing";
         struct built_stone b;
@@ -218,15 +207,4 @@ static void test_refused(void **state)
         assert_string_equal(reason, row[i].reason);
         free_stone(&b);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_close_to_fit),
-        cmocka_unit_test(test_ranks),
-        cmocka_unit_test(test_refused),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,14 +5,10 @@
  * least number that is free.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
 
 #include "bake/skew/pieces.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 /* A ray of a piece: where it enters, from where, its place in the band. */
 struct entry {
@@ -71,10 +67,9 @@ static struct glint_skew_piece any_piece(uint32_t *seed)
     return p;
 }
 
-static void test_halves(void **state)
+TEST(halves)
 {
     uint32_t seed = 5;
-    (void)state;
 
     for (int k = 0; k < 1000; k++) {
         const struct glint_skew_piece p = any_piece(&seed);
@@ -111,11 +106,10 @@ static void set_output(struct glint_fitted_output *o, double *coef,
     o->power[0][variable] = (uint8_t)power;
 }
 
-static void test_shares(void **state)
+TEST(shares)
 {
     static struct glint_fitted_system system;
     double coef[3], share[GLINT_VARIABLES];
-    (void)state;
 
     set_output(&system.output[0], &coef[0], GLINT_OUT_SENSOR_X, GLINT_S, 1,
                true);
@@ -135,7 +129,7 @@ static void test_shares(void **state)
     assert_true(share[GLINT_U] == 0 && share[GLINT_W] == 0);
 }
 
-static void test_numbers(void **state)
+TEST(numbers)
 {
     /* Two parts of one patch, and a third system beside them. */
     struct glint_fitted_system has[] = {
@@ -144,7 +138,6 @@ static void test_numbers(void **state)
         {.part = 0, .sine_lo = 0.1, .sine_hi = 0.2, .y_hi = 0.1, .wave_hi = 6}};
     const struct glint_fitted_ghost ghost = {3, has};
     struct glint_fitted_system next = has[0];
-    (void)state;
 
     assert_int_equal(glint_piece_number(&ghost, &next), 2);
     next.sine_lo = 0.1;
@@ -157,15 +150,4 @@ static void test_numbers(void **state)
     next.wave_lo = 6;
     next.wave_hi = 7;
     assert_int_equal(glint_piece_number(&ghost, &next), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_halves),
-        cmocka_unit_test(test_shares),
-        cmocka_unit_test(test_numbers),
-    };
-
-    return cmocka_run_group_tests_name("pieces", tests, NULL, NULL);
 }

@@ -5,19 +5,16 @@
  * where exact rays do; rows of rays must agree with single ones.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "bake/skew/skew_fit.h"
 #include "glint/bake.h"
 #include "glint/transfer.h"
 #include "support/rng.h"
+#include "support/test.h"
 
 #define MAX_DEG   12
 #define TOLERANCE 1.5
@@ -217,9 +214,8 @@ static void check(void)
     assert_true(m.off < 0.01);
 }
 
-static void test_cylinder(void **state)
+TEST(cylinder)
 {
-    (void)state;
     bake("", "shape cylinder x\n", "");
     assert_int_equal(model.header->basis,
                      GLINT_BASIS_LENS + GLINT_MIRRORS_X + GLINT_MIRRORS_Y);
@@ -227,31 +223,18 @@ static void test_cylinder(void **state)
     forget();
 }
 
-static void test_toric_aside(void **state)
+TEST(toric_aside)
 {
-    (void)state;
     bake("group decentre 0.6 0\n", "shape toric y 300\n", "end\n");
     assert_int_equal(model.header->basis, GLINT_BASIS_LENS + GLINT_MIRRORS_Y);
     check();
     forget();
 }
 
-static void test_tilted(void **state)
+TEST(tilted)
 {
-    (void)state;
     bake("group decentre 0 0.4 tilt 2 1\n", "", "end\n");
     assert_int_equal(model.header->basis, GLINT_BASIS_LENS);
     check();
     forget();
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cylinder),
-        cmocka_unit_test(test_toric_aside),
-        cmocka_unit_test(test_tilted),
-    };
-
-    return cmocka_run_group_tests_name("skew", tests, NULL, NULL);
 }

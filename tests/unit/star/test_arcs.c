@@ -8,16 +8,12 @@
 #include "engine/star/psf.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "engine/star/star_tables.h"
 #include "glint/view.h"
 #include "support/stars/canvas.h"
+#include "support/test.h"
 
 /* Returns |F|^2 / A^2, times q^3 over (q = AT)^3, in the mean from 0.8 to 1.2
  * AT. */
@@ -46,11 +42,10 @@ static double of_polygon(const struct glint_arcs *arcs, double x, double y)
     return glint_psf_transform(arcs->n, arcs->rotation_deg, x, y);
 }
 
-static void test_ends(void **state)
+TEST(ends)
 {
     static const int blades[] = {3, 5, 6, 8, 9, 64};
 
-    (void)state;
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < 40; k++) {
             const double at = 0.3 + 0.1 * k, phi = 0.7 * k;
@@ -69,11 +64,10 @@ static void test_ends(void **state)
 }
 
 /* Where both ways to add up an arc meet, at q = 5, there must be no step. */
-static void test_no_step(void **state)
+TEST(no_step)
 {
     struct glint_arcs arcs;
 
-    (void)state;
     for (int n = 3; n < 12; n++)
         for (int k = 0; k < 20; k++) {
             const double phi = k * 0.31;
@@ -90,11 +84,10 @@ static void test_no_step(void **state)
 
 /* The sums over a circle, where fans and what is between them both count, must
  * agree, and single directions roughly. */
-static void test_far(void **state)
+TEST(far)
 {
     enum { PHIS = 48 };
 
-    (void)state;
     for (int k = 0; k < 24; k++) {
         struct glint_arcs arcs;
         double exact = 0, far = 0;
@@ -135,19 +128,16 @@ static int peaks(const struct glint_psf *p, double r)
 }
 
 /* 5, 6 and 8 blades must give 10, 6 and 8 fans, which turn with the blades. */
-static void test_fans(void **state)
+TEST(fans)
 {
     static const int blades[3] = {5, 6, 8}, fans[3] = {10, 6, 8};
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         struct glint_psf one, turned;
         double a[3], b[3];
 
-        assert_int_equal(glint_psf_init_iris(&one, blades[i], 20, 1, 0.2, 0),
-                         GLINT_OK);
-        assert_int_equal(glint_psf_init_iris(&turned, blades[i], 21, 1, 0.2, 0),
-                         GLINT_OK);
+        assert_ok(glint_psf_init_iris(&one, blades[i], 20, 1, 0.2, 0));
+        assert_ok(glint_psf_init_iris(&turned, blades[i], 21, 1, 0.2, 0));
         assert_int_equal(peaks(&one, 200), fans[i]);
         for (int k = 0; k < 90; k++) {
             const double phi = k * GLINT_PI / 180, turn = GLINT_PI / 180;
@@ -164,16 +154,15 @@ static void test_fans(void **state)
 }
 
 /* A soft edge must leave the middle as it is and take the light far out. */
-static void test_soft(void **state)
+TEST(soft)
 {
     struct glint_psf hard, soft;
     double a[3], b[3];
 
-    (void)state;
     assert_true(fabs(glint_psf_softness(0.1, 0) - 1) < 1e-9);
     assert_true(glint_psf_softness(0.1, 100) < 1e-3);
-    assert_int_equal(glint_psf_init_iris(&hard, 8, 0, 1, 0.3, 0), GLINT_OK);
-    assert_int_equal(glint_psf_init_iris(&soft, 8, 0, 1, 0.3, 0.1), GLINT_OK);
+    assert_ok(glint_psf_init_iris(&hard, 8, 0, 1, 0.3, 0));
+    assert_ok(glint_psf_init_iris(&soft, 8, 0, 1, 0.3, 0.1));
     glint_psf_light(&hard, 0, 0, a);
     glint_psf_light(&soft, 0, 0, b);
     assert_true(b[1] > 0.75 * a[1] && b[1] < a[1]);
@@ -194,7 +183,7 @@ static struct glint_star_tables *tables_of(int n_blades, double round,
                                         .soft = soft};
     struct glint_star_tables *t;
 
-    assert_int_equal(glint_star_tables_make(&t, &o), GLINT_OK);
+    assert_ok(glint_star_tables_make(&t, &o));
     return t;
 }
 
@@ -225,9 +214,8 @@ static int spike_width(double round, double soft, double radius)
 
 /* A lamp's extent must make fans wider as it does lines, and next to straight
  * blades there must be no step. */
-static void test_wide_lamp(void **state)
+TEST(wide_lamp)
 {
-    (void)state;
     for (int radius = 4; radius <= 16; radius *= 2) {
         const int straight = spike_width(0, 0, radius);
         const int close = spike_width(0.001, 0.001, radius);
@@ -242,13 +230,12 @@ static void test_wide_lamp(void **state)
 
 /* Blades of curvature 1 must have a circle's tables, and those close to it a
  * halo as even. */
-static void test_to_circle(void **state)
+TEST(to_circle)
 {
     struct glint_star_tables *circle = tables_of(0, 0, 0);
     struct glint_star_tables *one = tables_of(6, 1, 0);
     struct glint_star_tables *near = tables_of(6, 0.97, 0);
 
-    (void)state;
     assert_int_equal(glint_star_tables_bytes(one),
                      glint_star_tables_bytes(circle));
     assert_memory_equal(one->halo, circle->halo, sizeof one->halo);
@@ -266,16 +253,4 @@ static void test_to_circle(void **state)
     glint_star_tables_free(circle);
     glint_star_tables_free(one);
     glint_star_tables_free(near);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ends),      cmocka_unit_test(test_no_step),
-        cmocka_unit_test(test_far),       cmocka_unit_test(test_fans),
-        cmocka_unit_test(test_soft),      cmocka_unit_test(test_wide_lamp),
-        cmocka_unit_test(test_to_circle),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,14 +5,9 @@
  * mask; a black one without light.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/setup/dirt.h"
 #include "engine/setup/spectrum.h"
@@ -20,6 +15,7 @@
 #include "engine/star/star_tables.h"
 #include "glint/view.h"
 #include "support/stars/canvas.h"
+#include "support/test.h"
 
 enum { SIDE = 301, FINE = 150, WAVES = 13, POINTS = 3 };
 
@@ -49,11 +45,10 @@ static void open_stop(struct stop *s, const struct glint_iris *iris,
     s->setup.blade_rotation_deg = 10;
     s->setup.n_wavelengths = 1;
     s->setup.direct_flux[0] = 1;
-    assert_int_equal(glint_setup_iris(&s->setup, iris, &s->dirt, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_smear_init(&s->smear, &s->setup), GLINT_OK);
+    assert_ok(glint_setup_iris(&s->setup, iris, &s->dirt, &error));
+    assert_ok(glint_smear_init(&s->smear, &s->setup));
     o.smear = s->smear.sum ? &s->smear : NULL;
-    assert_int_equal(glint_star_tables_make(&s->tables, &o), GLINT_OK);
+    assert_ok(glint_star_tables_make(&s->tables, &o));
 }
 
 static void close_stop(struct stop *s)
@@ -159,7 +154,7 @@ static double code(double light)
 }
 
 /* Stars must be those of direct summation, near the light and farther out. */
-static void test_direct(void **state)
+TEST(direct)
 {
     const struct glint_iris iris = {.dust = 0.1, .dust_seed = 4};
     const double airy_px = 1, power_log2 = 9;
@@ -167,7 +162,6 @@ static void test_direct(void **state)
     struct stop s;
     double squares = 0, most = 0;
 
-    (void)state;
     open_stop(&s, &iris, airy_px);
     set_amplitudes(&s);
     draw(&s, power_log2, linear);
@@ -194,11 +188,10 @@ static void test_direct(void **state)
 }
 
 /* All light must be there, whatever the size of the pattern. */
-static void test_energy(void **state)
+TEST(energy)
 {
     const struct glint_iris iris = {.dust = 0.2, .dust_seed = 7};
 
-    (void)state;
     for (int k = 0; k < 3; k++) {
         const double airy_px = 0.1 * (1 << 2 * k);
         struct glint_psf psf;
@@ -209,7 +202,7 @@ static void test_energy(void **state)
         draw(&s, 10, linear);
         for (int i = 1; i < 3 * SIDE * SIDE; i += 3)
             sum += linear[i] * 0x1p-30;
-        assert_int_equal(glint_psf_init(&psf, 8, 10, airy_px), GLINT_OK);
+        assert_ok(glint_psf_init(&psf, 8, 10, airy_px));
         /* the picture is a square as large as a circle of this radius */
         beyond = s.smear.clear * glint_psf_beyond(&psf, 0.564 * SIDE, 1) +
                  glint_smear_beyond(&s.smear, &psf, airy_px, 0.564 * SIDE, 1);
@@ -222,13 +215,12 @@ static void test_energy(void **state)
 }
 
 /* Tiles and workers must change no bit. */
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     const struct glint_iris iris = {.dust = 0.05, .dust_seed = 3};
     const struct glint_star_light light = star_canvas_light(80.2, 33.9, 14);
     struct stop s;
 
-    (void)state;
     open_stop(&s, &iris, 0.5);
     for (int k = 3; k <= 6; k++) {
         struct star_canvas canvas;
@@ -244,14 +236,13 @@ static void test_same_bits(void **state)
 }
 
 /* A white mask must be no mask, and a black one have no smear. */
-static void test_white_and_black(void **state)
+TEST(white_and_black)
 {
     uint8_t mask[4] = {255, 255, 255, 255};
     const struct glint_iris iris = {
         .mask = mask, .mask_width = 2, .mask_height = 2};
     struct stop s;
 
-    (void)state;
     open_stop(&s, &iris, 0.5);
     assert_true(fabs(s.smear.clear - 1) < 1e-9);
     assert_true(fabs(glint_smear_within(&s.smear, 100)) < 1e-9);
@@ -264,7 +255,7 @@ static void test_white_and_black(void **state)
 
 /* A mask that leaves a hole must give the pattern of that: its first dark ring
  * is wider as the hole is smaller. */
-static void test_hole(void **state)
+TEST(hole)
 {
     enum { N = 128 };
     uint8_t mask[N * N];
@@ -273,7 +264,6 @@ static void test_hole(void **state)
     struct stop s;
     double least = 1, dark = 0;
 
-    (void)state;
     for (int i = 0; i < N * N; i++)
         mask[i] = hypot(i % N - 63.5, i / N - 63.5) < N / 8.0 ? 255 : 0;
     open_stop(&s, &iris, 3);
@@ -292,17 +282,4 @@ static void test_hole(void **state)
     /* 1.22 * 3 px * 4 */
     assert_true(fabs(dark - 14.64) < 1.6);
     close_stop(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_direct),
-        cmocka_unit_test(test_energy),
-        cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_white_and_black),
-        cmocka_unit_test(test_hole),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,14 +4,10 @@
  * of them in motion and in rotation.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/setup/spectrum.h"
 #include "engine/star/core_table.h"
@@ -21,6 +17,7 @@
 #include "star/starburst.h"
 #include "glint/view.h"
 #include "support/stars/canvas.h"
+#include "support/test.h"
 
 enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
 
@@ -91,11 +88,10 @@ static int count_spikes(double radius)
     return n;
 }
 
-static void test_spikes(void **state)
+TEST(spikes)
 {
     static const int blades[] = {3, 5, 6, 7, 8, 9};
 
-    (void)state;
     for (int i = 0; i < 6; i++) {
         const int n = blades[i];
         struct glint_star_tables *t = star_canvas_tables(n, 11, 0.3);
@@ -109,11 +105,10 @@ static void test_spikes(void **state)
 
 /* The first dark ring of a round stop must be at 1.21967 times wavelength times
  * f-number. */
-static void test_ring(void **state)
+TEST(ring)
 {
     double dark = 0, least = 1;
 
-    (void)state;
     for (double x = 0.9; x < 1.5; x += 1e-4) {
         const double light = glint_psf_transform(0, 0, x / 2, 0);
 
@@ -125,13 +120,12 @@ static void test_ring(void **state)
 
 /* In a picture, whose light has all wavelengths, the dark ring must be that of
  * 550 nm, measured in green. */
-static void test_drawn_ring(void **state)
+TEST(drawn_ring)
 {
     struct glint_star_tables *t = star_canvas_tables(0, 0, 5);
     const struct glint_star_light light = star_canvas_light(48.5, 41.5, 10);
     double dark = 0, least = 1e9;
 
-    (void)state;
     draw_linear(t, &light, 1, linear_q20);
     for (double r = 4; r < 9; r += 0.01) {
         double here = 0;
@@ -150,20 +144,18 @@ static void test_drawn_ring(void **state)
 }
 
 /* Light in the picture and beyond it must add up to all light. */
-static void test_energy(void **state)
+TEST(energy)
 {
     static const int blades[] = {0, 3, 5, 8, 64};
     static const double airy_px[] = {0.03, 0.12, 0.4, 1.1, 2.5};
 
-    (void)state;
     for (int i = 0; i < 25; i++) {
         struct glint_star_tables *t =
             star_canvas_tables(blades[i % 5], 5, airy_px[i / 5]);
         const struct glint_star_light light = star_canvas_light(48.3, 41.7, 10);
         struct glint_psf psf;
 
-        assert_int_equal(glint_psf_init(&psf, blades[i % 5], 5, airy_px[i / 5]),
-                         GLINT_OK);
+        assert_ok(glint_psf_init(&psf, blades[i % 5], 5, airy_px[i / 5]));
         draw_linear(t, &light, 1, linear_q20);
         for (int c = 0; c < 3; c++) {
             /* About as much light falls beyond the sides of the picture as
@@ -246,7 +238,7 @@ static void sum_picture(int n_blades, double rotation_deg, double airy_px,
 /* Pictures must have at least 50 dB for three stops and three powers. In one so
  * small all pixels are near the light; in a picture of 1080p the same errors
  * would give 24 dB more. */
-static void test_direct(void **state)
+TEST(direct)
 {
     static const struct {
         int n_blades;
@@ -258,7 +250,6 @@ static void test_direct(void **state)
     const int points = getenv("GLINT_QUICK") ? 2 : 4;
     struct star_canvas c;
 
-    (void)state;
     assert_non_null(direct);
     star_canvas_open(&c, WIDTH, HEIGHT, 4, 1, 1);
     for (int k = 0; k < 9; k++) {
@@ -308,13 +299,12 @@ static double across_spike(double *width)
 
 /* A lamp that the picture shows as a disc must throw a spike as wide as the
  * disc, with as much light as that of a point. */
-static void test_extent(void **state)
+TEST(extent)
 {
     struct glint_star_tables *t = star_canvas_tables(4, 45, 0.5);
     struct glint_star_light light = star_canvas_light(30.5, 41.5, 10);
     double width[2], sum[2];
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         light.radius_q8 = i * 4 * 256;
         draw_linear(t, &light, 1, linear_q20);
@@ -352,13 +342,12 @@ static double most_off(const struct glint_star_tables *t, const double place[2])
 
 /* Far from the light pixels of a row are not computed one by one, but must be
  * within 3 % of what tables give. */
-static void test_far(void **state)
+TEST(far)
 {
     static const double place[][2] = {
         {-60, 41}, {-250.3, 20}, {48, -180}, {300, 400}, {-2000, 900}};
     double most = 0;
 
-    (void)state;
     for (int n = 3; n <= 8; n += 5) {
         struct glint_star_tables *t = star_canvas_tables(n, 13 * n, 0.4);
 
@@ -387,12 +376,11 @@ static int count_lit(void)
 /* The number of pixels that a star will draw is predicted before it is drawn.
  * It must be 0.75 to 1.2 times those that get light for a round stop, and 1 to
  * 2 times for six blades, as pixels of spikes count once more. */
-static void test_pixels(void **state)
+TEST(pixels)
 {
     static const double place[][2] = {{48, 41}, {0, 0}, {-20, 60}};
     const struct glint_real least = {1 << 30, -30 - 12};
 
-    (void)state;
     for (int n = 0; n <= 6; n += 6) {
         struct glint_star_tables *t = star_canvas_tables(n, 11, 0.3);
 
@@ -417,13 +405,12 @@ static void test_pixels(void **state)
 
 /* While a light moves by 0.05 pixels a frame, neither the sum of light nor any
  * pixel may jump. */
-static void test_motion(void **state)
+TEST(motion)
 {
     struct glint_star_tables *t = star_canvas_tables(7, 3, 0.2);
     static int32_t last_q20[N];
     double least = 2, most = 0, jump = 0, peak = 0;
 
-    (void)state;
     for (int frame = 0; frame < 200; frame++) {
         const struct glint_star_light light =
             star_canvas_light(40 + 0.05 * frame, 41.2 + 0.013 * frame, 10);
@@ -467,11 +454,10 @@ static double spike_angle(double angle_deg)
     return angle_deg + turn / sum;
 }
 
-static void test_rotation(void **state)
+TEST(rotation)
 {
     const struct glint_star_light light = star_canvas_light(48.5, 41.5, 10);
 
-    (void)state;
     for (int n = 5; n <= 8; n++) {
         double angle[2];
 
@@ -485,17 +471,4 @@ static void test_rotation(void **state)
         assert_true(fabs(angle[0] - 20 - 180.0 / n) < 0.1);
         assert_true(fabs(angle[1] - angle[0] - 1) < 0.1);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_spikes),     cmocka_unit_test(test_ring),
-        cmocka_unit_test(test_drawn_ring), cmocka_unit_test(test_energy),
-        cmocka_unit_test(test_direct),     cmocka_unit_test(test_extent),
-        cmocka_unit_test(test_far),        cmocka_unit_test(test_pixels),
-        cmocka_unit_test(test_motion),     cmocka_unit_test(test_rotation),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,20 +4,16 @@
  * machine, and what it is clamped to at extremes. Tables are of any stop, by
  * integers, so that no libm has a say.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/real.h"
 #include "support/rng.h"
 #include "support/stars/any.h"
 #include "support/stars/canvas.h"
+#include "support/test.h"
 
 enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT, MAX_WORKERS = 3 };
 
@@ -46,11 +42,10 @@ static void draw(const struct glint_star_light *lights, int n_lights,
 }
 
 /* Workers, tiles and the order of jobs must not change a bit of codes. */
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     uint32_t seed = 7;
 
-    (void)state;
     for (int i = 0; i < 30; i++) {
         struct glint_star_light lights[STAR_CANVAS_LIGHTS];
         const int n = 1 + rng_below(&seed, STAR_CANVAS_LIGHTS);
@@ -68,11 +63,10 @@ static void test_same_bits(void **state)
 }
 
 /* In linear light, too, tiles must not change a bit; far lights among them. */
-static void test_same_light(void **state)
+TEST(same_light)
 {
     uint32_t seed = 99;
 
-    (void)state;
     for (int i = 0; i < 24; i++) {
         struct glint_star_light light;
 
@@ -97,14 +91,13 @@ static uint64_t hash(uint64_t h, uint64_t x)
 
 /* Every machine must draw the same: codes and linear light of 40 stars have
  * this hash. */
-static void test_same_machines(void **state)
+TEST(same_machines)
 {
     const uint64_t want = UINT64_C(0x22829f9dca1d9529);
     uint64_t h = UINT64_C(14695981039346656037);
     uint32_t seed = 2026;
     int n_lit = 0;
 
-    (void)state;
     for (int i = 0; i < 40; i++) {
         struct glint_star_light light;
         bool is_lit = false;
@@ -132,7 +125,7 @@ static void test_same_machines(void **state)
  * from what cannot be seen to what saturates, with the light on a pixel's
  * middle, on its corner, on the picture's border, and 1000 px away from it on
  * two sides. */
-static void test_powers(void **state)
+TEST(powers)
 {
     static const int place_q8[][2] = {{48 * 256 + 128, 41 * 256 + 128},
                                       {48 * 256, 41 * 256},
@@ -142,7 +135,6 @@ static void test_powers(void **state)
                                       {50 * 256, 256000 + HEIGHT * 256}};
     uint32_t seed = 3;
 
-    (void)state;
     for (int i = 0; i < 12; i++) {
         struct star_canvas c;
         int lit = 0;
@@ -173,12 +165,11 @@ static void test_powers(void **state)
 
 /* Lights that are not lights must be left out without a trace: without power or
  * colour, or farther away than is drawn. */
-static void test_none(void **state)
+TEST(none)
 {
     struct glint_star_light light[4];
     uint32_t seed = 5;
 
-    (void)state;
     star_any(&any, &seed);
     for (int i = 0; i < 4; i++)
         light[i] = (struct glint_star_light){
@@ -190,14 +181,4 @@ static void test_none(void **state)
     draw(light, 4, 5, 1, 1, GLINT_LINEAR_Q20, linear_q20);
     for (int k = 0; k < N; k++)
         assert_int_equal(linear_q20[k], 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_bits), cmocka_unit_test(test_same_light),
-        cmocka_unit_test(test_same_machines), cmocka_unit_test(test_powers),
-        cmocka_unit_test(test_none)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,13 +4,10 @@
  * coding, at full and half resolution, with two passes in either order.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/kernels.h"
+#include "support/test.h"
 #include "tile/blend.h"
 
 enum { WIDTH = 91, HEIGHT = 53, N = WIDTH * HEIGHT, GREY_CODE = 120 };
@@ -177,9 +174,8 @@ static void check_codes(enum glint_pixel_format format, int step, int half,
     assert_true(fabs(sum / N) < 0.3);
 }
 
-static void test_codes(void **state)
+TEST(codes)
 {
-    (void)state;
     for (int half = 0; half < 2; half++)
         for (int i = 0; i < 4; i++) {
             struct stripes s[2] = {grey(i % 2 ? 7 : WIDTH, 9000),
@@ -198,20 +194,18 @@ static void test_codes(void **state)
 }
 
 /* Of two rows, one is hidden wholly where nothing of the other is. */
-static void test_rows(void **state)
+TEST(rows)
 {
     struct stripes s = grey(64, 9000);
 
-    (void)state;
     s.even = 4;
     check_codes(GLINT_RGB24, 3, 0, &s, 1, 1.0);
     check_codes(GLINT_I420, 1, 0, &s, 1, 1.0);
     check_codes(GLINT_YUYV, 2, 0, &s, 1, 1.0);
 }
 
-static void test_linear(void **state)
+TEST(linear)
 {
-    (void)state;
     for (int i = 0; i < 8; i++) {
         const struct glint_image image = grey_image(GLINT_LINEAR_Q20);
         struct stripes s[2] = {
@@ -232,13 +226,12 @@ static void test_linear(void **state)
 
 /* A pixel that is hidden wholly must keep no colour, and shared chroma must be
  * the mean. */
-static void test_chroma(void **state)
+TEST(chroma)
 {
     struct stripes s = grey(2, 0); /* cover 0, 1/4, 1/2, 3/4, 1 by pairs */
     struct glint_image image = {
         .format = GLINT_I420, .width = WIDTH, .height = HEIGHT};
 
-    (void)state;
     for (int odd = 0; odd < 2; odd++) {
         for (int i = 0; i < N / 2 * 3; i++)
             px[i] = (uint8_t)(i < N ? 120 : 150);
@@ -256,16 +249,4 @@ static void test_chroma(void **state)
                 assert_in_range(code, 129, image.plane[1][i - 1] - 1);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_codes),
-        cmocka_unit_test(test_rows),
-        cmocka_unit_test(test_linear),
-        cmocka_unit_test(test_chroma),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

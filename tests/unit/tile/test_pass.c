@@ -4,12 +4,8 @@
  * sets pixels and is the light of the flare drawn over it. Its cover is
  * computed here from 4 x 4 points of each pixel.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/real.h"
 #include "flare/draw_over.h"
@@ -17,6 +13,7 @@
 #include "support/model_builder.h"
 #include "support/rng.h"
 #include "support/shuffle.h"
+#include "support/test.h"
 
 enum { WIDTH = 153, HEIGHT = 117, BYTES = 12 * WIDTH * HEIGHT };
 enum { MAX_WORKERS = 3, N_FORMATS = 9 };
@@ -190,9 +187,7 @@ static void draw(struct glint_frame f, uint8_t *px)
     lens = model_open(&m);
     f.cfg.workers = &shuffle.workers;
     assert_int_equal(posix_memalign(&mem, 64, glint_flare_bytes(&f.cfg)), 0);
-    assert_int_equal(
-        glint_flare_init(&flare, &f.cfg, mem, glint_flare_bytes(&f.cfg)),
-        GLINT_OK);
+    assert_ok(glint_flare_init(&flare, &f.cfg, mem, glint_flare_bytes(&f.cfg)));
     glint_flare_plan(flare, &planned, &light, f.n_lights);
     glint_flare_bin(flare, &stats);
     assert_true(stats.dropped_bundles == 0 &&
@@ -215,11 +210,10 @@ static const enum glint_pixel_format formats[N_FORMATS] = {
     GLINT_I444,  GLINT_GREY, GLINT_LINEAR_Q20, GLINT_RGB565};
 
 /* Workers, tiles, the order of jobs and kernels must not change a bit. */
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     uint32_t seed = 5;
 
-    (void)state;
     for (int i = 0; i < 2 * N_FORMATS; i++) {
         struct glint_frame f = first;
 
@@ -239,9 +233,8 @@ static void test_same_bits(void **state)
 
 /* With the triangle off, the picture must be that of the flare alone; with it
  * on, another one. */
-static void test_off(void **state)
+TEST(off)
 {
-    (void)state;
     for (int i = 0; i < 2 * N_FORMATS; i++) {
         struct glint_frame f = first;
 
@@ -260,12 +253,11 @@ static void test_off(void **state)
 
 /* On any ground, pixels that the triangle covers wholly must be its own, and
  * those that it does not cover must stay; the flare must lie over both. */
-static void test_sets(void **state)
+TEST(sets)
 {
     struct glint_frame f = first;
     int n_set = 0, n_kept = 0, n_lit = 0;
 
-    (void)state;
     draw(f, other);
     f.n_lights = 0;
     draw(f, one);
@@ -285,15 +277,4 @@ static void test_sets(void **state)
         assert_true(other[i] >= one[i]);
     }
     assert_true(n_set > 1000 && n_kept > 1000 && n_lit > 100);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_off),
-        cmocka_unit_test(test_sets),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

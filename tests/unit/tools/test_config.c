@@ -3,11 +3,7 @@
  * Options from files: which entries are taken, in which order, and that every
  * mistake is named with its line. A file that does not parse must set nothing.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +13,7 @@
 #include "options/config.h"
 #include "support/scratch.h"
 #include "options/command_line.h"
+#include "support/test.h"
 
 static const struct option options[] = {
     {"lens", required_argument, NULL, 'L'},
@@ -102,8 +99,7 @@ static void expect_taken(const char *text, size_t bytes, const char *log)
     assert_non_null(exact);
     memcpy(exact, text, bytes);
     listen_to_stderr();
-    assert_int_equal(config_parse(&config, "x.ini", exact, bytes, &error),
-                     EXIT_OK);
+    assert_ok(config_parse(&config, "x.ini", exact, bytes, &error));
     expect_said("");
     assert_string_equal(command.log, log);
     assert_string_equal(error.text, "");
@@ -113,9 +109,8 @@ static void expect_taken(const char *text, size_t bytes, const char *log)
     config_free(&config);
 }
 
-static void test_entries(void **state)
+TEST(entries)
 {
-    (void)state;
     expect_taken(BYTES(""), "");
     expect_taken(BYTES("\n\n"), "");
     expect_taken(BYTES("grid=64"), "grid=64;");
@@ -131,9 +126,8 @@ static void test_entries(void **state)
                  "lens=stop = polygon:6;lens=a:b;");
 }
 
-static void test_layout(void **state)
+TEST(layout)
 {
-    (void)state;
     expect_taken(BYTES("\xef\xbb\xbfgrid=64\r\n  \t \r\nlens = a b\r\n"),
                  "grid=64;lens=a b;");
     expect_taken(BYTES("\xef\xbb\xbf; note\n# lens=x\n ; x\n\t# y\ngrid=5"),
@@ -150,11 +144,10 @@ static void test_layout(void **state)
 
 /* The longest line must be taken; a longer one must be refused unless it is a
  * comment. */
-static void test_long_lines(void **state)
+TEST(long_lines)
 {
     char text[1000], log[1000];
 
-    (void)state;
     for (int n = CONFIG_LINE - 2; n <= CONFIG_LINE + 300; n++) {
         struct config config = start();
         const int used =
@@ -176,14 +169,12 @@ static void test_long_lines(void **state)
 }
 
 /* Values must outlive the text, until config_free(). */
-static void test_values_stay(void **state)
+TEST(values_stay)
 {
     struct config config = start();
     char text[] = "lens=first\ngrid=16\ndither=yes\nlens=second";
 
-    (void)state;
-    assert_int_equal(
-        config_parse(&config, "x.ini", text, sizeof text - 1, &error), EXIT_OK);
+    assert_ok(config_parse(&config, "x.ini", text, sizeof text - 1, &error));
     memset(text, 'z', sizeof text);
     assert_string_equal(command.lens, "second");
     assert_int_equal(command.grid, 16);
@@ -203,9 +194,8 @@ static void expect_mistake(const char *text, size_t bytes, const char *want)
     config_free(&config);
 }
 
-static void test_mistakes(void **state)
+TEST(mistakes)
 {
-    (void)state;
     expect_mistake(BYTES("grid=64\n\n[lens]\ngrdi=5\n"),
                    "x.ini:4: there is no option grdi for a file");
     expect_mistake(BYTES("--grid=64\n"),
@@ -243,11 +233,10 @@ static void test_mistakes(void **state)
 
 /* A refusal by the command must come in its own words, with the line; entries
  * before it are taken, those after it are not. */
-static void test_bad_value(void **state)
+TEST(bad_value)
 {
     struct config config = start();
 
-    (void)state;
     listen_to_stderr();
     assert_int_equal(config_parse(&config, "x.ini",
                                   BYTES("lens=a\ngrid=3\nlens=b\n"), &error),
@@ -266,12 +255,11 @@ static void test_bad_value(void **state)
     config_free(&config);
 }
 
-static void test_long_name(void **state)
+TEST(long_name)
 {
     char name[300];
     struct config config = start();
 
-    (void)state;
     memset(name, 'n', sizeof name);
     strcpy(name + sizeof name - 7, "/x.ini");
     config_parse(&config, name, BYTES("foo=1"), &error);
@@ -279,16 +267,14 @@ static void test_long_name(void **state)
         strstr(error.text, "nnn/x.ini:1: there is no option foo for a file"));
 }
 
-static void test_unknown_section(void **state)
+TEST(unknown_section)
 {
     static const char text[] = "[lens]\nlens=a\n\n[camra]\n\ngrid=5\n"
                                "light=1,2\n[output]\nlens=b\n[]\nlens=c\n";
     struct config config = start();
 
-    (void)state;
     listen_to_stderr();
-    assert_int_equal(config_parse(&config, "x.ini", BYTES(text), &error),
-                     EXIT_OK);
+    assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
     expect_said("glint live: x.ini:4: no section is called [camra]; its lines "
                 "count all the same\n");
     assert_string_equal(command.log, "lens=a;grid=5;light=1,2;lens=b;lens=c;");
@@ -296,8 +282,7 @@ static void test_unknown_section(void **state)
     config = start();
     command.tool.quiet = true;
     listen_to_stderr();
-    assert_int_equal(config_parse(&config, "x.ini", BYTES(text), &error),
-                     EXIT_OK);
+    assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
     expect_said("");
     config_free(&config);
 }
@@ -315,7 +300,7 @@ static void write_file(const char *text)
 
 /* Options must go in the order of a command: first those of its file, then
  * those of its line, which win. */
-static void test_line_wins(void **state)
+TEST(line_wins)
 {
     char *line[] = {"live",     "--grid", "32",         "in", "--conf",
                     "/nowhere", "--con",  scratch_file, "-q", NULL};
@@ -323,11 +308,10 @@ static void test_line_wins(void **state)
     const char *found;
     int c, index;
 
-    (void)state;
     write_file("lens=a\ngrid=16\n");
     found = tool_value_of(9, line, TOOL_COMMON_SHORT, options, 'C');
     assert_string_equal(found, scratch_file);
-    assert_int_equal(config_read(&config, found), EXIT_OK);
+    assert_ok(config_read(&config, found));
     assert_int_equal(command.grid, 16);
     while ((c = getopt_long(9, line, TOOL_COMMON_SHORT, options, &index)) >= 0)
         if (c != 'C' && c != 'q')
@@ -340,15 +324,14 @@ static void test_line_wins(void **state)
 }
 
 /* While a new file is bad, as on SIGHUP, what was read before must stay. */
-static void test_reload(void **state)
+TEST(reload)
 {
     struct config first = start(), second;
     const char *lens;
     char want[200];
 
-    (void)state;
     write_file("lens=a\n");
-    assert_int_equal(config_read(&first, scratch_file), EXIT_OK);
+    assert_ok(config_read(&first, scratch_file));
     lens = command.lens;
     write_file("lens=b\ngrid=x\n");
     second = start();
@@ -363,12 +346,11 @@ static void test_reload(void **state)
     config_free(&first);
 }
 
-static void test_files(void **state)
+TEST(files)
 {
     struct config config = start();
     char want[200];
 
-    (void)state;
     write_file("grid=64\nfoo=1\n");
     listen_to_stderr();
     assert_int_equal(config_read(&config, scratch_file), EXIT_INPUT);
@@ -385,22 +367,4 @@ static void test_files(void **state)
     assert_null(config.values);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_entries),
-        cmocka_unit_test(test_layout),
-        cmocka_unit_test(test_long_lines),
-        cmocka_unit_test(test_values_stay),
-        cmocka_unit_test(test_mistakes),
-        cmocka_unit_test(test_bad_value),
-        cmocka_unit_test(test_long_name),
-        cmocka_unit_test(test_unknown_section),
-        cmocka_unit_test(test_line_wins),
-        cmocka_unit_test(test_reload),
-        cmocka_unit_test(test_files),
-    };
-
-    return cmocka_run_group_tests_name("config", tests, scratch_open_file,
-                                       scratch_close_file);
-}
+TEST_GROUP(scratch_open_file, scratch_close_file);

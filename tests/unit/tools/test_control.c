@@ -4,10 +4,7 @@
  * files and pipes. */
 #define _GNU_SOURCE /* mkstemp, posix_openpt */
 #include <fcntl.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,10 +14,9 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "control/controls.h"
 #include "control/playback.h"
+#include "support/test.h"
 
 static struct control_line line;
 static struct glint_error error;
@@ -29,16 +25,15 @@ static char name[] = "/tmp/glint-test-control-XXXXXX";
 
 static void says(const char *text, enum control_verb verb, int frame, int n)
 {
-    assert_int_equal(control_parse(text, "f:1", &line, &error), GLINT_OK);
+    assert_ok(control_parse(text, "f:1", &line, &error));
     assert_int_equal(line.verb, verb);
     assert_int_equal(line.frame, frame);
     assert_int_equal(line.n, n);
     assert_false(line.is_change);
 }
 
-static void test_lines(void **state)
+TEST(lines)
 {
-    (void)state;
     says("orbit 30 -10", CONTROL_ORBIT, -1, 2);
     assert_true(line.v[0] == 30 && line.v[1] == -10);
     says("  25\tdistance 2.5  # near\r\n", CONTROL_DISTANCE, 25, 1);
@@ -80,11 +75,10 @@ static void refuses(const char *text, const char *cause)
     assert_int_equal(line.n, 0x55555555); /* it is left alone */
 }
 
-static void test_mistakes(void **state)
+TEST(mistakes)
 {
     static char text[400];
 
-    (void)state;
     refuses("orbti 3 4", "f:1:1: 'orbti' is no command; did you mean 'orbit'?");
     refuses("frob", "f:1:1: 'frob' is no command");
     refuses("orbit 3", "f:1:8: expected orbit YAW PITCH");
@@ -118,9 +112,8 @@ static void test_mistakes(void **state)
 }
 
 /* The forms of one word take as many names. */
-static void test_forms(void **state)
+TEST(forms)
 {
-    (void)state;
     for (int i = 0; i < control_n_forms; i++)
         for (int k = 0; k < i; k++)
             if (strcmp(control_forms[i].word, control_forms[k].word) == 0) {
@@ -131,9 +124,8 @@ static void test_forms(void **state)
             }
 }
 
-static void test_keys(void **state)
+TEST(keys)
 {
-    (void)state;
     assert_int_equal(keyboard_take("\033[Cx", 4, &line), 3);
     assert_int_equal(line.verb, CONTROL_ORBIT);
     assert_true(line.is_change && line.v[0] > 0 && line.v[1] == 0);
@@ -155,16 +147,15 @@ static void test_keys(void **state)
 
 static int played(struct playback *p, const char *text, double elapsed_s)
 {
-    assert_int_equal(control_parse(text, "f:1", &line, &error), GLINT_OK);
+    assert_ok(control_parse(text, "f:1", &line, &error));
     assert_int_equal(playback_take(p, &line), *text != 0);
     return playback_next(p, elapsed_s);
 }
 
-static void test_playback(void **state)
+TEST(playback)
 {
     struct playback p;
 
-    (void)state;
     playback_init(&p);
     for (int i = 0; i < 5; i++) /* one a picture, however long that takes */
         assert_int_equal(playback_next(&p, 7), i);
@@ -207,13 +198,11 @@ static enum glint_status read_text(const char *text)
 }
 
 /* In their order; one of a later picture holds those behind it. */
-static void test_file(void **state)
+TEST(file)
 {
     char where[CONTROL_WHERE], wanted[CONTROL_WHERE];
 
-    (void)state;
-    assert_int_equal(read_text("orbit 1 2\n\n# none\n3 stop\nplay\n2 pause"),
-                     GLINT_OK);
+    assert_ok(read_text("orbit 1 2\n\n# none\n3 stop\nplay\n2 pause"));
     assert_int_equal(controls_row(&input, 3)->verb, CONTROL_PAUSE);
     assert_null(controls_row(&input, 4));
     next_is(0, CONTROL_ORBIT);
@@ -236,14 +225,13 @@ static void test_file(void **state)
 }
 
 /* Lines come as they are whole; bad ones are counted and end nothing. */
-static void test_pipe(void **state)
+TEST(pipe)
 {
     int to;
 
-    (void)state;
     unlink(name);
     assert_int_equal(mkfifo(name, 0600), 0);
-    assert_int_equal(controls_open(&input, name, true, &error), GLINT_OK);
+    assert_ok(controls_open(&input, name, true, &error));
     assert_null(controls_next(&input, 0));
     to = open(name, O_WRONLY);
     assert_true(to >= 0);
@@ -287,9 +275,8 @@ static void take_keys(const char *path, int is_killed)
 
 /* Keys come at once, and the terminal is as it was, however the process ends.
  */
-static void test_terminal(void **state)
+TEST(terminal)
 {
-    (void)state;
     for (int is_killed = 0; is_killed < 2; is_killed++) {
         const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
         struct termios now;
@@ -335,13 +322,4 @@ static int remove_name(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lines),    cmocka_unit_test(test_mistakes),
-        cmocka_unit_test(test_forms),    cmocka_unit_test(test_keys),
-        cmocka_unit_test(test_playback), cmocka_unit_test(test_file),
-        cmocka_unit_test(test_pipe),     cmocka_unit_test(test_terminal)};
-
-    return cmocka_run_group_tests(tests, open_name, remove_name);
-}
+TEST_GROUP(open_name, remove_name);

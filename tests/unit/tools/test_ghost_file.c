@@ -2,16 +2,12 @@
  *
  * Files of single ghosts: values and errors.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "model/ghost_file.h"
+#include "support/test.h"
 
 /* Three ghosts, and a part of the second. */
 static struct glint_setup *setup_of(void)
@@ -47,16 +43,14 @@ static double gain(const struct glint_tint *tints, int ghost)
     return glint_real_value(tints[ghost].gain);
 }
 
-static void test_values(void **state)
+TEST(values)
 {
     struct glint_tint *t;
     struct glint_error error;
 
-    (void)state;
-    assert_int_equal(parse("# remark\nlens lens-a\n\n0 mute # gone\r\n"
-                           "\t12-2  gain 2.5 tint 1,0.5,0\n",
-                           &t, &error),
-                     GLINT_OK);
+    assert_ok(parse("# remark\nlens lens-a\n\n0 mute # gone\r\n"
+                    "\t12-2  gain 2.5 tint 1,0.5,0\n",
+                    &t, &error));
     assert_true(gain(t, 0) == 0 && gain(t, 1) == 2.5 && gain(t, 2) == 1);
     assert_int_equal(t[1].rgb_q14[0], 16384);
     assert_int_equal(t[1].rgb_q14[1], 8192);
@@ -66,13 +60,12 @@ static void test_values(void **state)
     free(t);
 }
 
-static void test_solo(void **state)
+TEST(solo)
 {
     struct glint_tint *t;
     struct glint_error error;
 
-    (void)state;
-    assert_int_equal(parse("1 solo gain 3\n2 mute\n", &t, &error), GLINT_OK);
+    assert_ok(parse("1 solo gain 3\n2 mute\n", &t, &error));
     assert_true(gain(t, 0) == 0 && gain(t, 1) == 3);
     assert_true(gain(t, 2) == 0 && gain(t, 3) == 3);
     free(t);
@@ -81,25 +74,24 @@ static void test_solo(void **state)
     assert_non_null(strstr(error.text, ":3: solo and mute"));
 }
 
-static void test_lines_read_back(void **state)
+TEST(lines_read_back)
 {
     const struct glint_tint odd = {{16384, 4096, 65536}, {1 << 30, -29}};
     struct glint_tint *t;
     struct glint_error error;
     char line[200];
 
-    (void)state;
     ghost_file_line(line, sizeof line, 2, &odd);
-    assert_int_equal(parse(line, &t, &error), GLINT_OK);
+    assert_ok(parse(line, &t, &error));
     assert_memory_equal(&t[2], &odd, sizeof odd);
     free(t);
     ghost_file_line(line, sizeof line, 0, NULL);
-    assert_int_equal(parse(line, &t, &error), GLINT_OK);
+    assert_ok(parse(line, &t, &error));
     assert_true(gain(t, 0) == 1);
     free(t);
 }
 
-static void test_refused(void **state)
+TEST(refused)
 {
     static const char *const bad[] = {
         "3 mute",       "-1 mute",     "x mute",         "5-1 solo",
@@ -109,7 +101,6 @@ static void test_refused(void **state)
         "1 gain 1 mut", "12-2-1 mute", "1 gain 1e400",   "1.5 mute",
         "2 solo mute"};
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct glint_tint *t;
         struct glint_error error;
@@ -121,16 +112,4 @@ static void test_refused(void **state)
         assert_null(t);
         assert_ptr_equal(strstr(error.text, "g.txt:4: "), error.text);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values),
-        cmocka_unit_test(test_solo),
-        cmocka_unit_test(test_lines_read_back),
-        cmocka_unit_test(test_refused),
-    };
-
-    return cmocka_run_group_tests_name("ghost_file", tests, NULL, NULL);
 }

@@ -2,16 +2,12 @@
  *
  * Key frames: values between and beyond them, and files that are refused.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "desk/keys.h"
+#include "support/test.h"
 
 static enum glint_status parse(struct keys *keys, const char *text,
                                struct glint_error *error)
@@ -19,17 +15,15 @@ static enum glint_status parse(struct keys *keys, const char *text,
     return keys_parse(keys, "k.csv", text, strlen(text), error);
 }
 
-static void test_values(void **state)
+TEST(values)
 {
     struct glint_error error = {""};
     struct keys k;
 
-    (void)state;
-    assert_int_equal(parse(&k,
-                           "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
-                           "20,3,,100,\n\n30,,8,,50\r\n",
-                           &error),
-                     GLINT_OK);
+    assert_ok(parse(&k,
+                    "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
+                    "20,3,,100,\n\n30,,8,,50\r\n",
+                    &error));
     assert_true(keys_has(&k, KEYS_GAIN) && !keys_has(&k, KEYS_STRENGTH));
     assert_true(keys_at(&k, KEYS_STRENGTH, 15, 7) == 7);
     assert_true(keys_at(&k, KEYS_GAIN, 0, 7) == 1);
@@ -46,21 +40,20 @@ static void test_values(void **state)
 }
 
 /* Between many keys the right two must be found. */
-static void test_many(void **state)
+TEST(many)
 {
     static char text[40000] = "frame,gain\n";
     struct glint_error error = {""};
     size_t at = strlen(text);
     struct keys k;
 
-    (void)state;
     for (int i = 0; i < 1000; i++) {
         const int frame = 3 * i, gain = i * i;
 
         at += (size_t)snprintf(text + at, sizeof text - at, "%d,%d\n", frame,
                                gain);
     }
-    assert_int_equal(parse(&k, text, &error), GLINT_OK);
+    assert_ok(parse(&k, text, &error));
     for (int i = 0; i < 999; i++) {
         assert_true(keys_at(&k, KEYS_GAIN, 3 * i, 0) == i * i);
         assert_true(keys_at(&k, KEYS_GAIN, 3 * i + 1, 0) ==
@@ -69,7 +62,7 @@ static void test_many(void **state)
     keys_free(&k);
 }
 
-static void test_refused(void **state)
+TEST(refused)
 {
     static const char *const bad[][2] = {
         {"0,1\n", "k.csv:1: '0' is no column: the first line names"},
@@ -93,7 +86,6 @@ static void test_refused(void **state)
         {"frame,f-number\n2,0\n", "k.csv:2: f-number must be"},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct glint_error error = {""};
         struct keys k;
@@ -102,15 +94,4 @@ static void test_refused(void **state)
         assert_ptr_equal(strstr(error.text, bad[i][1]), error.text);
         assert_int_equal(k.n[KEYS_FRAME], 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values),
-        cmocka_unit_test(test_many),
-        cmocka_unit_test(test_refused),
-    };
-
-    return cmocka_run_group_tests_name("keys", tests, NULL, NULL);
 }

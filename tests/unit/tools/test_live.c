@@ -3,11 +3,7 @@
  * glint live from its command line to its exit code, with a fake camera:
  * resources, cost of a frame, signals and lost cameras.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <errno.h>
 #include <poll.h>
@@ -19,6 +15,7 @@
 
 #include "support/fakes/fake_camera.h"
 #include "options/tool.h"
+#include "support/test.h"
 
 #define LENS "lenses/heliar-tronnier.lens"
 
@@ -134,12 +131,11 @@ static void count(int wait)
     }
 }
 
-static void test_frames(void **state)
+TEST(frames)
 {
-    (void)state;
     fake_camera_reset();
     script = count;
-    assert_int_equal(live("--count 150 --stop polygon:6,round:0.2"), EXIT_OK);
+    assert_ok(live("--count 150 --stop polygon:6,round:0.2"));
     must_leave_nothing();
     assert_int_equal(n_waits, 150);
     assert_true(asked[2] >= 5);
@@ -163,7 +159,7 @@ static void must_set_up_first(const char *line, void (*follow)(int wait),
     camera.on_stream = count_stream;
     n_streams = 0;
     script = follow;
-    assert_int_equal(live(line), EXIT_OK);
+    assert_ok(live(line));
     must_leave_nothing();
     assert_int_equal(n_streams, n_starts);
     for (int i = 0; i < n_starts; i++)
@@ -190,23 +186,21 @@ static void change_size(int wait)
 
 /* The camera must stream only after all set-up, at the start, after it was
  * unplugged, and for another size. */
-static void test_streams_last(void **state)
+TEST(streams_last)
 {
     static const int start[] = {10}, back[] = {10, 40},
                      sizes[] = {4, 14, 24, 29};
 
-    (void)state;
     must_set_up_first("--count 20", count, start, 1);
     must_set_up_first("--count 50 --reconnect", unplug, back, 2);
     must_set_up_first("--count 27", change_size, sizes, 4);
 }
 
-static void test_skip(void **state)
+TEST(skip)
 {
-    (void)state;
     fake_camera_reset();
     script = NULL;
-    assert_int_equal(live("--count 5 --skip 20"), EXIT_OK);
+    assert_ok(live("--count 5 --skip 20"));
     assert_int_equal(n_waits, 25);
     must_leave_nothing();
 }
@@ -215,16 +209,6 @@ static void stop_at_30(int wait)
 {
     if (wait == 30)
         raise(SIGTERM);
-}
-
-static void test_stops(void **state)
-{
-    (void)state;
-    fake_camera_reset();
-    script = stop_at_30;
-    assert_int_equal(live(""), EXIT_OK);
-    must_leave_nothing();
-    assert_int_equal(n_waits, 30);
 }
 
 /* ------------------------------------------------------------------ reload */
@@ -258,11 +242,10 @@ static const char *snapshot(int number)
 
 /* Many reloads must not let memory grow, and the picture must stay as it
  * was. */
-static void test_reloads(void **state)
+TEST(reloads)
 {
     char line[200];
 
-    (void)state;
     snprintf(line, sizeof line,
              "lens = " LENS "\nlight = 5,60,1e4\nmemory = 4\n"
              "snapshot = %s/%%02d.ppm\n",
@@ -274,7 +257,7 @@ static void test_reloads(void **state)
         last_shot = exact ? 29 : 149; /* Exact rays take 0.15 s a frame. */
         snprintf(line, sizeof line, "--count %d --config %s%s", last_shot + 1,
                  config_path, exact ? " --rays exact --grid 8" : "");
-        assert_int_equal(live(line), EXIT_OK);
+        assert_ok(live(line));
         must_leave_nothing();
         assert_int_equal(n_said("glint live: reloaded"), exact ? 3 : 15);
         assert_int_equal(blocks[last_shot - 1], blocks[exact ? 18 : 28]);
@@ -295,16 +278,15 @@ static void spoil_config(int wait)
         reload_often(wait);
 }
 
-static void test_bad_reloads(void **state)
+TEST(bad_reloads)
 {
     char line[200];
 
-    (void)state;
     write_config("lens = " LENS "\n");
     fake_camera_reset();
     script = spoil_config;
     snprintf(line, sizeof line, "--count 100 --config %s", config_path);
-    assert_int_equal(live(line), EXIT_OK);
+    assert_ok(live(line));
     must_leave_nothing();
     assert_int_equal(n_said("not reloaded: all stays as it was"), 6);
     assert_int_equal(n_said("live: reloaded"), 2);
@@ -329,14 +311,13 @@ static void snapshot_at_2(int wait)
 
 /* With --layer flare and no light to speak of, the picture must be black in
  * every format and range. */
-static void test_black(void **state)
+TEST(black)
 {
     static const uint32_t kind[] = {V4L2_PIX_FMT_YUYV,  V4L2_PIX_FMT_UYVY,
                                     V4L2_PIX_FMT_NV12,  V4L2_PIX_FMT_BGR24,
                                     V4L2_PIX_FMT_RGB24, V4L2_PIX_FMT_RGB565,
                                     V4L2_PIX_FMT_GREY};
 
-    (void)state;
     for (size_t i = 0; i < 2 * sizeof kind / sizeof *kind; i++) {
         const char *rgb;
         char line[200];
@@ -348,7 +329,7 @@ static void test_black(void **state)
                  "--count 3 --layer flare --exposure -60 --range %s --snapshot "
                  "%s/%%02d.ppm",
                  i % 2 ? "full" : "limited", shot_dir);
-        assert_int_equal(live(line), EXIT_OK);
+        assert_ok(live(line));
         must_leave_nothing();
         rgb = snapshot(1) + strlen("P6\n64 48\n255\n");
         for (int k = 0; k < 3 * 64 * 48; k++)
@@ -359,18 +340,17 @@ static void test_black(void **state)
 }
 
 /* A snapshot must wait for the next frame, and the program must wait, too. */
-static void test_snapshot_waits(void **state)
+TEST(snapshot_waits)
 {
     char line[100], path[60], said[80];
 
-    (void)state;
     snprintf(path, sizeof path, "%s/01.ppm", shot_dir);
     snprintf(said, sizeof said, "snapshot %s", path);
     snprintf(line, sizeof line, "--count 20 --snapshot %s/%%02d.ppm", shot_dir);
     unlink(path);
     fake_camera_reset();
     script = silence_and_snapshot;
-    assert_int_equal(live(line), EXIT_OK);
+    assert_ok(live(line));
     must_leave_nothing();
     assert_int_equal(n_said(said), 1);
     assert_int_equal(unlink(path), 0);
@@ -378,9 +358,8 @@ static void test_snapshot_waits(void **state)
 
 /* -------------------------------------------------------------- lost again */
 
-static void test_unplugged(void **state)
+TEST(unplugged)
 {
-    (void)state;
     fake_camera_reset();
     script = unplug;
     assert_int_equal(live("--count 100"), EXIT_DEVICE);
@@ -389,25 +368,23 @@ static void test_unplugged(void **state)
     assert_true(n_waits <= 21);
 }
 
-static void test_comes_back(void **state)
+TEST(comes_back)
 {
-    (void)state;
     {
         fake_camera_reset();
         script = unplug;
-        assert_int_equal(live("--count 100 --reconnect"), EXIT_OK);
+        assert_ok(live("--count 100 --reconnect"));
         must_leave_nothing();
         assert_int_equal(n_said("waiting for the camera"), 1);
         assert_int_equal(n_said("(Fake): YUYV 64x48 at 30 fps"), 2);
     }
 }
 
-static void test_other_sizes(void **state)
+TEST(other_sizes)
 {
-    (void)state;
     fake_camera_reset();
     script = change_size;
-    assert_int_equal(live("--count 150"), EXIT_OK);
+    assert_ok(live("--count 150"));
     must_leave_nothing();
     assert_true(n_said("YUYV 128x48") >= 7);
     assert_int_equal(blocks[149], blocks[29]);
@@ -417,11 +394,10 @@ static void test_other_sizes(void **state)
 
 /* Whichever call fails once, frames must continue, or there must be an exit
  * code and a message. */
-static void test_every_failure(void **state)
+TEST(every_failure)
 {
     int n = 0, n_failed = 0, n_calls;
 
-    (void)state;
     script = NULL;
     do {
         int code;
@@ -440,6 +416,16 @@ static void test_every_failure(void **state)
     assert_true(n_failed >= 10);
 }
 
+/* This test must come last: the stop remains. */
+TEST(stops)
+{
+    fake_camera_reset();
+    script = stop_at_30;
+    assert_ok(live(""));
+    must_leave_nothing();
+    assert_int_equal(n_waits, 30);
+}
+
 static int enter(void **state)
 {
     (void)state;
@@ -456,23 +442,4 @@ static int leave(void **state)
     return unlink(config_path) | unlink(said_path) | rmdir(shot_dir);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_streams_last),
-        cmocka_unit_test(test_skip),
-        cmocka_unit_test(test_reloads),
-        cmocka_unit_test(test_bad_reloads),
-        cmocka_unit_test(test_black),
-        cmocka_unit_test(test_snapshot_waits),
-        cmocka_unit_test(test_unplugged),
-        cmocka_unit_test(test_comes_back),
-        cmocka_unit_test(test_other_sizes),
-        cmocka_unit_test(test_every_failure),
-        /* This must come last: the stop remains. */
-        cmocka_unit_test(test_stops),
-    };
-
-    return cmocka_run_group_tests_name("live", tests, enter, leave);
-}
+TEST_GROUP(enter, leave);

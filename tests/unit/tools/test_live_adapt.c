@@ -3,16 +3,13 @@
  * Control of the frame rate, against machines that have a time for each
  * step.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <string.h>
 
 #include "glint/quality.h"
 #include "live/live_adapt.h"
+#include "support/test.h"
 
 #define PERIOD_MS (1000. / 30)
 
@@ -60,11 +57,10 @@ static void run(const double *cost_ms, double seconds)
     }
 }
 
-static void test_easy(void **state)
+TEST(easy)
 {
     static const double cost[8] = {25, 20, 15, 10, 8, 6, 5, 4};
 
-    (void)state;
     live_adapt_init(&adapt);
     run(cost, 600);
     assert_int_equal(adapt.step, 0);
@@ -73,11 +69,10 @@ static void test_easy(void **state)
 
 /* Half a second of misses must lead to a change, by more than one step where a
  * frame takes more than two periods. */
-static void test_overload(void **state)
+TEST(overload)
 {
     static const double cost[8] = {80, 70, 45, 26, 20, 15, 10, 5};
 
-    (void)state;
     live_adapt_init(&adapt);
     run(cost, 3);
     assert_int_equal(adapt.step, 3);
@@ -89,12 +84,11 @@ static void test_overload(void **state)
     assert_int_equal(seen.n_missed, 0);
 }
 
-static void test_worst(void **state)
+TEST(worst)
 {
     static const double cost[8] = {900, 900, 900, 900, 900, 900, 900, 900};
     static const double none[8] = {0, 0, 0, 0, 0, 0, 0, 0};
 
-    (void)state;
     live_adapt_init(&adapt);
     run(cost, 600);
     assert_int_equal(adapt.step, LIVE_MAX_STEP);
@@ -105,11 +99,10 @@ static void test_worst(void **state)
 }
 
 /* A single slow frame, as when a picture is saved, must change nothing. */
-static void test_hiccup(void **state)
+TEST(hiccup)
 {
     static const double cost[8] = {20, 15, 10, 8, 6, 5, 4, 3};
 
-    (void)state;
     live_adapt_init(&adapt);
     run(cost, 0.2);
     assert_false(live_adapt_note(&adapt, 30, PERIOD_MS, 0));
@@ -120,12 +113,11 @@ static void test_hiccup(void **state)
 
 /* After a burst of many lights all steps down must be taken back, within some
  * seconds each. */
-static void test_recovers(void **state)
+TEST(recovers)
 {
     static const double heavy[8] = {150, 120, 90, 70, 50, 29, 20, 10};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    (void)state;
     live_adapt_init(&adapt);
     run(heavy, 4);
     assert_int_equal(adapt.step, 5);
@@ -135,12 +127,11 @@ static void test_recovers(void **state)
 }
 
 /* A next step up that takes too long must be tried ever more rarely. */
-static void test_does_not_oscillate(void **state)
+TEST(does_not_oscillate)
 {
     static const double cost[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     int n_early;
 
-    (void)state;
     live_adapt_init(&adapt);
     run(cost, 60);
     n_early = seen.n_up;
@@ -152,12 +143,11 @@ static void test_does_not_oscillate(void **state)
 }
 
 /* A step up that took too long once must be tried again later. */
-static void test_forgets(void **state)
+TEST(forgets)
 {
     static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    (void)state;
     live_adapt_init(&adapt);
     run(heavy, 300);
     run(light, 75); /* a minute at most, then as at first */
@@ -166,7 +156,7 @@ static void test_forgets(void **state)
 
 /* Step 0 must be the dials that were requested, and no step may be finer than
  * the one before. */
-static void test_steps(void **state)
+TEST(steps)
 {
     static const struct glint_dials ask[] = {
         {64, 69, 1024, 256, 128, 0, 0.125, 7, 0, 1, 0, 10},
@@ -176,7 +166,6 @@ static void test_steps(void **state)
         {64, 0, 1024, 0, 128, 0, 0.5, 7, 0, 1, 0, 10},
         {17, 3, 1, 256, 64, 0, 0.2, 2, 0, 1, 0.1, 10}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof ask / sizeof *ask; i++) {
         struct glint_dials last = ask[i];
 
@@ -201,20 +190,4 @@ static void test_steps(void **state)
             last = d;
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_easy),
-        cmocka_unit_test(test_overload),
-        cmocka_unit_test(test_worst),
-        cmocka_unit_test(test_hiccup),
-        cmocka_unit_test(test_recovers),
-        cmocka_unit_test(test_does_not_oscillate),
-        cmocka_unit_test(test_forgets),
-        cmocka_unit_test(test_steps),
-    };
-
-    return cmocka_run_group_tests_name("live_adapt", tests, NULL, NULL);
 }

@@ -3,11 +3,7 @@
  * Statistics of a live run: percentiles against all latencies sorted, sums
  * against sums by hand, lines to the letter, counts beyond 32 bits.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <limits.h>
 #include <stdlib.h>
@@ -15,6 +11,7 @@
 
 #include "support/rng.h"
 #include "live/live_log.h"
+#include "support/test.h"
 
 static struct live_stats stats;
 static char text[LIVE_STATS_TEXT];
@@ -58,9 +55,8 @@ static void check_percentiles(int n, int64_t low_us, int64_t span_us)
     }
 }
 
-static void test_percentiles(void **state)
+TEST(percentiles)
 {
-    (void)state;
     for (int n = 1; n <= 1000; n = n < 120 ? n + 1 : n + 97) {
         check_percentiles(n, 0, 1000);
         check_percentiles(n, 12345, 50000);
@@ -68,9 +64,8 @@ static void test_percentiles(void **state)
     }
 }
 
-static void test_extreme_latencies(void **state)
+TEST(extreme_latencies)
 {
-    (void)state;
     live_stats_start(&stats, 0);
     assert_true(live_stats_latency_ms(&stats.second, 50) == -1);
     add_latency(-5000);
@@ -89,9 +84,8 @@ static void test_extreme_latencies(void **state)
 }
 
 /* A full bin must halve all bins, and shares and rare latencies must stay. */
-static void test_full_bin(void **state)
+TEST(full_bin)
 {
-    (void)state;
     live_stats_start(&stats, 0);
     stats.total.bin[50] = UINT32_MAX;
     stats.total.bin[60] = UINT32_MAX - 1;
@@ -145,9 +139,8 @@ static void add_frames(void)
         live_stats_add(&stats, &frames[i]);
 }
 
-static void test_json(void **state)
+TEST(json)
 {
-    (void)state;
     add_frames();
     assert_string_equal(
         live_stats_json(&stats, 6000000, false, text),
@@ -160,9 +153,8 @@ static void test_json(void **state)
 }
 
 /* After a second its figures must restart, and those of the total continue. */
-static void test_seconds(void **state)
+TEST(seconds)
 {
-    (void)state;
     add_frames();
     assert_false(live_stats_due(&stats, 5999999));
     assert_true(live_stats_due(&stats, 6000000));
@@ -187,9 +179,8 @@ static void test_seconds(void **state)
         "\"reused\":2,\"total\":true}");
 }
 
-static void test_no_frames(void **state)
+TEST(no_frames)
 {
-    (void)state;
     live_stats_start(&stats, 7);
     live_stats_add(&stats, &frames[2]);
     assert_string_equal(
@@ -204,9 +195,8 @@ static void test_no_frames(void **state)
                         "\033[K");
 }
 
-static void test_lines(void **state)
+TEST(lines)
 {
-    (void)state;
     add_frames();
     assert_string_equal(live_stats_line(&stats, 6000000, true, text),
                         "\r2.0 fps  12.3 ms, p99 20.1  2 dropped 1 late 4 bad"
@@ -221,7 +211,7 @@ static void test_lines(void **state)
 }
 
 /* Every count and time as large as it can be must be printed in full. */
-static void test_large_counts(void **state)
+TEST(large_counts)
 {
     struct live_frame_times t = {.shown = true,
                                  .n_dropped = INT_MAX,
@@ -234,7 +224,6 @@ static void test_large_counts(void **state)
                                  .quality = 1};
     size_t n;
 
-    (void)state;
     for (int i = 0; i < LIVE_N_STAGES; i++)
         t.stage_us[i] = INT64_C(1) << 60;
     live_stats_start(&stats, 0);
@@ -252,20 +241,4 @@ static void test_large_counts(void **state)
     live_stats_line(&stats, 1, false, text);
     n = strlen(text);
     assert_true(n < sizeof text - 1 && text[n - 1] == '\n');
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_percentiles),
-        cmocka_unit_test(test_extreme_latencies),
-        cmocka_unit_test(test_full_bin),
-        cmocka_unit_test(test_json),
-        cmocka_unit_test(test_seconds),
-        cmocka_unit_test(test_no_frames),
-        cmocka_unit_test(test_lines),
-        cmocka_unit_test(test_large_counts),
-    };
-
-    return cmocka_run_group_tests_name("live_stats", tests, NULL, NULL);
 }

@@ -3,16 +3,12 @@
  * Lamps that a mask hides, and that fade off-screen.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "desk/occlusion.h"
 #include "glint/area.h"
+#include "support/test.h"
 
 enum { SIDE = 64 };
 
@@ -51,11 +47,10 @@ static double left(struct occlusion *o, double x, double y, double radius)
     return known.lamp.power / 8;
 }
 
-static void test_share(void **state)
+TEST(share)
 {
     struct occlusion o = mask_of(SIDE / 2);
 
-    (void)state;
     assert_true(fabs(left(&o, 200, 100, 20) - 1) < 1e-9);
     assert_true(left(&o, 60, 100, 20) == 0);
     assert_true(fabs(left(&o, 128, 100, 20) - 0.5) < 0.03);
@@ -66,12 +61,11 @@ static void test_share(void **state)
 }
 
 /* A lamp that crosses the rim of a mask must fade by small steps. */
-static void test_no_step(void **state)
+TEST(no_step)
 {
     struct occlusion o = mask_of(SIDE / 2);
     double last = 0;
 
-    (void)state;
     for (int i = 0; i <= 120; i++) {
         const double now = left(&o, 98 + 0.5 * i, 90, 15);
 
@@ -81,12 +75,11 @@ static void test_no_step(void **state)
     assert_true(fabs(last - 1) < 1e-9);
 }
 
-static void test_fade(void **state)
+TEST(fade)
 {
     struct occlusion o = {.fade_px = 100};
     double last = 1;
 
-    (void)state;
     assert_true(left(&o, 10, 10, 5) == 1 && left(&o, 256, 256, 0) == 1);
     for (int i = 0; i <= 110; i++) {
         const double now = left(&o, 256 + i, 128, 0);
@@ -99,22 +92,9 @@ static void test_fade(void **state)
     assert_true(fabs(left(&o, -30, -40, 0) - 0.5) < 1e-9);
 }
 
-static void test_nothing_asked(void **state)
+TEST(nothing_asked)
 {
     struct occlusion o = {.fade_px = 0};
 
-    (void)state;
     assert_true(left(&o, -500, 10, 5) == 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_share),
-        cmocka_unit_test(test_no_step),
-        cmocka_unit_test(test_fade),
-        cmocka_unit_test(test_nothing_asked),
-    };
-
-    return cmocka_run_group_tests_name("occlusion", tests, NULL, NULL);
 }

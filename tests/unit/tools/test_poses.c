@@ -4,18 +4,14 @@
  * lines that are none. */
 #include <fcntl.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "scenes/poses.h"
+#include "support/test.h"
 
 #define ONE_Q30 (1 << 30)
 
@@ -63,17 +59,15 @@ static void next_is(int frame, int thing, int x)
 }
 
 /* By frames, of one frame by lines; every frame is the first. */
-static void test_order(void **state)
+TEST(order)
 {
-    (void)state;
-    assert_int_equal(read_text("frame,object,x,y,z,qw,qx,qy,qz\n"
-                               "7,cup,1,0,0\n# no pose\n\n"
-                               "3,camera,2,0,0\n"
-                               "{\"y\":0,\"object\":\"ball\",\"frame\":3,"
-                               "\"x\":3,\"z\":0}\n"
-                               "*,lamp,4,0,0\n",
-                               GLINT_HAND_LEFT),
-                     GLINT_OK);
+    assert_ok(read_text("frame,object,x,y,z,qw,qx,qy,qz\n"
+                        "7,cup,1,0,0\n# no pose\n\n"
+                        "3,camera,2,0,0\n"
+                        "{\"y\":0,\"object\":\"ball\",\"frame\":3,"
+                        "\"x\":3,\"z\":0}\n"
+                        "*,lamp,4,0,0\n",
+                        GLINT_HAND_LEFT));
     next_is(0, 3, 64);
     assert_null(poses_next(&poses, 0));
     assert_null(poses_next(&poses, 2));
@@ -86,14 +80,13 @@ static void test_order(void **state)
 }
 
 /* A pose with the other hand is the mirrored one. */
-static void test_hand(void **state)
+TEST(hand)
 {
     static const char text[] = "0,ball,1,2,3,2,.4,.6,.8\n0,sun,1,2,2\n";
     struct pose pose[2][2];
 
-    (void)state;
     for (uint32_t hand = 0; hand < 2; hand++) {
-        assert_int_equal(read_text(text, hand), GLINT_OK);
+        assert_ok(read_text(text, hand));
         for (int i = 0; i < 2; i++)
             pose[hand][i] = *poses_next(&poses, 0);
         poses_close(&poses);
@@ -123,9 +116,8 @@ static void refused(const char *text, int line, const char *cause)
         fail_msg("'%s' of '%s'", error.text, text);
 }
 
-static void test_mistakes(void **state)
+TEST(mistakes)
 {
-    (void)state;
     refused("0,ball,1,2\n", 1, "expected frame,object,x,y,z");
     refused("\n0,ball,1,2,3,4\n", 2, "expected frame,object,x,y,z");
     refused("0,ball,1,2,3,1,0,0,0,0\n", 1, "expected frame,object,x,y,z");
@@ -147,18 +139,17 @@ static void test_mistakes(void **state)
 }
 
 /* A pipe gives lines as they come, whole ones alone. */
-static void test_pipe(void **state)
+TEST(pipe)
 {
     static const char parts[4][64] = {"0,ba",
                                       "ll,1,0,0\nrubbish\n5,cup,2,0,0\n",
                                       "1,sun,\n*,cup,3,0,0\n", ""};
     int to;
 
-    (void)state;
     unlink(name);
     assert_int_equal(mkfifo(name, 0600), 0);
     make(GLINT_HAND_LEFT);
-    assert_int_equal(poses_open(&poses, name, true, &model, &error), GLINT_OK);
+    assert_ok(poses_open(&poses, name, true, &model, &error));
     assert_null(poses_next(&poses, 0));
     to = open(name, O_WRONLY);
     assert_true(to >= 0);
@@ -194,20 +185,19 @@ static void test_pipe(void **state)
 }
 
 /* A writer that never stops gets no more than its fraction of a frame. */
-static void test_flood(void **state)
+TEST(flood)
 {
     static char lines[1 << 18];
     const size_t most = sizeof lines - 16;
     size_t n = 0;
     int to, taken = 0;
 
-    (void)state;
     while (n < most)
         n += (size_t)sprintf(lines + n, "*,ball,1,0,0\n");
     unlink(name);
     assert_int_equal(mkfifo(name, 0600), 0);
     make(GLINT_HAND_LEFT);
-    assert_int_equal(poses_open(&poses, name, true, &model, &error), GLINT_OK);
+    assert_ok(poses_open(&poses, name, true, &model, &error));
     to = open(name, O_WRONLY | O_NONBLOCK);
     for (int frame = 0; frame < 3; frame++) {
         const int before = taken;
@@ -241,12 +231,4 @@ static int remove_name(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order), cmocka_unit_test(test_hand),
-        cmocka_unit_test(test_mistakes), cmocka_unit_test(test_pipe),
-        cmocka_unit_test(test_flood)};
-
-    return cmocka_run_group_tests(tests, open_name, remove_name);
-}
+TEST_GROUP(open_name, remove_name);

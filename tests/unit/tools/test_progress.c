@@ -2,17 +2,14 @@
  *
  * Progress on standard error, by a clock that the test sets.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "options/tool.h"
+#include "support/test.h"
 
 static double now_s;
 
@@ -54,21 +51,19 @@ static const char *shown(struct tool_progress *p, double at_s, double done)
     return text;
 }
 
-static void test_short_work(void **state)
+TEST(short_work)
 {
     struct tool_progress p = start(false, false);
 
-    (void)state;
     for (int k = 0; k <= 99; k++)
         assert_string_equal(shown(&p, 0.1 * k, k / 100.), "");
     assert_string_equal(shown(&p, 500, 1), ""); /* nothing is left */
 }
 
-static void test_line_every_ten_seconds(void **state)
+TEST(line_every_ten_seconds)
 {
     struct tool_progress p = start(false, false);
 
-    (void)state;
     assert_string_equal(shown(&p, 1, 0.1), "");
     assert_string_equal(shown(&p, 9.9, 0.2), "");
     assert_string_equal(shown(&p, 10, 0.25),
@@ -80,11 +75,10 @@ static void test_line_every_ten_seconds(void **state)
 }
 
 /* The second part of the work counts from where the first ends. */
-static void test_parts(void **state)
+TEST(parts)
 {
     struct tool_progress p = start(false, false);
 
-    (void)state;
     tool_progress_part(&p, 0, 0.6);
     assert_string_equal(shown(&p, 1, 0.5), "");
     tool_progress_part(&p, 0.6, 0.4);
@@ -93,11 +87,10 @@ static void test_parts(void **state)
 }
 
 /* Work of twenty seconds or more is announced once. */
-static void test_long_work(void **state)
+TEST(long_work)
 {
     struct tool_progress p = start(false, false);
 
-    (void)state;
     assert_string_equal(shown(&p, 1, 0), "");
     assert_string_equal(shown(&p, 1, 0.02), "bake: takes about 49 s\n");
     assert_string_equal(shown(&p, 2, 0.02), "");
@@ -109,9 +102,8 @@ static void test_long_work(void **state)
                         "a larger --tolerance\n");
 }
 
-static void test_quiet(void **state)
+TEST(quiet)
 {
-    (void)state;
     for (int is_terminal = 0; is_terminal < 2; is_terminal++) {
         struct tool_progress p = start(true, is_terminal);
 
@@ -121,29 +113,14 @@ static void test_quiet(void **state)
 }
 
 /* A terminal gets a bar ten times a second, and at the end. */
-static void test_bar(void **state)
+TEST(bar)
 {
     struct tool_progress p = start(false, true);
 
-    (void)state;
     assert_string_equal(shown(&p, 5, 0.5),
                         "\rbake [###############...............]  50 %  "
                         "5 s left \033[K");
     assert_string_equal(shown(&p, 5.05, 0.6), "");
     assert_non_null(strstr(shown(&p, 5.2, 0.6), " 60 %  3 s left"));
     assert_non_null(strstr(shown(&p, 5.15, 1), "100 %  0 s left"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_short_work),
-        cmocka_unit_test(test_line_every_ten_seconds),
-        cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_long_work),
-        cmocka_unit_test(test_quiet),
-        cmocka_unit_test(test_bar),
-    };
-
-    return cmocka_run_group_tests_name("progress", tests, NULL, NULL);
 }

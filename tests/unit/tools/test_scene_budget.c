@@ -4,26 +4,21 @@
  * while it runs: by live, to hold a rate, and to keep a budget. No test reads
  * the time: frames take what tables say, and the clock is a fake one. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "live/live_adapt.h"
 #include "overlay/over_scene.h"
+#include "support/test.h"
 
 enum { WIDTH = 64, HEIGHT = 36, BYTES = 3 * WIDTH * HEIGHT };
 
 /* Qualities are those of the option that has the same dials. */
-static void test_qualities(void **state)
+TEST(qualities)
 {
     static const double quality[SCENE_BUDGET_LEVELS] = {1, .5, .375, .125, 0};
 
-    (void)state;
     for (int i = 0; i < SCENE_BUDGET_LEVELS; i++) {
         struct scene_dials dials = {.width = WIDTH, .height = HEIGHT};
         struct scene_budget budget;
@@ -41,12 +36,11 @@ static void test_qualities(void **state)
 }
 
 /* Steps of live go down that scale to its end. */
-static void test_steps(void **state)
+TEST(steps)
 {
     struct live_adapt adapt;
     double last = 1;
 
-    (void)state;
     live_adapt_init(&adapt);
     assert_true(live_adapt_quality(&adapt) == 1);
     for (adapt.step = 1; adapt.step <= LIVE_MAX_STEP; adapt.step++) {
@@ -65,31 +59,30 @@ static void draw(struct over_scene *over, uint8_t *pixels)
 
     memset(pixels, 90, BYTES);
     glint_image_place(&image, pixels);
-    assert_int_equal(over_scene_draw(over, &image, 0), GLINT_OK);
+    assert_ok(over_scene_draw(over, &image, 0));
 }
 
 /* A scene that is drawn coarser, and finer again,
  * is what the same dials draw from the start. */
-static void test_coarser(void **state)
+TEST(coarser)
 {
     static const struct tool tool = {.name = "test", .quiet = true};
     static uint8_t fine[BYTES], coarse[BYTES], got[BYTES];
     struct scene_dials dials = {.width = WIDTH, .height = HEIGHT};
     struct over_scene over = {.file = "tests/data/balls.scene"};
 
-    (void)state;
-    assert_int_equal(over_scene_open(&over, &tool), EXIT_OK);
+    assert_ok(over_scene_open(&over, &tool));
     scene_dials_be(&dials, 0);
-    assert_int_equal(over_scene_size(&over, &dials), EXIT_OK);
+    assert_ok(over_scene_size(&over, &dials));
     draw(&over, coarse);
     dials = (struct scene_dials){.width = WIDTH, .height = HEIGHT};
-    assert_int_equal(over_scene_size(&over, &dials), EXIT_OK);
+    assert_ok(over_scene_size(&over, &dials));
     draw(&over, fine);
     assert_memory_not_equal(fine, coarse, BYTES);
-    assert_int_equal(over_scene_coarsen(&over, 0), GLINT_OK);
+    assert_ok(over_scene_coarsen(&over, 0));
     draw(&over, got);
     assert_memory_equal(got, coarse, BYTES);
-    assert_int_equal(over_scene_coarsen(&over, 1), GLINT_OK);
+    assert_ok(over_scene_coarsen(&over, 1));
     draw(&over, got);
     assert_memory_equal(got, fine, BYTES);
     over_scene_close(&over);
@@ -125,11 +118,10 @@ static int follow(struct scene_budget *b, int n, double slower, double limit_ms)
 }
 
 /* The finest level that fits is found from above, and from below again. */
-static void test_follows(void **state)
+TEST(follows)
 {
     struct scene_budget b = new_budget();
 
-    (void)state;
     assert_int_equal(follow(&b, 100, 1, 1000), 0);
     assert_int_equal(b.level, 0);
     follow(&b, 12, 1, 30);
@@ -147,22 +139,20 @@ static void test_follows(void **state)
 }
 
 /* A level that is too slow is seldom tried again. */
-static void test_rests(void **state)
+TEST(rests)
 {
     struct scene_budget b = new_budget();
 
-    (void)state;
     follow(&b, 7, 1, 22);
     assert_int_equal(b.level, 3);
     assert_true(follow(&b, 1000, 1, 22) <= 14);
 }
 
 /* One slow frame changes nothing. */
-static void test_one_slow(void **state)
+TEST(one_slow)
 {
     struct scene_budget b = new_budget();
 
-    (void)state;
     follow(&b, 12, 1, 30);
     assert_int_equal(b.level, 2);
     assert_false(scene_budget_follow(&b, 300, 30));
@@ -192,9 +182,8 @@ static void share(double least_ms, double most_ms, int level)
     assert_true(late <= 10); /* of tries */
 }
 
-static void test_shares(void **state)
+TEST(shares)
 {
-    (void)state;
     share(1, 2, 0);    /* a flare that takes next to nothing */
     share(10, 200, 2); /* one that could take it all */
     share(30, 200, 2); /* one that leaves half of it */
@@ -213,21 +202,20 @@ double __wrap_tool_seconds(void)
 }
 
 /* Pictures of a scene within a budget are those of its quality. */
-static void test_draws(void **state)
+TEST(draws)
 {
     static const struct tool tool = {.name = "test", .quiet = true};
     static uint8_t coarse[BYTES], got[BYTES];
     struct scene_dials dials = {.width = WIDTH, .height = HEIGHT};
     struct over_scene over = {.file = "tests/data/balls.scene"};
 
-    (void)state;
     step_s = 1e-3;
-    assert_int_equal(over_scene_open(&over, &tool), EXIT_OK);
+    assert_ok(over_scene_open(&over, &tool));
     scene_dials_be(&dials, 0);
-    assert_int_equal(over_scene_size(&over, &dials), EXIT_OK);
+    assert_ok(over_scene_size(&over, &dials));
     draw(&over, coarse);
     dials = (struct scene_dials){.width = WIDTH, .height = HEIGHT};
-    assert_int_equal(over_scene_size(&over, &dials), EXIT_OK);
+    assert_ok(over_scene_size(&over, &dials));
     over.budget_ms = 2 * over.ms;
     for (int i = 0; i < 20; i++)
         draw(&over, got);
@@ -238,15 +226,4 @@ static void test_draws(void **state)
     assert_true(scene_budget_quality(&over.budget) == 0);
     assert_memory_equal(got, coarse, BYTES);
     over_scene_close(&over);
-}
-
-int main(void)
-{
-    static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_qualities), cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_coarser),   cmocka_unit_test(test_follows),
-        cmocka_unit_test(test_rests),     cmocka_unit_test(test_one_slow),
-        cmocka_unit_test(test_shares),    cmocka_unit_test(test_draws)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

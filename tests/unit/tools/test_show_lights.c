@@ -3,16 +3,12 @@
  * Marks of lights in pictures of every format: the right pixels, the right
  * colours, and nothing off-screen.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "overlay/show_lights.h"
+#include "support/test.h"
 
 enum { WIDTH = 96, HEIGHT = 64, GUARD = 4096 };
 
@@ -59,7 +55,7 @@ static struct glint_lamp_track track_at(int x, int y)
 
 /* With lines one pixel wide, a mark must be a cross of 5 pixels, a box of +-8
  * and the digits 907. */
-static void test_what_is_drawn(void **state)
+TEST(what_is_drawn)
 {
     static const char *const number[5] = {"### ### ###", "# # # #   #",
                                           "### # #   #", "  # # #  # ",
@@ -70,7 +66,6 @@ static void test_what_is_drawn(void **state)
     const uint8_t *px = image.plane[0];
     int n_green = 0;
 
-    (void)state;
     show_light(&image, &track);
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         n_green += px[3 * i] == 0 && px[3 * i + 1] == 255;
@@ -93,7 +88,7 @@ static void test_what_is_drawn(void **state)
 
 /* Green must be right at the middle: (0, 255, 0) is (145, 54, 34) in BT.601
  * limited and (182, 30, 12) in BT.709 full. */
-static void test_colours_of_formats(void **state)
+TEST(colours_of_formats)
 {
     static const struct {
         enum glint_pixel_format format;
@@ -114,7 +109,6 @@ static void test_colours_of_formats(void **state)
     static const int expected[3][3] = {
         {0, 255, 0}, {145, 54, 34}, {182, 30, 12}};
 
-    (void)state;
     for (unsigned i = 0; i < 2 * sizeof at / sizeof *at; i++) {
         const struct glint_lamp_track track = track_at(30, 20);
         uint8_t *mem;
@@ -130,13 +124,12 @@ static void test_colours_of_formats(void **state)
     }
 }
 
-static void test_565(void **state)
+TEST(writes_565)
 {
     struct glint_lamp_track track = track_at(30, 20);
     uint8_t *mem;
     struct glint_image image = new_image(GLINT_RGB565, &mem);
 
-    (void)state;
     track.state = GLINT_LAMP_FADING;
     show_light(&image, &track);
     assert_int_equal(mem[GUARD + 3900], 0x00); /* red: 0xf800 */
@@ -146,12 +139,11 @@ static void test_565(void **state)
 
 /* A mark may be anywhere, inside, across the borders or far away, and must not
  * touch the guards. */
-static void test_clipped_at_the_borders(void **state)
+TEST(clipped_at_the_borders)
 {
     static const int places[] = {-(1 << 20), -100, -9, -1,     0,      5,
                                  47,         63,   95, 96 + 8, 96 + 9, 1 << 20};
 
-    (void)state;
     for (int i = 0; i < 144 * N_FORMATS; i++) {
         struct glint_lamp_track track =
             track_at(places[i % 12], places[i / 12 % 12]);
@@ -164,16 +156,4 @@ static void test_clipped_at_the_borders(void **state)
         assert_guards(&image, mem);
         free(mem);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_drawn),
-        cmocka_unit_test(test_colours_of_formats),
-        cmocka_unit_test(test_565),
-        cmocka_unit_test(test_clipped_at_the_borders),
-    };
-
-    return cmocka_run_group_tests_name("show_lights", tests, NULL, NULL);
 }

@@ -3,11 +3,7 @@
  * The parts of glint sweep that measure nothing: fronts, PNG, parameters
  * and levels.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,6 +12,7 @@
 #include "support/rng.h"
 #include "measure/plots/plot.h"
 #include "measure/sweep.h"
+#include "support/test.h"
 
 /* Returns whether A beats B: it is cheaper and no worse, or better and no more
  * costly. */
@@ -25,13 +22,12 @@ static int dominates(const double *cost, const double *quality, int a, int b)
            (cost[a] < cost[b] || quality[a] > quality[b]);
 }
 
-static void test_front_by_hand(void **state)
+TEST(front_by_hand)
 {
     static const double cost[] = {5, 1, 3, 2, 4, 3, 0, 2};
     static const double quality[] = {50, 20, 40, 10, 40, 30, (double)NAN, 35};
     int front[8];
 
-    (void)state;
     assert_int_equal(sweep_front(cost, quality, 8, front), 4);
     assert_int_equal(front[0], 1);
     assert_int_equal(front[1], 7);
@@ -43,7 +39,7 @@ static void test_front_by_hand(void **state)
 /* Heights above the line through the levels, dB: of a dial on the line between
  * two levels, one above it, one more costly than a level like it, one cheaper
  * than all, and one between levels of which one draws half the pixels. */
-static void test_above_the_ladder(void **state)
+TEST(above_the_ladder)
 {
     struct sweep_setting level = {.kind = SWEEP_QUALITY}, halves = level;
     const struct sweep_setting dial = {.kind = SWEEP_ALONE};
@@ -56,7 +52,6 @@ static void test_above_the_ladder(void **state)
     };
     const int n = sizeof mean / sizeof *mean;
 
-    (void)state;
     for (int d = 0; d < n_sweep_parameters; d++)
         halves.value[d] = strcmp(sweep_parameter[d].name, "half") == 0;
     assert_true(isinf(sweep_above(mean, n, 0)));
@@ -71,14 +66,13 @@ static void test_above_the_ladder(void **state)
 
 /* No setting may beat one on the front, and some setting on the front must be
  * as good as each one off it. Values are few, so that many are equal. */
-static void test_front_of_many(void **state)
+TEST(front_of_many)
 {
     enum { N = 60 };
     double cost[N], quality[N];
     int front[N];
     uint32_t seed = 1;
 
-    (void)state;
     for (int round = 0; round < 200; round++) {
         int on[N] = {0}, n;
 
@@ -104,7 +98,7 @@ static void test_front_of_many(void **state)
 }
 
 /* The smallest PNG must have the checksums of zlib. */
-static void test_png(void **state)
+TEST(png)
 {
     static const uint8_t red[] = {255, 0, 0};
     static const char want[] =
@@ -115,7 +109,6 @@ static void test_png(void **state)
     size_t bytes = 0;
     FILE *file = open_memstream(&text, &bytes);
 
-    (void)state;
     assert_non_null(file);
     html_png(file, red, 1, 1);
     fclose(file);
@@ -148,12 +141,11 @@ static uint64_t settings_without(const struct settings *s, const char *name)
 
 /* Each value of a parameter that is not its standard one must change the
  * settings by itself, and no other parameter. */
-static void test_parameters(void **state)
+TEST(parameters)
 {
     struct sweep_setting standard = {.alone = -1, .quality = -1};
     struct settings plain;
 
-    (void)state;
     for (int d = 0; d < n_sweep_parameters; d++)
         standard.value[d] = sweep_parameter[d].standard;
     settings_defaults(&plain);
@@ -187,11 +179,10 @@ static int is_half(const struct settings *settings)
 
 /* A better level must never be coarser, among levels that draw all pixels and
  * among those that draw half; the middle level must be the default settings. */
-static void test_ladder(void **state)
+TEST(ladder)
 {
     struct settings last, settings, plain;
 
-    (void)state;
     settings_defaults(&plain);
     settings_defaults(&settings);
     settings_set_quality(&settings, 0.5);
@@ -225,18 +216,4 @@ static void test_ladder(void **state)
     assert_int_equal(settings.options.rays, GLINT_RAYS_EXACT);
     assert_false(settings_set(&settings, "quality", "1.01"));
     assert_false(settings_set(&settings, "quality", "best"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_front_by_hand),
-        cmocka_unit_test(test_above_the_ladder),
-        cmocka_unit_test(test_front_of_many),
-        cmocka_unit_test(test_png),
-        cmocka_unit_test(test_parameters),
-        cmocka_unit_test(test_ladder),
-    };
-
-    return cmocka_run_group_tests_name("sweep", tests, NULL, NULL);
 }

@@ -4,15 +4,11 @@
  * ranges, and none depends on another.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "support/test.h"
 #include "synth/draw.h"
 
 static const struct synth_item named = {.width = 64,
@@ -30,12 +26,11 @@ static double number(const struct synth_item *item, int k)
                                            synth_field[k].at);
 }
 
-static void lines_hold_all(void **state)
+TEST(lines_hold_all)
 {
     static const struct synth_result none;
     struct synth_ranges ranges;
 
-    (void)state;
     synth_ranges_defaults(&ranges);
     for (int i = 0; i < 500; i++) {
         struct synth_item item = named, back;
@@ -63,13 +58,12 @@ static void lines_hold_all(void **state)
     }
 }
 
-static void numbers_keep_to_ranges(void **state)
+TEST(numbers_keep_to_ranges)
 {
     struct synth_ranges ranges;
     double low[SYNTH_FIELDS], high[SYNTH_FIELDS];
     int zeros = 0;
 
-    (void)state;
     synth_ranges_defaults(&ranges);
     for (int k = 0; k < SYNTH_FIELDS; k++) {
         low[k] = INFINITY;
@@ -100,13 +94,12 @@ static void numbers_keep_to_ranges(void **state)
 }
 
 /* Another range for one number leaves all others. */
-static void numbers_stand_alone(void **state)
+TEST(numbers_stand_alone)
 {
     struct synth_item a = named, b = named;
     struct synth_ranges ranges;
     struct glint_error why = {""};
 
-    (void)state;
     synth_ranges_defaults(&ranges);
     synth_item_draw(&a, &ranges, 3, 14);
     /* Names of one length are as different as others. */
@@ -128,7 +121,7 @@ static void numbers_stand_alone(void **state)
 }
 
 /* The noise of a sensor has the variance of its photons and of reading. */
-static void noise_is_of_photons(void **state)
+TEST(noise_is_of_photons)
 {
     enum { SIDE = 256, N = 3 * SIDE * SIDE };
     struct synth_item item = {
@@ -136,7 +129,6 @@ static void noise_is_of_photons(void **state)
     float *const rgb = malloc(N * sizeof *rgb);
     const double light[] = {0, 0.1, 0.8};
 
-    (void)state;
     assert_non_null(rgb);
     for (int k = 0; k < 3; k++) {
         double sum = 0, squares = 0, wanted = light[k] / 1000 + 1e-4;
@@ -154,16 +146,4 @@ static void noise_is_of_photons(void **state)
         assert_true(fabs(squares / N / wanted - 1) < 0.02);
     }
     free(rgb);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_hold_all),
-        cmocka_unit_test(numbers_keep_to_ranges),
-        cmocka_unit_test(numbers_stand_alone),
-        cmocka_unit_test(noise_is_of_photons),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * What positions of a zoom are baked with: their keys tell. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
+#include "support/test.h"
 #include "zooms/zoom_bake.h"
 
 static const char table[] = "name t\n"
@@ -74,13 +70,12 @@ static uint64_t key_of(const struct glint_bake_options *options, double along,
 
 /* Two positions may be halved four times: finest steps are a sixteenth of the
  * way. */
-static void ends_know_what_lies_a_finest_step_off(void **state)
+TEST(ends_know_what_lies_a_finest_step_off)
 {
     struct glint_bake_options options;
     struct glint_error error = {""};
     uint64_t key[2];
 
-    (void)state;
     if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
                                  &error) != GLINT_OK)
         fail_msg("%s", error.text);
@@ -94,13 +89,4 @@ static void ends_know_what_lies_a_finest_step_off(void **state)
     assert_true(key[1] == key_of(&options, 1, -1));
     assert_true(key_of(&options, 0, 1) != key_of(&options, 0, -1));
     assert_true(key_of(&options, 0, 1) != key_of(&options, 0, 0.5));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ends_know_what_lies_a_finest_step_off),
-    };
-
-    return cmocka_run_group_tests_name("zoom_bake", tests, NULL, NULL);
 }

@@ -3,15 +3,11 @@
  * Errors of a zoom of two lenses that was baked at both ends: lights come from
  * where they are reported to, an end is exact, and the middle is not. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "glint/view.h"
+#include "support/test.h"
 #include "zooms/zoom_error.h"
 
 enum { GHOSTS = 2, MAX_DEG = 3 };
@@ -114,11 +110,10 @@ static double largest(const struct zoom_error *error)
     return most;
 }
 
-static void ends_are_exact(void **state)
+TEST(ends_are_exact)
 {
     struct zoom_error end[GHOSTS];
 
-    (void)state;
     ask(end);
     measure(&at[0], 0, 0.5, end);
     for (int a = 0; a < ZOOM_ANGLES; a++) {
@@ -130,11 +125,10 @@ static void ends_are_exact(void **state)
 
 /* The middle is not. The end of a fraction of the angles is where the next
  * begins. */
-static void lights_are_shifted(void **state)
+TEST(lights_are_shifted)
 {
     struct zoom_error begin[GHOSTS], end[GHOSTS];
 
-    (void)state;
     ask(begin);
     ask(end);
     measure(&at[2], 0.5, 0, begin);
@@ -146,12 +140,11 @@ static void lights_are_shifted(void **state)
 
 /* Where a ghost ends, here as the model does, angles between those that are
  * measured in any case have the errors of lights that come from there. */
-static void ends_of_ghosts_are_found(void **state)
+TEST(ends_of_ghosts_are_found)
 {
     struct zoom_error halves[GHOSTS], there[GHOSTS];
     int ends = 0;
 
-    (void)state;
     ask(halves);
     ask(there);
     measure_to(80, &at[0], 0, 0, halves);
@@ -171,14 +164,13 @@ static void ends_of_ghosts_are_found(void **state)
 
 /* Lights go up to 1.5 times the half diagonal, here beyond what was baked, so
  * that the last of them show whole ghosts as errors. */
-static void lights_end_beyond_the_corner(void **state)
+TEST(lights_end_beyond_the_corner)
 {
     const double corner_mm = 0.5 * hypot(24, 16);
     struct zoom_error asked[GHOSTS], all[GHOSTS], less[GHOSTS];
     struct glint_optics optics;
     double corner_deg;
 
-    (void)state;
     glint_optics_of(&at[0], &optics);
     corner_deg = 180 / GLINT_PI * atan(corner_mm / optics.focal_mm);
     ask(asked);
@@ -191,15 +183,4 @@ static void lights_end_beyond_the_corner(void **state)
     assert_memory_not_equal(asked, less, sizeof all);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ends_are_exact),
-        cmocka_unit_test(lights_are_shifted),
-        cmocka_unit_test(ends_of_ghosts_are_found),
-        cmocka_unit_test(lights_end_beyond_the_corner),
-    };
-
-    return cmocka_run_group_tests_name("zoom_error", tests, bake_ends,
-                                       free_all);
-}
+TEST_GROUP(bake_ends, free_all);

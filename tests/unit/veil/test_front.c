@@ -5,18 +5,15 @@
  * tiles and workers; and nothing where nothing lies there.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/frame/front.h"
 #include "engine/setup/entrance.h"
 #include "support/rng.h"
 #include "support/stars/bare_flare.h"
+#include "support/test.h"
 #include "veil/glare.h"
 
 enum { WIDTH = 131, HEIGHT = 75 };
@@ -36,7 +33,7 @@ static struct glint_front_dirt *dirt_of(const struct glint_front *front)
     struct glint_front_dirt *dirt;
     struct glint_error error;
 
-    assert_int_equal(glint_front_make(&dirt, front, &error), GLINT_OK);
+    assert_ok(glint_front_make(&dirt, front, &error));
     return dirt;
 }
 
@@ -45,14 +42,13 @@ static struct glint_front_table *table_of(const struct glint_front_dirt *dirt,
 {
     struct glint_front_table *table;
 
-    assert_int_equal(dirt->method->table(&table, dirt, &optics, setup),
-                     GLINT_OK);
+    assert_ok(dirt->method->table(&table, dirt, &optics, setup));
     return table;
 }
 
 /* ---------------------------------------------------------------- the table */
 
-static void test_table(void **state)
+TEST(table)
 {
     static const struct glint_setup setup = {.n_blades = 8};
     struct glint_front_dirt *dirt =
@@ -60,7 +56,6 @@ static void test_table(void **state)
     struct glint_front_table *t = table_of(dirt, &setup);
     double worst = 0;
 
-    (void)state;
     assert_int_equal(t->front.n_x, GLINT_VEIL_FRONT_NODES(WIDTH));
     for (int j = 0; j < t->front.n_y; j += 3)
         for (int i = 0; i < t->front.n_x; i += 3) {
@@ -82,12 +77,11 @@ static void test_table(void **state)
 /* A mask that covers a half of the front to the left, as seen from the sensor
  * with x right, covers the right half of the picture: its light comes from
  * there. Up in the mask is up on the front. */
-static void test_mask(void **state)
+TEST(mask)
 {
     static const uint8_t left[4] = {0, 255, 0, 255}, high[4] = {0, 0, 255, 255};
     static const struct glint_setup setup = {.n_blades = 8};
 
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct glint_front_dirt *dirt = dirt_of(&(struct glint_front){
             .mask = k ? high : left, .mask_width = 2, .mask_height = 2});
@@ -103,7 +97,7 @@ static void test_mask(void **state)
     }
 }
 
-static void test_refuses(void **state)
+TEST(refuses)
 {
     static const uint8_t mask[4] = {0, 0, 0, 0};
     static const struct glint_front bad[] = {
@@ -114,7 +108,6 @@ static void test_refuses(void **state)
     struct glint_front_dirt *dirt;
     struct glint_error error;
 
-    (void)state;
     for (int k = 0; k < 4; k++) {
         assert_int_equal(glint_front_make(&dirt, &bad[k], &error),
                          GLINT_E_ARGUMENT);
@@ -145,7 +138,7 @@ static void open_scene(struct scene *s, int tile_log2, int n_workers,
 
     bare_flare_open(&s->bare, WIDTH, HEIGHT, tile_log2, n_workers, order);
     s->mem = bare_flare_take(bytes);
-    assert_int_equal(glint_veil_init(&s->veil, &cfg, s->mem, bytes), GLINT_OK);
+    assert_ok(glint_veil_init(&s->veil, &cfg, s->mem, bytes));
     for (size_t i = 0; i < sizeof s->part_q16 / 2; i++)
         s->part_q16[i] = (uint16_t)rng_below(&seed, 65536);
     s->front = (struct glint_veil_front){
@@ -193,13 +186,12 @@ static void draw(struct scene *s, double light, enum glint_pixel_format format,
 }
 
 /* Linear pictures get light times part, which is straight between nodes. */
-static void test_light(void **state)
+TEST(light)
 {
     static int32_t linear_q20[3 * WIDTH * HEIGHT];
     static struct scene s;
     double worst = 0;
 
-    (void)state;
     open_scene(&s, 5, 1, 1);
     draw(&s, 0.25, GLINT_LINEAR_Q20, linear_q20);
     for (int y = 0; y < HEIGHT; y++)
@@ -223,7 +215,7 @@ static void test_light(void **state)
 /* In codes: tiles, workers and order change no bit, of dim light and of such
  * as is more than white where it is covered most; more light is nowhere darker,
  * and every machine draws the same. */
-static void test_bits(void **state)
+TEST(bits)
 {
     const uint64_t want = UINT64_C(0x5b5e6baa4b36eb8a);
     static uint8_t first[3 * WIDTH * HEIGHT], other[sizeof first];
@@ -231,7 +223,6 @@ static void test_bits(void **state)
     static struct scene s;
     uint64_t h = UINT64_C(14695981039346656037);
 
-    (void)state;
     memset(before, 0, sizeof before);
     for (int k = 0; k < 6; k++) {
         const double light = ldexp(0.01, 3 * k);
@@ -254,14 +245,4 @@ static void test_bits(void **state)
     print_message("hash %08lx%08lx\n", (unsigned long)(h >> 32),
                   (unsigned long)(h & 0xffffffff));
     assert_true(h == want);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_table), cmocka_unit_test(test_mask),
-        cmocka_unit_test(test_refuses), cmocka_unit_test(test_light),
-        cmocka_unit_test(test_bits)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

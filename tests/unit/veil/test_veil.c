@@ -5,19 +5,16 @@
  * lamp moves.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "glint/flare.h"
 #include "glint/kernels.h"
 #include "support/rng.h"
 #include "support/stars/bare_flare.h"
+#include "support/test.h"
 #include "veil/glare.h"
 
 enum { MAX_WIDTH = 163, MAX_HEIGHT = 121, MAX_N = 3 * MAX_WIDTH * MAX_HEIGHT };
@@ -47,7 +44,7 @@ static void open_canvas(struct canvas *c, int width, int height, int tile_log2,
     c->mem = bare_flare_take(bytes);
     assert_int_equal(glint_veil_init(&c->veil, &veil, c->mem, bytes - 1),
                      GLINT_E_MEMORY);
-    assert_int_equal(glint_veil_init(&c->veil, &veil, c->mem, bytes), GLINT_OK);
+    assert_ok(glint_veil_init(&c->veil, &veil, c->mem, bytes));
 }
 
 static void close_canvas(struct canvas *c)
@@ -131,13 +128,12 @@ static void add_lamp(struct canvas *c, double x, double y, double power)
 
 /* Whatever the size of the picture and wherever the lamp, the veil has the
  * fraction of its light that it is given, within a thousandth. */
-static void test_energy(void **state)
+TEST(energy)
 {
     static const int size[][2] = {{163, 121}, {64, 36}, {97, 3},  {1, 1},
                                   {5, 121},   {2, 2},   {160, 90}};
     static const double sigma[] = {3, 12, 60};
 
-    (void)state;
     for (int k = 0; k < 7; k++)
         for (int i = 0; i < 9; i++) {
             struct canvas c;
@@ -159,14 +155,13 @@ static void test_energy(void **state)
 
 /* Far from borders and wider than cells, a lamp's veil must be the Gaussian it
  * was asked to be, widened by what lies between cells. */
-static void test_shape(void **state)
+TEST(shape)
 {
     struct canvas c;
     struct glint_veil_spread s;
     double worst = 0;
     const double sigma = 14;
 
-    (void)state;
     open_canvas(&c, 160, 120, 6, 2, 1);
     s = spread_of(&c, sigma, 1);
     look_at_nothing(&c);
@@ -193,11 +188,10 @@ static void test_shape(void **state)
 /* On uniform white a veil is uniform; a black spot in it has the veiling glare
  * index of ISO 9358: with share V / (1 - V), V of what white has. Of each
  * format. */
-static void test_index(void **state)
+TEST(index)
 {
     static uint8_t codes[4 * MAX_WIDTH * MAX_HEIGHT];
 
-    (void)state;
     for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++) {
         struct canvas c;
         struct glint_image image;
@@ -234,7 +228,7 @@ static void test_index(void **state)
 
 /* Light of a picture must be where it is in it, of its colour, in linear
  * light. */
-static void test_picture(void **state)
+TEST(picture)
 {
     static uint8_t codes[3 * MAX_WIDTH * MAX_HEIGHT];
     struct canvas c;
@@ -242,7 +236,6 @@ static void test_picture(void **state)
     struct glint_veil_spread s;
     double sum[3] = {0}, at[2] = {0};
 
-    (void)state;
     open_canvas(&c, 161, 121, 5, 1, 1);
     image = picture_of(&c, GLINT_RGB24, codes);
     memset(codes, 0, sizeof codes);
@@ -274,14 +267,13 @@ static void test_picture(void **state)
 
 /* A lamp that moves by 0.05 px must leave the veil's light as it is, and no
  * pixel may change by more than the Gaussian's own slope makes it. */
-static void test_steady(void **state)
+TEST(steady)
 {
     static int32_t before_q20[MAX_N];
     struct canvas c;
     struct glint_veil_spread s;
     double least = 1e9, most = 0, jump = 0, peak = 0;
 
-    (void)state;
     open_canvas(&c, 160, 90, 5, 1, 1);
     s = spread_of(&c, 8, 0.1);
     for (int i = 0; i < 200; i++) {
@@ -359,13 +351,12 @@ static void draw_any(uint32_t seed, int tile_log2, int n_workers,
 
 /* Workers, tiles and the order of jobs must not change a bit, of any format;
  * and every machine must draw the same. */
-static void test_same_bits(void **state)
+TEST(same_bits)
 {
     const uint64_t want = UINT64_C(0x8c34ca68742ff06b);
     static uint8_t first[12 * 130 * 75], other[12 * 130 * 75];
     uint64_t h = UINT64_C(14695981039346656037);
 
-    (void)state;
     for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++) {
         const enum glint_pixel_format format = (enum glint_pixel_format)f;
         const size_t bytes = glint_image_bytes(format, 130, 75);
@@ -388,14 +379,13 @@ static void test_same_bits(void **state)
 
 /* Lamps of any power at and beyond the borders: more power is nowhere less
  * light, and what lies outside is left out. */
-static void test_extremes(void **state)
+TEST(extremes)
 {
     static const double place[][2] = {{0, 0},     {160, 90}, {80.5, 45},
                                       {-0.01, 3}, {161, 3},  {1160, 3}};
     struct canvas c;
     struct glint_veil_spread s;
 
-    (void)state;
     open_canvas(&c, 160, 90, 5, 1, 1);
     s = spread_of(&c, 8, 0.9);
     for (int k = 0; k < 6; k++) {
@@ -421,15 +411,4 @@ static void test_extremes(void **state)
                      0);
     assert_int_equal(
         glint_veil_bytes(&(struct glint_veil_config){1, 160, 40000, 0}), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_energy),  cmocka_unit_test(test_shape),
-        cmocka_unit_test(test_index),   cmocka_unit_test(test_picture),
-        cmocka_unit_test(test_steady),  cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_extremes)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

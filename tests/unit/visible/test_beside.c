@@ -3,19 +3,15 @@
  * A ghost beside the same one at a nearby position of a zoom: ranges and boxes
  * hold what is seen at either, and models have what is cut at either. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "bake/fit/zone_rays.h"
 #include "bake/visible/visible.h"
 #include "engine/setup/degrees.h"
 #include "glint/bake.h"
 #include "glint/transfer.h"
+#include "support/test.h"
 
 enum {
     MAX_DEG = 9,
@@ -82,11 +78,10 @@ static bool is_in(double (*range)[2], int n, double lo, double hi)
 
 /* Every range of either is in one of both, which begins and ends where one of
  * either does. */
-static void test_ranges(void **state)
+TEST(ranges)
 {
     int wider = 0;
 
-    (void)state;
     for (int g = 1; g < 4; g++) {
         double of[3][GLINT_MAX_RANGES][2], last = -1;
         int n[3];
@@ -116,7 +111,7 @@ static void test_ranges(void **state)
 }
 
 /* A range that touches others is joined to them, and stands in order. */
-static void test_joined(void **state)
+TEST(joined)
 {
     static const struct {
         double more[2], range[3][2];
@@ -131,7 +126,6 @@ static void test_joined(void **state)
               {{0.25, 0.65}, {{0.2, 0.7}}, 1}};
     double full[GLINT_MAX_RANGES][2];
 
-    (void)state;
     for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
         double range[GLINT_MAX_RANGES][2] = {{0.2, 0.3}, {0.6, 0.7}};
 
@@ -175,7 +169,7 @@ static double farther(const struct glint_zone_rays *rays, int i)
 
 /* Each ray lands where it does alone, and is as far out as at the position at
  * which that is least. */
-static void test_rays(void **state)
+TEST(rays)
 {
     static struct glint_visible_profile profile;
     static struct glint_zone_rays of[3], energies;
@@ -183,7 +177,6 @@ static void test_rays(void **state)
     struct glint_zone zone;
     int own = 0, beside = 0;
 
-    (void)state;
     set_ghost(CUT);
     glint_visible_profile_find(&both[0], range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], false);
@@ -211,13 +204,12 @@ static void test_rays(void **state)
 }
 
 /* Boxes of both hold those of either, and are no wider. */
-static void test_boxes(void **state)
+TEST(boxes)
 {
     static struct glint_visible_profile of[3];
     const double range[2] = {0, glint_sin_deg(4)};
     int moved = 0;
 
-    (void)state;
     for (int g = 1; g < 4; g++) {
         set_ghost(g);
         for (int k = 0; k < 2; k++)
@@ -277,7 +269,7 @@ static int count_rays(const unsigned char *data, size_t bytes, int ghost,
 
 /* A barrel that cuts at the other position alone is chosen: the rear one, which
  * is a fifth as wide there. */
-static void test_barrels(void **state)
+TEST(barrels)
 {
     static const double rgb_nm[] = {650, 532, 450};
     static struct glint_setup narrower;
@@ -290,7 +282,6 @@ static void test_barrels(void **state)
     struct glint_zone zone;
     int n[2];
 
-    (void)state;
     set_ghost(UNCUT);
     lens.surface[lens.n_surfaces - 1].semi_mm *= 0.2;
     if (glint_setup_init(&narrower, &lens, 0, 0, rgb_nm, 3, &error) != GLINT_OK)
@@ -309,7 +300,7 @@ static void test_barrels(void **state)
 
 /* Where the ghost is seen at the other position alone, a model with that beside
  * it has its polynomials, and its barrels stop all light. */
-static void test_models(void **state)
+TEST(models)
 {
     const bool ghosts[GHOSTS] = {[CUT] = true};
     struct glint_bake_options options;
@@ -318,7 +309,6 @@ static void test_models(void **state)
     unsigned char *data[3];
     size_t bytes[3];
 
-    (void)state;
     glint_bake_defaults(&options);
     options.max_deg = MAX_DEG;
     options.ghosts = ghosts;
@@ -338,7 +328,7 @@ static void test_models(void **state)
 }
 
 /* Another lens is not a position of this one. */
-static void test_refused(void **state)
+TEST(refused)
 {
     struct glint_prescription other = at[1];
     struct glint_bake_options options;
@@ -347,7 +337,6 @@ static void test_refused(void **state)
     unsigned char *data = NULL;
     size_t bytes;
 
-    (void)state;
     glint_bake_defaults(&options);
     other.n_surfaces -= 2;
     options.beside = &other;
@@ -362,14 +351,4 @@ static void test_refused(void **state)
         GLINT_E_ARGUMENT);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_joined),  cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_boxes),   cmocka_unit_test(test_rays),
-        cmocka_unit_test(test_barrels), cmocka_unit_test(test_models),
-        cmocka_unit_test(test_refused),
-    };
-
-    return cmocka_run_group_tests_name("beside", tests, open_lens, NULL);
-}
+TEST_GROUP(open_lens, NULL);

@@ -3,13 +3,8 @@
  * Lights beyond 60 degrees: which lenses have the rules for them, and barrels
  * that light of a fisheye grazes. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "bake/fit/zone_fit.h"
 #include "bake/visible/visible.h"
@@ -28,19 +23,16 @@ static void open_ghost(const char *name, double f_number, int ghost,
     struct glint_error error = {""};
 
     load_lens(&lens, name);
-    assert_int_equal(glint_prescription_set_f_number(&lens, f_number, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_setup_init(&setup, &lens, 0, 0, band_nm, 2, &error),
-                     GLINT_OK);
+    assert_ok(glint_prescription_set_f_number(&lens, f_number, &error));
+    assert_ok(glint_setup_init(&setup, &lens, 0, 0, band_nm, 2, &error));
     glint_visible_init(&visible, &setup, ghost, 12.65, band_nm);
     glint_visible_reach(&visible, max_deg);
 }
 
-static void test_reach(void **state)
+TEST(reach)
 {
     static struct glint_visible part;
 
-    (void)state;
     open_ghost("wide/fisheye-zuiko-8", 11, 37, 60);
     assert_false(visible.far || visible.wide);
     open_ghost("wide/fisheye-zuiko-8", 11, 37, 61);
@@ -74,11 +66,10 @@ static const double grazed_deg[2] = {82.85, 83.25};
 /* Rays of this ghost pass the second surface, nearly a half sphere, within
  * 0.003 of its rim, and are lost beyond: it stops a part of the light, though
  * no ray gets past by 1e-3. */
-static void test_grazed_barrel(void **state)
+TEST(grazed_barrel)
 {
     static struct glint_zone_rays rays;
 
-    (void)state;
     choose(GRAZED, grazed_deg, true, &rays);
     assert_int_equal(rays.n_barrels, 1);
     assert_int_equal(visible.path[0].event[rays.barrel[0]].surface, 1);
@@ -90,12 +81,11 @@ static void test_grazed_barrel(void **state)
 /* The barrel that stops most of the rays that get through the glass comes
  * first, though others stop more of all. Where a ray misses a surface it is
  * outside that, which a barrel there can tell: four stop all. */
-static void test_first_barrel(void **state)
+TEST(first_barrel)
 {
     static struct glint_zone_rays rays;
     static const double deg[2] = {80, 84};
 
-    (void)state;
     choose(24, deg, true, &rays);
     assert_int_equal(visible.path[0].event[rays.barrel[0]].surface, 1);
     assert_true(rays.missed_cut <= 1e-3);
@@ -144,8 +134,7 @@ static void fit(bool far, int stopped, struct glint_fitted_system *system,
         buffers.rays.at[RAY_EXCESS][i] = 2;
     aim = glint_zone_aim_of(&tolerance, &zone, &buffers.rays);
     *system = (struct glint_fitted_system){.ghost = GRAZED};
-    assert_int_equal(glint_zone_fit(&task, &aim, &buffers, system, errors),
-                     GLINT_OK);
+    assert_ok(glint_zone_fit(&task, &aim, &buffers, system, errors));
 }
 
 static void drop(struct glint_fitted_system *system)
@@ -184,12 +173,11 @@ static double barrel_off(const struct glint_fitted_system *system)
 
 /* Within 0.003 of its rim lies all of the ghost: the barrel is fitted to less
  * than a hundredth of that, and of other lights, where it hardly shows, not. */
-static void test_fit_of_grazed_barrel(void **state)
+TEST(fit_of_grazed_barrel)
 {
     struct glint_fitted_system system;
     struct glint_zone_errors errors;
 
-    (void)state;
     for (int far = 0; far < 2; far++) {
         fit(far, 0, &system, &errors);
         assert_true((barrel_off(&system) < 1e-5) == far);
@@ -199,12 +187,11 @@ static void test_fit_of_grazed_barrel(void **state)
 
 /* Of lights so far off, rays that get through though they should not are errors
  * of outlines: a tenth of those that are seen is five times what is allowed. */
-static void test_leaks(void **state)
+TEST(leaks)
 {
     struct glint_fitted_system system;
     struct glint_zone_errors errors;
 
-    (void)state;
     fit(true, 0, &system, &errors);
     assert_true(errors.outlines < 1);
     drop(&system);
@@ -230,15 +217,4 @@ static int tear_down(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reach),
-        cmocka_unit_test(test_grazed_barrel),
-        cmocka_unit_test(test_first_barrel),
-        cmocka_unit_test(test_fit_of_grazed_barrel),
-        cmocka_unit_test(test_leaks),
-    };
-
-    return cmocka_run_group_tests_name("far", tests, set_up, tear_down);
-}
+TEST_GROUP(set_up, tear_down);

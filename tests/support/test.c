@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+#include "support/test.h"
+
+#include <string.h>
+
+static struct CMUnitTest tests[64];
+static size_t n_tests;
+static CMFixtureFunction open_group, close_group;
+
+void test_add(const char *name, CMUnitTestFunction run)
+{
+    if (n_tests < sizeof tests / sizeof *tests)
+        tests[n_tests] = (struct CMUnitTest){name, run, NULL, NULL, NULL};
+    n_tests++;
+}
+
+void test_group(CMFixtureFunction open, CMFixtureFunction close)
+{
+    open_group = open;
+    close_group = close;
+}
+
+int main(int argc, char **argv)
+{
+    const char *const name = argc ? strrchr(*argv, '/') : NULL;
+
+    if (n_tests > sizeof tests / sizeof *tests)
+        return 99; /* too many for the table */
+    return _cmocka_run_group_tests(name ? name + 1 : "tests", tests, n_tests,
+                                   open_group, close_group);
+}

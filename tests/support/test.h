@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Unit tests of cmocka that register themselves:
+ *
+ *   TEST(rejects_a_truncated_header)
+ *   {
+ *       assert_int_equal(read(bytes, 3), GLINT_E_FORMAT);
+ *   }
+ *
+ * main(), in test.c, runs those of a program in the order of the source. */
+#ifndef GLINT_TESTS_SUPPORT_TEST_H
+#define GLINT_TESTS_SUPPORT_TEST_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#define TEST(name)                                            \
+    static void test_##name(void);                            \
+    static void run_##name(void **state)                      \
+    {                                                         \
+        (void)state;                                          \
+        test_##name();                                        \
+    }                                                         \
+    __attribute__((constructor)) static void add_##name(void) \
+    {                                                         \
+        test_add("test_" #name, run_##name);                  \
+    }                                                         \
+    static void test_##name(void)
+
+/* OPEN runs before a program's tests, CLOSE after them; NULL: nothing. */
+#define TEST_GROUP(open, close)                                \
+    __attribute__((constructor)) static void group_tests(void) \
+    {                                                          \
+        test_group(open, close);                               \
+    }                                                          \
+    struct test_group
+
+/* GLINT_OK and EXIT_OK. */
+#define assert_ok(status) assert_int_equal(status, 0)
+
+void test_add(const char *name, CMUnitTestFunction run);
+void test_group(CMFixtureFunction open, CMFixtureFunction close);
+
+#endif
