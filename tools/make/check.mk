@@ -82,7 +82,7 @@ test_script := $(if $(test_bin)$(replay_bin),,$(test_script))
 test:
 	@tools/make/deps "unit tests" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory run-test
-run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/glint-measure $(OUT)/pan $(OUT)/scene_exact $(OUT)/stone_models $(example_bins) $(embed_bins))
+run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/glint-measure $(OUT)/pan $(OUT)/scene_exact $(example_bins) $(embed_bins))
 	@[ -n "$^" ] || { echo 'TEST is one of these, or a file in tests/cli or tests/hosts:' $(UNIT) $(notdir $(replay_bins)) >&2; exit 2; }
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run -v $(test_bin) -- $(replay_bin) -- $(test_script)
 # What a release must pass; durations stand in tests/README.md.

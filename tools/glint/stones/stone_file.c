@@ -338,16 +338,3 @@ void stone_file_close(struct stone_file *file)
     free(file->data);
     *file = (struct stone_file){.data = NULL};
 }
-
-enum glint_status stone_file_rows(const struct tool *tool, const char *path,
-                                  struct glint_scatter_rows *rows,
-                                  struct glint_error *error)
-{
-    struct source s = {.mask = NULL};
-    enum glint_status status = read_source(tool, path, NULL, NULL, &s, error);
-
-    if (status == GLINT_OK)
-        status = make_rows(&s, NULL, rows, error);
-    close_source(&s);
-    return status;
-}

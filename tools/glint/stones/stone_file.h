@@ -39,11 +39,6 @@ stone_file_read(const struct tool *tool, const char *path,
                 bool anew, struct stone_file *file, struct glint_error *error);
 void stone_file_close(struct stone_file *file);
 
-/* Computes ROWS of the text PATH again, or reads those that it names. */
-enum glint_status stone_file_rows(const struct tool *tool, const char *path,
-                                  struct glint_scatter_rows *rows,
-                                  struct glint_error *error);
-
 /* Prints what is in FILE; with --json, as one object. */
 void stone_file_print(const struct tool *tool, const struct stone_file *file);
 

@@ -74,9 +74,6 @@ void html_row(FILE *file, const char *tag, const char *format, ...)
 /* Writes RGB[HEIGHT][WIDTH][3] as a data: URI of a PNG (png.c). */
 void html_png(FILE *file, const uint8_t *rgb, int width, int height);
 
-/* Writes RGB[HEIGHT][WIDTH][3] as PNG; returns false if memory is short. */
-bool plot_png(FILE *file, const uint8_t *rgb, int width, int height);
-
 void html_end(FILE *file);
 
 #endif

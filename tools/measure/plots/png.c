@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * PNG, also as a data: URI. Its pixels are stored, not compressed, so that no
+ * PNG as a data: URI. Its pixels are stored, not compressed, so that no
  * library is needed; pages, which have many, take the image plug-in where it
  * is.
  */
@@ -172,15 +172,4 @@ void html_png(FILE *file, const uint8_t *rgb, int width, int height)
     }
     free(stored.at);
     free(small.at);
-}
-
-bool plot_png(FILE *file, const uint8_t *rgb, int width, int height)
-{
-    const struct bytes b = png_of(rgb, width, height);
-
-    if (!b.at)
-        return false;
-    fwrite(b.at, 1, b.n, file);
-    free(b.at);
-    return true;
 }
