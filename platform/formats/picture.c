@@ -809,7 +809,6 @@ bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path)
 enum glint_status glint_kept_copy(const struct glint_kept *kept,
                                   const char *path, struct glint_error *error)
 {
-    struct glint_output out;
     uint8_t *data;
     size_t bytes;
     enum glint_status status =
@@ -817,9 +816,7 @@ enum glint_status glint_kept_copy(const struct glint_kept *kept,
 
     if (status)
         return status;
-    status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
-    if (!status)
-        status = glint_output_finish(&out, data, bytes, error);
+    status = glint_output_save(path, GLINT_OUTPUT_BINARY, data, bytes, error);
     free(data);
     return status;
 }

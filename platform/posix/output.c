@@ -580,6 +580,18 @@ enum glint_status glint_output_finish(struct glint_output *out,
                             error);
 }
 
+enum glint_status glint_output_save(const char *path,
+                                    enum glint_output_kind kind,
+                                    const void *data, size_t bytes,
+                                    struct glint_error *error)
+{
+    struct glint_output out;
+    const enum glint_status status = glint_output_open(&out, path, kind, error);
+
+    return status == GLINT_OK ? glint_output_finish(&out, data, bytes, error)
+                              : status;
+}
+
 struct text_stream {
     char **text;
     size_t *bytes, room;

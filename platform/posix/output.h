@@ -92,6 +92,12 @@ enum glint_status glint_output_finish(struct glint_output *out,
                                       const void *data, size_t bytes,
                                       struct glint_error *error);
 
+/* Does so for a new file PATH. */
+enum glint_status glint_output_save(const char *path,
+                                    enum glint_output_kind kind,
+                                    const void *data, size_t bytes,
+                                    struct glint_error *error);
+
 /* Returns a stream that appends to *TEXT, a malloc'ed string of *BYTES bytes,
  * or NULL without memory. Unlike open_memstream() of glibc it keeps in mind
  * that a write failed. *TEXT is complete once the stream is closed, belongs to

@@ -214,24 +214,13 @@ static void write_plot(const struct coat *c, FILE *file)
 
 static int save(const struct tool *tool, const struct coat *c)
 {
-    struct glint_output out;
-    struct glint_error error;
-    enum glint_status status = GLINT_E_MEMORY;
     char *text = NULL;
     size_t bytes = 0;
     FILE *file = glint_memory_file_open(&text, &bytes);
 
-    error.text[0] = 0;
-    if (file) {
+    if (file)
         write_plot(c, file);
-        if (glint_memory_file_close(file))
-            status =
-                glint_output_open(&out, c->output, GLINT_OUTPUT_TEXT, &error);
-        if (status == GLINT_OK)
-            status = glint_output_finish(&out, text, bytes, &error);
-    }
-    free(text);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+    return tool_save_text(tool, c->output, file, &text, &bytes);
 }
 
 /* ----------------------------------------------------------------- options */

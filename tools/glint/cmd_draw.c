@@ -110,25 +110,14 @@ static int parse(struct tool *tool, int argc, char **argv, struct draw *o)
 
 static int save(const struct tool *tool, const struct draw *o)
 {
-    struct glint_error error = {""};
-    enum glint_status status = GLINT_E_MEMORY;
-    struct glint_output out;
     char *text = NULL;
     size_t bytes = 0;
-    int shown = 0;
     FILE *file = glint_memory_file_open(&text, &bytes);
+    const int shown = file ? lens_drawing_write(&o->drawing, file) : 0;
+    const int code = tool_save_text(tool, o->output, file, &text, &bytes);
 
-    if (file) {
-        shown = lens_drawing_write(&o->drawing, file);
-        if (glint_memory_file_close(file))
-            status =
-                glint_output_open(&out, o->output, GLINT_OUTPUT_TEXT, &error);
-        if (status == GLINT_OK)
-            status = glint_output_finish(&out, text, bytes, &error);
-    }
-    free(text);
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
+    if (code != EXIT_OK)
+        return code;
     if (shown == 0 && !tool->quiet)
         fprintf(stderr, "glint draw: no ray of these gets through\n");
     if (tool->json)

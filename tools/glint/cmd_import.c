@@ -208,9 +208,9 @@ static int save(const struct tool *tool, const struct import *o,
 {
     struct glint_prescription read;
     struct glint_error error = {""};
-    struct glint_output out;
     char name[160];
     enum glint_status status;
+    int code;
 
     snprintf(name, sizeof name, "%.120s as a table", o->lens.file);
     status = glint_prescription_parse(&read, text, bytes, name, &error);
@@ -218,14 +218,10 @@ static int save(const struct tool *tool, const struct import *o,
         tool_fail(tool, status, error.text);
         return EXIT_INPUT;
     }
-    status = glint_output_open(&out, o->output, GLINT_OUTPUT_TEXT, &error);
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, text, bytes, &error);
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
-    if (tool->json)
+    code = tool_save(tool, o->output, GLINT_OUTPUT_TEXT, text, bytes);
+    if (code == EXIT_OK && tool->json)
         print_json(&o->lens, &read);
-    return EXIT_OK;
+    return code;
 }
 
 static int run(struct tool *tool, struct import *o, const char *path)

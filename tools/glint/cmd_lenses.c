@@ -254,14 +254,8 @@ static void print_html(struct lenses *l, const char *name,
 static int save_model(const struct tool *tool, const char *path,
                       const struct model_file *model)
 {
-    struct glint_error error = {""};
-    struct glint_output out;
-    enum glint_status status =
-        glint_output_open(&out, path, GLINT_OUTPUT_BINARY, &error);
-
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, model->data, model->bytes, &error);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+    return tool_save(tool, path, GLINT_OUTPUT_BINARY, model->data,
+                     model->bytes);
 }
 
 /* Puts the model of E into the folder, unless it is there already. It is copied
@@ -370,36 +364,28 @@ static int tell_none(const struct lenses *l)
  * list. */
 static int run_page(struct lenses *l)
 {
-    struct glint_error error = {""};
-    enum glint_status status = GLINT_E_MEMORY;
-    struct glint_output out;
     char *text = NULL;
     size_t bytes = 0;
+    int n = -1, code;
 
     l->page = glint_memory_file_open(&text, &bytes);
     if (l->page) {
-        int n;
-
         l->n_files = lens_files_each(stop_looking, l);
         tool_progress_start(&l->progress, l->tool, "lenses");
         n = lens_files_each(one, l);
         tool_progress_end(&l->progress);
         page_end(l->page);
-        if (glint_memory_file_close(l->page) && n >= 0)
-            status = GLINT_OK;
-        if (status == GLINT_OK && l->n == 0) {
-            free(text);
-            return l->code == EXIT_OK ? tell_none(l) : l->code;
-        }
-        if (status == GLINT_OK)
-            status =
-                glint_output_open(&out, l->html, GLINT_OUTPUT_TEXT, &error);
-        if (status == GLINT_OK)
-            status = glint_output_finish(&out, text, bytes, &error);
+        if (n < 0 || l->n == 0)
+            fclose(l->page);
     }
-    free(text);
-    return status == GLINT_OK ? l->code
-                              : tool_fail(l->tool, status, error.text);
+    if (n < 0 || l->n == 0) {
+        free(text);
+        return n < 0                ? tool_fail(l->tool, GLINT_E_MEMORY, NULL)
+               : l->code == EXIT_OK ? tell_none(l)
+                                    : l->code;
+    }
+    code = tool_save_text(l->tool, l->html, l->page, &text, &bytes);
+    return code == EXIT_OK ? l->code : code;
 }
 
 static int run(struct lenses *l)

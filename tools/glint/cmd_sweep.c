@@ -3,13 +3,14 @@
  * glint sweep: measures what accuracy costs, dial by dial and together.
  */
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "linux/instructions.h"
 #include "posix/workers.h"
-#include "measure/report_file.h"
 #include "measure/sweep.h"
 #include "options/command_line.h"
 #include "posix/output.h"
@@ -117,14 +118,14 @@ static const struct file files[] = {{"sweep.csv", sweep_write_csv},
 
 static int save(const struct sweep *s, const char *folder, const struct file *f)
 {
-    char *text = NULL;
+    char *text = NULL, path[PATH_MAX];
     size_t bytes = 0;
     FILE *file = glint_memory_file_open(&text, &bytes);
 
-    if (!file)
-        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
-    f->write(s, file);
-    return report_file_save(s->tool, folder, f->name, file, &text, &bytes);
+    if (file)
+        f->write(s, file);
+    snprintf(path, sizeof path, "%s/%s", folder, f->name);
+    return tool_save_text(s->tool, path, file, &text, &bytes);
 }
 
 static int save_all(const struct sweep *s, const char *folder)
@@ -170,17 +171,22 @@ static int measure(struct sweep *s)
 
 static int run(struct sweep *s, const struct asked *a)
 {
-    int code = EXIT_OK;
+    char path[PATH_MAX];
+    int code;
 
     for (int i = 0; i < s->n_lenses; i++)
         if (tool_is_model(s->lens[i]))
             return tool_usage(s->tool,
                               "%s is a model: exact pictures need the table",
                               s->lens[i]);
-    if (!report_file_folder(a->folder)) {
+    if (mkdir(a->folder, 0777) != 0 && errno != EEXIST) {
         fprintf(stderr, "glint sweep: %s: %s\n", a->folder, strerror(errno));
         return EXIT_OUTPUT;
     }
+    snprintf(path, sizeof path, "%s/%s", a->folder, files->name);
+    code = tool_check_output(s->tool, path);
+    if (code != EXIT_OK)
+        return code;
     if (glint_pool_create(&s->one, 1) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     add_cases(s, a);

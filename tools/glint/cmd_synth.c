@@ -117,20 +117,6 @@ static bool line_path(char path[SYNTH_PATH_BYTES], const struct synth_set *set,
     return file_path(path, set->folder, &lines, number, "json");
 }
 
-/* Writes TEXT as the file PATH, whole. */
-static int write_text(const struct tool *tool, const char *path,
-                      const char *text, size_t bytes)
-{
-    struct glint_output out;
-    struct glint_error error = {""};
-    enum glint_status status =
-        glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error);
-
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, text, bytes, &error);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
-}
-
 /* ------------------------------------------------------------------ folders */
 
 /* Makes the folder PATH and those above it, up to the last slash. */
@@ -254,9 +240,9 @@ static int keep_settings(const struct tool *tool, const struct synth_set *set,
     char path[SYNTH_PATH_BYTES];
 
     snprintf(path, sizeof path, "%s/synth.json", set->folder);
-    return access(path, F_OK) == 0
-               ? EXIT_OK
-               : write_text(tool, path, settings, strlen(settings));
+    return access(path, F_OK) == 0 ? EXIT_OK
+                                   : tool_save(tool, path, GLINT_OUTPUT_TEXT,
+                                               settings, strlen(settings));
 }
 
 /* -------------------------------------------------------------------- items */
@@ -331,7 +317,7 @@ static int put_item(const struct tool *tool, const struct synth_set *set,
     if (status != GLINT_OK)
         code = tool_fail(tool, status, error.text);
     else if (line)
-        code = write_text(tool, path, line, strlen(line));
+        code = tool_save(tool, path, GLINT_OUTPUT_TEXT, line, strlen(line));
     free(line);
     return code;
 }

@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "posix/output.h"
 #include "options/command_line.h"
 
 int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
@@ -31,18 +30,6 @@ int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
     if (!tool->written)
         return tool_usage(tool, "needs -o OUT");
     return tool_check_output(tool, tool->written) == EXIT_OK ? -1 : EXIT_OUTPUT;
-}
-
-int bake_line_write(const struct tool *tool, const void *data, size_t bytes)
-{
-    struct glint_error error = {""};
-    struct glint_output out;
-    enum glint_status status =
-        glint_output_open(&out, tool->written, GLINT_OUTPUT_BINARY, &error);
-
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, data, bytes, &error);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
 bool bake_line_tells(const struct tool *tool)

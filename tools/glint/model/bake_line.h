@@ -7,7 +7,7 @@
  *     if (code >= 0 || !tool.written)
  *         return code;
  *     ... bakes argv[optind] ...
- *     code = bake_line_write(&tool, data, bytes);
+ *     code = tool_save(&tool, tool.written, GLINT_OUTPUT_BINARY, data, bytes);
  */
 #ifndef GLINT_TOOLS_MODEL_BAKE_LINE_H
 #define GLINT_TOOLS_MODEL_BAKE_LINE_H
@@ -35,9 +35,6 @@ typedef int bake_line_fn(struct tool *tool, void *line, int c,
 int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,
                     void *line, const char *text);
-
-/* Writes DATA to TOOL->written, all or nothing. Returns an exit code. */
-int bake_line_write(const struct tool *tool, const void *data, size_t bytes);
 
 /* Returns whether standard output is free for a report. */
 bool bake_line_tells(const struct tool *tool);

@@ -106,16 +106,13 @@ static enum glint_status clear_way(const char *path, struct glint_error *error)
 enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                                    struct glint_error *error)
 {
-    struct glint_output out;
     enum glint_status status;
 
     cache_file_make_folders(path);
     status = clear_way(path, error);
-    if (status == GLINT_OK)
-        status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, data, bytes, error);
-    return status;
+    return status == GLINT_OK ? glint_output_save(path, GLINT_OUTPUT_BINARY,
+                                                  data, bytes, error)
+                              : status;
 }
 
 static bool lock_name(char *name, size_t bytes, const char *path)

@@ -66,7 +66,8 @@ int cmd_bake_motion(struct tool *tool, int argc, char **argv)
     code = motion_file_open(tool, argv[optind], &o, &file);
     if (code != EXIT_OK)
         return code;
-    code = bake_line_write(tool, file.data, file.bytes);
+    code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
+                     file.bytes);
     if (code == EXIT_OK && bake_line_tells(tool))
         motion_file_print(tool, &file);
     motion_file_close(&file);

@@ -155,22 +155,15 @@ int motion_file_poses(const struct tool *tool, struct motion_file *file,
     enum { LINE = 160 };
     const uint32_t n = file->motion.header.n_frames;
     char *const text = malloc(((size_t)n + 1) * LINE);
-    struct glint_error error = {""};
-    struct glint_output out;
-    enum glint_status status = GLINT_E_MEMORY;
-    size_t bytes = 0;
+    size_t bytes;
+    int code;
 
-    if (text) {
-        bytes = (size_t)snprintf(text, LINE, "frame,x,y,z,qw,qx,qy,qz\n");
-        for (uint32_t k = 0; k < n; k++)
-            bytes += (size_t)print_pose(file, k, text + bytes, LINE);
-        status = glint_output_open(&out, to, GLINT_OUTPUT_TEXT, &error);
-    }
-    if (status == GLINT_OK)
-        status =
-            glint_output_finish(&out, (unsigned char *)text, bytes, &error);
+    if (!text)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    bytes = (size_t)snprintf(text, LINE, "frame,x,y,z,qw,qx,qy,qz\n");
+    for (uint32_t k = 0; k < n; k++)
+        bytes += (size_t)print_pose(file, k, text + bytes, LINE);
+    code = tool_save(tool, to, GLINT_OUTPUT_TEXT, text, bytes);
     free(text);
-    return status == GLINT_OK
-               ? EXIT_OK
-               : tool_fail(tool, status, error.text[0] ? error.text : NULL);
+    return code;
 }

@@ -17,7 +17,6 @@
 #include "linux/sets.h"
 #include "posix/ending.h"
 #include "posix/error.h"
-#include "posix/output.h"
 #include "posix/workers.h"
 
 /* Copies the message to the tool's cause, if it has one, and prints it. */
@@ -193,6 +192,28 @@ double tool_seconds(void)
 
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+int tool_save(const struct tool *tool, const char *path,
+              enum glint_output_kind kind, const void *data, size_t bytes)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        glint_output_save(path, kind, data, bytes, &error);
+
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+int tool_save_text(const struct tool *tool, const char *path, FILE *file,
+                   char **text, const size_t *bytes)
+{
+    const int code =
+        file && glint_memory_file_close(file)
+            ? tool_save(tool, path, GLINT_OUTPUT_TEXT, *text, *bytes)
+            : tool_fail(tool, GLINT_E_MEMORY, NULL);
+
+    free(*text);
+    return code;
 }
 
 int tool_check_output(const struct tool *tool, const char *path)

@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #include "glint/glint.h"
+#include "posix/output.h"
 
 enum exit_code {
     EXIT_OK = 0,
@@ -102,6 +103,14 @@ int tool_check_output(const struct tool *tool, const char *path);
  * /dev/stdout. Returns EXIT_OK, or the code of tool_usage(). */
 int tool_check_ending(struct tool *tool, const char *path, const char *ending,
                       const char *what);
+
+/* Write DATA, or the TEXT of a FILE of glint_memory_file_open(), NULL without
+ * memory, to the file PATH. The latter closes FILE and frees TEXT. They return
+ * an exit code. */
+int tool_save(const struct tool *tool, const char *path,
+              enum glint_output_kind kind, const void *data, size_t bytes);
+int tool_save_text(const struct tool *tool, const char *path, FILE *file,
+                   char **text, const size_t *bytes);
 
 /* ----------------------------------------------------------------- progress */
 

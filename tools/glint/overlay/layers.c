@@ -147,7 +147,6 @@ static enum glint_status save(const char *name,
                                              .height = layers->height,
                                              .rgb = layers->layer->rgb};
     const struct glint_oiio *oiio;
-    struct glint_output out;
     enum glint_status status;
     void *data = NULL;
     size_t bytes = 0;
@@ -158,9 +157,8 @@ static enum glint_status save(const char *name,
     if (status == GLINT_OK)
         status = oiio->encode_layers(&data, &bytes, name, layers, error);
     if (status == GLINT_OK)
-        status = glint_output_open(&out, name, GLINT_OUTPUT_BINARY, error);
-    if (status == GLINT_OK)
-        status = glint_output_finish(&out, data, bytes, error);
+        status =
+            glint_output_save(name, GLINT_OUTPUT_BINARY, data, bytes, error);
     free(data);
     return status;
 }

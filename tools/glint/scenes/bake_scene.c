@@ -28,7 +28,8 @@ int cmd_bake_scene(struct tool *tool, int argc, char **argv)
     code = baked_scene_open(tool, argv[optind], &scene);
     if (code != EXIT_OK)
         return code;
-    code = bake_line_write(tool, scene.data, scene.bytes);
+    code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, scene.data,
+                     scene.bytes);
     if (code == EXIT_OK && bake_line_tells(tool))
         baked_scene_print(tool, &scene);
     baked_scene_close(&scene);

@@ -390,7 +390,8 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
                                  &file);
     if (code != EXIT_OK)
         return code;
-    code = bake_line_write(tool, file.data, file.bytes);
+    code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
+                     file.bytes);
     if (code == EXIT_OK && bake_line_tells(tool))
         environment_file_print(tool, &file);
     environment_file_close(&file);

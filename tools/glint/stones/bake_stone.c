@@ -80,7 +80,8 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
         stone_file_read(tool, argv[optind], over, &line, true, &file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    code = bake_line_write(tool, file.data, file.bytes);
+    code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
+                     file.bytes);
     if (code == EXIT_OK && bake_line_tells(tool))
         stone_file_print(tool, &file);
     stone_file_close(&file);
