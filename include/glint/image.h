@@ -73,6 +73,11 @@ size_t glint_image_bytes(enum glint_pixel_format format, int width, int height);
  * without padding; format, width and height of IMAGE must be set. */
 void glint_image_place(struct glint_image *image, void *mem);
 
+/* Returns a picture whose planes are placed so in MEM; coding is full-range
+ * BT.601 with the curve of sRGB. */
+struct glint_image glint_image_over(void *mem, enum glint_pixel_format format,
+                                    int width, int height);
+
 /* Divides IMAGE evenly into COLUMNS x ROWS parts, 1 .. 1024 each way, and
  * writes to RGB the full-range 8-bit codes R', G', B' of the pixel in the
  * middle of each part, row by row; zeros for a linear picture, which has no

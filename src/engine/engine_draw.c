@@ -40,13 +40,11 @@ static enum glint_status draw_as_for_codes(struct glint_frame *f,
                                            struct glint_engine_report *report)
 {
     const size_t samples = 3 * (size_t)f->view.width * (size_t)f->view.height;
-    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
-                                .width = f->view.width,
-                                .height = f->view.height};
+    struct glint_image layer =
+        glint_image_over(rgb, GLINT_LINEAR_Q20, f->view.width, f->view.height);
     enum glint_status status;
 
     /* RGB holds integers until they are converted. */
-    glint_image_place(&layer, rgb);
     f->picture.for_codes = true;
     status = glint_frame_draw(f, lamps, n, scale, &layer, report);
     f->picture.for_codes = false;

@@ -109,14 +109,12 @@ static void take_accounts(struct glint_explain *e)
 static void draw(struct glint_explain *e, int ghost, int light, int wave)
 {
     const struct glint_view *view = &e->frame->view;
-    struct glint_image image = {.format = GLINT_LINEAR_Q20,
-                                .width = view->width,
-                                .height = view->height};
+    struct glint_image image = glint_image_over(e->linear_q20, GLINT_LINEAR_Q20,
+                                                view->width, view->height);
 
     memset(e->linear_q20, 0,
            3 * (size_t)view->width * (size_t)view->height *
                sizeof *e->linear_q20);
-    glint_image_place(&image, e->linear_q20);
     glint_flare_keep(e->frame->memory.flare, ghost, light, wave);
     glint_flare_draw(e->frame->memory.flare, &image);
 }

@@ -136,14 +136,12 @@ static enum glint_status draw_once(struct proxy *p,
                                    struct glint_response_light *light)
 {
     const size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
-    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
-                                .width = p->view.width,
-                                .height = p->view.height};
+    struct glint_image layer = glint_image_over(p->linear_q20, GLINT_LINEAR_Q20,
+                                                p->view.width, p->view.height);
     const double unit = exp2(-20 - by);
     struct glint_engine_report report;
     enum glint_status status;
 
-    glint_image_place(&layer, p->linear_q20);
     memset(p->linear_q20, 0, 3 * pixels * sizeof *p->linear_q20);
     status = glint_frame_draw(&p->frame, lamps, n, exp2(by), &layer, &report);
     for (size_t i = 0; i < 3 * pixels; i++)

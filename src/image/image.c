@@ -98,3 +98,13 @@ void glint_image_place(struct glint_image *image, void *mem)
               glint_image_plane_height(image->format, i, image->height);
     }
 }
+
+struct glint_image glint_image_over(void *mem, enum glint_pixel_format format,
+                                    int width, int height)
+{
+    struct glint_image image = {
+        .format = format, .width = width, .height = height};
+
+    glint_image_place(&image, mem);
+    return image;
+}

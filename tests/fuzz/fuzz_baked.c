@@ -17,13 +17,11 @@ enum { SIDE = 10, ROOM = 1 << 22, ONE_Q30 = 1 << 30 };
 static void draw(struct glint_scene *scene, enum glint_pixel_format format)
 {
     static uint8_t pixels[12 * SIDE * SIDE];
-    struct glint_image image = {
-        .format = format, .width = SIDE, .height = SIDE};
+    struct glint_image image = glint_image_over(pixels, format, SIDE, SIDE);
     struct glint_scene_lamp lamps[GLINT_SCENE_MAX_LIGHTS];
     struct glint_scene_stats stats;
     int n;
 
-    glint_image_place(&image, pixels);
     glint_scene_begin(scene, &stats);
     glint_scene_draw(scene, &image);
     n = glint_scene_lights(scene, lamps);

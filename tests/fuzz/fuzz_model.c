@@ -167,8 +167,8 @@ static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
                                            .fineness = 8,
                                            .faintest = {1 << 30, -42},
                                            .only_ghost = -1};
-    struct glint_image image = {
-        .format = GLINT_YUYV, .width = SIDE, .height = SIDE};
+    struct glint_image image =
+        glint_image_over(picture, GLINT_YUYV, SIDE, SIDE);
     const struct glint_flare_config cfg = {.width = SIDE,
                                            .height = SIDE,
                                            .tile_log2 = 4,
@@ -184,7 +184,6 @@ static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
     glint_flare_plan(flare, &rays, beam, 2);
     glint_flare_bin(flare, &stats);
     require(stats.bundles <= cfg.max_bundles && stats.refs <= cfg.max_refs);
-    glint_image_place(&image, picture);
     glint_flare_draw(flare, &image);
 }
 

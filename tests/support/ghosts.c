@@ -89,11 +89,10 @@ struct glint_flare *open_flare(struct glint_flare_config *c, void **mem)
 
 struct glint_image linear_image(int32_t *pixels)
 {
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(pixels, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
 
     memset(pixels, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
-    glint_image_place(&image, pixels);
     return image;
 }
 

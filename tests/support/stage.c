@@ -206,11 +206,9 @@ bool stage_exact(struct stage *stage, const struct glint_lamp *lamps, int n,
 bool stage_codes(struct stage *stage, const struct glint_lamp *lamps, int n,
                  uint8_t *codes)
 {
-    struct glint_image image = {.format = GLINT_RGB24,
-                                .width = stage->view.width,
-                                .height = stage->view.height};
+    struct glint_image image = glint_image_over(
+        codes, GLINT_RGB24, stage->view.width, stage->view.height);
 
-    glint_image_place(&image, codes);
     return glint_frame_draw(&stage->frame, lamps, n, 1, &image,
                             &stage->drawn) == GLINT_OK ||
            refuse("no picture in codes");

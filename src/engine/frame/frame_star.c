@@ -337,14 +337,13 @@ enum glint_status glint_frame_star_alone(struct glint_frame *frame,
 {
     const int width = frame->view.width, height = frame->view.height;
     const size_t samples = 3 * (size_t)width * (size_t)height;
-    struct glint_image layer = {
-        .format = GLINT_LINEAR_Q20, .width = width, .height = height};
+    struct glint_image layer =
+        glint_image_over(linear_q20, GLINT_LINEAR_Q20, width, height);
     /* No pixel gets more than all of a lamp's light. */
     const double most = brightest(lamps, n) * frame->star.share;
     const double scale = most > 0 ? exp2(10 - ceil(log2(most))) : 1;
     enum glint_status status;
 
-    glint_image_place(&layer, linear_q20);
     memset(linear_q20, 0, samples * sizeof *linear_q20);
     status = glint_frame_star_set(frame, lamps, n, scale, &layer);
     if (status != GLINT_OK || !frame->star.is_set)

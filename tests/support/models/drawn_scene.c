@@ -40,12 +40,11 @@ void drawn_close(struct drawn *d)
 
 void drawn_draw(struct drawn *d, int width, int height, int32_t *light_q20)
 {
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = width, .height = height};
+    struct glint_image image =
+        glint_image_over(light_q20, GLINT_LINEAR_Q20, width, height);
 
     memset(light_q20, 0,
            3 * (size_t)width * (size_t)height * sizeof *light_q20);
-    glint_image_place(&image, light_q20);
     assert_ok(scene_frame_draw(&d->frame, &image));
 }
 

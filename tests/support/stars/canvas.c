@@ -36,12 +36,11 @@ int64_t star_canvas_draw(struct star_canvas *c,
                          struct glint_real faintest,
                          enum glint_pixel_format format, void *mem)
 {
-    struct glint_image image = {
-        .format = format, .width = c->width, .height = c->height};
+    struct glint_image image =
+        glint_image_over(mem, format, c->width, c->height);
     int64_t pixels;
 
     memset(mem, 0, glint_image_bytes(format, c->width, c->height));
-    glint_image_place(&image, mem);
     glint_star_set(c->star, t, lights, n, faintest);
     pixels = glint_star_pixels(c->star);
     glint_star_draw(c->star, c->bare.flare, &image);

@@ -119,12 +119,10 @@ void moving_close(struct moving *d)
 
 void moving_draw(struct moving *d)
 {
-    struct glint_image image = {.format = GLINT_LINEAR_Q20,
-                                .width = MOVING_WIDTH,
-                                .height = MOVING_HEIGHT};
+    struct glint_image image = glint_image_over(d->light_q20, GLINT_LINEAR_Q20,
+                                                MOVING_WIDTH, MOVING_HEIGHT);
 
     memset(d->light_q20, 0, sizeof d->light_q20);
-    glint_image_place(&image, d->light_q20);
     assert_ok(scene_frame_draw(&d->frame, &image));
 }
 

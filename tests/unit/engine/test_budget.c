@@ -54,11 +54,9 @@ static struct glint_engine_report run(struct glint_frame *frame,
                                       double budget_ms, int n)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
-    struct glint_image image = {
-        .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
     struct glint_engine_report report;
 
-    glint_image_place(&image, px);
     glint_budget_init(&frame->budget, budget_ms);
     frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
     for (int i = 0; i < n; i++)
@@ -116,8 +114,7 @@ TEST(keeps_to_it)
 static int draw_whole(double ms, int from, double octaves, int n, bool *last)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
-    struct glint_image image = {
-        .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
     struct glint_engine_report report;
     struct glint_frame frame;
     int n_whole = 0;
@@ -125,7 +122,6 @@ static int draw_whole(double ms, int from, double octaves, int n, bool *last)
     machine = (struct machine){NULL, 4, 1, 1.3, 0.5, 0, 0};
     make(&frame);
     machine.frame = &frame;
-    glint_image_place(&image, px);
     run(&frame, 2.2, SETTLED);
     frame.budget.ms = ms;
     for (int i = from; i < GLINT_QUALITY_LEVELS; i++)
@@ -203,14 +199,12 @@ TEST(veil)
 TEST(new_lights)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
-    struct glint_image image = {
-        .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
     struct glint_engine_report one, three;
     struct glint_frame frame;
 
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
     make(&frame);
-    glint_image_place(&image, px);
     glint_budget_init(&frame.budget, 3);
     /* The clock stands still, so this rate is not corrected. */
     frame.budget.ms_per_minsn = 0.1;
@@ -228,8 +222,7 @@ TEST(new_lights)
 TEST(counts)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
-    struct glint_image image = {
-        .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
     struct glint_engine_report report;
     struct glint_cost coarse, fine, predicted;
     struct glint_frame frame;
@@ -238,7 +231,6 @@ TEST(counts)
 
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
     make(&frame);
-    glint_image_place(&image, px);
     frame.star.share = 1;
     frame.veil.glare = 0.02;
     frame.dials.fineness = 64;

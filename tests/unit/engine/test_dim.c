@@ -129,17 +129,14 @@ static void set_groups(double time, uint64_t *noise)
 static double light_of(double codes)
 {
     static int32_t light_q20[3 * W * H];
-    struct glint_image image = {.format = GLINT_LINEAR_Q20,
-                                .width = W,
-                                .height = H,
-                                .transfer = GLINT_TONE_SRGB};
+    struct glint_image image =
+        glint_image_over(light_q20, GLINT_LINEAR_Q20, W, H);
     double sum = 0;
 
     stage.frame.dials.dim_codes = codes;
     stage.frame.dials.cull_codes = 1e-3;
     stage.frame.picture.for_codes = true;
     memset(light_q20, 0, sizeof light_q20);
-    glint_image_place(&image, light_q20);
     assert_ok(
         glint_frame_draw(&stage.frame, lamps, LIGHTS, 1, &image, &stage.drawn));
     stage.frame.picture.for_codes = false;

@@ -19,15 +19,13 @@ enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 /* Draws two white lamps on grey into PX and returns that as a picture. */
 static struct glint_image picture(uint8_t *px)
 {
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
 
     memset(px, 40, BYTES);
     for (int k = 0; k < 2; k++)
         for (int y = 0; y < 4; y++)
             memset(px + 3 * ((30 + 50 * k + y) * WIDTH + 40 + 60 * k), 255,
                    3 * (size_t)(4 + 2 * k));
-    glint_image_place(&image, px);
     return image;
 }
 

@@ -88,13 +88,10 @@ static void make_even(struct glint_frame *frame, int fineness)
 static void draw(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
                  struct glint_engine_report *report)
 {
-    struct glint_image image = {.format = GLINT_RGB24,
-                                .width = WIDTH,
-                                .height = HEIGHT,
-                                .range = GLINT_RANGE_FULL};
+    struct glint_image image =
+        glint_image_over(rgb, GLINT_RGB24, WIDTH, HEIGHT);
 
     memset(rgb, 20, BYTES);
-    glint_image_place(&image, rgb);
     assert_ok(glint_frame_draw(frame, lamps, n, 1, &image, report));
 }
 

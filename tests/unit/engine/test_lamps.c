@@ -21,16 +21,13 @@ TEST(found_lamp)
 {
     static uint8_t rgb[3 * WIDTH * HEIGHT];
     const struct glint_view view = glint_view_fit(WIDTH, HEIGHT, 36, 24);
-    struct glint_image image = {.format = GLINT_RGB24,
-                                .width = WIDTH,
-                                .height = HEIGHT,
-                                .range = GLINT_RANGE_FULL};
+    struct glint_image image =
+        glint_image_over(rgb, GLINT_RGB24, WIDTH, HEIGHT);
     struct glint_lamp_detector finder = {.headroom_ev = 3, .max = 8};
     struct glint_lamp_finder_config cfg;
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     double x, y;
 
-    glint_image_place(&image, rgb);
     for (int i = 0; i < SIDE; i++)
         memset(rgb + 3 * ((Y0 + i) * WIDTH + X0), 255, 3 * SIDE);
     glint_lamp_finder_defaults(&cfg, WIDTH, HEIGHT);
@@ -64,11 +61,10 @@ TEST(tracked_lamps)
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX],
         still[GLINT_LAMP_DETECTOR_MAX];
     const struct glint_view view = glint_view_fit(W, H, 36, 24);
-    struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
+    struct glint_image image = glint_image_over(grey, GLINT_GREY, W, H);
     struct glint_lamp_detector finder = {.headroom_ev = 12, .max = 8};
     struct glint_lamp_finder_config cfg;
 
-    glint_image_place(&image, grey);
     draw_square(&image, 50, 60, 9);
     glint_lamp_finder_defaults(&cfg, W, H);
     assert_ok(glint_lamp_detector_open(&finder, &cfg));
@@ -102,12 +98,11 @@ TEST(lamp_in_glare)
     static uint8_t grey[W * H];
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     const struct glint_view view = glint_view_fit(W, H, 36, 24);
-    struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
+    struct glint_image image = glint_image_over(grey, GLINT_GREY, W, H);
     struct glint_lamp_detector finder = {.headroom_ev = -1, .max = 8};
     struct glint_lamp_finder_config cfg;
     double least;
 
-    glint_image_place(&image, grey);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) {
             const double r2 = pow(x - 150, 2) + pow(y - 90, 2);
@@ -135,11 +130,10 @@ TEST(most_lamps)
     static uint8_t grey[W * H];
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     const struct glint_view view = glint_view_fit(W, H, 36, 24);
-    struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
+    struct glint_image image = glint_image_over(grey, GLINT_GREY, W, H);
     struct glint_lamp_detector finder = {.headroom_ev = 0, .max = 4};
     struct glint_lamp_finder_config cfg;
 
-    glint_image_place(&image, grey);
     for (int i = 0; i < 12; i++)
         draw_square(&image, 20 + 50 * (i % 6), 40 + 100 * (i / 6),
                     3 + i * 5 % 12);

@@ -55,10 +55,9 @@ static void close_frames(void)
 static void draw_one(struct glint_frame *frame, int n, double scale,
                      uint8_t *codes, struct glint_engine_report *report)
 {
-    struct glint_image image = {.format = GLINT_RGB24, .width = W, .height = H};
+    struct glint_image image = glint_image_over(codes, GLINT_RGB24, W, H);
 
     memset(codes, 20, BYTES);
-    glint_image_place(&image, codes);
     assert_ok(glint_frame_draw(frame, lamps, n, scale, &image, report));
 }
 

@@ -273,11 +273,10 @@ TEST(no_room)
 
 static void draw(struct fixture *f, int32_t *px_q20)
 {
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
 
     memset(px_q20, 0, sizeof *px_q20 * 3 * N);
-    glint_image_place(&image, px_q20);
     glint_flare_draw(f->flare, &image);
 }
 
@@ -424,8 +423,8 @@ static void check_outside(int small_stop)
     for (int degrees = 0; degrees < 360; degrees += small_stop ? 90 : 15)
         for (int x_q28 = 1 << 27; x_q28 < 536870912;
              x_q28 += 1 << (small_stop ? 21 : 25)) {
-            struct glint_image image = {
-                .format = GLINT_LINEAR_Q20, .width = WIDE, .height = HIGH};
+            struct glint_image image =
+                glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDE, HIGH);
             struct glint_account a;
 
             f.rays.pixels_per_mm = real_of(100, 0);
@@ -448,7 +447,6 @@ static void check_outside(int small_stop)
             f.cfg.height = HIGH;
             bin(&f);
             memset(px_q20, 0, sizeof px_q20);
-            glint_image_place(&image, px_q20);
             glint_flare_draw(f.flare, &image);
             assert_true(light_in_middle(px_q20, WIDE, HIGH) == 0);
         }

@@ -226,8 +226,8 @@ TEST(untouched_stays)
 TEST(into_nothing)
 {
     static uint8_t bytes[2][3 * WIDTH * HEIGHT];
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(bytes[0], GLINT_RGB24, WIDTH, HEIGHT);
 
     struct glint_flare_config c = base_config();
     struct glint_flare_stats stats;
@@ -239,7 +239,6 @@ TEST(into_nothing)
         add_ghost(f, &ghosts[i]);
     glint_flare_bin(f, &stats);
     memset(bytes, 20, sizeof bytes);
-    glint_image_place(&image, bytes[0]);
     glint_flare_draw(f, &image);
     tiles = glint_flare_tiles(f);
     glint_flare_draw(f, NULL);

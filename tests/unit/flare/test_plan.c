@@ -166,13 +166,12 @@ TEST(a_hole_loses_no_cells)
 static double peak(struct fixture *f)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
     struct glint_flare_stats s;
     int32_t most = 0;
 
     memset(px_q20, 0, sizeof px_q20);
-    glint_image_place(&image, px_q20);
     start(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, &s);
@@ -221,11 +220,10 @@ static double code_of(int32_t light_q20)
 static void draw(struct fixture *f, int32_t *px_q20,
                  struct glint_flare_stats *s)
 {
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
 
     memset(px_q20, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
-    glint_image_place(&image, px_q20);
     start(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, s);
@@ -522,8 +520,8 @@ static double faint_lights(struct fixture *f, int n)
     static struct glint_light light[MANY];
     static int32_t linear[3 * WIDTH * HEIGHT];
     static uint8_t codes[3 * WIDTH * HEIGHT];
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(codes, GLINT_RGB24, WIDTH, HEIGHT);
     struct glint_image layer = {
         .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
     struct glint_flare_stats s;
@@ -539,7 +537,6 @@ static double faint_lights(struct fixture *f, int n)
         light[i].power = real_of((1000 + i) * (MANY / n), -18);
     }
     glint_image_place(&layer, linear);
-    glint_image_place(&image, codes);
     memset(linear, 0, sizeof linear);
     memset(codes, 0, sizeof codes);
     start(f);
@@ -594,12 +591,11 @@ TEST(room)
 
 static void picture(struct fixture *f, int32_t *px_q20)
 {
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
     struct glint_flare_stats s;
 
     memset(px_q20, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
-    glint_image_place(&image, px_q20);
     glint_flare_bin(f->flare, &s);
     assert_true(s.bundles > 0);
     glint_flare_draw(f->flare, &image);
@@ -815,8 +811,8 @@ TEST(beyond)
 TEST(dark_frame)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
     struct glint_flare_stats s;
     struct fixture f;
 
@@ -826,7 +822,6 @@ TEST(dark_frame)
     picture(&f, px_q20);
     assert_true(glint_flare_tiles(f.flare) > 0);
     memset(px_q20, 0, sizeof px_q20);
-    glint_image_place(&image, px_q20);
     glint_flare_plan(f.flare, &f.rays, &f.light, 0);
     glint_flare_bin(f.flare, &s);
     glint_flare_draw(f.flare, &image);

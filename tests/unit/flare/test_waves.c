@@ -25,16 +25,13 @@ static struct glint_engine_report drawn(struct glint_frame *frame,
                                         double power, uint8_t *rgb)
 {
     struct glint_lamp light = lamp;
-    struct glint_image image = {.format = GLINT_RGB24,
-                                .width = width,
-                                .height = width * 9 / 16,
-                                .range = GLINT_RANGE_FULL};
+    struct glint_image image =
+        glint_image_over(rgb, GLINT_RGB24, width, width * 9 / 16);
     struct glint_engine_report report;
 
     light.power *= power;
     assert_ok(settings_frame(&tool, opened, width, width * 9 / 16, frame));
     memset(rgb, 0, (size_t)width * (size_t)(width * 9 / 16) * 3);
-    glint_image_place(&image, rgb);
     assert_ok(glint_frame_draw(frame, &light, 1, 1, &image, &report));
     return report;
 }
@@ -219,17 +216,14 @@ TEST(same_bits)
     uint8_t *rgb[2] = {picture, other};
 
     for (int i = 0; i < 2; i++) {
-        struct glint_image image = {.format = GLINT_RGB24,
-                                    .width = WIDTH,
-                                    .height = HEIGHT,
-                                    .range = GLINT_RANGE_FULL};
+        struct glint_image image =
+            glint_image_over(rgb[i], GLINT_RGB24, WIDTH, HEIGHT);
         struct glint_engine_report report;
         struct glint_frame frame;
 
         tool.workers = i ? NULL : pool;
         assert_ok(settings_frame(&tool, &chosen, WIDTH, HEIGHT, &frame));
         memset(rgb[i], 0, SAMPLES);
-        glint_image_place(&image, rgb[i]);
         assert_ok(glint_frame_draw(&frame, lamps, 3, 1, &image, &report));
         glint_frame_finish(&frame);
     }

@@ -804,10 +804,8 @@ TEST(long_quads_are_short_ones)
 TEST(writes_565)
 {
     static uint8_t mem[2 * 32 * 32], before_mem[2 * 32 * 32];
-    struct glint_image image = {
-        .format = GLINT_RGB565, .width = 32, .height = 32};
+    struct glint_image image = glint_image_over(mem, GLINT_RGB565, 32, 32);
 
-    glint_image_place(&image, mem);
     for (int block = 0; block < 64; block++) {
         for (int k = 0; k < 1024; k++) {
             mem[2 * k] = (uint8_t)k;

@@ -77,11 +77,7 @@ static int look(const struct glint_image *image)
 
 static struct glint_image picture_of(uint8_t *px, int width, int height)
 {
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = width, .height = height};
-
-    glint_image_place(&image, px);
-    return image;
+    return glint_image_over(px, GLINT_RGB24, width, height);
 }
 
 /* Draws the light in light[] at POWER over BLACK, with noise of SIGMA codes,
@@ -367,13 +363,12 @@ TEST(formats)
     expose(&lamp, 600, 0.05, 0);
     expected = power();
     for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++) {
-        struct glint_image image = {
-            .format = (enum glint_pixel_format)f, .width = W, .height = H};
+        struct glint_image image =
+            glint_image_over(px, (enum glint_pixel_format)f, W, H);
 
         if (f == GLINT_LINEAR_Q20)
             continue;
         memset(px, 128, sizeof px);
-        glint_image_place(&image, px);
         for (int i = 0; i < W * H; i++) {
             const int code = codes[3 * i + 1], x = i % W;
             uint8_t *row = image.plane[0] + i / W * image.stride_bytes[0];

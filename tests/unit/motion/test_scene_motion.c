@@ -416,8 +416,8 @@ TEST(wide_lines_leave_wide_pictures)
     const int32_t axis_q30[3][3] = {
         {half, half, 0}, {-half, half, 0}, {0, 0, -(1 << 30)}};
     double food[3][3] = {{40, 0, 0}, {-40, 5, 0}, {0, -5, -5}};
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDE, .height = LOW};
+    struct glint_image image =
+        glint_image_over(light_q20, GLINT_LINEAR_Q20, WIDE, LOW);
     const struct glint_motion_state *m;
     struct scene_frame frame;
     int32_t at[3], away, aside;
@@ -437,7 +437,6 @@ TEST(wide_lines_leave_wide_pictures)
     assert_ok(glint_scene_size_kind(
         frame.scene, GLINT_KIND_BOX,
         (int32_t)(200 * 256. * away / (double)frame.scene->view.per_tan_q8)));
-    glint_image_place(&image, light_q20);
     assert_ok(scene_frame_draw(&frame, &image));
     for (int y = 0; y < LOW; y++)
         for (int x = WIDE - 20; x < WIDE; x++)

@@ -80,17 +80,14 @@ static void check_mix(enum glint_matrix matrix, enum glint_range range)
     enum { STEP = 1 };
 #endif
     static uint8_t mem[8192], codes[3 * 256];
-    struct glint_image image = {.format = GLINT_I444,
-                                .width = 256,
-                                .height = 1,
-                                .range = range,
-                                .matrix = matrix};
+    struct glint_image image = glint_image_over(codes, GLINT_I444, 256, 1);
     struct glint_row_rgb row;
     struct tally t = {0, 0, 0};
 
     assert_true(glint_row_rgb_bytes(256) <= sizeof mem);
+    image.range = range;
+    image.matrix = matrix;
     glint_row_rgb_init(&row, mem, 256);
-    glint_image_place(&image, codes);
     for (int i = 0; i < 256; i++)
         codes[i] = (uint8_t)i;
     for (int cb = 0; cb < 256; cb += STEP)
@@ -188,11 +185,10 @@ TEST(layouts)
 {
     static uint8_t bars[] = {255, 0,   0,   0, 255, 0, 0,   0,   255,
                              255, 255, 255, 0, 0,   0, 128, 128, 128};
-    struct glint_image image = {.format = GLINT_RGB24, .width = 6, .height = 1};
+    struct glint_image image = glint_image_over(bars, GLINT_RGB24, 6, 1);
     struct glint_panel_config cfg = {
         .width = 6, .height = 1, .image_width = 6, .image_height = 1};
 
-    glint_image_place(&image, bars);
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
         struct glint_error error;
         struct glint_panel panel;
@@ -221,12 +217,10 @@ TEST(writes_565_there_and_back)
         .layout = {2, {11, 5}, {5, 6}, {0, 5}, {0, 0}},
         .image_width = 256,
         .image_height = 256};
-    struct glint_image image = {
-        .format = GLINT_RGB565, .width = 256, .height = 256};
+    struct glint_image image = glint_image_over(codes, GLINT_RGB565, 256, 256);
     struct glint_error error;
     struct glint_panel panel;
 
-    glint_image_place(&image, codes);
     for (int i = 0; i < 65536; i++) {
         codes[2 * i] = (uint8_t)(i & 255);
         codes[2 * i + 1] = (uint8_t)(i >> 8);
@@ -514,15 +508,13 @@ static void draw_ramp(uint8_t *shown, bool down, int panel_width,
         .layout = {bytes, {0, 8}, {8, 4}, {12, 4}, {0, 0}},
         .image_width = down ? 3 : 9,
         .image_height = down ? 3 : 1};
-    struct glint_image image = {.format = GLINT_GREY,
-                                .width = cfg.image_width,
-                                .height = cfg.image_height};
+    struct glint_image image =
+        glint_image_over(ramp, GLINT_GREY, cfg.image_width, cfg.image_height);
     const int stride = bytes * panel_width;
     uint8_t mem[4 * 256];
     struct glint_error error;
     struct glint_panel panel;
 
-    glint_image_place(&image, ramp);
     assert_ok(glint_panel_open(&panel, &cfg, &error));
     memset(mem, 99, sizeof mem);
     glint_panel_draw(&panel, &image, mem, stride);
@@ -564,11 +556,10 @@ TEST(borders)
         .image_height = 3,
         .fit = GLINT_PANEL_CENTRE};
     uint8_t codes[15], mem[STRIDE * ROWS];
-    struct glint_image image = {.format = GLINT_GREY, .width = 5, .height = 3};
+    struct glint_image image = glint_image_over(codes, GLINT_GREY, 5, 3);
     struct glint_error error;
     struct glint_panel panel;
 
-    glint_image_place(&image, codes);
     memset(codes, 77, sizeof codes);
     memset(mem, 200, sizeof mem);
     assert_ok(glint_panel_open(&panel, &cfg, &error));
@@ -599,11 +590,10 @@ TEST(dither)
         .image_height = 8,
         .dither = true};
     uint8_t codes[64], mem[128];
-    struct glint_image image = {.format = GLINT_GREY, .width = 8, .height = 8};
+    struct glint_image image = glint_image_over(codes, GLINT_GREY, 8, 8);
     struct glint_error error;
     struct glint_panel panel;
 
-    glint_image_place(&image, codes);
     assert_ok(glint_panel_open(&panel, &cfg, &error));
     for (int code = 0; code < 256; code++) {
         int sum = 0;

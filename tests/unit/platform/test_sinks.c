@@ -28,13 +28,9 @@
 static struct glint_image image_of(enum glint_pixel_format format, int width,
                                    int height, void *mem)
 {
-    struct glint_image image = {.format = format,
-                                .width = width,
-                                .height = height,
-                                .range = GLINT_RANGE_LIMITED,
-                                .matrix = GLINT_MATRIX_BT601};
+    struct glint_image image = glint_image_over(mem, format, width, height);
 
-    glint_image_place(&image, mem);
+    image.range = GLINT_RANGE_LIMITED;
     return image;
 }
 

@@ -46,11 +46,9 @@ static void draw(enum glint_pixel_format format, int width, int height,
 {
     const struct glint_lamp lamp =
         stage_lamp(7.5, 33, power_of_mm * px_mm * px_mm);
-    struct glint_image image = {
-        .format = format, .width = width, .height = height};
+    struct glint_image image = glint_image_over(bytes, format, width, height);
 
     stage_view(&heliar, width, height, width / px_mm);
-    glint_image_place(&image, bytes);
     assert_ok(
         glint_frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn));
 }
@@ -247,8 +245,8 @@ TEST(on_tile_borders)
                                        .flux_q31 = 1 << 30,
                                        .flux_exponent = 13, /* 4096: 64 x 64 */
                                        .rgb_q14 = {16384, 16384, 16384}};
-        struct glint_image image = {
-            .format = GLINT_LINEAR_Q20, .width = W, .height = H};
+        struct glint_image image =
+            glint_image_over(pixels, GLINT_LINEAR_Q20, W, H);
         const size_t bytes = glint_flare_bytes(&c);
         struct glint_flare_stats stats;
         struct glint_flare *f;
@@ -265,7 +263,6 @@ TEST(on_tile_borders)
                                          .y_q8 = k / 2 ? 64 * 256 : 128 * 256,
                                          .energy_q16 = 65536};
         memset(pixels, 0, sizeof pixels);
-        glint_image_place(&image, pixels);
         glint_flare_bin(f, &stats);
         glint_flare_draw(f, &image);
         for (int i = 0; i < 3 * W * H; i++) {

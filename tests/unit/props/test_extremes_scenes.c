@@ -47,8 +47,8 @@ static void draw(const struct glint_description *scene, int width, int height,
                                       .height = height,
                                       .edge_samples = 1,
                                       .shadow_points = 1};
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = width, .height = height};
+    struct glint_image image =
+        glint_image_over(light_q20, GLINT_LINEAR_Q20, width, height);
     struct glint_scene_bake_report report;
     struct glint_scene_model model;
     struct scene_frame frame;
@@ -62,7 +62,6 @@ static void draw(const struct glint_description *scene, int width, int height,
         fail_msg("%s", error.text);
     assert_ok(glint_scene_open(&model, data, bytes, &reason));
     assert_ok(scene_frame_open(&frame, &tool, &model, &dials));
-    glint_image_place(&image, light_q20);
     assert_ok(scene_frame_draw(&frame, &image));
     scene_frame_close(&frame);
     free(data);

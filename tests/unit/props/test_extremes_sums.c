@@ -119,8 +119,8 @@ static double pile(int count, int log2, int held[2])
                                    .rgb_q14 = {16384, 16384, 16384}};
     static int32_t linear[3 * SIDE * SIDE];
     static uint8_t codes[3 * SIDE * SIDE];
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = SIDE, .height = SIDE};
+    struct glint_image image =
+        glint_image_over(linear, GLINT_LINEAR_Q20, SIDE, SIDE);
     const size_t bytes = glint_flare_bytes(&c);
     struct glint_flare_stats stats;
     struct glint_flare *f;
@@ -141,7 +141,6 @@ static double pile(int count, int log2, int held[2])
     memset(linear, 0, sizeof linear);
     memset(codes, 0, sizeof codes);
     glint_flare_bin(f, &stats);
-    glint_image_place(&image, linear);
     glint_flare_draw(f, &image);
     held[0] = stats.held_cells;
     held[1] = glint_flare_held(f);

@@ -32,11 +32,7 @@ static double slope(int channel, double x, double y)
 
 static struct glint_image linear_of(int32_t *q20)
 {
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
-
-    glint_image_place(&image, q20);
-    return image;
+    return glint_image_over(q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
 }
 
 static void fill(void)

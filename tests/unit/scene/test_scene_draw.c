@@ -128,13 +128,11 @@ static void fill(uint8_t *px, size_t n)
 static void draw(struct glint_scene_config cfg, enum glint_pixel_format format,
                  int workers, uint32_t order, uint8_t *px)
 {
-    struct glint_image image = {
-        .format = format, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, format, WIDTH, HEIGHT);
     struct glint_scene_stats stats;
     struct shuffle shuffle;
 
     fill(px, BYTES);
-    glint_image_place(&image, px);
     shuffle_init(&shuffle, workers, order);
     cfg.workers = &shuffle.workers;
     glint_scene_draw(start(&cfg, &stats), &image);
@@ -179,14 +177,12 @@ TEST(any_order)
 TEST(nothing)
 {
     static uint8_t px[BYTES], before[BYTES];
-    struct glint_image image = {
-        .format = GLINT_I420, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_I420, WIDTH, HEIGHT);
     const struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
 
     fill(px, BYTES);
     fill(before, BYTES);
-    glint_image_place(&image, px);
     make();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = 1;
@@ -219,8 +215,7 @@ TEST(nothing)
 TEST(ball_alone)
 {
     static uint8_t px[BYTES];
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
     struct glint_scene_config cfg;
     struct glint_scene_stats stats;
     struct glint_scene *s;
@@ -232,7 +227,6 @@ TEST(ball_alone)
     glint_scene_defaults(&cfg, WIDTH, HEIGHT);
     s = start(&cfg, &stats);
     memset(px, 0, sizeof px);
-    glint_image_place(&image, px);
     glint_scene_draw(s, &image);
     for (int i = 0; i < s->cover_across * s->cover_down; i++)
         sum += s->cover[i];
@@ -276,13 +270,11 @@ TEST(memory)
 TEST(no_leaks)
 {
     static uint8_t px[BYTES];
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
     struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
     uint32_t seed = 1;
 
-    glint_image_place(&image, px);
     cfg.max_refs = 1 << 18;
     for (int i = 0; i < 60; i++) {
         struct glint_scene *s;
@@ -349,14 +341,13 @@ TEST(samples)
 /* Draws what make() makes in linear light. */
 static void draw_dials(int edge_samples, int half, int32_t *px_q20)
 {
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
     struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
 
     cfg.edge_samples = edge_samples;
     cfg.half_shading = half;
-    glint_image_place(&image, px_q20);
     memset(px_q20, 0, sizeof *px_q20 * 3 * WIDTH * HEIGHT);
     glint_scene_draw(start(&cfg, &stats), &image);
 }
@@ -685,13 +676,11 @@ TEST(hidden_light)
 TEST(cover)
 {
     static uint8_t px[BYTES];
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
     const struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
     struct glint_scene *s;
 
-    glint_image_place(&image, px);
     make();
     file.object[2].hidden = 1;
     s = start(&cfg, &stats);
@@ -722,12 +711,10 @@ static int64_t drawn_cover(const struct glint_image *image)
 TEST(shadow_hides_nothing)
 {
     static uint8_t px[BYTES], alone[BYTES];
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
     int64_t cover;
     int n_dark = 0;
 
-    glint_image_place(&image, px);
     make();
     file.header.n_lights = 1;
     sun_at(0, 20);

@@ -60,12 +60,11 @@ static void close_text(void)
 static void draw(void)
 {
     static int32_t light_q20[3 * PIXELS];
-    struct glint_image image = {
-        .format = GLINT_LINEAR_Q20, .width = SIDE, .height = SIDE};
+    struct glint_image image =
+        glint_image_over(light_q20, GLINT_LINEAR_Q20, SIDE, SIDE);
 
     memset(light_q20, 0, sizeof light_q20);
     memset(found, 0x55, sizeof found);
-    glint_image_place(&image, light_q20);
     assert_ok(scene_frame_draw(&frame, &image));
     n = glint_scene_find_highlights(frame.scene, found);
 }

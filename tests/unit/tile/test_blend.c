@@ -132,11 +132,9 @@ static double want_of(const struct stripes *s, int n_passes, int half, int x,
 /* Returns a picture of one grey. */
 static struct glint_image grey_image(enum glint_pixel_format format)
 {
-    struct glint_image image = {
-        .format = format, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(px, format, WIDTH, HEIGHT);
 
     memset(px, GREY_CODE, sizeof light_q20);
-    glint_image_place(&image, px);
     for (int p = 1; p < 3; p++)
         if (image.plane[p])
             memset(image.plane[p], 128,

@@ -54,11 +54,10 @@ TEST(steps)
 
 static void draw(struct over_scene *over, uint8_t *pixels)
 {
-    struct glint_image image = {
-        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image =
+        glint_image_over(pixels, GLINT_RGB24, WIDTH, HEIGHT);
 
     memset(pixels, 90, BYTES);
-    glint_image_place(&image, pixels);
     assert_ok(over_scene_draw(over, &image, 0));
 }
 

@@ -158,12 +158,10 @@ static void draw(struct scene *s, double light, enum glint_pixel_format format,
                  void *mem)
 {
     const int32_t rgb_q14[3] = {16384, 16384, 16384};
-    struct glint_image image = {
-        .format = format, .width = WIDTH, .height = HEIGHT};
+    struct glint_image image = glint_image_over(mem, format, WIDTH, HEIGHT);
     struct glint_veil_spread even;
     int cells[2];
 
-    glint_image_place(&image, mem);
     glint_veil_cells(WIDTH, HEIGHT, cells);
     for (int k = 0; k < 2; k++) {
         int32_t *table = k ? even.down_q30 : even.across_q30;

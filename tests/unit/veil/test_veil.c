@@ -89,11 +89,7 @@ static struct glint_veil_spread spread_of(const struct canvas *c, double sigma,
 static struct glint_image picture_of(const struct canvas *c,
                                      enum glint_pixel_format format, void *mem)
 {
-    struct glint_image image = {
-        .format = format, .width = c->width, .height = c->height};
-
-    glint_image_place(&image, mem);
-    return image;
+    return glint_image_over(mem, format, c->width, c->height);
 }
 
 /* Draws the veil onto black, linear; returns the sum of its light, white times

@@ -150,12 +150,11 @@ static enum glint_status draw(struct frames *f)
 {
     struct render_scene *const r = f->r;
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
-    struct glint_image linear = {
-        .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
+    struct glint_image linear =
+        glint_image_over(f->light_q20, GLINT_LINEAR_Q20, r->width, r->height);
     enum glint_status status = GLINT_OK;
 
     memset(f->light_q20, 0, n * sizeof *f->light_q20);
-    glint_image_place(&linear, f->light_q20);
     if (f->c->files.has_lens && f->seen.plane[0]) {
         memset(f->seen.plane[0], 0, n);
         status = drawing_find(f->c, &f->seen, f->elapsed_us);

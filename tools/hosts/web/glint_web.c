@@ -436,11 +436,7 @@ int web_size(int width, int height)
 
 static struct glint_image image_of(uint8_t *pixels)
 {
-    struct glint_image image = {
-        .format = GLINT_XBGR8888, .width = web.width, .height = web.height};
-
-    glint_image_place(&image, pixels);
-    return image;
+    return glint_image_over(pixels, GLINT_XBGR8888, web.width, web.height);
 }
 
 double *web_lamps(void)
