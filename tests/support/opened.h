@@ -10,25 +10,23 @@
 
 #include "support/settings_frame.h"
 #include "options/tool.h"
+#include "support/test.h"
 
 static struct opened opened;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
-static inline int opened_heliar(void **state)
+static inline void opened_heliar(void)
 {
-    (void)state;
     settings_defaults(&opened.settings);
-    return tool_start(&tool) != EXIT_OK ||
-           opened_lens_open(&tool, &opened.lens, &opened.settings,
-                            "lenses/heliar-tronnier.lens") != EXIT_OK;
+    assert_ok(tool_start(&tool));
+    assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
+                               "lenses/heliar-tronnier.lens"));
 }
 
-static inline int opened_close(void **state)
+static inline void opened_close(void)
 {
-    (void)state;
     opened_lens_close(&opened.lens);
     tool_finish(&tool);
-    return 0;
 }
 
 #endif

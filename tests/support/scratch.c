@@ -13,30 +13,27 @@
 char scratch_file[] = "/tmp/glint-test-file-XXXXXX";
 char scratch_dir[] = "/tmp/glint-test-dir-XXXXXX";
 
-int scratch_open_file(void **state)
+void scratch_open_file(void)
 {
     const int fd = mkstemp(scratch_file);
 
-    (void)state;
-    return fd < 0 ? -1 : close(fd);
+    assert_true(fd >= 0);
+    close(fd);
 }
 
-int scratch_close_file(void **state)
+void scratch_close_file(void)
 {
-    (void)state;
-    return unlink(scratch_file);
+    assert_int_equal(unlink(scratch_file), 0);
 }
 
-int scratch_open_dir(void **state)
+void scratch_open_dir(void)
 {
-    (void)state;
-    return mkdtemp(scratch_dir) ? 0 : -1;
+    assert_non_null(mkdtemp(scratch_dir));
 }
 
-int scratch_close_dir(void **state)
+void scratch_close_dir(void)
 {
-    (void)state;
-    return rmdir(scratch_dir);
+    assert_int_equal(rmdir(scratch_dir), 0);
 }
 
 const char *scratch_path(const char *name)

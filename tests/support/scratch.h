@@ -17,13 +17,13 @@
 
 /* Path of the one file, which exists and is empty before the first test. */
 extern char scratch_file[];
-int scratch_open_file(void **state);
-int scratch_close_file(void **state);
+void scratch_open_file(void);
+void scratch_close_file(void);
 
 /* Path of the folder; closing it fails if a test has left a file in it. */
 extern char scratch_dir[];
-int scratch_open_dir(void **state);
-int scratch_close_dir(void **state);
+void scratch_open_dir(void);
+void scratch_close_dir(void);
 
 /* Returns the path of NAME in the folder. The text stays as it is during one
  * more call. */

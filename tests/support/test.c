@@ -5,7 +5,7 @@
 
 static struct CMUnitTest tests[64];
 static size_t n_tests;
-static CMFixtureFunction open_group, close_group;
+void (*test_opens)(void), (*test_closes)(void);
 
 void test_add(const char *name, CMUnitTestFunction run)
 {
@@ -14,10 +14,20 @@ void test_add(const char *name, CMUnitTestFunction run)
     n_tests++;
 }
 
-void test_group(CMFixtureFunction open, CMFixtureFunction close)
+static int open_group(void **state)
 {
-    open_group = open;
-    close_group = close;
+    (void)state;
+    if (test_opens)
+        test_opens();
+    return 0;
+}
+
+static int close_group(void **state)
+{
+    (void)state;
+    if (test_closes)
+        test_closes();
+    return 0;
 }
 
 int main(int argc, char **argv)

@@ -31,11 +31,23 @@
     }                                                         \
     static void test_##name(void)
 
-/* OPEN runs before a program's tests, CLOSE after them; NULL: nothing. */
+/* Bodies of what runs before a program's tests, and after them. */
+#define TEST_OPEN  TEST_FIXTURE(open_tests, test_opens)
+#define TEST_CLOSE TEST_FIXTURE(close_tests, test_closes)
+#define TEST_FIXTURE(name, of)                                \
+    static void name(void);                                   \
+    __attribute__((constructor)) static void add_##name(void) \
+    {                                                         \
+        of = name;                                            \
+    }                                                         \
+    static void name(void)
+
+/* The same by functions that there are. */
 #define TEST_GROUP(open, close)                                \
     __attribute__((constructor)) static void group_tests(void) \
     {                                                          \
-        test_group(open, close);                               \
+        test_opens = open;                                     \
+        test_closes = close;                                   \
     }                                                          \
     struct test_group
 
@@ -43,6 +55,6 @@
 #define assert_ok(status) assert_int_equal(status, 0)
 
 void test_add(const char *name, CMUnitTestFunction run);
-void test_group(CMFixtureFunction open, CMFixtureFunction close);
+extern void (*test_opens)(void), (*test_closes)(void);
 
 #endif

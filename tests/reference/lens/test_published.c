@@ -15,12 +15,10 @@ static struct glint_prescription lens;
 static struct glint_setup setup;
 static struct glint_published_options options;
 
-static int load(void **state)
+TEST_OPEN
 {
-    (void)state;
     load_setup(&setup, &lens, "heliar-tronnier");
     glint_published_defaults(&options, &setup);
-    return 0;
 }
 
 /* ------------------------------------------------------------------- errors */
@@ -262,5 +260,3 @@ TEST(refusals)
                      GLINT_E_ARGUMENT);
     assert_int_equal(ghost.n_systems, 0);
 }
-
-TEST_GROUP(load, NULL);

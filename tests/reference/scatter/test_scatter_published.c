@@ -18,9 +18,8 @@ enum { SIDE = 24, KERNEL = 11, K2 = KERNEL * KERNEL, TEXELS = SIDE * SIDE };
 /* Translucent media that all tests read. */
 static struct glint_scatter_rows stone[2]; /* chess, veins */
 
-static int open_stones(void **state)
+TEST_OPEN
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct glint_stone s;
         struct glint_error error;
@@ -31,17 +30,14 @@ static int open_stones(void **state)
         s.fields = 2;
         s.pattern = i ? GLINT_STONE_VEINS : GLINT_STONE_CHESS;
         if (glint_scatter_compute(&s, NULL, &stone[i], &error) != GLINT_OK)
-            return -1;
+            fail();
     }
-    return 0;
 }
 
-static int close_stones(void **state)
+TEST_CLOSE
 {
-    (void)state;
     for (int i = 0; i < 2; i++)
         glint_scatter_close(&stone[i]);
-    return 0;
 }
 
 static struct glint_scatter_candidate
@@ -383,5 +379,3 @@ TEST(ended)
         assert_null(j.error);
     }
 }
-
-TEST_GROUP(open_stones, close_stones);

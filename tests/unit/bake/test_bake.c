@@ -46,23 +46,19 @@ static void bake(struct baked *b, const struct glint_prescription *lens,
         fail_msg("%s", reason);
 }
 
-static int load(void **state)
+TEST_OPEN
 {
-    (void)state;
     load_setup(&setup, &heliar, "heliar-tronnier");
     glint_bake_defaults(&options);
     options.tolerance = TOLERANCE;
     options.max_deg = MAX_DEG;
     bake(&model, &heliar, &options);
     field_mm = glint_real_value(model.lens.header->field_mm);
-    return 0;
 }
 
-static int unload(void **state)
+TEST_CLOSE
 {
-    (void)state;
     free(model.data);
-    return 0;
 }
 
 static void parse(struct glint_prescription *lens, const char *text)
@@ -828,5 +824,3 @@ TEST(ranges_of_spots)
         assert_true(range[0][1] > sin(spot[i].end_deg * 0.0174532925));
     }
 }
-
-TEST_GROUP(load, unload);

@@ -25,17 +25,14 @@ static double rgb[3 * MAX_PIXELS], other[3 * MAX_PIXELS];
 static double swapped[3 * 120 * 120];
 static float floats[2][3 * MAX_PIXELS];
 
-static int open_pool(void **state)
+TEST_OPEN
 {
-    (void)state;
-    return glint_pool_create(&workers, glint_cpu_count()) != GLINT_OK;
+    assert_ok(glint_pool_create(&workers, glint_cpu_count()));
 }
 
-static int close_pool(void **state)
+TEST_CLOSE
 {
-    (void)state;
     glint_pool_destroy(workers);
-    return 0;
 }
 
 static void render(double *out, struct glint_view view,
@@ -419,5 +416,3 @@ TEST(decentred_at_the_diagonal)
     render(other, view, &at[0], 1, 64);
     assert_true(psnr(rgb, other, view) < 40);
 }
-
-TEST_GROUP(open_pool, close_pool);

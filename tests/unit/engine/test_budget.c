@@ -12,7 +12,6 @@
 #include "engine/frame/cost.h"
 #include "glint/quality.h"
 #include "support/opened.h"
-#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 120, SETTLED = 40 };
 

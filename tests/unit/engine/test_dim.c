@@ -35,17 +35,14 @@ static void draw(double codes, uint8_t *picture)
     assert_true(stage_codes(&stage, lamps, LIGHTS, picture));
 }
 
-static int open_stage(void **state)
+TEST_OPEN
 {
-    (void)state;
-    return stage_open(&stage, "double-gauss-angenieux", W, H) ? 0 : -1;
+    assert_true(stage_open(&stage, "double-gauss-angenieux", W, H));
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&stage);
-    return 0;
 }
 
 static double sum_of(const uint8_t *picture)
@@ -212,5 +209,3 @@ TEST(same_bits)
         stage.frame.cfg.workers = NULL;
     }
 }
-
-TEST_GROUP(open_stage, close_stage);

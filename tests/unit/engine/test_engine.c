@@ -12,7 +12,6 @@
 #include "glint/engine.h"
 #include "glint/options.h"
 #include "support/opened.h"
-#include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 

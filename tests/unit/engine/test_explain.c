@@ -13,7 +13,6 @@
 #include "explain/explain.h"
 #include "engine/explain_frame.h"
 #include "support/opened.h"
-#include "support/test.h"
 
 enum { WIDTH = 320, HEIGHT = 200, BYTES = 3 * WIDTH * HEIGHT, SIDE = 16 };
 

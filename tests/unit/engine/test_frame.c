@@ -481,28 +481,22 @@ TEST(room_for_points)
     }
 }
 
-static int enter(void **state)
+TEST_OPEN
 {
-    (void)state;
     settings_defaults(&opened.settings);
     opened.settings.max_deg = 15;
     settings_defaults(&exact_scene.settings);
     exact_scene.settings.options.rays = GLINT_RAYS_EXACT;
-    if (tool_start(&tool) != EXIT_OK ||
-        opened_lens_open(&tool, &exact_scene.lens, &exact_scene.settings,
-                         "lenses/heliar-tronnier.lens"))
-        return 1;
-    return opened_lens_open(&tool, &opened.lens, &opened.settings,
-                            "lenses/heliar-tronnier.lens");
+    assert_ok(tool_start(&tool));
+    assert_ok(opened_lens_open(&tool, &exact_scene.lens, &exact_scene.settings,
+                               "lenses/heliar-tronnier.lens"));
+    assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
+                               "lenses/heliar-tronnier.lens"));
 }
 
-static int leave(void **state)
+TEST_CLOSE
 {
-    (void)state;
     opened_lens_close(&opened.lens);
     opened_lens_close(&exact_scene.lens);
     tool_finish(&tool);
-    return 0;
 }
-
-TEST_GROUP(enter, leave);

@@ -25,24 +25,20 @@ static struct glint_image image = {.format = GLINT_RGB24,
                                    .height = HEIGHT,
                                    .range = GLINT_RANGE_FULL};
 
-static int open_frame(void **state)
+TEST_OPEN
 {
-    (void)state;
     settings_defaults(&opened.settings);
     opened.settings.options.starburst = 1;
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
                                "lenses/heliar-tronnier.lens"));
     assert_ok(settings_frame(&tool, &opened, WIDTH, HEIGHT, &frame));
     glint_image_place(&image, rgb);
-    return 0;
 }
 
-static int close_frame(void **state)
+TEST_CLOSE
 {
-    (void)state;
     glint_frame_finish(&frame);
     opened_lens_close(&opened.lens);
-    return 0;
 }
 
 /* Returns the power, in the brightest channel, of the star of a lamp of POWER
@@ -258,5 +254,3 @@ TEST(cull)
     }
     frame.dials.star_cull = cull;
 }
-
-TEST_GROUP(open_frame, close_frame);

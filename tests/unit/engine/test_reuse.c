@@ -23,17 +23,14 @@ static struct glint_lamp lamps[LIGHTS];
 static uint8_t got[BYTES], want[BYTES];
 static struct glint_engine_report of_reusing, of_fresh;
 
-static int open_stage(void **state)
+TEST_OPEN
 {
-    (void)state;
-    return stage_open(&stage, "double-gauss-angenieux", W, H) ? 0 : -1;
+    assert_true(stage_open(&stage, "double-gauss-angenieux", W, H));
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&stage);
-    return 0;
 }
 
 static void open_frames(double px)
@@ -464,5 +461,3 @@ TEST(factors)
     assert_int_equal(glint_lights_still(&s, light, 3, near_q30), 0);
     assert_int_equal(glint_lights_still(&s, light, 0, near_q30), 0);
 }
-
-TEST_GROUP(open_stage, close_stage);

@@ -446,10 +446,7 @@ TEST(looks)
     assert_true(light.peak[2] == 2 && light.mean[2] == 2);
 }
 
-static int start_tool(void **state)
+TEST_OPEN
 {
-    (void)state;
-    return tool_start(&tool);
+    assert_ok(tool_start(&tool));
 }
-
-TEST_GROUP(start_tool, NULL);

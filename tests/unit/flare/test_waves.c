@@ -352,37 +352,29 @@ TEST(white)
     opened_lens_close(&bare.lens);
 }
 
-static int open_lens(struct opened *opened, const char *waves)
+static void open_lens(struct opened *opened, const char *waves)
 {
     settings_defaults(&opened->settings);
-    return settings_set(&opened->settings, "wavelengths", waves)
-               ? opened_lens_open(&tool, &opened->lens, &opened->settings,
-                                  "lenses/heliar-tronnier.lens")
-               : 1;
+    assert_true(settings_set(&opened->settings, "wavelengths", waves));
+    assert_ok(opened_lens_open(&tool, &opened->lens, &opened->settings,
+                               "lenses/heliar-tronnier.lens"));
 }
 
-static int enter(void **state)
+TEST_OPEN
 {
-    (void)state;
-    if (tool_start(&tool) != EXIT_OK || open_lens(&chosen, "auto") ||
-        open_lens(&three, "650,532,450") ||
-        open_lens(&all,
-                  "400,410,420,430,440,450,460,470,480,490,500,510,520,530,"
-                  "540,550,560,570,580,590,600,610,620,630,640,650,660,670,"
-                  "680,690,700"))
-        return 1;
+    assert_ok(tool_start(&tool));
+    open_lens(&chosen, "auto");
+    open_lens(&three, "650,532,450");
+    open_lens(&all,
+              "400,410,420,430,440,450,460,470,480,490,500,510,520,530,540,550,"
+              "560,570,580,590,600,610,620,630,640,650,660,670,680,690,700");
     all.settings.dials.cull_codes = 0;
-    return 0;
 }
 
-static int leave(void **state)
+TEST_CLOSE
 {
-    (void)state;
     opened_lens_close(&chosen.lens);
     opened_lens_close(&three.lens);
     opened_lens_close(&all.lens);
     tool_finish(&tool);
-    return 0;
 }
-
-TEST_GROUP(enter, leave);

@@ -20,24 +20,20 @@ static struct glint_match match;
 static void *mem;
 static uint32_t seed = 1;
 
-static int set_up(void **state)
+TEST_OPEN
 {
     struct glint_arena arena = glint_arena_measure();
 
-    (void)state;
     glint_match_carve(&match, &arena, MAX, MAX);
     if (posix_memalign(&mem, 64, arena.used) != 0)
-        return -1;
+        fail();
     arena = glint_arena_over(mem, arena.used);
     glint_match_carve(&match, &arena, MAX, MAX);
-    return 0;
 }
 
-static int tear_down(void **state)
+TEST_CLOSE
 {
-    (void)state;
     free(mem);
-    return 0;
 }
 
 static void scatter(int n_seekers, int n_spots, int side_q8)
@@ -251,5 +247,3 @@ TEST(order_is_no_matter)
         assert_memory_equal(power, again, sizeof power);
     }
 }
-
-TEST_GROUP(set_up, tear_down);

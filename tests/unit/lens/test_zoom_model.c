@@ -40,7 +40,7 @@ static void move_to(struct glint_prescription *to, double along)
         fail_msg("%s", error.text);
 }
 
-static int bake_all(void **state)
+TEST_OPEN
 {
     static struct glint_prescription at;
     struct glint_bake_options options;
@@ -48,7 +48,6 @@ static int bake_all(void **state)
     struct glint_error error = {""};
     const char *reason = "";
 
-    (void)state;
     if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
                                  &error) != GLINT_OK)
         fail_msg("%s", error.text);
@@ -68,16 +67,13 @@ static int bake_all(void **state)
         fail_msg("%s", error.text);
     if (glint_zoom_open(&zoom, file, bytes, &reason) != GLINT_OK)
         fail_msg("%s", reason);
-    return 0;
 }
 
-static int free_all(void **state)
+TEST_CLOSE
 {
-    (void)state;
     for (int k = 0; k < POSITIONS; k++)
         free(model[k].data);
     free(file);
-    return 0;
 }
 
 static const int32_t middle_q24 = (int32_t)(1e6 / (532. * 532.) * (1 << 24));
@@ -307,5 +303,3 @@ TEST(refusals)
     glint_blob_seal(file, bytes);
     assert_ok(glint_zoom_open(&zoom, file, bytes, &reason));
 }
-
-TEST_GROUP(bake_all, free_all);

@@ -610,20 +610,16 @@ TEST(every_failure)
     check_failures(true);
 }
 
-static int enter(void **state)
+TEST_OPEN
 {
-    (void)state;
     close(mkstemp(fake_fb_path));
     close(mkstemp(fake_tty_path));
     fake_fb = mmap(NULL, sizeof *fake_fb, PROT_READ | PROT_WRITE,
                    MAP_SHARED | 0x20 /* MAP_ANONYMOUS */, -1, 0);
-    return fake_fb == MAP_FAILED;
+    assert_true(fake_fb != MAP_FAILED);
 }
 
-static int leave(void **state)
+TEST_CLOSE
 {
-    (void)state;
-    return unlink(fake_fb_path) | unlink(fake_tty_path);
+    assert_int_equal(unlink(fake_fb_path) | unlink(fake_tty_path), 0);
 }
-
-TEST_GROUP(enter, leave);

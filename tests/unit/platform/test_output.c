@@ -36,12 +36,10 @@ int __wrap_close(int fd)
     return number ? -1 : result;
 }
 
-static int enter(void **state)
+TEST_OPEN
 {
-    if (scratch_open_dir(state))
-        return -1;
+    scratch_open_dir();
     snprintf(path, sizeof path, "%s/x.ppm", scratch_dir);
-    return 0;
 }
 
 static void put_file(const char *text)
@@ -486,4 +484,7 @@ TEST(many_at_a_time)
     assert_int_equal(scratch_count(scratch_dir), 0);
 }
 
-TEST_GROUP(enter, scratch_close_dir);
+TEST_CLOSE
+{
+    scratch_close_dir();
+}

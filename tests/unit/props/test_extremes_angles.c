@@ -28,11 +28,10 @@ static uint8_t codes[3][3 * W * H];
  * 8. */
 #define GRID_CODES 5.7
 
-static int open_stage(void **state)
+TEST_OPEN
 {
-    (void)state;
-    return !(stage_load(&heliar, "heliar-tronnier") &&
-             stage_prepare(&heliar, 8) && stage_model(&heliar, 1, 60));
+    assert_true(stage_load(&heliar, "heliar-tronnier") &&
+                stage_prepare(&heliar, 8) && stage_model(&heliar, 1, 60));
 }
 
 static void draw(struct stage *s, const struct glint_lamp *lamp, uint8_t *to)
@@ -342,11 +341,7 @@ TEST(pixel_borders)
                                 GRID_CODES, "codes"));
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&heliar);
-    return 0;
 }
-
-TEST_GROUP(open_stage, close_stage);

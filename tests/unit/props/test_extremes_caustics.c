@@ -200,11 +200,7 @@ TEST(huge)
                                  m.psnr_db, 40, "dB"));
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&stage);
-    return 0;
 }
-
-TEST_GROUP(NULL, close_stage);

@@ -18,17 +18,15 @@ static struct stage heliar;
  * millimetre; it must grow with the square of the pixels a millimetre. */
 static double power_of_mm;
 
-static int open_stage(void **state)
+TEST_OPEN
 {
     const struct glint_lamp lamp = stage_lamp(7.5, 33, 1);
 
-    (void)state;
     if (!stage_load(&heliar, "heliar-tronnier") || !stage_prepare(&heliar, 8) ||
         !stage_model(&heliar, 1, 60))
-        return 1;
+        fail();
     stage_view(&heliar, 252, 168, 36);
     power_of_mm = stage_power(&heliar, &lamp) / 7 / 7;
-    return 0;
 }
 
 static void *take(size_t bytes)
@@ -284,11 +282,7 @@ TEST(on_tile_borders)
                                 worst, 1e-6, ""));
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&heliar);
-    return 0;
 }
-
-TEST_GROUP(open_stage, close_stage);

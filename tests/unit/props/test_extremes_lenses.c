@@ -456,11 +456,7 @@ TEST(two_thousand_ghosts)
     assert_true(report("2016 ghosts, exact rays", worst));
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&stage);
-    return 0;
 }
-
-TEST_GROUP(NULL, close_stage);

@@ -168,11 +168,7 @@ TEST(closing)
                                 pop, 1.5, "codes"));
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&stage);
-    return 0;
 }
-
-TEST_GROUP(NULL, close_stage);

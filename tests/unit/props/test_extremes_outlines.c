@@ -159,11 +159,7 @@ TEST(outlines)
     outlines("nikon-zoom-mid");
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&stage);
-    return 0;
 }
-
-TEST_GROUP(NULL, close_stage);

@@ -21,10 +21,9 @@ static struct stage heliar;
 static float test[N], one[N];
 static uint8_t codes[2][N];
 
-static int open_stage(void **state)
+TEST_OPEN
 {
-    (void)state;
-    return stage_open(&heliar, "heliar-tronnier", W, H) ? 0 : 1;
+    assert_true(stage_open(&heliar, "heliar-tronnier", W, H));
 }
 
 /* ------------------------------------------------------------- linear light */
@@ -191,11 +190,7 @@ TEST(files)
                                 wrong, 0, "texts"));
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&heliar);
-    return 0;
 }
-
-TEST_GROUP(open_stage, close_stage);

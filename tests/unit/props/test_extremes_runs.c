@@ -104,11 +104,7 @@ TEST(round_and_round)
 #endif
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&heliar);
-    return 0;
 }
-
-TEST_GROUP(NULL, close_stage);

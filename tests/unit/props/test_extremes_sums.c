@@ -22,10 +22,9 @@ static struct stage heliar;
 static float test[N], part[N];
 static struct glint_lamp lamp[LIGHTS];
 
-static int open_stage(void **state)
+TEST_OPEN
 {
-    (void)state;
-    return stage_open(&heliar, "heliar-tronnier", W, H) ? 0 : 1;
+    assert_true(stage_open(&heliar, "heliar-tronnier", W, H));
 }
 
 /* ------------------------------------------------------------------ lights */
@@ -266,11 +265,7 @@ TEST(traps)
                                 wrong, 0, "cases"));
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     stage_close(&heliar);
-    return 0;
 }
-
-TEST_GROUP(open_stage, close_stage);

@@ -125,11 +125,7 @@ TEST(hider)
     assert_int_equal(glint_scene_hider(s, 0), -1);
 }
 
-static int close_stage(void **state)
+TEST_CLOSE
 {
-    (void)state;
     free(mem);
-    return 0;
 }
-
-TEST_GROUP(NULL, close_stage);

@@ -247,11 +247,7 @@ TEST(formats)
         }
 }
 
-static int finish(void **state)
+TEST_CLOSE
 {
-    (void)state;
     free(mem);
-    return 0;
 }
-
-TEST_GROUP(NULL, finish);

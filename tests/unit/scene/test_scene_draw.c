@@ -730,11 +730,7 @@ TEST(shadow_hides_nothing)
     assert_true(n_dark > 100);
 }
 
-static int tear_down(void **state)
+TEST_CLOSE
 {
-    (void)state;
     free(mem);
-    return 0;
 }
-
-TEST_GROUP(NULL, tear_down);

@@ -651,11 +651,7 @@ TEST(a13_levels)
     assert_true(lowest < 2000 && highest > 30000);
 }
 
-static int tear_down(void **state)
+TEST_CLOSE
 {
-    (void)state;
     free(mem);
-    return 0;
 }
-
-TEST_GROUP(NULL, tear_down);

@@ -426,20 +426,16 @@ TEST(stops)
     assert_int_equal(n_waits, 30);
 }
 
-static int enter(void **state)
+TEST_OPEN
 {
-    (void)state;
     close(mkstemp(config_path));
     if (!mkdtemp(shot_dir))
-        return -1;
+        fail();
     close(mkstemp(said_path));
-    return 0;
 }
 
-static int leave(void **state)
+TEST_CLOSE
 {
-    (void)state;
-    return unlink(config_path) | unlink(said_path) | rmdir(shot_dir);
+    assert_int_equal(unlink(config_path) | unlink(said_path) | rmdir(shot_dir),
+                     0);
 }
-
-TEST_GROUP(enter, leave);

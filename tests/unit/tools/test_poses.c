@@ -213,22 +213,16 @@ TEST(flood)
     unlink(name);
 }
 
-static int open_name(void **state)
+TEST_OPEN
 {
     const int file = mkstemp(name);
 
-    (void)state;
     if (file < 0)
-        return -1;
+        fail();
     close(file);
-    return 0;
 }
 
-static int remove_name(void **state)
+TEST_CLOSE
 {
-    (void)state;
     unlink(name);
-    return 0;
 }
-
-TEST_GROUP(open_name, remove_name);

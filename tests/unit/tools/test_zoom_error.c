@@ -26,7 +26,7 @@ static struct glint_bake_model model[2];
 static unsigned char *file;
 static struct glint_zoom_lens zoom;
 
-static int bake_ends(void **state)
+TEST_OPEN
 {
     static struct glint_prescription lens;
     struct glint_bake_options options;
@@ -35,7 +35,6 @@ static int bake_ends(void **state)
     const char *reason = "";
     size_t bytes;
 
-    (void)state;
     glint_bake_defaults(&options);
     options.max_deg = MAX_DEG;
     if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
@@ -58,16 +57,13 @@ static int bake_ends(void **state)
         fail_msg("%s", error.text);
     if (glint_zoom_open(&zoom, file, bytes, &reason) != GLINT_OK)
         fail_msg("%s", reason);
-    return 0;
 }
 
-static int free_all(void **state)
+TEST_CLOSE
 {
-    (void)state;
     free(model[0].data);
     free(model[1].data);
     free(file);
-    return 0;
 }
 
 /* Sets the errors of ghosts whose first is below 0, with lights up to MAX_DEG,
@@ -182,5 +178,3 @@ TEST(lights_end_beyond_the_corner)
     assert_memory_equal(asked, all, sizeof all);
     assert_memory_not_equal(asked, less, sizeof all);
 }
-
-TEST_GROUP(bake_ends, free_all);

@@ -37,13 +37,12 @@ static struct glint_prescription at[2];
 static struct glint_setup setup[2];
 static struct glint_visible alone[2], both[2];
 
-static int open_lens(void **state)
+TEST_OPEN
 {
     static struct glint_prescription lens;
     static const double rgb_nm[] = {650, 532, 450};
     struct glint_error error = {""};
 
-    (void)state;
     if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
                                  &error) != GLINT_OK)
         fail_msg("%s", error.text);
@@ -55,7 +54,6 @@ static int open_lens(void **state)
             fail_msg("%s", error.text);
     }
     assert_int_equal(setup[0].n_ghosts, GHOSTS);
-    return 0;
 }
 
 static void set_ghost(int ghost)
@@ -350,5 +348,3 @@ TEST(refused)
         glint_bake(&at[0], &options, &data, &bytes, &report, &error),
         GLINT_E_ARGUMENT);
 }
-
-TEST_GROUP(open_lens, NULL);

@@ -203,18 +203,13 @@ TEST(leaks)
     drop(&system);
 }
 
-static int set_up(void **state)
+TEST_OPEN
 {
-    (void)state;
     buffers.scratch = malloc(GLINT_ZONE_SCRATCH * sizeof *buffers.scratch);
-    return buffers.scratch ? 0 : -1;
+    assert_true(buffers.scratch);
 }
 
-static int tear_down(void **state)
+TEST_CLOSE
 {
-    (void)state;
     free(buffers.scratch);
-    return 0;
 }
-
-TEST_GROUP(set_up, tear_down);
