@@ -51,11 +51,7 @@ extern "C" {
 #define GLINT_FLUX_TERMS    6
 
 enum glint_basis {
-    GLINT_BASIS_AUTO,   /* u, v, s, w: see above */
-    GLINT_BASIS_SPARSE, /* x, y, r and 1 - r [Bodonyi25]: (x, y) is the place on
-                           the vertex plane in units of 2^(30 + box_exponent)
-                           mm, a radius that holds all boxes of the system; r =
-                           hypot(x, y) */
+    GLINT_BASIS_AUTO, /* u, v, s, w: see above */
     /* u, v, s, p, w in the lens's own frame; plus GLINT_MIRRORS_X, where lights
      * have x of 0 or more and others are mirrored, and GLINT_MIRRORS_Y. */
     GLINT_BASIS_LENS = 4
@@ -105,33 +101,27 @@ struct glint_model_ghost {
     uint32_t first_system, n_systems;
 };
 
-/* Polynomials for a range of angles and a band of wavelengths.
- *
- * Without knots the coefficients hold for the whole range, and s and w are
- * among the variables. With n_knots >= 2 there is a set of coefficients at each
- * of that many rising angles; between neighbours they are interpolated linearly
- * in the sine, and the variables are only those of the basis. */
+/* Polynomials for a range of angles and a band of wavelengths. */
 struct glint_model_system {
     /* Range of the sine of the light's angle, 0 .. 2^30; in the lens basis of
      * the x component of its direction, -2^30 .. 2^30. */
     int32_t sine_lo_q30, sine_hi_q30;
     int32_t wave_lo_q24, wave_hi_q24; /* range of 1 / wavelength^2; with both
                                          equal, one wavelength */
-    uint32_t n_knots, knot_at;        /* int32 sines _q30 [n_knots]; in the
-                                         lens basis, which has no knots, the
-                                         range of the y component, [2] */
+    uint32_t zero_word;               /* 0 */
+    uint32_t across_at; /* int32 [2], the range of the y component, _q30; in the
+                           lens basis only */
     /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.
-     * Without knots each is a polynomial with up to GLINT_BOX_TERMS terms: s^0,
-     * s^1 .. s^5, w, s w. Those whose bits are set in box_terms are stored:
-     * [3][bits set]. With knots the box is [n_knots][3], and box_terms is 0. In
-     * the lens basis terms are 1, s, s^2, p, s p, p^2, w, s w, and a fourth
+     * Each is a polynomial with up to GLINT_BOX_TERMS terms: s^0, s^1 .. s^5,
+     * w, s w. Those whose bits are set in box_terms are stored: [3][bits set].
+     * In the lens basis terms are 1, s, s^2, p, s p, p^2, w, s w, and a fourth
      * side, the middle along y, follows: [4][bits set]. */
     uint32_t box_at;
     int32_t box_exponent;
     uint32_t output_at; /* array of struct glint_model_output, by rising kind */
     uint8_t n_outputs, box_terms;
     /* k: this part lacks |v| < k / (k + 1), which other parts of the pupil
-     * cover; at most GLINT_MAX_ANNULUS, 0 with knots and in the lens basis. */
+     * cover; at most GLINT_MAX_ANNULUS, 0 in the lens basis. */
     uint8_t annulus;
     uint8_t zero;
 };
@@ -176,7 +166,7 @@ struct glint_model_output {
     uint8_t n_narrow;     /* number of coefficients at the end that are int16
                              instead, padded to whole words */
     uint8_t narrow_shift; /* an int16 coefficient counts 2^narrow_shift times;
-                             at most 20; with knots 0 */
+                             at most 20 */
     /* Both are 0 for all kinds but the energy. If head is not 0, the polynomial
      * P is clamped to 2^(29 - head), far above its values where light gets
      * through; head is 28 at most. The energy is P squared ROOTS times, 2 at
@@ -184,10 +174,10 @@ struct glint_model_output {
     uint8_t head, roots;
     int16_t exponent; /* value of the polynomial = integer * 2^exponent */
     uint32_t term_at; /* uint16 [n_terms], padded to whole words: powers of u,
-                         v, s, w (or x, y, r, 1 - r), four bits each, the first
-                         lowest; in the lens basis those of s, p and w share the
-                         upper eight bits: s + 6 p + 36 w */
-    uint32_t coef_at; /* int32 [n_terms], with knots [n_knots][n_terms] */
+                         v, s, w, four bits each, the first lowest; in the lens
+                         basis those of s, p and w share the upper eight bits: s
+                         + 6 p + 36 w */
+    uint32_t coef_at; /* int32 [n_terms] */
     uint32_t bound;   /* proven: no intermediate is larger; < 2^30 */
     uint32_t rounding_q8; /* proven: integers differ from the polynomial by no
                              more than this, in units of the integer */

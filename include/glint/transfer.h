@@ -50,16 +50,8 @@ struct glint_transfer {
      * whole box, the caller may narrow it; v begins at 0 unless the box is
      * annular, or WHOLE. */
     struct glint_box_window window;
-    enum glint_basis basis;
-    union {
-        /* coefficients of u^a v^b, at [b][a] */
-        int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1][GLINT_TABLE_WIDTH];
-        struct {
-            int32_t n_terms;
-            uint16_t power[GLINT_MAX_MODEL_TERMS];
-            int32_t coef[GLINT_MAX_MODEL_TERMS];
-        } sparse[GLINT_OUT_KINDS];
-    } of;
+    /* coefficients of u^a v^b, at [b][a] */
+    int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1][GLINT_TABLE_WIDTH];
     uint8_t degree_u[GLINT_OUT_KINDS], degree_v[GLINT_OUT_KINDS];
     unsigned sets; /* instruction sets for rows, GLINT_SET_: 0 after init, for
                       the caller to set; changes no result */

@@ -31,7 +31,7 @@ static uint32_t put_terms(struct glint_draft *d,
     return glint_draft_put(d, power, (size_t)o->n_terms * sizeof *power);
 }
 
-/* Appends one set of coefficients: the wide ones, then the narrow ones. */
+/* Appends the coefficients: the wide ones, then the narrow ones. */
 static uint32_t put_coefficients(struct glint_draft *d,
                                  const struct glint_fitted_output *o,
                                  const struct glint_quantised_output *q)
@@ -56,14 +56,10 @@ static uint32_t put_coefficients(struct glint_draft *d,
 
 static struct glint_model_output
 put_output(struct glint_draft *d, const struct glint_fitted_output *o,
-           const struct glint_quantised_output *q, bool skew, int n_sets)
+           const struct glint_quantised_output *q, bool skew)
 {
     const uint32_t term_at = put_terms(d, o, q, skew);
-    const uint32_t coef_at =
-        n_sets ? glint_draft_put(d, q->coef,
-                                 (size_t)n_sets * (size_t)o->n_terms *
-                                     sizeof *q->coef)
-               : put_coefficients(d, o, q);
+    const uint32_t coef_at = put_coefficients(d, o, q);
 
     return (struct glint_model_output){
         .kind = (uint8_t)o->kind,
@@ -86,8 +82,7 @@ static uint32_t put_outputs(struct glint_draft *d,
     struct glint_model_output out[GLINT_OUT_KINDS];
 
     for (int k = 0; k < f->n_outputs; k++)
-        out[k] =
-            put_output(d, &f->output[k], &q->output[k], f->skew, f->n_knots);
+        out[k] = put_output(d, &f->output[k], &q->output[k], f->skew);
     return glint_draft_put(d, out, (size_t)f->n_outputs * sizeof *out);
 }
 
@@ -96,34 +91,15 @@ static int32_t to_q30(double x)
     return (int32_t)lrint(x * 0x1p30);
 }
 
-static uint32_t put_knots(struct glint_draft *d,
-                          const struct glint_fitted_system *f)
-{
-    uint32_t where = (uint32_t)d->bytes;
-    const int32_t range_q30[2] = {to_q30(f->y_lo), to_q30(f->y_hi)};
-
-    if (f->skew)
-        return glint_draft_put(d, range_q30, sizeof range_q30);
-    for (int k = 0; k < f->n_knots; k++) {
-        const int32_t sine_q30 = to_q30(f->knot[k]);
-
-        glint_draft_put(d, &sine_q30, sizeof sine_q30);
-    }
-    return where;
-}
-
 /* Appends the box of a system. Terms that are 0 in all three sides are left
  * out. */
 static uint32_t put_box(struct glint_draft *d,
-                        const struct glint_quantised_system *q, bool knots,
-                        uint8_t *terms)
+                        const struct glint_quantised_system *q, uint8_t *terms)
 {
     int32_t packed[GLINT_LENS_SIDES * GLINT_BOX_TERMS];
     size_t n = 0;
 
     *terms = 0;
-    if (knots)
-        return glint_draft_put(d, q->box, (size_t)q->n_box * sizeof *q->box);
     for (int k = 0; k < q->n_box; k++)
         if (q->box[k])
             *terms |= (uint8_t)(1 << k % GLINT_BOX_TERMS);
@@ -138,17 +114,19 @@ static void write_system(struct glint_draft *d, uint32_t where,
                          const struct glint_quantised_system *q)
 {
     /* One after the other, as the order is part of the file. */
-    const uint32_t knot_at = put_knots(d, f);
+    const int32_t range_q30[2] = {to_q30(f->y_lo), to_q30(f->y_hi)};
+    const uint32_t across_at =
+        f->skew ? glint_draft_put(d, range_q30, sizeof range_q30)
+                : (uint32_t)d->bytes;
     uint8_t box_terms;
-    const uint32_t box_at = put_box(d, q, f->n_knots > 0, &box_terms);
+    const uint32_t box_at = put_box(d, q, &box_terms);
     const uint32_t output_at = put_outputs(d, f, q);
     const struct glint_model_system system = {
         .sine_lo_q30 = to_q30(f->sine_lo),
         .sine_hi_q30 = to_q30(f->sine_hi),
         .wave_lo_q24 = (int32_t)lrint(f->wave_lo * 0x1p24),
         .wave_hi_q24 = (int32_t)lrint(f->wave_hi * 0x1p24),
-        .n_knots = (uint32_t)f->n_knots,
-        .knot_at = knot_at,
+        .across_at = across_at,
         .box_at = box_at,
         .box_exponent = q->box_exponent,
         .output_at = output_at,

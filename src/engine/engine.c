@@ -92,8 +92,7 @@ static enum glint_status set_up(struct glint_setup *setup,
         status = glint_setup_stop_down(setup, model, shape->f_number, error);
     if (status == GLINT_OK && shape->set_iris)
         status = shape->set_iris(setup, &shape->iris, dirt, error);
-    /* The sparse basis has its own three wavelengths and no others. */
-    if (status == GLINT_OK && model->header->basis != GLINT_BASIS_SPARSE)
+    if (status == GLINT_OK)
         glint_setup_spread(setup, model);
     return status;
 }

@@ -80,11 +80,9 @@ static int terms_of(const struct glint_transfer *t, int kind)
 {
     int n = 0;
 
-    if (t->basis == GLINT_BASIS_SPARSE)
-        return t->of.sparse[kind].n_terms;
     for (int v = 0; v <= t->degree_v[kind]; v++)
         for (int u = 0; u <= t->degree_u[kind]; u++)
-            n += t->of.table[kind][v][u] != 0;
+            n += t->table[kind][v][u] != 0;
     return n;
 }
 

@@ -173,7 +173,7 @@ static int find_moved(const struct glint_zoom_mix *blend, int kind,
                       int32_t exponent, const struct glint_blend_output *o,
                       int32_t e, int32_t (*to)[GLINT_TABLE_WIDTH])
 {
-    int32_t(*const ours)[GLINT_TABLE_WIDTH] = blend->to->of.table[kind];
+    int32_t(*const ours)[GLINT_TABLE_WIDTH] = blend->to->table[kind];
     const int64_t part = blend->part_q30 >> 15;
     const int64_t both_q15 = part * ((1 << 15) - part) >> 15;
     int64_t all = 0;
@@ -212,9 +212,9 @@ static int32_t mix_output(const struct glint_zoom_mix *blend, int kind,
     moves = find_moved(blend, kind, exponent, o, e, more);
     for (int b = 0; b <= t->degree_v[kind]; b++)
         for (int a = 0; a <= t->degree_u[kind]; a++)
-            t->of.table[kind][b][a] =
-                mix(t->of.table[kind][b][a], exponent, o->row[b][a],
-                    o->exponent, e, blend->part_q30) +
+            t->table[kind][b][a] =
+                mix(t->table[kind][b][a], exponent, o->row[b][a], o->exponent,
+                    e, blend->part_q30) +
                 (moves ? more[b][a] : 0);
     return e;
 }
@@ -256,8 +256,7 @@ static void scale(struct glint_transfer *t, int kind, int32_t share_q30)
 {
     for (int b = 0; b < ROWS; b++)
         for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
-            t->of.table[kind][b][a] =
-                q_mul(t->of.table[kind][b][a], share_q30, 30);
+            t->table[kind][b][a] = q_mul(t->table[kind][b][a], share_q30, 30);
 }
 
 void glint_blend_fade(struct glint_transfer *t, int32_t share_q30)
@@ -280,7 +279,7 @@ static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
         return;
     share_q30 = share_q30 > LATE_Q30 ? 4 * (share_q30 - LATE_Q30) : 0;
     scale(t, kind, TRANSFER_ONE_Q30 - share_q30);
-    t->of.table[kind][0][0] += (int32_t)down((int64_t)OPEN_Q16 * share_q30, up);
+    t->table[kind][0][0] += (int32_t)down((int64_t)OPEN_Q16 * share_q30, up);
 }
 
 /* Returns (B - A) / SIZE as move_q24() does, of a SIZE of either sign. */

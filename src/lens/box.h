@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The box of a system without knots: its middle or a half size as a polynomial
+ * The box of a system: its middle or a half size as a polynomial
  * of angle and wavelength. The run time and the check of a model share it. */
 #ifndef GLINT_LENS_BOX_H
 #define GLINT_LENS_BOX_H

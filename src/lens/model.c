@@ -11,14 +11,9 @@
  *   - variables are within +-2^30 and so are their powers, and q_mul by them
  *     never makes an integer larger. With the sum of |coefficient| of an output
  *     below 2^30 no product, row or Horner step leaves that range, whatever
- *     the order of additions: between two knots a coefficient is off the line
- *     by half a unit, 120 of them by 60 units, and int32 has a bit to spare;
- *   - the box of the sparse basis stays within +-2^30, or 1 unit more between
- *     two knots: its powers are off by 15 units, and the same bit takes it;
+ *     the order of additions;
  *   - in the auto basis powers of u and v index a table, and powers of v are
- *     all odd or all even;
- *   - knots rise, and there are none, or two and more. A range may be a single
- *     point.
+ *     all odd or all even.
  * Vertices shift by any exponent; the limits here keep sums of exponents small.
  */
 #include "glint/model.h"
@@ -129,8 +124,7 @@ static const char *check_header(struct check *c)
     const struct glint_model_header *h = c->header;
     const char *reason = fault_text[glint_blob_check_name(&c->blob)];
 
-    if (h->basis != GLINT_BASIS_AUTO && h->basis != GLINT_BASIS_SPARSE &&
-        !glint_basis_is_lens(h->basis))
+    if (h->basis != GLINT_BASIS_AUTO && !glint_basis_is_lens(h->basis))
         return "the basis is unknown";
     if (!reason)
         reason = check_reals(h);
@@ -168,52 +162,13 @@ static const char *check_across(struct check *c,
                                 const struct glint_model_system *s)
 {
     const int32_t *y_q30 =
-        glint_blob_section(&c->blob, s->knot_at, 2, sizeof *y_q30);
+        glint_blob_section(&c->blob, s->across_at, 2, sizeof *y_q30);
 
     if (!y_q30)
         return outside;
     return y_q30[0] < -LIMIT || y_q30[0] >= y_q30[1] || y_q30[1] > LIMIT
                ? "a system's angles are out of range"
                : NULL;
-}
-
-static const char *check_knots(struct check *c,
-                               const struct glint_model_system *s)
-{
-    const int32_t *knot_q30;
-
-    if ((c->header->basis == GLINT_BASIS_SPARSE) != (s->n_knots > 0))
-        return "knots do not go with the basis";
-    if (glint_basis_is_lens(c->header->basis))
-        return check_across(c, s);
-    if (s->n_knots == 0)
-        return NULL;
-    if (s->n_knots == 1)
-        return "a system has a single knot";
-    knot_q30 =
-        glint_blob_section(&c->blob, s->knot_at, s->n_knots, sizeof *knot_q30);
-    if (!knot_q30)
-        return outside;
-    for (uint32_t k = 1; k < s->n_knots; k++)
-        if (knot_q30[k] <= knot_q30[k - 1])
-            return "a system's knots do not rise";
-    if (knot_q30[0] < 0 || knot_q30[0] > s->sine_lo_q30 ||
-        knot_q30[s->n_knots - 1] < s->sine_hi_q30 ||
-        knot_q30[s->n_knots - 1] > LIMIT)
-        return "a system's knots do not cover its angles";
-    return NULL;
-}
-
-/* Checks the box at one knot: middle, half width, half height. */
-static const char *check_box_at_knot(const int32_t box[3])
-{
-    if (box[1] < 0 || box[2] < 0)
-        return "a box has a size below 0";
-    /* Differences between neighbours must fit an int32. */
-    if (magnitude(box[0]) >= LIMIT || magnitude(box[0]) + box[1] > LIMIT ||
-        box[2] > LIMIT)
-        return "a box reaches too far";
-    return NULL;
 }
 
 /* Returns whether the polynomial P of a half size is below 0 at any of a row of
@@ -247,7 +202,7 @@ static int lens_side_below_0(const int32_t p[GLINT_BOX_TERMS])
 static const char *check_box(struct check *c,
                              const struct glint_model_system *s)
 {
-    const uint64_t terms = s->n_knots ? s->n_knots : bits_set(s->box_terms);
+    const uint64_t terms = bits_set(s->box_terms);
     const int lens = glint_basis_is_lens(c->header->basis);
     const int sides = lens ? GLINT_LENS_SIDES : 3;
     const int32_t *box;
@@ -255,19 +210,11 @@ static const char *check_box(struct check *c,
 
     if (s->box_exponent < MIN_EXPONENT || s->box_exponent > MAX_EXPONENT)
         return "the exponent of a box is out of range";
-    if (s->n_knots && s->box_terms)
-        return "a box at knots has terms";
     box = glint_blob_section(&c->blob, s->box_at, (uint64_t)sides * terms,
                              sizeof *box);
     if (!box)
         return outside;
-    for (uint32_t k = 0; k < s->n_knots; k++) {
-        const char *reason = check_box_at_knot(box + 3 * (size_t)k);
-
-        if (reason)
-            return reason;
-    }
-    for (int k = 0; k < sides && s->n_knots == 0; k++) {
+    for (int k = 0; k < sides; k++) {
         box = box_unpack(box, s->box_terms, side);
         if (magnitudes(side, GLINT_BOX_TERMS) >= LIMIT)
             return "a box reaches too far";
@@ -313,10 +260,9 @@ static const char *check_terms(struct check *c,
     if (!power)
         return outside;
     for (uint32_t k = 0; k < o->n_terms; k++) {
-        const char *reason =
-            c->header->basis == GLINT_BASIS_AUTO    ? check_power(o, power[k])
-            : glint_basis_is_lens(c->header->basis) ? check_lens_power(power[k])
-                                                    : NULL;
+        const char *reason = glint_basis_is_lens(c->header->basis)
+                                 ? check_lens_power(power[k])
+                                 : check_power(o, power[k]);
 
         if (reason)
             return reason;
@@ -354,33 +300,12 @@ static const char *check_narrow(struct check *c,
     return sum < LIMIT ? NULL : too_large;
 }
 
-static const char *check_coefficients(struct check *c,
-                                      const struct glint_model_system *s,
-                                      const struct glint_model_output *o)
-{
-    const int32_t *coef;
-
-    if (s->n_knots == 0)
-        return check_narrow(c, o);
-    if (o->n_narrow || o->narrow_shift)
-        return "an output has no such narrow coefficients";
-    coef = glint_blob_section(&c->blob, o->coef_at,
-                              (uint64_t)s->n_knots * o->n_terms, sizeof *coef);
-    if (!coef)
-        return outside;
-    for (uint32_t k = 0; k < s->n_knots; k++, coef += o->n_terms)
-        if (magnitudes(coef, o->n_terms) >= LIMIT)
-            return "the coefficients of an output are too large";
-    return NULL;
-}
-
 static const char *check_output(struct check *c,
-                                const struct glint_model_system *s,
                                 const struct glint_model_output *o)
 {
     const char *reason;
 
-    if ((o->roots || o->head) && (o->kind != GLINT_OUT_ENERGY || s->n_knots ||
+    if ((o->roots || o->head) && (o->kind != GLINT_OUT_ENERGY ||
                                   o->roots > MAX_ROOTS || o->head > MAX_HEAD))
         return "an output has no such roots or head";
     if (o->n_terms < 1 || o->n_terms > GLINT_MAX_MODEL_TERMS)
@@ -390,7 +315,7 @@ static const char *check_output(struct check *c,
     if (o->bound >= LIMIT)
         return "the bound of an output is too large";
     reason = check_terms(c, o);
-    return reason ? reason : check_coefficients(c, s, o);
+    return reason ? reason : check_narrow(c, o);
 }
 
 static const char *check_outputs(struct check *c,
@@ -410,7 +335,7 @@ static const char *check_outputs(struct check *c,
             return "a system lacks an output, or its kinds do not rise";
         if (o[k].kind >= GLINT_OUT_KINDS || (k && o[k].kind <= o[k - 1].kind))
             return "an output's kind is unknown, or kinds do not rise";
-        reason = check_output(c, s, &o[k]);
+        reason = check_output(c, &o[k]);
         if (reason)
             return reason;
     }
@@ -429,12 +354,12 @@ static const char *check_system(struct check *check,
     if (s->sine_lo_q30 < (lens ? -LIMIT : 0) ||
         s->sine_lo_q30 >= s->sine_hi_q30 || s->sine_hi_q30 > LIMIT)
         return "a system's angles are out of range";
-    if (s->annulus > GLINT_MAX_ANNULUS ||
-        (s->annulus && (s->n_knots || lens)) || s->zero)
+    if (s->annulus > GLINT_MAX_ANNULUS || (s->annulus && lens) || s->zero ||
+        s->zero_word)
         return "a system's annulus is out of range";
     if (s->wave_lo_q24 <= 0 || s->wave_lo_q24 > s->wave_hi_q24)
         return "a system's band is out of range";
-    reason = check_knots(check, s);
+    reason = lens ? check_across(check, s) : NULL;
     if (!reason)
         reason = check_box(check, s);
     if (!reason)

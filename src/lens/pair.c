@@ -26,7 +26,7 @@ struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind)
 {
     return (struct glint_blend_output){.kind = (uint8_t)kind,
                                        .exponent = t->exponent[kind],
-                                       .row = t->of.table[kind],
+                                       .row = t->table[kind],
                                        .degree_u = t->degree_u[kind],
                                        .degree_v = t->degree_v[kind]};
 }
@@ -210,6 +210,6 @@ int glint_blend_put(struct glint_transfer *t,
     t->degree_v[kind] = o->degree_v;
     for (int b = 0; b <= GLINT_MAX_POWER; b++)
         for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
-            t->of.table[kind][b][a] = o->row[b][a];
+            t->table[kind][b][a] = o->row[b][a];
     return kind - BARREL;
 }

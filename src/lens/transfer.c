@@ -48,15 +48,6 @@ static int is_in_band(const struct glint_model_system *s,
             (wave_q24 == s->wave_hi_q24 && wave_q24 == h->wave_hi_q24));
 }
 
-/* Returns how far WAVE lies outside the band of S. */
-static int64_t off_band(const struct glint_model_system *s, int32_t wave_q24)
-{
-    const int64_t below = (int64_t)s->wave_lo_q24 - wave_q24;
-    const int64_t above = (int64_t)wave_q24 - s->wave_hi_q24;
-
-    return below > 0 ? below : above > 0 ? above : 0;
-}
-
 /* Returns whether Y, the y component of a light's direction, is in the range
  * of system S; without such a range it is. */
 static int is_in_across(const struct glint_lens *lens,
@@ -65,8 +56,8 @@ static int is_in_across(const struct glint_lens *lens,
     const int32_t *range_q30;
 
     if (!glint_basis_is_lens(lens->header->basis))
-        return 1; /* knot_at has not been checked then */
-    range_q30 = at(lens, s->knot_at);
+        return 1; /* across_at has not been checked then */
+    range_q30 = at(lens, s->across_at);
     return y_q30 >= range_q30[0] && y_q30 <= range_q30[1];
 }
 
@@ -76,7 +67,6 @@ find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
 {
     const struct glint_model_ghost *g = &lens->ghost[ghost];
     const struct glint_model_header *h = lens->header;
-    const struct glint_model_system *best = NULL;
 
     wave_q24 = wave_q24 < h->wave_lo_q24   ? h->wave_lo_q24
                : wave_q24 > h->wave_hi_q24 ? h->wave_hi_q24
@@ -85,13 +75,11 @@ find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
         const struct glint_model_system *s = &lens->system[g->first_system + k];
 
         if (sine_q30 < s->sine_lo_q30 || sine_q30 > s->sine_hi_q30 ||
-            (s->n_knots == 0 && !is_in_band(s, h, wave_q24)) ||
-            !is_in_across(lens, s, y_q30))
+            !is_in_band(s, h, wave_q24) || !is_in_across(lens, s, y_q30))
             continue;
-        if (!best || off_band(s, wave_q24) < off_band(best, wave_q24))
-            best = s;
+        return s;
     }
-    return best;
+    return NULL;
 }
 
 const struct glint_model_system *
@@ -103,8 +91,6 @@ glint_transfer_system(const struct glint_lens *lens, int ghost,
 
 /* Angle and wavelength of a bundle, relative to its system. */
 struct setting {
-    uint32_t knot; /* the knot below the angle */
-    int32_t part_q30;
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
     int lens;                         /* 1: the basis is the lens basis */
     int32_t p_q30[GLINT_LENS_POWERS]; /* of the lens basis only */
@@ -114,51 +100,29 @@ static void settle(struct setting *set, const struct glint_lens *lens,
                    const struct glint_model_system *s, int32_t sine_q30,
                    int32_t y_q30, int32_t wave_q24)
 {
-    set->knot = 0;
-    set->part_q30 = 0;
     set->lens = glint_basis_is_lens(lens->header->basis);
-    if (s->n_knots) {
-        const int32_t *knot_q30 = at(lens, s->knot_at);
-        uint32_t k = 0;
-
-        while (k + 2 < s->n_knots && sine_q30 >= knot_q30[k + 1])
-            k++;
-        set->knot = k;
-        set->part_q30 = within_q30(sine_q30, knot_q30[k], knot_q30[k + 1]) / 2 +
-                        TRANSFER_ONE_Q30 / 2;
-        return;
-    }
     transfer_powers(within_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30),
                     TRANSFER_MAX_EXPONENT, set->s_q30);
     transfer_powers(within_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24),
                     TRANSFER_MAX_EXPONENT, set->w_q30);
     if (set->lens) {
-        const int32_t *range_q30 = at(lens, s->knot_at);
+        const int32_t *range_q30 = at(lens, s->across_at);
 
         transfer_powers(within_q30(y_q30, range_q30[0], range_q30[1]),
                         GLINT_LENS_POWERS - 1, set->p_q30);
     }
 }
 
-static int32_t between(int32_t a, int32_t b, int32_t part_q30)
-{
-    return a + q_mul(b - a, part_q30, 30);
-}
-
 static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
                     const struct setting *set)
 {
     const struct glint_model_system *s = t->system;
-    const int32_t *box = at(lens, s->box_at), *low = box + 3 * set->knot;
+    const int32_t *box = at(lens, s->box_at);
     int32_t side[GLINT_BOX_TERMS];
 
     t->box_exponent = s->box_exponent;
     t->box[3] = 0;
     for (int k = 0; k < (set->lens ? GLINT_LENS_SIDES : 3); k++) {
-        if (s->n_knots) {
-            t->box[k] = between(low[k], low[3 + k], set->part_q30);
-            continue;
-        }
         box = box_unpack(box, s->box_terms, side);
         t->box[k] = set->lens ? box_lens_side(side, set->s_q30[1],
                                               set->p_q30[1], set->w_q30[1])
@@ -168,24 +132,6 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
      * that falls below 0 is 0. */
     for (int k = 1; k < 3; k++)
         t->box[k] = t->box[k] < 0 ? 0 : t->box[k];
-}
-
-/* Sets the terms of an output in the sparse basis, interpolated between two
- * knots. */
-static void set_terms(struct glint_transfer *t, const struct glint_lens *lens,
-                      const struct glint_model_output *o,
-                      const struct setting *set)
-{
-    const uint16_t *power = at(lens, o->term_at);
-    const int32_t *low = at(lens, o->coef_at), *high;
-
-    low += set->knot * o->n_terms;
-    high = low + o->n_terms;
-    t->of.sparse[o->kind].n_terms = (int32_t)o->n_terms;
-    for (uint32_t k = 0; k < o->n_terms; k++) {
-        t->of.sparse[o->kind].power[k] = power[k];
-        t->of.sparse[o->kind].coef[k] = between(low[k], high[k], set->part_q30);
-    }
 }
 
 /* Returns VALUE, the coefficient of a term with the powers POWER, multiplied by
@@ -268,7 +214,7 @@ static void set_table(struct glint_transfer *t, const struct glint_lens *lens,
                       const struct glint_model_output *o,
                       const struct setting *set)
 {
-    struct table table = {t->of.table[o->kind], 0, 0};
+    struct table table = {t->table[o->kind], 0, 0};
 
     fill_table(&table, lens, o, set);
     t->degree_u[o->kind] = (uint8_t)table.degree_u;
@@ -288,10 +234,7 @@ static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
         for (int k = 0; k < o->roots; k++)
             t->exponent[o->kind] = 2 * t->exponent[o->kind] + 29;
     }
-    if (t->basis == GLINT_BASIS_SPARSE)
-        set_terms(t, lens, o, set);
-    else
-        set_table(t, lens, o, set);
+    set_table(t, lens, o, set);
 }
 
 static void clear(struct glint_transfer *t)
@@ -362,7 +305,6 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
     clear(transfer);
     transfer->system = system;
     transfer->annulus = (uint8_t)system->annulus;
-    transfer->basis = (enum glint_basis)lens->header->basis;
     settle(&set, lens, system, d.x_q30, d.y_q30, wave_q24);
     transfer->whole = (uint8_t)set.lens;
     transfer->window = glint_box_whole(transfer);

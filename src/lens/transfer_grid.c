@@ -244,12 +244,6 @@ static void set_row_pair(struct glint_transfer *t,
     }
 }
 
-/* Returns whether each row must be computed separately. */
-static int is_alone(const struct glint_transfer *t)
-{
-    return t->basis == GLINT_BASIS_SPARSE || t->whole;
-}
-
 static void lose_row(struct glint_vertex *row, int n_cells)
 {
     for (int i = 0; i <= n_cells; i++)
@@ -262,7 +256,7 @@ void glint_transfer_row(struct glint_transfer *transfer,
 {
     if (is_hidden(transfer, n_cells, j))
         lose_row(row, n_cells);
-    else if (is_alone(transfer) || 2 * j <= n_cells)
+    else if (transfer->whole || 2 * j <= n_cells)
         set_row_pair(transfer, place, n_cells, j, row, NULL);
     else
         set_row_pair(transfer, place, n_cells, n_cells - j, NULL, row);
@@ -276,7 +270,7 @@ void glint_transfer_rows(struct glint_transfer *transfer,
     if (is_hidden(transfer, n_cells, j)) {
         lose_row(row, n_cells);
         lose_row(mirrored, n_cells);
-    } else if (is_alone(transfer)) {
+    } else if (transfer->whole) {
         set_row_pair(transfer, place, n_cells, j, row, NULL);
         set_row_pair(transfer, place, n_cells, n_cells - j, mirrored, NULL);
     } else {
@@ -288,7 +282,7 @@ void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices)
 {
-    const int alone = is_alone(transfer);
+    const int alone = transfer->whole;
     const int nodes = n_cells + 1;
 
     for (int j = 0; j < nodes; j++) {

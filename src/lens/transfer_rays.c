@@ -24,7 +24,7 @@ static void set_half(const struct glint_transfer *t,
                      const struct glint_horner *k, int kind, int odd,
                      int32_t v_q30, int32_t v2_q30, int32_t *of_u)
 {
-    k->across(of_u, t->of.table[kind][odd], 2 * GLINT_TABLE_WIDTH,
+    k->across(of_u, t->table[kind][odd], 2 * GLINT_TABLE_WIDTH,
               (t->degree_v[kind] - odd) / 2, v2_q30,
               t->degree_u[kind] < 8 ? 8 : GLINT_TABLE_WIDTH);
     for (int a = 0; odd && a <= t->degree_u[kind]; a++)
@@ -87,38 +87,6 @@ static void rays_of_rows(const struct glint_transfer *t,
         raise_energies(t, out[GLINT_OUT_ENERGY], RAYS);
 }
 
-static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
-                         int32_t v_q30, struct glint_outputs *out)
-{
-    int32_t x[4][TRANSFER_MAX_EXPONENT + 1];
-    const int32_t px_q30 = t->box[0] + q_mul(t->box[1], u_q30, 30);
-    const int32_t py_q30 = q_mul(t->box[2], v_q30, 30);
-    const int64_t r2_q60 = (int64_t)px_q30 * px_q30 + (int64_t)py_q30 * py_q30;
-    const int32_t r_q30 =
-        q_clamp_sat(q_root((uint64_t)r2_q60), 0, TRANSFER_ONE_Q30);
-
-    transfer_powers(px_q30, TRANSFER_MAX_EXPONENT, x[0]);
-    transfer_powers(py_q30, TRANSFER_MAX_EXPONENT, x[1]);
-    transfer_powers(r_q30, TRANSFER_MAX_EXPONENT, x[2]);
-    transfer_powers(TRANSFER_ONE_Q30 - r_q30, TRANSFER_MAX_EXPONENT, x[3]);
-    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
-        int32_t sum = 0;
-
-        for (int k = 0; transfer_has(t, kind) && k < t->of.sparse[kind].n_terms;
-             k++) {
-            int32_t value = t->of.sparse[kind].coef[k];
-
-            for (int i = 0; i < 4; i++) {
-                const int e = t->of.sparse[kind].power[k] >> (4 * i) & 15;
-
-                value = e ? q_mul(value, x[i][e], 30) : value;
-            }
-            sum += value;
-        }
-        out->at[kind] = sum;
-    }
-}
-
 void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
                         int32_t v_q30, struct glint_outputs *out)
 {
@@ -126,10 +94,6 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
     const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
     const struct glint_horner *k = glint_horner_of(0);
 
-    if (transfer->basis == GLINT_BASIS_SPARSE) {
-        ray_of_terms(transfer, u_q30, v_q30, out);
-        return;
-    }
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
         int32_t of_u[GLINT_TABLE_WIDTH];
 
@@ -142,28 +106,12 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
     raise_energies(t, &out->at[GLINT_OUT_ENERGY], 1);
 }
 
-static void rays_of_terms(const struct glint_transfer *t, const int32_t *u_q30,
-                          int32_t v_q30, int32_t (*rays)[RAYS])
-{
-    for (int i = 0; i < RAYS; i++) {
-        struct glint_outputs out;
-
-        ray_of_terms(t, u_q30[i], v_q30, &out);
-        for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-            rays[kind][i] = out.at[kind];
-    }
-}
-
 void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
                          const int32_t u_q30[GLINT_RAYS], int is_new,
                          int32_t out[GLINT_OUT_KINDS][GLINT_RAYS])
 {
     const struct glint_horner *k = glint_horner_of(transfer->sets);
 
-    if (transfer->basis == GLINT_BASIS_SPARSE) {
-        rays_of_terms(transfer, u_q30, v_q30, out);
-        return;
-    }
     if (is_new)
         set_rows(transfer, k, v_q30, transfer->of_u);
     rays_of_rows(transfer, k, u_q30, out);

@@ -77,21 +77,18 @@ void model_begin(struct model_image *m, enum glint_basis basis,
 void model_outputs(struct model_image *m, struct glint_model_system *s,
                    const struct model_polynomial *p, uint32_t n, int halved)
 {
-    const uint32_t n_sets = s->n_knots ? s->n_knots : 1;
     struct glint_model_output o[GLINT_OUT_KINDS] = {{0}};
 
     for (uint32_t k = 0; k < n; k++) {
-        int32_t coef[MODEL_KNOTS * MODEL_TERMS];
-        uint32_t n_coefs = 0;
+        int32_t coef[MODEL_TERMS];
 
-        for (uint32_t set = 0; set < n_sets; set++)
-            for (uint32_t t = 0; t < p[k].n_terms; t++)
-                coef[n_coefs++] = p[k].coef[set][t] / (1 << halved);
+        for (uint32_t t = 0; t < p[k].n_terms; t++)
+            coef[t] = p[k].coef[t] / (1 << halved);
         o[k].kind = p[k].kind;
         o[k].n_terms = p[k].n_terms;
         o[k].exponent = p[k].exponent;
         o[k].term_at = model_put(m, p[k].power, 2 * p[k].n_terms);
-        o[k].coef_at = model_put(m, coef, 4 * n_coefs);
+        o[k].coef_at = model_put(m, coef, 4 * (size_t)p[k].n_terms);
         o[k].bound = 1 << 29;
         o[k].rounding_q8 = 384;
         o[k].rms = MODEL_ERROR(1536, 9 - halved); /* 0.75; halved: 0.375 */
@@ -116,33 +113,33 @@ struct glint_model_system model_auto_system(struct model_image *m,
          -28,
          {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(1, 0, 0, 0),
           MODEL_POWER(0, 2, 1, 0)},
-         {{1 << 26, 1 << 27, -(1 << 25)}}},
+         {1 << 26, 1 << 27, -(1 << 25)}},
         /* sensor y = 0.5 v + 0.25 u v, mm */
         {GLINT_OUT_SENSOR_Y,
          2,
          -28,
          {MODEL_POWER(0, 1, 0, 0), MODEL_POWER(1, 1, 0, 0)},
-         {{1 << 27, 1 << 26}}},
+         {1 << 27, 1 << 26}},
         /* stop x = 0.5 u^3 */
-        {GLINT_OUT_STOP_X, 1, -29, {MODEL_POWER(3, 0, 0, 0)}, {{1 << 28}}},
+        {GLINT_OUT_STOP_X, 1, -29, {MODEL_POWER(3, 0, 0, 0)}, {1 << 28}},
         /* stop y = 0.5 v - 0.125 v^3 */
         {GLINT_OUT_STOP_Y,
          2,
          -29,
          {MODEL_POWER(0, 1, 0, 0), MODEL_POWER(0, 3, 0, 0)},
-         {{1 << 28, -(1 << 26)}}},
+         {1 << 28, -(1 << 26)}},
         /* energy = 2^-6 (0.5 + 0.25 w) */
         {GLINT_OUT_ENERGY,
          2,
          -35,
          {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(0, 0, 0, 1)},
-         {{1 << 28, 1 << 27}}},
+         {1 << 28, 1 << 27}},
         /* barrel 0 = 0.5 + u^2 / 2 */
         {GLINT_OUT_BARREL_0,
          2,
          -28,
          {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(2, 0, 0, 0)},
-         {{1 << 27, 1 << 27}}},
+         {1 << 27, 1 << 27}},
     };
     static const int32_t box[3][3] = {
         {1 << 20, 1 << 19, 0}, {1 << 22, -(1 << 20), 0}, {3 << 20, 0, 0}};
@@ -189,64 +186,6 @@ struct model_image model_auto(void)
     s[2] = model_auto_system(&m, one / 8, one / 2, lo, middle, 0);
     s[3] = model_auto_system(&m, one / 8, one / 2, middle, hi, 1);
     model_end(&m, ghosts, 3, s, 4);
-    return m;
-}
-
-struct model_image model_sparse(void)
-{
-    static const struct model_polynomial outputs[] = {
-        /* sensor x = a x + r / 4, mm; a is 1/2, 1/4 and 0 at the knots */
-        {GLINT_OUT_SENSOR_X,
-         2,
-         -28,
-         {MODEL_POWER(1, 0, 0, 0), MODEL_POWER(0, 0, 1, 0)},
-         {{1 << 27, 1 << 26}, {1 << 26, 1 << 26}, {0, 1 << 26}}},
-        /* sensor y = y / 2, mm */
-        {GLINT_OUT_SENSOR_Y,
-         1,
-         -28,
-         {MODEL_POWER(0, 1, 0, 0)},
-         {{1 << 27}, {1 << 27}, {1 << 27}}},
-        /* stop x = x (1 - r) */
-        {GLINT_OUT_STOP_X,
-         1,
-         -29,
-         {MODEL_POWER(1, 0, 0, 1)},
-         {{1 << 29}, {1 << 29}, {1 << 29}}},
-        {GLINT_OUT_STOP_Y,
-         1,
-         -29,
-         {MODEL_POWER(0, 1, 0, 1)},
-         {{1 << 29}, {1 << 29}, {1 << 29}}},
-        {GLINT_OUT_ENERGY,
-         1,
-         -35,
-         {MODEL_POWER(0, 0, 0, 0)},
-         {{1 << 29}, {1 << 28}, {1 << 27}}},
-        /* radius = r */
-        {GLINT_OUT_RADIUS,
-         1,
-         -28,
-         {MODEL_POWER(0, 0, 1, 0)},
-         {{1 << 28}, {1 << 28}, {1 << 28}}},
-    };
-    static const struct glint_model_ghost ghost = {0, 1, 0, 1};
-    const int32_t one = MODEL_ONE_Q30;
-    const int32_t knots_q30[MODEL_KNOTS] = {0, one / 4, one / 2};
-    const int32_t box[MODEL_KNOTS][3] = {
-        {0, one, one}, {one / 2, one / 2, one}, {one / 4, one / 2, one / 2}};
-    struct glint_model_system s = {.sine_hi_q30 = one / 2,
-                                   .wave_lo_q24 = MODEL_WAVE_LO_Q24,
-                                   .wave_hi_q24 = MODEL_WAVE_LO_Q24,
-                                   .n_knots = MODEL_KNOTS,
-                                   .box_exponent = -27};
-    struct model_image m;
-
-    model_begin(&m, GLINT_BASIS_SPARSE, "sparse");
-    s.knot_at = model_put(&m, knots_q30, sizeof knots_q30);
-    s.box_at = model_put(&m, box, sizeof box);
-    model_outputs(&m, &s, outputs, sizeof outputs / sizeof *outputs, 0);
-    model_end(&m, &ghost, 1, &s, 1);
     return m;
 }
 

@@ -2,7 +2,7 @@
  *
  * Small models in memory, whose polynomials can be worked out by hand.
  *
- *     struct model_image m = model_auto();      or model_sparse()
+ *     struct model_image m = model_auto();
  *     glint_lens_open(&lens, m.data, m.bytes, &reason);
  *     free(m.data);
  *
@@ -18,7 +18,6 @@
 
 enum {
     MODEL_ROOM = 1 << 20,
-    MODEL_KNOTS = 3,
     MODEL_TERMS = 4,
     MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS /* s^0, s^1 and w */
 };
@@ -36,7 +35,7 @@ struct model_polynomial {
     uint8_t kind, n_terms;
     int16_t exponent;
     uint16_t power[MODEL_TERMS];
-    int32_t coef[MODEL_KNOTS][MODEL_TERMS]; /* coef[0] without knots */
+    int32_t coef[MODEL_TERMS];
 };
 
 /* Appends BYTES bytes, padded to whole words; returns where they are. */
@@ -83,8 +82,5 @@ void model_end(struct model_image *m, const struct glint_model_ghost *ghosts,
  * 1/4 .. 1/2, the second with halved coefficients; ghost 1 is never seen; ghost
  * 2 has two bands of wavelengths. */
 struct model_image model_auto(void);
-
-/* Returns a model of one ghost with knots at the sines 0, 1/4 and 1/2. */
-struct model_image model_sparse(void);
 
 #endif

@@ -42,7 +42,6 @@ void glint_fitted_drop(struct glint_fitted_system *system)
 {
     for (int k = 0; k < system->n_outputs; k++)
         free(system->output[k].coef);
-    free(system->knot);
     free(system->box);
 }
 

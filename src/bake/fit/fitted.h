@@ -9,8 +9,7 @@
 #include "glint/model.h"
 #include "glint/status.h"
 
-/* One output. COEF is [sets][n_terms], owned; there are n_knots sets, or one
- * without knots. */
+/* One output. COEF is [n_terms], owned. */
 struct glint_fitted_output {
     enum glint_channel kind;
     int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
@@ -34,11 +33,7 @@ struct glint_fitted_system {
                   directions, y_lo .. y_hi that of y */
     double y_lo, y_hi;
     double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
-    int n_knots;  /* number of knots and of sets of coefficients; 0: one set, no
-                     knots */
-    double *knot; /* sines, rising; owned */
-    double *box;  /* mm, with the layout of the model; owned */
-    double radius_mm; /* radius of the sparse basis; else unused */
+    double *box;             /* mm, with the layout of the model; owned */
     int n_outputs;
     struct glint_fitted_output output[GLINT_OUT_KINDS]; /* by rising kind */
     bool met;

@@ -8,43 +8,17 @@
 
 /* ------------------------------------------------------------------ scaling */
 
-static int sets_of(const struct glint_fitted_system *s)
-{
-    return s->n_knots ? s->n_knots : 1;
-}
-
-/* Returns the largest, over SETS sets, of the sum of magnitudes of N values. */
-static double largest_sum(const double *value, int sets, int n)
-{
-    double most = 0;
-
-    for (int k = 0; k < sets; k++) {
-        double sum = 0;
-
-        for (int i = 0; i < n; i++)
-            sum += fabs(value[k * n + i]);
-        most = fmax(most, sum);
-    }
-    return most;
-}
-
-enum { LEAST_EXPONENT = -80 }; /* least binary exponent of a model */
-
-/* Returns the sum of the N values' largest magnitudes over SETS sets: a bound
- * on the sum of values that lie between those of the sets. */
-static double hull_sum(const double *value, int sets, int n)
+/* Returns the sum of the magnitudes of N values. */
+static double sum_of(const double *value, int n)
 {
     double sum = 0;
 
-    for (int i = 0; i < n; i++) {
-        double most = 0;
-
-        for (int k = 0; k < sets; k++)
-            most = fmax(most, fabs(value[k * n + i]));
-        sum += most;
-    }
+    for (int i = 0; i < n; i++)
+        sum += fabs(value[i]);
     return sum;
 }
+
+enum { LEAST_EXPONENT = -80 }; /* least binary exponent of a model */
 
 /* Returns the exponent at which the sum of N values, of magnitude SUM before
  * each was rounded, stays below the limit. */
@@ -136,24 +110,11 @@ static struct range power_of(struct range x, int n)
 
 static const struct range both_ways = {-1, 1, 0};
 
-/* Ranges of x, y, r and 1 - r of the sparse basis, with the errors of rounding
- * them and the box and u, v that they are worked out from. */
-static const struct range place[4] = {
-    {-1, 1, 1.5}, {-1, 1, 1.5}, {0, 1, 4}, {0, 1, 4}};
-
-/* Returns the range of coefficient K: its value, or all between the sets. Its
- * error includes rounding to an integer, or to a multiple of 2^SHIFT. */
-static struct range coefficient(const int32_t *coef, int sets, int n, int k,
-                                int shift)
+/* Returns the range of COEF. Its error includes rounding to an integer, or to a
+ * multiple of 2^SHIFT. */
+static struct range coefficient(int32_t coef, int shift)
 {
-    struct range r = {coef[k], coef[k], 0.5 + (shift ? ldexp(0.5, shift) : 0)};
-
-    for (int set = 1; set < sets; set++) {
-        r.lo = fmin(r.lo, coef[set * n + k]);
-        r.hi = fmax(r.hi, coef[set * n + k]);
-    }
-    r.error += sets > 1 ? 0.5 : 0;
-    return r;
+    return (struct range){coef, coef, 0.5 + (shift ? ldexp(0.5, shift) : 0)};
 }
 
 /* Proves the step that puts angle and wavelength in: TABLE receives the
@@ -165,8 +126,7 @@ static void prove_table(struct proof *p, const struct glint_fitted_output *o,
     for (int i = 0; i < o->n_terms; i++) {
         const int k = q->order[i];
         const int shift = i < o->n_terms - q->n_narrow ? 0 : q->shift;
-        struct range value =
-            seen(p, coefficient(q->coef, 1, o->n_terms, k, shift));
+        struct range value = seen(p, coefficient(q->coef[k], shift));
         struct range *to = &table[o->power[k][1]][o->power[k][0]];
 
         for (int x = 2; x < GLINT_VARIABLES; x++)
@@ -190,9 +150,9 @@ static struct range across(struct proof *p,
     return odd ? times(p, sum, both_ways) : sum;
 }
 
-static void prove_auto(struct proof *p, const struct glint_fitted_output *o,
-                       const struct glint_quantised_output *q, bool skew,
-                       struct range *result)
+static void prove_output(struct proof *p, const struct glint_fitted_output *o,
+                         const struct glint_quantised_output *q, bool skew,
+                         struct range *result)
 {
     struct range table[GLINT_MAX_POWER + 1][GLINT_MAX_POWER + 1] = {
         {{0, 0, 0}}};
@@ -206,19 +166,6 @@ static void prove_auto(struct proof *p, const struct glint_fitted_output *o,
         if (skew)
             sum = plus(p, sum, across(p, table, a, true));
         *result = plus(p, times(p, *result, both_ways), sum);
-    }
-}
-
-static void prove_sparse(struct proof *p, const struct glint_fitted_output *o,
-                         const int32_t *coef, int sets, struct range *result)
-{
-    for (int k = 0; k < o->n_terms; k++) {
-        struct range value = seen(p, coefficient(coef, sets, o->n_terms, k, 0));
-
-        for (int i = 0; i < 4; i++)
-            if (o->power[k][i])
-                value = times(p, value, power_of(place[i], o->power[k][i]));
-        *result = plus(p, *result, value);
     }
 }
 
@@ -241,10 +188,7 @@ static void prove(const struct glint_fitted_system *s,
     struct proof p = {0};
     struct range result = {0, 0, 0};
 
-    if (s->n_knots > 0)
-        prove_sparse(&p, o, out->coef, sets_of(s), &result);
-    else
-        prove_auto(&p, o, out, s->skew, &result);
+    prove_output(&p, o, out, s->skew, &result);
     while (out->head > 0 &&
            energy_of(result, out->head, o->roots).error >= 0x1p22)
         out->head--; /* only rounding would go up there */
@@ -295,7 +239,7 @@ static int output_exponent(const struct glint_fitted_system *s, int k)
 {
     const struct glint_fitted_output *o = &s->output[k];
 
-    return exponent_for(hull_sum(o->coef, sets_of(s), o->n_terms), o->n_terms);
+    return exponent_for(sum_of(o->coef, o->n_terms), o->n_terms);
 }
 
 /* Returns by how many bits a polynomial can be scaled up so that, where light
@@ -318,7 +262,7 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
                                          struct glint_quantised_output *out)
 {
     const struct glint_fitted_output *o = &s->output[k];
-    const int pair = paired(o->kind), n = sets_of(s) * o->n_terms;
+    const int pair = paired(o->kind);
     enum glint_status status;
 
     out->exponent = output_exponent(s, k);
@@ -328,12 +272,11 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
         out->exponent = out->exponent > other ? out->exponent : other;
     }
     out->head = head_of(o, out->exponent);
-    status = to_integers(o->coef, n, out->exponent, &out->coef);
+    status = to_integers(o->coef, o->n_terms, out->exponent, &out->coef);
     for (int i = 0; i < o->n_terms; i++)
         out->order[i] = (uint8_t)i;
     if (status == GLINT_OK) {
-        if (s->n_knots == 0)
-            narrow(o, out);
+        narrow(o, out);
         prove(s, o, out);
         status = out->proven ? GLINT_OK : GLINT_E_LENS;
     }
@@ -342,8 +285,7 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
 
 static int box_size(const struct glint_fitted_system *s)
 {
-    return (s->skew ? GLINT_LENS_SIDES : 3) *
-           (s->n_knots ? s->n_knots : GLINT_BOX_TERMS);
+    return (s->skew ? GLINT_LENS_SIDES : 3) * GLINT_BOX_TERMS;
 }
 
 /* Returns whether every output has terms and all numbers are finite. */
@@ -354,32 +296,25 @@ static bool is_sound(const struct glint_fitted_system *s)
     for (int k = 0; k < s->n_outputs; k++) {
         const struct glint_fitted_output *o = &s->output[k];
 
-        if (o->n_terms < 1 || !all_finite(o->coef, sets_of(s) * o->n_terms))
+        if (o->n_terms < 1 || !all_finite(o->coef, o->n_terms))
             return false;
     }
-    return all_finite(s->box, n_box) &&
-           (s->n_knots == 0 || (s->radius_mm > 0 && isfinite(s->radius_mm)));
+    return all_finite(s->box, n_box);
 }
 
 enum glint_status glint_quantise(const struct glint_fitted_system *system,
                                  struct glint_quantised_system *out)
 {
     enum glint_status status;
+    double most = 0;
 
     *out = (struct glint_quantised_system){.box_exponent = 0};
     out->n_box = box_size(system);
     if (!is_sound(system))
         return GLINT_E_LENS;
-    if (system->n_knots) {
-        out->box_exponent = (int)lrint(log2(system->radius_mm)) - 30;
-        if (ldexp(system->radius_mm, -out->box_exponent) != 0x1p30)
-            return GLINT_E_LENS; /* The radius is no power of two. */
-    } else {
-        out->box_exponent =
-            exponent_for(largest_sum(system->box, out->n_box / GLINT_BOX_TERMS,
-                                     GLINT_BOX_TERMS),
-                         GLINT_BOX_TERMS);
-    }
+    for (int k = 0; k < out->n_box; k += GLINT_BOX_TERMS)
+        most = fmax(most, sum_of(system->box + k, GLINT_BOX_TERMS));
+    out->box_exponent = exponent_for(most, GLINT_BOX_TERMS);
     status = to_integers(system->box, out->n_box, out->box_exponent, &out->box);
     for (int k = 0; k < system->n_outputs && status == GLINT_OK; k++)
         status = quantise_output(system, k, &out->output[k]);

@@ -318,11 +318,11 @@ static bool init_output(const struct job *job, int kind, int n_knots,
 }
 
 static bool init_system(const struct job *job, const struct knots *knots,
-                        double nm, struct glint_fitted_system *s)
+                        double nm, struct glint_published_system *s)
 {
     bool good;
 
-    *s = (struct glint_fitted_system){
+    *s = (struct glint_published_system){
         .ghost = job->visible.ghost,
         .sine_lo = knots->sine[0],
         .sine_hi = knots->sine[knots->n - 1],
@@ -349,7 +349,7 @@ static bool init_system(const struct job *job, const struct knots *knots,
 
 /* Fits the coefficients at all knots. */
 static void fit_system(struct job *job, const struct knots *knots, double nm,
-                       struct glint_fitted_system *s)
+                       struct glint_published_system *s)
 {
     double sum[GLINT_SHARED_OUTPUTS] = {0};
     struct glint_path path;
@@ -379,7 +379,7 @@ static void fit_system(struct job *job, const struct knots *knots, double nm,
 }
 
 static enum glint_status fit_all(struct job *job,
-                                 struct glint_fitted_ghost *out)
+                                 struct glint_published_ghost *out)
 {
     const int waves = job->options->n_wavelengths;
 
@@ -388,7 +388,7 @@ static enum glint_status fit_all(struct job *job,
         return GLINT_E_MEMORY;
     for (int w = 0; w < waves; w++)
         for (int k = 0; k < job->n_ranges; k++) {
-            struct glint_fitted_system *s = &out->system[out->n_systems++];
+            struct glint_published_system *s = &out->system[out->n_systems++];
             const double nm = wavelength(job, w);
 
             if (!init_system(job, &job->knots[k], nm, s))
@@ -398,7 +398,7 @@ static enum glint_status fit_all(struct job *job,
     return GLINT_OK;
 }
 
-static enum glint_status run(struct job *job, struct glint_fitted_ghost *out)
+static enum glint_status run(struct job *job, struct glint_published_ghost *out)
 {
     const enum glint_status status = find_knots(job);
 
@@ -412,16 +412,30 @@ static enum glint_status run(struct job *job, struct glint_fitted_ghost *out)
     return fit_all(job, out);
 }
 
+void glint_published_finish(struct glint_published_ghost *ghost)
+{
+    for (int k = 0; k < ghost->n_systems; k++) {
+        struct glint_published_system *s = &ghost->system[k];
+
+        for (int i = 0; i < s->n_outputs; i++)
+            free(s->output[i].coef);
+        free(s->knot);
+        free(s->box);
+    }
+    free(ghost->system);
+    *ghost = (struct glint_published_ghost){.n_systems = 0};
+}
+
 enum glint_status
 glint_published_fit(const struct glint_setup *setup, int ghost,
                     const struct glint_published_options *options,
-                    struct glint_fitted_ghost *out)
+                    struct glint_published_ghost *out)
 {
     struct job job = {.options = options};
     enum glint_status status;
     double band_nm[2];
 
-    *out = (struct glint_fitted_ghost){.n_systems = 0};
+    *out = (struct glint_published_ghost){.n_systems = 0};
     if (ghost < 0 || ghost >= setup->n_ghosts || !options_are_good(options))
         return GLINT_E_ARGUMENT;
     sort_waves(&job);
@@ -437,6 +451,6 @@ glint_published_fit(const struct glint_setup *setup, int ghost,
     free(job.rays);
     free(job.zone); /* NOLINT: n_ranges counts a range before its memory */
     if (status != GLINT_OK)
-        glint_fitted_finish(out);
+        glint_published_finish(out);
     return status;
 }

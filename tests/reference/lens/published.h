@@ -27,6 +27,28 @@
 #include "bake/fit/fitted.h"
 #include "glint/setup.h"
 
+/* Polynomials for a wavelength and a range of angles. */
+struct glint_published_system {
+    int ghost;
+    double sine_lo, sine_hi;
+    double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2; equal */
+    int n_knots;
+    double *knot;     /* sines, rising */
+    double *box;      /* mm [n_knots][3]: middle, half width, half height */
+    double radius_mm; /* 1 in x, y and r */
+    int n_outputs;
+    struct glint_fitted_output output[GLINT_OUT_KINDS]; /* COEF is
+                                                           [n_knots][n_terms] */
+    bool met;
+};
+
+struct glint_published_ghost {
+    int n_systems;
+    struct glint_published_system *system;
+};
+
+void glint_published_finish(struct glint_published_ghost *ghost);
+
 struct glint_published_options {
     int n_zones;    /* number of angles from 0 to max_deg, at least 2; 241 as
                        published */
@@ -53,6 +75,6 @@ void glint_published_defaults(struct glint_published_options *options,
 enum glint_status
 glint_published_fit(const struct glint_setup *setup, int ghost,
                     const struct glint_published_options *options,
-                    struct glint_fitted_ghost *out);
+                    struct glint_published_ghost *out);
 
 #endif

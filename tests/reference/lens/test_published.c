@@ -35,7 +35,7 @@ static double between(const double *low, int stride, const struct place *at)
     return at->part > 0 ? low[0] + at->part * (low[stride] - low[0]) : low[0];
 }
 
-static double value(const struct glint_fitted_system *s, int kind,
+static double value(const struct glint_published_system *s, int kind,
                     const struct place *at, const double x[GLINT_VARIABLES])
 {
     const struct glint_fitted_output *o = &s->output[kind];
@@ -58,9 +58,10 @@ struct tally {
 };
 
 /* Adds the errors of one ray to TALLY if the ray gets through. */
-static void compare(const struct glint_fitted_system *s, const struct place *at,
-                    const struct glint_path *path, double px, double py,
-                    const double direction[3], struct tally *tally)
+static void compare(const struct glint_published_system *s,
+                    const struct place *at, const struct glint_path *path,
+                    double px, double py, const double direction[3],
+                    struct tally *tally)
 {
     const double r = hypot(px, py) / s->radius_mm;
     const double x[GLINT_VARIABLES] = {px / s->radius_mm, py / s->radius_mm, r,
@@ -88,7 +89,7 @@ static void compare(const struct glint_fitted_system *s, const struct place *at,
     tally->n++;
 }
 
-static void compare_box(const struct glint_fitted_system *s,
+static void compare_box(const struct glint_published_system *s,
                         const struct place *at, struct tally *tally)
 {
     const double sine = between(s->knot + at->knot, 1, at);
@@ -109,7 +110,7 @@ static void compare_box(const struct glint_fitted_system *s,
 /* Sets RMS to the root mean square errors over angles and wavelengths, for the
  * energy relative to its mean. PART 0 measures at the knots, other values
  * between them. */
-static void measure(const struct glint_fitted_ghost *ghost, double part,
+static void measure(const struct glint_published_ghost *ghost, double part,
                     double rms[KINDS])
 {
     struct tally tally = {.n = 0};
@@ -140,7 +141,7 @@ static const struct {
     {12, {3.3e-2, 2.1e-3, 2e-4, 2.1e-5, 1.6e-3, 4.5e-3}},
 };
 
-static void check_errors(const struct glint_fitted_ghost *ghost,
+static void check_errors(const struct glint_published_ghost *ghost,
                          const double most[KINDS], double part)
 {
     double rms[KINDS];
@@ -153,13 +154,13 @@ static void check_errors(const struct glint_fitted_ghost *ghost,
 TEST(errors)
 {
     for (size_t k = 0; k < sizeof bound / sizeof *bound; k++) {
-        struct glint_fitted_ghost ghost;
+        struct glint_published_ghost ghost;
 
         assert_ok(
             glint_published_fit(&setup, bound[k].ghost, &options, &ghost));
         check_errors(&ghost, bound[k].most, 0);
         check_errors(&ghost, bound[k].most, 0.5);
-        glint_fitted_finish(&ghost);
+        glint_published_finish(&ghost);
     }
 }
 
@@ -175,7 +176,7 @@ static void check_output(const struct glint_fitted_output *o, int kind)
     }
 }
 
-static void check_system(const struct glint_fitted_system *s)
+static void check_system(const struct glint_published_system *s)
 {
     assert_true(s->n_knots >= 2);
     assert_true(s->knot[0] == s->sine_lo);
@@ -194,13 +195,13 @@ static void check_system(const struct glint_fitted_system *s)
 
 TEST(shape)
 {
-    struct glint_fitted_ghost ghost;
+    struct glint_published_ghost ghost;
 
     assert_int_equal(options.max_terms, 5);
     assert_ok(glint_published_fit(&setup, 7, &options, &ghost));
     assert_int_equal(ghost.n_systems, 3);
     for (int k = 0; k < ghost.n_systems; k++) {
-        const struct glint_fitted_system *s = &ghost.system[k];
+        const struct glint_published_system *s = &ghost.system[k];
 
         check_system(s);
         assert_true(s->wave_lo == s->wave_hi);
@@ -215,18 +216,19 @@ TEST(shape)
                                 (size_t)o->n_terms * sizeof *o->power);
         }
     }
-    glint_fitted_finish(&ghost);
+    glint_published_finish(&ghost);
 }
 
 TEST(same_twice)
 {
-    struct glint_fitted_ghost a, b;
+    struct glint_published_ghost a, b;
 
     assert_ok(glint_published_fit(&setup, 12, &options, &a));
     assert_ok(glint_published_fit(&setup, 12, &options, &b));
     assert_int_equal(a.n_systems, b.n_systems);
     for (int k = 0; k < a.n_systems; k++) {
-        const struct glint_fitted_system *s = &a.system[k], *t = &b.system[k];
+        const struct glint_published_system *s = &a.system[k],
+                                            *t = &b.system[k];
 
         assert_int_equal(s->n_knots, t->n_knots);
         for (int kind = 0; kind < KINDS; kind++) {
@@ -238,15 +240,15 @@ TEST(same_twice)
                                     sizeof *o->coef);
         }
     }
-    glint_fitted_finish(&a);
-    glint_fitted_finish(&b);
+    glint_published_finish(&a);
+    glint_published_finish(&b);
 }
 
 TEST(refusals)
 {
     struct glint_published_options bad = options;
     const double same[2] = {550, 550};
-    struct glint_fitted_ghost ghost;
+    struct glint_published_ghost ghost;
 
     assert_int_equal(glint_published_fit(&setup, -1, &options, &ghost),
                      GLINT_E_ARGUMENT);

@@ -247,40 +247,6 @@ static void put_systems(struct model_image *m, int number, uint32_t *seed)
     model_end(m, ghost, 2, of, N);
 }
 
-/* Writes a model of the sparse basis with one system of 8000 knots. */
-static void put_knots(struct model_image *m, uint32_t *seed)
-{
-    enum { KNOTS = 8000, KINDS = GLINT_OUT_RADIUS + 1 };
-    static int32_t knot[KNOTS], box[KNOTS][3], coef[KNOTS][2];
-    static const uint16_t power[2] = {0x0001, 0x0100};
-    const struct glint_model_ghost ghost = {0, 1, 0, 1};
-    struct glint_model_system s = system_of(m, 0, KINDS, 0);
-    struct glint_model_output o[KINDS];
-
-    model_header(m)->basis = GLINT_BASIS_SPARSE;
-    for (int k = 0; k < KNOTS; k++) {
-        knot[k] = k * (MODEL_ONE_Q30 / 2 / (KNOTS - 1)) + (k ? KNOTS : 0);
-        box[k][0] = 0;
-        box[k][1] = box[k][2] = 1 + rng_below(seed, 1 << 24) * 50;
-        coef[k][0] = (1 << 29) - rng_below(seed, 1 << 20);
-        coef[k][1] = rng_below(seed, 1 << 24) * 20;
-    }
-    for (int k = 0; k < KINDS; k++)
-        o[k] = (struct glint_model_output){
-            .kind = (uint8_t)k,
-            .n_terms = 2,
-            .exponent = -25,
-            .term_at = model_put(m, power, sizeof power),
-            .coef_at = model_put(m, coef, sizeof coef)};
-    s.box_terms = 0;
-    s.box_exponent = -27;
-    s.n_knots = KNOTS;
-    s.knot_at = model_put(m, knot, sizeof knot);
-    s.box_at = model_put(m, box, sizeof box);
-    s.output_at = model_put(m, o, sizeof o);
-    model_end(m, &ghost, 1, &s, 1);
-}
-
 /* ------------------------------------------------------------------ editing */
 
 /* Returns the address of OFFSET in M. Baked models are edited in place. */
@@ -328,7 +294,7 @@ static void edit_numbers(const struct model_image *m,
             o[k].exponent = (int16_t)(o[k].exponent + rng_below(seed, 9) - 4);
         if (kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y)
             o[k].exponent = o[k - 1].exponent;
-        if (kind == GLINT_OUT_ENERGY && !s->n_knots) {
+        if (kind == GLINT_OUT_ENERGY) {
             o[k].head = (uint8_t)rng_below(seed, 29);
             o[k].roots = (uint8_t)rng_below(seed, 3);
         }
@@ -567,8 +533,6 @@ void hostile_make(struct hostile_scene *scene, enum hostile_family family,
     model_header(m)->n_surfaces = SURFACES;
     if (family == HOSTILE_LOST)
         put_lost(m, number, &seed);
-    else if (family == HOSTILE_SYSTEMS && number % 3 == 2)
-        put_knots(m, &seed);
     else if (family == HOSTILE_SYSTEMS)
         put_systems(m, number, &seed);
     else

@@ -20,7 +20,7 @@ enum hostile_family {
      * barrels */
     HOSTILE_FOLDS,
     HOSTILE_LOST,    /* invalid rays: all, or stripes of them */
-    HOSTILE_SYSTEMS, /* thousands of systems, or of knots, of one ghost */
+    HOSTILE_SYSTEMS, /* thousands of systems of one ghost */
     HOSTILE_NUMBERS, /* coefficients at the largest sums, any exponents */
     HOSTILE_POINTS,  /* boxes of no size */
     HOSTILE_HUGE,    /* boxes at the largest size, any exponents */

@@ -16,7 +16,7 @@
 #include "support/shuffle.h"
 #include "support/rng.h"
 
-enum { ONE_Q30 = 1 << 30, KNOTS = 3, KINDS = GLINT_OUT_BARREL_0 + 1 };
+enum { ONE_Q30 = 1 << 30, KINDS = GLINT_OUT_BARREL_0 + 1 };
 
 static uint32_t seed = 1;
 
@@ -57,7 +57,6 @@ static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
 {
     struct glint_fitted_output *o = &s->output[s->n_outputs++];
     const int odd = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
-    const int sets = s->n_knots ? s->n_knots : 1;
     const int scale = random_int(-40, 20);
     const int most = random_int(1, 40);
 
@@ -74,16 +73,16 @@ static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
             twice |= memcmp(o->power[i], power, sizeof o->power[i]) == 0;
         o->n_terms += !twice;
     }
-    o->coef = malloc((size_t)(sets * o->n_terms) * sizeof *o->coef);
+    o->coef = malloc((size_t)o->n_terms * sizeof *o->coef);
     assert_non_null(o->coef);
-    for (int k = 0; k < sets * o->n_terms; k++) {
+    for (int k = 0; k < o->n_terms; k++) {
         const double unit = random_unit();
 
         /* Coefficients of one sign take some sums to the bound. */
         o->coef[k] = ldexp(most % 3 ? unit : fabs(unit),
                            scale - random_int(0, most % 5 ? 3 : 20));
     }
-    if (kind == GLINT_OUT_ENERGY && sets == 1) {
+    if (kind == GLINT_OUT_ENERGY) {
         o->roots = random_int(0, 2);
         o->most = random_int(0, 2) ? ldexp(1, scale - random_int(0, 12)) : 0;
     }
@@ -91,28 +90,15 @@ static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
 
 static void make_box(struct glint_fitted_system *s)
 {
-    const int n = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_TERMS);
-
-    s->box = malloc((size_t)n * sizeof *s->box);
+    s->box = calloc(3 * GLINT_BOX_TERMS, sizeof *s->box);
     assert_non_null(s->box);
-    for (int k = 0; k < n; k++)
-        s->box[k] = 0;
-    for (int k = 0; k < s->n_knots; k++) {
-        const double half = 0.01 + 0.3 * fabs(random_unit());
-
-        s->box[3 * k] = s->radius_mm * (0.99 - half) * random_unit();
-        s->box[3 * k + 1] = s->radius_mm * half;
-        s->box[3 * k + 2] = s->radius_mm * fabs(random_unit());
-    }
-    if (s->n_knots == 0) {
-        s->box[0] = 7 * random_unit();
-        s->box[1] = random_unit();
-        s->box[GLINT_BOX_TERMS] = 3 + random_unit();
-        s->box[2 * GLINT_BOX_TERMS] = 5;
-    }
+    s->box[0] = 7 * random_unit();
+    s->box[1] = random_unit();
+    s->box[GLINT_BOX_TERMS] = 3 + random_unit();
+    s->box[2 * GLINT_BOX_TERMS] = 5;
 }
 
-static void make_system(struct made *m, enum glint_basis basis)
+static void make_system(struct made *m)
 {
     struct glint_fitted_system *s = calloc(1, sizeof *s);
 
@@ -122,21 +108,13 @@ static void make_system(struct made *m, enum glint_basis basis)
                                       .sine_hi = 0.6,
                                       .wave_lo = 1 / 0.49,
                                       .wave_hi = 1 / 0.16};
-    if (basis == GLINT_BASIS_SPARSE) {
-        s->n_knots = KNOTS;
-        s->radius_mm = ldexp(1, random_int(-2, 6));
-        s->knot = malloc(KNOTS * sizeof *s->knot);
-        assert_non_null(s->knot);
-        for (int k = 0; k < KNOTS; k++)
-            s->knot[k] = 0.125 + 0.475 * k / (KNOTS - 1);
-    }
     make_box(s);
     for (int kind = 0; kind < KINDS; kind++)
         make_output(s, (enum glint_channel)kind);
 }
 
 /* Quantises M, writes its model, and opens the model as a program does. */
-static void make_model(struct made *m, enum glint_basis basis)
+static void make_model(struct made *m)
 {
     static struct glint_setup setup;
     struct glint_quantised_system *const quantised = &m->quantised;
@@ -144,7 +122,7 @@ static void make_model(struct made *m, enum glint_basis basis)
     const struct glint_model_header header = {
         .magic = GLINT_MODEL_MAGIC,
         .version = GLINT_MODEL_VERSION,
-        .basis = basis,
+        .basis = GLINT_BASIS_AUTO,
         .name = "made up",
         .focal_mm = one,
         .back_focal_mm = one,
@@ -194,17 +172,14 @@ static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
     return (int32_t)(twice * ONE_Q30 / ((int64_t)hi - lo));
 }
 
-/* Returns the value of the fitted polynomial O at POWER, with coefficients that
- * lie PART of the way from KNOT to the next knot. */
-static double polynomial(const struct glint_fitted_output *o, int knot,
-                         double part, double power[4][16])
+/* Returns the value of the fitted polynomial O at POWER. */
+static double polynomial(const struct glint_fitted_output *o,
+                         double power[4][16])
 {
     double sum = 0;
 
     for (int k = 0; k < o->n_terms; k++) {
-        const double *low = o->coef + knot * o->n_terms + k;
-        double term =
-            part > 0 ? low[0] + part * (low[o->n_terms] - low[0]) : low[0];
+        double term = o->coef[k];
 
         for (int i = 0; i < 4; i++)
             term *= power[i][o->power[k][i]];
@@ -243,7 +218,7 @@ static double energy_of(int head, int roots, double value)
 /* Compares the run time's outputs OUT with the fitted polynomials. X holds the
  * variables that the run time has, exactly. */
 static void compare(const struct made *m, const struct glint_outputs *out,
-                    int knot, double part, const double x[4], struct used *used)
+                    const double x[4], struct used *used)
 {
     double power[4][16];
 
@@ -251,9 +226,8 @@ static void compare(const struct made *m, const struct glint_outputs *out,
     for (int k = 0; k < m->fitted.system->n_outputs; k++) {
         const struct glint_fitted_output *o = &m->fitted.system->output[k];
         const struct glint_quantised_output *q = &m->quantised.output[k];
-        const double truth =
-            energy_of(q->head, o->roots,
-                      ldexp(polynomial(o, knot, part, power), -q->exponent));
+        const double truth = energy_of(
+            q->head, o->roots, ldexp(polynomial(o, power), -q->exponent));
         const double error = fabs(out->at[o->kind] - truth);
         const double most = ldexp(q->rounding_q8, -8) + 1e-6;
 
@@ -274,7 +248,7 @@ static void compare(const struct made *m, const struct glint_outputs *out,
     }
 }
 
-static void compare_auto(const struct made *m, int32_t sine_q30,
+static void compare_rays(const struct made *m, int32_t sine_q30,
                          int32_t wave_q24, int rays, struct used *used)
 {
     struct glint_transfer t;
@@ -290,41 +264,11 @@ static void compare_auto(const struct made *m, int32_t sine_q30,
         struct glint_outputs out;
 
         glint_transfer_ray(&t, u_q30, v_q30, &out);
-        compare(m, &out, 0, 0, x, used);
+        compare(m, &out, x, used);
     }
 }
 
-static void compare_sparse(const struct made *m, int32_t sine_q30,
-                           int32_t wave_q24, int rays, struct used *used)
-{
-    const int32_t *knot_q30;
-    struct glint_transfer t;
-    int knot = 0;
-    double part;
-
-    assert_true(glint_transfer_init(&t, &m->lens, 0, sine_q30, wave_q24));
-    knot_q30 = (const void *)(m->draft.data + t.system->knot_at);
-    while (knot + 2 < KNOTS && sine_q30 >= knot_q30[knot + 1])
-        knot++;
-    part = to_one(within_q30(sine_q30, knot_q30[knot], knot_q30[knot + 1]) / 2 +
-                  ONE_Q30 / 2);
-    for (int k = 0; k < rays; k++) {
-        const int32_t u_q30 = random_q30(), v_q30 = random_q30();
-        const int32_t x_q30 = t.box[0] + q_mul(t.box[1], u_q30, 30);
-        const int32_t y_q30 = q_mul(t.box[2], v_q30, 30);
-        const int32_t r_q30 = q_clamp_sat(
-            q_root((uint64_t)((int64_t)x_q30 * x_q30 + (int64_t)y_q30 * y_q30)),
-            0, ONE_Q30);
-        const double x[4] = {to_one(x_q30), to_one(y_q30), to_one(r_q30),
-                             1 - to_one(r_q30)};
-        struct glint_outputs out;
-
-        glint_transfer_ray(&t, u_q30, v_q30, &out);
-        compare(m, &out, knot, part, x, used);
-    }
-}
-
-static struct used check_proofs(enum glint_basis basis, int systems)
+static struct used check_proofs(int systems)
 {
     enum { BUNDLES = 8, RAYS = 50 };
     struct used used = {0, 0, 0};
@@ -333,9 +277,9 @@ static struct used check_proofs(enum glint_basis basis, int systems)
         const struct glint_model_system *s;
         struct made m;
 
-        seed = 100 * (uint32_t)k + 1 + basis;
-        make_system(&m, basis);
-        make_model(&m, basis);
+        seed = 100 * (uint32_t)k + 1;
+        make_system(&m);
+        make_model(&m);
         s = m.lens.system;
         for (int i = 0; i < BUNDLES; i++) {
             const double a = 0.5 + 0.5 * to_one(random_q30());
@@ -347,8 +291,7 @@ static struct used check_proofs(enum glint_basis basis, int systems)
                 s->wave_lo_q24 +
                 (int32_t)(b * (s->wave_hi_q24 - s->wave_lo_q24));
 
-            (basis == GLINT_BASIS_SPARSE ? compare_sparse : compare_auto)(
-                &m, sine_q30, wave_q24, RAYS, &used);
+            compare_rays(&m, sine_q30, wave_q24, RAYS, &used);
         }
         finish(&m);
     }
@@ -357,23 +300,12 @@ static struct used check_proofs(enum glint_basis basis, int systems)
 
 /* Some value must come near its bound, and some rounding error must be at least
  * 2 % of its bound. */
-TEST(proof_auto)
+TEST(proof)
 {
-    const struct used used = check_proofs(GLINT_BASIS_AUTO, 240);
+    const struct used used = check_proofs(240);
 
     assert_true(used.n > 300000);
     assert_in_range((long)(1000 * used.bound), 800, 1000);
-    assert_in_range((long)(1000 * used.rounding), 20, 1000);
-}
-
-TEST(proof_sparse)
-{
-    const struct used used = check_proofs(GLINT_BASIS_SPARSE, 240);
-
-    assert_true(used.n > 300000);
-    /* Less than for AUTO: the bound allows radii up to 1, and most rays of the
-     * test have smaller ones. */
-    assert_in_range((long)(1000 * used.bound), 300, 1000);
     assert_in_range((long)(1000 * used.rounding), 20, 1000);
 }
 
@@ -388,10 +320,10 @@ TEST(proof_can_fail)
     int largest = 0;
 
     seed = 5;
-    make_system(&m, GLINT_BASIS_AUTO);
+    make_system(&m);
     m.fitted.system->output[GLINT_OUT_ENERGY].roots = 0;
     m.fitted.system->output[GLINT_OUT_ENERGY].most = 0;
-    make_model(&m, GLINT_BASIS_AUTO);
+    make_model(&m);
     o = &m.fitted.system->output[GLINT_OUT_ENERGY];
     for (int k = 1; k < o->n_terms; k++)
         largest = fabs(o->coef[k]) > fabs(o->coef[largest]) ? k : largest;
@@ -400,7 +332,7 @@ TEST(proof_can_fail)
                                     m.lens.system->wave_hi_q24));
     glint_transfer_ray(&t, ONE_Q30, ONE_Q30, &out);
     set_powers(power, (const double[4]){1, 1, 1, 1});
-    truth = ldexp(polynomial(o, 0, 0, power),
+    truth = ldexp(polynomial(o, power),
                   -m.quantised.output[GLINT_OUT_ENERGY].exponent);
     assert_true(fabs(out.at[GLINT_OUT_ENERGY] - truth) >
                 ldexp(m.quantised.output[GLINT_OUT_ENERGY].rounding_q8, -8));
@@ -443,41 +375,31 @@ TEST(odd_reals)
 
 /* ---------------------------------------------------------------- exponents */
 
-/* Returns the largest sum of magnitudes that coefficients between the sets can
- * have. */
-static int64_t hull(const struct glint_fitted_output *o,
-                    const struct glint_quantised_output *q, int sets)
+/* Returns the sum of the coefficients' magnitudes. */
+static int64_t sum_of(const struct glint_fitted_output *o,
+                      const struct glint_quantised_output *q)
 {
     int64_t sum = 0;
 
     for (int t = 0; t < o->n_terms; t++) {
-        long most = 0;
-
-        for (int set = 0; set < sets; set++) {
-            const int at = set * o->n_terms + t;
-
-            most = labs(q->coef[at]) > most ? labs(q->coef[at]) : most;
-            assert_near(q->coef[at], ldexp(o->coef[at], -q->exponent), 0.5);
-        }
-        sum += most;
+        sum += labs(q->coef[t]);
+        assert_near(q->coef[t], ldexp(o->coef[t], -q->exponent), 0.5);
     }
     return sum;
 }
 
-/* Sums of coefficients must fit, and use at least half of the room there is,
- * whatever the sets are. */
+/* Sums of coefficients must fit, and use at least half of the room there is. */
 TEST(exponents)
 {
     for (int k = 0; k < 1000; k++) {
         struct made m;
 
         seed = 7 + (uint32_t)k;
-        make_system(&m, k % 2 ? GLINT_BASIS_SPARSE : GLINT_BASIS_AUTO);
+        make_system(&m);
         assert_ok(glint_quantise(m.fitted.system, &m.quantised));
         for (int i = 0; i < KINDS; i++) {
             const struct glint_quantised_output *q = &m.quantised.output[i];
-            const int64_t sum = hull(&m.fitted.system->output[i], q,
-                                     m.fitted.system->n_knots ? KNOTS : 1);
+            const int64_t sum = sum_of(&m.fitted.system->output[i], q);
 
             assert_true(sum <= GLINT_COEF_LIMIT);
             assert_true(q->bound < ONE_Q30);
@@ -503,7 +425,7 @@ TEST(head)
         struct made m;
 
         seed = 11 + (uint32_t)k;
-        make_system(&m, GLINT_BASIS_AUTO);
+        make_system(&m);
         assert_ok(glint_quantise(m.fitted.system, &m.quantised));
         o = &m.fitted.system->output[GLINT_OUT_ENERGY];
         q = &m.quantised.output[GLINT_OUT_ENERGY];
@@ -522,11 +444,11 @@ TEST(least_exponent)
     struct made m;
 
     seed = 3;
-    make_system(&m, GLINT_BASIS_AUTO);
+    make_system(&m);
     for (int k = 0; k < KINDS; k++)
         for (int t = 0; t < m.fitted.system->output[k].n_terms; t++)
             m.fitted.system->output[k].coef[t] = k % 2 ? 0 : 0x1p-200;
-    make_model(&m, GLINT_BASIS_AUTO); /* checks that it opens */
+    make_model(&m); /* checks that it opens */
     assert_int_equal(m.quantised.output[GLINT_OUT_ENERGY].exponent, -80);
     finish(&m);
 }
@@ -545,16 +467,14 @@ TEST(not_finite)
     static const double odd[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
 
     for (int k = 0; k < 6 * KINDS; k++) {
-        const enum glint_basis basis =
-            k % 2 ? GLINT_BASIS_SPARSE : GLINT_BASIS_AUTO;
         struct glint_fitted_output *o;
         struct made m;
 
-        make_system(&m, basis);
+        make_system(&m);
         o = &m.fitted.system->output[k / 6];
         o->coef[o->n_terms - 1] = odd[k % 3];
         refused(&m);
-        make_system(&m, basis);
+        make_system(&m);
         m.fitted.system->box[k % 9] = odd[k % 3];
         refused(&m);
     }
@@ -564,20 +484,7 @@ TEST(no_terms)
 {
     struct made m;
 
-    make_system(&m, GLINT_BASIS_AUTO);
+    make_system(&m);
     m.fitted.system->output[GLINT_OUT_STOP_Y].n_terms = 0;
     refused(&m);
-}
-
-TEST(box_of_no_power_of_two)
-{
-    static const double odd[] = {3, 1.0000001, 0, -2, (double)NAN, HUGE_VAL};
-
-    for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) {
-        struct made m;
-
-        make_system(&m, GLINT_BASIS_SPARSE);
-        m.fitted.system->radius_mm = odd[k];
-        refused(&m);
-    }
 }

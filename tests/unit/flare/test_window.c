@@ -100,7 +100,7 @@ static struct glint_model_system begin(struct model_image *m,
                                     .box_exponent = -20,
                                     .box_terms = 1};
     s.box_at = model_put(m, box, sizeof box);
-    s.knot_at = model_put(m, across_q30, sizeof across_q30);
+    s.across_at = model_put(m, across_q30, sizeof across_q30);
     return s;
 }
 
@@ -110,26 +110,26 @@ open_shape(const struct shape *s, enum glint_basis basis, struct model_image *m)
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
     const int exponent = -28; /* values up to 4 */
     struct model_polynomial p[] = {
-        {GLINT_OUT_SENSOR_X, 1, -28, {P(1, 0)}, {{1 << 27}}},
-        {GLINT_OUT_SENSOR_Y, 1, -28, {P(0, 1)}, {{1 << 27}}},
-        {GLINT_OUT_STOP_X, 0, exponent, {0}, {{0}}},
-        {GLINT_OUT_STOP_Y, 0, exponent, {0}, {{0}}},
-        {GLINT_OUT_ENERGY, 1, -30, {P(0, 0)}, {{1 << 28}}},
-        {GLINT_OUT_BARREL_0, 2, exponent, {P(0, 0), P(1, 0)}, {{0}}}};
+        {GLINT_OUT_SENSOR_X, 1, -28, {P(1, 0)}, {1 << 27}},
+        {GLINT_OUT_SENSOR_Y, 1, -28, {P(0, 1)}, {1 << 27}},
+        {GLINT_OUT_STOP_X, 0, exponent, {0}, {0}},
+        {GLINT_OUT_STOP_Y, 0, exponent, {0}, {0}},
+        {GLINT_OUT_ENERGY, 1, -30, {P(0, 0)}, {1 << 28}},
+        {GLINT_OUT_BARREL_0, 2, exponent, {P(0, 0), P(1, 0)}, {0}}};
     struct glint_model_system system = begin(m, basis);
     struct glint_lens lens;
     const char *reason = "";
 
     for (int k = 0; k < 3; k++) {
         p[2].power[k] = s->x_power[k];
-        p[2].coef[0][k] = (int32_t)lrint(ldexp(s->x[k], 28));
+        p[2].coef[k] = (int32_t)lrint(ldexp(s->x[k], 28));
         p[3].power[k] = s->y_power[k];
-        p[3].coef[0][k] = (int32_t)lrint(ldexp(s->y[k], 28));
+        p[3].coef[k] = (int32_t)lrint(ldexp(s->y[k], 28));
         p[2].n_terms = (uint8_t)(p[2].n_terms + (s->x[k] != 0));
         p[3].n_terms = (uint8_t)(p[3].n_terms + (s->y[k] != 0));
     }
     for (int k = 0; k < 2; k++)
-        p[5].coef[0][k] = (int32_t)lrint(ldexp(s->barrel[k], 28));
+        p[5].coef[k] = (int32_t)lrint(ldexp(s->barrel[k], 28));
     model_outputs(m, &system, p, s->barrel[0] != 0 ? 6 : 5, 0);
     model_end(m, &ghost, 1, &system, 1);
     if (glint_lens_open(&lens, m->data, m->bytes, &reason) != GLINT_OK)

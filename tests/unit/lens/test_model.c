@@ -36,16 +36,13 @@ TEST(crc)
 
 TEST(accepted)
 {
-    struct model_image a = model_auto(), s = model_sparse();
+    struct model_image a = model_auto();
     struct glint_lens lens = model_open(&a);
 
     assert_int_equal(lens.header->n_ghosts, 3);
     assert_int_equal(lens.ghost[2].j, 3);
     assert_int_equal(lens.system[1].sine_lo_q30, 1 << 28);
-    lens = model_open(&s);
-    assert_int_equal(lens.system[0].n_knots, 3);
     free(a.data);
-    free(s.data);
 }
 
 /* ------------------------------------------------------------------- damage */
@@ -83,7 +80,6 @@ static void check_flips(struct model_image m)
 TEST(flipped_bits)
 {
     check_flips(model_auto());
-    check_flips(model_sparse());
 }
 
 TEST(not_a_model)
@@ -121,7 +117,7 @@ TEST(not_a_model)
 
 /* -------------------------------------------------------------------- rules */
 
-enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX, KNOT };
+enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX };
 
 /* Bytes that are changed, and the reason that must be reported; NULL: nothing.
  * Outputs are those of system 0, terms and coefficients those of output 0. */
@@ -153,9 +149,6 @@ static const char outside[] = "a table lies outside the file",
                   annulus[] = "a system's annulus is out of range",
                   bad_angles[] = "a system's angles are out of range",
                   bad_band[] = "a system's band is out of range",
-                  no_knots[] = "knots do not go with the basis",
-                  not_rising[] = "a system's knots do not rise",
-                  not_covering[] = "a system's knots do not cover its angles",
                   far_box[] = "a box reaches too far",
                   small_box[] = "a box has a size below 0",
                   box_exponent[] = "the exponent of a box is out of range",
@@ -176,7 +169,7 @@ static const char outside[] = "a table lies outside the file",
 /* clang-format off */
 static const struct rule auto_rules[] = {
     {HEADER_(basis), 2, "the basis is unknown"},
-    {HEADER_(basis), 1, no_knots},
+    {HEADER_(basis), 1, "the basis is unknown"},
     {HEADER_(name[0]), 0, "the name is empty"},
     {HEADER_(name[0]), 0x1b, "the name has a control character"},
     {HEADER_(name[0]), 0x7f, "the name has a control character"},
@@ -245,8 +238,8 @@ static const struct rule auto_rules[] = {
     {SYSTEM_(0, wave_hi_q24), MODEL_WAVE_LO_Q24, NULL},
     {SYSTEM_(2, wave_hi_q24), MODEL_WAVE_HI_Q24, overlap},
     {SYSTEM_(3, wave_lo_q24), MODEL_WAVE_LO_Q24, overlap},
-    {SYSTEM_(0, n_knots), 2, no_knots},
-    {SYSTEM_(3, n_knots), UINT32_MAX, no_knots},
+    {SYSTEM_(0, zero_word), 2, annulus},
+    {SYSTEM_(3, zero_word), UINT32_MAX, annulus},
     {SYSTEM_(0, annulus), 1, NULL},
     {SYSTEM_(0, annulus), 15, NULL},
     {SYSTEM_(3, annulus), 16, annulus},
@@ -311,35 +304,6 @@ static const struct rule auto_rules[] = {
     {COEF, 4, 4, -(1 << 30), coefs},
 };
 
-static const struct rule sparse_rules[] = {
-    {HEADER_(basis), 0, no_knots},
-    {SYSTEM_(0, n_knots), 0, no_knots},
-    {SYSTEM_(0, n_knots), 1, "a system has a single knot"},
-    {SYSTEM_(0, n_knots), 2, not_covering},
-    {SYSTEM_(0, n_knots), UINT32_MAX, outside},
-    {SYSTEM_(0, n_knots), 1 << 30, outside},
-    {SYSTEM_(0, annulus), 1, annulus},
-    {SYSTEM_(0, box_terms), 1, "a box at knots has terms"},
-    {SYSTEM_(0, knot_at), 4, outside},
-    {SYSTEM_(0, sine_hi_q30), (1 << 29) + 1, not_covering},
-    {KNOT, 0, 4, -1, not_covering},
-    {KNOT, 0, 4, 1, not_covering},
-    {KNOT, 4, 4, 0, not_rising},
-    {KNOT, 4, 4, INT32_MIN, not_rising},
-    {KNOT, 8, 4, 1 << 28, not_rising},
-    {KNOT, 8, 4, INT32_MAX, not_covering},
-    {KNOT, 8, 4, 1 << 30, NULL},
-    {BOX, 3 * 4, 4, (1 << 29) + 1, far_box},
-    {BOX, 3 * 4, 4, -(1 << 29), NULL},
-    {BOX, 3 * 4, 4, INT32_MIN, far_box},
-    {BOX, 4 * 4, 4, -1, small_box},
-    {BOX, 8 * 4, 4, INT32_MIN, small_box},
-    {BOX, 8 * 4, 4, (1 << 30) + 1, far_box},
-    {TERM, 0, 2, MODEL_POWER(15, 15, 15, 15), NULL},
-    {COEF, 2 * 4, 4, (1 << 30) - (1 << 26), coefs},
-    {COEF, 4 * 4, 4, INT32_MIN, coefs},
-    {COEF, 4 * 4, 4, (1 << 30) - (1 << 26) - 1, NULL},
-};
 /* clang-format on */
 
 static size_t place_of(const struct model_image *m, enum table t)
@@ -348,7 +312,7 @@ static size_t place_of(const struct model_image *m, enum table t)
     const struct glint_model_system *s = (const void *)(m->data + h->system_at);
     const struct glint_model_output *o = (const void *)(m->data + s->output_at);
     const size_t at[] = {0,          h->ghost_at, h->system_at, s->output_at,
-                         o->term_at, o->coef_at,  s->box_at,    s->knot_at};
+                         o->term_at, o->coef_at,  s->box_at};
 
     return at[t];
 }
@@ -373,8 +337,6 @@ TEST(rules)
 {
     for (size_t k = 0; k < sizeof auto_rules / sizeof *auto_rules; k++)
         check_rule(model_auto(), &auto_rules[k], k);
-    for (size_t k = 0; k < sizeof sparse_rules / sizeof *sparse_rules; k++)
-        check_rule(model_sparse(), &sparse_rules[k], 1000 + k);
 }
 
 TEST(endless_name)
@@ -443,5 +405,4 @@ static void check_corpus(const char *path, struct model_image m)
 TEST(corpus)
 {
     check_corpus("tests/fuzz/corpus/model/auto", model_auto());
-    check_corpus("tests/fuzz/corpus/model/sparse", model_sparse());
 }

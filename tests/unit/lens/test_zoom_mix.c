@@ -48,15 +48,15 @@ static struct glint_model_system put(struct model_image *m, double sensor,
 {
     const int32_t box[3] = {box_middle, 1 << 22, 1 << 22};
     struct model_polynomial p[5 + MOST] = {
-        {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {{q28(sensor)}}},
-        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
+        {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {q28(sensor)}},
+        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {1 << 27}},
         {GLINT_OUT_STOP_X,
          2,
          EXPONENT,
          {P(0, 0), P(1, 0)},
-         {{q28(stop.middle), q28(stop.u)}}},
-        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {{q28(stop.v)}}},
-        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {{q28(energy)}}}};
+         {q28(stop.middle), q28(stop.u)}},
+        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {q28(stop.v)}},
+        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {q28(energy)}}};
     struct glint_model_system s = {.sine_hi_q30 = ONE / 2,
                                    .wave_lo_q24 = MODEL_WAVE_LO_Q24,
                                    .wave_hi_q24 = MODEL_WAVE_HI_Q24,
@@ -71,7 +71,7 @@ static struct glint_model_system put(struct model_image *m, double sensor,
             3,
             EXPONENT,
             {P(0, 0), P(1, 0), P(0, 2)},
-            {{q28(barrel[k].middle), q28(barrel[k].u), q28(barrel[k].v2)}}};
+            {q28(barrel[k].middle), q28(barrel[k].u), q28(barrel[k].v2)}};
     model_outputs(m, &s, p, 5 + n, 0);
     outputs = (void *)(m->data + s.output_at);
     outputs[GLINT_OUT_ENERGY].head = head_bits;
@@ -314,17 +314,17 @@ static struct glint_lens open_box(struct model_image *m, double middle,
          2,
          EXPONENT,
          {P(0, 0), P(1, 0)},
-         {{q28(middle * slope), q28(half * slope)}}},
-        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {{q28(rise * slope)}}},
-        {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {{1 << 27}}},
-        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
-        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {{1 << 26}}},
+         {q28(middle * slope), q28(half * slope)}},
+        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {q28(rise * slope)}},
+        {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {1 << 27}},
+        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {1 << 27}},
+        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {1 << 26}},
         {GLINT_OUT_BARREL_0,
          4,
          EXPONENT,
          {P(0, 0), P(1, 0), P(2, 0), P(0, 2)},
-         {{q28(0.5 + middle * middle / 32), q28(middle * half / 16),
-           q28(half * half / 32), q28(rise * rise / 32)}}}};
+         {q28(0.5 + middle * middle / 32), q28(middle * half / 16),
+          q28(half * half / 32), q28(rise * rise / 32)}}};
     struct glint_model_system s;
 
     model_begin(m, GLINT_BASIS_AUTO, "box");
@@ -415,11 +415,11 @@ static struct glint_lens open_coarse(struct model_image *m,
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
     struct model_polynomial p[6] = {
-        {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {{1 << 27}}},
-        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
-        {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {{1 << 27}}},
-        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {{1 << 27}}},
-        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {{1 << 26}}}};
+        {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {1 << 27}},
+        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {1 << 27}},
+        {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {1 << 27}},
+        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {1 << 27}},
+        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {1 << 26}}};
     struct glint_model_system s;
 
     p[5] = *barrel;
@@ -443,9 +443,9 @@ TEST(places_stay_in_both_boxes)
                                        2,
                                        EXPONENT,
                                        {P(0, 0), P(1, 0)},
-                                       {{q28(-1.6), q28(2)}}};
+                                       {q28(-1.6), q28(2)}};
     const struct model_polynomial b = {
-        GLINT_OUT_BARREL_0, 1, EXPONENT - 2, {P(9, 0)}, {{q28(2.4)}}};
+        GLINT_OUT_BARREL_0, 1, EXPONENT - 2, {P(9, 0)}, {q28(2.4)}};
     struct model_image at[2];
     const struct glint_lens first = open_coarse(&at[0], wide, 0, &a);
     const struct glint_lens second = open_coarse(&at[1], narrow, -20, &b);
@@ -644,7 +644,7 @@ TEST(going_on_stays_small)
 
         for (int y = 0; y <= GLINT_MAX_POWER; y++)
             for (int x = 0; x < GLINT_TABLE_WIDTH; x++)
-                sum += llabs((long long)mixed.of.table[kind][y][x]);
+                sum += llabs((long long)mixed.table[kind][y][x]);
         assert_true(!(mixed.outputs >> kind & 1) || sum < ONE);
     }
     forget(at, 3);

@@ -93,10 +93,10 @@ static void json_system(struct json_writer *json, const struct glint_lens *lens,
 
     json_write(json,
                "{ghost: %u, angle_deg: [%.6f, %.6f], band_nm: [%.3f, %.3f], "
-               "knots: %u, energy_roots: %d, terms: %.0f, bytes: %zu",
+               "energy_roots: %d, terms: %.0f, bytes: %zu",
                model_ghost_of(lens, ghost), model_degrees(s->sine_lo_q30),
                model_degrees(s->sine_hi_q30), model_nanometres(s->wave_hi_q24),
-               model_nanometres(s->wave_lo_q24), s->n_knots,
+               model_nanometres(s->wave_lo_q24),
                model_outputs_of(lens, s)[GLINT_OUT_ENERGY].roots,
                model_terms(&sum), model_span_bytes(lens, span));
     json_errors(json, &sum);
@@ -289,7 +289,7 @@ static void print_ghosts(const struct glint_lens *lens)
 
 static void print_systems(const struct glint_lens *lens)
 {
-    printf("\n zone   ghost       degrees               nm      knots  terms  "
+    printf("\n zone   ghost       degrees               nm       terms  "
            "sensor px: rms  p99  max\n");
     for (uint32_t g = 0; g < lens->header->n_ghosts; g++)
         for (uint32_t k = 0; k < lens->ghost[g].n_systems; k++) {
@@ -299,13 +299,13 @@ static void print_systems(const struct glint_lens *lens)
                 model_summary_of(lens, (struct model_span){n, 1});
             const struct model_errors *x = &sum.of[GLINT_OUT_SENSOR_X];
 
-            printf("%6lu %6lu  %7.3f .. %-7.3f  %4.0f .. %-4.0f %6lu %6.0f  "
+            printf("%6lu %6lu  %7.3f .. %-7.3f  %4.0f .. %-4.0f %6.0f  "
                    "%9.3g %9.3g %9.3g\n",
                    (unsigned long)n, (unsigned long)model_ghost_of(lens, g),
                    model_degrees(s->sine_lo_q30), model_degrees(s->sine_hi_q30),
                    model_nanometres(s->wave_hi_q24),
-                   model_nanometres(s->wave_lo_q24), (unsigned long)s->n_knots,
-                   model_terms(&sum), sqrt(x->mean2), x->p99, x->max);
+                   model_nanometres(s->wave_lo_q24), model_terms(&sum),
+                   sqrt(x->mean2), x->p99, x->max);
         }
 }
 

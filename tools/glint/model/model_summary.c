@@ -15,9 +15,7 @@ const double model_output_targets[GLINT_OUT_KINDS] = {
 
 const char *model_basis_name(const struct glint_lens *lens)
 {
-    return lens->header->basis == GLINT_BASIS_SPARSE  ? "sparse"
-           : glint_basis_is_lens(lens->header->basis) ? "lens"
-                                                      : "auto";
+    return glint_basis_is_lens(lens->header->basis) ? "lens" : "auto";
 }
 
 /* --------------------------------------------------------------- quantities */
@@ -53,10 +51,10 @@ model_outputs_of(const struct glint_lens *lens,
     return (const void *)(base + s->output_at);
 }
 
-/* Returns the 32-bit words of a system's box and knots. */
+/* Returns the 32-bit words of a system's box. */
 static size_t box_words(const struct glint_model_system *s)
 {
-    size_t n = 4 * (size_t)s->n_knots;
+    size_t n = 0;
 
     for (int k = 0; k < GLINT_BOX_TERMS; k++)
         n += 3 * (s->box_terms >> k & 1U);
@@ -70,11 +68,10 @@ size_t model_span_bytes(const struct glint_lens *lens, struct model_span span)
     for (uint32_t k = span.first; k < span.first + span.n; k++) {
         const struct glint_model_system *s = &lens->system[k];
         const struct glint_model_output *o = model_outputs_of(lens, s);
-        const size_t sets = s->n_knots ? s->n_knots : 1;
 
         sum += sizeof *s + s->n_outputs * sizeof *o + 4 * box_words(s);
         for (uint32_t m = 0; m < s->n_outputs; m++)
-            sum += 4 * sets * o[m].n_terms + (o[m].n_terms + 1U) / 2 * 4 -
+            sum += 4 * (size_t)o[m].n_terms + (o[m].n_terms + 1U) / 2 * 4 -
                    2 * (o[m].n_narrow & ~1U);
     }
     return sum;

@@ -33,12 +33,9 @@ static void weigh(struct opened_lens *lens, enum glint_waves_kind waves)
 {
     if (waves == GLINT_WAVES_COUNT)
         glint_setup_weigh(&lens->setup);
-    /* A model of the sparse basis holds its three wavelengths and no others. */
-    else if (waves == GLINT_WAVES_AUTO && !lens->model.data)
-        glint_setup_spread(&lens->setup, NULL);
-    else if (waves == GLINT_WAVES_AUTO &&
-             lens->model.lens.header->basis != GLINT_BASIS_SPARSE)
-        glint_setup_spread(&lens->setup, &lens->model.lens);
+    else if (waves == GLINT_WAVES_AUTO)
+        glint_setup_spread(&lens->setup,
+                           lens->model.data ? &lens->model.lens : NULL);
 }
 
 enum glint_status opened_lens_stop(struct opened_lens *lens,

@@ -343,8 +343,7 @@ static int set_up(bool exact)
         return check(status);
     if (waves.kind == GLINT_WAVES_COUNT)
         glint_setup_weigh(s);
-    else if (waves.kind == GLINT_WAVES_AUTO &&
-             web.lens.header->basis != GLINT_BASIS_SPARSE)
+    else if (waves.kind == GLINT_WAVES_AUTO)
         glint_setup_spread(s, &web.lens);
     if (o->balance)
         glint_setup_balance(s);
