@@ -478,10 +478,6 @@ void glint_response_around(const float *rgb, size_t n,
 /* Returns whether veil or haze is drawn. */
 int glint_engine_has_veil(const struct glint_engine *engine);
 
-/* Returns whether LAMP is farther off the axis than the model's range. */
-int glint_engine_is_beyond(const struct glint_engine *engine,
-                           const struct glint_lamp *lamp);
-
 #ifdef __cplusplus
 }
 #endif

@@ -118,12 +118,6 @@ void glint_explain_draw(struct glint_explain *explain, int ghost);
 int glint_explain_bundles(const struct glint_explain_part *part);
 int glint_explain_drawn(const struct glint_explain_part *part);
 
-/* Returns the predicted cost, in millions of instructions, of the plan of
- * the picture that ENGINE drew last: of stars if KIND is GLINT_COST_STAR,
- * else of all. */
-double glint_explain_planned(const struct glint_engine *engine,
-                             enum glint_cost_kind kind);
-
 /* Returns how many primitives of the flare lie in tile TILE. */
 int glint_explain_listed(const struct glint_explain *explain, int tile);
 
@@ -131,14 +125,8 @@ int glint_explain_listed(const struct glint_explain *explain, int tile);
 int glint_explain_is_beyond(const struct glint_explain *explain,
                             const struct glint_lamp *lamp);
 
-/* Lists the indices of all ghosts by falling light, falling work, or number. */
-enum glint_explain_order {
-    GLINT_EXPLAIN_LIGHT,
-    GLINT_EXPLAIN_WORK,
-    GLINT_EXPLAIN_NUMBER
-};
-void glint_explain_sort(const struct glint_explain *explain,
-                        enum glint_explain_order order, int *ghosts);
+/* Lists the indices of all ghosts by falling light. */
+void glint_explain_sort(const struct glint_explain *explain, int *ghosts);
 
 #ifdef __cplusplus
 }

@@ -166,10 +166,3 @@ enum glint_status glint_engine_measure(const struct glint_engine *engine,
     free(plain);
     return status;
 }
-
-int glint_engine_is_beyond(const struct glint_engine *engine,
-                           const struct glint_lamp *lamp)
-{
-    return engine->paint.frame.lens &&
-           glint_frame_is_beyond(&engine->paint.frame, lamp);
-}

@@ -312,18 +312,6 @@ void glint_explain_close(struct glint_explain *e)
     free(e->linear_q20);
 }
 
-double glint_explain_planned(const struct glint_engine *engine,
-                             enum glint_cost_kind kind)
-{
-    const struct glint_frame *const f = &engine->paint.frame;
-    const struct glint_cost_plan plan = glint_frame_plan(f);
-    const struct glint_cost cost = glint_cost_of(&plan, &plan.dials);
-
-    return kind == GLINT_COST_STAR
-               ? 1e-3 * glint_cost_weight[kind].planned * f->star.pixels
-               : glint_cost_minsn(&cost);
-}
-
 int glint_explain_listed(const struct glint_explain *explain, int tile)
 {
     return glint_flare_listed(explain->frame->memory.flare, tile);
@@ -337,23 +325,12 @@ int glint_explain_is_beyond(const struct glint_explain *explain,
 
 /* ------------------------------------------------------------------- order */
 
-static double key(const struct glint_explain *e, enum glint_explain_order order,
-                  int ghost)
-{
-    const struct glint_explain_part *p = &e->ghost[ghost];
-
-    return order == GLINT_EXPLAIN_LIGHT  ? p->flux
-           : order == GLINT_EXPLAIN_WORK ? p->work
-                                         : -ghost;
-}
-
-void glint_explain_sort(const struct glint_explain *e,
-                        enum glint_explain_order order, int *ghosts)
+void glint_explain_sort(const struct glint_explain *e, int *ghosts)
 {
     for (int i = 0; i < e->n_ghosts; i++) {
         int at = i;
 
-        for (; at > 0 && key(e, order, ghosts[at - 1]) < key(e, order, i); at--)
+        for (; at > 0 && e->ghost[ghosts[at - 1]].flux < e->ghost[i].flux; at--)
             ghosts[at] = ghosts[at - 1];
         ghosts[at] = i;
     }

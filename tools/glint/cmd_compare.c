@@ -28,15 +28,13 @@ static const char help[] =
     "\n"
     "  --exposure EV   stops, of both; auto: by the reference's percentile;\n"
     "                  default: 0 for two pictures in codes, else auto\n"
-    "  --fit           multiply TEST by the factor that fits best first\n"
-    "  --exposed       TEST was drawn at that exposure, as a .ppm with\n"
-    "                  --exposure of its logarithm to the base 2\n";
+    "  --fit           multiply TEST by the factor that fits best first\n";
 
 static const char help_end[] = COMMON_HELP;
 
 struct asked {
     const char *name[2];
-    bool fit, exposed;
+    bool fit;
     /* --exposure gave stops, or "auto"; if neither, the kinds of the pictures
      * decide. */
     bool has_ev, is_auto;
@@ -79,15 +77,6 @@ static void print(const struct glint_measure *m, bool identical)
 
 /* ---------------------------------------------------------------- comparing */
 
-/* Divides IMAGE by the EXPOSURE at which it was drawn. */
-static void unexpose(struct glint_float_image *image, double exposure)
-{
-    const size_t n = 3 * (size_t)image->width * (size_t)image->height;
-
-    for (size_t i = 0; i < n; i++)
-        image->rgb[i] /= (float)exposure;
-}
-
 /* Returns whether the picture NAME may hold floats: by its extension, or
  * because it is a pipe ("-"), without an extension. */
 static bool has_floats(const char *name)
@@ -112,8 +101,6 @@ static int measure(const struct tool *tool, const struct asked *a,
     const bool identical = is_identical(image);
     struct glint_measure m;
 
-    if (a->exposed)
-        unexpose(&image[1], exposure);
     if (!glint_measure_at(&image[0], &image[1], a->fit, exposure, &m))
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (tool->json)
@@ -163,27 +150,23 @@ int cmd_compare(int argc, char **argv)
 {
     static const struct option options[] = {
         {"fit", no_argument, NULL, 'f'},
-        {"exposed", no_argument, NULL, 'e'},
         {"exposure", required_argument, NULL, 'x'},
         TOOL_COMMON_OPTIONS};
     struct tool tool = {.name = "compare", .help = help, .help_end = help_end};
-    struct asked a = {{NULL, NULL}, false, false, false, false, 0};
+    struct asked a = {.fit = false};
     int c, code;
 
     while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
            0) {
         a.fit |= c == 'f';
-        a.exposed |= c == 'e';
         if (c == 'x' && !take_exposure(&a, optarg))
             return tool_refuse(&tool, "exposure", optarg);
-        if (c == 'f' || c == 'e' || c == 'x')
+        if (c == 'f' || c == 'x')
             continue;
         code = tool_option(&tool, c, optarg);
         if (code >= 0)
             return code;
     }
-    if (a.fit && a.exposed)
-        return tool_usage(&tool, "--fit and --exposed do not go together");
     code = tool_inputs(&tool, argc, argv, 2, "takes two pictures");
     if (code >= 0)
         return code;

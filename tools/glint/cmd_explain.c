@@ -51,12 +51,10 @@ static const char help[] =
     "  --picture P         codes: as drawn over 8 bits (with IN, or on "
     "black);\n"
     "                      linear: to the full (default with --size)\n"
-    "  --sort KEY          light (default) | work | number\n"
     "  --top N             list and mark N ghosts and lights (default 20)\n";
 
 enum {
     OPT_PICTURE = ENGINE_OPTIONS_END,
-    OPT_SORT,
     OPT_TOP,
     OPT_SIZE,
     OPT_SAVE_GHOSTS,
@@ -69,7 +67,7 @@ struct explain_command {
     struct drawing drawing;
     const char *input, *output, *ghosts, *sheet;
     int width, height; /* 0: those of the input */
-    int picture, order, top;
+    int picture, top;
     struct glint_image image; /* the input, over which the flare is drawn */
 };
 
@@ -77,7 +75,6 @@ static const struct option own[] = {
     {"output", required_argument, NULL, 'o'},
     {"size", required_argument, NULL, OPT_SIZE},
     {"picture", required_argument, NULL, OPT_PICTURE},
-    {"sort", required_argument, NULL, OPT_SORT},
     {"top", required_argument, NULL, OPT_TOP},
     {"save-ghosts", required_argument, NULL, OPT_SAVE_GHOSTS},
     {"ghost-sheet", required_argument, NULL, OPT_GHOST_SHEET},
@@ -86,7 +83,6 @@ static const struct option own[] = {
 static bool take(struct explain_command *c, int option, const char *value)
 {
     static const char *const pictures[] = {"codes", "linear", NULL};
-    static const char *const orders[] = {"light", "work", "number", NULL};
 
     switch (option) {
     case 'o':
@@ -103,9 +99,6 @@ static bool take(struct explain_command *c, int option, const char *value)
     case OPT_PICTURE:
         c->picture = tool_word(value, pictures) + 1;
         return c->picture > 0;
-    case OPT_SORT:
-        c->order = tool_word(value, orders);
-        return c->order >= 0;
     case OPT_TOP:
         return tool_integer(value, 0, GLINT_MAX_GHOSTS, &c->top);
     }
@@ -263,7 +256,7 @@ static int save_ghosts(struct tool *tool, const struct explain_command *c,
                                     .picture = &c->image};
     enum glint_status status = GLINT_OK;
 
-    glint_explain_sort(e, (enum glint_explain_order)c->order, ghosts);
+    glint_explain_sort(e, ghosts);
     if (c->ghosts)
         status = ghost_list_write(&list, c->ghosts, &error);
     if (c->sheet && status == GLINT_OK)
@@ -304,8 +297,6 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
                                         .lamp = drawing->run.lamp,
                                         .n_lamps = drawing->run.n_lamps,
                                         .linear = linear,
-                                        .order =
-                                            (enum glint_explain_order)c->order,
                                         .top = c->top,
                                         .report = &drawing->run.report};
     struct glint_explain e;

@@ -45,7 +45,6 @@ static const char help[] =
     "  --small             one lens, one small picture, fewer values, in "
     "seconds\n"
     "  --repeat N          rounds, 1 to 100 (default 7)\n"
-    "  --exact-grid N      cells a side of the exact picture (default 128)\n"
     "  --json              prints all points on standard output, too\n";
 static const char help_end[] = COMMON_HELP;
 
@@ -247,7 +246,6 @@ static const struct option options[] = {
     {"lights", required_argument, NULL, 'l'},
     {"angle", required_argument, NULL, 'a'},
     {"repeat", required_argument, NULL, 'r'},
-    {"exact-grid", required_argument, NULL, 'g'},
     {"small", no_argument, NULL, OPT_SMALL},
     TOOL_COMMON_OPTIONS};
 
@@ -267,8 +265,6 @@ static int take(struct sweep *s, struct asked *a, int c)
         return (a->n_angles = take_numbers(optarg, 0, 60, a->angle)) > 0;
     case 'r':
         return tool_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
-    case 'g':
-        return tool_integer(optarg, 4, 1024, &s->grid) && s->grid % 2 == 0;
     case OPT_SMALL:
         return s->small = true;
     default:
@@ -319,7 +315,7 @@ static void fill_in(struct sweep *s, struct asked *a)
     if (a->n_angles == 0)
         a->angle[a->n_angles++] = 12;
     s->rounds = s->rounds ? s->rounds : s->small ? 1 : 7;
-    s->grid = s->grid ? s->grid : s->small ? 64 : 128;
+    s->grid = s->small ? 64 : 128;
 }
 
 static void close_sweep(struct sweep *s)

@@ -90,7 +90,7 @@ enum glint_status preview_number(struct glint_engine *engine,
     status = glint_explain_at(&e, engine, lamps, n, scale, width,
                               height > 0 ? height : 1);
     if (status == GLINT_OK)
-        glint_explain_sort(&e, GLINT_EXPLAIN_LIGHT, ghosts);
+        glint_explain_sort(&e, ghosts);
     for (int i = 0; status == GLINT_OK && i < e.n_ghosts && l.n < MOST; i++) {
         if (glint_explain_drawn(&e.ghost[ghosts[i]]) == 0)
             continue;

@@ -10,14 +10,13 @@
 /* Returns the meaning of OUTCOME as a phrase for tables. */
 const char *explain_reason(enum glint_outcome outcome);
 
-/* The inputs of the frame: lens, lights as they were given, kind of picture,
- * and how ghosts are to be listed. */
+/* The inputs of the frame: lens, lights as they were given, and kind of
+ * picture. */
 struct explain_title {
     const char *lens;
     const struct glint_engine_lamp *lamp;
     int n_lamps;
     bool linear;
-    enum glint_explain_order order;
     int top; /* most ghosts and lights to list, and ghosts to mark */
     const struct glint_engine_report *report;
 };

@@ -269,7 +269,7 @@ enum glint_status explain_mark(struct glint_explain *e,
         explain_copy(picture, (8 * legend_rows(&m, t) + 3) * m.scale, marked);
     if (status != GLINT_OK)
         return status;
-    glint_explain_sort(e, t->order, ghosts);
+    glint_explain_sort(e, ghosts);
     shade_tiles(&m);
     put_title(&m, t);
     for (int i = 0; i < e->n_ghosts && n < t->top; i++) {

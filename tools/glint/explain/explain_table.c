@@ -258,7 +258,7 @@ void explain_print(const struct glint_explain *e, const struct explain_title *t)
 {
     int ghosts[GLINT_MAX_GHOSTS];
 
-    glint_explain_sort(e, t->order, ghosts);
+    glint_explain_sort(e, ghosts);
     print_title(e, t);
     if (e->n_lights) {
         print_lights(e, t);
@@ -338,7 +338,7 @@ void explain_json(const struct glint_explain *e, const struct explain_title *t)
     struct json_writer json = {.to = stdout};
     int ghosts[GLINT_MAX_GHOSTS];
 
-    glint_explain_sort(e, t->order, ghosts);
+    glint_explain_sort(e, ghosts);
     json_title(&json, e, t);
     json_lights(&json, e, t);
     json_write(&json, "wavelengths: [");
