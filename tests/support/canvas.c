@@ -5,6 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+const enum glint_pixel_format canvas_format[CANVAS_FORMATS] = {
+    GLINT_RGB24, GLINT_GREY,  GLINT_I420,     GLINT_I422,
+    GLINT_I444,  GLINT_NV12,  GLINT_NV21,     GLINT_YUYV,
+    GLINT_UYVY,  GLINT_BGR24, GLINT_XRGB8888, GLINT_RGB565};
+
 struct glint_image canvas_new(enum glint_pixel_format format, int width,
                               int height)
 {

@@ -7,6 +7,10 @@
 
 #include "glint/image.h"
 
+/* Formats of codes. */
+enum { CANVAS_FORMATS = 12 };
+extern const enum glint_pixel_format canvas_format[CANVAS_FORMATS];
+
 /* Returns a black picture of FORMAT in memory of its own, which begins at
  * plane[0] and is the caller's to free. */
 struct glint_image canvas_new(enum glint_pixel_format format, int width,

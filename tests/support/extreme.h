@@ -48,4 +48,7 @@ static inline bool extreme_at_least(const char *name, double worst,
     return worst >= bound;
 }
 
+#define assert_at_most(...)  assert_true(extreme_at_most(__VA_ARGS__))
+#define assert_at_least(...) assert_true(extreme_at_least(__VA_ARGS__))
+
 #endif

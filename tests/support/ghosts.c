@@ -87,12 +87,12 @@ struct glint_flare *open_flare(struct glint_flare_config *c, void **mem)
     return f;
 }
 
-struct glint_image linear_image(int32_t *pixels)
+struct glint_image linear_image(int32_t *px)
 {
     struct glint_image image =
-        glint_image_over(pixels, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
+        glint_image_over(px, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
 
-    memset(pixels, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
+    memset(px, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
     return image;
 }
 
@@ -116,6 +116,14 @@ struct glint_flare_stats draw_list(struct glint_flare_config c,
 struct glint_flare_stats draw_scene(struct glint_flare_config c, int32_t *out)
 {
     return draw_list(c, ghosts, N_GHOSTS, out);
+}
+
+int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
+
+void same_as_want(struct glint_flare_config c)
+{
+    draw_scene(c, pixels);
+    assert_memory_equal(pixels, want, sizeof pixels);
 }
 
 double total(const int32_t *p, int channel)

@@ -36,7 +36,7 @@ struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j);
 void add_ghost(struct glint_flare *f, const struct ghost *g);
 
 /* Clears PIXELS [HEIGHT][WIDTH][3] and returns an image over them. */
-struct glint_image linear_image(int32_t *pixels);
+struct glint_image linear_image(int32_t *px);
 
 /* draw_list() draws the N ghosts of LIST into OUT [HEIGHT][WIDTH][3], linear
  * light _q20; draw_scene() draws all of `ghosts`. */
@@ -44,6 +44,10 @@ struct glint_flare_stats draw_list(struct glint_flare_config c,
                                    const struct ghost *list, int n,
                                    int32_t *out);
 struct glint_flare_stats draw_scene(struct glint_flare_config c, int32_t *out);
+
+/* Draws all ghosts into PIXELS, which must be WANT. */
+extern int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
+void same_as_want(struct glint_flare_config c);
 
 /* Returns the sum of CHANNEL over all pixels, 1 being white. */
 double total(const int32_t *p, int channel);

@@ -23,7 +23,7 @@ void scratch_open_file(void)
 
 void scratch_close_file(void)
 {
-    assert_int_equal(unlink(scratch_file), 0);
+    unlink(scratch_file); /* a test may have done so */
 }
 
 void scratch_open_dir(void)

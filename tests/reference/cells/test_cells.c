@@ -10,8 +10,6 @@
 #include "support/ghosts.h"
 #include "support/test.h"
 
-static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
-
 /* Draws G by edges into pixels and by cells into want. Adds by how much they
  * are apart to OFF, and the light by cells to ALL. */
 static void add_difference(const struct ghost *g, double *off, double *all)

@@ -325,3 +325,30 @@ int scene_ball(int rings, int sides, uint32_t (*corners)[3])
         }
     return n;
 }
+
+const struct glint_scene_parts scene_parts = {
+    &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
+    &glint_scene_wards,  &glint_scene_stones,   NULL,
+    &glint_scene_motions};
+
+struct glint_scene *scene_start(struct scene_file *file,
+                                const struct glint_scene_config *cfg,
+                                struct glint_scene_stats *stats)
+{
+    static void *mem;
+    const struct glint_scene_model model = scene_open(file);
+    const size_t bytes = glint_scene_bytes(cfg, &model);
+    struct glint_scene_stats unread;
+    struct glint_scene *s = NULL;
+
+    assert_true(bytes > 0);
+    free(mem);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_scene_init(&s, cfg, &model, mem, bytes - 1),
+                     GLINT_E_MEMORY);
+    assert_null(s);
+    memset(mem, 0xa5, bytes); /* dirty memory shows what is left unset */
+    assert_ok(glint_scene_init(&s, cfg, &model, mem, bytes));
+    glint_scene_begin(s, stats ? stats : &unread);
+    return s;
+}

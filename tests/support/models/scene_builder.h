@@ -14,6 +14,7 @@
 #define GLINT_TESTS_SCENE_BUILDER_H
 
 #include "glint/scene/model.h"
+#include "glint/scene/scene.h"
 
 enum { SCENE_PARTS = 64, SCENE_BYTES = 1 << 22 };
 
@@ -67,6 +68,15 @@ void scene_seal(struct scene_file *s);
 
 /* Seals and opens; fails the test if it is refused. */
 struct glint_scene_model scene_open(struct scene_file *s);
+
+/* All parts but highlights. */
+extern const struct glint_scene_parts scene_parts;
+
+/* Opens S and begins it with CFG, in memory that the next call frees; fails the
+ * test if it does in a byte less. STATS may be NULL. */
+struct glint_scene *scene_start(struct scene_file *s,
+                                const struct glint_scene_config *cfg,
+                                struct glint_scene_stats *stats);
 
 /* Writes the triangles of a ball to CORNERS, left-handed: RINGS rings of SIDES
  * points, ring by ring, then the pole before the first and the one after the

@@ -15,15 +15,7 @@
 #include "support/shuffle.h"
 #include "support/test.h"
 
-static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
-
 /* ---------------------------------------------------- what must not matter */
-
-static void same_as_want(struct glint_flare_config c)
-{
-    draw_scene(c, pixels);
-    assert_memory_equal(pixels, want, sizeof pixels);
-}
 
 TEST(tiles_do_not_matter)
 {

@@ -11,8 +11,6 @@
 #include "support/ghosts.h"
 #include "support/test.h"
 
-static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
-
 /* ------------------------------------------------------------------- light */
 
 /* The ghost must have the light of an octagonal stop of radius 1 in a grid of

@@ -12,14 +12,6 @@
 #include "support/ghosts.h"
 #include "support/test.h"
 
-static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
-
-static void same_as_want(struct glint_flare_config c)
-{
-    draw_scene(c, pixels);
-    assert_memory_equal(pixels, want, sizeof pixels);
-}
-
 /* ---------------------------------------------------------------- capacity */
 
 /* The capacities that glint_flare_bin() requested must do exactly; one byte of

@@ -13,8 +13,6 @@
 #include "support/ghosts.h"
 #include "support/test.h"
 
-static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
-
 static const struct ghost plain = {16, 100, 75, 60, 0, 1, 0, 0, {16384, 0, 0}};
 
 /* Gives SETUP an iris; returns what lies in its stop. */

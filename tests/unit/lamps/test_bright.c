@@ -17,12 +17,6 @@
 
 enum { HEIGHT = 6 };
 
-static const enum glint_pixel_format formats[] = {
-    GLINT_RGB24, GLINT_GREY,  GLINT_I420,     GLINT_I422,
-    GLINT_I444,  GLINT_NV12,  GLINT_NV21,     GLINT_YUYV,
-    GLINT_UYVY,  GLINT_BGR24, GLINT_XRGB8888, GLINT_RGB565};
-enum { N_FORMATS = sizeof formats / sizeof *formats };
-
 static uint32_t seed = 1;
 
 /* Fills IMAGE with random bytes, of which one in RARE may be more than 63. */
@@ -204,17 +198,18 @@ TEST(scan_against_every_pixel)
     static const int widths[] = {1, 2, 31, 32, 33, 64, 97, 160};
     static const int rares[] = {2, 50, 2000};
 
-    for (int round = 0; round < N_FORMATS * 8 * 3 * 2; round++) {
-        struct glint_image image = canvas_new(
-            formats[round % N_FORMATS], widths[round / N_FORMATS % 8], HEIGHT);
+    for (int round = 0; round < CANVAS_FORMATS * 8 * 3 * 2; round++) {
+        struct glint_image image =
+            canvas_new(canvas_format[round % CANVAS_FORMATS],
+                       widths[round / CANVAS_FORMATS % 8], HEIGHT);
         struct glint_bright *b;
         void *mem;
 
         b = new_bright(image.width, &mem);
-        image.range =
-            round / (N_FORMATS * 24) ? GLINT_RANGE_LIMITED : GLINT_RANGE_FULL;
+        image.range = round / (CANVAS_FORMATS * 24) ? GLINT_RANGE_LIMITED
+                                                    : GLINT_RANGE_FULL;
         image.matrix = (enum glint_matrix)(round % 2);
-        fill(&image, rares[round / (N_FORMATS * 8) % 3]);
+        fill(&image, rares[round / (CANVAS_FORMATS * 8) % 3]);
         for (int low = 1; low <= 255; low++)
             check_scan(b, &image, low);
         free(b);

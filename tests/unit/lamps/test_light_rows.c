@@ -14,15 +14,10 @@
 
 #include "base/arena.h"
 #include "lamps/score.h"
+#include "support/canvas.h"
 #include "support/test.h"
 
 enum { WIDTH = 70, HEIGHT = 48, ROUNDS = 300, CANDIDATES = 400 };
-
-static const enum glint_pixel_format formats[] = {
-    GLINT_RGB24, GLINT_GREY,  GLINT_I420,     GLINT_I422,
-    GLINT_I444,  GLINT_NV12,  GLINT_NV21,     GLINT_YUYV,
-    GLINT_UYVY,  GLINT_BGR24, GLINT_XRGB8888, GLINT_RGB565};
-enum { N_FORMATS = sizeof formats / sizeof *formats };
 
 static uint32_t seed = 1;
 
@@ -138,7 +133,7 @@ TEST(light_of_runs)
     for (int round = 0; round < ROUNDS; round++) {
         struct fixture f;
 
-        set_up(&f, formats[round % N_FORMATS]);
+        set_up(&f, canvas_format[round % CANVAS_FORMATS]);
         for (int y = 0; y < HEIGHT; y++)
             check_row(&f, y);
         tear_down(&f);
@@ -186,7 +181,7 @@ TEST(brief_scores)
         const int32_t order = 0;
         struct fixture f;
 
-        set_up(&f, formats[round % N_FORMATS]);
+        set_up(&f, canvas_format[round % CANVAS_FORMATS]);
         glint_white_measure(&white, &f.bright, HEIGHT);
         c[0] = c[1] = draw_candidate();
         for (int brief = 0; brief < 2; brief++) {

@@ -48,10 +48,9 @@ TEST(folds)
             fabs(stage_flux(&stage, test) / stage_flux(&stage, exact) - 1));
         high = fmax(high, peak(test) / peak(exact) - 1);
     }
-    assert_true(extreme_at_most("caustics: all ghosts of the Heliar, flux",
-                                flux, 0.01, ""));
-    assert_true(extreme_at_most(
-        "caustics: brightest pixel, above the exact one", high, 0.1, ""));
+    assert_at_most("caustics: all ghosts of the Heliar, flux", flux, 0.01, "");
+    assert_at_most("caustics: brightest pixel, above the exact one", high, 0.1,
+                   "");
 }
 
 /* Opens a lens with a single ghost and its sensor GAP_MM behind the stop. */
@@ -112,8 +111,7 @@ TEST(focus)
             flux,
             fabs(stage_flux(&stage, test) / stage_flux(&stage, exact) - 1));
     }
-    assert_true(
-        extreme_at_most("caustics: a ghost in focus, flux", flux, 0.06, ""));
+    assert_at_most("caustics: a ghost in focus, flux", flux, 0.06, "");
 }
 
 /* Returns the sum of the 7 x 7 pixels around AT. */
@@ -170,13 +168,11 @@ TEST(point)
                 fmax(apart[which], fabs(around(test, at) / want - 1));
         }
     }
-    assert_true(extreme_at_most("caustics: a ghost that is a point, exact rays,"
-                                " flux",
-                                apart[0], 0.02, ""));
-    assert_true(extreme_at_most("caustics: the same at f/400, flux", apart[2],
-                                0.07, ""));
-    assert_true(extreme_at_most(
-        "caustics: a ghost that is a point, model, flux", apart[1], 0.02, ""));
+    assert_at_most("caustics: a ghost that is a point, exact rays, flux",
+                   apart[0], 0.02, "");
+    assert_at_most("caustics: the same at f/400, flux", apart[2], 0.07, "");
+    assert_at_most("caustics: a ghost that is a point, model, flux", apart[1],
+                   0.02, "");
 }
 
 /* The frame shows a hundredth of a ghost: a few cells, drawn thousands of
@@ -193,11 +189,10 @@ TEST(huge)
     assert_true(stage_exact(&stage, &lamp, 1, 192, exact));
     m = stage_compare(&stage, exact, test);
     assert_true(stage_flux(&stage, exact) > 0);
-    assert_true(extreme_at_most("caustics: a ghost 100 times the frame, flux",
-                                fabs(m.flux - 1), 0.03, ""));
-    assert_true(extreme_at_least("caustics: a ghost 100 times the frame, "
-                                 "against exact",
-                                 m.psnr_db, 40, "dB"));
+    assert_at_most("caustics: a ghost 100 times the frame, flux",
+                   fabs(m.flux - 1), 0.03, "");
+    assert_at_least("caustics: a ghost 100 times the frame, against exact",
+                    m.psnr_db, 40, "dB");
 }
 
 TEST_CLOSE

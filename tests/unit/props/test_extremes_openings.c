@@ -163,9 +163,9 @@ TEST(closing)
         }
     }
     print_message("  largest step of a block: %.2f codes, exactly\n", own);
-    assert_true(extreme_at_most("openings: closing to an eleventh, step of a "
-                                "block beside the exact one",
-                                pop, 1.5, "codes"));
+    assert_at_most("openings: closing to an eleventh, step of a block beside "
+                   "the exact one",
+                   pop, 1.5, "codes");
 }
 
 TEST_CLOSE

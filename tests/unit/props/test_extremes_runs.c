@@ -86,19 +86,16 @@ TEST(round_and_round)
         fprintf(stderr, "\r%d frames            \n", n);
     /* Frames that are all alike would hide a difference. */
     assert_true(first[0] != first[ROUND / 4]);
-    assert_true(extreme_at_most(extreme_long()
-                                    ? "runs: 100 000 frames, that differ from "
-                                      "the first round's"
-                                    : "runs: 600 frames, that differ from the "
-                                      "first round's",
-                                differ, 0, "frames"));
+    assert_at_most(
+        extreme_long()
+            ? "runs: 100 000 frames, that differ from the first round's"
+            : "runs: 600 frames, that differ from the first round's",
+        differ, 0, "frames");
     assert_int_equal(heliar.frame.memory.bytes, bytes);
 #ifndef GLINT_SANITIZED
     /* stdio and the allocator may take this once, for any number of frames. */
-    assert_true(extreme_at_most("runs: memory at the end, above the second "
-                                "round's",
-                                (double)(resident_kib() - resident), 256,
-                                "KiB"));
+    assert_at_most("runs: memory at the end, above the second round's",
+                   (double)(resident_kib() - resident), 256, "KiB");
 #else
     (void)resident;
 #endif

@@ -158,13 +158,11 @@ TEST(grazing)
                  fmax(10 * flat, .1), flat);
         compare(text, 96, 54, &worst);
     }
-    assert_true(extreme_at_least("scenes: floors and balls that graze, to "
-                                 "1e-5, against the reference",
-                                 worst.db, 60, "dB"));
-    assert_true(
-        extreme_at_most("scenes: floors and balls that graze, other objects "
-                        "seen",
-                        100 * worst.wrong, 1, "%"));
+    assert_at_least(
+        "scenes: floors and balls that graze, to 1e-5, against the reference",
+        worst.db, 60, "dB");
+    assert_at_most("scenes: floors and balls that graze, other objects seen",
+                   100 * worst.wrong, 1, "%");
 }
 
 /* The same ball and pyramid, from 1e-6 to 1e5 wide. */
@@ -188,11 +186,10 @@ TEST(sizes)
             break;
         compare(text, 96, 54, &worst);
     }
-    assert_true(
-        extreme_at_least("scenes: sizes 1e-6 to 1e3, against the reference",
-                         worst.db, 60, "dB"));
-    assert_true(extreme_at_most("scenes: sizes 1e-6 to 1e3, other objects seen",
-                                100 * worst.wrong, 1, "%"));
+    assert_at_least("scenes: sizes 1e-6 to 1e3, against the reference",
+                    worst.db, 60, "dB");
+    assert_at_most("scenes: sizes 1e-6 to 1e3, other objects seen",
+                   100 * worst.wrong, 1, "%");
 }
 
 /* A sun, whose light does not request places, on objects up to 1e6 wide. */
@@ -212,8 +209,8 @@ TEST(large)
                  r / 2, 2 * r, -r / 4, r / 2, r / 3, r / 3, r / 2, r / 5);
         compare(text, 96, 54, &worst);
     }
-    assert_true(extreme_at_least(
-        "scenes: sizes 1e3 to 5e5, against the reference", worst.db, 60, "dB"));
+    assert_at_least("scenes: sizes 1e3 to 5e5, against the reference", worst.db,
+                    60, "dB");
 }
 
 /* Lamps and suns of any power: what an object shows is that, as far as light is
@@ -237,8 +234,8 @@ TEST(powers)
                  c, c, c);
         compare(text, 96, 54, &worst);
     }
-    assert_true(extreme_at_most("scenes: lights 1e-6 to 1e9, light shown",
-                                worst.share, .05, ""));
+    assert_at_most("scenes: lights 1e-6 to 1e9, light shown", worst.share, .05,
+                   "");
 }
 
 /* Objects behind, around and across the camera. */
@@ -269,12 +266,12 @@ TEST(behind)
         snprintf(text, sizeof text, "%s%s", head, things[i]);
         compare(text, 96, 54, &worst);
     }
-    assert_true(extreme_at_least("scenes: behind, around and across the "
-                                 "camera, against the reference",
-                                 worst.db, 60, "dB"));
-    assert_true(extreme_at_most("scenes: behind, around and across the camera, "
-                                "other objects seen",
-                                100 * worst.wrong, 1, "%"));
+    assert_at_least(
+        "scenes: behind, around and across the camera, against the reference",
+        worst.db, 60, "dB");
+    assert_at_most(
+        "scenes: behind, around and across the camera, other objects seen",
+        100 * worst.wrong, 1, "%");
 }
 
 /* Pictures of one pixel, and as wide and as high as pictures are. */
@@ -291,12 +288,12 @@ TEST(pictures)
                 "sphere ball at 0 .5 0 radius .5 material m\n"
                 "plane floor at 0 0 0 normal 0 1 0 material m\nshadow on\n",
                 size[i][0], size[i][1], &worst);
-    assert_true(extreme_at_least("scenes: one pixel to 8192 wide and 4096 "
-                                 "high, against the reference",
-                                 worst.db, 60, "dB"));
-    assert_true(extreme_at_most("scenes: one pixel to 8192 wide and 4096 high, "
-                                "other objects seen",
-                                100 * worst.wrong, 1, "%"));
+    assert_at_least(
+        "scenes: one pixel to 8192 wide and 4096 high, against the reference",
+        worst.db, 60, "dB");
+    assert_at_most(
+        "scenes: one pixel to 8192 wide and 4096 high, other objects seen",
+        100 * worst.wrong, 1, "%");
 }
 
 /* Powers of 1 and 4096, glass of index 1/4 to 4, mirrors of mirrors. */
@@ -330,7 +327,7 @@ TEST(surfaces)
                  "camera fov 90 at .9 0 -4 toward .9 0 -9\n");
         compare(text, 160, 90, &worst);
     }
-    assert_true(extreme_at_least("scenes: powers 1 to 4096, glass 1/4 to 4, "
-                                 "also from within, against the reference",
-                                 worst.db, 60, "dB"));
+    assert_at_least("scenes: powers 1 to 4096, glass 1/4 to 4, also from "
+                    "within, against the reference",
+                    worst.db, 60, "dB");
 }

@@ -45,8 +45,8 @@ TEST(same_place)
         apart = fmax(apart, fabs((double)test[i] - (double)part[i]));
         most = fmax(most, (double)part[i]);
     }
-    assert_true(extreme_at_most("sums: 10 000 lights at one place",
-                                apart / most, 1e-5, "of the brightest pixel"));
+    assert_at_most("sums: 10 000 lights at one place", apart / most, 1e-5,
+                   "of the brightest pixel");
 }
 
 /* Spread over the frame, lights must merge to 128 without losing any light.
@@ -71,10 +71,9 @@ TEST(spread)
         whole += stage_flux(&heliar, part);
     }
     heliar.frame.dials.fineness = 64;
-    assert_true(
-        extreme_at_most(extreme_long() ? "sums: 10 000 lights merged, flux"
-                                       : "sums: 1000 lights merged, flux",
-                        fabs(stage_flux(&heliar, test) / whole - 1), 0.03, ""));
+    assert_at_most(extreme_long() ? "sums: 10 000 lights merged, flux"
+                                  : "sums: 1000 lights merged, flux",
+                   fabs(stage_flux(&heliar, test) / whole - 1), 0.03, "");
 }
 
 /* 10 000 suns must leave white everywhere, and no sum that wraps. */
@@ -91,8 +90,8 @@ TEST(ten_thousand_suns)
     assert_true(stage_codes(&heliar, lamp, LIGHTS, codes));
     for (int i = 0; i < N; i++)
         dark += codes[i] != 255;
-    assert_true(extreme_at_most("sums: 10 000 suns, samples that are not white",
-                                dark, 0, "samples"));
+    assert_at_most("sums: 10 000 suns, samples that are not white", dark, 0,
+                   "samples");
 }
 
 /* ----------------------------------------------------------------- bundles */
@@ -187,10 +186,10 @@ TEST(piles)
                           got);
         worst = fmax(worst, fabs(got - piles[k].holds));
     }
-    assert_true(extreme_at_most("sums: piles of light up to 2^75 white, off by",
-                                worst, 0, "white"));
-    assert_true(extreme_at_most("sums: piles whose saturation is miscounted",
-                                miscounted, 0, "of 15"));
+    assert_at_most("sums: piles of light up to 2^75 white, off by", worst, 0,
+                   "white");
+    assert_at_most("sums: piles whose saturation is miscounted", miscounted, 0,
+                   "of 15");
 }
 
 /* ------------------------------------------------------------------- traps */
@@ -260,9 +259,9 @@ TEST(traps)
     wrong += traps(narrow_below) != checked;
     wrong += traps(shift_above) != checked;
     wrong += traps(multiply_above) != checked;
-    assert_true(extreme_at_most(checked ? "sums: bounds of q.h, with traps"
-                                        : "sums: bounds of q.h, without traps",
-                                wrong, 0, "cases"));
+    assert_at_most(checked ? "sums: bounds of q.h, with traps"
+                           : "sums: bounds of q.h, without traps",
+                   wrong, 0, "cases");
 }
 
 TEST_CLOSE

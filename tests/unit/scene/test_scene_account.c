@@ -14,27 +14,19 @@
 enum { UNIT = 1 << 16, WIDTH = 200, HEIGHT = 120, MOST = 8 };
 
 static struct scene_file file;
-static void *mem;
 static struct glint_scene_part object[MOST], all;
 static int16_t seen[WIDTH * HEIGHT];
 
 static struct glint_scene *account(int edge_samples, int half)
 {
-    const struct glint_scene_model model = scene_open(&file);
     struct glint_scene_config cfg;
-    struct glint_scene_stats stats;
-    struct glint_scene *s = NULL;
-    size_t bytes;
+    struct glint_scene *s;
 
     glint_scene_defaults(&cfg, WIDTH, HEIGHT);
     cfg.parts.bounces = &glint_scene_bounces;
     cfg.edge_samples = edge_samples;
     cfg.half_shading = half;
-    bytes = glint_scene_bytes(&cfg, &model);
-    free(mem);
-    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_ok(glint_scene_init(&s, &cfg, &model, mem, bytes));
-    glint_scene_begin(s, &stats);
+    s = scene_start(&file, &cfg, NULL);
     glint_scene_account(s, object, &all, seen);
     return s;
 }
@@ -123,9 +115,4 @@ TEST(hider)
     assert_int_equal(glint_scene_hider(s, 0), 1);
     glint_scene_show(s, 1, 0);
     assert_int_equal(glint_scene_hider(s, 0), -1);
-}
-
-TEST_CLOSE
-{
-    free(mem);
 }

@@ -17,7 +17,6 @@
 enum { UNIT = 1 << 16, WIDTH = 96, HEIGHT = 64, BYTES = 3 * WIDTH * HEIGHT };
 
 static struct scene_file file;
-static void *mem;
 static size_t bytes;
 static int32_t light_q20[BYTES], drawn_q20[BYTES];
 
@@ -50,22 +49,12 @@ static struct glint_scene *start(struct glint_workers *workers)
 {
     const struct glint_scene_model model = scene_open(&file);
     struct glint_scene_config cfg;
-    struct glint_scene_stats stats;
-    struct glint_scene *s = NULL;
 
     glint_scene_defaults(&cfg, WIDTH, HEIGHT);
     cfg.workers = workers;
-    cfg.parts = (struct glint_scene_parts){
-        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
-        &glint_scene_wards,  &glint_scene_stones,   NULL,
-        &glint_scene_motions};
+    cfg.parts = scene_parts;
     bytes = glint_scene_bytes(&cfg, &model);
-    free(mem);
-    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    memset(mem, 0xa5, bytes);
-    assert_ok(glint_scene_init(&s, &cfg, &model, mem, bytes));
-    glint_scene_begin(s, &stats);
-    return s;
+    return scene_start(&file, &cfg, NULL);
 }
 
 static void draw(struct glint_scene *s)
@@ -245,9 +234,4 @@ TEST(formats)
                     assert_in_range(rgb_q15[c], 6900, 7500);
             }
         }
-}
-
-TEST_CLOSE
-{
-    free(mem);
 }

@@ -25,39 +25,14 @@ enum {
 };
 
 static struct scene_file file;
-static void *mem;
-
-static const struct glint_scene_parts all_parts = {
-    &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
-    &glint_scene_wards,  &glint_scene_stones,   NULL,
-    &glint_scene_motions};
 
 static struct glint_scene_config defaults(void)
 {
     struct glint_scene_config cfg;
 
     glint_scene_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.parts = all_parts;
+    cfg.parts = scene_parts;
     return cfg;
-}
-
-static struct glint_scene *start(const struct glint_scene_config *cfg,
-                                 struct glint_scene_stats *stats)
-{
-    const struct glint_scene_model model = scene_open(&file);
-    const size_t bytes = glint_scene_bytes(cfg, &model);
-    struct glint_scene *s = NULL;
-
-    assert_true(bytes > 0);
-    free(mem);
-    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_scene_init(&s, cfg, &model, mem, bytes - 1),
-                     GLINT_E_MEMORY);
-    assert_null(s);
-    memset(mem, 0xa5, bytes); /* dirty memory shows what is left unset */
-    assert_ok(glint_scene_init(&s, cfg, &model, mem, bytes));
-    glint_scene_begin(s, stats);
-    return s;
 }
 
 /* A closed mesh about the origin: a bumpy ball. */
@@ -135,7 +110,7 @@ static void draw(struct glint_scene_config cfg, enum glint_pixel_format format,
     fill(px, BYTES);
     shuffle_init(&shuffle, workers, order);
     cfg.workers = &shuffle.workers;
-    glint_scene_draw(start(&cfg, &stats), &image);
+    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
     assert_int_equal(stats.objects, 4);
     assert_int_equal(stats.dropped_objects, 0);
 }
@@ -186,27 +161,27 @@ TEST(nothing)
     make();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = 1;
-    glint_scene_draw(start(&cfg, &stats), &image);
+    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
     assert_int_equal(stats.objects, 0);
     make();
     file.header.camera.axis_q30[0][0] = -ONE_Q30; /* all but the floor behind */
     file.header.camera.axis_q30[2][2] = -ONE_Q30;
     file.object[2].hidden = 1;
-    glint_scene_draw(start(&cfg, &stats), &image);
+    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
     /* A plane that only takes shadows, where there are none. */
     make();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = i != 2;
     file.object[2].catcher_q15 = 20000;
-    glint_scene_draw(start(&cfg, &stats), &image);
+    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
     /* One object in a shadow there darkens it. */
     make();
     file.object[2].catcher_q15 = 32768;
     file.object[0].hidden = file.object[1].hidden = 1;
-    glint_scene_draw(start(&cfg, &stats), &image);
+    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
     assert_memory_not_equal(px, before, BYTES);
 }
 
@@ -225,7 +200,7 @@ TEST(ball_alone)
     scene_material(&file, "m");
     scene_sphere(&file, "ball", 0, 0, 0, 100 * UNIT, 40 * UNIT);
     glint_scene_defaults(&cfg, WIDTH, HEIGHT);
-    s = start(&cfg, &stats);
+    s = scene_start(&file, &cfg, &stats);
     memset(px, 0, sizeof px);
     glint_scene_draw(s, &image);
     for (int i = 0; i < s->cover_across * s->cover_down; i++)
@@ -288,7 +263,7 @@ TEST(no_leaks)
             file.header.camera.at[k] =
                 (int32_t)((rng_unit(&seed) - .5) * .8 * size * UNIT);
         file.header.camera.tan_x_q24 = 1 << (20 + rng_below(&seed, 8));
-        s = start(&cfg, &stats);
+        s = scene_start(&file, &cfg, &stats);
         assert_int_equal(stats.dropped_objects, 0);
         memset(px, 255, sizeof px);
         glint_scene_draw(s, &image);
@@ -306,7 +281,7 @@ TEST(samples)
     int n = 0, other = 0;
 
     make();
-    s = start(&cfg, &stats);
+    s = scene_start(&file, &cfg, &stats);
     for (int y = 0; y < HEIGHT; y += 32)
         for (int x = 0; x < WIDTH; x += 32) {
             const struct glint_box tile = {x, y,
@@ -349,7 +324,7 @@ static void draw_dials(int edge_samples, int half, int32_t *px_q20)
     cfg.edge_samples = edge_samples;
     cfg.half_shading = half;
     memset(px_q20, 0, sizeof *px_q20 * 3 * WIDTH * HEIGHT);
-    glint_scene_draw(start(&cfg, &stats), &image);
+    glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
 }
 
 /* Returns the root of the mean square difference, display white. */
@@ -407,13 +382,13 @@ TEST(capacity)
     struct glint_scene_stats stats;
     const struct glint_scene_model model = (make(), scene_open(&file));
 
-    start(&cfg, &stats);
+    scene_start(&file, &cfg, &stats);
     assert_true(stats.need_refs == stats.refs && stats.refs > 0);
     cfg.max_refs = stats.need_refs;
-    start(&cfg, &stats);
+    scene_start(&file, &cfg, &stats);
     assert_int_equal(stats.dropped_objects, 0);
     cfg.max_refs--;
-    start(&cfg, &stats);
+    scene_start(&file, &cfg, &stats);
     assert_int_equal(stats.dropped_objects, 1);
     assert_true(stats.refs == 0 && stats.need_refs == cfg.max_refs + 1);
     cfg.parts.bounces = NULL;
@@ -421,10 +396,10 @@ TEST(capacity)
     assert_int_equal(glint_scene_bytes(&cfg, &model), 0);
     cfg.parts.meshes = NULL;
     assert_string_equal(glint_scene_lacks(&cfg.parts, &model), "meshes");
-    cfg.parts = all_parts;
+    cfg.parts = scene_parts;
     cfg.parts.textures = NULL;
     assert_string_equal(glint_scene_lacks(&cfg.parts, &model), "textures");
-    cfg.parts = all_parts;
+    cfg.parts = scene_parts;
     cfg.edge_samples = 2;
     assert_int_equal(glint_scene_bytes(&cfg, &model), 0);
 }
@@ -441,7 +416,7 @@ TEST(poses)
     int32_t x[3] = {1 << 20, 0, 0}, to[3];
 
     make();
-    s = start(&cfg, &stats);
+    s = scene_start(&file, &cfg, &stats);
     assert_ok(glint_scene_set_pose(s, 0, at, turn));
     assert_int_equal(glint_scene_set_pose(s, 0, far, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 4, at, turn), GLINT_E_ARGUMENT);
@@ -487,7 +462,7 @@ TEST(shadows)
         cfg.shadow_points = points;
         make();
         file.object[2].catcher_q15 = points == 4 ? 20000 : 0;
-        s = start(&cfg, &stats);
+        s = scene_start(&file, &cfg, &stats);
         assert_true(s->lit[0].shadow && s->lit[0].shadow->is_ready);
         assert_null(s->lit[1].shadow);
         for (int i = 0; i < 20000; i++) {
@@ -536,7 +511,7 @@ TEST(confined)
         for (int k = 0; k < 4; k += k == 1 ? 2 : 1)
             for (int j = 0; j < 3; j++)
                 file.object[k].at[j] += rng_below(&seed, UNIT) - UNIT / 3;
-        s = start(&cfg, &stats);
+        s = scene_start(&file, &cfg, &stats);
         for (int k = 0; k < 2; k++) {
             fill(px[k], BYTES);
             glint_image_place(&image, px[k]);
@@ -592,7 +567,8 @@ TEST(lights)
         file.light[1].at[0] = (int32_t)(x * 8 * UNIT);
         file.light[1].at[1] = (int32_t)(y * 8 * UNIT);
         file.light[1].at[2] = 8 * UNIT;
-        assert_int_equal(glint_scene_lights(start(&cfg, &stats), lamp), 2);
+        assert_int_equal(
+            glint_scene_lights(scene_start(&file, &cfg, &stats), lamp), 2);
         power = 3.14159265358979 * f * f / pow(cosine, 3);
         for (int k = 0; k < 2; k++) {
             assert_int_equal(lamp[k].share, 16);
@@ -607,7 +583,8 @@ TEST(lights)
     }
     make();
     file.header.flare = 0;
-    assert_int_equal(glint_scene_lights(start(&cfg, &stats), lamp), 0);
+    assert_int_equal(glint_scene_lights(scene_start(&file, &cfg, &stats), lamp),
+                     0);
 }
 
 /* Scene and lens agree on where a light is: the flare's own pinhole, from the
@@ -637,7 +614,8 @@ TEST(lens_agrees)
         for (int k = 0; k < 4; k++)
             file.object[k].hidden = 1;
         sun_at(x, y);
-        assert_int_equal(glint_scene_lights(start(&cfg, &stats), lamp), 1);
+        assert_int_equal(
+            glint_scene_lights(scene_start(&file, &cfg, &stats), lamp), 1);
         light = glint_light_from_pixel(&lens, WIDTH, HEIGHT, lamp[0].x_q8,
                                        lamp[0].y_q8);
         tangent = (double)light.sine_q30 / light.cosine_q30;
@@ -663,7 +641,8 @@ TEST(hidden_light)
         int share;
 
         sun_at(-2 / 7. + .3 - i * .005, 0);
-        assert_int_equal(glint_scene_lights(start(&cfg, &stats), lamp), 1);
+        assert_int_equal(
+            glint_scene_lights(scene_start(&file, &cfg, &stats), lamp), 1);
         share = lamp[0].share;
         assert_true(share <= last);
         levels += share < last;
@@ -683,7 +662,7 @@ TEST(cover)
 
     make();
     file.object[2].hidden = 1;
-    s = start(&cfg, &stats);
+    s = scene_start(&file, &cfg, &stats);
     glint_scene_draw(s, &image);
     /* the mesh's middle, and a corner */
     assert_int_equal(glint_scene_cover(s, 128 * WIDTH, 128 * HEIGHT, 256), 256);
@@ -697,7 +676,7 @@ static int64_t drawn_cover(const struct glint_image *image)
 {
     const struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
-    struct glint_scene *s = start(&cfg, &stats);
+    struct glint_scene *s = scene_start(&file, &cfg, &stats);
     int64_t sum = 0;
 
     memset(image->plane[0], 128, WIDTH * HEIGHT * 3);
@@ -728,9 +707,4 @@ TEST(shadow_hides_nothing)
     for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
         n_dark += px[i] < alone[i];
     assert_true(n_dark > 100);
-}
-
-TEST_CLOSE
-{
-    free(mem);
 }

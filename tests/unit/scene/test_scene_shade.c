@@ -16,28 +16,15 @@
 enum { UNIT = 1 << 16, ONE_Q30 = 1 << 30, SIDE = 64 };
 
 static struct scene_file file;
-static void *mem;
 
 static struct glint_scene *start(int shadow_points)
 {
-    const struct glint_scene_model model = scene_open(&file);
     struct glint_scene_config cfg;
-    struct glint_scene_stats stats;
-    struct glint_scene *s = NULL;
-    size_t bytes;
 
     glint_scene_defaults(&cfg, SIDE, SIDE);
     cfg.shadow_points = shadow_points;
-    cfg.parts = (struct glint_scene_parts){
-        &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
-        &glint_scene_wards,  &glint_scene_stones,   NULL,
-        &glint_scene_motions};
-    bytes = glint_scene_bytes(&cfg, &model);
-    free(mem);
-    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_ok(glint_scene_init(&s, &cfg, &model, mem, bytes));
-    glint_scene_begin(s, &stats);
-    return s;
+    cfg.parts = scene_parts;
+    return scene_start(&file, &cfg, NULL);
 }
 
 static struct glint_scene_ray ray_of(double x, double y, double z, double dx,
@@ -281,6 +268,7 @@ TEST(a10_no_acne)
     static const uint32_t t[4][3] = {
         {0, 2, 1}, {0, 3, 2}, {3, 1, 2}, {0, 1, 3}};
     const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
+    struct glint_scene *s = NULL;
     uint32_t seed = 1;
     int n = 0;
 
@@ -288,7 +276,6 @@ TEST(a10_no_acne)
         for (int i = 0; i < 3000; i++) {
             struct glint_scene_ray ray;
             struct glint_met_shade to[2];
-            struct glint_scene *s;
 
             if (i == 0) {
                 scene_begin(&file);
@@ -302,9 +289,8 @@ TEST(a10_no_acne)
                     scene_object(&file, "a", 0,
                                  scene_mesh(&file, at, NULL, NULL, 4, t, 4));
                 file.header.shadow = 1;
-                start(1);
+                s = start(1);
             }
-            s = mem;
             ray = ray_of(0, 0, 0, rng_unit(&seed) * .3 - .15,
                          rng_unit(&seed) * .3 - .15 - .25 * (kind == 1), 1);
             file.header.shadow = 0;
@@ -649,9 +635,4 @@ TEST(a13_levels)
         highest = close > highest ? close : highest;
     }
     assert_true(lowest < 2000 && highest > 30000);
-}
-
-TEST_CLOSE
-{
-    free(mem);
 }

@@ -16,12 +16,12 @@
 
 #include "control/controls.h"
 #include "control/playback.h"
+#include "support/scratch.h"
 #include "support/test.h"
 
 static struct control_line line;
 static struct glint_error error;
 static struct controls input;
-static char name[] = "/tmp/glint-test-control-XXXXXX";
 
 static void says(const char *text, enum control_verb verb, int frame, int n)
 {
@@ -189,12 +189,12 @@ static void next_is(int picture, enum control_verb verb)
 
 static enum glint_status read_text(const char *text)
 {
-    FILE *const file = fopen(name, "w");
+    FILE *const file = fopen(scratch_file, "w");
 
     assert_non_null(file);
     fputs(text, file);
     fclose(file);
-    return controls_open(&input, name, false, &error);
+    return controls_open(&input, scratch_file, false, &error);
 }
 
 /* In their order; one of a later picture holds those behind it. */
@@ -209,7 +209,7 @@ TEST(file)
     assert_null(controls_next(&input, 2));
     next_is(3, CONTROL_STOP);
     controls_where(&input, -1, where);
-    snprintf(wanted, sizeof wanted, "%s:4", name);
+    snprintf(wanted, sizeof wanted, "%s:4", scratch_file);
     assert_string_equal(where, wanted);
     next_is(3, CONTROL_PLAY);
     next_is(3, CONTROL_PAUSE);
@@ -217,7 +217,8 @@ TEST(file)
     controls_close(&input);
     assert_int_equal(read_text("stop\n  jumb 3\n"), GLINT_E_FORMAT);
     snprintf(wanted, sizeof wanted,
-             "%s:2:3: 'jumb' is no command; did you mean 'jump'?", name);
+             "%s:2:3: 'jumb' is no command; did you mean 'jump'?",
+             scratch_file);
     assert_string_equal(error.text, wanted);
     assert_int_equal(controls_open(&input, "/nonexistent", false, &error),
                      GLINT_E_IO);
@@ -229,11 +230,11 @@ TEST(pipe)
 {
     int to;
 
-    unlink(name);
-    assert_int_equal(mkfifo(name, 0600), 0);
-    assert_ok(controls_open(&input, name, true, &error));
+    unlink(scratch_file);
+    assert_int_equal(mkfifo(scratch_file, 0600), 0);
+    assert_ok(controls_open(&input, scratch_file, true, &error));
     assert_null(controls_next(&input, 0));
-    to = open(name, O_WRONLY);
+    to = open(scratch_file, O_WRONLY);
     assert_true(to >= 0);
     assert_int_equal(write(to, "pau", 3), 3);
     assert_null(controls_next(&input, 1));
@@ -252,7 +253,7 @@ TEST(pipe)
     assert_int_equal(input.n_bad, 2);
     close(to);
     controls_close(&input);
-    unlink(name);
+    unlink(scratch_file);
 }
 
 /* Takes the keys of terminal PATH, as a session of its own, and leaves. */
@@ -304,16 +305,4 @@ TEST(terminal)
     }
 }
 
-TEST_OPEN
-{
-    const int file = mkstemp(name);
-
-    if (file < 0)
-        fail();
-    close(file);
-}
-
-TEST_CLOSE
-{
-    unlink(name);
-}
+TEST_GROUP(scratch_open_file, scratch_close_file);

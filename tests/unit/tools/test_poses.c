@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "scenes/poses.h"
+#include "support/scratch.h"
 #include "support/test.h"
 
 #define ONE_Q30 (1 << 30)
@@ -21,7 +22,6 @@ static struct glint_scene_light light[2];
 static struct glint_scene_model model;
 static struct poses poses;
 static struct glint_error error;
-static char name[] = "/tmp/glint-test-poses-XXXXXX";
 
 /* Two objects, a sun and a lamp, 16 steps a unit. */
 static void make(uint32_t hand)
@@ -40,13 +40,13 @@ static void make(uint32_t hand)
 
 static enum glint_status read_text(const char *text, uint32_t hand)
 {
-    FILE *const file = fopen(name, "w");
+    FILE *const file = fopen(scratch_file, "w");
 
     assert_non_null(file);
     fputs(text, file);
     fclose(file);
     make(hand);
-    return poses_open(&poses, name, false, &model, &error);
+    return poses_open(&poses, scratch_file, false, &model, &error);
 }
 
 static void next_is(int frame, int thing, int x)
@@ -146,12 +146,12 @@ TEST(pipe)
                                       "1,sun,\n*,cup,3,0,0\n", ""};
     int to;
 
-    unlink(name);
-    assert_int_equal(mkfifo(name, 0600), 0);
+    unlink(scratch_file);
+    assert_int_equal(mkfifo(scratch_file, 0600), 0);
     make(GLINT_HAND_LEFT);
-    assert_ok(poses_open(&poses, name, true, &model, &error));
+    assert_ok(poses_open(&poses, scratch_file, true, &model, &error));
     assert_null(poses_next(&poses, 0));
-    to = open(name, O_WRONLY);
+    to = open(scratch_file, O_WRONLY);
     assert_true(to >= 0);
     for (int i = 0; i < 3; i++) {
         assert_int_equal(write(to, parts[i], strlen(parts[i])),
@@ -176,12 +176,12 @@ TEST(pipe)
     /* without a writer, and with another one */
     close(to);
     assert_null(poses_next(&poses, 7));
-    to = open(name, O_WRONLY);
+    to = open(scratch_file, O_WRONLY);
     assert_int_equal(write(to, "*,ball,8,0,0\n", 13), 13);
     next_is(8, 0, 128);
     close(to);
     poses_close(&poses);
-    unlink(name);
+    unlink(scratch_file);
 }
 
 /* A writer that never stops gets no more than its fraction of a frame. */
@@ -194,11 +194,11 @@ TEST(flood)
 
     while (n < most)
         n += (size_t)sprintf(lines + n, "*,ball,1,0,0\n");
-    unlink(name);
-    assert_int_equal(mkfifo(name, 0600), 0);
+    unlink(scratch_file);
+    assert_int_equal(mkfifo(scratch_file, 0600), 0);
     make(GLINT_HAND_LEFT);
-    assert_ok(poses_open(&poses, name, true, &model, &error));
-    to = open(name, O_WRONLY | O_NONBLOCK);
+    assert_ok(poses_open(&poses, scratch_file, true, &model, &error));
+    to = open(scratch_file, O_WRONLY | O_NONBLOCK);
     for (int frame = 0; frame < 3; frame++) {
         const int before = taken;
 
@@ -210,19 +210,7 @@ TEST(flood)
     }
     close(to);
     poses_close(&poses);
-    unlink(name);
+    unlink(scratch_file);
 }
 
-TEST_OPEN
-{
-    const int file = mkstemp(name);
-
-    if (file < 0)
-        fail();
-    close(file);
-}
-
-TEST_CLOSE
-{
-    unlink(name);
-}
+TEST_GROUP(scratch_open_file, scratch_close_file);

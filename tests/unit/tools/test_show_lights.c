@@ -8,15 +8,10 @@
 #include <string.h>
 
 #include "overlay/show_lights.h"
+#include "support/canvas.h"
 #include "support/test.h"
 
 enum { WIDTH = 96, HEIGHT = 64, GUARD = 4096 };
-
-static const enum glint_pixel_format formats[] = {
-    GLINT_RGB24, GLINT_GREY,  GLINT_I420,     GLINT_I422,
-    GLINT_I444,  GLINT_NV12,  GLINT_NV21,     GLINT_YUYV,
-    GLINT_UYVY,  GLINT_BGR24, GLINT_XRGB8888, GLINT_RGB565};
-enum { N_FORMATS = sizeof formats / sizeof *formats };
 
 /* Returns a grey picture between guards of bytes 0xee. */
 static struct glint_image new_image(enum glint_pixel_format format,
@@ -144,11 +139,11 @@ TEST(clipped_at_the_borders)
     static const int places[] = {-(1 << 20), -100, -9, -1,     0,      5,
                                  47,         63,   95, 96 + 8, 96 + 9, 1 << 20};
 
-    for (int i = 0; i < 144 * N_FORMATS; i++) {
+    for (int i = 0; i < 144 * CANVAS_FORMATS; i++) {
         struct glint_lamp_track track =
             track_at(places[i % 12], places[i / 12 % 12]);
         uint8_t *mem;
-        struct glint_image image = new_image(formats[i / 144], &mem);
+        struct glint_image image = new_image(canvas_format[i / 144], &mem);
 
         track.id = UINT32_MAX;
         track.size_q8 = i % 7 ? 512 : 1 << 21;

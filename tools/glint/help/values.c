@@ -72,9 +72,7 @@ static const struct {
 
     {NULL, "band", "two wavelengths LO,HI in nm, within 300 to 1100"},
     {"styles", "width", "a whole number, 64 to 2048"},
-    {NULL, "budgets", "numbers of milliseconds above 0, with commas"},
     {NULL, "buffers", "a whole number, 2 to 32"},
-    {NULL, "cost", "time or instructions"},
     {NULL, "engine", "model or exact"},
     {NULL, "field", "millimetres, above 0"},
     {NULL, "fps", "N or N/D, frames a second, from 1"},
