@@ -6,12 +6,22 @@
 static struct CMUnitTest tests[64];
 static size_t n_tests;
 void (*test_opens)(void), (*test_closes)(void);
+void (*test_before)(void), (*test_after)(void);
 
 void test_add(const char *name, CMUnitTestFunction run)
 {
     if (n_tests < sizeof tests / sizeof *tests)
         tests[n_tests] = (struct CMUnitTest){name, run, NULL, NULL, NULL};
     n_tests++;
+}
+
+void test_run(void (*test)(void))
+{
+    if (test_before)
+        test_before();
+    test();
+    if (test_after)
+        test_after();
 }
 
 static int open_group(void **state)

@@ -23,7 +23,7 @@
     static void run_##name(void **state)                      \
     {                                                         \
         (void)state;                                          \
-        test_##name();                                        \
+        test_run(test_##name);                                \
     }                                                         \
     __attribute__((constructor)) static void add_##name(void) \
     {                                                         \
@@ -42,7 +42,11 @@
     }                                                         \
     static void name(void)
 
-/* The same by functions that there are. */
+/* The same for each test. */
+#define TEST_BEFORE TEST_FIXTURE(before_test, test_before)
+#define TEST_AFTER  TEST_FIXTURE(after_test, test_after)
+
+/* Opens and closes all tests by functions that there are. */
 #define TEST_GROUP(open, close)                                \
     __attribute__((constructor)) static void group_tests(void) \
     {                                                          \
@@ -55,6 +59,8 @@
 #define assert_ok(status) assert_int_equal(status, 0)
 
 void test_add(const char *name, CMUnitTestFunction run);
+void test_run(void (*test)(void));
 extern void (*test_opens)(void), (*test_closes)(void);
+extern void (*test_before)(void), (*test_after)(void);
 
 #endif

@@ -69,6 +69,13 @@ static double still(double asked, const struct glint_response *r, double theta,
 
 /* ------------------------------------------------------------------- stills */
 
+static struct glint_strength strength;
+
+TEST_BEFORE
+{
+    glint_strength_defaults(&strength);
+}
+
 TEST(a_quarter_of_white_by_default)
 {
     const struct glint_response r = response_of(0, 7);
@@ -113,12 +120,10 @@ TEST(a_veil_is_held_by_its_mean)
     const struct glint_response r = response_of(0, 0.5);
     struct glint_engine_lamp lamp = lamp_of(5, PIXELS);
     const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
-    struct glint_strength s;
 
-    glint_strength_defaults(&s);
-    glint_strength_expose(&s, &r, &all, 0);
-    assert_true(glint_largest_channel(s.light.mean) < 0.081);
-    assert_true(glint_largest_channel(s.light.peak) > 1 / 16.0);
+    glint_strength_expose(&strength, &r, &all, 0);
+    assert_true(glint_largest_channel(strength.light.mean) < 0.081);
+    assert_true(glint_largest_channel(strength.light.peak) > 1 / 16.0);
 }
 
 TEST(ratios_between_lamps_stay)
@@ -126,10 +131,8 @@ TEST(ratios_between_lamps_stay)
     const struct glint_response r = response_of(5, 7);
     struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e6), lamp_of(9, 1e3)};
     const struct glint_strength_lamps all = {lamps, 2, PIXELS};
-    struct glint_strength s;
 
-    glint_strength_defaults(&s);
-    glint_strength_expose(&s, &r, &all, 0);
+    glint_strength_expose(&strength, &r, &all, 0);
     assert_true(lamps[0].lamp.power == 1e6 && lamps[1].lamp.power == 1e3);
 }
 
@@ -137,14 +140,12 @@ TEST(many_equal_lamps_share)
 {
     const struct glint_response r = response_of(0, 9);
     struct glint_engine_lamp lamps[16];
-    struct glint_strength s;
     double one, each;
 
     for (int i = 0; i < 16; i++)
         lamps[i] = lamp_of(i, 1e4);
-    glint_strength_defaults(&s);
     one = still(0.5, &r, 1, 1e4);
-    each = peak_of(&s, &r, lamps, NULL, 16, 0) / 2; /* 2 = 16^(1/4) */
+    each = peak_of(&strength, &r, lamps, NULL, 16, 0) / 2; /* 2 = 16^(1/4) */
     assert_true(each > one / 2.2 && each < one);
 }
 
@@ -153,21 +154,20 @@ TEST(by_hand)
     const struct glint_response r = response_of(0, 7);
     struct glint_engine_lamp lamp = lamp_of(5, common);
     const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
-    struct glint_strength s;
 
-    glint_strength_defaults(&s);
-    s.is_physical = true;
-    s.exposure_ev = 3;
-    s.gain = 0.5;
-    glint_strength_expose(&s, &r, &all, 0);
-    assert_true(s.scale == 4);
-    assert_true(fabs(glint_largest_channel(s.light.peak) - 0.125) < 1e-9);
-    s.gain = 0;
-    glint_strength_expose(&s, &r, &all, 0);
-    assert_true(s.scale == 0);
-    s = (struct glint_strength){.asked = 0.5, .gain = 2};
-    glint_strength_expose(&s, &r, &all, 0);
-    assert_true(fabs(glint_largest_channel(s.light.peak) - 0.5) < 1e-3);
+    strength.is_physical = true;
+    strength.exposure_ev = 3;
+    strength.gain = 0.5;
+    glint_strength_expose(&strength, &r, &all, 0);
+    assert_true(strength.scale == 4);
+    assert_true(fabs(glint_largest_channel(strength.light.peak) - 0.125) <
+                1e-9);
+    strength.gain = 0;
+    glint_strength_expose(&strength, &r, &all, 0);
+    assert_true(strength.scale == 0);
+    strength = (struct glint_strength){.asked = 0.5, .gain = 2};
+    glint_strength_expose(&strength, &r, &all, 0);
+    assert_true(fabs(glint_largest_channel(strength.light.peak) - 0.5) < 1e-3);
 }
 
 TEST(lamps_without_light)
@@ -176,14 +176,12 @@ TEST(lamps_without_light)
     struct glint_engine_lamp lamp = lamp_of(5, 0);
     const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
     const struct glint_strength_lamps none = {NULL, 0, PIXELS};
-    struct glint_strength s;
 
-    glint_strength_defaults(&s);
-    glint_strength_expose(&s, &r, &all, 0);
-    assert_true(isfinite(s.scale));
-    assert_true(glint_largest_channel(s.light.peak) == 0);
-    glint_strength_expose(&s, &r, &none, 0);
-    assert_true(s.scale == 0);
+    glint_strength_expose(&strength, &r, &all, 0);
+    assert_true(isfinite(strength.scale));
+    assert_true(glint_largest_channel(strength.light.peak) == 0);
+    glint_strength_expose(&strength, &r, &none, 0);
+    assert_true(strength.scale == 0);
 }
 
 /* Returns the corrected peak of a single picture whose flare is drawn STOPS
@@ -228,17 +226,15 @@ TEST(not_as_it_was_drawn)
     const struct glint_response_light none = {{0}, {0}};
     const struct glint_response r = response_of(0, 7);
     struct glint_engine_lamp lamp = lamp_of(5, common);
-    struct glint_strength s;
     double scale;
 
-    glint_strength_defaults(&s);
-    peak_of(&s, &r, &lamp, NULL, 1, 0);
-    scale = s.scale;
-    glint_strength_correct(&s, &none, NULL);
-    assert_true(s.scale == scale && !s.is_drawn);
-    s.is_physical = true;
-    glint_strength_correct(&s, &bright, NULL);
-    assert_true(s.scale == scale && !s.is_drawn);
+    peak_of(&strength, &r, &lamp, NULL, 1, 0);
+    scale = strength.scale;
+    glint_strength_correct(&strength, &none, NULL);
+    assert_true(strength.scale == scale && !strength.is_drawn);
+    strength.is_physical = true;
+    glint_strength_correct(&strength, &bright, NULL);
+    assert_true(strength.scale == scale && !strength.is_drawn);
 }
 
 /* ------------------------------------------------------------------- videos */
@@ -248,13 +244,11 @@ TEST(not_as_it_was_drawn)
 TEST(a_lamp_that_crosses)
 {
     const struct glint_response r = response_of(7, 7);
-    struct glint_strength s;
     double last = 0;
 
-    glint_strength_defaults(&s);
     for (int i = 0; i <= 200; i++) {
         struct glint_engine_lamp lamp = lamp_of(fabs(20 - i * 0.2), 1e5);
-        const double peak = peak_of(&s, &r, &lamp, NULL, 1, FRAME_US);
+        const double peak = peak_of(&strength, &r, &lamp, NULL, 1, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.5);
         if (i > 0)
@@ -268,20 +262,18 @@ TEST(a_lamp_that_crosses)
 TEST(a_lamp_that_rises)
 {
     const struct glint_response r = response_of(0, 7);
-    struct glint_strength s;
     double scale = 0;
 
-    glint_strength_defaults(&s);
     for (int i = 0; i < 250; i++) {
         struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
         const double level[2] = {1, fmin(1, (i - 49) / 5.0)};
         const double peak =
-            peak_of(&s, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
+            peak_of(&strength, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.8);
         if (i > 0)
-            assert_true(fabs(log2(s.scale / scale)) < 0.126);
-        scale = s.scale;
+            assert_true(fabs(log2(strength.scale / scale)) < 0.126);
+        scale = strength.scale;
         if (i == 50) /* The sun is limited to a hundredth of its power. */
             assert_true(lamps[1].lamp.power < 1e6 / 100);
         if (i == 249)
@@ -293,22 +285,21 @@ TEST(a_lamp_that_rises)
 TEST(a_lamp_that_leaves)
 {
     const struct glint_response r = response_of(0, 7);
-    struct glint_strength s;
     double scale, first;
 
-    glint_strength_defaults(&s);
     {
         struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
 
-        peak_of(&s, &r, lamps, NULL, 2, 0);
-        first = scale = s.scale;
+        peak_of(&strength, &r, lamps, NULL, 2, 0);
+        first = scale = strength.scale;
     }
     for (int i = 0; i < 250; i++) {
         struct glint_engine_lamp lamp = lamp_of(5, 1e3);
 
-        peak_of(&s, &r, &lamp, NULL, 1, FRAME_US);
-        assert_true(s.scale >= scale && s.scale / scale < exp2(0.081));
-        scale = s.scale;
+        peak_of(&strength, &r, &lamp, NULL, 1, FRAME_US);
+        assert_true(strength.scale >= scale &&
+                    strength.scale / scale < exp2(0.081));
+        scale = strength.scale;
     }
     assert_true(scale > 300 * first);
 }
@@ -318,14 +309,12 @@ TEST(a_lamp_that_leaves)
 TEST(rising_alone)
 {
     const struct glint_response r = response_of(0, 7);
-    struct glint_strength s;
     double last = 0;
 
-    glint_strength_defaults(&s);
     for (int i = 1; i <= 8; i++) {
         const double level = i / 8.0;
         struct glint_engine_lamp lamp = lamp_of(5, level * common);
-        const double peak = peak_of(&s, &r, &lamp, &level, 1, FRAME_US);
+        const double peak = peak_of(&strength, &r, &lamp, &level, 1, FRAME_US);
 
         assert_true(fabs(peak - 0.25 * level) < 0.01);
         assert_true(peak > last);
@@ -340,16 +329,15 @@ TEST(begins_anew)
     const struct glint_response r = response_of(0, 7);
     struct glint_engine_lamp faint = lamp_of(5, 10),
                              bright = lamp_of(5, common);
-    struct glint_strength s;
 
-    glint_strength_defaults(&s);
-    peak_of(&s, &r, &faint, NULL, 1, FRAME_US);
-    assert_true(peak_of(&s, &r, &bright, NULL, 1, FRAME_US) > 0.3);
+    peak_of(&strength, &r, &faint, NULL, 1, FRAME_US);
+    assert_true(peak_of(&strength, &r, &bright, NULL, 1, FRAME_US) > 0.3);
     assert_true(bright.lamp.power < common);
     bright = lamp_of(5, common);
-    assert_true(fabs(peak_of(&s, &r, &bright, NULL, 1, 0) - 0.25) < 1e-4);
-    peak_of(&s, &r, &faint, NULL, 0, FRAME_US);
-    assert_true(peak_of(&s, &r, &faint, NULL, 1, FRAME_US) > 0.1);
+    assert_true(fabs(peak_of(&strength, &r, &bright, NULL, 1, 0) - 0.25) <
+                1e-4);
+    peak_of(&strength, &r, &faint, NULL, 0, FRAME_US);
+    assert_true(peak_of(&strength, &r, &faint, NULL, 1, FRAME_US) > 0.1);
 }
 
 /* ------------------------------------------------------------------- lenses */

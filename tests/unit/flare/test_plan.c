@@ -110,6 +110,18 @@ static void close_fixture(struct fixture *f)
     free(f->m.data);
 }
 
+static struct fixture fx;
+
+TEST_BEFORE
+{
+    open_fixture(&fx);
+}
+
+TEST_AFTER
+{
+    close_fixture(&fx);
+}
+
 static struct glint_flare_stats planned(struct fixture *f, int n_lights)
 {
     struct glint_flare_stats s;
@@ -124,23 +136,20 @@ static struct glint_flare_stats planned(struct fixture *f, int n_lights)
 
 TEST(what_is_seen)
 {
-    struct fixture f;
     int all;
 
-    open_fixture(&f);
-    all = planned(&f, 1).bundles;
+    all = planned(&fx, 1).bundles;
     assert_true(all >= 1);
-    assert_int_equal(planned(&f, 0).bundles, 0);
-    f.light.power = real_of(0, 0);
-    assert_int_equal(planned(&f, 1).bundles, 0);
-    f.light.power = real_of(1000, 0);
-    f.rays.faintest = real_of(1, 60); /* No ghost is that bright. */
-    assert_int_equal(planned(&f, 1).bundles, 0);
-    f.rays.faintest = real_of(1, -60);
-    assert_int_equal(planned(&f, 1).bundles, all);
-    f.light.rgb_q14[0] = 0; /* no red light */
-    assert_true(planned(&f, 1).bundles < all);
-    close_fixture(&f);
+    assert_int_equal(planned(&fx, 0).bundles, 0);
+    fx.light.power = real_of(0, 0);
+    assert_int_equal(planned(&fx, 1).bundles, 0);
+    fx.light.power = real_of(1000, 0);
+    fx.rays.faintest = real_of(1, 60); /* No ghost is that bright. */
+    assert_int_equal(planned(&fx, 1).bundles, 0);
+    fx.rays.faintest = real_of(1, -60);
+    assert_int_equal(planned(&fx, 1).bundles, all);
+    fx.light.rgb_q14[0] = 0; /* no red light */
+    assert_true(planned(&fx, 1).bundles < all);
 }
 
 /* An annular box has no rays in its middle; these must not is invalid. */
@@ -148,18 +157,15 @@ TEST(a_hole_loses_no_cells)
 {
     struct glint_model_system *system;
     struct glint_flare_stats s;
-    struct fixture f;
 
-    open_fixture(&f);
     system =
-        (struct glint_model_system *)(void *)(f.m.data +
-                                              model_header(&f.m)->system_at);
-    for (uint32_t i = 0; i < model_header(&f.m)->n_systems; i++)
+        (struct glint_model_system *)(void *)(fx.m.data +
+                                              model_header(&fx.m)->system_at);
+    for (uint32_t i = 0; i < model_header(&fx.m)->n_systems; i++)
         system[i].annulus = 1;
-    s = planned(&f, 1);
+    s = planned(&fx, 1);
     assert_true(s.bundles >= 1 && s.primitives > 0);
     assert_int_equal(s.dropped_cells, 0);
-    close_fixture(&f);
 }
 
 /* Returns the most that the flare adds to a pixel, 1 = display white. */
@@ -187,27 +193,24 @@ static double peak(struct fixture *f)
  * that is drawn must have at least an eighth of it somewhere. */
 TEST(faint)
 {
-    struct fixture f;
     int n_left_out = 0, n_kept = 0;
 
-    open_fixture(&f);
-    f.rays.n_waves = 1;
+    fx.rays.n_waves = 1;
     for (int e = -24; e < 10; e++) {
         double light;
         int bundles;
 
-        f.light.power = real_of(1, e);
-        f.rays.faintest = real_of(0, 0);
-        light = peak(&f);
-        f.rays.faintest = real_of(1, -10);
-        bundles = planned(&f, 1).bundles;
+        fx.light.power = real_of(1, e);
+        fx.rays.faintest = real_of(0, 0);
+        light = peak(&fx);
+        fx.rays.faintest = real_of(1, -10);
+        bundles = planned(&fx, 1).bundles;
         n_left_out += bundles == 0 && light > 0x1p-18;
         n_kept += bundles > 0;
         assert_true(bundles > 0 || light <= 0x1p-10);
         assert_true(bundles == 0 || light > 0x1p-13);
     }
     assert_true(n_left_out > 3 && n_kept > 3);
-    close_fixture(&f);
 }
 
 static double code_of(int32_t light_q20)
@@ -238,19 +241,17 @@ TEST(steps_follow_codes)
 {
     static int32_t linear[3 * WIDTH * HEIGHT], coded[3 * WIDTH * HEIGHT];
     int n_fewer = 0;
-    struct fixture f;
 
-    open_fixture(&f);
-    f.cfg.irradiance_steps = 70;
+    fx.cfg.irradiance_steps = 70;
     for (int e = 8; e > -12; e--) {
         struct glint_flare_stats all, fewer;
         double sum = 0;
 
-        f.light.power = real_of(1, e);
-        f.rays.faintest = real_of(0, 0);
-        draw(&f, linear, &all);
-        f.rays.faintest = real_of(1, -20);
-        draw(&f, coded, &fewer);
+        fx.light.power = real_of(1, e);
+        fx.rays.faintest = real_of(0, 0);
+        draw(&fx, linear, &all);
+        fx.rays.faintest = real_of(1, -20);
+        draw(&fx, coded, &fewer);
         assert_true(fewer.primitives <= all.primitives);
         assert_true(e < 0 || all.primitives > 2100);
 
@@ -263,7 +264,6 @@ TEST(steps_follow_codes)
         assert_true(sum / (3 * WIDTH * HEIGHT) < (e > 4 ? 0.65 : 0.1));
     }
     assert_true(n_fewer > 15);
-    close_fixture(&f);
 }
 
 /* Sums over a picture: light, where it is and its mean square distance from
@@ -299,27 +299,24 @@ TEST(points_of_a_lamp)
     static int32_t px_q20[3 * WIDTH * HEIGHT];
     struct glint_flare_stats s;
     struct extent alone, near, far;
-    struct fixture f;
 
-    open_fixture(&f);
-    f.cfg.stop.apothem_q16 /= 3;
-    f.light.sine_q30 = 1 << 27;
-    f.light.cosine_q30 = (int32_t)(sqrt(63 / 64.0) * (1 << 30));
-    f.light.cos_q30 = (int32_t)(0.6 * (1 << 30));
-    f.light.sin_q30 = (int32_t)(0.8 * (1 << 30));
-    draw(&f, px_q20, &s);
+    fx.cfg.stop.apothem_q16 /= 3;
+    fx.light.sine_q30 = 1 << 27;
+    fx.light.cosine_q30 = (int32_t)(sqrt(63 / 64.0) * (1 << 30));
+    fx.light.cos_q30 = (int32_t)(0.6 * (1 << 30));
+    fx.light.sin_q30 = (int32_t)(0.8 * (1 << 30));
+    draw(&fx, px_q20, &s);
     alone = extent_of(px_q20);
-    f.light.apart_q30 = 1 << 10;
-    draw(&f, px_q20, &s);
+    fx.light.apart_q30 = 1 << 10;
+    draw(&fx, px_q20, &s);
     near = extent_of(px_q20);
-    f.light.apart_q30 = 1 << 28;
-    draw(&f, px_q20, &s);
+    fx.light.apart_q30 = 1 << 28;
+    draw(&fx, px_q20, &s);
     far = extent_of(px_q20);
     assert_true(near.square == alone.square);
     assert_true(far.square > 1.15 * alone.square);
     assert_true(fabs(far.light / alone.light - 1) < 1e-3);
     assert_true(hypot(far.x - alone.x, far.y - alone.y) < 0.3);
-    close_fixture(&f);
 }
 
 /* Edges on whole pixels must keep all light, and codes must be nearly the
@@ -328,20 +325,18 @@ TEST(whole_edges)
 {
     static int32_t smooth[3 * WIDTH * HEIGHT], whole[3 * WIDTH * HEIGHT];
     struct glint_flare_stats s;
-    struct fixture f;
     int n_changed = 0;
 
-    open_fixture(&f);
-    f.rays.faintest = real_of(1, -20);
-    f.cfg.irradiance_steps = 70;
+    fx.rays.faintest = real_of(1, -20);
+    fx.cfg.irradiance_steps = 70;
     for (int e = 8; e > -8; e--) {
         double flux[2] = {0, 0}, sum = 0;
 
-        f.light.power = real_of(1, e);
-        f.rays.snap_codes_q8 = 0;
-        draw(&f, smooth, &s);
-        f.rays.snap_codes_q8 = 4 << 8;
-        draw(&f, whole, &s);
+        fx.light.power = real_of(1, e);
+        fx.rays.snap_codes_q8 = 0;
+        draw(&fx, smooth, &s);
+        fx.rays.snap_codes_q8 = 4 << 8;
+        draw(&fx, whole, &s);
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
             const double off = code_of(whole[i]) - code_of(smooth[i]);
 
@@ -356,7 +351,6 @@ TEST(whole_edges)
         assert_true(fabs(flux[1] - flux[0]) < (e > 2 ? 1e-3 : 1e-2) * flux[0]);
     }
     assert_true(n_changed > 10000);
-    close_fixture(&f);
 }
 
 /* Draws a frame of F into IMAGE, with HALF as many pixels each way or with
@@ -387,14 +381,12 @@ TEST(half)
     static uint8_t codes[2][3 * WIDTH * HEIGHT];
     const int width = WIDTH - 7, height = HEIGHT - 3, n = 3 * width * height;
     double flux[2] = {0, 0}, sum = 0;
-    struct fixture f;
 
-    open_fixture(&f);
     for (int half = 0; half < 2; half++) {
         struct glint_image image = {
             .format = GLINT_RGB24, .width = width, .height = height};
 
-        draw_half(&f, half, &image, codes[half]);
+        draw_half(&fx, half, &image, codes[half]);
     }
     for (int i = 0; i < n; i++) {
         const double off = codes[1][i] - codes[0][i];
@@ -406,7 +398,6 @@ TEST(half)
     assert_true(fabs(flux[1] - flux[0]) < 0.02 * flux[0]);
     /* The two pictures must differ, yet agree to 32 dB. */
     assert_true(sum > 0.01 * n && sum < 40 * n);
-    close_fixture(&f);
 }
 
 /* With half as many pixels each way, every 2 x 2 pixels must have one light, up
@@ -416,14 +407,12 @@ TEST(half_of_linear)
     static int32_t light_q20[2][3 * WIDTH * HEIGHT];
     const int width = WIDTH - 7, height = HEIGHT - 3;
     double sum[2] = {0, 0};
-    struct fixture f;
 
-    open_fixture(&f);
     for (int half = 0; half < 2; half++) {
         struct glint_image image = {
             .format = GLINT_LINEAR_Q20, .width = width, .height = height};
 
-        draw_half(&f, half, &image, light_q20[half]);
+        draw_half(&fx, half, &image, light_q20[half]);
     }
     for (int i = 0; i < 3 * width * height; i++) {
         const int x = i / 3 % width, y = i / 3 / width;
@@ -435,7 +424,6 @@ TEST(half_of_linear)
             light_q20[1][3 * ((y & ~1) * width + (x & ~1)) + i % 3]);
     }
     assert_true(sum[0] > 0 && fabs(sum[1] / sum[0] - 1) < 0.02);
-    close_fixture(&f);
 }
 
 /* On an uneven picture, light that four pixels share must be near the light of
@@ -444,16 +432,14 @@ TEST(half_of_yuyv)
 {
     static uint8_t px[2][2 * WIDTH * HEIGHT];
     double sum = 0, changed = 0;
-    struct fixture f;
 
-    open_fixture(&f);
     for (int half = 0; half < 2; half++) {
         struct glint_image image = {
             .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
 
         for (int i = 0; i < 2 * WIDTH * HEIGHT; i++)
             px[half][i] = (uint8_t)(i % 2 ? 128 : 40 + i * 7 / 2 % 13);
-        draw_half(&f, half, &image, px[half]);
+        draw_half(&fx, half, &image, px[half]);
     }
     for (int i = 0; i < 2 * WIDTH * HEIGHT; i += 2) {
         const double off = px[1][i] - px[0][i];
@@ -463,7 +449,6 @@ TEST(half_of_yuyv)
     }
     assert_true(changed > WIDTH * HEIGHT / 20.);
     assert_true(sum < 30. * WIDTH * HEIGHT);
-    close_fixture(&f);
 }
 
 /* With every setting of the plan a picture must have the same bits whatever the
@@ -475,12 +460,10 @@ TEST(same_bits)
                                                       GLINT_LINEAR_Q20};
     static int32_t px[2][3 * WIDTH * HEIGHT];
     uint32_t seed = 7;
-    struct fixture f;
 
-    open_fixture(&f);
-    f.cfg.irradiance_steps = 70;
-    f.light.power = real_of(1, 2);
-    f.rays.faintest = real_of(163, -22);
+    fx.cfg.irradiance_steps = 70;
+    fx.light.power = real_of(1, 2);
+    fx.rays.faintest = real_of(163, -22);
     for (int i = 0; i < 2 * 4 * 3 * 12; i++) {
         struct glint_image image = {.format = formats[i / 12 % 3],
                                     .width = WIDTH - 7,
@@ -490,26 +473,25 @@ TEST(same_bits)
         struct shuffle shuffle;
 
         shuffle_init(&shuffle, first ? 1 : 1 + i % 3, rng_xorshift(&seed));
-        f.rays.snap_codes_q8 = whole_q8[i / 36 % 4];
-        f.rays.half = i / 144 ? &glint_half : NULL;
-        f.cfg.width = image.width;
-        f.cfg.height = image.height;
-        f.cfg.workers = &shuffle.workers;
-        f.cfg.tile_log2 = first ? 6 : 3 + (int)(rng_xorshift(&seed) % 4);
-        f.cfg.sets = first ? 0 : rng_xorshift(&seed) & glint_sets_here();
+        fx.rays.snap_codes_q8 = whole_q8[i / 36 % 4];
+        fx.rays.half = i / 144 ? &glint_half : NULL;
+        fx.cfg.width = image.width;
+        fx.cfg.height = image.height;
+        fx.cfg.workers = &shuffle.workers;
+        fx.cfg.tile_log2 = first ? 6 : 3 + (int)(rng_xorshift(&seed) % 4);
+        fx.cfg.sets = first ? 0 : rng_xorshift(&seed) & glint_sets_here();
         memset(px[!first], 0, sizeof px[0]);
         glint_image_place(&image, px[!first]);
-        start(&f);
-        glint_flare_plan(f.flare, &f.rays, &f.light, 1);
-        glint_flare_bin(f.flare, &s);
+        start(&fx);
+        glint_flare_plan(fx.flare, &fx.rays, &fx.light, 1);
+        glint_flare_bin(fx.flare, &s);
         assert_true(s.bundles > 0 && s.dropped_bundles == 0);
-        glint_flare_draw(f.flare, &image);
-        free(f.mem);
-        f.mem = NULL;
+        glint_flare_draw(fx.flare, &image);
+        free(fx.mem);
+        fx.mem = NULL;
         if (!first)
             assert_memory_equal(px[0], px[1], sizeof px[0]);
     }
-    close_fixture(&f);
 }
 
 /* Draws N faint lights with F, linear and in codes; returns the mean square of
@@ -564,29 +546,23 @@ TEST(many_faint_lights)
 {
     const struct glint_shade soft = {.method = &glint_shade_method,
                                      .soft_q16 = 6554};
-    struct fixture f;
 
-    open_fixture(&f);
-    assert_true(faint_lights(&f, 1024) < 0.1);
-    free(f.mem);
-    f.cfg.stop.shade = &soft;
-    assert_true(faint_lights(&f, 128) < 0.2);
-    close_fixture(&f);
+    assert_true(faint_lights(&fx, 1024) < 0.1);
+    free(fx.mem);
+    fx.cfg.stop.shade = &soft;
+    assert_true(faint_lights(&fx, 128) < 0.2);
 }
 
 TEST(room)
 {
-    struct fixture f;
     struct glint_flare_stats all, less;
 
-    open_fixture(&f);
-    all = planned(&f, 1);
-    f.cfg.max_bundles = 1;
-    less = planned(&f, 1);
+    all = planned(&fx, 1);
+    fx.cfg.max_bundles = 1;
+    less = planned(&fx, 1);
     assert_int_equal(less.need_bundles, all.need_bundles);
     assert_true(less.bundles <= 1);
     assert_true(less.dropped_bundles > 0);
-    close_fixture(&f);
 }
 
 static void picture(struct fixture *f, int32_t *px_q20)
@@ -663,16 +639,14 @@ TEST(opening)
     static int32_t less[3 * WIDTH * HEIGHT];
     int64_t light = 0, off = 0, left = 0;
     struct glint_flare_stats s;
-    struct fixture f;
 
-    open_fixture(&f);
-    f.light.power = real_of(1000, 4); /* many steps of 2^-20 */
-    draw(&f, whole, &s);
-    f.cfg.stop.apothem_q16 *= 2;
-    f.cfg.stop.opening_q30 = 1 << 29;
-    draw(&f, half, &s);
-    f.cfg.stop.opening_q30 = 1 << 28;
-    draw(&f, less, &s);
+    fx.light.power = real_of(1000, 4); /* many steps of 2^-20 */
+    draw(&fx, whole, &s);
+    fx.cfg.stop.apothem_q16 *= 2;
+    fx.cfg.stop.opening_q30 = 1 << 29;
+    draw(&fx, half, &s);
+    fx.cfg.stop.opening_q30 = 1 << 28;
+    draw(&fx, less, &s);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
         light += whole[i];
         off += llabs((int64_t)whole[i] - half[i]);
@@ -686,7 +660,6 @@ TEST(opening)
      * below 0.4 everywhere, and 0.2 at v = 0.4183. */
     assert_true(fabs((double)left / (double)light - 0.7368 / 0.9283 * 0.4183) <
                 0.003);
-    close_fixture(&f);
 }
 
 /* A stop that is set between frames must give the picture of a flare that has
@@ -697,27 +670,24 @@ TEST(set_stop)
     static int32_t set[3 * WIDTH * HEIGHT], first[3 * WIDTH * HEIGHT];
     struct glint_flare_stats s;
     struct glint_stop stop;
-    struct fixture f;
 
-    open_fixture(&f);
-    start(&f);
-    stop = f.cfg.stop;
+    start(&fx);
+    stop = fx.cfg.stop;
     for (int k = 0; k < 4; k++) {
         stop.opening_q30 = bad[k];
-        assert_int_equal(glint_flare_set_stop(f.flare, &stop),
+        assert_int_equal(glint_flare_set_stop(fx.flare, &stop),
                          GLINT_E_ARGUMENT);
     }
     stop.opening_q30 = 1 << 28;
-    assert_ok(glint_flare_set_stop(f.flare, &stop));
-    glint_flare_plan(f.flare, &f.rays, &f.light, 1);
-    picture(&f, set);
-    free(f.mem);
-    f.cfg.stop.opening_q30 = 1 << 28;
-    draw(&f, first, &s);
+    assert_ok(glint_flare_set_stop(fx.flare, &stop));
+    glint_flare_plan(fx.flare, &fx.rays, &fx.light, 1);
+    picture(&fx, set);
+    free(fx.mem);
+    fx.cfg.stop.opening_q30 = 1 << 28;
+    draw(&fx, first, &s);
     assert_memory_equal(set, first, sizeof set);
-    f.cfg.stop.opening_q30 = 1;
-    assert_int_equal(glint_flare_bytes(&f.cfg), 0);
-    close_fixture(&f);
+    fx.cfg.stop.opening_q30 = 1;
+    assert_int_equal(glint_flare_bytes(&fx.cfg), 0);
 }
 
 /* The finest grid must have as many cells as a row has room for, however much a
@@ -725,28 +695,25 @@ TEST(set_stop)
 TEST(finest_grid)
 {
     static struct glint_plan_scratch scratch;
-    struct fixture f;
     struct glint_plan plan;
     int most = 0;
 
-    open_fixture(&f);
-    f.rays.pixels_per_mm = real_of(12000, 0);
-    f.rays.fineness = GLINT_MAX_CELLS;
-    plan = (struct glint_plan){.frame = &f.rays,
-                               .light = &f.light,
+    fx.rays.pixels_per_mm = real_of(12000, 0);
+    fx.rays.fineness = GLINT_MAX_CELLS;
+    plan = (struct glint_plan){.frame = &fx.rays,
+                               .light = &fx.light,
                                .n_lights = 1,
                                .width = WIDTH,
                                .height = HEIGHT,
                                .opening_q30 = 1 << 30};
-    for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++) {
+    for (int ghost = 0; ghost < (int)fx.lens.header->n_ghosts; ghost++) {
         struct glint_bundle_plan planned = {.ghost = ghost};
         struct glint_bundle bundle;
 
-        glint_plan_bundle(&plan, &f.light, &planned, &bundle, &scratch);
+        glint_plan_bundle(&plan, &fx.light, &planned, &bundle, &scratch);
         most = bundle.n_cells > most ? bundle.n_cells : most;
     }
     assert_int_equal(most, GLINT_MAX_CELLS);
-    close_fixture(&f);
 }
 
 /* The barrel's 0.5 + u^2 / 2 bends by 4 over the box, across only, so straight
@@ -757,22 +724,19 @@ TEST(sag)
     struct glint_bundle_plan planned = {.ghost = 0};
     struct glint_bundle bundle;
     struct glint_plan plan;
-    struct fixture f;
     double sag;
 
-    open_fixture(&f);
-    plan = (struct glint_plan){.frame = &f.rays,
-                               .light = &f.light,
+    plan = (struct glint_plan){.frame = &fx.rays,
+                               .light = &fx.light,
                                .n_lights = 1,
                                .width = WIDTH,
                                .height = HEIGHT,
                                .opening_q30 = 1 << 30};
-    glint_plan_bundle(&plan, &f.light, &planned, &bundle, &scratch);
+    glint_plan_bundle(&plan, &fx.light, &planned, &bundle, &scratch);
     assert_true(bundle.n_cells >= 8);
     sag = 65536 * 4.0 / 12 / (bundle.n_cells * bundle.n_cells);
     assert_true(fabs(planned.sag_q16[0] - sag) <= 1 + 0.01 * sag);
     assert_int_equal(planned.sag_q16[1], 0);
-    close_fixture(&f);
 }
 
 /* No light beyond the angles of the lens model may be drawn, whatever the
@@ -780,30 +744,27 @@ TEST(sag)
 TEST(beyond)
 {
     const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;
-    struct fixture f;
     int alone;
 
-    open_fixture(&f);
-    f.light.sine_q30 = inside_q30;
-    alone = planned(&f, 1).bundles;
-    f.light.sine_q30 = outside_q30;
-    assert_true(planned(&f, 1).bundles > 0);
-    ((struct glint_model_header *)f.m.data)->sine_hi_q30 = inside_q30;
-    assert_int_equal(planned(&f, 1).need_bundles, 0);
+    fx.light.sine_q30 = inside_q30;
+    alone = planned(&fx, 1).bundles;
+    fx.light.sine_q30 = outside_q30;
+    assert_true(planned(&fx, 1).bundles > 0);
+    ((struct glint_model_header *)fx.m.data)->sine_hi_q30 = inside_q30;
+    assert_int_equal(planned(&fx, 1).need_bundles, 0);
     for (int last = 0; last < 2; last++) {
-        struct glint_light light[2] = {f.light, f.light};
+        struct glint_light light[2] = {fx.light, fx.light};
         struct glint_flare_stats s;
 
         light[last].sine_q30 = inside_q30;
-        start(&f);
-        glint_flare_plan(f.flare, &f.rays, light, 2);
-        glint_flare_bin(f.flare, &s);
+        start(&fx);
+        glint_flare_plan(fx.flare, &fx.rays, light, 2);
+        glint_flare_bin(fx.flare, &s);
         assert_int_equal(s.need_bundles, last ? 12 : 6);
         assert_int_equal(s.bundles, alone);
-        free(f.mem);
-        f.mem = NULL;
+        free(fx.mem);
+        fx.mem = NULL;
     }
-    close_fixture(&f);
 }
 
 /* A frame without light must leave the picture alone, also after a frame with
@@ -814,20 +775,17 @@ TEST(dark_frame)
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
     struct glint_flare_stats s;
-    struct fixture f;
 
-    open_fixture(&f);
-    start(&f);
-    glint_flare_plan(f.flare, &f.rays, &f.light, 1);
-    picture(&f, px_q20);
-    assert_true(glint_flare_tiles(f.flare) > 0);
+    start(&fx);
+    glint_flare_plan(fx.flare, &fx.rays, &fx.light, 1);
+    picture(&fx, px_q20);
+    assert_true(glint_flare_tiles(fx.flare) > 0);
     memset(px_q20, 0, sizeof px_q20);
-    glint_flare_plan(f.flare, &f.rays, &f.light, 0);
-    glint_flare_bin(f.flare, &s);
-    glint_flare_draw(f.flare, &image);
+    glint_flare_plan(fx.flare, &fx.rays, &fx.light, 0);
+    glint_flare_bin(fx.flare, &s);
+    glint_flare_draw(fx.flare, &image);
     assert_int_equal(s.primitives + s.refs + s.bundles, 0);
-    assert_int_equal(glint_flare_tiles(f.flare), 0);
+    assert_int_equal(glint_flare_tiles(fx.flare), 0);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         assert_int_equal(px_q20[i], 0);
-    close_fixture(&f);
 }

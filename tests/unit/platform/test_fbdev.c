@@ -162,6 +162,11 @@ static void end_child(int how)
     raise(how);
 }
 
+TEST_BEFORE
+{
+    reset();
+}
+
 /* Whatever ends a process, the console must be text and the first screen in
  * view. This test must come first: the first open takes the signals for the
  * whole process. */
@@ -194,7 +199,6 @@ TEST(draws)
 {
     struct glint_fbdev fb;
 
-    reset();
     must_open(&fb, NULL);
     assert_string_equal(fb.id, "fake");
     assert_int_equal(fb.n_pages, 1);
@@ -216,7 +220,6 @@ TEST(borders)
     struct glint_fbdev fb;
     const uint8_t *mem;
 
-    reset();
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 100));
     must_put(&fb, grey(8, 2, 50));
@@ -233,7 +236,6 @@ TEST(odd_start)
 {
     struct glint_fbdev fb;
 
-    reset();
     fake_fb->fix.smem_start = 0xfd000064;
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 77));
@@ -326,7 +328,6 @@ TEST(vsync)
     const struct glint_fbdev_options options = {.vsync = true};
     struct glint_fbdev fb;
 
-    reset();
     must_open(&fb, &options);
     for (int i = 0; i < 3; i++)
         must_put(&fb, grey(8, 6, i));
@@ -353,7 +354,6 @@ TEST(goes_away)
     struct glint_error error;
     char want[128];
 
-    reset();
     snprintf(want, sizeof want, "%s: the framebuffer went away", fake_fb_path);
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 5));
@@ -373,7 +373,6 @@ TEST(mode_changes)
     struct glint_fbdev fb;
     const uint8_t *mem;
 
-    reset();
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 255));
     fake_fb->var.bits_per_pixel = 16;
@@ -403,7 +402,6 @@ TEST(no_fields)
     static const struct fb_bitfield none;
     struct glint_fbdev fb;
 
-    reset();
     fake_fb->var.red = fake_fb->var.green = fake_fb->var.blue = none;
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 100));
@@ -440,7 +438,6 @@ TEST(refuses)
     struct glint_fbdev fb;
     struct glint_error error;
 
-    reset();
     fake_fb->open_errno = ENOENT;
     expect_refused("there is no framebuffer");
     fake_fb->open_errno = EACCES;
@@ -487,7 +484,6 @@ TEST(names)
     struct glint_fbdev fb;
     struct glint_error error;
 
-    reset();
     setenv("FRAMEBUFFER", fake_fb_path, 1);
     assert_ok(glint_fbdev_open(&fb, NULL, &none, &error));
     fb.sink.close(&fb.sink);
@@ -517,7 +513,6 @@ static void check_console(bool taken, int during, int after)
 
 TEST(console)
 {
-    reset();
     check_console(true, KD_GRAPHICS, KD_TEXT);
     fake_fb->tty_mode = KD_GRAPHICS; /* A killed program left it so. */
     check_console(true, KD_GRAPHICS, KD_TEXT);
@@ -536,7 +531,6 @@ TEST(let_go)
     int how;
     pid_t child;
 
-    reset();
     child = fork();
     if (child == 0) {
         check_console(true, KD_GRAPHICS, KD_TEXT);

@@ -28,6 +28,11 @@ static uint32_t chosen(const struct fake_mode *list, int n, int fps)
     return fourcc;
 }
 
+TEST_BEFORE
+{
+    fake_camera_reset();
+}
+
 TEST(cheapest)
 {
     static const struct fake_mode equal[] = {
@@ -61,7 +66,6 @@ TEST(rate_alone)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    fake_camera_reset();
     camera.mode[0].fps_num = 10;
     camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1};
     wish.fps_num = 30;
@@ -96,7 +100,6 @@ TEST(stepwise)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    fake_camera_reset();
     camera.is_stepwise = true;
     camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_RGB24, 256, 128, 60, 1};
     wish.width = 200;
@@ -115,7 +118,6 @@ TEST(stepwise)
 /* Without libjpeg MJPG must not be chosen. */
 TEST(no_jpeg)
 {
-    fake_camera_reset();
     fake_lacks_jpeg = true;
     camera.mode[0].fourcc = V4L2_PIX_FMT_MJPEG;
     camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_GREY, 64, 48, 30, 1};
@@ -128,7 +130,6 @@ TEST(unread_format)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    fake_camera_reset();
     camera.mode[0].fourcc = camera.now.fourcc = V4L2_PIX_FMT_H264;
     must_refuse(NULL, GLINT_E_UNSUPPORTED,
                 FAKE_PATH ": delivers H264, which glint does not read; "
@@ -143,7 +144,6 @@ TEST(believes)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    fake_camera_reset();
     camera.rounds = true;
     wish.width = 50;
     wish.height = 40;
@@ -180,7 +180,6 @@ TEST(inputs)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    fake_camera_reset();
     camera.n_inputs = 2;
     wish.input = 1;
     must_open(&wish);
@@ -197,7 +196,6 @@ TEST(colours)
 {
     struct glint_v4l2_config wish = any_camera;
 
-    fake_camera_reset();
     camera.quantization = V4L2_QUANTIZATION_FULL_RANGE;
     camera.ycbcr_enc = V4L2_YCBCR_ENC_709;
     must_open(NULL);
@@ -222,7 +220,6 @@ TEST(long_names)
     struct glint_v4l2_config wish = any_camera;
     char name[400];
 
-    fake_camera_reset();
     memset(name, 'x', sizeof name);
     memcpy(name, "/dev/", 5);
     name[120] = '\0';
@@ -370,7 +367,6 @@ TEST(data_offset)
 
 TEST(too_small)
 {
-    fake_camera_reset();
     camera.sizeimage = 2 * 64 * 48 - 1;
     must_refuse(NULL, GLINT_E_DEVICE,
                 "64x48 YUYV does not fit the 6143 bytes that the driver says");
@@ -398,7 +394,6 @@ static void deliver_odd(uint32_t sequence, uint32_t bytesused)
 
 TEST(damaged)
 {
-    fake_camera_reset();
     must_open(NULL);
     deliver_odd(0, 0);
     deliver_odd(1, 2 * 64 * 48 - 1);
@@ -418,7 +413,6 @@ TEST(damaged)
  * before it. */
 TEST(damaged_among_whole)
 {
-    fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 9)->flags = V4L2_BUF_FLAG_ERROR;
     fake_camera_deliver(1, 8);
@@ -432,7 +426,6 @@ TEST(damaged_among_whole)
 
 TEST(newest)
 {
-    fake_camera_reset();
     must_open(NULL);
     must_get_nothing();
     for (int i = 0; i < 3; i++)
@@ -469,7 +462,6 @@ TEST(stamps)
 {
     const int64_t now_us = fake_camera_now();
 
-    fake_camera_reset();
     must_open(NULL);
     assert_int_equal(stamp_of(now_us - 30000, false), now_us - 30000);
     assert_int_equal(stamp_of(now_us - 30000, true), now_us - 30000);
@@ -484,7 +476,6 @@ TEST(lent)
 {
     struct glint_source_frame kept;
 
-    fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 50);
     assert_int_equal(next(), GLINT_OK);
@@ -504,7 +495,6 @@ TEST(lent)
  * start; after a restart likewise. A call of next starts it, too. */
 TEST(streams_when_started)
 {
-    fake_camera_reset();
     assert_int_equal(
         glint_v4l2_open(&v4l2, &any_camera, GLINT_V4L2_AUTO, 4, &said),
         GLINT_OK);
@@ -537,7 +527,6 @@ static int dropped(uint32_t sequence)
 
 TEST(sequence)
 {
-    fake_camera_reset();
     must_open(NULL);
     assert_int_equal(dropped(1000), 0); /* A count may begin anywhere. */
     assert_int_equal(dropped(1001), 0);
@@ -566,7 +555,6 @@ TEST(sequence)
 /* Gaps and damage before the frame that is shown must be added up. */
 TEST(gaps_add_up)
 {
-    fake_camera_reset();
     must_open(NULL);
     assert_int_equal(dropped(6), 0); /* a number from before */
     assert_int_equal(dropped(0), 0);
@@ -584,7 +572,6 @@ TEST(gaps_add_up)
  * overflow. */
 TEST(leaps)
 {
-    fake_camera_reset();
     must_open(NULL);
     assert_int_equal(dropped(0), 0);
     for (uint32_t i = 1; i <= 3; i++)
@@ -598,7 +585,6 @@ TEST(jpeg)
 {
     static const char garbage[] = "not a JPEG at all";
 
-    fake_camera_reset();
     if (!glint_mjpeg_available())
         skip();
     camera.mode[0].fourcc = V4L2_PIX_FMT_MJPEG;
@@ -634,7 +620,6 @@ static void check_io(enum glint_v4l2_io wish, enum glint_v4l2_io got)
 
 TEST(memory)
 {
-    fake_camera_reset();
     check_io(GLINT_V4L2_AUTO, GLINT_V4L2_MMAP);
     check_io(GLINT_V4L2_MMAP, GLINT_V4L2_MMAP);
     check_io(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
@@ -652,7 +637,6 @@ TEST(memory)
  * failed request. */
 TEST(no_such_memory)
 {
-    fake_camera_reset();
     assert_int_equal(try_open(NULL, GLINT_V4L2_READ), GLINT_E_DEVICE);
     assert_non_null(
         strstr(said.text, "as --io allows: Operation not supported"));
@@ -665,7 +649,6 @@ TEST(no_such_memory)
 
 TEST(few_buffers)
 {
-    fake_camera_reset();
     camera.max_buffers = 2;
     must_open(NULL);
     assert_int_equal(v4l2.n_buffers, 2);
@@ -682,7 +665,6 @@ TEST(few_buffers)
  * tried after it or something was put right. */
 TEST(names_what_failed)
 {
-    fake_camera_reset();
     fake_camera_refuse(VIDIOC_QUERYBUF, EIO, 1);
     must_refuse(NULL, GLINT_E_DEVICE,
                 FAKE_PATH ": VIDIOC_QUERYBUF: Input/output error");

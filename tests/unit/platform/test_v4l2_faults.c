@@ -11,9 +11,13 @@
 
 /* ---------------------------------------------------------------- requests */
 
-TEST(queueing_fails_once)
+TEST_BEFORE
 {
     fake_camera_reset();
+}
+
+TEST(queueing_fails_once)
+{
     must_open(NULL);
     fake_camera_deliver(0, 1);
     fake_camera_refuse(VIDIOC_QBUF, EIO, 1);
@@ -112,7 +116,6 @@ static void must_get_wide(int width, int code)
  * has set meanwhile. */
 TEST(broken_stream)
 {
-    fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(41, 1);
     must_get(1);
@@ -132,7 +135,6 @@ TEST(broken_stream)
  * change back. */
 TEST(other_format)
 {
-    fake_camera_reset();
     must_open(NULL);
     for (int i = 0; i < 3; i++) {
         camera.mode[0].fourcc = camera.now.fourcc =
@@ -212,7 +214,6 @@ TEST(never_again)
  * stream again. */
 TEST(patience)
 {
-    fake_camera_reset();
     must_open(NULL);
     for (int i = 1; i <= 20; i++) {
         camera.is_broken = true;
@@ -230,7 +231,6 @@ TEST(gone)
     static const unsigned long request[] = {VIDIOC_DQBUF, VIDIOC_QUERYCAP};
     int failed_ms;
 
-    fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 1);
     assert_int_equal(next(), GLINT_OK);
@@ -297,7 +297,6 @@ TEST(all_damaged)
 /* One whole frame in thirty must be enough to continue without a restart. */
 TEST(many_damaged)
 {
-    fake_camera_reset();
     must_open(NULL);
     for (uint32_t i = 0; i < 300; i++) {
         const bool whole = i % 30 == 29;
@@ -318,7 +317,6 @@ TEST(wrong_index)
 {
     struct glint_source_frame kept;
 
-    fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 1);
     camera.says_index = 5;
@@ -347,7 +345,6 @@ TEST(silence)
 {
     int failed_ms;
 
-    fake_camera_reset();
     must_open(NULL);
     fake_camera_pass(2100000);
     must_get_nothing();
@@ -367,7 +364,6 @@ TEST(silence)
 
 TEST(slow_camera)
 {
-    fake_camera_reset();
     camera.mode[0].fps_num = camera.now.fps_num = 1;
     camera.mode[0].fps_den = camera.now.fps_den = 3;
     must_open(NULL);
@@ -385,7 +381,6 @@ TEST(slow_camera)
 
 TEST(source_changes)
 {
-    fake_camera_reset();
     must_open(NULL);
     fake_camera_deliver(0, 1);
     must_get(1);
@@ -497,7 +492,6 @@ TEST(endless_changes)
 {
     int64_t start;
 
-    fake_camera_reset();
     must_open(NULL);
     start = fake_camera_now();
     for (int i = 0; i < 50; i++) {
@@ -531,7 +525,6 @@ static void check_anew(enum glint_v4l2_io io)
 
 TEST(anew_otherwise)
 {
-    fake_camera_reset();
     check_anew(GLINT_V4L2_USERPTR);
     camera.caps |= V4L2_CAP_READWRITE;
     check_anew(GLINT_V4L2_READ);

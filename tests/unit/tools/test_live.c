@@ -131,9 +131,13 @@ static void count(int wait)
     }
 }
 
-TEST(frames)
+TEST_BEFORE
 {
     fake_camera_reset();
+}
+
+TEST(frames)
+{
     script = count;
     assert_ok(live("--count 150 --stop polygon:6,round:0.2"));
     must_leave_nothing();
@@ -198,7 +202,6 @@ TEST(streams_last)
 
 TEST(skip)
 {
-    fake_camera_reset();
     script = NULL;
     assert_ok(live("--count 5 --skip 20"));
     assert_int_equal(n_waits, 25);
@@ -360,7 +363,6 @@ TEST(snapshot_waits)
 
 TEST(unplugged)
 {
-    fake_camera_reset();
     script = unplug;
     assert_int_equal(live("--count 100"), EXIT_DEVICE);
     must_leave_nothing();
@@ -382,7 +384,6 @@ TEST(comes_back)
 
 TEST(other_sizes)
 {
-    fake_camera_reset();
     script = change_size;
     assert_ok(live("--count 150"));
     must_leave_nothing();
@@ -419,7 +420,6 @@ TEST(every_failure)
 /* This test must come last: the stop remains. */
 TEST(stops)
 {
-    fake_camera_reset();
     script = stop_at_30;
     assert_ok(live(""));
     must_leave_nothing();

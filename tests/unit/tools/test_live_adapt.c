@@ -57,11 +57,15 @@ static void run(const double *cost_ms, double seconds)
     }
 }
 
+TEST_BEFORE
+{
+    live_adapt_init(&adapt);
+}
+
 TEST(easy)
 {
     static const double cost[8] = {25, 20, 15, 10, 8, 6, 5, 4};
 
-    live_adapt_init(&adapt);
     run(cost, 600);
     assert_int_equal(adapt.step, 0);
     assert_true(seen.last_change_s < 0); /* no change */
@@ -73,7 +77,6 @@ TEST(overload)
 {
     static const double cost[8] = {80, 70, 45, 26, 20, 15, 10, 5};
 
-    live_adapt_init(&adapt);
     run(cost, 3);
     assert_int_equal(adapt.step, 3);
     assert_true(seen.first_down_s > 0.2 && seen.first_down_s < 0.5);
@@ -89,7 +92,6 @@ TEST(worst)
     static const double cost[8] = {900, 900, 900, 900, 900, 900, 900, 900};
     static const double none[8] = {0, 0, 0, 0, 0, 0, 0, 0};
 
-    live_adapt_init(&adapt);
     run(cost, 600);
     assert_int_equal(adapt.step, LIVE_MAX_STEP);
     assert_int_equal(seen.n_down, LIVE_MAX_STEP);
@@ -103,7 +105,6 @@ TEST(hiccup)
 {
     static const double cost[8] = {20, 15, 10, 8, 6, 5, 4, 3};
 
-    live_adapt_init(&adapt);
     run(cost, 0.2);
     assert_false(live_adapt_note(&adapt, 30, PERIOD_MS, 0));
     run(cost, 10);
@@ -118,7 +119,6 @@ TEST(recovers)
     static const double heavy[8] = {150, 120, 90, 70, 50, 29, 20, 10};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    live_adapt_init(&adapt);
     run(heavy, 4);
     assert_int_equal(adapt.step, 5);
     run(light, 15);
@@ -132,7 +132,6 @@ TEST(does_not_oscillate)
     static const double cost[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     int n_early;
 
-    live_adapt_init(&adapt);
     run(cost, 60);
     n_early = seen.n_up;
     assert_int_equal(adapt.step, 3);
@@ -148,7 +147,6 @@ TEST(forgets)
     static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    live_adapt_init(&adapt);
     run(heavy, 300);
     run(light, 75); /* a minute at most, then as at first */
     assert_int_equal(adapt.step, 0);
