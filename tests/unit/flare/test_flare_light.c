@@ -3,6 +3,7 @@
  * The integer rasteriser on grids made by hand: where light falls and how much
  * of it, also of ghosts that are clipped or folded.
  */
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -157,6 +158,94 @@ TEST(steps)
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         assert_true(20 * llabs((long long)stepped[i] - pixels[i]) <=
                     pixels[i] + 20);
+}
+
+/* --------------------------------------------------------------------- rays */
+
+/* Returns whether the ray between the corners of a cell with WEIGHT passes
+ * STOP and the barrel. */
+static bool passes(const struct glint_stop *stop, const struct glint_vertex *v,
+                   const double *weight)
+{
+    double x = 0, y = 0, barrel = 0;
+
+    for (int k = 0; k < 4; k++) {
+        x += weight[k] * v[k].stop_x_q16;
+        y += weight[k] * v[k].stop_y_q16;
+        barrel += weight[k] * v[k].barrel_q16[0];
+    }
+    for (int k = 0; k < stop->n_blades; k++)
+        if (x * stop->normal_q30[k][0] + y * stop->normal_q30[k][1] >
+            0x1p30 * stop->apothem_q16)
+            return false;
+    return barrel <= 65536;
+}
+
+/* Draws the red ghost G into WANT as RAYS rays in each cell, which are
+ * interpolated between its corners and light the pixel that they hit. */
+static void draw_rays(const struct ghost *g)
+{
+    enum { RAYS = 4096 };
+    const struct glint_flare_config c = base_config();
+    const double flux_q20 = ldexp(1.5e9 / RAYS / 65536, g->flux_exponent - 11);
+    static double sum[HEIGHT * WIDTH];
+
+    memset(sum, 0, sizeof sum);
+    for (int cell = 0; cell < g->n * g->n; cell++) {
+        const int i = cell % g->n, j = cell / g->n;
+        const struct glint_vertex v[4] = {
+            ghost_vertex(g, i, j), ghost_vertex(g, i + 1, j),
+            ghost_vertex(g, i, j + 1), ghost_vertex(g, i + 1, j + 1)};
+
+        for (int ray = 0; ray < RAYS; ray++) {
+            const double a = fmod(ray * 0.6180339887, 1); /* golden ratio */
+            const double b = (ray + 0.5) / RAYS;
+            const double weight[4] = {(1 - a) * (1 - b), a * (1 - b),
+                                      (1 - a) * b, a * b};
+            double x = 0, y = 0, energy = 0;
+
+            for (int k = 0; k < 4; k++) {
+                x += weight[k] * v[k].x_q8 / 256;
+                y += weight[k] * v[k].y_q8 / 256;
+                energy += weight[k] * v[k].energy_q16;
+            }
+            if (x >= 0 && x < WIDTH && y >= 0 && y < HEIGHT &&
+                passes(&c.stop, v, weight))
+                sum[(int)y * WIDTH + (int)x] += flux_q20 * energy;
+        }
+    }
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        want[3 * i] = (int32_t)sum[i];
+}
+
+/* The picture of G must be that of its rays but for OFF of the light, and have
+ * their light but for 0.2 %. */
+static void check_rays(const struct ghost *g, double off)
+{
+    double sum = 0, all;
+
+    draw_list(base_config(), g, 1, pixels);
+    draw_rays(g);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i += 3)
+        sum += abs(pixels[i] - want[i]) / 1048576.0;
+    all = total(want, 0);
+    assert_true(sum < off * all);
+    assert_true(fabs(total(pixels, 0) - all) < 0.002 * all);
+}
+
+/* Ghosts that are bent, folded, and cut by stop and barrel, of cells of 4.7 and
+ * of two pixels. */
+TEST(agrees_with_rays)
+{
+    const struct ghost large = {32, 100, 75, 60, 100, 1, 300, 6, {16384, 0, 0}};
+
+    check_rays(&large, 0.008);
+    for (int k = 0; k < 16; k++) {
+        const struct ghost small = {16, 100, 75, 9 + k % 4,    60 * k,
+                                    1,  300, -2, {16384, 0, 0}};
+
+        check_rays(&small, 0.02);
+    }
 }
 
 /* ------------------------------------------------------- polygons by hand */
