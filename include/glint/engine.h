@@ -350,15 +350,6 @@ enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades,
  * or its model's zoom changed; the exposure stays. */
 void glint_engine_update_stop(struct glint_engine *engine);
 
-/* Sets the dirt on the front element of the following pictures: dust,
- * scratches and smudges, or a mask, which is copied. It scatters light as
- * haze does. GLINT_E_ARGUMENT with ERROR, or GLINT_E_MEMORY: everything
- * stays as it is. */
-struct glint_front;
-enum glint_status glint_engine_front(struct glint_engine *engine,
-                                     const struct glint_front *front,
-                                     struct glint_error *error);
-
 /* --------------------------------------------------------------------- find */
 
 /* Finds the lamps of IMAGE, in any format but GLINT_LINEAR_Q20, which comes

@@ -135,10 +135,6 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
                                    struct glint_dirt **dirt,
                                    struct glint_error *error);
 
-/* Returns log2 of the cells a side of the finest table of DIRT, which is not
- * NULL; 0: it has none. */
-int glint_dirt_log2(const struct glint_dirt *dirt);
-
 /* Frees DIRT, which may be NULL, after all setups and flares that refer to it.
  */
 void glint_dirt_free(struct glint_dirt *dirt);

@@ -290,16 +290,11 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
 
 void glint_engine_destroy(struct glint_engine *engine)
 {
-    struct glint_engine_optics *o;
-
     if (!engine)
         return;
-    o = &engine->optics;
     glint_lamp_detector_close(&engine->find.detector);
     glint_frame_finish(&engine->paint.frame);
-    glint_dirt_free(o->dirt);
-    if (o->free_front)
-        o->free_front(o->own_front);
+    glint_dirt_free(engine->optics.dirt);
     free(engine->paint.lamp);
     free(engine->expose.before);
     free(engine);

@@ -32,11 +32,7 @@ struct glint_engine_optics {
     struct glint_setup own;
     struct glint_engine_shape shape; /* what OWN was made for */
     struct glint_dirt *dirt;         /* that of OWN, or NULL */
-    /* Dirt on the front element: OWN_FRONT, or the caller's; or NULL. */
-    const struct glint_front_dirt *front;
-    struct glint_front_dirt *own_front;
-    /* Frees OWN_FRONT; a program that sets none does not link it. */
-    void (*free_front)(struct glint_front_dirt *dirt);
+    const struct glint_front_dirt *front; /* the caller's, or NULL */
 };
 
 struct glint_engine_finding {

@@ -28,11 +28,6 @@ void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop)
     stop->off_q30 = (int32_t)lrint(sides.off * 0x1p30);
 }
 
-int glint_dirt_log2(const struct glint_dirt *dirt)
-{
-    return dirt->shade.log2;
-}
-
 void glint_dirt_free(struct glint_dirt *dirt)
 {
     if (!dirt)
