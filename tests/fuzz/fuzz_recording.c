@@ -46,7 +46,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct text text = {data + 1, size ? size - 1 : 0,
                         size ? 1 + (size_t)(data[0] >> 2) : 1};
-    struct glint_motion_options options;
     struct glint_motion_report report;
     struct glint_motion_baker *baker;
     struct glint_error error = {""};
@@ -56,9 +55,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (!size)
         return 0;
-    glint_motion_defaults(&options);
-    options.fit = (enum glint_motion_fit)(data[0] & 3);
-    baker = glint_motion_baker_open(&options);
+    baker = glint_motion_baker_open();
     require(baker != NULL);
     status = glint_recording_read(baker, "x", read_text, &text, &error);
     if (status == GLINT_OK)

@@ -11,21 +11,23 @@
 #include <string.h>
 #include <time.h>
 
-#include "bake/motion/localise.h"
+#include "reference/motion/four.h"
 #include "support/tracks/tracks.h"
 
 enum { CHUNK = 1000, BINS = 100, MOST_METHODS = 6, SEED = 163635 };
 
+/* ALL: as glint bake, with or without the average; else by four foods. */
 struct method {
     const char *name;
-    enum glint_motion_fit fit;
-    bool average;
-    enum glint_arithmetic arithmetic;
+    bool all, average;
+    enum four_fit fit;
+    enum four_arithmetic arithmetic;
 };
 
 /* What became of a method on a track; errors are distances of places. */
 struct result {
-    struct glint_localiser localiser;
+    struct glint_localiser all;
+    struct four four;
     const char *wrong;
     double square[BINS], worst, last_worst, seconds, residual[BINS];
     int count[BINS];
@@ -34,19 +36,19 @@ struct result {
 };
 
 static const struct method exact_input[] = {
-    {"first4, float32", GLINT_MOTION_FIRST4, false, GLINT_FLOAT32},
-    {"best4, float32", GLINT_MOTION_BEST4, false, GLINT_FLOAT32},
-    {"chain, float32", GLINT_MOTION_CHAIN, false, GLINT_FLOAT32},
-    {"first4, double", GLINT_MOTION_FIRST4, false, GLINT_DOUBLE},
-    {"chain, double", GLINT_MOTION_CHAIN, false, GLINT_DOUBLE},
-    {"all, double", GLINT_MOTION_ALL, false, GLINT_DOUBLE}};
+    {"first4, float32", false, false, FOUR_FIRST, FOUR_FLOAT32},
+    {"best4, float32", false, false, FOUR_BEST, FOUR_FLOAT32},
+    {"chain, float32", false, false, FOUR_CHAIN, FOUR_FLOAT32},
+    {"first4, double", false, false, FOUR_FIRST, FOUR_DOUBLE},
+    {"chain, double", false, false, FOUR_CHAIN, FOUR_DOUBLE},
+    {"all, double", .all = true}};
 
 static const struct method rounded_input[] = {
-    {"first4, float32", GLINT_MOTION_FIRST4, false, GLINT_FLOAT32},
-    {"first4, double", GLINT_MOTION_FIRST4, false, GLINT_DOUBLE},
-    {"best4, double", GLINT_MOTION_BEST4, false, GLINT_DOUBLE},
-    {"all", GLINT_MOTION_ALL, false, GLINT_DOUBLE},
-    {"all, life mean", GLINT_MOTION_ALL, true, GLINT_DOUBLE}};
+    {"first4, float32", false, false, FOUR_FIRST, FOUR_FLOAT32},
+    {"first4, double", false, false, FOUR_FIRST, FOUR_DOUBLE},
+    {"best4, double", false, false, FOUR_BEST, FOUR_DOUBLE},
+    {"all", .all = true},
+    {"all, life mean", .all = true, .average = true}};
 
 static const char *const motions[TRACK_MOTIONS] = {
     "straight with turns", "spiral along x", "straight, turned at random",
@@ -76,6 +78,16 @@ static void note(struct result *r, const struct glint_located *located,
     r->sums[4] += x * y;
 }
 
+static const char *localise(const struct method *method, struct result *r,
+                            int n, const struct track_frame *f,
+                            struct glint_located *located)
+{
+    const double(*const seen)[3] = (const double(*)[3])f->seen;
+
+    return method->all ? glint_localise(&r->all, n, seen, f->is_new, located)
+                       : four_localise(&r->four, n, seen, f->is_new, located);
+}
+
 static void run(const struct track_options *options,
                 const struct method *method, int n, struct result *result)
 {
@@ -84,8 +96,8 @@ static void run(const struct track_options *options,
     track_begin(&track, options);
     for (int i = 0; i < n; i++) {
         memset(&result[i], 0, sizeof *result);
-        glint_localiser_init(&result[i].localiser, method[i].fit,
-                             method[i].average, method[i].arithmetic);
+        glint_localiser_init(&result[i].all, method[i].average);
+        four_init(&result[i].four, method[i].fit, method[i].arithmetic);
     }
     for (int first = 0; first < options->n_frames; first += CHUNK) {
         for (int k = 0; k < CHUNK; k++)
@@ -96,9 +108,8 @@ static void run(const struct track_options *options,
             const clock_t start = clock();
 
             for (int k = 0; k < CHUNK && !r->wrong; k++)
-                r->wrong = glint_localise(&r->localiser, options->n_foods,
-                                          (const double(*)[3])chunk[k].seen,
-                                          chunk[k].is_new, &located[k]);
+                r->wrong = localise(&method[i], r, options->n_foods, &chunk[k],
+                                    &located[k]);
             r->seconds += (double)(clock() - start) / CLOCKS_PER_SEC;
             for (int k = 0; k < CHUNK && !r->wrong; k++) {
                 const int frame = first + k;

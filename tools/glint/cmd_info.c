@@ -205,12 +205,9 @@ static int info_of_environment(const struct tool *tool, const char *path)
 static int info_of_motion(const struct tool *tool, const char *path,
                           const char *poses)
 {
-    struct glint_motion_options options;
     struct motion_file file;
-    int code;
+    int code = motion_file_open(tool, path, &file);
 
-    glint_motion_defaults(&options);
-    code = motion_file_open(tool, path, &options, &file);
     if (code != EXIT_OK)
         return code;
     if (poses)

@@ -45,14 +45,6 @@ enum {
     GLINT_MOTION_SPAN = 1 << 30 /* steps: every coordinate is below */
 };
 
-/* How poses were found. */
-enum glint_motion_fit {
-    GLINT_MOTION_ALL,    /* the rigid motion nearest to all known foods */
-    GLINT_MOTION_BEST4,  /* weights in the four that span the most */
-    GLINT_MOTION_FIRST4, /* weights in the first four, as published */
-    GLINT_MOTION_CHAIN   /* product of the motions from frame to frame */
-};
-
 /* 20 bytes. */
 struct glint_motion_pose {
     int32_t at[3];       /* steps */
@@ -85,8 +77,8 @@ struct glint_motion_header {
     uint32_t bytes;   /* bytes of the whole file */
     uint32_t crc32;   /* checksum of all bytes after this word: polynomial
                          0xedb88320, reflected, begun and ended with all ones */
-    uint32_t variant; /* enum glint_motion_fit */
-    uint32_t key[2];  /* key of the recording and the options, low word first */
+    uint32_t variant; /* 0 */
+    uint32_t key[2];  /* key of the recording, low word first */
     char name[64];    /* name of the motion, terminated */
     int32_t unit_log2; /* -30 .. 60: steps in a unit of the recording */
     uint32_t n_frames; /* 1 .. GLINT_MOTION_MAX_FRAMES */

@@ -3,7 +3,7 @@
  * glint/scene/motion_bake.h - reconstructs the motion of a body from its
  * recording, in double precision.
  *
- *     baker = glint_motion_baker_open(&options);
+ *     baker = glint_motion_baker_open();
  *     glint_recording_read(baker, "run.json", read, ctx, &error);
  *     glint_motion_baker_finish(baker, "run", &data, &bytes, &report, &error);
  *     glint_motion_baker_close(baker);
@@ -13,7 +13,7 @@
  *   out  where the body is and how it is turned in each, in the axes of the
  *        first; and where the foods are: a file of glint/scene/motion.h
  *
- * The same recording and options give the same bytes. Frames are taken one by
+ * The same recording gives the same bytes. Frames are taken one by
  * one: memory grows by some 60 bytes a frame. */
 #ifndef GLINT_SCENE_MOTION_BAKE_H
 #define GLINT_SCENE_MOTION_BAKE_H
@@ -28,11 +28,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-struct glint_motion_options {
-    enum glint_motion_fit fit;
-    bool average; /* places of foods over their life, of GLINT_MOTION_ALL */
-};
 
 /* What does not change. */
 struct glint_motion_body {
@@ -74,12 +69,8 @@ struct glint_motion_report {
 
 struct glint_motion_baker;
 
-/* Sets OPTIONS to GLINT_MOTION_ALL with the average. */
-void glint_motion_defaults(struct glint_motion_options *options);
-
 /* Returns NULL if there is no memory. */
-struct glint_motion_baker *
-glint_motion_baker_open(const struct glint_motion_options *options);
+struct glint_motion_baker *glint_motion_baker_open(void);
 void glint_motion_baker_close(struct glint_motion_baker *baker);
 
 /* Take the body, before finish, and the next frame. GLINT_E_LENS: ERROR states

@@ -23,7 +23,6 @@ struct recorded_food {
 };
 
 struct glint_motion_baker {
-    struct glint_motion_options options;
     struct glint_motion_body body;
     bool has_body;
     struct glint_localiser localiser;
@@ -226,7 +225,7 @@ static void set_header(struct writer *w, const char *name, uint64_t key)
     const double half = b->body.angle_deg * GLINT_PI / 360;
     double low[3], high[3];
 
-    glint_draft_begin(h, &kind, (uint32_t)b->options.fit, key, name, "motion");
+    glint_draft_begin(h, &kind, 0, key, name, "motion");
     box_of(b, low, high);
     set_scale(w, low, high);
     h->n_frames = b->n_frames;
@@ -275,23 +274,15 @@ static bool write_motion(const struct glint_motion_baker *baker,
 #define BAD_RESIDUAL 1e-3
 #define REACH        1e6
 
-void glint_motion_defaults(struct glint_motion_options *options)
-{
-    *options = (struct glint_motion_options){GLINT_MOTION_ALL, true};
-}
-
-struct glint_motion_baker *
-glint_motion_baker_open(const struct glint_motion_options *options)
+struct glint_motion_baker *glint_motion_baker_open(void)
 {
     struct glint_motion_baker *b = calloc(1, sizeof *b);
 
     if (!b)
         return NULL;
-    b->options = *options;
     b->sensed = (struct glint_rigid){
         {0, 0, 0}, {1, 0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    glint_localiser_init(&b->localiser, options->fit, options->average,
-                         GLINT_DOUBLE);
+    glint_localiser_init(&b->localiser, true);
     return b;
 }
 

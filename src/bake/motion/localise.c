@@ -6,19 +6,9 @@
 
 enum { MOST = GLINT_MOTION_MAX_FOODS };
 
-double glint_rounded(enum glint_arithmetic arithmetic, double x)
+void glint_localiser_init(struct glint_localiser *localiser, bool average)
 {
-    return arithmetic == GLINT_FLOAT32 ? (double)(float)x : x;
-}
-
-void glint_localiser_init(struct glint_localiser *localiser,
-                          enum glint_motion_fit fit, bool average,
-                          enum glint_arithmetic arithmetic)
-{
-    *localiser = (struct glint_localiser){
-        .fit = fit, .average = average, .arithmetic = arithmetic};
-    for (int k = 0; k < 3; k++)
-        localiser->chain[k][k] = 1;
+    *localiser = (struct glint_localiser){.average = average};
 }
 
 /* ------------------------------------------------------------------- rigid */
@@ -65,218 +55,11 @@ static void learn(struct glint_localiser *l, int n, const double (*seen)[3],
     }
 }
 
-/* ------------------------------------------------------------- as published */
-
-/* [Bodonyi26]: a place has weights in four points that are not plane, which sum
- * to 1 and are the same wherever these move. */
-struct base {
-    enum glint_arithmetic arithmetic;
-    double edge[3][3], normal[3][3], det; /* normal i is of the other edges */
-};
-
-static double keep(const struct base *b, double x)
-{
-    return glint_rounded(b->arithmetic, x);
-}
-
-static double dot(const struct base *b, const double x[3], const double y[3])
-{
-    return keep(b, keep(b, keep(b, x[0] * y[0]) + keep(b, x[1] * y[1])) +
-                       keep(b, x[2] * y[2]));
-}
-
-static void set_base(struct base *b, const double (*const from[4])[3])
-{
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            b->edge[i][k] = keep(b, (*from[i])[k] - (*from[3])[k]);
-    for (int i = 0; i < 3; i++) {
-        const double *x = b->edge[(i + 1) % 3], *y = b->edge[(i + 2) % 3];
-
-        for (int k = 0; k < 3; k++) {
-            const int l = (k + 1) % 3, m = (k + 2) % 3;
-
-            b->normal[i][k] =
-                keep(b, keep(b, x[l] * y[m]) - keep(b, x[m] * y[l]));
-        }
-    }
-    b->det = dot(b, b->edge[0], b->normal[0]);
-}
-
-/* Sets PLACE to where POINT goes, from the base of FROM to TO. */
-static void carry(const struct base *b, const double (*const from[4])[3],
-                  const double (*const to[4])[3], const double point[3],
-                  double place[3])
-{
-    double off[3], weight[4], sum = 0;
-
-    for (int k = 0; k < 3; k++)
-        off[k] = keep(b, point[k] - (*from[3])[k]);
-    for (int i = 0; i < 3; i++) {
-        weight[i] = keep(b, dot(b, off, b->normal[i]) / b->det);
-        sum = keep(b, sum + weight[i]);
-    }
-    weight[3] = keep(b, 1 - sum);
-    for (int k = 0; k < 3; k++) {
-        place[k] = 0;
-        for (int i = 0; i < 4; i++)
-            place[k] = keep(b, place[k] + keep(b, weight[i] * (*to[i])[k]));
-    }
-}
-
-/* Returns the determinant of FROM[4] as edges from the last, over the product
- * of their lengths, in double precision: 0 .. 1. */
-static double four_spans(const double (*const from[4])[3])
-{
-    struct base b = {.arithmetic = GLINT_DOUBLE};
-    double bound = 1;
-
-    set_base(&b, from);
-    for (int i = 0; i < 3; i++)
-        bound *= sqrt(dot(&b, b.edge[i], b.edge[i]));
-    return bound > 0 ? fabs(b.det) / bound : 0;
-}
-
-/* Sets MAP to how points move if FROM[4] move to TO[4]: the columns of a 3 x 4
- * matrix, where the axes go and where the origin. Returns false if
- * four_spans() is below 2^-20. */
-static bool four_map(enum glint_arithmetic arithmetic,
-                     const double (*const from[4])[3],
-                     const double (*const to[4])[3], double map[4][3])
-{
-    static const double point[4][3] = {
-        {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
-    struct base b = {.arithmetic = arithmetic};
-
-    if (!(four_spans(from) >= GLINT_RIGID_LEAST))
-        return false;
-    set_base(&b, from);
-    if (b.det == 0)
-        return false;
-    for (int i = 0; i < 4; i++)
-        carry(&b, from, to, point[i], map[i]);
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            map[i][k] = keep(&b, map[i][k] - map[3][k]);
-    return true;
-}
-
-/* Sets FOUR to the known foods that FIT uses; returns false if there are fewer.
- * */
-static bool choose(const struct glint_localiser *l, int n,
-                   const double (*seen)[3], const bool *is_new, int four[4])
-{
-    int known[MOST], m = 0;
-    double best = -1;
-
-    for (int i = 0; i < n; i++)
-        if (!is_new[i])
-            known[m++] = i;
-    for (int i = 0; i < 4 && m >= 4; i++)
-        four[i] = known[i];
-    if (m < 4 || l->fit == GLINT_MOTION_FIRST4 || l->fit == GLINT_MOTION_CHAIN)
-        return m >= 4;
-    for (int a = 0; a < m; a++)
-        for (int b = a + 1; b < m; b++)
-            for (int c = b + 1; c < m; c++)
-                for (int d = c + 1; d < m; d++) {
-                    const int pick[4] = {known[a], known[b], known[c],
-                                         known[d]};
-                    const double(*const from[4])[3] = {
-                        &seen[pick[0]], &seen[pick[1]], &seen[pick[2]],
-                        &seen[pick[3]]};
-                    const double spans = four_spans(from);
-
-                    if (spans > best) {
-                        best = spans;
-                        memcpy(four, pick, sizeof pick);
-                    }
-                }
-    return true;
-}
-
-/* Multiplies the chain by MAP, from this frame to the last. */
-static void lengthen(struct glint_localiser *l, double map[4][3])
-{
-    double next[4][3];
-
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 3; k++) {
-            double sum = i == 3 ? l->chain[3][k] : 0;
-
-            for (int j = 0; j < 3; j++)
-                sum = glint_rounded(
-                    l->arithmetic,
-                    sum + glint_rounded(l->arithmetic,
-                                        l->chain[j][k] * map[i][j]));
-            next[i][k] = sum;
-        }
-    memcpy(l->chain, next, sizeof next);
-    memcpy(map, next, sizeof next);
-}
-
-/* Sets MAP to where points of the body go. */
-static const char *map_four(struct glint_localiser *l, int n,
-                            const double (*seen)[3], const bool *is_new,
-                            double map[4][3])
-{
-    const double(*const places)[3] = l->fit == GLINT_MOTION_CHAIN
-                                         ? (const double(*)[3])l->last
-                                         : (const double(*)[3])l->place;
-    const double(*from[4])[3], (*to[4])[3];
-    int four[4];
-
-    if (!choose(l, n, seen, is_new, four))
-        return "fewer than four foods are known, which this fit takes";
-    for (int i = 0; i < 4; i++) {
-        from[i] = &seen[four[i]];
-        to[i] = &places[four[i]];
-    }
-    if (!four_map(l->arithmetic, from, to, map))
-        return "the four foods lie in a plane, or out of range";
-    if (l->fit == GLINT_MOTION_CHAIN)
-        lengthen(l, map);
-    return NULL;
-}
-
-/* Sets TO to where MAP takes POINT. */
-static void take(const struct glint_localiser *l, double map[4][3],
-                 const double point[3], double to[3])
-{
-    for (int k = 0; k < 3; k++) {
-        to[k] = map[3][k];
-        for (int i = 0; i < 3; i++)
-            to[k] = glint_rounded(
-                l->arithmetic,
-                to[k] + glint_rounded(l->arithmetic, map[i][k] * point[i]));
-    }
-}
-
-static const char *locate_four(struct glint_localiser *l, int n,
-                               const double (*seen)[3], const bool *is_new,
-                               struct glint_located *located)
-{
-    double map[4][3], row[3][3];
-    const char *const wrong = map_four(l, n, seen, is_new, map);
-
-    if (wrong)
-        return wrong;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            row[k][i] = map[i][k];
-    glint_rigid_nearest((const double(*)[3])row, &located->pose);
-    memcpy(located->pose.at, map[3], sizeof located->pose.at);
-    for (int i = 0; i < n; i++)
-        if (is_new[i])
-            take(l, map, seen[i], l->place[i]);
-    return NULL;
-}
-
 /* -------------------------------------------------------------------- frame */
 
-static const char *locate_all(struct glint_localiser *l, int n,
-                              const double (*seen)[3], const bool *is_new,
-                              struct glint_located *located)
+static const char *locate(struct glint_localiser *l, int n,
+                          const double (*seen)[3], const bool *is_new,
+                          struct glint_located *located)
 {
     if (!fit_all(l, n, seen, is_new, -1, &located->pose))
         return located->n_known < 3 ? "fewer than three foods are known"
@@ -299,8 +82,7 @@ static void begin(struct glint_localiser *l, int n, const double (*seen)[3],
     located->n_known = n;
     for (int i = 0; i < n; i++) {
         l->age[i] = 1;
-        for (int k = 0; k < 3; k++)
-            l->place[i][k] = glint_rounded(l->arithmetic, seen[i][k]);
+        memcpy(l->place[i], seen[i], sizeof *l->place);
     }
     l->has_begun = true;
 }
@@ -327,27 +109,20 @@ const char *glint_localise(struct glint_localiser *localiser, int n,
                            struct glint_located *located)
 {
     struct glint_localiser *l = localiser;
-    double before[MOST][3], rounded[MOST][3] = {{0}};
-    const char *wrong = NULL;
+    double before[MOST][3];
+    const char *wrong;
 
     located->n_known = 0;
     located->residual = 0;
-    memcpy(before, l->place, sizeof before);
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < 3; k++)
-            rounded[i][k] = glint_rounded(l->arithmetic, seen[i][k]);
     if (!l->has_begun) {
         begin(l, n, seen, located);
-    } else {
-        for (int i = 0; i < n; i++)
-            located->n_known += !is_new[i];
-        wrong = l->fit == GLINT_MOTION_ALL
-                    ? locate_all(l, n, seen, is_new, located)
-                    : locate_four(l, n, (const double(*)[3])rounded, is_new,
-                                  located);
-        if (!wrong)
-            judge(n, (const double(*)[3])before, seen, is_new, located);
+        return NULL;
     }
-    memcpy(l->last, rounded, sizeof l->last);
+    memcpy(before, l->place, sizeof before);
+    for (int i = 0; i < n; i++)
+        located->n_known += !is_new[i];
+    wrong = locate(l, n, seen, is_new, located);
+    if (!wrong)
+        judge(n, (const double(*)[3])before, seen, is_new, located);
     return wrong;
 }

@@ -3,7 +3,7 @@
  * Reconstructs the pose of a body, frame by frame, from the positions of static
  * foods in its axes.
  *
- *     glint_localiser_init(&localiser, fit, average, GLINT_DOUBLE);
+ *     glint_localiser_init(&localiser, true);
  *     glint_localise(&localiser, n, seen, is_new, &located);        each frame
  *
  * Frame 0 is at the origin and not turned. A pose is found from the foods whose
@@ -17,25 +17,11 @@
 #include "bake/motion/rigid.h"
 #include "glint/scene/motion.h"
 
-/* Of the published ways. float32 rounds each result of double, which gives the
- * bits of float: double has more than twice its digits. */
-enum glint_arithmetic { GLINT_DOUBLE, GLINT_FLOAT32 };
-
-/* Returns X as ARITHMETIC has it. */
-double glint_rounded(enum glint_arithmetic arithmetic, double x);
-
 struct glint_localiser {
-    enum glint_motion_fit fit;
-    bool average; /* over a food's life, of GLINT_MOTION_ALL */
-    enum glint_arithmetic arithmetic; /* of fours and chains */
-
+    bool average; /* over a food's life */
     double place[GLINT_MOTION_MAX_FOODS][3];
     double age[GLINT_MOTION_MAX_FOODS]; /* frames that its place is a mean of */
-
-    /* Private. */
-    bool has_begun;
-    double last[GLINT_MOTION_MAX_FOODS][3]; /* seen one frame ago */
-    double chain[4][3];                     /* of the frames so far, columns */
+    bool has_begun;                     /* private */
 };
 
 struct glint_located {
@@ -44,9 +30,7 @@ struct glint_located {
     double residual; /* the most by which one of them was seen elsewhere */
 };
 
-void glint_localiser_init(struct glint_localiser *localiser,
-                          enum glint_motion_fit fit, bool average,
-                          enum glint_arithmetic arithmetic);
+void glint_localiser_init(struct glint_localiser *localiser, bool average);
 
 /* Takes the N foods that are SEEN in the next frame, in the body's axes; those
  * that are NEW were not seen before. Returns NULL, or what is wrong, in static

@@ -89,8 +89,8 @@ static uint32_t n_index(const struct glint_motion_header *h)
 
 static const char *check_counts(const struct glint_motion_header *h)
 {
-    if (h->variant > GLINT_MOTION_CHAIN)
-        return "the motion's fit is unknown";
+    if (h->variant != 0)
+        return "the motion is of an unknown kind";
     if (h->n_frames < 1 || h->n_frames > GLINT_MOTION_MAX_FRAMES ||
         h->n_foods > GLINT_MOTION_MAX_FOODS ||
         h->n_sensors > GLINT_MOTION_MAX_SENSORS || h->n_events < h->n_foods ||

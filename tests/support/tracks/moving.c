@@ -61,14 +61,12 @@ static enum glint_status bake_motion(void *ctx, const char *name,
                                      struct glint_error *error)
 {
     struct glint_motion_body b = moving_body;
-    struct glint_motion_options options;
     struct glint_motion_report report;
     struct glint_motion_baker *baker;
 
     (void)ctx;
     (void)name;
-    glint_motion_defaults(&options);
-    baker = glint_motion_baker_open(&options);
+    baker = glint_motion_baker_open();
     assert_non_null(baker);
     b.angle_deg = recorded.angle_deg;
     assert_ok(glint_motion_baker_body(baker, &b, error));

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bake/motion/localise.h"
+#include "reference/motion/four.h"
 #include "support/rng.h"
 #include "support/test.h"
 #include "support/tracks/tracks.h"
@@ -21,26 +21,26 @@ struct errors {
     int n;              /* frames until it could not continue */
 };
 
-/* Localises a track of FRAMES frames. */
+/* Localises a track of FRAMES frames by FOUR or else by ALL. */
 static struct errors errors_of(const struct track_options *options,
-                               enum glint_motion_fit fit, bool average,
-                               enum glint_arithmetic arithmetic)
+                               struct glint_localiser *all, struct four *four)
 {
     struct errors e = {.n = 0};
-    struct glint_localiser l;
     struct track track;
     double s[5] = {0};
 
-    glint_localiser_init(&l, fit, average, arithmetic);
     track_begin(&track, options);
     for (int i = 0; i < options->n_frames; i++) {
         struct glint_located located;
         struct track_frame f;
+        const double(*const seen)[3] = (const double(*)[3])f.seen;
         double square = 0;
 
         track_next(&track, &f);
-        if (glint_localise(&l, options->n_foods, (const double(*)[3])f.seen,
-                           f.is_new, &located))
+        if (four ? four_localise(four, options->n_foods, seen, f.is_new,
+                                 &located)
+                 : glint_localise(all, options->n_foods, seen, f.is_new,
+                                  &located))
             break;
         for (int k = 0; k < 3; k++)
             square += (located.pose.at[k] - f.pose.at[k]) *
@@ -65,6 +65,25 @@ static struct errors errors_of(const struct track_options *options,
     return e;
 }
 
+static struct errors errors_of_four(const struct track_options *options,
+                                    enum four_fit fit,
+                                    enum four_arithmetic arithmetic)
+{
+    struct four four;
+
+    four_init(&four, fit, arithmetic);
+    return errors_of(options, NULL, &four);
+}
+
+static struct errors errors_of_all(const struct track_options *options,
+                                   bool average)
+{
+    struct glint_localiser all;
+
+    glint_localiser_init(&all, average);
+    return errors_of(options, &all, NULL);
+}
+
 static struct track_options track_of(int motion, int reset_every, int digits)
 {
     return (struct track_options){
@@ -77,10 +96,8 @@ TEST(row_d1_four_foods_do_not_drift)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
         const struct track_options o = track_of(m, 0, 0);
-        const struct errors f =
-            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_FLOAT32);
-        const struct errors d =
-            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_DOUBLE);
+        const struct errors f = errors_of_four(&o, FOUR_FIRST, FOUR_FLOAT32);
+        const struct errors d = errors_of_four(&o, FOUR_FIRST, FOUR_DOUBLE);
 
         print_message("  motion %d: float32 %.1e, double %.1e\n", m, f.last,
                       d.last);
@@ -96,10 +113,8 @@ TEST(row_d2_the_chain_drifts)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
         const struct track_options o = track_of(m, 0, 0);
-        const struct errors c =
-            errors_of(&o, GLINT_MOTION_CHAIN, false, GLINT_FLOAT32);
-        const struct errors f =
-            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_FLOAT32);
+        const struct errors c = errors_of_four(&o, FOUR_CHAIN, FOUR_FLOAT32);
+        const struct errors f = errors_of_four(&o, FOUR_FIRST, FOUR_FLOAT32);
 
         print_message("  motion %d: %.1e, then %.1e\n", m, c.first, c.last);
         assert_int_equal(c.n, FRAMES);
@@ -115,14 +130,10 @@ TEST(row_d5_resets)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
         const struct track_options o = track_of(m, 200, 6);
-        const struct errors life =
-            errors_of(&o, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
-        const struct errors all =
-            errors_of(&o, GLINT_MOTION_ALL, false, GLINT_DOUBLE);
-        const struct errors four =
-            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_DOUBLE);
-        const struct errors best =
-            errors_of(&o, GLINT_MOTION_BEST4, false, GLINT_DOUBLE);
+        const struct errors life = errors_of_all(&o, true);
+        const struct errors all = errors_of_all(&o, false);
+        const struct errors four = errors_of_four(&o, FOUR_FIRST, FOUR_DOUBLE);
+        const struct errors best = errors_of_four(&o, FOUR_BEST, FOUR_DOUBLE);
 
         print_message("  motion %d: life mean %.1e, all %.1e, first4 %.1e, "
                       "best4 %.1e\n",
@@ -139,8 +150,7 @@ TEST(row_d6_distance_of_foods)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
         const struct track_options o = track_of(m, 0, 0);
-        const struct errors e =
-            errors_of(&o, GLINT_MOTION_FIRST4, false, GLINT_FLOAT32);
+        const struct errors e = errors_of_four(&o, FOUR_FIRST, FOUR_FLOAT32);
 
         print_message("  motion %d: %.2f\n", m, e.correlation);
         assert_true(e.correlation > .1 && e.correlation < .7);
@@ -152,13 +162,14 @@ TEST(two_may_vanish_at_once)
 {
     struct track_options o = track_of(0, 0, 0);
     struct glint_localiser l;
+    struct four four;
     struct glint_located located;
     struct track track;
     struct track_frame f;
     const bool two[5] = {false, true, false, true, false};
     const bool three[5] = {true, true, false, true, false};
 
-    glint_localiser_init(&l, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
+    glint_localiser_init(&l, true);
     track_begin(&track, &o);
     for (int i = 0; i < 100; i++) {
         track_next(&track, &f);
@@ -170,12 +181,12 @@ TEST(two_may_vanish_at_once)
     assert_non_null(strstr(
         glint_localise(&l, 5, (const double(*)[3])f.seen, three, &located),
         "three foods"));
-    glint_localiser_init(&l, GLINT_MOTION_FIRST4, true, GLINT_DOUBLE);
-    assert_null(
-        glint_localise(&l, 5, (const double(*)[3])f.seen, f.is_new, &located));
-    assert_non_null(
-        strstr(glint_localise(&l, 5, (const double(*)[3])f.seen, two, &located),
-               "four foods"));
+    four_init(&four, FOUR_FIRST, FOUR_DOUBLE);
+    assert_null(four_localise(&four, 5, (const double(*)[3])f.seen, f.is_new,
+                              &located));
+    assert_non_null(strstr(
+        four_localise(&four, 5, (const double(*)[3])f.seen, two, &located),
+        "four foods"));
 }
 
 /* Foods on a line, or in a plane for four, are refused at 2^-20 of the bound.
@@ -187,23 +198,25 @@ TEST(flat_bases_are_refused)
         {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {3, 4, 1e-6}, {1, 1, 0}};
     const bool none[5] = {false};
     struct glint_localiser l;
+    struct four four;
     struct glint_located located;
 
-    glint_localiser_init(&l, GLINT_MOTION_ALL, true, GLINT_DOUBLE);
+    glint_localiser_init(&l, true);
     assert_null(glint_localise(&l, 4, line, none, &located));
     assert_non_null(
         strstr(glint_localise(&l, 4, line, none, &located), "on a line"));
     for (int k = 0; k < 2; k++) {
-        glint_localiser_init(&l, GLINT_MOTION_FIRST4, true, GLINT_DOUBLE);
+        four_init(&four, FOUR_FIRST, FOUR_DOUBLE);
         assert_null(
-            glint_localise(&l, 5, (const double(*)[3])flat, none, &located));
+            four_localise(&four, 5, (const double(*)[3])flat, none, &located));
         if (k == 0)
-            assert_non_null(strstr(
-                glint_localise(&l, 5, (const double(*)[3])flat, none, &located),
-                "in a plane"));
+            assert_non_null(
+                strstr(four_localise(&four, 5, (const double(*)[3])flat, none,
+                                     &located),
+                       "in a plane"));
         else
-            assert_null(glint_localise(&l, 5, (const double(*)[3])flat, none,
-                                       &located));
+            assert_null(four_localise(&four, 5, (const double(*)[3])flat, none,
+                                      &located));
         flat[3][2] = 1e-4;
     }
 }
@@ -218,11 +231,11 @@ TEST(rounded_doubles_are_floats)
         const float b = (float)(rng_unit(&seed) * 30 - 15);
         const volatile float product = a * b, sum = a + b, ratio = a / b;
 
-        assert_true(glint_rounded(GLINT_FLOAT32, (double)a * (double)b) ==
+        assert_true(four_rounded(FOUR_FLOAT32, (double)a * (double)b) ==
                     (double)product);
-        assert_true(glint_rounded(GLINT_FLOAT32, (double)a + (double)b) ==
+        assert_true(four_rounded(FOUR_FLOAT32, (double)a + (double)b) ==
                     (double)sum);
-        assert_true(glint_rounded(GLINT_FLOAT32, (double)a / (double)b) ==
+        assert_true(four_rounded(FOUR_FLOAT32, (double)a / (double)b) ==
                     (double)ratio);
     }
 }

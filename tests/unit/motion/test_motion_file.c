@@ -33,15 +33,13 @@ static void bake(struct baked *baked, int n_frames, int reset_every,
     const struct track_options o = {3, n_frames, FOODS, reset_every, 0, 5};
     const struct glint_motion_body body = {
         .size = scale, .angle_deg = 60, .n_sensors = 2, .theta = {0, 1}};
-    struct glint_motion_options options;
     struct glint_motion_report report;
     struct glint_motion_baker *baker;
     struct glint_error error;
     struct track track;
     const char *reason;
 
-    glint_motion_defaults(&options);
-    baker = glint_motion_baker_open(&options);
+    baker = glint_motion_baker_open();
     assert_non_null(baker);
     assert_ok(glint_motion_baker_body(baker, &body, &error));
     track_begin(&track, &o);

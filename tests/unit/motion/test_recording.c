@@ -42,14 +42,12 @@ static enum glint_status bake(const char *text, size_t most,
                               struct baked *baked)
 {
     struct text t = {text, strlen(text), most};
-    struct glint_motion_options o;
     struct glint_motion_baker *baker;
     enum glint_status status;
     const char *reason;
 
     memset(baked, 0, sizeof *baked);
-    glint_motion_defaults(&o);
-    baker = glint_motion_baker_open(&o);
+    baker = glint_motion_baker_open();
     assert_non_null(baker);
     status =
         glint_recording_read(baker, "run.json", read_text, &t, &baked->error);

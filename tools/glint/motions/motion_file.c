@@ -39,13 +39,11 @@ static long read_some(void *ctx, char *to, size_t n)
     return (long)some;
 }
 
-static enum glint_status bake(const char *path,
-                              const struct glint_motion_options *options,
-                              struct motion_file *file,
+static enum glint_status bake(const char *path, struct motion_file *file,
                               struct glint_error *error)
 {
     struct reading reading = {.key = TOOL_KEY_BEGIN};
-    struct glint_motion_baker *baker = glint_motion_baker_open(options);
+    struct glint_motion_baker *baker = glint_motion_baker_open();
     enum glint_status status = GLINT_E_MEMORY;
     unsigned char *data = NULL;
     char name[64];
@@ -74,7 +72,6 @@ static enum glint_status bake(const char *path,
 }
 
 enum glint_status motion_file_read(const char *path, const char *written,
-                                   const struct glint_motion_options *options,
                                    struct motion_file *file,
                                    struct glint_error *error)
 {
@@ -85,7 +82,7 @@ enum glint_status motion_file_read(const char *path, const char *written,
 
     *file = (struct motion_file){.data = NULL};
     if (status == GLINT_OK && motion_file_is_source(path)) {
-        status = bake(path, options, file, error);
+        status = bake(path, file, error);
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
@@ -100,12 +97,11 @@ enum glint_status motion_file_read(const char *path, const char *written,
 }
 
 int motion_file_open(const struct tool *tool, const char *path,
-                     const struct glint_motion_options *options,
                      struct motion_file *file)
 {
     struct glint_error error = {""};
     const enum glint_status status =
-        motion_file_read(path, tool->written, options, file, &error);
+        motion_file_read(path, tool->written, file, &error);
     const struct glint_motion_report *r = &file->report;
 
     if (status != GLINT_OK)

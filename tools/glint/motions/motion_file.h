@@ -20,15 +20,13 @@ struct motion_file {
 bool motion_file_is_source(const char *argument);
 bool motion_file_is_baked(const char *argument);
 
-/* Opens the recording, which it bakes with OPTIONS, or the baked file PATH,
+/* Opens the recording, which it bakes, or the baked file PATH,
  * unless it is the file WRITTEN. _open returns an exit code, after printing the
  * reason on failure. */
 enum glint_status motion_file_read(const char *path, const char *written,
-                                   const struct glint_motion_options *options,
                                    struct motion_file *file,
                                    struct glint_error *error);
 int motion_file_open(const struct tool *tool, const char *path,
-                     const struct glint_motion_options *options,
                      struct motion_file *file);
 void motion_file_close(struct motion_file *file);
 

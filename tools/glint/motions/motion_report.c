@@ -7,8 +7,6 @@
 #include "motions/motion_file.h"
 #include "options/json_writer.h"
 
-static const char *const fits[] = {"all", "best4", "first4", "chain"};
-
 struct counts {
     size_t header, sensors, events, index, poses, intensities; /* bytes */
     double step;                                               /* units */
@@ -41,11 +39,11 @@ static void print_json(const struct motion_file *file, const struct counts *n)
     struct json_writer json = {.to = stdout};
 
     json_write(&json,
-               "{name: %s, motion: {fit: %s, frames: %u, foods: %u, "
+               "{name: %s, motion: {frames: %u, foods: %u, "
                "sensors: %u, resets: %u, size: %.6g, angle_deg: %.6g, "
                "step: %.6g, low: [%.9g, %.9g, %.9g], "
                "high: [%.9g, %.9g, %.9g], residual: %.6g, residual_frame: %u",
-               h->name, fits[h->variant], h->n_frames, h->n_foods, h->n_sensors,
+               h->name, h->n_frames, h->n_foods, h->n_sensors,
                h->n_events - h->n_foods, n->step * h->size, angle_deg(h),
                n->step, n->step * h->low[0], n->step * h->low[1],
                n->step * h->low[2], n->step * h->high[0], n->step * h->high[1],
@@ -70,8 +68,7 @@ static void print_text(const struct motion_file *file, const struct counts *n)
     const struct glint_motion_header *h = &file->motion.header;
     const struct glint_motion_report *r = &file->report;
 
-    printf("%s, a motion of %u frames, localised by %s\n\n", h->name,
-           h->n_frames, fits[h->variant]);
+    printf("%s, a motion of %u frames\n\n", h->name, h->n_frames);
     printf("body         size %.4g, %u sensors that see %.4g degrees\n",
            n->step * h->size, h->n_sensors, angle_deg(h));
     printf("foods        %u, %u resets%s\n", h->n_foods,

@@ -131,15 +131,12 @@ static enum glint_status read_motion(void *ctx, const char *name,
                                      struct glint_error *error)
 {
     struct reading *reading = ctx;
-    struct glint_motion_options options;
     struct motion_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
     enum glint_status status = find(reading, name, path, error);
 
-    glint_motion_defaults(&options);
     if (status == GLINT_OK)
-        status =
-            motion_file_read(path, reading->written, &options, &file, error);
+        status = motion_file_read(path, reading->written, &file, error);
     return pass(reading, status, file.data, file.bytes, data, bytes);
 }
 
