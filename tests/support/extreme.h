@@ -20,14 +20,6 @@ static inline bool extreme_long(void)
     return text && *text && *text != '0';
 }
 
-/* Returns the seed of random cases: GLINT_SEED, or 1 where it is not set. */
-static inline uint64_t extreme_seed(void)
-{
-    const char *text = getenv("GLINT_SEED");
-
-    return text && *text ? strtoull(text, NULL, 10) : 1;
-}
-
 /* Prints WORST, the worst figure of case NAME, and returns whether it is at
  * most BOUND. */
 static inline bool extreme_at_most(const char *name, double worst, double bound,

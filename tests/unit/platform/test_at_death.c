@@ -34,13 +34,15 @@ static void second(void)
     tell('2');
 }
 
-/* Runs DIE in a child that has two functions to run at its end. Returns how the
- * child ended, and sets TEXT to what the functions wrote. */
-static int end_of(void (*die)(int), int number, char text[8])
+/* Runs DIE in a child that has two functions to run at its end. It must end
+ * with the exit code CODE, as of a shell: 128 and more for a signal; the
+ * functions must write TEXT. */
+static void must_end(void (*die)(int), int number, int code, const char *text)
 {
     const struct rlimit no_core = {0, 0};
     ssize_t n;
     pid_t child;
+    char wrote[8];
     int how;
 
     assert_int_equal(pipe(told), 0);
@@ -58,11 +60,13 @@ static int end_of(void (*die)(int), int number, char text[8])
     }
     close(told[1]);
     assert_int_equal(waitpid(child, &how, 0), child);
-    n = read(told[0], text, 7);
+    n = read(told[0], wrote, 7);
     assert_true(n >= 0);
-    text[n] = 0;
+    wrote[n] = 0;
     close(told[0]);
-    return how;
+    assert_int_equal(WIFSIGNALED(how) ? 128 + WTERMSIG(how) : WEXITSTATUS(how),
+                     code);
+    assert_string_equal(wrote, text);
 }
 
 static void by_raise(int number)
@@ -144,92 +148,43 @@ TEST(signals)
     static const int deadly[] = {SIGHUP,  SIGINT,  SIGTERM, SIGQUIT, SIGUSR1,
                                  SIGUSR2, SIGALRM, SIGABRT, SIGSEGV, SIGBUS,
                                  SIGILL,  SIGFPE,  SIGTRAP};
-    char text[8];
 
-    for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++) {
-        int how;
-
-        how = end_of(by_raise, deadly[i], text);
-        assert_true(WIFSIGNALED(how));
-        assert_int_equal(WTERMSIG(how), deadly[i]);
-        assert_string_equal(text, "21");
-    }
+    for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
+        must_end(by_raise, deadly[i], 128 + deadly[i], "21");
 }
 
 TEST(faults)
 {
-    char text[8];
-    int how;
-
-    how = end_of(by_fault, 0, text);
-    assert_true(WIFSIGNALED(how));
-    assert_int_equal(WTERMSIG(how), SIGSEGV);
-    assert_string_equal(text, "21");
-    how = end_of(by_abort, 0, text);
-    assert_true(WIFSIGNALED(how));
-    assert_int_equal(WTERMSIG(how), SIGABRT);
-    assert_string_equal(text, "21");
+    must_end(by_fault, 0, 128 + SIGSEGV, "21");
+    must_end(by_abort, 0, 128 + SIGABRT, "21");
 }
 
 /* An abort in a library is an exit with 1, one of glint itself a death. */
 TEST(library)
 {
-    char text[8];
-    int how;
-
-    how = end_of(by_library, 1, text);
-    assert_true(WIFEXITED(how));
-    assert_int_equal(WEXITSTATUS(how), 1);
-    assert_string_equal(text, "21r");
-    how = end_of(by_exit_of_library, 4, text);
-    assert_true(WIFEXITED(how));
-    assert_int_equal(WEXITSTATUS(how), 4);
-    assert_string_equal(text, "21r");
-    how = end_of(by_library, 0, text);
-    assert_true(WIFSIGNALED(how));
-    assert_int_equal(WTERMSIG(how), SIGABRT);
-    assert_string_equal(text, "21");
+    must_end(by_library, 1, 1, "21r");
+    must_end(by_exit_of_library, 4, 4, "21r");
+    must_end(by_library, 0, 128 + SIGABRT, "21");
 }
 
 TEST(exit)
 {
-    char text[8];
-    int how;
-
-    how = end_of(by_exit, 3, text);
-    assert_true(WIFEXITED(how));
-    assert_int_equal(WEXITSTATUS(how), 3);
-    assert_string_equal(text, "21");
-    end_of(by_quick_exit, 3, text);
-    assert_string_equal(text, "");
+    must_end(by_exit, 3, 3, "21");
+    must_end(by_quick_exit, 3, 3, "");
 }
 
 /* A handler of the application's own that ends the process by
  * glint_at_death_by() must have the functions run. */
 TEST(own_handler)
 {
-    char text[8];
-    int how;
-
-    how = end_of(by_own_handler, SIGINT, text);
-    assert_true(WIFSIGNALED(how));
-    assert_int_equal(WTERMSIG(how), SIGINT);
-    assert_string_equal(text, "h21");
+    must_end(by_own_handler, SIGINT, 128 + SIGINT, "h21");
 }
 
+/* SIGPIPE and SIGXFSZ are ignored from the first call on, so that the child
+ * comes to its exit code 0. */
 TEST(ignored)
 {
-    char text[8];
-    int how;
-
-    how = end_of(by_ignored, SIGHUP, text);
-    assert_true(WIFEXITED(how));
-    assert_int_equal(WEXITSTATUS(how), 5);
-    /* SIGPIPE and SIGXFSZ are ignored from the first call on, so that end_of()
-     * comes to its exit code 0. */
-    how = end_of(by_raise, SIGPIPE, text);
-    assert_true(WIFEXITED(how));
-    assert_int_equal(WEXITSTATUS(how), 0);
-    how = end_of(by_raise, SIGXFSZ, text);
-    assert_true(WIFEXITED(how));
+    must_end(by_ignored, SIGHUP, 5, "");
+    must_end(by_raise, SIGPIPE, 0, "");
+    must_end(by_raise, SIGXFSZ, 0, "");
 }

@@ -130,6 +130,17 @@ static void compare(const char *text, int width, int height,
     free(light_q20);
 }
 
+/* Prints the errors of WORST, of the scenes WHAT, with their bounds. */
+static void judge(const char *what, const struct outcome *worst)
+{
+    char name[96];
+
+    snprintf(name, sizeof name, "scenes: %s, against the reference", what);
+    assert_at_least(name, worst->db, 60, "dB");
+    snprintf(name, sizeof name, "scenes: %s, other objects seen", what);
+    assert_at_most(name, 100 * worst->wrong, 1, "%");
+}
+
 #define NOTHING_YET    \
     {                  \
         .db = HUGE_VAL \
@@ -158,11 +169,7 @@ TEST(grazing)
                  fmax(10 * flat, .1), flat);
         compare(text, 96, 54, &worst);
     }
-    assert_at_least(
-        "scenes: floors and balls that graze, to 1e-5, against the reference",
-        worst.db, 60, "dB");
-    assert_at_most("scenes: floors and balls that graze, other objects seen",
-                   100 * worst.wrong, 1, "%");
+    judge("floors and balls that graze, to 1e-5", &worst);
 }
 
 /* The same ball and pyramid, from 1e-6 to 1e5 wide. */
@@ -186,10 +193,7 @@ TEST(sizes)
             break;
         compare(text, 96, 54, &worst);
     }
-    assert_at_least("scenes: sizes 1e-6 to 1e3, against the reference",
-                    worst.db, 60, "dB");
-    assert_at_most("scenes: sizes 1e-6 to 1e3, other objects seen",
-                   100 * worst.wrong, 1, "%");
+    judge("sizes 1e-6 to 1e3", &worst);
 }
 
 /* A sun, whose light does not request places, on objects up to 1e6 wide. */
@@ -266,12 +270,7 @@ TEST(behind)
         snprintf(text, sizeof text, "%s%s", head, things[i]);
         compare(text, 96, 54, &worst);
     }
-    assert_at_least(
-        "scenes: behind, around and across the camera, against the reference",
-        worst.db, 60, "dB");
-    assert_at_most(
-        "scenes: behind, around and across the camera, other objects seen",
-        100 * worst.wrong, 1, "%");
+    judge("behind, around and across the camera", &worst);
 }
 
 /* Pictures of one pixel, and as wide and as high as pictures are. */
@@ -288,12 +287,7 @@ TEST(pictures)
                 "sphere ball at 0 .5 0 radius .5 material m\n"
                 "plane floor at 0 0 0 normal 0 1 0 material m\nshadow on\n",
                 size[i][0], size[i][1], &worst);
-    assert_at_least(
-        "scenes: one pixel to 8192 wide and 4096 high, against the reference",
-        worst.db, 60, "dB");
-    assert_at_most(
-        "scenes: one pixel to 8192 wide and 4096 high, other objects seen",
-        100 * worst.wrong, 1, "%");
+    judge("one pixel to 8192 wide and 4096 high", &worst);
 }
 
 /* Powers of 1 and 4096, glass of index 1/4 to 4, mirrors of mirrors. */
