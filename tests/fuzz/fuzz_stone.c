@@ -50,8 +50,7 @@ static void parse(const uint8_t *data, size_t size)
         GLINT_OK)
         require(t.stone.side >= 32 && t.stone.side <= 256 &&
                 t.stone.kernel % 2 == 1 && isfinite(t.stone.texel_mm) &&
-                t.fit.kernels >= 1 && t.fit.rank >= 1 && t.code_bits >= 4 &&
-                t.tap_bits >= 6);
+                t.fit.kernels >= 1 && t.fit.rank >= 1);
     else
         require(error.text[0]);
 }

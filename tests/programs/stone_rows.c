@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * stone_rows DIR - bakes two translucent media, chess and veins, by all
- * models that a frame can draw and by numbers of bits, for
- * tools/measure/scenes/stone-table. Prints a line each:
- * translucent medium, model, bits of codes and taps, decibels of the fit and of
- * the integers to the light of all rows, and processor seconds of the fit.
- * Those of the first translucent medium with 8 and 12 bits are written to
- * DIR/MODEL.glint. Translucent media have 128 texels, kernels 29. */
+ * models that a frame can draw, for tools/measure/scenes/stone-table. Prints a
+ * line each: translucent medium, model, decibels of the fit and of the integers
+ * to the light of all rows, and processor seconds of the fit. Those of the
+ * first translucent medium are written to DIR/MODEL.glint. Translucent media
+ * have 128 texels, kernels 29. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +15,7 @@
 #include "glint/scene/stone_bake.h"
 #include "support/models/psnr.h"
 
-enum { STONES = 2, MODELS = 10, BITS = 7 };
+enum { STONES = 2, MODELS = 10 };
 
 static const char *const stone_name[STONES] = {"chess", "veins"};
 
@@ -36,10 +35,6 @@ static const struct {
     {"factored-5-3", GLINT_SCATTER_FACTORED, 5, 3},
     {"factored-10-3", GLINT_SCATTER_FACTORED, 10, 3},
 };
-
-/* Codes and taps; the first ones are the default. */
-static const int bits_of[BITS][2] = {{8, 12}, {16, 16}, {12, 12}, {8, 16},
-                                     {8, 10}, {8, 8},   {6, 12}};
 
 static void fail(const char *what)
 {
@@ -63,8 +58,7 @@ static void write_stone(const char *dir, const char *name, const void *data,
  * that, and room.
  */
 static void bake(const struct glint_scatter_fit *fit, const double *const light,
-                 double *room, const int bits[2], const char *dir,
-                 const char *name, double *db)
+                 double *room, const char *dir, const char *name, double *db)
 {
     const size_t n = 3 * (size_t)(fit->side * fit->side);
     struct glint_stone_report report;
@@ -77,8 +71,6 @@ static void bake(const struct glint_scatter_fit *fit, const double *const light,
 
     glint_stone_text_defaults(&text);
     text.fit.rank = fit->rank;
-    text.code_bits = bits[0];
-    text.tap_bits = bits[1];
     if (glint_stone_bake(fit, &text, name, 0, &data, &bytes, &report, &error) !=
         GLINT_OK)
         fail(error.text);
@@ -99,21 +91,15 @@ static void fit_and_bake(struct glint_scatter_rows *rows, int stone, int model,
         model_of[model].model, model_of[model].kernels, model_of[model].rank};
     const clock_t start = clock();
     struct glint_scatter_fit fit;
+    double db;
 
     if (glint_scatter_fit(rows, &o, NULL, &fit) != GLINT_OK)
         fail("no fit");
     /* Of clusters and albedo it counts at the bake only. */
     fit.rank = o.rank;
-    for (int b = 0; b < BITS; b++) {
-        double db;
-
-        bake(&fit, light, room, bits_of[b], !stone && !b ? dir : NULL,
-             model_of[model].name, &db);
-        printf("%s %s %d %d %.2f %.2f %.1f\n", stone_name[stone],
-               model_of[model].name, bits_of[b][0], bits_of[b][1],
-               fit.error.light_db, db,
-               (double)(clock() - start) / CLOCKS_PER_SEC);
-    }
+    bake(&fit, light, room, stone ? NULL : dir, model_of[model].name, &db);
+    printf("%s %s %.2f %.2f %.1f\n", stone_name[stone], model_of[model].name,
+           fit.error.light_db, db, (double)(clock() - start) / CLOCKS_PER_SEC);
     fflush(stdout);
     glint_scatter_fit_close(&fit);
 }

@@ -32,7 +32,6 @@ extern "C" {
 struct glint_stone_text {
     struct glint_stone stone; /* its mask is the caller's to set */
     struct glint_scatter_options fit;
-    int code_bits, tap_bits; /* 4 .. 16, 6 .. 16 */
     /* Names of the mask's picture and of measured rows; empty: there are none.
      */
     char mask[GLINT_STONE_FILE_BYTES], rows[GLINT_STONE_FILE_BYTES];
@@ -44,11 +43,10 @@ struct glint_stone_report {
                            that their ranks leave out, root mean square;
                            factored: 0 */
     int tap_bits;       /* that the largest tap of a column has: sums of many
-                           leave fewer than were requested */
+                           leave fewer than there are */
 };
 
-/* Sets TEXT to a slab of glint_stone_defaults(), clustered, of rank 3, with 8
- * bits of codes and 12 of taps. */
+/* Sets TEXT to a slab of glint_stone_defaults(), clustered, of rank 3. */
 void glint_stone_text_defaults(struct glint_stone_text *text);
 
 /* Reads DATA[BYTES], a text as tools/examples/scenes/README.md has it.
@@ -58,9 +56,9 @@ enum glint_status glint_stone_parse(struct glint_stone_text *text,
                                     const char *file_name,
                                     struct glint_error *error);
 
-/* Bakes FIT, with texel, index and bits of TEXT. NAME is kept in the file, its
+/* Bakes FIT, with texel, index and rank of TEXT. NAME is kept in the file, its
  * first 63 characters of a-z, A-Z, 0-9, '-' and '_', as is KEY. *DATA is
- * malloc'ed. GLINT_E_ARGUMENT: bits of TEXT, or the rank, are out of range.
+ * malloc'ed. GLINT_E_ARGUMENT: one of them is out of range.
  * GLINT_E_UNSUPPORTED: ERROR states what of FIT no baked translucent medium can
  * have. GLINT_E_MEMORY. */
 enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,

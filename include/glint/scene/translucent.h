@@ -45,6 +45,8 @@ enum {
     GLINT_TRANSLUCENT_MOST_KERNEL = 63, /* texels, odd */
     GLINT_TRANSLUCENT_MOST_PLANES = 20,
     GLINT_TRANSLUCENT_MOST_RANK = 8,
+    GLINT_TRANSLUCENT_CODE_BITS = 8, /* of f and in */
+    GLINT_TRANSLUCENT_TAP_BITS = 12, /* no tap is 2^11 or more */
     GLINT_TRANSLUCENT_COSINES = 128, /* steps of the table of transmittance */
     /* Magnitudes of a kernel's taps sum to this at most: along a row; and down
      * the columns of all planes of a channel together. With values within
@@ -75,12 +77,10 @@ struct glint_translucent_header {
     uint32_t rank;      /* of each plane */
     uint32_t texel_um;  /* side of a texel, micrometres, 1 .. 10^6 */
     uint32_t index_q16; /* of refraction, 1 .. 3 */
-    /* Codes of f and in: 4 .. 8 bits are stored in a byte each, 9 .. 16 bits in
-     * two. */
-    uint32_t code_bits;
-    uint32_t tap_bits; /* 6 .. 16: no tap is 2^(tap_bits - 1) or more */
-    /* Factored: f_p = code / 2^(code_bits - 1), signed, [3][n_planes][texels].
-     * Else unsigned, code / 2^code_bits: f [3][texels], and clustered then in
+    uint32_t code_bits; /* GLINT_TRANSLUCENT_CODE_BITS */
+    uint32_t tap_bits;  /* GLINT_TRANSLUCENT_TAP_BITS */
+    /* A byte each. Factored: f_p = code / 128, signed, [3][n_planes][texels].
+     * Else unsigned, code / 256: f [3][texels], and clustered then in
      * [3][texels]. Padded to whole words. */
     uint32_t code_at;
     uint32_t cluster_at; /* clustered: uint8 [texels], the plane that a texel is
@@ -102,7 +102,7 @@ struct glint_translucent_header {
 /* An opened file: points into the file's data, which must outlive it. */
 struct glint_translucent {
     const struct glint_translucent_header *header;
-    const void *code;
+    const uint8_t *code;
     const uint8_t *cluster; /* NULL: it is not clustered */
     const int16_t *tap;
     const uint32_t *shift;

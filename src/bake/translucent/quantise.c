@@ -92,20 +92,13 @@ static double factor_of(const struct writer *w, int p, int c, int x)
 static bool put_codes(struct writer *w, const double *value, int n, double most,
                       int bits)
 {
-    const size_t bytes = w->header.code_bits > 8 ? 2 : 1;
     const double full = most > 0 ? (double)((1L << bits) - 1) / most : 0;
-    uint8_t *code = malloc((size_t)n * bytes);
+    uint8_t *code = malloc((size_t)n);
 
-    for (int i = 0; code && i < n; i++) {
-        const long whole = lrint(value[i] * full);
-        const uint16_t wide = (uint16_t)whole;
-
-        code[(size_t)i * bytes] = (uint8_t)whole;
-        if (bytes == 2)
-            memcpy(code + 2 * (size_t)i, &wide, 2);
-    }
+    for (int i = 0; code && i < n; i++)
+        code[i] = (uint8_t)lrint(value[i] * full);
     if (code)
-        glint_draft_put(&w->draft, code, (size_t)n * bytes);
+        glint_draft_put(&w->draft, code, (size_t)n);
     free(code);
     return code != NULL;
 }
@@ -115,7 +108,7 @@ static bool put_codes(struct writer *w, const double *value, int n, double most,
 static bool put_factors(struct writer *w, int c, double *value)
 {
     const bool is_factored = w->fit->model == GLINT_SCATTER_FACTORED;
-    const int bits = w->text->code_bits - is_factored;
+    const int bits = GLINT_TRANSLUCENT_CODE_BITS - is_factored;
     double most[GLINT_SCATTER_MAX_TERMS] = {0};
 
     for (int p = 0; p < w->fit->kernels; p++) {
@@ -145,9 +138,9 @@ static bool put_in(struct writer *w, int c, double *value)
         value[x] = w->fit->in[CHANNELS * (size_t)x + (size_t)c];
         most = fmax(most, value[x]);
     }
-    w->in[c] = most * ldexp(1, w->text->code_bits) /
-               ((double)((1L << w->text->code_bits) - 1));
-    return put_codes(w, value, w->texels, most, w->text->code_bits);
+    w->in[c] = most * ldexp(1, GLINT_TRANSLUCENT_CODE_BITS) /
+               ((1 << GLINT_TRANSLUCENT_CODE_BITS) - 1);
+    return put_codes(w, value, w->texels, most, GLINT_TRANSLUCENT_CODE_BITS);
 }
 
 static bool write_codes(struct writer *w)
@@ -193,9 +186,9 @@ static double sum(const double *x, int n)
 /* Returns the largest factor for taps of which the largest is MOST and N sum to
  * ALL, at most GLINT_TRANSLUCENT_MOST_TAPS when they are rounded; 0: they are
  * all 0. */
-static double scale_of(const struct writer *w, double most, double all, int n)
+static double scale_of(double most, double all, int n)
 {
-    const double tap = (double)((1L << (w->text->tap_bits - 1)) - 1);
+    const double tap = (1 << (GLINT_TRANSLUCENT_TAP_BITS - 1)) - 1;
 
     return most > 0 ? fmin(tap / most,
                            (GLINT_TRANSLUCENT_MOST_TAPS - n / 2. - 1) / all)
@@ -220,7 +213,7 @@ static bool set_taps(struct writer *w, int c, int16_t *to, uint32_t *shift)
     const struct glint_scatter_fit *fit = w->fit;
     const int k = fit->kernel, n = fit->kernels * w->rank;
     const int bits =
-        w->text->code_bits - (fit->model == GLINT_SCATTER_FACTORED);
+        GLINT_TRANSLUCENT_CODE_BITS - (fit->model == GLINT_SCATTER_FACTORED);
     double most = 0, all = 0, scale;
 
     for (int i = 0; i < n; i++) {
@@ -231,7 +224,7 @@ static bool set_taps(struct writer *w, int c, int16_t *to, uint32_t *shift)
         double *column = w->column + at;
         const double factor = w->largest[c * fit->kernels + i / w->rank] *
                               ldexp(1, bits) / (double)((1L << bits) - 1);
-        const double rows = scale_of(w, largest(row, k), sum(row, k), k);
+        const double rows = scale_of(largest(row, k), sum(row, k), k);
         const long taps = round_taps(row, k, rows, to + 2 * (ptrdiff_t)i * k);
 
         while (1L << shift[i] < taps)
@@ -241,7 +234,7 @@ static bool set_taps(struct writer *w, int c, int16_t *to, uint32_t *shift)
         most = fmax(most, largest(column, k));
         all += sum(column, k);
     }
-    scale = scale_of(w, most, all, n * k);
+    scale = scale_of(most, all, n * k);
     for (int i = 0; i < n; i++)
         round_taps(w->column + (kernel_at(i / w->rank, c) * (size_t)w->rank +
                                 (size_t)(i % w->rank)) *
@@ -317,9 +310,7 @@ static void write_surface(struct writer *w)
 static bool is_in_range(const struct glint_scatter_fit *fit,
                         const struct glint_stone_text *text)
 {
-    return text->code_bits >= 4 && text->code_bits <= 16 &&
-           text->tap_bits >= 6 && text->tap_bits <= 16 &&
-           text->stone.texel_mm >= .001 && text->stone.texel_mm <= 1000 &&
+    return text->stone.texel_mm >= .001 && text->stone.texel_mm <= 1000 &&
            text->stone.index >= 1 && text->stone.index <= 3 &&
            text->fit.rank >= 1 &&
            text->fit.rank <= GLINT_TRANSLUCENT_MOST_RANK && fit->kernels >= 1 &&
@@ -354,8 +345,8 @@ static bool set_header(struct writer *w, const char *name, uint64_t key)
     h->rank = (uint32_t)w->rank;
     h->texel_um = (uint32_t)lrint(1000 * w->text->stone.texel_mm);
     h->index_q16 = (uint32_t)lrint(0x1p16 * w->text->stone.index);
-    h->code_bits = (uint32_t)w->text->code_bits;
-    h->tap_bits = (uint32_t)w->text->tap_bits;
+    h->code_bits = GLINT_TRANSLUCENT_CODE_BITS;
+    h->tap_bits = GLINT_TRANSLUCENT_TAP_BITS;
     return true;
 }
 

@@ -24,8 +24,6 @@ void glint_stone_text_defaults(struct glint_stone_text *text)
     text->stone.pattern = GLINT_STONE_EVEN;
     glint_scatter_defaults(&text->fit, GLINT_SCATTER_CLUSTERED);
     text->fit.rank = 3;
-    text->code_bits = 8;
-    text->tap_bits = 12;
 }
 
 static bool read_integer(struct reader *r, const char *what, int min, int max,

@@ -58,8 +58,8 @@ static void set_taps(const struct glint_translucent *t, uint32_t i,
 
 /* Codes of a table, from a texel on. */
 struct codes {
-    const void *at; /* of 8 bits, or 16 */
-    int is_wide, is_signed;
+    const uint8_t *at;
+    int is_signed;
     int bits; /* a factor is code / 2^bits */
 };
 
@@ -70,22 +70,15 @@ static struct codes codes_at(const struct glint_translucent *t, size_t table,
     const struct glint_translucent_header *h = t->header;
     const size_t log2 = h->side_log2, mask = ((size_t)1 << log2) - 1;
     const int is_signed = h->variant == GLINT_TRANSLUCENT_FACTORED;
-    const int bits = (int)h->code_bits - is_signed;
-    const size_t at =
-        (table << 2 * log2) + (((size_t)y & mask) << log2) + ((size_t)x & mask);
-    const int is_wide = h->code_bits > 8;
 
-    return (struct codes){(const int8_t *)t->code + (at << is_wide), is_wide,
-                          is_signed, bits};
+    return (struct codes){t->code + (table << 2 * log2) +
+                              (((size_t)y & mask) << log2) + ((size_t)x & mask),
+                          is_signed, GLINT_TRANSLUCENT_CODE_BITS - is_signed};
 }
 
 static inline int32_t code_of(const struct codes *f, int i)
 {
-    if (f->is_wide)
-        return f->is_signed ? ((const int16_t *)f->at)[i]
-                            : ((const uint16_t *)f->at)[i];
-    return f->is_signed ? ((const int8_t *)f->at)[i]
-                        : ((const uint8_t *)f->at)[i];
+    return f->is_signed ? (int8_t)f->at[i] : f->at[i];
 }
 
 /* ------------------------------------------------------------------- light */
@@ -246,8 +239,8 @@ static void add_plane(const struct glint_spread *s, int c, uint32_t p, int x0,
         for (int i = 0; i < GLINT_STRIP; i++)
             total[i] = of[i] == p ? ((sum[i] + half) >> f.bits) * code_of(&f, i)
                                   : total[i];
-    } else if (!f.is_wide && f.is_signed) {
-        const int8_t *code = f.at;
+    } else if (f.is_signed) {
+        const int8_t *code = (const int8_t *)f.at;
 
         for (int i = 0; i < GLINT_STRIP; i++)
             total[i] += ((sum[i] + half) >> f.bits) * code[i];

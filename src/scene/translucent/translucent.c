@@ -45,7 +45,8 @@ static const char *check_header(const struct glint_translucent_header *h)
     if (!is_between(h->texel_um, 1, 1000000) ||
         !is_between(h->index_q16, 1 << 16, 3 << 16))
         return "the stone's texel or index is out of range";
-    if (!is_between(h->code_bits, 4, 16) || !is_between(h->tap_bits, 6, 16))
+    if (h->code_bits != GLINT_TRANSLUCENT_CODE_BITS ||
+        h->tap_bits != GLINT_TRANSLUCENT_TAP_BITS)
         return "the stone's codes have too few or too many bits";
     if (!is_between(h->mean_transmit_q15, 0, 1 << 15))
         return "the stone's transmittance is not 0 .. 1";
@@ -77,7 +78,7 @@ static const char *check_taps(const struct glint_translucent *t)
 {
     const struct glint_translucent_header *h = t->header;
     const uint32_t n = h->n_planes * h->rank;
-    const int32_t limit = 1 << (h->tap_bits - 1);
+    const int32_t limit = 1 << (GLINT_TRANSLUCENT_TAP_BITS - 1);
     const int16_t *tap = t->tap;
 
     for (uint32_t c = 0; c < CHANNELS; c++) {
@@ -98,24 +99,6 @@ static const char *check_taps(const struct glint_translucent *t)
             return "the columns of a plane of the stone do not fit";
     }
     return NULL;
-}
-
-/* Returns whether a code has more bits than it may, or is the least of its
- * container. */
-static int is_wide(const struct glint_translucent *t, uint32_t i)
-{
-    const struct glint_translucent_header *h = t->header;
-    const int is_signed = h->variant == GLINT_TRANSLUCENT_FACTORED;
-    const int bits = (int)h->code_bits - is_signed;
-    int32_t code;
-
-    if (h->code_bits <= 8)
-        code = is_signed ? ((const int8_t *)t->code)[i]
-                         : ((const uint8_t *)t->code)[i];
-    else
-        code = is_signed ? ((const int16_t *)t->code)[i]
-                         : ((const uint16_t *)t->code)[i];
-    return q_magnitude(code) >= UINT64_C(1) << bits;
 }
 
 static uint32_t codes_of(const struct glint_translucent_header *h)
@@ -141,8 +124,7 @@ static const char *find_tables(struct glint_translucent *t,
     const uint32_t n = CHANNELS * h->n_planes * h->rank;
     const uint32_t texels = 1U << 2 * h->side_log2;
 
-    t->code = glint_blob_section(
-        b, h->code_at, words(codes_of(h), h->code_bits > 8 ? 2 : 1), 4);
+    t->code = glint_blob_section(b, h->code_at, words(codes_of(h), 1), 4);
     t->tap = glint_blob_section(b, h->tap_at, words(2 * n * h->kernel, 2), 4);
     t->shift = glint_blob_section(b, h->shift_at, n, 4);
     t->transmit_q15 = glint_blob_section(
@@ -169,8 +151,8 @@ static const char *check_contents(struct glint_translucent *t,
     if (!wrong)
         wrong = check_taps(t);
     for (uint32_t i = 0; !wrong && i < codes_of(h); i++)
-        if (is_wide(t, i))
-            wrong = "a code of the stone has too many bits";
+        if (h->variant == GLINT_TRANSLUCENT_FACTORED && t->code[i] == 128)
+            wrong = "a code of the stone is the least of its type";
     for (uint32_t i = 0; !wrong && t->cluster && i < 1U << 2 * h->side_log2;
          i++)
         if (t->cluster[i] >= h->n_planes)

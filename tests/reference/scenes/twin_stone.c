@@ -261,15 +261,9 @@ static double code_at(const struct twin_map *m, int table, int x)
     const size_t i = (size_t)table * (size_t)(side * side) +
                      (size_t)(x / m->width % side * side + x % m->width % side);
     const bool is_signed = h->variant == GLINT_TRANSLUCENT_FACTORED;
-    const void *code = m->stone.code;
+    const uint8_t code = m->stone.code[i];
 
-    if (h->code_bits <= 8)
-        return ldexp(is_signed ? ((const int8_t *)code)[i]
-                               : ((const uint8_t *)code)[i],
-                     is_signed - (int)h->code_bits);
-    return ldexp(is_signed ? ((const int16_t *)code)[i]
-                           : ((const uint16_t *)code)[i],
-                 is_signed - (int)h->code_bits);
+    return is_signed ? (int8_t)code / 128. : code / 256.;
 }
 
 /* Returns the place of FROM, moved by STEP along rows or columns; -1 outside.

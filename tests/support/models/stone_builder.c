@@ -66,9 +66,8 @@ static void set_fit(struct glint_scatter_fit *f, double albedo)
     }
 }
 
-void build_stone_of(struct built_stone *b, enum glint_scatter_model model,
-                    int side, int kernel, double albedo, int code_bits,
-                    int tap_bits)
+void build_stone(struct built_stone *b, enum glint_scatter_model model,
+                 int side, int kernel, double albedo)
 {
     struct glint_error error;
     const char *reason = "";
@@ -76,8 +75,6 @@ void build_stone_of(struct built_stone *b, enum glint_scatter_model model,
     memset(b, 0, sizeof *b);
     b->text.stone = (struct glint_stone){.texel_mm = .61, .index = 1.5};
     b->text.fit.rank = 4;
-    b->text.code_bits = code_bits;
-    b->text.tap_bits = tap_bits;
     b->fit = (struct glint_scatter_fit){
         .model = model,
         .side = side,
@@ -94,12 +91,6 @@ void build_stone_of(struct built_stone *b, enum glint_scatter_model model,
     if (glint_translucent_open(&b->stone, b->data, b->bytes, &reason) !=
         GLINT_OK)
         fail_msg("%s", reason);
-}
-
-void build_stone(struct built_stone *b, enum glint_scatter_model model,
-                 int side, int kernel, double albedo)
-{
-    build_stone_of(b, model, side, kernel, albedo, 8, 12);
 }
 
 void free_stone(struct built_stone *b)

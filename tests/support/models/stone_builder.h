@@ -21,11 +21,6 @@ struct built_stone {
  * x 8 differ. Factored ones have a second term that is negative in places. */
 void build_stone(struct built_stone *b, enum glint_scatter_model model,
                  int side, int kernel, double albedo);
-
-/* The same with the bits of codes and taps. */
-void build_stone_of(struct built_stone *b, enum glint_scatter_model model,
-                    int side, int kernel, double albedo, int code_bits,
-                    int tap_bits);
 void free_stone(struct built_stone *b);
 
 #endif

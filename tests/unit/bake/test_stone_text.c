@@ -46,8 +46,6 @@ TEST(all_lines)
     assert_int_equal(t.fit.model, GLINT_SCATTER_FACTORED);
     assert_int_equal(t.fit.kernels, 5);
     assert_int_equal(t.fit.rank, 3);
-    assert_int_equal(t.code_bits, 8);
-    assert_int_equal(t.tap_bits, 12);
 }
 
 /* What is not said is as the README has it. */
@@ -64,8 +62,6 @@ TEST(defaults)
     assert_int_equal(t.fit.model, GLINT_SCATTER_CLUSTERED);
     assert_int_equal(t.fit.kernels, 4);
     assert_int_equal(t.fit.rank, 3);
-    assert_int_equal(t.code_bits, 8);
-    assert_int_equal(t.tap_bits, 12);
     good(&t, TWO "pattern veins 3 pale dark\nmodel factored\n");
     assert_int_equal(t.fit.kernels, 5);
     assert_int_equal(t.stone.seed, 3);

@@ -17,7 +17,7 @@ static struct counts count(const struct stone_file *file)
                               ? 3 * h->n_planes
                           : h->variant == GLINT_TRANSLUCENT_CLUSTERED ? 6
                                                                       : 3;
-    struct counts n = {.codes = tables * texels * (h->code_bits > 8 ? 2 : 1),
+    struct counts n = {.codes = tables * texels,
                        .clusters = file->stone.cluster ? texels : 0,
                        .taps = 12 * (size_t)h->n_planes * h->rank * h->kernel,
                        .all = file->bytes};
@@ -40,10 +40,9 @@ static void print_json(const struct stone_file *file, const struct counts *n)
 
     json_write(&json,
                "{name: %s, stone: {model: %s, size: %d, texel_mm: %g, "
-               "kernel: %u, planes: %u, rank: %u, index: %.5g, bits: [%u, %u]",
+               "kernel: %u, planes: %u, rank: %u, index: %.5g",
                h->name, model_of(h), 1 << h->side_log2, h->texel_um / 1000.,
-               h->kernel, h->n_planes, h->rank, h->index_q16 / 65536.,
-               h->code_bits, h->tap_bits);
+               h->kernel, h->n_planes, h->rank, h->index_q16 / 65536.);
     if (file->is_baked_now)
         json_write(&json,
                    "fit_db: %.2f, baked_db: %.2f, kernel_loss: %.6f, "
@@ -67,7 +66,6 @@ static void print_text(const struct stone_file *file, const struct counts *n)
     printf("model        %s, %u plane%s of rank %u, kernels of %ux%u\n",
            model_of(h), h->n_planes, h->n_planes > 1 ? "s" : "", h->rank,
            h->kernel, h->kernel);
-    printf("bits         %u of codes, %u of taps\n", h->code_bits, h->tap_bits);
     if (file->is_baked_now) {
         printf("to the rows  %.1f dB, of the fit %.1f dB\n",
                file->errors.baked_db, file->errors.fit_db);
