@@ -6,9 +6,11 @@
 #include "bake/scene/clauses.h"
 #include "glint/scene/environment_bake.h"
 
-static const struct glint_text_line lines[] = {
-    {"source", false}, {"size", false}, {"levels", false},
-    {"lights", false}, {"turn", false}, {"scale", false}};
+static const struct glint_text_line lines[] = {{"source", false},
+                                               {"size", false},
+                                               {"lights", false},
+                                               {"turn", false},
+                                               {"scale", false}};
 
 enum { N_LINES = sizeof lines / sizeof *lines };
 
@@ -55,26 +57,18 @@ static bool read_size(struct glint_text *text,
 static bool read_line(struct glint_text *text, int which,
                       struct glint_environment_options *o, char *source)
 {
-    static const char *const levels[] = {"gauss", "mip", NULL};
-    int i = 0;
-
     switch (which) {
     case 0:
         return read_source(text, source);
     case 1:
         return read_size(text, o);
     case 2:
-        i = glint_choice_read(text, "levels", "gauss or mip", levels);
-        o->levels = i == 1 ? GLINT_ENVIRONMENT_MIP : GLINT_ENVIRONMENT_GAUSS;
-        break;
-    case 3:
         return read_lights(text, o);
-    case 4:
+    case 3:
         return glint_numbers_read(text, "turn", 1, -360, 360, &o->turn_deg);
     default:
         return glint_numbers_read(text, "scale", 1, 1e-6, 1e6, &o->scale);
     }
-    return i >= 0;
 }
 
 enum glint_status

@@ -566,19 +566,17 @@ TEST(text)
     struct glint_error error;
 
     assert_ok(parse("# night\nsource a night.exr\nsize 128\n"
-                    "levels mip\nturn -90\nscale .5\n"
+                    "turn -90\nscale .5\n"
                     "lights 3 radius 2.5 above 20\n",
                     &o, source, &error));
     assert_string_equal(source, "a night.exr");
-    assert_true(o.side_log2 == 7 && o.levels == GLINT_ENVIRONMENT_MIP &&
-                o.turn_deg == -90 && o.scale == .5 && o.max_lights == 3 &&
-                o.light_deg == 2.5 && o.light_above == 20);
+    assert_true(o.side_log2 == 7 && o.turn_deg == -90 && o.scale == .5 &&
+                o.max_lights == 3 && o.light_deg == 2.5 && o.light_above == 20);
     wrong("size 128\n", "n.environment:2:1: there is no picture: source FILE");
     wrong("source\n", "n.environment:1:7: the name of the picture is missing");
     wrong("source x\nsize 100\n",
           "2:6: size takes 16, 32, 64, 128, 256, 512 or "
           "1024, not '100'");
-    wrong("source x\nlevels\n", "levels takes gauss or mip");
     wrong("source x\nturn 400\n", "turn");
     wrong("source x\nlights 17\n", "lights");
     wrong("source x\nlights 3 radios 2\n", "did you mean 'radius'?");

@@ -14,7 +14,6 @@ static const struct {
     /* An option that takes something else in one command comes before the row
      * for any command, as the first row that fits is taken. */
     {"bake", "max-angle", "degrees, 1 to 89"},
-    {"bake", "levels", "gauss or mip"},
     {"bake", "lights", "a whole number, 0 to 16"},
     {"bake", "positions", "a whole number, 2 to 64"},
     {"bake", "halfway", "dB, 20 to 60, or 0"},

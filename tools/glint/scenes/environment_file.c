@@ -190,11 +190,6 @@ static double degrees(int32_t sine_q30)
     return 180 / GLINT_PI * asin(ldexp(sine_q30, -30));
 }
 
-static const char *levels_of(const struct glint_environment_header *h)
-{
-    return h->variant == GLINT_ENVIRONMENT_MIP ? "mip" : "gauss";
-}
-
 static void print_json(const struct environment_file *file,
                        const struct counts *n)
 {
@@ -202,8 +197,8 @@ static void print_json(const struct environment_file *file,
     const struct glint_environment_report *r = &file->report;
     struct json_writer json = {.to = stdout};
 
-    json_write(&json, "{name: %s, environment: {size: %d, levels: %s", h->name,
-               1 << h->side_log2, levels_of(h));
+    json_write(&json, "{name: %s, environment: {size: %d", h->name,
+               1 << h->side_log2);
     if (file->is_baked_now)
         json_write(&json,
                    "picture: [%d, %d], negative: %lld, not_finite: %lld, "
@@ -250,8 +245,7 @@ static void print_text(const struct environment_file *file,
 {
     const struct glint_environment_header *h = file->environment.header;
 
-    printf("%s, an environment %d wide, levels %s\n\n", h->name,
-           1 << h->side_log2, levels_of(h));
+    printf("%s, an environment %d wide\n\n", h->name, 1 << h->side_log2);
     if (file->is_baked_now)
         print_baking(&file->report);
     printf("levels       %u:", h->n_levels);
@@ -304,15 +298,13 @@ static const char bake_help[] =
     "  -o, --output OUT\n"
     "  --size N            texels along a side: 16 to 1024, a power of two\n"
     "                      (default 256)\n"
-    "  --levels L          gauss: blurred on the sphere (default)\n"
-    "                      mip: means of 2 x 2, the baseline\n"
     "  --lights N          0 to 16 (default 16)\n"
     "  --turn DEG          about the vertical, to the right\n"
     "  --scale X           factor of all light\n";
 
 /* What the line says; -1, or has_ false: nothing. */
 struct line {
-    int side_log2, levels, lights;
+    int side_log2, lights;
     bool has_turn, has_scale;
     double turn, scale;
 };
@@ -323,8 +315,6 @@ static void override_options(void *ctx, struct glint_environment_options *o)
 
     if (l->side_log2 >= 0)
         o->side_log2 = l->side_log2;
-    if (l->levels >= 0)
-        o->levels = l->levels ? GLINT_ENVIRONMENT_MIP : GLINT_ENVIRONMENT_GAUSS;
     if (l->lights >= 0)
         o->max_lights = l->lights;
     if (l->has_turn)
@@ -337,7 +327,6 @@ static int take_option(struct tool *tool, void *line, int c, const char *name)
 {
     static const char *const sizes[] = {"16",  "32",  "64",   "128",
                                         "256", "512", "1024", NULL};
-    static const char *const levels[] = {"gauss", "mip", NULL};
     struct line *l = line;
     bool ok = true;
 
@@ -346,10 +335,6 @@ static int take_option(struct tool *tool, void *line, int c, const char *name)
         l->side_log2 = tool_word(optarg, sizes);
         ok = l->side_log2 >= 0;
         l->side_log2 += GLINT_ENVIRONMENT_LEAST_LOG2;
-        break;
-    case 'l':
-        l->levels = tool_word(optarg, levels);
-        ok = l->levels >= 0;
         break;
     case 'n':
         ok = tool_integer(optarg, 0, GLINT_ENVIRONMENT_MAX_LIGHTS, &l->lights);
@@ -373,12 +358,11 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
     static const struct option options[] = {
         BAKE_LINE_OPTIONS,
         {"size", required_argument, NULL, 's'},
-        {"levels", required_argument, NULL, 'l'},
         {"lights", required_argument, NULL, 'n'},
         {"turn", required_argument, NULL, 't'},
         {"scale", required_argument, NULL, 'x'},
         TOOL_COMMON_OPTIONS};
-    struct line line = {.side_log2 = -1, .levels = -1, .lights = -1};
+    struct line line = {.side_log2 = -1, .lights = -1};
     struct environment_file file;
     int code;
 
