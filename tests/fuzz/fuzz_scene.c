@@ -45,9 +45,7 @@ static enum glint_status make_picture(void *ctx, const char *name,
     (void)ctx;
     (void)error;
     require(mem != NULL);
-    *image =
-        (struct glint_image){.format = GLINT_RGB24, .width = side, .height = 3};
-    glint_image_place(image, mem);
+    *image = glint_image_over(mem, GLINT_RGB24, side, 3);
     return GLINT_OK;
 }
 

@@ -13,15 +13,12 @@ const enum glint_pixel_format canvas_format[CANVAS_FORMATS] = {
 struct glint_image canvas_new(enum glint_pixel_format format, int width,
                               int height)
 {
-    struct glint_image image = {
-        .format = format, .width = width, .height = height};
     void *mem = calloc(1, glint_image_bytes(format, width, height));
 
     if (!mem) /* Programs that are not tests draw, too, so cmocka cannot report
                * this. */
         abort();
-    glint_image_place(&image, mem);
-    return image;
+    return glint_image_over(mem, format, width, height);
 }
 
 void canvas_set_rgb(const struct glint_image *image, int x, int y, int r, int g,

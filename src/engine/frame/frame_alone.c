@@ -43,9 +43,9 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
     const int width = frame->view.width, height = frame->view.height;
     const size_t n = 3 * (size_t)width * (size_t)height;
     struct glint_frame_scale scale;
-    struct glint_image layer = {
-        .format = GLINT_LINEAR_Q20, .width = width, .height = height};
     int32_t *linear_q20 = malloc(n * sizeof *linear_q20);
+    const struct glint_image layer =
+        glint_image_over(linear_q20, GLINT_LINEAR_Q20, width, height);
     enum glint_status status =
         linear_q20 ? glint_frame_plan_scale(frame, lamps, n_lamps, &scale)
                    : GLINT_E_MEMORY;
@@ -57,8 +57,6 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
     frame->star.share = frame->veil.glare = frame->veil.haze = 0;
     frame->veil.front = NULL;
     frame->veil.is_set = false;
-
-    glint_image_place(&layer, linear_q20);
     for (int i = 0; i < 4 && up && status == GLINT_OK; i++) {
         memset(linear_q20, 0, n * sizeof *linear_q20);
         status = glint_frame_draw(frame, lamps, n_lamps, exp2(scale.likely),

@@ -312,14 +312,12 @@ enum glint_status glint_frame_veil_set(struct glint_frame *f,
 void glint_frame_veil_add(struct glint_frame *f, double times,
                           int32_t *linear_q20, float *rgb)
 {
-    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
-                                .width = f->view.width,
-                                .height = f->view.height};
+    const struct glint_image layer = glint_image_over(
+        linear_q20, GLINT_LINEAR_Q20, f->view.width, f->view.height);
     const size_t samples = 3 * (size_t)layer.width * (size_t)layer.height;
 
     if (!glint_frame_has_veil(f) || !f->veil.is_set)
         return;
-    glint_image_place(&layer, linear_q20);
     memset(linear_q20, 0, samples * sizeof *linear_q20);
     glint_veil_draw_alone(f->veil.veil, f->memory.flare, &layer);
     for (size_t i = 0; i < samples; i++)
@@ -331,13 +329,11 @@ enum glint_status glint_frame_veil_alone(struct glint_frame *f,
                                          double gain, int32_t *linear_q20,
                                          float *rgb)
 {
-    struct glint_image black = {.format = GLINT_LINEAR_Q20,
-                                .width = f->view.width,
-                                .height = f->view.height};
+    const struct glint_image black = glint_image_over(
+        linear_q20, GLINT_LINEAR_Q20, f->view.width, f->view.height);
     const size_t samples = 3 * (size_t)black.width * (size_t)black.height;
     enum glint_status status;
 
-    glint_image_place(&black, linear_q20);
     memset(linear_q20, 0, samples * sizeof *linear_q20);
     status = glint_frame_veil_set(f, lamps, n, &black);
     if (status == GLINT_OK)

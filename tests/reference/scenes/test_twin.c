@@ -30,9 +30,7 @@ static enum glint_status picture(void *ctx, const char *name,
     (void)error;
     assert_non_null(mem);
     memset(mem + 3, 255, 3);
-    *image =
-        (struct glint_image){.format = GLINT_RGB24, .width = 2, .height = 1};
-    glint_image_place(image, mem);
+    *image = glint_image_over(mem, GLINT_RGB24, 2, 1);
     return GLINT_OK;
 }
 

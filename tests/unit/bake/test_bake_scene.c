@@ -40,9 +40,7 @@ static enum glint_status read_picture(void *ctx, const char *name,
     assert_non_null(mem);
     for (int i = 0; i < 48; i++)
         mem[i] = i % 24 < 12 ? 0 : 255;
-    *image =
-        (struct glint_image){.format = GLINT_RGB24, .width = 8, .height = 2};
-    glint_image_place(image, mem);
+    *image = glint_image_over(mem, GLINT_RGB24, 8, 2);
     return GLINT_OK;
 }
 

@@ -72,9 +72,7 @@ static enum glint_status read_picture(void *ctx, const char *name,
     assert_non_null(mem);
     for (int i = 0; i < 36; i++)
         mem[i] = i % 18 < 6 ? 0 : 255;
-    *image =
-        (struct glint_image){.format = GLINT_RGB24, .width = 6, .height = 2};
-    glint_image_place(image, mem);
+    *image = glint_image_over(mem, GLINT_RGB24, 6, 2);
     return GLINT_OK;
 }
 

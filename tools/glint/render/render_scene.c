@@ -243,8 +243,6 @@ static int draw_model(struct tool *tool, struct render_scene *r,
 {
     struct scene_dials dials = r->drawing.line.scene_dials;
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
-    struct glint_image linear = {
-        .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
     int32_t *light_q20 = calloc(n, sizeof *light_q20);
     const double start = tool_seconds();
     struct scene_frame frame;
@@ -260,7 +258,9 @@ static int draw_model(struct tool *tool, struct render_scene *r,
         scene_dials_be(&dials, r->drawing.line.settings.options.quality);
     code = scene_frame_open(&frame, tool, model, &dials);
     if (code == EXIT_OK) {
-        glint_image_place(&linear, light_q20);
+        const struct glint_image linear =
+            glint_image_over(light_q20, GLINT_LINEAR_Q20, r->width, r->height);
+
         code = scene_frame_draw(&frame, &linear);
         if (code == EXIT_OK)
             say_frame(tool, &frame, &dials, 1e3 * (tool_seconds() - start));
