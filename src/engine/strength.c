@@ -92,16 +92,21 @@ static double together(double a, double b)
     return pow(pow(a, norm) + pow(b, norm), 1 / norm);
 }
 
-/* Returns the factor that LIGHT requests, in stops. */
-static double target_log2(const struct glint_strength *s,
-                          const struct glint_response_light *light)
+/* Returns the factor in stops of the strength that the caller set. */
+static double own_log2(const struct glint_strength *s)
+{
+    return 2 * log2(s->asked);
+}
+
+/* Returns the factor in stops that LIGHT requests at strength 1. */
+static double target_log2(const struct glint_response_light *light)
 {
     const double peak = fmax(glint_largest_channel(light->peak), 1e-60);
     const double mean = glint_largest_channel(light->mean) / mean_most;
     const double more =
         compression * (log2(together(peak, mean)) - common_log2);
 
-    return 2 * log2(s->asked) - log2(together(peak * exp2(-tanh(more)), mean));
+    return -log2(together(peak * exp2(-tanh(more)), mean));
 }
 
 /* --------------------------------------------------------------- over time */
@@ -123,13 +128,13 @@ static double held(double times)
                       : (1 + overshoot * tanh((times - 1) / overshoot)) / times;
 }
 
-/* Lowers lamp I towards the exposure that it would get by itself; LIGHT is its
- * own light. */
+/* Lowers lamp I towards the exposure that it would get alone; LIGHT is its own
+ * light. */
 static void hold(const struct glint_strength *s,
                  const struct glint_strength_lamps *lamps, int i,
                  struct glint_response_light *light)
 {
-    const double times = exp2(s->factor_log2 - target_log2(s, light));
+    const double times = exp2(s->factor_log2 - target_log2(light));
     const double by = held(times);
 
     lamps->lamp[i].lamp.power *= by;
@@ -148,9 +153,8 @@ static void follow(struct glint_strength *s, double target, int32_t elapsed_us)
     s->follows = true;
 }
 
-/* Returns the factor, in stops, for all lamps at full level. */
-static double target_of(const struct glint_strength *s,
-                        const struct glint_response *response,
+/* Returns the factor in stops at strength 1 for all lamps at full level. */
+static double target_of(const struct glint_response *response,
                         const struct glint_strength_lamps *lamps)
 {
     struct glint_strength_lamps full = *lamps;
@@ -163,14 +167,14 @@ static double target_of(const struct glint_strength *s,
         add(&light, &one, 1);
     }
     finish(&light);
-    return target_log2(s, &light);
+    return target_log2(&light);
 }
 
 static void expose(struct glint_strength *s,
                    const struct glint_response *response,
                    const struct glint_strength_lamps *lamps, int32_t elapsed_us)
 {
-    follow(s, target_of(s, response, lamps), elapsed_us);
+    follow(s, target_of(response, lamps), elapsed_us);
     for (int i = 0; i < lamps->n; i++) {
         struct glint_response_light one;
 
@@ -179,7 +183,7 @@ static void expose(struct glint_strength *s,
         add(&s->light, &one, lamps->lamp[i].level);
     }
     finish(&s->light);
-    s->scale = s->gain * exp2(s->factor_log2);
+    s->scale = s->gain * exp2(own_log2(s) + s->factor_log2);
 }
 
 static void scale_light(struct glint_strength *s)
@@ -207,7 +211,7 @@ void glint_strength_expose(struct glint_strength *strength,
     if (s->is_physical) {
         glint_strength_light(response, lamps, &s->light);
         s->scale = s->gain * exp2(s->exposure_ev);
-    } else if (s->asked > 0) {
+    } else {
         expose(s, response, lamps, elapsed_us);
     }
     scale_light(s);
@@ -240,11 +244,10 @@ void glint_strength_correct(struct glint_strength *strength,
         !(glint_largest_channel(drawn->peak) > 0))
         return;
     s->is_drawn = true;
-    s->factor_log2 = target_log2(s, drawn);
+    s->factor_log2 = target_log2(drawn);
     if (seen)
-        s->factor_log2 +=
-            lift_log2(s->factor_log2 - 2 * log2(2 * s->asked), drawn, seen);
-    s->scale = s->gain * exp2(s->factor_log2);
+        s->factor_log2 += lift_log2(s->factor_log2 - 2, drawn, seen);
+    s->scale = s->gain * exp2(own_log2(s) + s->factor_log2);
     s->light = *drawn;
     scale_light(s);
 }

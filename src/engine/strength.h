@@ -38,10 +38,11 @@
  * a quarter of the picture is lowered until the light there is half of the
  * least that can be seen, but not below 0.1 in its brightest part.
  *
- * In a video the factor follows, in stops in proportion to the time: it falls
- * by up to 3 stops a second and rises by up to 2, by no more than an eighth of
- * a stop a frame, so that no step exceeds 10 %. It starts again after a cut,
- * and if there was no lamp before. Lamps rise and fade with their tracks
+ * In a video a strength that changes counts in its frame. The rest of the
+ * factor follows, in stops in proportion to the time: it falls by up to 3 stops
+ * a second and rises by up to 2, by no more than an eighth of a stop a frame,
+ * so that no step exceeds 10 %. It starts again after a cut, and if there was
+ * no lamp before. Lamps rise and fade with their tracks
  * (powers without these levels decide on the factor). A new lamp that is too
  * bright for the factor, until that has followed, is limited to 1.5 times the
  * exposure that it would get alone. */
@@ -73,7 +74,7 @@ struct glint_strength {
     struct glint_response_light light;
     bool is_drawn; /* true: the light was measured in a drawn flare */
 
-    /* Private: log2 of the factor without gain, as it follows. */
+    /* Private: log2 of the factor without strength and gain, as it follows. */
     double factor_log2;
     bool follows;
 };

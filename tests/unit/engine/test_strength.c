@@ -340,6 +340,39 @@ TEST(begins_anew)
     assert_true(peak_of(&strength, &r, &faint, NULL, 1, FRAME_US) > 0.1);
 }
 
+/* A strength that key frames change must count in its frame, also after frames
+ * of strength 0, in which the exposure must follow the lamp. */
+TEST(strength_by_frame)
+{
+    static const double asked[] = {0.5, 1, 0.05, 0, 0, 2, 0.5};
+    const struct glint_response r = response_of(0, 7);
+    struct glint_strength s;
+
+    glint_strength_defaults(&s);
+    for (int i = 0; i < 7; i++) {
+        struct glint_engine_lamp lamp = lamp_of(5, common);
+
+        s.asked = asked[i];
+        assert_true(fabs(peak_of(&s, &r, &lamp, NULL, 1, FRAME_US) -
+                         asked[i] * asked[i]) < 1e-3);
+    }
+    s.asked = 0;
+    for (int i = 0; i < 250; i++) {
+        struct glint_engine_lamp lamp = lamp_of(5, 64 * common);
+
+        peak_of(&s, &r, &lamp, NULL, 1, FRAME_US);
+        assert_true(s.scale == 0);
+    }
+    {
+        struct glint_engine_lamp lamp = lamp_of(5, 64 * common);
+
+        s.asked = 0.5;
+        assert_true(fabs(peak_of(&s, &r, &lamp, NULL, 1, FRAME_US) -
+                         still(0.5, &r, 5, 64 * common)) < 1e-3);
+        assert_true(lamp.lamp.power > 63.9 * common);
+    }
+}
+
 /* ------------------------------------------------------------------- lenses */
 
 /* Draws one lamp as the exposure says and checks its flare: the response of
