@@ -22,31 +22,55 @@ static double decode(int code)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* Sets SLOPE[code] to 1 / the light that must be added to be visible; 0 if no
- * light is. */
-static void list_slopes(double slope[256])
+/* By the code of a channel, 1 / the light that must be added to be visible, and
+ * to make it white; 0 if there is no such light. */
+struct slopes {
+    double visible[256], white[256];
+};
+
+static void list_slopes(struct slopes *slope)
 {
-    for (int code = 0; code < 256; code++)
-        slope[code] =
-            code + GLINT_SEEN_CODES > 255
-                ? 0
-                : 1 / (decode(code + GLINT_SEEN_CODES) - decode(code));
+    *slope = (struct slopes){{0}, {0}};
+    for (int code = 0; code + GLINT_SEEN_CODES <= 255; code++)
+        slope->visible[code] =
+            1 / (decode(code + GLINT_SEEN_CODES) - decode(code));
+    for (int code = GLINT_SEEN_BRIGHT; code < GLINT_SEEN_WHITE; code++)
+        slope->white[code] = 1 / (1 - decode(code));
 }
 
-/* Returns the bin of a pixel, or -1 if it gets no light that can be seen. */
-static int bin_of(const float light[3], const uint8_t code[3],
-                  const double slope[256])
+/* Returns the light of a pixel over the least visible light. */
+static double visible_of(const float light[3], const uint8_t code[3],
+                         const struct slopes *slope)
 {
     double most = 0;
 
     for (int c = 0; c < 3; c++)
-        most = fmax(most, (double)light[c] * slope[code[c]]);
-    if (!(most > 0))
-        return -1;
-    return (int)fmin(fmax((log2(most) + OCTAVES) * STEPS, 0), BINS - 1);
+        most = fmax(most, (double)light[c] * slope->visible[code[c]]);
+    return most;
 }
 
-/* Returns the light that N of the counted pixels reach, or 0. */
+/* Returns the light of a pixel over that which makes it white; 0 if it is dark,
+ * or nearly white. */
+static double white_of(const float light[3], const uint8_t code[3],
+                       const struct slopes *slope)
+{
+    double least = HUGE_VAL;
+
+    for (int c = 0; c < 3; c++)
+        if (code[c] < GLINT_SEEN_BRIGHT)
+            return 0;
+        else if (slope->white[code[c]] > 0)
+            least = fmin(least, (double)light[c] * slope->white[code[c]]);
+    return least < HUGE_VAL ? least : 0;
+}
+
+static void count_in(int count[BINS], double x)
+{
+    if (x > 0)
+        count[(int)fmin(fmax((log2(x) + OCTAVES) * STEPS, 0), BINS - 1)]++;
+}
+
+/* Returns what N of the counted pixels reach, or 0. */
 static double reached_by(const int count[BINS], int n)
 {
     for (int bin = BINS - 1, sum = 0; bin >= 0; bin--) {
@@ -60,21 +84,20 @@ static double reached_by(const int count[BINS], int n)
 void glint_seen_on(struct glint_seen *seen, const struct glint_ground *ground,
                    const float *rgb, int width, int height)
 {
-    double slope[256];
-    int count[BINS] = {0};
+    int visible[BINS] = {0}, white[BINS] = {0};
+    struct slopes slope;
 
-    list_slopes(slope);
+    list_slopes(&slope);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, rgb += 3) {
-            const int bin =
-                bin_of(rgb,
-                       ground->rgb[y * GLINT_GROUND_ROWS / height]
-                                  [x * GLINT_GROUND_COLUMNS / width],
-                       slope);
+            const uint8_t *const code =
+                ground->rgb[y * GLINT_GROUND_ROWS / height]
+                           [x * GLINT_GROUND_COLUMNS / width];
 
-            if (bin >= 0)
-                count[bin]++;
+            count_in(visible, visible_of(rgb, code, &slope));
+            count_in(white, white_of(rgb, code, &slope));
         }
-    seen->few = reached_by(count, width * height / GLINT_SEEN_FEW + 1);
-    seen->many = reached_by(count, width * height / GLINT_SEEN_MANY + 1);
+    seen->few = reached_by(visible, width * height / GLINT_SEEN_FEW + 1);
+    seen->many = reached_by(visible, width * height / GLINT_SEEN_MANY + 1);
+    seen->white = reached_by(white, width * height / GLINT_SEEN_DISC + 1);
 }

@@ -26,6 +26,10 @@ static const double seen_peak = 0.6, seen_mean = 0.04, veil_peak = 0.1;
  * light. */
 static const double veil_light = 0.5;
 
+/* Light of the brightest ghosts on bright ground / that which turns it white.
+ */
+static const double white_part = 0.4;
+
 /* How the factor follows: stops a second, most stops a frame, and the time
  * constant. */
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
@@ -218,8 +222,9 @@ void glint_strength_expose(struct glint_strength *strength,
 }
 
 /* Returns the stops by which the flare DRAWN is lifted so that it can be seen,
- * or lowered so that it is not a veil, within the limits of its brightest part
- * and its mean. BASE: log2 of its factor at strength 0.5. */
+ * or lowered so that it neither is a veil nor turns a bright picture white,
+ * within the limits of its brightest part and its mean. BASE: log2 of its
+ * factor at strength 0.5. */
 static double lift_log2(double base, const struct glint_response_light *drawn,
                         const struct glint_seen *seen)
 {
@@ -228,10 +233,12 @@ static double lift_log2(double base, const struct glint_response_light *drawn,
     const double room = fmin(log2(seen_peak) - peak, log2(seen_mean) - mean);
     const double few = seen->few > 0 ? -log2(seen->few) : room;
     const double many = seen->many > 0 ? log2(veil_light / seen->many) : room;
+    const double white =
+        seen->white > 0 ? log2(white_part / seen->white) : room;
 
-    if (many < base)
-        return fmin(fmax(many, log2(veil_peak) - peak) - base, 0);
-    return fmax(fmin(few, room) - base, 0);
+    if (fmin(many, white) < base)
+        return fmin(fmax(fmin(many, white), log2(veil_peak) - peak) - base, 0);
+    return fmax(fmin(fmin(few, white), room) - base, 0);
 }
 
 void glint_strength_correct(struct glint_strength *strength,
@@ -260,7 +267,7 @@ enum glint_status glint_strength_expose_still(struct glint_strength *strength,
                                               double white)
 {
     struct glint_response_light drawn;
-    struct glint_seen seen = {0, 0};
+    struct glint_seen seen = {0, 0, 0};
     enum glint_status status;
 
     if (strength->is_physical || !(strength->scale > 0))
@@ -271,6 +278,7 @@ enum glint_status glint_strength_expose_still(struct glint_strength *strength,
         return status == GLINT_E_MEMORY ? status : GLINT_OK;
     seen.few /= white;
     seen.many /= white;
+    seen.white /= white;
     for (int c = 0; c < 3; c++) {
         drawn.peak[c] /= white;
         drawn.mean[c] /= white;

@@ -36,7 +36,9 @@
  * flare is brightened until it is visible in 1/50 of the picture: at strength
  * 0.5 up to 0.6 in its brightest part and 0.04 in the mean. A flare that veils
  * a quarter of the picture is lowered until the light there is half of the
- * least that can be seen, but not below 0.1 in its brightest part.
+ * least that can be seen, and one whose ghosts turn a bright sky white is
+ * lowered until they take two fifths of the way there; neither below 0.1 in its
+ * brightest part.
  *
  * In a video a strength that changes counts in its frame. The rest of the
  * factor follows, in stops in proportion to the time: it falls by up to 3 stops

@@ -69,6 +69,26 @@ TEST(area)
     assert_true(fabs(log2(look().few) - 2) <= 0.126);
 }
 
+/* Light that makes code 200 white must count as 1 in a small ghost, where all
+ * channels get it; on dark ground, and on code 250, where it has no edge, not
+ * at all. */
+TEST(white)
+{
+    const float room = (float)(1 - canvas_linear(200));
+
+    set_ground(200);
+    set_flare(1, 1);
+    assert_true(look().white == 0); /* green alone is not white */
+    for (int x = 0; x < WIDTH; x++)
+        for (int c = 0; c < 3; c++)
+            light[0][x][c] = x < 4 ? room : 0;
+    assert_true(fabs(log2(look().white)) <= 0.126);
+    set_ground(250);
+    assert_true(look().white == 0);
+    set_ground(159);
+    assert_true(look().white == 0);
+}
+
 /* The ground of a picture whose left half is white must be white in its left
  * half. */
 TEST(taken)
@@ -102,7 +122,8 @@ static double exposed(double asked, double peak, double mean,
 TEST(lifted)
 {
     const double peak = 1 / 32.0, mean = peak / 300;
-    const struct glint_seen plain = {1, 0}, hidden = {0, 0}, half = {0.0625, 0};
+    const struct glint_seen plain = {1, 0, 0}, hidden = {0, 0, 0},
+                            half = {0.0625, 0, 0};
 
     /* A flare that is seen keeps a quarter of white. */
     assert_true(fabs(exposed(0.5, peak, mean, plain) - 0.25) < 0.001);
@@ -120,10 +141,15 @@ TEST(lifted)
 TEST(lowered)
 {
     const double peak = 1 / 32.0, mean = peak / 20;
-    const struct glint_seen veil = {0.5, 0.125}, thick = {9, 9},
-                            thin = {1, 0.05};
+    const struct glint_seen veil = {0.5, 0.125, 0}, thick = {9, 9, 0},
+                            thin = {1, 0.05, 0}, sky = {0, 0, peak / 0.4},
+                            haze = {0, 0, peak / 0.05};
 
     assert_true(fabs(exposed(0.5, peak, mean, veil) - 0.125) < 0.001);
     assert_true(fabs(exposed(0.5, peak, mean, thick) - 0.1) < 0.001);
     assert_true(exposed(0.5, peak, mean, thin) > 0.24);
+    /* Ghosts on a sky that light of 0.4 makes white must take two fifths of
+     * that, and at least 0.1. */
+    assert_true(fabs(exposed(0.5, peak, peak / 300, sky) - 0.16) < 0.001);
+    assert_true(fabs(exposed(0.5, peak, peak / 300, haze) - 0.1) < 0.001);
 }
