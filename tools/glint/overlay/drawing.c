@@ -353,7 +353,56 @@ static enum glint_status steer(struct drawing *d)
 
 /* -------------------------------------------------------------------- lamps */
 
-/* Sets the lamps of IMAGE: given by hand or by a list, or found. */
+/* Returns whether one of the N lamps GIVEN lies in the disc of LAMP, which was
+ * found, or within the distance at which the finder merges lamps: a hundredth
+ * of the picture's width. */
+static bool is_given(const struct drawing_run *run, double focal_mm,
+                     const struct glint_engine_lamp *lamp,
+                     const struct glint_engine_lamp *given, int n)
+{
+    const double reach_px =
+        sqrt(2) * lamp->track.size_q8 / 256.0 + run->view.width / 100.0;
+
+    for (int i = 0; i < n; i++) {
+        double x, y;
+
+        glint_view_to_pixel(&run->view, focal_mm, &given[i].lamp, &x, &y);
+        if (hypot(x - lamp->track.x_q8 / 256.0, y - lamp->track.y_q8 / 256.0) <=
+            reach_px)
+            return true;
+    }
+    return false;
+}
+
+/* Puts the lamps that are found in IMAGE before the N of RUN, which replace
+ * those of the same place. Returns the number of all. */
+static int add_found(struct drawing *d, const struct glint_image *image,
+                     int32_t elapsed_us, int n)
+{
+    struct drawing_run *const run = &d->run;
+    struct glint_engine_lamp *const lamp = run->lamp;
+    struct glint_engine_lamp *const given = lamp + GLINT_ENGINE_MAX_LAMPS;
+    int n_found;
+
+    memmove(given, lamp, (size_t)n * sizeof *lamp);
+    n_found = glint_engine_find(run->engine, image, elapsed_us, lamp,
+                                GLINT_ENGINE_MAX_LAMPS);
+    run->n_found = 0;
+    for (int i = 0; i < n_found; i++)
+        if (!is_given(run, focal_of(d), &lamp[i], given, n))
+            lamp[run->n_found++] = lamp[i];
+    for (int i = 0; i < n; i++) {
+        /* numbers of found lamps count from 1 */
+        given[i].id = LAMP_ID_TEXT + (uint32_t)i;
+        lamp[run->n_found + i] = given[i];
+    }
+    for (int i = 0; i < run->n_found && run->is_measured; i++)
+        lamp[i].seen_px = 0;
+    return run->n_found + n;
+}
+
+/* Sets the lamps of IMAGE: given by angle, pixel, key frames or a list, and
+ * found unless an option says which ones there are. */
 static void set_lamps(struct drawing *d, const struct glint_image *image,
                       int32_t elapsed_us)
 {
@@ -368,16 +417,13 @@ static void set_lamps(struct drawing *d, const struct glint_image *image,
     for (int i = 0; i < n; i++)
         lamp[i] = glint_engine_lamp_of(
             &line->hand[i], (is_listed ? LAMP_ID_TEXT : 1) + (uint32_t)i);
-    if (is_listed)
+    if (list->n > 0)
         n += lamp_list_frame(list, run->n_frames, &run->view, focal_of(d),
                              lamp + n, list->n);
     run->is_followed = elapsed_us > 0 && follows;
-    if (!is_listed && n == 0)
-        n = glint_engine_find(run->engine, image, follows ? elapsed_us : 0,
-                              lamp, GLINT_ENGINE_MAX_LAMPS);
-    for (int i = 0; i < n && run->is_measured; i++)
-        if (lamp[i].is_found)
-            lamp[i].seen_px = 0;
+    run->n_found = 0;
+    if (!is_listed && line->n_hand == 0)
+        n = add_found(d, image, follows ? elapsed_us : 0, n);
     glint_engine_elapsed(run->engine, elapsed_us);
     if (!follows || (is_listed && lamp_keys_is_cut(list, run->n_frames)))
         glint_engine_mark_cut(run->engine);
@@ -404,9 +450,8 @@ void drawing_measure(struct drawing *drawing,
 {
     const struct drawing_run *const run = &drawing->run;
 
-    if (!drawing->files.is_listed && !drawing->line.n_hand)
-        add_lamp_excess(run->lamp, run->n_own, samples, run->white, &run->view,
-                        focal_of(drawing));
+    add_lamp_excess(run->lamp, run->n_found, samples, run->white, &run->view,
+                    focal_of(drawing));
 }
 
 /* Returns the row that lamp I is saved as: where it was found, or where a list
@@ -618,9 +663,6 @@ void drawing_mark(const struct drawing *drawing,
 {
     const struct drawing_line *const line = &drawing->line;
     const struct drawing_run *const run = &drawing->run;
-    const bool is_found =
-        !drawing->files.is_listed && line->n_hand == 0 && run->n_own > 0;
-
     if (run->engine && line->settings.options.preview)
         /* without memory there are no numbers */
         preview_number(run->engine, run->lamp, run->n_lamps, drawing_scale(run),
@@ -631,7 +673,7 @@ void drawing_mark(const struct drawing *drawing,
         return;
     for (int i = 0; i < run->n_lamps; i++)
         mark_lamp(run, focal_of(drawing), i, image);
-    show_legend(image, is_found && run->is_followed);
+    show_legend(image, run->n_found > 0 && run->is_followed);
 }
 
 bool drawing_has_marks(const struct drawing_line *line)

@@ -33,8 +33,9 @@ struct drawing_run {
 
     /* The last frame. */
     struct glint_engine_lamp *lamp; /* with room for all given, found or read */
-    int n_lamps, n_own; /* all lamps; of these that are not the scene's */
-    bool is_followed;   /* its lamps are tracked through a video */
+    int n_lamps, n_own, n_found; /* all lamps; the first of these, which are not
+                                    the scene's; the first, which were found */
+    bool is_followed;            /* its lamps are tracked through a video */
     double find_ms, flare_ms;
     struct glint_engine_report report;
 };

@@ -210,7 +210,7 @@ static enum glint_status open_list(const struct drawing_line *line,
         status = lamp_keys_link(&f->list);
     for (int i = 0; i < line->at.n && status == GLINT_OK; i++)
         status = lamp_list_add(&f->list, &line->at.row[i]);
-    f->is_listed = o->lights || line->at.n > 0;
+    f->is_listed = o->lights || line->is_unsearched;
     return status;
 }
 
@@ -226,7 +226,6 @@ static enum glint_status add_key_lamp(struct drawing_files *f)
 
     if (!keys_has(&f->keys, KEYS_X) || !keys_has(&f->keys, KEYS_Y))
         return GLINT_OK;
-    f->is_listed = true;
     return lamp_list_add(&f->list, &row);
 }
 

@@ -17,7 +17,7 @@
 struct drawing_files {
     bool has_lens; /* false: there is only a scene */
     struct opened_lens lens;
-    bool is_listed;        /* lamps come from LIST, none is found */
+    bool is_listed;        /* no lamp is found: a list or none has all */
     struct lamp_list list; /* lamps of --lights, by pixel and of key frames */
     struct keys keys;
     char keys_line[224];        /* "FILE:LINE" of the requested f-number */

@@ -54,7 +54,7 @@ static void resolve(struct drawing_line *line)
 {
     struct glint_options *const o = &line->settings.options;
 
-    if (is_text(o->lights, "auto"))
+    if (is_text(o->lights, "auto") || is_text(o->lights, "none"))
         o->lights = NULL;
     if (o->memory)
         line->reserve_bytes = (size_t)o->memory << 20;
@@ -129,6 +129,8 @@ int drawing_line_option(const struct tool *tool, struct drawing_line *line,
     code = settings_option(tool, &line->settings, option, value);
     if (code != -1)
         return code;
+    if (option == ENGINE_OPTION_OF(lights))
+        line->is_unsearched = is_text(value, "none");
     resolve(line);
     if (option == ENGINE_OPTION_OF(show)) {
         line->show_lights |= is_text(value, "lights");

@@ -28,6 +28,7 @@ struct drawing_line {
      * need. */
     size_t reserve_bytes;
     bool show_lights, show_time_line;
+    bool is_unsearched; /* no lamps are found: --lights none */
     bool is_still; /* pictures are independent, and there is time for them */
     bool is_live;  /* does not wait for a FIFO of poses or control */
     int dial;      /* code of the option that set the brightness, --strength or

@@ -113,6 +113,9 @@ static int set_options(struct filter *f)
         for (int i = 0; filter_parameter(i, &p) && code == -1; i++)
             if ((pass == 0) == (strcmp(p.name, "style") == 0))
                 code = set_option(f, &p, i);
+    if (code == -1 && v->number[FILTER_AUTO] < 0.5)
+        code =
+            drawing_line_set_text(&f->tool, &f->drawing.line, "lights", "none");
     if (code == -1 && v->number[FILTER_AUTO] < 0.5 &&
         !drawing_line_add_light(
             &f->drawing.line, v->number[FILTER_X] * f->width,
