@@ -333,12 +333,23 @@ static void doubt_place(struct glint_record *r,
         follow_jump(f, target_q16, ahead_q16 + f->offset);
 }
 
+/* Returns whether the lamp moves along AXIS by more than half a pixel and a
+ * sixteenth of its radius in the time of a picture. Its errors are motion then,
+ * not noise: where the motion turns or ends, the drift points the wrong way for
+ * some pictures. */
+static int is_moving(const struct glint_record *r, int axis)
+{
+    return size_of(r->ahead_q16[axis] - r->of[X + axis].value) >
+           r->of[SIZE].value * 16 + 65536 / 2;
+}
+
 /* Returns how to follow a place: an error of more than three quarters of the
- * lamp's radius is change, not noise. */
-static enum follow_as judge_place(const struct glint_record *r,
+ * lamp's radius is change, not noise, and so is any of a lamp that moves. */
+static enum follow_as judge_place(const struct glint_record *r, int axis,
                                   int64_t error_q16, int is_repeat)
 {
-    if (size_of(error_q16) > r->of[SIZE].value * 192 + 65536 / 8)
+    if (size_of(error_q16) > r->of[SIZE].value * 192 + 65536 / 8 ||
+        is_moving(r, axis))
         return FOLLOW_CHANGED;
     return is_repeat ? FOLLOW_REPEATED : FOLLOW_JUDGED;
 }
@@ -371,9 +382,9 @@ static void follow_place(struct glint_record *r,
 {
     struct glint_follow *f = &r->of[X + axis];
     const int64_t before_q16 = f->value;
-    const int32_t change_q15 =
-        follow_step_q15(f, target_q16, floor_of(X, 0), &step->pace,
-                        judge_place(r, target_q16 - before_q16, is_repeat));
+    const int32_t change_q15 = follow_step_q15(
+        f, target_q16, floor_of(X, 0), &step->pace,
+        judge_place(r, axis, target_q16 - before_q16, is_repeat));
 
     learn_velocity(r, step, axis, before_q16, change_q15);
 }

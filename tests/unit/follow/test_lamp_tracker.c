@@ -429,6 +429,29 @@ TEST(a_moving_lamp_does_not_lag)
     }
 }
 
+/* A wide lamp in a pan that shakes, whose motion turns round twice a second,
+ * must be followed within a pixel, without noise and with it. */
+TEST(a_shaken_lamp_does_not_lag)
+{
+    for (int k = 0; k < 2; k++) {
+        double most = 0;
+
+        open_night(640, 200, k ? 3 : 0);
+        for (int frame = 0; frame < 60; frame++) {
+            const struct night_lamp lamp = {
+                500.3 - 4 * frame - 25 * sin(frame / 3.0), 100.4, 15, 3};
+            const struct glint_lamp_track *t;
+
+            night_step(&night, &lamp, 1, FPS30);
+            t = only_track();
+            most = fmax(most, fabs(t->x_q8 / 256.0 - lamp.x));
+        }
+        print_message("shaken%s: off by %.3f px\n", k ? " in noise" : "", most);
+        assert_true(most < 1);
+        night_close(&night);
+    }
+}
+
 /* A lamp that stood still for two seconds and then moves by 2 pixels a frame
  * must be followed from the first frame on. */
 TEST(a_lamp_that_starts_is_followed)
