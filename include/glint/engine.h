@@ -372,9 +372,10 @@ void glint_engine_mark_cut(struct glint_engine *engine);
 /* Forgets the lamps that were followed. */
 void glint_engine_forget_lamps(struct glint_engine *engine);
 
-/* Sets SPOT to the brightest region that was rejected as a lamp in the last
- * picture searched, though it may be one; returns 0 if there is none. */
-int glint_engine_doubtful(const struct glint_engine *engine,
+/* Sets SPOT to region I, from 0, the brightest first, of those that were
+ * rejected as lamps in the last picture searched, though they may be some, with
+ * the reason; returns 0 if there are no so many. */
+int glint_engine_doubtful(const struct glint_engine *engine, int i,
                           struct glint_spot *spot);
 
 /* Visible fraction of a completely hidden lamp: not 0, so that power / share

@@ -40,6 +40,22 @@
 extern "C" {
 #endif
 
+/* The main reason against a region that is not a lamp. */
+enum glint_doubt {
+    GLINT_DOUBT_NONE,   /* it is a lamp */
+    GLINT_DOUBT_DIM,    /* too few pixels at the upper threshold, or too few at
+                           all */
+    GLINT_DOUBT_AROUND, /* its surroundings are nearly as bright */
+    GLINT_DOUBT_GLOW,   /* light does not fall off around it, or unevenly */
+    GLINT_DOUBT_SHAPE,  /* it is not compact */
+    GLINT_DOUBT_SIZE,   /* it is small for the picture */
+    GLINT_DOUBT_GREY,   /* it is less bright than white */
+    GLINT_DOUBT_CROWD,  /* many regions are as bright */
+    GLINT_DOUBT_DAY,    /* the picture is bright, or dull */
+    GLINT_DOUBT_LOW,    /* it lies low in the picture */
+    GLINT_DOUBT_DRAWN   /* it fills a box, as windows and bars do */
+};
+
 /* A lamp in one picture. */
 struct glint_spot {
     int32_t x_q8, y_q8; /* flux-weighted centroid; pixels from the top left
@@ -51,6 +67,7 @@ struct glint_spot {
     int64_t flux_q16;  /* sum of linear luminance over its pixels, 1 = white */
     int32_t rgb_q15[3]; /* mean linear colour, luminance 1 (BT.709 weights) */
     int32_t faint;      /* 1: not a lamp yet; see keep_faint */
+    enum glint_doubt doubt; /* of a faint one */
 
     /* glint_profile_measure (glint/profile.h) sets these members and refines
      * rgb; before, they are the flux and the radius. */

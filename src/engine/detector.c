@@ -228,13 +228,13 @@ static int is_disc(const struct glint_spot *spot)
 }
 
 const struct glint_spot *
-glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector)
+glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector, int i)
 {
-    for (int i = 0; i < detector->n_spots; i++) {
-        const struct glint_spot *spot = &detector->spot[i];
+    for (int k = 0; k < detector->n_spots; k++) {
+        const struct glint_spot *spot = &detector->spot[k];
 
         if (spot->faint && spot->flux_q16 >= (int64_t)spot->area << 15 &&
-            is_disc(spot))
+            is_disc(spot) && i-- == 0)
             return spot;
     }
     return NULL;

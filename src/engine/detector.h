@@ -62,11 +62,11 @@ double glint_lamp_excess(const struct glint_lamp *lamp,
                          const struct glint_lamp_track *track, double level,
                          double share, double white);
 
-/* Returns the strongest spot of the last frame that was not taken for a lamp,
- * yet is within a stop of white on average and about as compact as a disc; NULL
- * if there is none. */
+/* Returns spot I, the strongest first, of those of the last frame that were not
+ * taken for lamps, yet are within a stop of white on average and about as
+ * compact as a disc; NULL if there are no so many. */
 const struct glint_spot *
-glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector);
+glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector, int i);
 
 /* Declares that the next frame is unrelated to the last one: another camera, a
  * jump. */

@@ -55,11 +55,11 @@ int glint_engine_find(struct glint_engine *engine,
     return n;
 }
 
-int glint_engine_doubtful(const struct glint_engine *engine,
+int glint_engine_doubtful(const struct glint_engine *engine, int i,
                           struct glint_spot *spot)
 {
     const struct glint_spot *const found =
-        glint_lamp_detector_doubtful(&engine->find.detector);
+        glint_lamp_detector_doubtful(&engine->find.detector, i);
 
     if (found)
         *spot = *found;

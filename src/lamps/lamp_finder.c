@@ -317,7 +317,9 @@ static void offer(void *finder, const struct glint_region *sum)
     if (sum->area <= f->max_area && (light || is_faint(f, sum)))
         hold(f, &(struct glint_candidate){.sum = *sum,
                                           .level = (int16_t)f->at,
-                                          .faint = (uint8_t)!light});
+                                          .faint = (uint8_t)!light,
+                                          .doubt = light ? GLINT_DOUBT_NONE
+                                                         : GLINT_DOUBT_DIM});
 }
 
 /* --------------------------------------------------------------------- rows */
@@ -566,6 +568,8 @@ static void judge(struct glint_lamp_finder *f)
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
 
+        if (c->score_q8 < least_q8)
+            c->doubt = (uint8_t)glint_score_doubt(c);
         c->faint |= c->score_q8 < least_q8;
         if (c->score_q8 >= (f->cfg.keep_faint ? -SCORE_DOUBT : least_q8))
             f->order[f->n++] = f->order[i];
@@ -586,6 +590,7 @@ static struct glint_spot spot_of(const struct glint_candidate *candidate)
                            .n_clipped = sum->n_clipped,
                            .flux_q16 = sum->w_q14 * 4,
                            .faint = candidate->faint,
+                           .doubt = (enum glint_doubt)candidate->doubt,
                            .power_q16 = sum->w_q14 * 4,
                            .cos_q15 = 1 << 15};
 

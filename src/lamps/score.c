@@ -315,6 +315,58 @@ static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
     return sum_q16 >> 8;
 }
 
+/* Returns the doubt that MEASURE stands for; none for measures that only some
+ * lamps have. */
+static enum glint_doubt doubt_of(int measure)
+{
+    switch (measure) {
+    case EVIDENCE_AROUND:
+    case EVIDENCE_CLOSE:
+        return GLINT_DOUBT_AROUND;
+    case EVIDENCE_HALO:
+    case EVIDENCE_SPREAD:
+        return GLINT_DOUBT_GLOW;
+    case EVIDENCE_FILL:
+    case EVIDENCE_BOX:
+        return GLINT_DOUBT_SHAPE;
+    case EVIDENCE_SIZE:
+        return GLINT_DOUBT_SIZE;
+    case EVIDENCE_WHITE:
+        return GLINT_DOUBT_GREY;
+    case EVIDENCE_CROWD:
+        return GLINT_DOUBT_CROWD;
+    case EVIDENCE_HIGH:
+        return GLINT_DOUBT_LOW;
+    case EVIDENCE_DRAWN:
+        return GLINT_DOUBT_DRAWN;
+    case EVIDENCE_COLOUR:
+    case EVIDENCE_WIDE_HALO:
+    case EVIDENCE_WIDE_HOT:
+        return GLINT_DOUBT_NONE;
+    default:
+        return GLINT_DOUBT_DAY;
+    }
+}
+
+enum glint_doubt glint_score_doubt(const struct glint_candidate *c)
+{
+    int32_t loss_q16[EVIDENCES] = {0};
+    int worst = EVIDENCE_AROUND;
+
+    for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
+        const struct term *t = &terms[i];
+        const int32_t v_q8 =
+            q_clamp_sat(c->evidence_q8[t->measure], t->least_q8, t->most_q8);
+
+        loss_q16[t->measure] +=
+            ((t->least_q8 + t->most_q8) / 2 - v_q8) * t->weight_q8;
+    }
+    for (int i = worst; i < EVIDENCES; i++)
+        if (doubt_of(i) != GLINT_DOUBT_NONE && loss_q16[i] > loss_q16[worst])
+            worst = i;
+    return doubt_of(worst);
+}
+
 /* Returns the first ring that MEASURE depends on, or SCORE_RINGS if none. */
 static int ring_of(int measure)
 {

@@ -28,6 +28,7 @@
 #ifndef GLINT_LAMPS_SCORE_H
 #define GLINT_LAMPS_SCORE_H
 
+#include "glint/lamps.h"
 #include "lamps/bright.h"
 #include "lamps/regions.h"
 #include "lamps/white.h"
@@ -93,6 +94,7 @@ struct glint_candidate {
     int16_t level; /* index of its level; 0 is the darkest */
     int32_t rank_q8;
     uint8_t faint;
+    uint8_t doubt; /* enum glint_doubt */
     uint8_t gone; /* 1: merged into another region, or replaced by one of higher
                      rank */
     int32_t evidence_q8[EVIDENCES];
@@ -123,6 +125,10 @@ struct glint_score {
 void glint_score_all(const struct glint_score *score,
                      struct glint_candidate *candidate, const int32_t *order,
                      int n);
+
+/* Returns the measure that lowers the score of C most, compared with the middle
+ * of its range. */
+enum glint_doubt glint_score_doubt(const struct glint_candidate *c);
 
 /* Returns the min score of a lamp: 0, or -SCORE_COMPANY in a picture of
  * SCORE_SEVERAL lamps, or the best score if none reaches 0 and that is not

@@ -29,7 +29,8 @@ static const char help[] =
     "pixels, lit pixels, tiles; of the frame's work) and gives (share of the\n"
     "light that reaches the picture; its brightest pixel, white = 1), and "
     "what\n"
-    "is left out, and why. IN is a picture as of glint overlay; with --size "
+    "is left out, and why, also which bright regions are no lamps. IN is a "
+    "picture as of glint overlay; with --size "
     "the\n"
     "frame is one of glint render. With --scene it reports, before the flare,\n"
     "what became of objects (drawn, hidden, behind the camera, off-screen,\n"
@@ -293,12 +294,16 @@ static int tell_scene(struct tool *tool, const struct explain_command *c,
 static int tell(struct tool *tool, struct explain_command *c, bool linear)
 {
     struct drawing *drawing = &c->drawing;
-    const struct explain_title title = {.lens = drawing->files.lens.table.name,
-                                        .lamp = drawing->run.lamp,
-                                        .n_lamps = drawing->run.n_lamps,
-                                        .linear = linear,
-                                        .top = c->top,
-                                        .report = &drawing->run.report};
+    const struct explain_title title = {
+        .lens = drawing->files.lens.table.name,
+        .lamp = drawing->run.lamp,
+        .n_lamps = drawing->run.n_lamps,
+        .linear = linear,
+        .top = c->top,
+        .report = &drawing->run.report,
+        .engine = drawing->files.is_listed || drawing->line.n_hand > 0
+                      ? NULL
+                      : drawing->run.engine};
     struct glint_explain e;
     const enum glint_status status = glint_explain_open(
         &e, drawing->run.engine,

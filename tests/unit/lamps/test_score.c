@@ -450,3 +450,37 @@ TEST(video_needs_more)
     assert_int_equal(n_after, n_alone);
     assert_in_range(n_of_video, 1, n_alone - 1);
 }
+
+/* A region whose measures are all those of a lamp but one must be doubted for
+ * that one. */
+TEST(doubt)
+{
+    static const struct {
+        int measure, value_q8;
+        enum glint_doubt doubt;
+    } poor[] = {{EVIDENCE_AROUND, 0, GLINT_DOUBT_AROUND},
+                {EVIDENCE_SPREAD, 9999, GLINT_DOUBT_GLOW},
+                {EVIDENCE_FILL, 0, GLINT_DOUBT_SHAPE},
+                {EVIDENCE_SIZE, -9999, GLINT_DOUBT_SIZE},
+                {EVIDENCE_WHITE, -999, GLINT_DOUBT_GREY},
+                {EVIDENCE_CROWD, 9999, GLINT_DOUBT_CROWD},
+                {EVIDENCE_DARK_4, 0, GLINT_DOUBT_DAY},
+                {EVIDENCE_HIGH, 0, GLINT_DOUBT_LOW},
+                {EVIDENCE_DRAWN, 256, GLINT_DOUBT_DRAWN}};
+    static const int32_t lamp_q8[EVIDENCES] = {
+        [EVIDENCE_AROUND] = 1200,   [EVIDENCE_HALO] = 512,
+        [EVIDENCE_FILL] = 224,      [EVIDENCE_BOX] = 200,
+        [EVIDENCE_SIZE] = -2000,    [EVIDENCE_COLOUR] = 256,
+        [EVIDENCE_CLOSE] = 300,     [EVIDENCE_HIGH] = 160,
+        [EVIDENCE_WIDE_HALO] = 512, [EVIDENCE_WIDE_HOT] = 256,
+        [EVIDENCE_DARK_2] = 700,    [EVIDENCE_DARK_4] = 500,
+        [EVIDENCE_DARK_32] = 1600};
+
+    for (size_t i = 0; i < sizeof poor / sizeof *poor; i++) {
+        struct glint_candidate c = {.level = 0};
+
+        memcpy(c.evidence_q8, lamp_q8, sizeof lamp_q8);
+        c.evidence_q8[poor[i].measure] = poor[i].value_q8;
+        assert_int_equal(glint_score_doubt(&c), poor[i].doubt);
+    }
+}

@@ -19,6 +19,8 @@ struct explain_title {
     bool linear;
     int top; /* most ghosts and lights to list, and ghosts to mark */
     const struct glint_engine_report *report;
+    const struct glint_engine
+        *engine; /* searched the picture; NULL: none did */
 };
 
 void explain_print(const struct glint_explain *explain,

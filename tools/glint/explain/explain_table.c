@@ -254,6 +254,46 @@ static void print_lost_lights(const struct glint_explain *e,
                r->apart_lights, r->drawn_lights);
 }
 
+static const char *const doubts[] = {
+    [GLINT_DOUBT_NONE] = "a lamp",
+    [GLINT_DOUBT_DIM] = "too few of its pixels reach --threshold",
+    [GLINT_DOUBT_AROUND] = "its surroundings are nearly as bright",
+    [GLINT_DOUBT_GLOW] = "light does not fall off evenly around it",
+    [GLINT_DOUBT_SHAPE] = "it is not round",
+    [GLINT_DOUBT_SIZE] = "it is small",
+    [GLINT_DOUBT_GREY] = "it is darker than white",
+    [GLINT_DOUBT_CROWD] = "many regions are as bright",
+    [GLINT_DOUBT_DAY] = "the picture is bright or dull",
+    [GLINT_DOUBT_LOW] = "it lies low in the picture",
+    [GLINT_DOUBT_DRAWN] = "it fills a box, as windows and bars do"};
+
+static void print_rejected(const struct explain_title *t)
+{
+    struct glint_spot spot;
+
+    for (int i = 0;
+         i < t->top && t->engine && glint_engine_doubtful(t->engine, i, &spot);
+         i++)
+        printf("%snot a lamp: %d pixels at %.0f,%.0f: %s\n", i ? "" : "\n",
+               spot.area, spot.x_q8 / 256.0, spot.y_q8 / 256.0,
+               doubts[spot.doubt]);
+}
+
+static void json_rejected(struct json_writer *json,
+                          const struct explain_title *t)
+{
+    struct glint_spot spot;
+
+    json_write(json, "rejected: [");
+    for (int i = 0;
+         i < t->top && t->engine && glint_engine_doubtful(t->engine, i, &spot);
+         i++)
+        json_write(json, "{x: %.2f, y: %.2f, pixels: %d, reason: %s}",
+                   spot.x_q8 / 256.0, spot.y_q8 / 256.0, spot.area,
+                   doubts[spot.doubt]);
+    json_write(json, "]");
+}
+
 void explain_print(const struct glint_explain *e, const struct explain_title *t)
 {
     int ghosts[GLINT_MAX_GHOSTS];
@@ -267,6 +307,7 @@ void explain_print(const struct glint_explain *e, const struct explain_title *t)
         print_left_out(e);
     }
     print_lost_lights(e, t);
+    print_rejected(t);
 }
 
 /* -------------------------------------------------------------------- JSON */
@@ -341,6 +382,7 @@ void explain_json(const struct glint_explain *e, const struct explain_title *t)
     glint_explain_sort(e, ghosts);
     json_title(&json, e, t);
     json_lights(&json, e, t);
+    json_rejected(&json, t);
     json_write(&json, "wavelengths: [");
     for (int i = 0; i < e->n_waves; i++) {
         if (e->sets)

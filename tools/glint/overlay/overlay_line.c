@@ -248,6 +248,18 @@ static void say_hidden(const struct drawing *drawing, int most, FILE *to)
             rest_of(drawing));
 }
 
+/* Prints the options that take the brightest candidates for lamps. */
+static void say_candidates(const struct glint_engine *engine, FILE *to)
+{
+    struct glint_spot next;
+    const bool is_one = !glint_engine_doubtful(engine, 1, &next);
+
+    fprintf(to, "brightest candidate%s:", is_one ? "" : "s");
+    for (int i = 0; i < 3 && glint_engine_doubtful(engine, i, &next); i++)
+        fprintf(to, " --light-at %.0f,%.0f", next.x_q8 / 256.0,
+                next.y_q8 / 256.0);
+}
+
 void overlay_say_none(const struct drawing *drawing, FILE *to)
 {
     const bool is_found =
@@ -255,12 +267,11 @@ void overlay_say_none(const struct drawing *drawing, FILE *to)
     struct glint_spot next;
     const bool is_next = drawing->run.engine && is_found &&
                          drawing->run.n_frames <= 1 &&
-                         glint_engine_doubtful(drawing->run.engine, &next);
+                         glint_engine_doubtful(drawing->run.engine, 0, &next);
 
     fprintf(to, "no light was found, so %s was drawn; ", rest_of(drawing));
     if (is_next)
-        fprintf(to, "brightest candidate: --light-at %.0f,%.0f",
-                next.x_q8 / 256.0, next.y_q8 / 256.0);
+        say_candidates(drawing->run.engine, to);
     else
         fputs("see --threshold, or give one with --light-at X,Y", to);
     if (over_scene_keeps_lights(&drawing->files.scene))

@@ -508,7 +508,7 @@ int web_doubtful(double xy[2])
 {
     struct glint_spot spot;
 
-    if (!web.engine || !glint_engine_doubtful(web.engine, &spot))
+    if (!web.engine || !glint_engine_doubtful(web.engine, 0, &spot))
         return 0;
     xy[0] = spot.x_q8 / 256.0;
     xy[1] = spot.y_q8 / 256.0;
