@@ -20,6 +20,7 @@ struct zmx {
     bool indented;              /* what is of surfaces is */
     int field_type;
     double field, object;
+    double number;   /* of surface S, as the file counts */
     int object_line; /* 0: not met yet */
 };
 
@@ -156,9 +157,20 @@ static bool take_head(struct zmx *z)
            lines_fields(l, &z->field);
 }
 
-/* Starts a surface; the object is not one. */
+/* Starts a surface; the object is not one. Numbers that do not count up are of
+ * a file that is damaged: a surface is missing, or twice there. */
 static bool start_surface(struct zmx *z)
 {
+    double number;
+
+    if (!lines_number(&z->lines, 1, "number of the surface", &number))
+        return false;
+    if (!(number >= 0) || number > 1e6 || number != floor(number) ||
+        (z->s && number != z->number + 1))
+        return imported_fail(z->lens, z->lines.number,
+                             "surface %.15g: surfaces count up from 0%s",
+                             number, z->s ? ", one by one" : "");
+    z->number = number;
     z->even = false;
     if (z->s && z->object_line == 0) {
         z->object = z->s->thickness;
