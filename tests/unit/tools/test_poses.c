@@ -123,6 +123,7 @@ TEST(mistakes)
     refused("0,ball,1,2,3,1,0,0,0,0\n", 1, "expected frame,object,x,y,z");
     refused("0,ball,1,two,3\n", 1, "are numbers");
     refused("-3,ball,1,2,3\n", 1, "frame must be");
+    refused("-1,ball,1,2,3\n", 1, "frame must be");
     refused("1.5,ball,1,2,3\n", 1, "frame must be");
     refused("0,bell,1,2,3\n", 1, "no 'bell'; did you mean 'ball'?");
     refused("0,ball,1e8,2,3\n", 1, "beyond");

@@ -33,7 +33,7 @@ enum {
 #define POWERS   "power, also times r, g or b, must be 0 to 1e30"
 
 static const struct text_column columns[COLUMNS] = {
-    {"frame", -1, TEXT_MAX_FRAME - 1,
+    {"frame", 0, TEXT_MAX_FRAME - 1,
      "frame must be a whole number from 0, or *"},
     {"x", -1e6, 1e6, FAR},
     {"y", -1e6, 1e6, FAR},

@@ -45,6 +45,8 @@ enum glint_status text_lines_open(struct text_lines *lines, const char *name,
     if (lines->mem && bytes)
         memcpy(lines->mem, text, bytes);
     lines->rest = lines->mem;
+    if (lines->mem && strncmp(lines->mem, "\xef\xbb\xbf", 3) == 0)
+        lines->rest += 3; /* the mark of UTF-8 that some editors write */
     free(data);
     return status;
 }

@@ -11,7 +11,7 @@
 enum { MAX_BYTES = 1 << 28, FRAME = 0, OBJECT, PLACE, TURN = 5, COLUMNS = 9 };
 
 static const struct text_column columns[COLUMNS] = {
-    {"frame", -1, TEXT_MAX_FRAME - 1,
+    {"frame", 0, TEXT_MAX_FRAME - 1,
      "frame must be a whole number from 0, or *"},
     {"object", 0, 0, ""},
     {"x", -DBL_MAX, DBL_MAX, ""},
