@@ -265,8 +265,7 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
     if (status != GLINT_OK)
         return status;
     if (pipe(pipe_fd) < 0)
-        return glint_error_report(error, GLINT_E_IO, path, "%s",
-                                  strerror(errno));
+        return glint_error_errno(error, GLINT_E_IO, path, errno);
     child = start(face, pipe_fd, path, max_triangles);
     close(pipe_fd[1]);
     in.fd = pipe_fd[0];

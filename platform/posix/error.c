@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "posix/error.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -69,4 +70,15 @@ enum glint_status glint_error_report(struct glint_error *error,
     va_end(args);
     glint_utf8_clean(error->text);
     return status;
+}
+
+enum glint_status glint_error_errno(struct glint_error *error,
+                                    enum glint_status status, const char *file,
+                                    int number)
+{
+    const int is_short = number == EMFILE || number == ENFILE ||
+                         number == EAGAIN || number == ENOMEM;
+
+    return glint_error_report(error, is_short ? GLINT_E_MEMORY : status, file,
+                              "%s", strerror(number));
 }

@@ -33,4 +33,11 @@ enum glint_status glint_error_report(struct glint_error *error,
                                      const char *format, ...)
     GLINT_PRINTF(4, 5);
 
+/* Sets ERROR to "FILE: cause" of errno value NUMBER. Returns STATUS, or
+ * GLINT_E_MEMORY if the system is short of descriptors, processes or memory:
+ * then FILE is not to blame. */
+enum glint_status glint_error_errno(struct glint_error *error,
+                                    enum glint_status status, const char *file,
+                                    int number);
+
 #endif

@@ -24,8 +24,7 @@ static enum glint_status open_by(struct glint_input *in, const char *path,
     else
         in->fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | flags);
     if (in->fd < 0)
-        return glint_error_report(error, GLINT_E_IO, in->name, "%s",
-                                  strerror(errno));
+        return glint_error_errno(error, GLINT_E_IO, in->name, errno);
     if (is_stdin && isatty(in->fd)) {
         glint_input_close(in);
         return glint_error_report(error, GLINT_E_IO, in->name,

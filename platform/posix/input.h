@@ -23,7 +23,8 @@ struct glint_input {
 };
 
 /* Opens PATH, which must outlive IN, as a stream: a file, a device or a FIFO,
- * whose writer it waits for. GLINT_E_IO: it cannot be opened. */
+ * whose writer it waits for. GLINT_E_IO: it cannot be opened. GLINT_E_MEMORY:
+ * the system gives no descriptor. */
 enum glint_status glint_input_open(struct glint_input *in, const char *path,
                                    struct glint_error *error);
 

@@ -212,9 +212,10 @@ static bool open_pipes(int data[2], int failed[2])
 static enum glint_status refuse(const char *name, int number,
                                 struct glint_error *error)
 {
-    return glint_error_report(
-        error, number == ENOENT ? GLINT_E_UNSUPPORTED : GLINT_E_IO, name, "%s",
-        number == ENOENT ? "is not installed" : strerror(number));
+    if (number == ENOENT)
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
+                                  "is not installed");
+    return glint_error_errno(error, GLINT_E_IO, name, number);
 }
 
 static enum glint_status start(struct child *child, const char *const *argv,
@@ -254,7 +255,8 @@ static enum glint_status start(struct child *child, const char *const *argv,
 }
 
 /* Starts ARGV[0] of $PATH with ARGV, which ends with NULL. GLINT_E_UNSUPPORTED:
- * it is not there. GLINT_E_IO: the system gives no process or descriptor. */
+ * it is not there. GLINT_E_MEMORY: the system gives no process or descriptor.
+ * GLINT_E_IO: it cannot be run. */
 static enum glint_status start_child(struct child *child,
                                      const char *const *argv,
                                      enum child_pipe kind,
