@@ -2,11 +2,19 @@
 #include "bake/scene/write_scene.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Cells of a grid for each of its triangles, at most. */
+/* Of a grid, at most: cells for each triangle; triangles listed in cells, for
+ * each triangle or in all, whichever is more. Cells become larger until that
+ * holds, so that N triangles cost O(N), coincident ones too. */
 #define CELLS_EACH 2
+#define REFS_EACH  64
+#define FEW_REFS   (1 << 22)
+/* Triangles in a cell, on average, that are refused: a ray tests all of them.
+ * Meshes that are not made to cost have a few. */
+#define MOST_IN_CELL 4096
 
 /* A corner as the file has it; members that the mesh does not use are 0. */
 struct corner {
@@ -191,35 +199,6 @@ static void bound(const struct mesher *m, struct glint_scene_mesh *mesh,
 
 /* -------------------------------------------------------------------- grid */
 
-/* Chooses the cells of MESH over the box from LOW to HIGH: the smallest of
- * which there are few enough. Returns their number. */
-static uint32_t choose_cells(struct glint_scene_mesh *mesh,
-                             const int32_t low[3], const int32_t high[3])
-{
-    const uint64_t most = CELLS_EACH * (uint64_t)mesh->n_triangles + 1;
-
-    for (mesh->cell_log2 = 4; mesh->cell_log2 < 28; mesh->cell_log2++) {
-        uint64_t n = 1;
-        bool fits = true;
-
-        for (int i = 0; i < 3; i++) {
-            const uint32_t cells =
-                (uint32_t)(((int64_t)high[i] - low[i]) >> mesh->cell_log2) + 1;
-
-            fits = fits && cells <= GLINT_SCENE_MAX_CELLS;
-            n *= fits ? cells : 1;
-        }
-        if (fits && n <= most)
-            break;
-    }
-    for (int i = 0; i < 3; i++) {
-        mesh->origin[i] = low[i];
-        mesh->cells[i] =
-            (uint32_t)(((int64_t)high[i] - low[i]) >> mesh->cell_log2) + 1;
-    }
-    return mesh->cells[0] * mesh->cells[1] * mesh->cells[2];
-}
-
 /* The cells that triangle T touches, with the margin, FROM .. TO along each
  * axis. */
 static void cells_of(const struct mesher *m,
@@ -243,6 +222,60 @@ static void cells_of(const struct mesher *m,
         to[i] = (int32_t)((high + GLINT_SCENE_MARGIN) >> mesh->cell_log2);
         from[i] = from[i] > last ? last : from[i];
         to[i] = to[i] > last ? last : to[i];
+    }
+}
+
+/* Sets the cells of MESH over the box from LOW to HIGH. Returns their number, 0
+ * if there are too many along an axis. */
+static uint64_t set_cells(struct glint_scene_mesh *mesh, const int32_t low[3],
+                          const int32_t high[3])
+{
+    uint64_t n = 1;
+
+    for (int i = 0; i < 3; i++) {
+        mesh->origin[i] = low[i];
+        mesh->cells[i] =
+            (uint32_t)(((int64_t)high[i] - low[i]) >> mesh->cell_log2) + 1;
+        n *= mesh->cells[i] <= GLINT_SCENE_MAX_CELLS ? mesh->cells[i] : 0;
+    }
+    return n;
+}
+
+/* Returns how often triangles are listed in the cells of MESH. */
+static uint64_t count_refs(const struct mesher *m,
+                           const struct glint_scene_mesh *mesh)
+{
+    uint64_t sum = 0;
+
+    for (uint32_t k = 0; k < m->n_triangles; k++) {
+        int32_t from[3], to[3];
+        uint64_t n = 1;
+
+        cells_of(m, mesh, &m->triangle[k], from, to);
+        for (int i = 0; i < 3; i++)
+            n *= (uint64_t)(to[i] - from[i] + 1);
+        sum += n;
+    }
+    return sum;
+}
+
+/* Chooses the cells of MESH over the box from LOW to HIGH: the smallest of
+ * which, and of whose lists, there are few enough. Returns their number and
+ * sets REFS to how often triangles are listed. */
+static uint64_t choose_cells(const struct mesher *m,
+                             struct glint_scene_mesh *mesh,
+                             const int32_t low[3], const int32_t high[3],
+                             uint64_t *refs)
+{
+    const uint64_t most = CELLS_EACH * (uint64_t)mesh->n_triangles + 1;
+    uint64_t most_refs = REFS_EACH * (uint64_t)mesh->n_triangles, n = 0;
+
+    most_refs = most_refs < FEW_REFS ? FEW_REFS : most_refs;
+    for (mesh->cell_log2 = 4;; mesh->cell_log2++) {
+        n = set_cells(mesh, low, high);
+        *refs = n > 0 && n <= most ? count_refs(m, mesh) : UINT64_MAX;
+        if (*refs <= most_refs || mesh->cell_log2 == 28)
+            return n;
     }
 }
 
@@ -274,20 +307,26 @@ static void list(const struct mesher *m, const struct glint_scene_mesh *mesh,
 static bool write_grid(struct glint_draft *draft, const struct mesher *m,
                        struct glint_scene_mesh *mesh, const int32_t low[3],
                        const int32_t high[3],
-                       struct glint_scene_bake_report *report)
+                       struct glint_scene_bake_report *report,
+                       struct glint_error *error)
 {
-    const uint32_t n = choose_cells(mesh, low, high);
-    uint32_t *start = calloc((size_t)n + 1, sizeof *start), *ref = NULL;
-    uint64_t sum = 0;
+    uint64_t sum;
+    const uint64_t n = choose_cells(m, mesh, low, high, &sum);
+    uint32_t *start, *ref;
 
-    if (start) {
-        list(m, mesh, start, NULL);
-        for (uint32_t i = 1; i <= n; i++)
-            start[i] = (uint32_t)(sum += start[i]);
-        if (sum <= UINT32_MAX / 8)
-            ref = malloc(((size_t)sum + 1) * sizeof *ref);
+    if (sum > FEW_REFS && sum > MOST_IN_CELL * n) {
+        snprintf(error->text, sizeof error->text,
+                 "mesh %s: too many of its %lu triangles lie in one place; "
+                 "remove faces that coincide, cut polygons of many corners",
+                 m->object->name, (unsigned long)mesh->n_triangles);
+        return false;
     }
-    if (ref) {
+    start = calloc((size_t)n + 1, sizeof *start);
+    ref = malloc(((size_t)sum + 1) * sizeof *ref);
+    if (start && ref) {
+        list(m, mesh, start, NULL);
+        for (uint64_t i = 1; i <= n; i++)
+            start[i] += start[i - 1];
         mesh->start_at = glint_draft_put(draft, start, ((size_t)n + 1) * 4);
         list(m, mesh, start, ref);
         mesh->ref_at = glint_draft_put(draft, ref, (size_t)sum * 4);
@@ -296,7 +335,7 @@ static bool write_grid(struct glint_draft *draft, const struct mesher *m,
     }
     free(start);
     free(ref);
-    return ref != NULL;
+    return start && ref;
 }
 
 /* ------------------------------------------------------------------ tables */
@@ -318,7 +357,8 @@ bool glint_grid_write(struct glint_draft *draft,
                       const struct glint_described_object *object,
                       const struct glint_steps *steps,
                       struct glint_scene_mesh *mesh,
-                      struct glint_scene_bake_report *report)
+                      struct glint_scene_bake_report *report,
+                      struct glint_error *error)
 {
     struct mesher m = {.scene = scene, .object = object, .steps = steps};
     int32_t low[3], high[3];
@@ -339,7 +379,7 @@ bool glint_grid_write(struct glint_draft *draft,
                 put_corners(draft, &m, offsetof(struct corner, normal_q30), 3);
         mesh->triangle_at = glint_draft_put(draft, m.triangle,
                                             m.n_triangles * sizeof *m.triangle);
-        good = write_grid(draft, &m, mesh, low, high, report);
+        good = write_grid(draft, &m, mesh, low, high, report, error);
         report->vertices += (int)m.n_corners;
         report->triangles += (int)m.n_triangles;
     }

@@ -228,7 +228,7 @@ static bool write_meshes(struct writer *w)
     for (int i = 0; good && i < s->n_objects; i++)
         if (s->object[i].n_triangles)
             good = glint_grid_write(&w->draft, s, &s->object[i], &w->steps,
-                                    &w->mesh[n++], w->report);
+                                    &w->mesh[n++], w->report, w->error);
     w->header.n_meshes = n;
     if (good)
         w->header.mesh_at =

@@ -41,13 +41,15 @@ void glint_turn_after(const double a[4], const double b[4], double turn[4]);
 /* Meshes of a baked scene: vertices in steps, each kept once, and a grid over
  * the triangles that states which of them a ray can meet. Writes the tables of
  * the triangles of OBJECT behind what is in DRAFT and sets MESH to where they
- * are. Adds to REPORT. Returns false without memory. */
+ * are. Adds to REPORT. Takes O(N) time and memory for N triangles. Returns false
+ * without memory, or with an ERROR: too many triangles lie in one place. */
 bool glint_grid_write(struct glint_draft *draft,
                       const struct glint_description *scene,
                       const struct glint_described_object *object,
                       const struct glint_steps *steps,
                       struct glint_scene_mesh *mesh,
-                      struct glint_scene_bake_report *report);
+                      struct glint_scene_bake_report *report,
+                      struct glint_error *error);
 
 /* Returns the index of the translucent material of OBJECT, or -1. */
 int glint_skin_material(const struct glint_description *scene,
