@@ -2,15 +2,18 @@
  *
  * A library for LD_PRELOAD: one request for memory of a program fails, the
  * $FAIL_AT-th; with $FAIL_ON all from there on. If $FAIL_COUNT names a file,
- * the number of requests is written to it at exit. Made for glibc, whose own
+ * the number of requests is written to it at exit. With $FAIL_SIGNAL, a number,
+ * the request succeeds, and that signal comes first. Made for glibc, whose own
  * allocations it counts, too.
  */
 #define _GNU_SOURCE
 #include <errno.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 void *__libc_malloc(size_t bytes);
 void *__libc_calloc(size_t n, size_t bytes);
@@ -19,13 +22,16 @@ void *__libc_memalign(size_t align, size_t bytes);
 
 static long n, fail_at;
 static bool fails_on;
+static int fail_signal; /* 0: none */
 
 __attribute__((constructor)) static void begin(void)
 {
-    const char *const at = getenv("FAIL_AT");
+    const char *at = getenv("FAIL_AT");
 
     fail_at = at ? strtol(at, NULL, 10) : 0;
     fails_on = getenv("FAIL_ON") != NULL;
+    at = getenv("FAIL_SIGNAL");
+    fail_signal = at ? atoi(at) : 0;
     __atomic_store_n(&n, 0, __ATOMIC_SEQ_CST);
 }
 
@@ -47,6 +53,10 @@ static bool fails(void)
 
     if (fail_at < 1 || !(k == fail_at || (fails_on && k > fail_at)))
         return false;
+    if (fail_signal) {
+        kill(getpid(), fail_signal);
+        return false;
+    }
     errno = ENOMEM;
     return true;
 }
