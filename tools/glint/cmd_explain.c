@@ -322,7 +322,7 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
         printf("}\n");
     if (status == GLINT_OK && drawing->run.n_lamps == 0 && !tool->quiet) {
         fflush(stdout); /* This follows the text above. */
-        overlay_say_none(drawing, stderr);
+        overlay_say_none(drawing, false, stderr);
     }
     if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
         code = save(tool, c, &e, &title, NULL);

@@ -204,11 +204,11 @@ static int check_line(const struct tool *tool, int argc, char **argv,
 
     if (optind + 1 != argc)
         return tool_usage(tool,
-                          o->output ? "takes one input for one output, not "
-                                      "'%s' too; several go into a folder, -o "
-                                      "FOLDER/"
-                                    : "takes one input; where that goes "
-                                      "follows -o: -o '%s'",
+                          o->output || access(argv[argc - 1], F_OK) == 0
+                              ? "takes one input for one output, not '%s' too; "
+                                "several go into a folder, -o FOLDER/"
+                              : "takes one input; where that goes follows -o: "
+                                "-o '%s'",
                           argv[argc - 1]);
     if (!o->output && !o->lists_shots)
         return tool_usage(tool, "needs -o OUT");
@@ -380,8 +380,8 @@ static int check_output(struct tool *tool, struct overlay *o)
         return tool_usage(tool, "a video becomes a video (.y4m, - or one of "
                                 "ffmpeg's), a picture a picture");
     if (!o->is_video && (o->last < INT_MAX || o->lists_shots))
-        return tool_usage(tool, "--%s is for videos",
-                          o->lists_shots ? "list-shots" : "frames");
+        return tool_usage(tool, "--%s is for videos, and %s is not one",
+                          o->lists_shots ? "list-shots" : "frames", o->input);
     if (o->lists_shots)
         return EXIT_OK;
     if (o->is_video &&

@@ -56,6 +56,7 @@ struct overlay {
     bool is_video;
     bool lists_shots; /* Prints the frames from cut to cut, draws nothing. */
     bool is_cut;      /* Lamps and exposure restarted in the last frame. */
+    bool is_copied;   /* The picture file was copied: nothing was drawn. */
     struct layers layers;
     bool has_layers_type, has_raw;
     const char *encode; /* options for ffmpeg, or NULL */

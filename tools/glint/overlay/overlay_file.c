@@ -442,10 +442,11 @@ static enum glint_status make_layer(const struct overlay_file *f,
     return GLINT_OK;
 }
 
+/* Writes F; sets IS_COPIED if that was a copy of the input. */
 static enum glint_status write(struct overlay_file *f,
                                const struct drawing *drawing,
                                struct glint_kept_options *options,
-                               struct glint_error *error)
+                               bool *is_copied, struct glint_error *error)
 {
     const bool own_layer =
         drawing->line.settings.options.layer != GLINT_LAYER_COMPOSITE &&
@@ -453,10 +454,12 @@ static enum glint_status write(struct overlay_file *f,
     struct glint_samples alone;
     enum glint_status status;
 
-    if (adds_nothing(drawing) &&
+    *is_copied =
+        adds_nothing(drawing) &&
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !drawing_has_marks(&drawing->line) && !options->quality &&
-        glint_kept_is_same_type(&f->kept, f->to))
+        glint_kept_is_same_type(&f->kept, f->to);
+    if (*is_copied)
         return glint_kept_copy(&f->kept, f->to, error);
     if (!own_layer)
         return glint_kept_save(&f->kept, f->to, f->is_copied ? &f->work : NULL,
@@ -469,14 +472,14 @@ static enum glint_status write(struct overlay_file *f,
     return status;
 }
 
-/* Writes the picture to its output, with QUALITY as in glint_kept_options.
- * Returns an exit code. */
+/* Writes the picture to its output. Returns an exit code. */
 static int save_file(const struct tool *tool, struct overlay_file *file,
-                     const struct drawing *drawing, int quality)
+                     struct overlay *o)
 {
-    struct glint_kept_options options = {.quality = quality};
+    struct glint_kept_options options = {.quality = o->quality};
     struct glint_error error = {""};
-    const enum glint_status status = write(file, drawing, &options, &error);
+    const enum glint_status status =
+        write(file, &o->drawing, &options, &o->is_copied, &error);
 
     if (status != GLINT_OK)
         return *error.text ? tool_fail(tool, status, error.text)
@@ -508,7 +511,7 @@ int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
     if (code == EXIT_OK)
         code = overlay_draw_by(tool, o, &file.image, draw_file, &file);
     if (code == EXIT_OK)
-        code = save_file(tool, &file, &o->drawing, o->quality);
+        code = save_file(tool, &file, o);
     close_file(&file);
     return code;
 }

@@ -260,7 +260,7 @@ static void say_candidates(const struct glint_engine *engine, FILE *to)
                 next.y_q8 / 256.0);
 }
 
-void overlay_say_none(const struct drawing *drawing, FILE *to)
+void overlay_say_none(const struct drawing *drawing, bool is_copied, FILE *to)
 {
     const bool is_found =
         !drawing->files.is_listed && drawing->line.n_hand == 0;
@@ -269,7 +269,8 @@ void overlay_say_none(const struct drawing *drawing, FILE *to)
                          drawing->run.n_frames <= 1 &&
                          glint_engine_doubtful(drawing->run.engine, 0, &next);
 
-    fprintf(to, "no light was found, so %s was drawn; ", rest_of(drawing));
+    fprintf(to, "no light was found, so %s was drawn%s; ", rest_of(drawing),
+            is_copied ? " and the file was copied" : "");
     if (is_next)
         say_candidates(drawing->run.engine, to);
     else
@@ -298,7 +299,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     if (drawing->files.scene.is_open)
         fputs(", ", to);
     if (o->figures.most_lights == 0) {
-        overlay_say_none(drawing, to);
+        overlay_say_none(drawing, o->is_copied, to);
         return;
     }
     if (is_hidden(drawing, light)) {

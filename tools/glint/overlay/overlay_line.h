@@ -33,9 +33,9 @@ int overlay_count_frames(const struct overlay *o);
 void overlay_say(const struct overlay *o, const struct overlay_light *light,
                  FILE *to);
 
-/* Prints that no lamp was found; of a still picture also the brightest
- * candidate. */
-void overlay_say_none(const struct drawing *drawing, FILE *to);
+/* Prints that no lamp was found, and if IS_COPIED that the file was copied; of
+ * a still picture also the brightest candidate. */
+void overlay_say_none(const struct drawing *drawing, bool is_copied, FILE *to);
 
 /* Writes members of an object. */
 void overlay_json(struct json_writer *json, const struct overlay *o,
