@@ -314,7 +314,7 @@ static bool write_grid(struct glint_draft *draft, const struct mesher *m,
     const uint64_t n = choose_cells(m, mesh, low, high, &sum);
     uint32_t *start, *ref;
 
-    if (sum > FEW_REFS && sum > MOST_IN_CELL * n) {
+    if (sum > MOST_IN_CELL * n) {
         snprintf(error->text, sizeof error->text,
                  "mesh %s: too many of its %lu triangles lie in one place; "
                  "remove faces that coincide, cut polygons of many corners",
