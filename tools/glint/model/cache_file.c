@@ -55,13 +55,28 @@ void cache_file_make_folders(char *path)
         }
 }
 
-/* Checks whether ST is a regular file that nobody but this user and root could
- * have written. */
+/* Checks whether nobody but this user, its group and root could have written
+ * the file or folder of ST. */
 static bool is_ours(const struct stat *st)
 {
-    return S_ISREG(st->st_mode) &&
-           (st->st_uid == geteuid() || st->st_uid == 0) &&
+    return (st->st_uid == geteuid() || st->st_uid == 0) &&
            !(st->st_mode & S_IWOTH);
+}
+
+/* Checks whether the folder of PATH is ours: others could put older models of
+ * ours there under other names. */
+static bool is_folder_ours(const char *path)
+{
+    char folder[CACHE_PATH_BYTES];
+    const char *const slash = strrchr(path, '/');
+    const size_t n = slash ? (size_t)(slash - path) : sizeof folder;
+    struct stat st;
+
+    if (n >= sizeof folder)
+        return false;
+    memcpy(folder, path, n);
+    folder[n] = '\0';
+    return stat(folder, &st) == 0 && is_ours(&st);
 }
 
 uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
@@ -76,7 +91,8 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
     *bytes = 0;
     if (in.fd < 0)
         return NULL;
-    if (fstat(in.fd, &st) < 0 || !is_ours(&st) ||
+    if (fstat(in.fd, &st) < 0 || !S_ISREG(st.st_mode) || !is_ours(&st) ||
+        !is_folder_ours(path) ||
         glint_input_append(&in, &data, bytes, max, &error) != GLINT_OK) {
         free(data);
         data = NULL;
@@ -109,7 +125,11 @@ enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
     enum glint_status status;
 
     cache_file_make_folders(path);
-    status = clear_way(path, error);
+    status = is_folder_ours(path)
+                 ? clear_way(path, error)
+                 : glint_error_report(error, GLINT_E_OUTPUT, path,
+                                      "is in a folder that others may write "
+                                      "to; chmod o-w makes it a cache");
     return status == GLINT_OK ? glint_output_save(path, GLINT_OUTPUT_BINARY,
                                                   data, bytes, error)
                               : status;
