@@ -89,8 +89,9 @@ run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/glin
 check-all:
 	@set -e; for how in "" CC=clang CONFIG=asan CONFIG=tsan CONFIG=qcheck; do \
 	        $(MAKE) --no-print-directory check $$how; done; \
-	for what in demo analyze check-valgrind check-arm check-vm check-commands check-files check-web check-allocations check-obs check-debian mutants; do \
+	for what in demo analyze check-valgrind check-arm check-vm check-commands check-options check-files check-web check-allocations check-obs check-debian mutants; do \
 	        $(MAKE) --no-print-directory $$what; done
+	@$(MAKE) --no-print-directory fuzz RUNS=10000
 # What other programs find in files that overlay has written.
 check-files:
 	@tools/make/deps "picture files as other programs see them" g++ pkg-config libopenimageio-dev \
@@ -102,6 +103,9 @@ check-files:
 # Each request for memory of each command fails once; prints a table.
 check-allocations: $(OUT)/glint
 	@GLINT=$< tests/cli/allocations --all
+# Random command lines: RUNS=10000 of them from SEED=1.
+check-options: $(OUT)/glint
+	@GLINT=$< tests/fuzz/options $(or $(RUNS),10000) $(or $(SEED),1)
 # Long cases and random lenses too:  make extremes SEED=1 COUNT=500
 extremes: $(extreme_bins) $(OUT)/random_lenses $(OUT)/motion
 	@tests/extremes $(SEED:%=--seed %) $(COUNT:%=--count %)
@@ -188,5 +192,5 @@ purity: $(libraries) $(board_o)
 	@tools/lint/purity --calls '$(board_calls)' $(NM) $(OBJDUMP) $(board_o) $(OUT)/libglint.a
 
 
-.PHONY: check run-check test run-test check-files check-allocations check-all extremes mutants run-mutants check-valgrind run-valgrind golden-update \
+.PHONY: check run-check test run-test check-files check-allocations check-options check-all extremes mutants run-mutants check-valgrind run-valgrind golden-update \
         fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format lint purity
