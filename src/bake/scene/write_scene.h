@@ -41,8 +41,9 @@ void glint_turn_after(const double a[4], const double b[4], double turn[4]);
 /* Meshes of a baked scene: vertices in steps, each kept once, and a grid over
  * the triangles that states which of them a ray can meet. Writes the tables of
  * the triangles of OBJECT behind what is in DRAFT and sets MESH to where they
- * are. Adds to REPORT. Takes O(N) time and memory for N triangles. Returns false
- * without memory, or with an ERROR: too many triangles lie in one place. */
+ * are. Adds to REPORT. Takes O(N) time and memory for N triangles. Returns
+ * false without memory, or with an ERROR: too many triangles lie in one place.
+ */
 bool glint_grid_write(struct glint_draft *draft,
                       const struct glint_description *scene,
                       const struct glint_described_object *object,
