@@ -62,6 +62,20 @@ inline std::string printable(const std::string &text)
     return line;
 }
 
+/* Returns CAUSE, which OpenImageIO gives for the file NAME, without that name:
+ * the message begins with it. UNLESS: the cause if it gives none. */
+inline std::string without_name(std::string cause, const std::string &name,
+                                const char *unless)
+{
+    const std::string quoted = '"' + name + '"';
+
+    for (const std::string &own : {"file " + quoted, quoted})
+        for (size_t at = 0; (at = cause.find(own, at)) != std::string::npos;
+             at += 8)
+            cause.replace(at, own.size(), "the file");
+    return cause.empty() ? unless : cause;
+}
+
 struct failure {
     enum glint_status status;
     std::string cause;
@@ -172,7 +186,12 @@ try {
     if (what.status)
         std::snprintf(error->text, sizeof error->text, "%s: %s",
                       call::shorten(name).c_str(),
-                      printable(what.cause).c_str());
+                      printable(without_name(what.cause, name,
+                                             unknown == GLINT_E_OUTPUT
+                                                 ? "cannot be written"
+                                                 : "cannot be read: damaged, "
+                                                   "or not what its name says"))
+                          .c_str());
     return what.status;
 } catch (...) {
     std::snprintf(error->text, sizeof error->text,
