@@ -30,8 +30,8 @@ struct glint_engine_shape {
 struct glint_engine_optics {
     const struct glint_setup *setup; /* OWN, or the caller's */
     struct glint_setup own;
-    struct glint_engine_shape shape; /* what OWN was made for */
-    struct glint_dirt *dirt;         /* that of OWN, or NULL */
+    struct glint_engine_shape shape;      /* what OWN was made for */
+    struct glint_dirt *dirt;              /* that of OWN, or NULL */
     const struct glint_front_dirt *front; /* the caller's, or NULL */
 };
 

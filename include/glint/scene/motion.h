@@ -74,12 +74,12 @@ struct glint_motion_sensor {
 /* Begins as every baked file does (src/base/blob.h). */
 struct glint_motion_header {
     uint32_t magic, version;
-    uint32_t bytes;   /* bytes of the whole file */
-    uint32_t crc32;   /* checksum of all bytes after this word: polynomial
-                         0xedb88320, reflected, begun and ended with all ones */
-    uint32_t variant; /* 0 */
-    uint32_t key[2];  /* key of the recording, low word first */
-    char name[64];    /* name of the motion, terminated */
+    uint32_t bytes;    /* bytes of the whole file */
+    uint32_t crc32;    /* checksum of all bytes after this word: polynomial
+                          0xedb88320, reflected, begun and ended with all ones */
+    uint32_t variant;  /* 0 */
+    uint32_t key[2];   /* key of the recording, low word first */
+    char name[64];     /* name of the motion, terminated */
     int32_t unit_log2; /* -30 .. 60: steps in a unit of the recording */
     uint32_t n_frames; /* 1 .. GLINT_MOTION_MAX_FRAMES */
     uint32_t n_foods;  /* 0 .. GLINT_MOTION_MAX_FOODS */
