@@ -20,24 +20,23 @@ extern "C" {
 enum {
     GLINT_AREA_SAMPLES =
         7, /* default for the max points of the brightest lamp */
-    /* Factor on the points beyond the first that a lamp gets in a still
-     * picture. */
+    /* Factor, in a still picture, on the number of points of a lamp minus 1. */
     GLINT_AREA_STILL = 20,
-    GLINT_AREA_STILL_ROOM = 4, /* factor on max_lights for points of wide lamps
-                                  in a still picture */
-    /* Area per point: the side of its square, pixels. */
+    GLINT_AREA_STILL_ROOM = 4, /* factor, in a still picture, on max_lights for
+                                  points of wide lamps */
+    /* Side of the square whose area each point represents, pixels. */
     GLINT_AREA_SPACING_PX = 4,
     GLINT_AREA_MOST_SAMPLES = 4096
 };
 
-/* Points of one lamp. */
+/* The points of one lamp. */
 struct glint_area {
     struct glint_lamp lamp;
     double points; /* number of points, 1 or more; the last may be fractional */
-    double centre[2]; /* centre of the point pattern, which is moved to the
-                         lamp's place */
+    double centre[2]; /* centre of the point pattern; it is moved to the
+                         position of the lamp */
     double spread;    /* factor that gives the pattern the lamp's RMS extent */
-    double u, v;      /* place of the lamp, tangents */
+    double u, v;      /* position of the lamp, tangents */
     /* xx, xy, yy of the symmetric matrix that maps the unit circle to the
      * ellipse, tangents. The sign of the axes does not matter, so points
      * stay in place when the orientation jumps from 90 degrees to -90, or
@@ -45,29 +44,29 @@ struct glint_area {
     double stretch[3];
 };
 
-/* The number of points per lamp. Steps between points are less visible in a
- * faint lamp, so it gets fewer, by the square root of its power. */
+/* Rule for the number of points per lamp. Steps between points are less visible
+ * in a faint lamp, so it gets fewer points, by the square root of its power. */
 struct glint_area_rule {
     double pixels_per_tangent;
     double most;      /* max points of the brightest lamp */
     double brightest; /* power of the brightest lamp */
-    double thinning;  /* factor on points beyond the first, 0 .. 1; 0: one point
-                         per lamp */
+    double thinning;  /* factor on the number of points minus 1, 0 .. 1; 0: one
+                         point per lamp */
 };
 
-/* Returns the rule for LAMPS with at most ROOM points in total, or one per
- * lamp if there are more lamps; MOST is the max number of points of one
- * lamp. *TOTAL receives a bound on the number of points. */
+/* Returns the rule by which LAMPS[N] get at most ROOM points in total, or one
+ * point each if N exceeds ROOM; MOST is the max number of points of one lamp.
+ * *TOTAL receives an upper bound of the number of points. */
 struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
                                           double pixels_per_tangent,
                                           double most, int room, int *total);
 
-/* Plans the points of LAMP by RULE; returns their number. */
+/* Sets AREA to the points of LAMP by RULE; returns their number. */
 int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
                     const struct glint_area_rule *rule);
 
-/* Returns the distance between points of AREA, as a tangent; 0 if there is
- * only one. */
+/* Returns the distance between points of AREA, as a tangent; 0 if there is only
+ * one point. */
 double glint_area_apart(const struct glint_area *area);
 
 /* Returns point I of AREA, with its fraction of the power, as a lamp without

@@ -27,27 +27,29 @@ extern "C" {
 struct glint_bake_options {
     double band_nm[2]; /* shortest and longest wavelength, 300 .. 1100 */
     double max_deg;    /* largest angle of a light, above 0, up to 89 */
-    double field_mm;   /* radius about the sensor's centre within which light
-                          counts; 0: a tenth more than the film's corners */
-    /* Scale of all tolerances, 0.1 .. 100. At 1, ghosts as bright as those that
-     * set an exposure are fitted to root mean square errors of 0.04 pixels of a
-     * film 1920 wide for places and outlines, and of 0.12 % for the energy;
-     * faint ghosts to at most 0.07 pixels for places, 0.4 for outlines, and 1.2
-     * %. */
+    double field_mm;   /* radius around the centre of the sensor within which
+                          the model must be accurate; 0: a tenth beyond the
+                          corners of the film */
+    /* Factor on all tolerances, 0.1 .. 100. At 1, the brightest ghosts are
+     * fitted with RMS errors of 0.04 pixels (film 1920 pixels wide) for
+     * positions and outlines, and of 0.12 % for the energy. Faint ghosts get at
+     * most 0.07 pixels for positions, 0.4 for outlines, and 1.2 % for the
+     * energy. */
     double tolerance;
-    /* [ghosts of the lens]: true: bake this ghost; NULL: all. Ghosts that
-     * are not baked have no systems in the model. */
+    /* [ghosts of the lens]: true: bake this ghost; NULL: bake all ghosts.
+     * Ghosts that are not baked have no systems in the model. */
     const bool *ghosts;
-    /* [n_beside], at most 2: the lens at neighbouring zoom positions. Light
-     * that is visible or cut there is part of the model, so that models of
-     * positions can be interpolated. GLINT_E_ARGUMENT if it is another lens
-     * or not symmetric about its axis. */
+    /* [n_beside], at most 2: the lens at neighbouring zoom positions. The model
+     * includes light that is visible or cut at these positions, so that the
+     * models of several positions can be interpolated. glint_bake() returns
+     * GLINT_E_ARGUMENT if they are of another lens, or not symmetric about the
+     * axis. */
     const struct glint_prescription *beside;
     int n_beside;
-    struct glint_workers
-        *workers; /* parallel-for; NULL: serial. Changes no output */
-    /* called after each fit with an estimated fraction, which may fall; may be
-     * NULL. */
+    struct glint_workers *workers; /* NULL: one thread. The output is the same
+                                      for any number of threads */
+    /* Called after each fit with the estimated fraction of work done, which may
+     * decrease; may be NULL. */
     glint_progress_fn *progress;
     void *progress_ctx;
 };
@@ -61,17 +63,19 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 
 /* Sets PROJECTION to the projection of LENS at the d line, from chief rays at
  * whole degrees (finer for narrow lenses) up to 85 degrees or the last ray that
- * gets through. MISS_DEG receives the max error of the polynomial at them.
- * GLINT_E_LENS: LENS is not round, or hardly any light gets through; ERROR
- * states which, and PROJECTION becomes a pinhole's. */
+ * gets through. *MISS_DEG receives the max error of the polynomial at these
+ * rays, degrees. Returns GLINT_E_LENS if LENS is not round, or hardly any light
+ * gets through; ERROR states the cause, and PROJECTION becomes a pinhole
+ * projection. */
 enum glint_status glint_projection_of(struct glint_projection *projection,
                                       const struct glint_prescription *lens,
                                       double *miss_deg,
                                       struct glint_error *error);
 
-/* Results of a bake that are not in its model. */
+/* Results of a bake that are not in the model. */
 struct glint_bake_report {
-    int rays; /* number of rays measured: those that get through the lens */
+    int rays; /* number of rays that get through the lens, for which errors were
+                 measured */
     /* number of further rays that the model transmits although the lens
      * clearly blocks them: they miss a surface, or lie more than 3 % outside
      * a surface's semi-diameter or the stop's radius */
@@ -79,28 +83,30 @@ struct glint_bake_report {
     int unmet; /* number of systems that miss the tolerance */
 };
 
-/* Bakes LENS into *MODEL[*BYTES], a file as in glint/model.h, which the
- * caller frees. The same lens and options give the same bytes. With ERROR:
- * GLINT_E_ARGUMENT; GLINT_E_LENS if no light gets through or the overflow
- * proof fails. GLINT_E_MEMORY. */
+/* Bakes LENS into *MODEL[*BYTES], a file as in glint/model.h, which the caller
+ * frees. The same lens and options give the same bytes. Returns
+ * GLINT_E_ARGUMENT if OPTIONS are out of range. Returns GLINT_E_LENS if no
+ * light gets through, or it cannot be proven that integers do not overflow.
+ * Both set ERROR. May return GLINT_E_MEMORY. */
 enum glint_status glint_bake(const struct glint_prescription *lens,
                              const struct glint_bake_options *options,
                              unsigned char **model, size_t *bytes,
                              struct glint_bake_report *report,
                              struct glint_error *error);
 
-/* A model of a zoom lens at one position, 0 .. 2^30. */
+/* A model of a zoom lens at the position along_q30, 0 .. 2^30. */
 struct glint_bake_model {
     unsigned char *data;
     size_t bytes;
     int32_t along_q30;
-    const bool *ghosts; /* the option "ghosts" it was baked with; NULL at both
-                           ends of the zoom */
+    const bool *ghosts; /* the member GHOSTS of the options that it was baked
+                           with; NULL at both ends of the zoom */
 };
 
-/* Joins N models of one lens, by rising position from 0 to 2^30, into a file
- * as in glint/model.h, *ZOOM[*BYTES], which the caller frees. GLINT_E_LENS:
- * they are not positions of one lens; ERROR states why. GLINT_E_MEMORY. */
+/* Joins N models of one lens, sorted by rising position from 0 to 2^30, into a
+ * file as in glint/model.h, *ZOOM[*BYTES], which the caller frees. Returns
+ * GLINT_E_LENS if the models are not positions of one lens; ERROR states why.
+ * May return GLINT_E_MEMORY. */
 enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
                                   unsigned char **zoom, size_t *bytes,
                                   struct glint_error *error);

@@ -16,50 +16,52 @@ extern "C" {
 #define GLINT_MAX_CELLS   1024 /* max cells per side of a ray grid */
 #define GLINT_LEAST_CELLS 8    /* min cells per side that a plan chooses */
 
-/* Where one ray of a grid lands, and what it passes. */
+/* Where one ray of a grid lands, and where it crosses the stop and the
+ * barrels. */
 struct glint_vertex {
     int32_t x_q8, y_q8; /* pixels from the top left corner of the picture, y
                            down; within +-GLINT_VERTEX_LIMIT_Q8 */
     int32_t stop_x_q16,
         stop_y_q16; /* position in the stop, stop radii, within +-2^14 */
-    /* (1 + r^2) / 2 at each of two barrels that may cut, where r is the ray's
-     * distance from the axis / semi-diameter: above 1 the ray is cut. The slope
-     * at r = 1 is the slope of r, and the value is smooth everywhere. 0 ..
-     * 2^14; 0: no such barrel. */
+    /* (1 + r^2) / 2 at each of two barrels that may cut the ray, where r is the
+     * ray's distance from the axis / semi-diameter; above 1 the ray is cut. The
+     * value is smooth everywhere, and its slope at r = 1 is the slope of r. 0
+     * .. 2^14; 0: there is no such barrel. */
     int32_t barrel_q16[2];
-    int32_t energy_q16; /* 0 .. 65536, in the bundle's unit; below 0: the ray is
-                           invalid, and the other members are undefined */
+    /* 0 .. 65536 (1 in the unit of the bundle); below 0: the ray is invalid,
+     * and its other members are undefined. */
+    int32_t energy_q16;
 };
 
 #define GLINT_VERTEX_LIMIT_Q8 (INT32_C(1) << 28) /* 2^20 pixels */
 
 /* The rays of one ghost, one light and one wavelength, as a square grid over
- * the ghost's part of the entrance pupil. */
+ * the part of the entrance pupil from which light forms the ghost. */
 struct glint_bundle {
     int n_cells; /* cells per side, 1 .. GLINT_MAX_CELLS: (n_cells + 1)^2
                     vertices, row by row */
     /* Flux of a cell at energy 1, display white x pixels: flux_q31 *
      * 2^(flux_exponent - 31). */
-    int32_t flux_q31; /* 2^30 .. 2^31 - 1, or 0 */
+    int32_t flux_q31; /* mantissa, 2^30 .. 2^31 - 1, or 0 */
     int flux_exponent;
     int32_t rgb_q14[3]; /* colour of the wavelength times colour of the light,
                            linear BT.709, -4 .. 4 */
 };
 
-/* Computes the vertices of bundles while they are binned, in place of vertices
- * that are stored. Bundles are numbered in the order in which they were added.
- * Both functions are called by any worker, with its number, and return the same
- * each time. */
+/* Computes the vertices of bundles while they are binned, so that they need not
+ * be stored. Bundles are numbered in the order in which they were added. Any
+ * worker may call both functions, with its number WORKER; they must give the
+ * same result each time. */
 struct glint_flare_rays {
-    /* Begins bundle I; returns 0 if no part of it lies in the pixel rows Y0 ..
-     * Y1 - 1. */
+    /* Begins bundle I; returns 0 if all of the bundle lies outside the pixel
+     * rows Y0 .. Y1 - 1. */
     int (*open)(void *ctx, int worker, int i, int y0, int y1);
     /* Sets ROW to row J, 0 .. n_cells, of the vertices of the bundle that
-     * WORKER has opened; rows come in this order. */
+     * WORKER has opened. Called for rising J. */
     void (*row)(void *ctx, int worker, int j, struct glint_vertex *row);
     void *ctx;
-    int coded; /* 1: the picture is in codes, which resolve faint light more
-                  coarsely */
+    int coded;         /* 1: the picture is in codes, so faint light needs less
+                          precision */
     int snap_codes_q8; /* as in struct glint_flare_frame */
 };
 

@@ -3,7 +3,7 @@
  * glint/explain.h - explains what a frame drew and what it left out: by ghost,
  * light and wavelength.
  *
- *     glint_explain_open(&explain, engine, 0);      what it drew last
+ *     glint_explain_open(&explain, engine, 0);      its last picture
  *     glint_explain_close(&explain);
  *
  * Counts and reasons are the flare's own statistics (glint_flare_account);
@@ -19,48 +19,51 @@
 extern "C" {
 #endif
 
-/* Items whose counts determine the cost: of a plan, before anything is
- * drawn, or of a drawn frame. */
+/* Items whose counts determine the cost of a frame, predicted from its plan or
+ * measured after drawing. */
 enum glint_cost_kind {
-    GLINT_COST_LOOKED_AT, /* bundles that a plan probes, or for a drawn frame
-                             the rays traced for them */
-    GLINT_COST_BUNDLES,   /* bundles drawn: a few rays each, and substituting a
-                             polynomial per row */
+    GLINT_COST_LOOKED_AT, /* bundles that a plan probes; for a drawn frame, the
+                             rays that its plans probed */
+    GLINT_COST_BUNDLES,   /* bundles drawn, each with a few rays, and a
+                             substitution into polynomials per row */
     GLINT_COST_VERTICES,  /* vertices of grids */
     GLINT_COST_EDGES,     /* edges across which light changes */
     GLINT_COST_ROWS,      /* pixel rows that edges cross */
     GLINT_COST_PARTS,     /* pieces of cells shaded by dust or a mask */
     GLINT_COST_LIT,       /* pixels with any light */
-    GLINT_COST_STAR,      /* pixels lit by parts of stars */
-    GLINT_COST_VEIL,      /* pixels under a veil, and blurring it */
+    GLINT_COST_STAR, /* pixels lit by stars, summed over the parts of the stars
+                      */
+    GLINT_COST_VEIL, /* pixels under a veil, including its blur */
     GLINT_COST_KINDS
 };
 
-/* The cost of one item, in thousands of instructions of a processor with 8
+/* Cost of one item, in thousands of instructions of a processor with 8 SIMD
  * lanes of 32 bits. */
 struct glint_cost_weight {
     const char *name;
-    double planned; /* weights of counts that glint_cost_of() predicts from a
+    double planned; /* cost, for counts that glint_cost_of() predicts from a
                        plan */
-    double counted; /* weights of counts of a drawn frame */
+    double counted; /* cost, for counts of a drawn frame */
 };
 extern const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS];
 
-/* A part of the frame: a ghost, a light or a wavelength; or the whole frame. */
+/* Statistics of the bundles of a ghost, of a light or of a wavelength; or of
+ * the whole frame. */
 struct glint_explain_part {
     int of[GLINT_OUTCOMES]; /* number of bundles with each outcome */
-    int cells;              /* cells per side of its largest grid */
-    /* Maxima over its bundles: number of terms of all polynomials of a
-     * bundle, and number of barrels that can cut it. */
+    int cells;              /* cells per side of the largest grid */
+    /* Maxima over the bundles: number of terms of all polynomials of a bundle,
+     * and number of barrels that can cut a bundle. */
     int terms, barrels;
-    long long probed; /* rays that the plan probed */
+    long long probed; /* number of rays that the plan probed */
     /* all_terms: sum of the terms of each vertex, over all vertices. */
     long long vertices, edges, rows, refs, all_terms;
-    int tiles, lit; /* tiles drawn, and pixels that receive light */
-    double flux,
-        share; /* light in the picture, and its fraction of the frame's */
-    double brightest; /* brightest pixel, as the mean of R, G, B */
-    /* Estimated instructions, and their fraction of the frame's. */
+    int tiles, lit;     /* tiles drawn, and pixels that receive light */
+    double flux, share; /* light in the picture, and fraction of the light of
+                           the frame */
+    double brightest;   /* brightest pixel, as the mean of R, G, B */
+    /* Estimated instructions, and their fraction of the instructions of the
+     * frame. */
     double work, cost;
 };
 
@@ -70,40 +73,45 @@ struct glint_frame; /* opaque */
 
 struct glint_explain {
     struct glint_frame *frame;
-    struct glint_frame *own; /* FRAME, if glint_explain_at() made it; or NULL */
-    /* What was drawn, and the parameters it was drawn with. */
+    struct glint_frame *own; /* equals FRAME if glint_explain_at() made the
+                                frame; else NULL */
+    /* Inputs of the frame. */
     const struct glint_view *view;
     const struct glint_setup *setup;
     const struct glint_lens *lens;
-    const struct glint_tint *tints;   /* NULL: none */
+    const struct glint_tint *tints;   /* NULL: no ghost is tinted */
     const struct glint_light *lights; /* [n_lights] */
     const struct glint_wave_sets
         *sets;        /* NULL: all ghosts use the same waves */
-    double dim_codes; /* light below which ghosts shared rays; 0: none did */
+    double dim_codes; /* codes near black below which ghosts shared rays; 0: no
+                         ghosts shared rays */
     int n_ghosts;     /* number of pairs of surfaces */
     int n_lights;
-    int n_waves;   /* number of wavelengths, or of sets if ghosts choose among
-                      sets */
-    int *ghost_of; /* index of the surface pair of each ghost or part of the
-                      lens */
+    int n_waves;   /* number of wavelengths, or number of sets if each ghost
+                      chooses a set */
+    int *ghost_of; /* [ghosts of the lens, parts included]: index of the surface
+                      pair */
     struct glint_explain_part all, *ghost, *light, *wave;
     int barrels[GLINT_EXPLAIN_BARRELS]; /* number of bundles cut by 0, 1, ...
                                            barrels */
     double stage[GLINT_COST_KINDS]; /* estimated instructions of each stage */
-    double unit;                    /* factor on the light that was drawn */
-    int tile_log2, n_tiles; /* log2 of a tile's side, and number of tiles */
-    int32_t *linear_q20;    /* [height][width][3]: light of one part */
+    double unit;                    /* factor on the light that is drawn */
+    /* Log2 of the side of a tile, and number of tiles. */
+    int tile_log2, n_tiles;
+    int32_t *linear_q20; /* [height][width][3]: light drawn by
+                            glint_explain_draw() */
 };
 
-/* Explains the picture that ENGINE, which needs a model, drew last, with one
- * lamp or more. GAIN: that of a glint_engine_render(), else 0. Call
- * glint_explain_close() after a failure, too. GLINT_E_MEMORY. */
+/* Explains the picture that ENGINE drew last; it must have a model, and the
+ * picture at least one lamp. GAIN is the gain passed to glint_engine_render(),
+ * or 0 if another function drew the picture. glint_explain_close() must be
+ * called even after a failure. May return GLINT_E_MEMORY. */
 enum glint_status glint_explain_open(struct glint_explain *explain,
                                      struct glint_engine *engine, double gain);
 
 /* Does the same for N LAMPS, drawn at SCALE on a black picture of WIDTH x
- * HEIGHT with the settings of ENGINE and three wavelengths. There are no
- * ghosts without a model, or if no lamp is within its range. */
+ * HEIGHT with the settings of ENGINE and three wavelengths. If ENGINE has no
+ * model, or all lamps are outside its range, there are no ghosts. */
 enum glint_status glint_explain_at(struct glint_explain *explain,
                                    struct glint_engine *engine,
                                    const struct glint_engine_lamp *lamps, int n,
@@ -113,19 +121,19 @@ void glint_explain_close(struct glint_explain *explain);
 /* Draws only ghost GHOST, or all ghosts for -1, into linear_q20. */
 void glint_explain_draw(struct glint_explain *explain, int ghost);
 
-/* Return the number of bundles of PART with any outcome, and of those that
- * were drawn, even if they change no pixel. */
+/* Return the number of all bundles of PART, and the number of bundles that were
+ * drawn, including those that change no pixel. */
 int glint_explain_bundles(const struct glint_explain_part *part);
 int glint_explain_drawn(const struct glint_explain_part *part);
 
-/* Returns how many primitives of the flare lie in tile TILE. */
+/* Returns the number of primitives of the flare in tile TILE. */
 int glint_explain_listed(const struct glint_explain *explain, int tile);
 
 /* Returns whether LAMP is farther off the axis than the model's range. */
 int glint_explain_is_beyond(const struct glint_explain *explain,
                             const struct glint_lamp *lamp);
 
-/* Lists the indices of all ghosts by falling light. */
+/* Sets GHOSTS to the indices of all ghosts, sorted by decreasing light. */
 void glint_explain_sort(const struct glint_explain *explain, int *ghosts);
 
 #ifdef __cplusplus

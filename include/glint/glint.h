@@ -11,14 +11,20 @@
  *   run time  glint/lamps.h lamp_tracker.h   integers only; no allocation
  *             model.h flare.h                after init
  *
- * Conventions, unless a header says otherwise: pointers are not NULL; arrays do
- * not overlap; pointers are borrowed for the call, and kept only where marked
- * *kept*; outputs are written only on GLINT_OK; distinct objects may be used
- * from distinct threads, one object from one thread at a time. A broken
- * contract is a bug of the caller and may be asserted.
+ * Terms: a bundle is the rays of one ghost, one light and one wavelength.
+ * Baking computes a model of a lens (or of a scene) ahead of time. A picture in
+ * codes has integer values as a file or a display has them, not linear light.
+ * Dials are the quality parameters of a frame (glint/dials.h).
  *
- * Numbers: a name that ends in _qN is an integer with N fraction bits. Rounding
- * is to nearest, ties up. Light saturates, geometry never does. */
+ * Conventions, unless a header says otherwise: pointers must not be NULL;
+ * arrays must not overlap; a pointer is used only during the call, unless its
+ * comment states what it must outlive; outputs are written only on GLINT_OK.
+ * Different objects may be used from different threads, one object from one
+ * thread at a time. A broken contract is a bug of the caller and may be
+ * asserted.
+ *
+ * Numbers: a name that ends in _qN is an integer with N fraction bits. Values
+ * are rounded to nearest, ties up. Light saturates, geometry never does. */
 #ifndef GLINT_GLINT_H
 #define GLINT_GLINT_H
 

@@ -2,9 +2,9 @@
  *
  * glint/half.h - flares at half resolution.
  *
- * Four pixels are lit as one: see struct glint_flare_frame of glint/flare.h.
- * Linked only by programs that name it.
- */
+ * Each pixel of the flare lights 2 x 2 pixels of the picture: see HALF of
+ * struct glint_flare_frame in glint/flare.h. Only programs that use glint_half
+ * link it. */
 #ifndef GLINT_HALF_H
 #define GLINT_HALF_H
 

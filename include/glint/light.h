@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * glint/light.h - inputs of a frame: stop, lights, wavelengths, and tints of
- * single ghosts. */
+ * individual ghosts. */
 #ifndef GLINT_LIGHT_H
 #define GLINT_LIGHT_H
 
@@ -17,23 +17,26 @@ extern "C" {
 #define GLINT_MAX_WAVE_SETS \
     5 /* max waves, see struct glint_wave_sets, flare.h */
 
-/* Transmission of a stop inside its outline: a soft edge, and by place what
- * dust or a mask leaves. */
+/* Transmission of a stop inside its outline: of its soft edge, and of dust or a
+ * mask at each point. */
 enum { GLINT_SHADE_LEAST_LOG2 = 3, GLINT_SHADE_MOST_LOG2 = 10 };
 struct glint_shade_method;
 extern const struct glint_shade_method glint_shade_method;
 struct glint_shade {
-    /* glint_shade_method; linked only by programs that name it. */
+    /* &glint_shade_method. It is a pointer so that only programs that use it
+     * link it. */
     const struct glint_shade_method *method;
-    /* Width of the soft edge, stop radii inwards from the outline, 0 ..
-     * 2^16: at the fraction x of it light is 3 x^2 - 2 x^3. */
+    /* Width of the soft edge, stop radii, 0 .. 2^16: across it the light rises
+     * from 0 at the outline as 3 x^2 - 2 x^3, where x is the distance from the
+     * outline / width. */
     int32_t soft_q16;
-    int log2; /* log2 of the number of cells per side of the finest table; 0: no
-                 tables, all inside the edge is clear */
-    /* [log2]: table k has 2^(log2 - k) + 1 nodes per side over +-1 stop
-     * radius, row 0 at the lowest y. Outside, the nearest node counts. Kept.
-     * Light: 0 .. 2^15. Rough: max difference of a finer table from this one
-     * within a node and a half, in 256ths of all light. */
+    int log2; /* log2 of the number of cells per side of the finest table; 0:
+                 there are no tables, and all inside the soft edge is clear */
+    /* [log2]: table k has 2^(log2 - k) + 1 nodes per side over +-1 stop radius,
+     * row 0 at the lowest y; points outside take the value of the nearest node.
+     * Both must outlive the stop. LEVEL: transmission, 0 .. 2^15. ROUGH: max
+     * difference between the transmission in a finer table and in this table
+     * within a node and a half, in 256ths. */
     const uint16_t *level_q15[GLINT_SHADE_MOST_LOG2];
     const uint8_t *rough_q8[GLINT_SHADE_MOST_LOG2];
 };
@@ -46,50 +49,51 @@ struct glint_stop {
     int32_t normal_q30[GLINT_MAX_BLADES][2];
     int32_t apothem_q16; /* distance from the centre to each side */
     int32_t inset_q16; /* (1 - r^2) / 2 at the outline of a circle: 0 .. 2^15 */
-    /* Curved sides: arcs of a circle from corner to corner. Curvature of the
-     * arcs, 1 / stop radius, 0 .. 2^30 - 1, and the distance from the stop's
-     * centre to theirs times that, 1 .. 2^30. Both 0: sides are straight. */
+    /* Curved sides: arcs of a circle from corner to corner. round_q30:
+     * curvature of the arcs, 1 / stop radii, 0 .. 2^30 - 1; off_q30: this
+     * curvature times the distance from the centre of the stop to the centre of
+     * an arc, 1 .. 2^30. Both 0: sides are straight. */
     int32_t round_q30, off_q30;
-    /* NULL: all of the opening is clear. Kept. */
+    /* Must outlive the stop. NULL: all of the opening is clear. */
     const struct glint_shade *shade;
-    /* For bundles of a model only: the stop's radius / radius of the stop
-     * that the model was baked with, 2^20 .. 2^30; 0: both are equal. */
+    /* For bundles of a model only: radius of the stop / radius of the stop that
+     * the model was baked with, 2^20 .. 2^30; 0: the radii are equal. */
     int32_t opening_q30;
 };
 
-/* A light as the lens sees it: parallel rays. */
+/* A light at infinity: parallel rays. */
 struct glint_light {
     /* Sine and cosine of the angle off the axis, 0 .. 2^30. */
     int32_t sine_q30, cosine_q30;
     int32_t cos_q30, sin_q30; /* cosine and sine of the azimuth: 0 = right, 90
                                  degrees = up */
-    /* Value of the light's in-focus image if it were spread over one pixel;
-     * 1 = display white. */
+    /* Value that the in-focus image of the light would have if it were spread
+     * over one pixel; 1 = display white. */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* Tangent of the angle to its neighbours if it is one of many points of
-     * a lamp: a ghost too small to touch those of the neighbours is
-     * enlarged. 0: a single light. */
+    /* If the light is one of many points of a lamp: tangent of the angle to the
+     * neighbouring points. Ghosts of the light that are too small to touch the
+     * ghosts of these points are enlarged. 0: a single light. */
     int32_t apart_q30;
 };
 
-/* Factors on the light of one ghost: per channel, -4 .. 4, and overall. A
- * ghost with gain {0, 0} is muted: nothing of it is planned. */
+/* Factors on the light of one ghost: rgb_q14 per channel, -4 .. 4, and gain on
+ * all channels. A ghost with gain {0, 0} is muted: it is not planned. */
 struct glint_tint {
     int32_t rgb_q14[3];
     struct glint_real gain; /* 0 or more */
 };
 
-/* Returns the factor of TINT on channel C, for the halves that have floating
- * point. */
+/* Returns the factor of TINT on channel C, as a double. */
 double glint_tint_factor(const struct glint_tint *tint, int c);
 
-/* A wavelength that is drawn. */
+/* A wavelength at which ghosts are drawn. */
 struct glint_wave {
     int32_t wave_q24;   /* 1 / wavelength^2, um^-2 */
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* Factor on rgb_q14, 1 / mm^2: the largest channel of the true colour /
-     * flux, mm^2, of the direct image at angle 0 that light is measured by. */
+    /* Factor on rgb_q14, 1 / mm^2: the largest channel of the colour before it
+     * was normalised to 1, divided by the flux in mm^2 of the direct image at
+     * angle 0, the unit of light (unit_flux of struct glint_setup). */
     struct glint_real weight;
 };
 

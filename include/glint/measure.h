@@ -2,11 +2,11 @@
  *
  * glint/measure.h - measures the difference of two pictures in linear light.
  *
- * Both are multiplied so that the reference's 99.9th percentile of luminance
- * over all pixels becomes 1, or by a given factor, then clipped,
- * sRGB-encoded and rounded to 8 bits. Metrics are computed from the codes;
- * if all codes are equal, PSNR from the values before rounding. Flux is
- * compared before clipping. */
+ * Both pictures are multiplied by a factor, clipped, sRGB-encoded and rounded
+ * to 8 bits. The factor is given, or makes the 99.9th percentile of luminance
+ * over all pixels of the reference 1. Metrics are computed from the codes; if
+ * all codes are equal, PSNR is computed from the values before rounding. Flux
+ * is compared before clipping. */
 #ifndef GLINT_MEASURE_H
 #define GLINT_MEASURE_H
 
@@ -20,14 +20,17 @@ extern "C" {
 #endif
 
 struct glint_measure {
-    double psnr_db; /* dB, over the three channels; 999 if nothing differs, even
-                       before rounding */
+    double psnr_db; /* dB, over the three channels; 999 if all values are equal
+                       even before rounding */
     /* Structural similarity of luma, 8 x 8 blocks every 4 pixels. */
     double ssim;
     double p99;      /* 99th percentile of |difference|, codes */
-    double flux;     /* sum of the test's light / sum of the reference's */
-    double factor;   /* factor that the test was multiplied by */
-    double exposure; /* factor that the reference was multiplied by */
+    double flux;     /* sum of the light of the test picture / sum of the light
+                        of the reference */
+    double factor;   /* factor that the test picture was multiplied by to fit
+                        the reference */
+    double exposure; /* factor that the reference was multiplied by before it
+                        was encoded */
     bool same_codes; /* true: all codes are equal; set by glint_measure_at() */
 };
 
@@ -35,22 +38,22 @@ struct glint_measure {
  * black picture. */
 double glint_measure_exposure(const struct glint_float_image *image);
 
-/* Returns the sRGB code of LIGHT, 1 being white, 0 .. 255, not rounded. */
+/* Returns the sRGB code of LIGHT (1 = white), 0 .. 255, not rounded. */
 double glint_measure_code(double light);
 
-/* Returns IMAGE times EXPOSURE as sRGB codes, [height][width][3], which the
- * caller frees; NULL if memory is short. */
+/* Returns IMAGE times EXPOSURE as sRGB codes, [height][width][3], or NULL if
+ * there is no memory. The caller frees the result. */
 uint8_t *glint_measure_encode(const struct glint_float_image *image,
                               double exposure);
 
-/* Sets PSNR, SSIM and p99 of RESULT, from codes [height][width][3]; other
- * members stay. */
+/* Sets PSNR, SSIM and p99 of RESULT from codes [height][width][3]; other
+ * members are unchanged. */
 void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
                          int width, int height, struct glint_measure *result);
 
-/* Compares TEST with REFERENCE, of the same size, exposed by the reference.
- * FIT: TEST is first multiplied by the factor that minimises the squared
- * difference. Returns false if memory is short. */
+/* Compares TEST with REFERENCE, of the same size, at glint_measure_exposure()
+ * of the reference. If FIT, TEST is first multiplied by the factor that
+ * minimises the squared difference. Returns false if there is no memory. */
 bool glint_measure_compare(const struct glint_float_image *reference,
                            const struct glint_float_image *test, bool fit,
                            struct glint_measure *result);

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/options.h - the options of the engine, by name.
+ * glint/options.h - the options of the engine, set by name.
  *
  *     glint_options_defaults(&options);
  *     glint_options_set(&options, "f-number", 5.6, &error);
  *     glint_options_set_text(&options, "stop", "polygon:6", &error);
  *
- * glint/options.inc has one row an option. Parsers, help, manual pages,
- * completions, and the parameters of plug-ins and of Python are made from it:
- * glint_option() returns the rows. Numbers in texts have a decimal point in
- * every locale. */
+ * glint/options.inc has one row per option. Parsers, help, manual pages,
+ * completions, and the parameters of plug-ins and of the Python module are
+ * generated from its rows; glint_option() returns them. Numbers in texts have a
+ * decimal point in every locale. */
 #ifndef GLINT_OPTIONS_H
 #define GLINT_OPTIONS_H
 
@@ -41,7 +41,8 @@ enum glint_option_type {
     GLINT_OPTION_REAL,
     GLINT_OPTION_INTEGER,
     GLINT_OPTION_FLAG, /* set or not set, without a value */
-    GLINT_OPTION_WORD, /* one of some words, of which the index is the value */
+    GLINT_OPTION_WORD, /* one of a list of words; the value is the index of the
+                          word */
     GLINT_OPTION_TEXT
 };
 
@@ -49,7 +50,7 @@ enum glint_option_group {
     GLINT_OPTIONS_LAMPS,
     GLINT_OPTIONS_ARTIST,
     GLINT_OPTIONS_SCENE,
-    GLINT_OPTIONS_SHADING, /* of scenes */
+    GLINT_OPTIONS_SHADING, /* shading of 3-D scenes */
     GLINT_OPTIONS_LENS,
     GLINT_OPTIONS_BRIGHTNESS,
     GLINT_OPTIONS_SPEED,
@@ -64,22 +65,24 @@ enum glint_option_change {
     GLINT_OPTION_FRAME
 };
 
-/* A row of the table. */
+/* An option: a row of glint/options.inc. */
 struct glint_option {
-    const char *name;    /* without dashes */
-    const char *value;   /* stands for the value in a help; "" of a flag */
-    const char *accepts; /* WORD: the words, separated by '|'; TEXT: a sentence;
-                            numbers: the unit, which may end in "or WORD" */
-    const char *help;    /* a sentence, in one line */
+    const char *name;    /* name without dashes */
+    const char *value;   /* placeholder of the value in help texts; "" for a
+                            flag */
+    const char *accepts; /* WORD: the words, separated by '|'. TEXT: a
+                            description. Numbers: the unit, to which ", or WORD"
+                            may be appended */
+    const char *help;    /* description for help, one line */
     const char *text;    /* TEXT: the default, or "" */
-    double low, high;    /* limits of a number */
+    double low, high;    /* range of a number */
     double initial;      /* default of a number or a word; NAN: none */
     enum glint_option_type type;
     enum glint_option_group group;
     enum glint_option_change changes;
 };
 
-/* Identifiers GLINT_OPTION_OF_f_number ..., in the order of the table. */
+/* Identifiers such as GLINT_OPTION_OF_f_number, in the order of the table. */
 enum glint_option_id {
 #define GLINT_ROW_REAL(member, ...)    GLINT_OPTION_OF_##member,
 #define GLINT_ROW_INTEGER(member, ...) GLINT_OPTION_OF_##member,
@@ -90,10 +93,10 @@ enum glint_option_id {
     GLINT_N_OPTIONS
 };
 
-/* The value of each option, by its row, and whether it was set. Without a
- * default, a value is 0 or NULL until then. The struct grows with the table:
- * programs that are to work with other versions of the library set options by
- * name. */
+/* The value of each option, one member per row, and whether the option was set.
+ * An option without a default is 0 or NULL until it is set. The struct grows
+ * with the table: programs that must work with other versions of the library
+ * set options by name. */
 struct glint_options {
 #define GLINT_ROW_REAL(member, ...)    double member;
 #define GLINT_ROW_INTEGER(member, ...) int member;
@@ -104,23 +107,25 @@ struct glint_options {
     bool given[GLINT_N_OPTIONS];
 };
 
-/* Whether MEMBER of OPTIONS was set. */
+/* True if option MEMBER of OPTIONS was set. */
 #define GLINT_OPTION_GIVEN(options, member) \
     ((options)->given[GLINT_OPTION_OF_##member])
 
-/* Return row INDEX, from 0, or the row NAME; NULL if there is none. */
+/* Return the row with the index INDEX, from 0, or the name NAME; NULL if there
+ * is no such row. */
 const struct glint_option *glint_option(int index);
 const struct glint_option *glint_option_named(const char *name);
 
 /* Sets OPTIONS to the defaults of the table. */
 void glint_options_defaults(struct glint_options *options);
 
-/* Set option NAME. Of --quality and --error, the one that is set last counts.
- * VALUE: a number, the index of a word, or 0 or 1. TEXT: as on a command line;
- * of a flag yes, no, 1, 0, or "" or NULL for yes; of an option of type TEXT it
- * is kept, not copied, and NULL or "" restores the default. GLINT_E_ARGUMENT
- * with ERROR: there is no such option, or it does not accept that; the value
- * stays. */
+/* Set option NAME. If both --quality and --error are set, the last one applies;
+ * likewise --strength and --exposure. VALUE is a number, the index of a word,
+ * or 0 or 1 for a flag. TEXT is written as on a command line. For a flag it is
+ * yes, no, 1 or 0; "" or NULL mean yes. For an option of type TEXT it is not
+ * copied and must outlive OPTIONS; NULL or "" restores the default. Returns
+ * GLINT_E_ARGUMENT and sets ERROR if there is no such option, or it does not
+ * accept the value; the option is unchanged. */
 enum glint_status glint_options_set(struct glint_options *options,
                                     const char *name, double value,
                                     struct glint_error *error);
@@ -128,27 +133,28 @@ enum glint_status glint_options_set_text(struct glint_options *options,
                                          const char *name, const char *text,
                                          struct glint_error *error);
 
-/* Returns the quality of OPTIONS, with the parameters that were set one by one,
- * but for max_lights and area_points. */
+/* Returns the parameters that OPTIONS select: those of the quality, replaced by
+ * parameters that were set individually, except max_lights and area_points. */
 struct glint_quality glint_options_quality(const struct glint_options *options);
 
-/* Writes to TEXT, [BYTES], in words what OPTION accepts. */
+/* Writes to TEXT[BYTES] a description of the values that OPTION accepts. */
 void glint_option_accepts(const struct glint_option *option, char *text,
                           size_t bytes);
 
 /* ------------------------------------------------------- values within texts
  */
 
-/* Reads the number at TEXT, with a decimal point whatever the locale, and sets
- * END behind it, to TEXT if there is none. */
+/* Parses the number at the start of TEXT, with a decimal point in any locale,
+ * and sets *END to the first character after the number, or to TEXT if there is
+ * no number. */
 double glint_option_number(const char *text, const char **end);
 
-/* Reads all of TEXT as up to MAX finite numbers with commas. Returns how many;
- * 0: TEXT is malformed. */
+/* Parses all of TEXT as a list of up to MAX finite numbers, separated by
+ * commas. Returns how many there are; 0 if TEXT is malformed. */
 int glint_option_numbers(const char *text, double *values, int max);
 
-/* The values of options of type TEXT. Each function returns false if TEXT is
- * not what its option accepts. */
+/* Parsers of the values of options of type TEXT. Each returns false if its
+ * option does not accept TEXT. */
 
 /* --stop */
 struct glint_stop_shape {
@@ -158,35 +164,38 @@ struct glint_stop_shape {
 };
 bool glint_option_stop(const char *text, struct glint_stop_shape *stop);
 
-/* --dust and --front-dust: the fraction covered, and where (SEED, default 1) */
+/* --dust and --front-dust: the fraction covered, and the seed of the pattern
+ * (default 1) */
 bool glint_option_dust(const char *text, double *fraction, int *seed);
 
-/* --wavelengths: a LIST, or the number N of those that glint_spectrum()
- * chooses; AUTO: each ghost has as many as it needs */
+/* --wavelengths. LIST: wavelengths; COUNT: their number, for glint_spectrum()
+ * to choose; AUTO: each ghost uses as many as it needs */
 enum glint_waves_kind { GLINT_WAVES_LIST, GLINT_WAVES_COUNT, GLINT_WAVES_AUTO };
 struct glint_waves {
     enum glint_waves_kind kind;
-    int n;                            /* not of AUTO */
-    double nm[GLINT_MAX_WAVELENGTHS]; /* [n] of a LIST */
+    int n;                            /* number of wavelengths; undefined for
+                                         AUTO */
+    double nm[GLINT_MAX_WAVELENGTHS]; /* [n] for LIST, otherwise undefined */
 };
 bool glint_option_waves(const char *text, struct glint_waves *waves);
 
 /* --sensor: width and height, mm */
 bool glint_option_sensor(const char *text, double mm[2]);
 
-/* --threshold: stops from white that a lamp reaches, and to which it extends */
+/* --threshold: upper and lower threshold, stops from white, as threshold_ev of
+ * struct glint_engine_search */
 bool glint_option_threshold(const char *text, double ev[2]);
 
-/* --light-at: x and y in pixels, and stops over a white pixel */
+/* --light-at: x and y in pixels, and power in stops above a white pixel */
 #define GLINT_LIGHT_AT_EV 16 /* default: a street lamp in a night picture */
 bool glint_option_light_at(const char *text, double xy_ev[3]);
 
-/* --light: a lamp by its angles */
+/* --light: a lamp, given by its angles */
 bool glint_option_light(const char *text, struct glint_lamp *lamp);
 
-/* Returns whether POWER is 0 .. GLINT_MAX_LAMP_POWER, and RGB and POWER * RGB
- * are at most that. */
-#define GLINT_MAX_LAMP_POWER 1e30 /* such a lamp is finite in all outputs */
+/* Returns whether POWER is 0 .. GLINT_MAX_LAMP_POWER, and no channel of RGB or
+ * POWER * RGB exceeds GLINT_MAX_LAMP_POWER. */
+#define GLINT_MAX_LAMP_POWER 1e30 /* max power: all outputs are then finite */
 bool glint_lamp_power_is_valid(double power, const double rgb[3]);
 
 #ifdef __cplusplus

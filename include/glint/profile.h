@@ -10,11 +10,11 @@
  * Reads the pixels around each spot once. If channels are clipped, the power is
  * estimated from the size of the clipped core and the fall-off of light around
  * it, and the colour from the fringe where no channel is clipped. Otherwise the
- * power is the flux over the background.
+ * power is the flux minus the background.
  *
- * Integers only; nothing is kept from picture to picture. All results are
- * continuous in the pixels. A spot of any size costs reading at most about
- * 10000 pixels, a small one about 300. */
+ * All arithmetic is in integers. No state is preserved from picture to picture.
+ * All results are continuous functions of the pixels. At most about 10000
+ * pixels are read per spot, about 300 for a small spot. */
 #ifndef GLINT_PROFILE_H
 #define GLINT_PROFILE_H
 
@@ -30,16 +30,17 @@ extern "C" {
 
 struct glint_profile; /* opaque, in the caller's memory */
 
-/* Returns the number of bytes that init takes. */
+/* Returns the number of bytes that glint_profile_init() needs. */
 size_t glint_profile_bytes(void);
 
-/* Places a profile in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: BYTES is too
- * small. GLINT_E_ARGUMENT: the alignment is wrong. */
+/* Places a profile in MEM[BYTES], aligned to 64; *PROFILE points into it.
+ * Returns GLINT_E_MEMORY if BYTES is too small. Returns GLINT_E_ARGUMENT if the
+ * alignment is wrong. */
 enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
                                      size_t bytes);
 
-/* Sets power, extent and colour of the first N SPOTS of IMAGE, at most 1024,
- * which must have been found in it. */
+/* Sets power, extent and colour of SPOTS[N], N at most 1024, which must have
+ * been found in IMAGE. */
 void glint_profile_measure(struct glint_profile *profile,
                            const struct glint_image *image,
                            struct glint_spot *spots, int n);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/quality.h - one parameter for all: quality 0 to 1 along the measured
- * Pareto front of error and time, as a table of levels. */
+ * glint/quality.h - one parameter that sets all dials: quality 0 to 1, along
+ * the measured Pareto front of error and time, as a table of levels. */
 #ifndef GLINT_QUALITY_H
 #define GLINT_QUALITY_H
 
@@ -13,34 +13,35 @@
 extern "C" {
 #endif
 
-/* Names of qualities, from the coarsest. */
+/* Names of qualities, the coarsest first; glint_quality_named() returns the
+ * quality, 0 to 1, of name number NAME. */
 enum { GLINT_QUALITY_NAMES = 5, GLINT_QUALITY_LEVELS = 10 };
 extern const char
     *const glint_quality_name[GLINT_QUALITY_NAMES + 1]; /* the last is NULL */
 double glint_quality_named(int name);
 
-/* Returns the place of QUALITY among the levels, 0 to GLINT_QUALITY_LEVELS - 1.
- * It may lie between two levels, but not between one that draws four pixels at
- * once and one that does not. */
+/* Returns the fractional level of QUALITY, 0 to GLINT_QUALITY_LEVELS - 1. It is
+ * whole between a level that draws at half resolution and a level that does
+ * not. */
 double glint_quality_place(double quality);
 
-/* The dials of a quality, and its parameters that are not dials of a frame. */
+/* The parameters of a quality: the dials of a frame, and two others. */
 struct glint_quality {
     struct glint_dials dials;
-    double quantum;   /* percent of irradiance, from which irradiance_steps
-                         follows */
-    double tolerance; /* tolerance with which the model is baked */
+    double quantum;   /* percent by which irradiance is rounded; determines
+                         irradiance_steps */
+    double tolerance; /* tolerance with which the model is baked, as in struct
+                         glint_bake_options */
 };
 
 /* Returns the settings of QUALITY, 0 to 1; 0.5 is the default. */
 struct glint_quality glint_quality_at(double quality);
 
-/* Returns the lowest quality whose outlines are off by at most PX pixels in
- * the mean. */
+/* Returns the lowest quality at which outlines are off by at most PX pixels on
+ * average. */
 double glint_quality_for_error(double px);
 
-/* Returns the steps of irradiance an octave for a mean step of QUANTUM percent;
- * steps are equal within an octave. */
+/* Returns irradiance_steps for a mean step of QUANTUM percent. */
 int glint_quality_steps(double quantum);
 
 /* Returns whether DIALS draw at half resolution. */

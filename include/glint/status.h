@@ -2,10 +2,10 @@
  *
  * glint/status.h - return values of functions that can fail.
  *
- * Loading and initialising validate everything and return a status; drawing a
- * frame cannot fail and counts what it left out; the offline half returns a
- * status and fills a struct glint_error with one line for a person.
- */
+ * Functions that load or initialise validate all input and return a status.
+ * Functions that draw a frame cannot fail; they count what they leave out.
+ * Functions of the offline half return a status and write a line for a person
+ * to a struct glint_error. */
 #ifndef GLINT_STATUS_H
 #define GLINT_STATUS_H
 
@@ -16,18 +16,19 @@ extern "C" {
 enum glint_status {
     GLINT_OK = 0,
     GLINT_E_ARGUMENT,    /* a parameter is outside its documented range */
-    GLINT_E_MEMORY,      /* not enough memory, or a block too small */
+    GLINT_E_MEMORY,      /* not enough memory, or a memory block is too small */
     GLINT_E_FORMAT,      /* a picture or stream is malformed */
-    GLINT_E_UNSUPPORTED, /* well formed, but not something glint handles */
-    GLINT_E_LENS,        /* a lens table or model is wrong */
+    GLINT_E_UNSUPPORTED, /* well formed, but not supported by glint */
+    GLINT_E_LENS,        /* a lens table, scene text or model is invalid */
     GLINT_E_IO,          /* reading failed */
     GLINT_E_OUTPUT,      /* writing failed */
-    GLINT_E_CLOSED,      /* the reader of a pipe went away */
-    GLINT_E_DEVICE       /* a camera or panel failed, is busy or went away */
+    GLINT_E_CLOSED,      /* the reader of a pipe has closed it */
+    GLINT_E_DEVICE       /* a camera or display failed, is busy or was
+                            disconnected */
 };
 
-/* One line for a person, "FILE:LINE:COLUMN: cause" where there is a file.
- * Always terminated; longer texts are cut. */
+/* An error message of one line, "FILE:LINE:COLUMN: cause" if the error is in a
+ * file. Always terminated; longer texts are truncated. */
 struct glint_error {
     char text[256];
 };
@@ -36,7 +37,7 @@ struct glint_error {
  * the calling thread or worker 0, never from both at once. */
 typedef void glint_progress_fn(void *ctx, double done);
 
-/* Returns a few words for STATUS, never NULL. */
+/* Returns a description of STATUS in a few words, never NULL. */
 const char *glint_status_text(enum glint_status status);
 
 #ifdef __cplusplus

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/transfer.h - rays through a baked lens, in integers.
+ * glint/transfer.h - traces rays through a baked lens, in integers.
  *
  *     glint_transfer_init(&transfer, &lens, ghost, sine_q30, wave_q24);
  *     glint_transfer_ray(&transfer, u_q30, v_q30, &out);        or
  *     glint_transfer_grid(&transfer, &place, n_cells, vertices);
  *
- * All rays of a bundle have the same angle and wavelength: init substitutes
- * these into the polynomials, which leaves polynomials in u and v. */
+ * All rays of a bundle have the same angle and wavelength.
+ * glint_transfer_init() substitutes these into the polynomials; the resulting
+ * polynomials depend only on u and v. */
 #ifndef GLINT_TRANSFER_H
 #define GLINT_TRANSFER_H
 
@@ -21,9 +22,9 @@
 extern "C" {
 #endif
 
-/* A part of a box, _q30: u from u_middle - u_half to u_middle + u_half, within
- * -1 .. 1; |v| from v_from to v_to, where 0 is the middle of the box, or the
- * rim of an annular one, and 1 is its end. */
+/* A window of a box, _q30: u from u_middle - u_half to u_middle + u_half,
+ * within -1 .. 1; |v| from v_from to v_to, where 0 is the middle of the box
+ * (the inner rim, if the box is annular) and 1 is its end. */
 struct glint_box_window {
     int32_t u_middle_q30, u_half_q30, v_from_q30, v_to_q30;
 };
@@ -32,38 +33,42 @@ struct glint_box_window {
 struct glint_transfer {
     const struct glint_model_system *system;
     uint32_t outputs; /* bit KIND is set if the system has that output */
-    int32_t exponent[GLINT_OUT_KINDS]; /* exponent of each output */
-    uint8_t head, roots; /* members of these names of the energy's struct
-                            glint_model_output */
-    uint8_t energy_up; /* log2 of the factor on a vertex's energy, 0 .. 29; init
-                          sets 0, the caller may raise it */
+    int32_t exponent[GLINT_OUT_KINDS]; /* value of an output = integer *
+                                          2^exponent */
+    uint8_t head, roots; /* the members of these names in the struct
+                            glint_model_output of the energy */
+    uint8_t energy_up; /* log2 of the factor on the energy of a vertex, 0 .. 29;
+                          glint_transfer_init() sets it to 0, the caller may
+                          raise it */
     int32_t box[4];    /* middle, half width and half height at this angle and
-                          wavelength, and the middle across */
+                          wavelength, and (lens basis) the middle along y */
     int32_t box_exponent;
     uint8_t annulus;
-    /* Of the lens basis: WHOLE is 1, as v runs over all of the box. Then x is
-     * SIGN times the lens's, and so is y, which is once more mirrored if SIDE
-     * is 1: so a light in any quarter is made of one in the model's. */
+    /* In the lens basis WHOLE is 1: v runs over all of the box. Outputs for a
+     * light in any quadrant are then mirrored from a light in the quadrant of
+     * the model: x and y are multiplied by SIGN, and y is negated again if SIDE
+     * is 1. Otherwise WHOLE and SIDE are 0, and SIGN is 1. */
     uint8_t whole, side;
     int8_t sign;
-    /* Part of the box that rows and grids of rays cover. Init sets it to the
-     * whole box, the caller may narrow it; v begins at 0 unless the box is
-     * annular, or WHOLE. */
+    /* Window of the box that rows and grids of rays cover.
+     * glint_transfer_init() sets it to the whole box, the caller may narrow it.
+     * Unless the box is annular or WHOLE is 1, v begins at 0. */
     struct glint_box_window window;
     /* coefficients of u^a v^b, at [b][a] */
     int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1][GLINT_TABLE_WIDTH];
     uint8_t degree_u[GLINT_OUT_KINDS], degree_v[GLINT_OUT_KINDS];
-    unsigned sets; /* instruction sets for rows, GLINT_SET_: 0 after init, for
-                      the caller to set; changes no result */
-    /* Scratch: polynomials in u of one row of rays, and the places of the rays
-     * along a row. */
+    unsigned sets; /* instruction sets for rows, GLINT_SET_ bits; 0 after init,
+                      the caller may set it; the result is the same for all
+                      sets */
+    /* Scratch: polynomials in u of one row of rays, and u of each ray of a
+     * row. */
     int32_t of_u[GLINT_OUT_KINDS][GLINT_TABLE_WIDTH];
     int32_t n_nodes, node_q30[GLINT_MAX_CELLS + GLINT_RAYS];
 };
 
-/* Puts angle and wavelength into the polynomials of GHOST. SINE_Q30 is 0 ..
- * 2^30; WAVE_Q24 is clamped to the model's band. Returns 0 if no light of the
- * ghost gets through. */
+/* Substitutes angle and wavelength into the polynomials of GHOST. SINE_Q30 is 0
+ * .. 2^30; WAVE_Q24 is clamped to the band of the model. Returns 0 if no light
+ * of the ghost gets through. */
 int glint_transfer_init(struct glint_transfer *transfer,
                         const struct glint_lens *lens, int ghost,
                         int32_t sine_q30, int32_t wave_q24);
@@ -73,14 +78,14 @@ struct glint_azimuth {
     int32_t cos_q30, sin_q30;
 };
 
-/* Does the same for a light at AZIMUTH, on which ghosts of lenses that are not
- * round depend; otherwise it is 0. */
+/* Does the same for a light at AZIMUTH, which matters only for lenses that are
+ * not round; glint_transfer_init() uses the azimuth 0. */
 int glint_transfer_init_at(struct glint_transfer *transfer,
                            const struct glint_lens *lens, int ghost,
                            int32_t sine_q30, struct glint_azimuth azimuth,
                            int32_t wave_q24);
 
-/* Returns the window that is the whole box of TRANSFER. */
+/* Returns the window that covers the whole box of TRANSFER. */
 static inline struct glint_box_window
 glint_box_whole(const struct glint_transfer *transfer)
 {
@@ -91,55 +96,58 @@ glint_box_whole(const struct glint_transfer *transfer)
     return whole;
 }
 
-/* Gives the outputs of one ray at (U, V), each within +-2^30: integers by kind,
- * to be scaled by 2^exponent; 0 for outputs that the system lacks. */
+/* Sets OUT to the outputs of the ray at (U, V), by kind: integers within
+ * +-2^30, to be scaled by 2^exponent; 0 for kinds that the system lacks. */
 struct glint_outputs {
     int32_t at[GLINT_OUT_KINDS];
 };
 void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
                         int32_t v_q30, struct glint_outputs *out);
 
-/* Gives the outputs of the rays at (U[i], V) by kind; entries of kinds that the
- * system lacks are undefined. IS_NEW is 0 if V is that of the last call. */
+/* Sets OUT to the outputs of the rays at (U[i], V), by kind; entries of kinds
+ * that the system lacks are undefined. IS_NEW may be 0 if V equals V of the
+ * last call. */
 void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
                          const int32_t u_q30[GLINT_RAYS], int is_new,
                          int32_t out[GLINT_OUT_KINDS][GLINT_RAYS]);
 
-/* The place of a bundle's light in the picture. */
+/* How outputs in mm of the sensor map to pixels of the picture. */
 struct glint_place {
-    int32_t cos_q30, sin_q30; /* by which outputs are turned: cosine and sine of
-                                 the light's azimuth; in the lens basis sign and
-                                 0 */
+    int32_t cos_q30, sin_q30; /* cosine and sine of the angle by which outputs
+                                 are rotated: the azimuth of the light; in the
+                                 lens basis SIGN and 0 */
     struct glint_real pixels_per_mm;
-    int32_t middle_x_q8, middle_y_q8; /* pixels: place of the sensor's centre */
-    struct glint_real stop_scale; /* radius of the model's stop over that of the
-                                     frame's, 1 or more; 0: both are equal */
+    int32_t middle_x_q8, middle_y_q8; /* position of the centre of the sensor,
+                                         pixels */
+    struct glint_real stop_scale; /* radius of the stop of the model / radius of
+                                     the stop of the frame, 1 or more; 0: the
+                                     radii are equal */
 };
 
-/* Return u at X_Q30, where -1 .. 1 is the width of the window, and v after J of
- * N equal steps from the lower to the upper end of its upper half, or of all of
- * it if it is WHOLE. */
+/* Return u at X_Q30, where -1 .. 1 is the width of the window; and v after J of
+ * N equal steps from the lower to the upper end of the upper half of the
+ * window, or of the whole window if WHOLE is 1. */
 int32_t glint_transfer_u(const struct glint_transfer *transfer, int32_t x_q30);
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
 
-/* Fills the vertices of a grid of N_CELLS a side over the window, row by row,
- * [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a vertex
- * stands for 2^(exponent[GLINT_OUT_ENERGY] + 29 - energy_up); larger energies
- * are clamped. A ray with a value that does not fit a vertex is lost. For an
- * annular box N_CELLS must be even and at least 4: the rays of the middle row
- * are invalid, the rows next to it lie on the rim, and the box is covered by
- * n_cells - 2 rows of cells. */
+/* Sets VERTICES to a grid of N_CELLS cells per side over the window, row by
+ * row, [n_cells + 1][n_cells + 1], by rising v and in each row by rising u. The
+ * energy 65536 of a vertex stands for 2^(exponent[GLINT_OUT_ENERGY] + 29 -
+ * energy_up); larger energies are clamped. A ray with a value that does not fit
+ * a vertex becomes invalid. For an annular box N_CELLS must be even and at
+ * least 4: the rays of the middle row are invalid, the rows next to it lie on
+ * the rim, and the box is covered by n_cells - 2 rows of cells. */
 void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);
 
-/* Fills row J, 0 .. N_CELLS, of that grid alone. */
+/* Sets ROW to row J, 0 .. N_CELLS, of the grid of glint_transfer_grid(). */
 void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row);
 
-/* Fills row J of that grid and, for little more time, its mirror image, row
- * N_CELLS - J. */
+/* Sets ROW to row J of that grid and, for little more time, MIRRORED to row
+ * N_CELLS - J, its mirror image. */
 void glint_transfer_rows(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,

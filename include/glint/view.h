@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/view.h - lamps as angles, and the picture on the sensor.
- */
+ * glint/view.h - converts between directions of lamps and pixels of a picture
+ * on the sensor. */
 #ifndef GLINT_VIEW_H
 #define GLINT_VIEW_H
 
@@ -20,39 +20,40 @@ struct glint_lamp {
     double rgb[3]; /* colour, linear BT.709; white is 1 1 1 */
     double axis[2];  /* RMS semi-axes of its extent, the major one first, in
                         tangents of angles off the axis (image over focal
-                        length); 0 0: a point. Only functions that make many
-                        points of a lamp use it; the exact picture and traced
-                        bundles take the lamp for one point. */
+                        length); 0 0: a point. Only functions that divide a lamp
+                        into points use it; in exact pictures and traced bundles
+                        the lamp is one point. */
     double turn_deg; /* direction of the major axis, 0 = +x, 90 = up */
 };
 
-/* Where a lens images what lies off the axis. With rho, the image's distance
- * from the axis over the focal length, light comes from the angle
+/* The projection of a lens: the angle off the axis of the light that is imaged
+ * at a distance from the axis. With rho = distance / focal length, the angle is
  *
  *     theta = atan(rho) (1 + b[0] r^2 + b[1] r^4 + .. ),  r = min(rho, reach)
  *
- * All zeros: as through a pinhole, rho = tan(theta), and no less than 90
- * degrees are seen. */
+ * If all members are 0, the projection is that of a pinhole, rho = tan(theta),
+ * for all angles below 90 degrees. */
 #define GLINT_PROJECTION_TERMS 4
 struct glint_projection {
-    double reach; /* rho up to which the lens was traced */
+    double reach; /* max rho at which the lens was traced */
     double b[GLINT_PROJECTION_TERMS];
 };
 
-/* The place of a picture on the sensor: centred, with square pixels. */
+/* A picture on the sensor: centred, with square pixels. */
 struct glint_view {
-    int width, height;      /* pixels */
-    double sensor_width_mm; /* mm that the whole width of the picture takes */
-    struct glint_projection projection; /* of all lights of the picture */
+    int width, height;      /* size of the picture, pixels */
+    double sensor_width_mm; /* width of the picture on the sensor, mm */
+    struct glint_projection projection; /* projection of the lens, for all
+                                           lights of the picture */
 };
 
-/* Returns the angle off the axis, 0 .. 89.9 degrees, of light that is imaged
- * RHO focal lengths from it. */
+/* Returns the angle off the axis, 0 .. 89.9 degrees, of light that is imaged at
+ * a distance of RHO focal lengths from the axis. */
 double glint_projection_deg(const struct glint_projection *projection,
                             double rho);
 
-/* Returns how many focal lengths from the axis light from THETA_DEG is imaged,
- * at most 1e6. */
+/* Returns the distance from the axis, in focal lengths, at most 1e6, at which
+ * light from the angle THETA_DEG is imaged. */
 double glint_projection_rho(const struct glint_projection *projection,
                             double theta_deg);
 
@@ -61,12 +62,12 @@ struct glint_view glint_view_fit(int width, int height, double film_width_mm,
                                  double film_height_mm);
 
 /* Returns the tangent of the angle that a pixel on the axis covers behind a
- * lens of FOCAL_MM. */
+ * lens of focal length FOCAL_MM. */
 double glint_view_pixel_tangent(const struct glint_view *view, double focal_mm);
 
 /* Convert between the direction of a light, theta_deg and phi_deg of LAMP, and
- * its image's place (X, Y) in VIEW behind a lens of FOCAL_MM. Pixels count from
- * the top left corner, y down. */
+ * the position (X, Y) of its image in VIEW behind a lens of focal length
+ * FOCAL_MM. Pixels count from the top left corner, y down. */
 void glint_view_to_angles(const struct glint_view *view, double focal_mm,
                           double x, double y, struct glint_lamp *lamp);
 void glint_view_to_pixel(const struct glint_view *view, double focal_mm,

@@ -13,15 +13,15 @@
 extern "C" {
 #endif
 
-/* Does job JOB as worker WORKER (0 .. n - 1; no two threads are the same
- * worker at the same time). */
+/* Does job number JOB. WORKER, 0 .. n - 1, is the number of the worker that
+ * calls it; no two threads have the same number at the same time. */
 typedef void glint_job_fn(void *ctx, int job, int worker);
 
 struct glint_workers {
     int n; /* threads that may run jobs at once, 1 .. 64 */
 
-    /* Runs fn(ctx, 0 .. n_jobs - 1, worker), in any order, and returns when
-     * all are done. Never called from inside a job. */
+    /* Calls FN once for each job 0 .. n_jobs - 1, in any order, and returns
+     * when all jobs are done. Never called from inside a job. */
     void (*run)(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
                 void *ctx);
 };

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/bake.h - bakes the description of a scene.
+ * glint/scene/bake.h - bakes the description of a scene to a file of
+ * glint/scene/model.h.
  *
  *     glint_description_parse(&scene, ...);
  *     glint_scene_bake(&scene, "shop", key, &data, &bytes, &report, &error);
  *     glint_scene_open(&model, data, bytes, &reason);
  *
  * Positions become integers: a unit of the scene is 2^unit_log2 steps, chosen
- * so that everything lies within a quarter of the run time's range (with a
- * plane, a 64th); the rest is for poses and planes. The same description gives
- * the same bytes. */
+ * so that everything lies within a quarter of GLINT_SCENE_SPAN (a 64th, if
+ * there is a plane); the rest of the range is for changes of poses and for
+ * planes. The same description gives the same bytes. */
 #ifndef GLINT_SCENE_BAKE_H
 #define GLINT_SCENE_BAKE_H
 
@@ -23,18 +24,20 @@
 extern "C" {
 #endif
 
-/* What baking did. Bytes are those of all tables of a kind. */
+/* Results of baking. */
 struct glint_scene_bake_report {
-    double step;  /* of places, in units of the scene: they are off by half of
-                     it at most, each way */
-    double reach; /* how far objects, lamps and camera reach from the origin */
-    int vertices, triangles, cells, refs; /* of all meshes */
-    int flat; /* triangles left out: they have no area in steps */
+    double step;  /* size of a step, in units of the scene; coordinates are
+                     rounded to it */
+    double reach; /* upper bound of the coordinates of objects, lamps and
+                     camera */
+    int vertices, triangles, cells, refs; /* totals of all meshes */
+    int flat; /* number of triangles left out, as their area in steps is 0 */
 };
 
-/* Bakes SCENE. NAME is kept in the file, its first 63 characters of a-z, A-Z,
- * 0-9, '-' and '_', as is KEY. *DATA is malloc'ed. GLINT_E_LENS: ERROR names an
- * object that is too small for how far the scene reaches. GLINT_E_MEMORY. */
+/* Bakes SCENE. The file stores KEY and the first 63 characters of NAME that are
+ * a-z, A-Z, 0-9, '-' or '_'. *DATA is malloc'ed. On GLINT_E_LENS, ERROR names
+ * an object that is too small relative to the extent of the scene. May return
+ * GLINT_E_MEMORY. */
 enum glint_status glint_scene_bake(const struct glint_description *scene,
                                    const char *name, uint64_t key,
                                    unsigned char **data, size_t *bytes,

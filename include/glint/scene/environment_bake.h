@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/environment_bake.h - a panorama becomes a baked
- * environment, in double precision.
+ * glint/scene/environment_bake.h - bakes a panorama to an environment, in
+ * double precision.
  *
  *     glint_environment_defaults(&options);
  *     glint_environment_bake(&picture, &options, "night", key, &data, &bytes,
  *                            &report, &error);
  *     glint_environment_open(&environment, data, bytes, &reason);
  *
- *   in   linear light: twice as wide as high, longitudes across and latitudes
- *        down, its middle ahead and its right edge behind; or 3 x 2 faces of a
- *        cube, +x +y +z over -x -y -z
- *   out  levels, irradiance map and list of bright lights, in one file
+ *   in   a picture of linear light: an equirectangular panorama, twice as wide
+ *        as high, whose middle is ahead and whose right edge is behind; or 3 x
+ * 2 faces of a cube, +x +y +z above -x -y -z out  levels, irradiance map and
+ * list of bright lights, in one file
  *
  * The same picture and options give the same bytes. */
 #ifndef GLINT_SCENE_ENVIRONMENT_BAKE_H
@@ -29,35 +29,41 @@ extern "C" {
 #endif
 
 struct glint_environment_options {
-    int side_log2; /* GLINT_ENVIRONMENT_LEAST_LOG2 .. MOST_LOG2 */
+    int side_log2; /* log2 of the side of level 0, GLINT_ENVIRONMENT_LEAST_LOG2
+                      .. MOST_LOG2 */
     enum glint_environment_levels levels;
-    int max_lights;     /* 0 .. GLINT_ENVIRONMENT_MAX_LIGHTS */
-    double light_deg;   /* rms radius above which a spot is not light, 0.1 .. 20
-                         */
-    double light_above; /* light is distinguished from the rest down to that
-                           many times the mean of what is below it, 2 .. 1000 */
-    double turn_deg;    /* about y, to the right; -360 .. 360 */
-    double scale;       /* factor of all light, 1e-6 .. 1e6 */
+    int max_lights;   /* max number of lights, 0 .. GLINT_ENVIRONMENT_MAX_LIGHTS
+                       */
+    double light_deg; /* max RMS radius of a light, 0.1 .. 20; wider bright
+                         spots are not lights */
+    double light_above; /* lights are sought at falling thresholds, down to this
+                           many times the mean luminance of darker texels, 2 ..
+                           1000 */
+    double turn_deg;    /* rotation about y, to the right, -360 .. 360 */
+    double scale;       /* factor on all light, 1e-6 .. 1e6 */
 };
 
-/* What baking found and did. Luminance is of BT.709. */
+/* Results of baking. Luminance is that of BT.709. */
 struct glint_environment_report {
-    int width, height;              /* of the picture */
-    long long negative, not_finite; /* pixels that were clamped to 0, or at the
+    int width, height;              /* size of the picture, pixels */
+    long long negative, not_finite; /* pixels that were clamped to 0, or to the
                                        largest finite value if they were +inf */
-    double mean, largest;           /* luminance, over the sphere */
-    double residual_largest;        /* of texels, without the lights */
-    double light_share;             /* of the list of lights in all light */
-    int spots;                      /* that are lights; those listed at most */
+    double mean, largest;           /* mean and max luminance over the sphere */
+    double residual_largest;        /* max luminance of texels after removing
+                                       the lights */
+    double light_share;             /* fraction of all light that is in the list
+                                       of lights */
+    int spots;                      /* number of spots that are lights; at most
+                                       max_lights of them are listed */
 };
 
-/* Sets OPTIONS to a side of 256, Gaussian levels, 9e5, 16 lights. */
+/* Sets OPTIONS to a side of 256 texels, Gaussian levels and up to 16 lights. */
 void glint_environment_defaults(struct glint_environment_options *options);
 
-/* Bakes PICTURE. NAME is kept in the file, its first 63 characters of a-z, A-Z,
- * 0-9, '-' and '_', as is KEY. *DATA is malloc'ed. GLINT_E_ARGUMENT: OPTIONS
- * are out of range. GLINT_E_UNSUPPORTED: PICTURE has another shape, or no light
- * that can be scaled. GLINT_E_MEMORY. */
+/* Bakes PICTURE. The file stores KEY and the first 63 characters of NAME that
+ * are a-z, A-Z, 0-9, '-' or '_'. *DATA is malloc'ed. Returns GLINT_E_ARGUMENT
+ * if OPTIONS are out of range. Returns GLINT_E_UNSUPPORTED if PICTURE has
+ * another shape, or no light that can be scaled. May return GLINT_E_MEMORY. */
 enum glint_status
 glint_environment_bake(const struct glint_float_image *picture,
                        const struct glint_environment_options *options,
@@ -67,9 +73,9 @@ glint_environment_bake(const struct glint_float_image *picture,
 
 #define GLINT_ENVIRONMENT_FILE_BYTES 201
 
-/* Reads DATA[BYTES], a text as tools/examples/scenes/README.md has it, into
- * SOURCE, the name of the picture, and OPTIONS. GLINT_E_LENS: ERROR states
- * file, line, column and cause. */
+/* Parses DATA[BYTES], a text as described in tools/examples/scenes/README.md.
+ * Sets SOURCE to the name of the picture, and OPTIONS. On GLINT_E_LENS, ERROR
+ * states file, line, column and cause. */
 enum glint_status
 glint_environment_parse(struct glint_environment_options *options,
                         char source[GLINT_ENVIRONMENT_FILE_BYTES],

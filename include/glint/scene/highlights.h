@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/highlights.h - highlights on the objects of a scene, as lamps for
- * the flare.
+ * glint/scene/highlights.h - finds highlights on the objects of a scene, as
+ * lamps for the flare.
  *
  *     cfg.parts.highlights = &glint_scene_highlights;            once
  *     glint_scene_draw(scene, &image);                           each frame
@@ -9,12 +9,12 @@
  *     n = glint_lamp_tracker_step(tracks, spots, n, us, ...);    so that none
  *                                                                jumps
  *
- * A pixel of an object counts with its linear light before saturation: fully
- * above a luminance of 2, in part above 1, so that highlights appear and vanish
+ * The linear light of a pixel of an object before saturation counts completely
+ * above a luminance of 2, partly above 1, so that highlights appear and vanish
  * gradually. Discs of lights (see glint_scene_lights()) and the background are
- * not highlights. Light is summed with its moments in squares of 8 x 8 pixels;
- * squares with light that touch are one highlight, and highlights whose middles
- * are within 12 pixels are. No result depends on the number of workers, the
+ * not highlights. Light and its moments are summed in squares of 8 x 8 pixels.
+ * Adjacent squares with light form a highlight; highlights whose middles are
+ * within 12 pixels are merged. No result depends on the number of workers, the
  * order of jobs or the tile size. */
 #ifndef GLINT_SCENE_HIGHLIGHTS_H
 #define GLINT_SCENE_HIGHLIGHTS_H
@@ -28,18 +28,18 @@ extern "C" {
 
 enum {
     GLINT_SCENE_MAX_HIGHLIGHTS = 8,
-    GLINT_SCENE_HIGHLIGHT_APART = 12 /* pixels */
+    GLINT_SCENE_HIGHLIGHT_APART = 12 /* merge distance, pixels */
 };
 
 struct glint_scene_highlight {
-    /* Its power is its flux, up to 2^42 _q16; area is that of its squares; it
-     * is as wide as its moments say, half a pixel at least. */
+    /* Power equals flux, up to 2^42 _q16; area is the area of its squares; size
+     * and axes follow from its moments, at least half a pixel. */
     struct glint_spot spot;
-    int object; /* index of that whose pixel is the brightest */
+    int object; /* index of the object with the brightest pixel */
 };
 
 /* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights of the picture drawn
- * last, the brightest first, as many as the configuration wants, and
+ * last, the brightest first, at most as many as the configuration allows;
  * returns their number. */
 int glint_scene_find_highlights(const struct glint_scene *scene,
                                 struct glint_scene_highlight *found);

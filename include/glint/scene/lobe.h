@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/lobe.h - Ward's lobe and the texels that it reads, as its kernels
- * take them. glint/scene/ward.h makes lobes, glint/scene/environment.h texels.
- */
+ * glint/scene/lobe.h - data of the kernels for Ward's lobe: the lobe and the
+ * texels that it reads. glint/scene/ward.h makes lobes,
+ * glint/scene/environment.h makes texels. */
 #ifndef GLINT_SCENE_LOBE_H
 #define GLINT_SCENE_LOBE_H
 
@@ -14,57 +14,60 @@ extern "C" {
 
 enum {
     GLINT_WARD_SAMPLES = 32,
-    GLINT_TEXELS_LEVELS = 11 /* at most */
+    GLINT_TEXELS_LEVELS = 11 /* max levels */
 };
 
 enum glint_ward_norm {
     GLINT_WARD_BOUNDED, /* reflects no more than it receives [Geisler10] */
-    GLINT_WARD_1992     /* as published [Ward92] */
+    GLINT_WARD_1992     /* normalised as published in [Ward92] */
 };
 
-/* A level: a square of 2^side_log2 codes, row by row. */
+/* A level: a square with a side of 2^side_log2 codes, row by row. */
 struct glint_texels_level {
     int32_t side_log2;
-    uint32_t at; /* of the first code, counted in codes */
+    uint32_t at; /* index of the first code */
 };
 
 struct glint_texels {
-    const uint32_t *code; /* RGB9E5 */
-    int32_t last;         /* level */
-    /* The last one stands there twice: each has a next. */
+    const uint32_t *code; /* texels of all levels, RGB9E5 */
+    int32_t last;         /* index of the last level */
+    /* The last level is stored twice, so that each level has a next one. */
     struct glint_texels_level level[GLINT_TEXELS_LEVELS + 1];
 };
 
 struct glint_ward_lobe;
 struct glint_ward_place;
 
-/* Sets SUM_Q12 to the light that LOBE's samples find in TEXELS, units, each
- * times its weight, 0 .. 8: below 2^48. */
+/* Sets SUM_Q12 to the sum of the light in TEXELS, in units, at the samples of
+ * LOBE, each multiplied by its weight, 0 .. 8. The sum is below 2^48. */
 typedef void glint_ward_sum_fn(const struct glint_ward_lobe *lobe,
                                const struct glint_texels *texels,
                                const struct glint_ward_place *place,
                                uint64_t sum_q12[3]);
 
-/* Half vectors of a lobe; those from N on are turned away from the eye. A
- * sample reads the level l whose light has a variance of 4^l times that of
- * level 0: SPAN_Q14 2^span_log2 times the cosine from half vector to eye. */
+/* A lobe, as a set of half vectors; those from index N on face away from the
+ * eye, so they add no light. Each sample reads level l, where 4^l is the
+ * variance of its blur / variance of level 0: SPAN_Q14 2^span_log2 times the
+ * cosine between half vector and eye. */
 struct glint_ward_lobe {
     glint_ward_sum_fn *sum;
-    int n; /* samples */
+    int n; /* number of samples */
     enum glint_ward_norm norm;
-    int32_t share_q16; /* 1 / n, times what codes count */
-    int unit_log2;     /* of the light of its environment */
+    int32_t share_q16; /* 1 / n */
+    int unit_log2;     /* log2 of the unit of light of the environment */
     int32_t specular_q15[3];
-    int32_t half_q14[3][GLINT_WARD_SAMPLES]; /* tangent, bitangent, normal */
-    int32_t factor_q14[GLINT_WARD_SAMPLES];  /* 1992: third power of the last */
-    int32_t span_q14[GLINT_WARD_SAMPLES];    /* 1 .. 2 */
+    int32_t half_q14[3][GLINT_WARD_SAMPLES]; /* components along tangent,
+                                                bitangent, normal */
+    int32_t factor_q14[GLINT_WARD_SAMPLES];  /* GLINT_WARD_1992: cube of the
+                                                normal component of half */
+    int32_t span_q14[GLINT_WARD_SAMPLES];    /* mantissa of the span, 1 .. 2 */
     int32_t span_log2[GLINT_WARD_SAMPLES];
 };
 
-/* How the eye sees a place: rows of FRAME are tangent, bitangent and normal in
- * the directions of the environment, OUT is the way to the eye along them,
- * OUT_Q14[2] from 1 on. For the norm of 1992 1 / sqrt(OUT[2]) is ROOT_Q14
- * 2^root_log2, ROOT_Q14 1 .. 2. */
+/* A shaded point. Rows of FRAME are tangent, bitangent and normal in the axes
+ * of the environment; OUT is the direction to the eye in that frame, with
+ * OUT_Q14[2] at least 1. For GLINT_WARD_1992, 1 / sqrt(OUT[2]) = ROOT_Q14
+ * 2^root_log2, with ROOT_Q14 in 1 .. 2. */
 struct glint_ward_place {
     int32_t frame_q14[3][3], out_q14[3];
     int32_t root_q14, root_log2;

@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/motion.h - a recorded motion with reconstructed poses: its file,
- * read in blocks of 4 KiB.
+ * glint/scene/motion.h - the file of a recorded motion with reconstructed
+ * poses, read in blocks of 4 KiB.
  *
  *     status = glint_motion_open(&motion, data, bytes, &reason);     in memory
  *     status = glint_motion_over(&motion, &blocks, buffer, &reason); elsewhere
  *     status = glint_motion_frame(&motion, k, &frame);               any frame
  *
- * A body with sensors moves among foods. Each frame of the file has position
- * and rotation of the body and the position of each food. In frame 0 the body
- * is at the origin and not rotated, so positions are relative to that pose.
- * Axes are those of the recording, right-handed.
+ * A body with sensors moves among foods (objects that the sensors detect). Each
+ * frame of the file has position and rotation of the body and the position of
+ * each food. In frame 0 the body is at the origin and not rotated, so positions
+ * are relative to that pose. Axes are those of the recording, right-handed.
  *
- * Lengths are in steps: one unit of the recording is 2^unit_log2 steps, 2^24
- * but for large and tiny ones.
+ * Lengths are in steps: one unit of the recording is 2^unit_log2 steps;
+ * unit_log2 is 24 except for very large or tiny recordings.
  *
- * The file begins as every baked file does and continues with tables, all of
- * them in blocks of GLINT_MOTION_BLOCK bytes, little-endian: as many records as
+ * The file consists of the header of all baked files and of tables, in blocks
+ * of GLINT_MOTION_BLOCK bytes, little-endian. A block has as many records as
  * fit into the first GLINT_MOTION_ROOM bytes, then the number of the block and
- * the sum of glint_motion_sum(). So any frame is at hand after reading three
- * blocks, of poses, index and intensities, and those with the events since its
- * block of poses began. */
+ * its glint_motion_sum(). To read any frame, three blocks are needed (poses,
+ * index and intensities), and the blocks with the events since the block of
+ * poses began. */
 #ifndef GLINT_SCENE_MOTION_H
 #define GLINT_SCENE_MOTION_H
 
@@ -42,67 +42,74 @@ enum {
     GLINT_MOTION_MAX_FOODS = 32,
     GLINT_MOTION_MAX_SENSORS = 32,
     GLINT_MOTION_MAX_FRAMES = 1 << 26,
-    GLINT_MOTION_SPAN = 1 << 30 /* steps: every coordinate is below */
+    GLINT_MOTION_SPAN = 1 << 30 /* steps: the magnitude of every coordinate is
+                                   below this */
 };
 
-/* 20 bytes. */
+/* The pose of the body in a frame, 20 bytes. */
 struct glint_motion_pose {
     int32_t at[3];       /* steps */
-    int16_t turn_q14[4]; /* quaternion w, x, y, z of length 1: from the body's
-                            axes to those of frame 0 */
+    int16_t turn_q14[4]; /* unit quaternion w, x, y, z: rotation from the axes
+                            of the body to the axes of frame 0 */
 };
 
-/* From frame FRAME on food SLOT is another one, at AT. */
+/* An event: from frame FRAME on, food SLOT is replaced by a new food at AT. */
 struct glint_motion_event {
     uint32_t frame, slot;
     int32_t at[3]; /* steps */
 };
 
-/* What there is at the first frame of a block of poses. */
+/* State at the first frame of a block of poses. */
 struct glint_motion_index {
-    uint32_t event;    /* the first event after that frame */
-    uint32_t residual; /* steps: the most by which a food's place missed what
-                          was seen of it in frames of the block */
-    /* The event that placed each food. */
+    uint32_t event;    /* index of the first event after that frame */
+    uint32_t residual; /* steps: max distance, over the frames of the block,
+                          between the position of a food and where it was
+                          seen */
+    /* Index of the event that placed each food. */
     uint32_t food[GLINT_MOTION_MAX_FOODS];
 };
 
 struct glint_motion_sensor {
-    int32_t axis_q30[3]; /* unit vector, in the body's axes */
+    int32_t axis_q30[3]; /* viewing direction, a unit vector in the axes of the
+                            body */
 };
 
-/* Begins as every baked file does (src/base/blob.h). */
+/* The header. Its first members are those of all baked files (src/base/blob.h).
+ */
 struct glint_motion_header {
     uint32_t magic, version;
     uint32_t bytes;    /* bytes of the whole file */
-    uint32_t crc32;    /* checksum of all bytes after this word: polynomial
-                          0xedb88320, reflected, begun and ended with all ones */
+    uint32_t crc32;    /* CRC-32 of all bytes after this word: polynomial
+                          0xedb88320, reflected; initial value and final XOR are
+                          all ones */
     uint32_t variant;  /* 0 */
     uint32_t key[2];   /* key of the recording, low word first */
     char name[64];     /* name of the motion, terminated */
-    int32_t unit_log2; /* -30 .. 60: steps in a unit of the recording */
-    uint32_t n_frames; /* 1 .. GLINT_MOTION_MAX_FRAMES */
-    uint32_t n_foods;  /* 0 .. GLINT_MOTION_MAX_FOODS */
+    int32_t unit_log2; /* log2 of the steps in a unit of the recording, -30 ..
+                          60 */
+    uint32_t n_frames; /* number of frames, 1 .. GLINT_MOTION_MAX_FRAMES */
+    uint32_t n_foods;  /* number of foods, 0 .. GLINT_MOTION_MAX_FOODS */
     uint32_t n_sensors;
-    uint32_t n_events; /* n_foods at least: those of frame 0 come first */
-    int32_t size;      /* of the body, steps */
-    /* Half of the angle that a sensor sees: cosine, -1 .. 1, and, for cameras,
-     * tangent, clamped to 2^30, 64. */
+    uint32_t n_events; /* at least n_foods: the events that place the foods of
+                          frame 0 come first */
+    int32_t size;      /* radius of the body, steps */
+    /* Half of the angle of view of a sensor: cosine, -1 .. 1; and tangent (for
+     * cameras), clamped to 2^30, that is 64. */
     int32_t cos_half_q30, tan_half_q24;
-    int32_t low[3], high[3]; /* of the body's places and the foods, all frames;
-                                steps */
-    uint32_t residual;       /* the largest, steps */
+    int32_t low[3], high[3]; /* bounding box of the body's positions and the
+                                foods, over all frames; steps */
+    uint32_t residual;       /* max of residual over all blocks, steps */
     uint32_t residual_frame;
-    /* Intensities of a frame: a byte, in 255ths, for each food, or for each
-     * food and sensor. 0: all are 1. */
+    /* Number of intensities of a frame, a byte each, in 255ths: one for each
+     * food, or for each food and sensor. 0: all intensities are 1. */
     uint32_t intensities;
-    /* First block of each table, in this order. */
+    /* Number of the first block of each table; tables are in this order. */
     uint32_t sensor_block, event_block, index_block, pose_block,
         intensity_block;
 };
 
-/* Reads the GLINT_MOTION_BLOCK bytes of block BLOCK into TO; returns whether it
- * could. */
+/* Reads blocks of a file. READ copies the GLINT_MOTION_BLOCK bytes of block
+ * BLOCK to TO and returns 0 on failure. */
 struct glint_motion_blocks {
     void *ctx;
     int (*read)(void *ctx, uint32_t block, uint8_t *to);
@@ -114,56 +121,58 @@ struct glint_motion {
     struct glint_motion_header header;
     struct glint_motion_sensor sensor[GLINT_MOTION_MAX_SENSORS];
 
-    /* Private. */
+    /* The following members are private. */
     const uint8_t *data; /* NULL: blocks are read into BUFFER */
     struct glint_motion_blocks blocks;
     uint8_t *buffer;
-    uint32_t held; /* what is in it; 0: nothing */
+    uint32_t held; /* number of the block in BUFFER; 0: none */
 };
 
-/* What there is at one frame. */
+/* State at one frame. */
 struct glint_motion_frame {
     struct glint_motion_pose pose;
-    int32_t food[GLINT_MOTION_MAX_FOODS][3]; /* steps */
-    /* In 255ths, by food and sensor. */
+    int32_t food[GLINT_MOTION_MAX_FOODS][3]; /* positions of the foods, steps */
+    /* 255ths, by food and sensor. */
     uint8_t intensity[GLINT_MOTION_MAX_FOODS][GLINT_MOTION_MAX_SENSORS];
 };
 
-/* Checks DATA[BYTES], aligned to 4 bytes, all of it, and opens it where it
- * lies; DATA must outlive MOTION. GLINT_E_FORMAT: *REASON states what is wrong,
- * in static text. */
+/* Checks all of DATA[BYTES], aligned to 4 bytes, and opens it in place; DATA
+ * must outlive MOTION. On GLINT_E_FORMAT, *REASON states what is wrong, in
+ * static text. */
 enum glint_status glint_motion_open(struct glint_motion *motion,
                                     const void *data, size_t bytes,
                                     const char **reason);
 
-/* Opens a file that is read by BLOCKS, which is copied, into BUFFER, of
- * GLINT_MOTION_BLOCK bytes, aligned to 4, which is kept. Each block is checked
- * when it is read. */
+/* Opens a file that BLOCKS reads. BLOCKS is copied; BUFFER has
+ * GLINT_MOTION_BLOCK bytes, is aligned to 4 and must outlive MOTION. Each block
+ * is checked when it is read. */
 enum glint_status glint_motion_over(struct glint_motion *motion,
                                     const struct glint_motion_blocks *blocks,
                                     uint8_t *buffer, const char **reason);
 
-/* Sets FRAME to frame K, of header.n_frames. GLINT_E_ARGUMENT: there is no such
- * frame. GLINT_E_IO, GLINT_E_FORMAT: a block could not be read, or is damaged,
- * which data in memory never are: FRAME is then to be thrown away. */
+/* Sets FRAME to frame K, 0 .. header.n_frames - 1. Returns GLINT_E_ARGUMENT if
+ * there is no such frame. Returns GLINT_E_IO if a block cannot be read. Returns
+ * GLINT_E_FORMAT if a block is damaged. After these two, which do not occur
+ * with data in memory, FRAME is undefined. */
 enum glint_status glint_motion_frame(struct glint_motion *motion, uint32_t k,
                                      struct glint_motion_frame *frame);
 
-/* Sets EVENT to event I; likewise. */
+/* Sets EVENT to event I; returns errors like glint_motion_frame(). */
 enum glint_status glint_motion_event(struct glint_motion *motion, uint32_t i,
                                      struct glint_motion_event *event);
 
-/* Sets INDEX to entry I, the entry of frames from I glint_motion_per_block()
- * on. */
+/* Sets INDEX to entry I, for the block of poses that begins with frame I *
+ * glint_motion_per_block(sizeof (struct glint_motion_pose)). */
 enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
                                      struct glint_motion_index *index);
 
-/* Returns the checksum, as crc32 of the header, of the block number BLOCK at
- * AT, but its last 4 bytes; of block 0 from the header's variant on. */
+/* Returns the checksum, by the method of crc32 of the header, of block number
+ * BLOCK at AT without its last 4 bytes; for block 0, it begins at the variant
+ * of the header. */
 uint32_t glint_motion_sum(const uint8_t *at, uint32_t block);
 
-/* Returns how many records of BYTES each, 1 .. GLINT_MOTION_ROOM, a block has.
- */
+/* Returns the number of records of BYTES each (1 .. GLINT_MOTION_ROOM) in a
+ * block. */
 static inline uint32_t glint_motion_per_block(size_t bytes)
 {
     return (uint32_t)(GLINT_MOTION_ROOM / bytes);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/motion_bake.h - reconstructs the motion of a body from its
+ * glint/scene/motion_bake.h - reconstructs the motion of a body from a
  * recording, in double precision.
  *
  *     baker = glint_motion_baker_open();
@@ -8,13 +8,13 @@
  *     glint_motion_baker_finish(baker, "run", &data, &bytes, &report, &error);
  *     glint_motion_baker_close(baker);
  *
- *   in   frame by frame, where foods are in the axes of the body, and which of
- *        them are new ones
- *   out  where the body is and how it is turned in each, in the axes of the
- *        first; and where the foods are: a file of glint/scene/motion.h
+ *   in   for each frame, the positions of foods in the axes of the body, and
+ *        which foods are new
+ *   out  a file of glint/scene/motion.h: for each frame, position and rotation
+ *        of the body in the axes of the first frame; and positions of the foods
  *
- * The same recording gives the same bytes. Frames are taken one by
- * one: memory grows by some 60 bytes a frame. */
+ * The same recording gives the same bytes. Frames are read one by one: memory
+ * grows by about 60 bytes per frame. */
 #ifndef GLINT_SCENE_MOTION_BAKE_H
 #define GLINT_SCENE_MOTION_BAKE_H
 
@@ -29,52 +29,57 @@
 extern "C" {
 #endif
 
-/* What does not change. */
+/* Constants of the body. */
 struct glint_motion_body {
-    double size;      /* radius, 0 .. 1e6 */
-    double angle_deg; /* that each sensor sees, 0.01 .. 360 */
+    double size;      /* radius of the body, 0 .. 1e6 */
+    double angle_deg; /* angle of view of each sensor, 0.01 .. 360 */
     int n_sensors;
-    /* Axis of each: (sin theta cos phi, sin theta sin phi, cos theta). */
+    /* Axis of each sensor: (sin theta cos phi, sin theta sin phi, cos theta),
+     * angles in radians. */
     double theta[GLINT_MOTION_MAX_SENSORS], phi[GLINT_MOTION_MAX_SENSORS];
 };
 
-/* What one frame saw. */
+/* Observations of one frame. */
 struct glint_motion_sight {
-    long long number; /* of the frame, as it is written; -1: it is not */
-    /* The body's own odometry: translation and rotation since the previous
-     * frame, in its axes at that frame; rv is an axis times an angle in
-     * radians. */
+    long long number; /* number of the frame in the recording; -1: not stated */
+    /* Odometry of the body: translation tv and rotation rv since the previous
+     * frame, in the axes of the body at that frame; rv is an axis times an
+     * angle in radians. */
     double tv[3], rv[3];
     int n_foods;
     double food[GLINT_MOTION_MAX_FOODS][3];
-    bool is_new[GLINT_MOTION_MAX_FOODS]; /* means nothing in the first frame */
-    /* Of each food: 0: all are 1; 1: of all sensors; else of each. */
+    bool is_new[GLINT_MOTION_MAX_FOODS]; /* ignored in the first frame */
+    /* Number of intensities per food. 0: all intensities are 1; 1: the same for
+     * all sensors; otherwise one for each sensor. */
     int n_intensities;
     double intensity[GLINT_MOTION_MAX_FOODS][GLINT_MOTION_MAX_SENSORS];
 };
 
 struct glint_motion_report {
     long n_frames, n_resets;
-    double span; /* diagonal of the box of all frames */
-    double path; /* length of the way */
+    double span; /* diagonal of the bounding box of all frames */
+    double path; /* length of the path of the body */
     double residual, residual_rms;
-    long residual_frame, bad_frames; /* whose residual is over a thousandth of
-                                        the span */
-    long held_intensities;           /* outside 0 .. 1 */
-    /* If rv and tv are given: error of the pose integrated from them, at the
-     * end and max. */
+    long residual_frame, bad_frames; /* number of frames whose residual exceeds
+                                        a thousandth of the span */
+    long held_intensities;           /* number of intensities that were clamped
+                                        to 0 .. 1 */
+    /* has_senses: the recording has tv or rv. senses_off, senses_most: distance
+     * between the reconstructed position and the position integrated from tv
+     * and rv, in the last frame and max. */
     bool has_senses;
     double senses_off, senses_most;
 };
 
 struct glint_motion_baker;
 
-/* Returns NULL if there is no memory. */
+/* Makes a baker; returns NULL if there is no memory. */
 struct glint_motion_baker *glint_motion_baker_open(void);
 void glint_motion_baker_close(struct glint_motion_baker *baker);
 
-/* Take the body, before finish, and the next frame. GLINT_E_LENS: ERROR states
- * what is wrong, but not where; GLINT_E_MEMORY. */
+/* Set the body, which must be done before glint_motion_baker_finish(), and add
+ * the next frame. On GLINT_E_LENS, ERROR states what is wrong, without a
+ * position in the file. May return GLINT_E_MEMORY. */
 enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
                                           const struct glint_motion_body *body,
                                           struct glint_error *error);
@@ -83,23 +88,24 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
                          const struct glint_motion_sight *sight,
                          struct glint_error *error);
 
-/* Makes the file, *DATA, which is malloc'ed. NAME is kept in it, its first 63
- * characters of a-z, A-Z, 0-9, '-' and '_'. GLINT_E_LENS: there is no frame, or
- * what there is does not fit together; GLINT_E_MEMORY. */
+/* Makes the file, *DATA, which is malloc'ed. It stores the first 63 characters
+ * of NAME that are a-z, A-Z, 0-9, '-' or '_'. Returns GLINT_E_LENS if there is
+ * no frame, or body and frames are inconsistent. May return GLINT_E_MEMORY. */
 enum glint_status glint_motion_baker_finish(struct glint_motion_baker *baker,
                                             const char *name, uint64_t key,
                                             unsigned char **data, size_t *bytes,
                                             struct glint_motion_report *report,
                                             struct glint_error *error);
 
-/* Reads at most N bytes into TO; returns how many, 0 at the end, -1 if it could
- * not. */
+/* Reads at most N bytes into TO. Returns the number of bytes, 0 at the end, -1
+ * on failure. */
 typedef long glint_recording_read_fn(void *ctx, char *to, size_t n);
 
-/* Reads a recording in JSON, in the words of either spelling, frame by frame,
- * and hands it to BAKER. Unknown keys are skipped, commas may trail.
- * GLINT_E_LENS: ERROR states file, line, column and cause. GLINT_E_UNSUPPORTED:
- * glint was built without jansson; GLINT_E_IO, GLINT_E_MEMORY. */
+/* Reads a recording in JSON, with keys of either spelling, and passes it to
+ * BAKER frame by frame. Unknown keys are skipped; trailing commas are allowed.
+ * On GLINT_E_LENS, ERROR states file, line, column and cause. Returns
+ * GLINT_E_UNSUPPORTED if glint was built without jansson. May return GLINT_E_IO
+ * or GLINT_E_MEMORY. */
 enum glint_status glint_recording_read(struct glint_motion_baker *baker,
                                        const char *file_name,
                                        glint_recording_read_fn *read, void *ctx,

@@ -11,14 +11,15 @@
  *     glint_scene_draw(scene, &image);
  *     n = glint_scene_lights(scene, lights);                 for the flare
  *
- * Objects replace the pixels they cover; rims are blended in linear light. All
- * memory is the caller's, passed to init; drawing never allocates and cannot
- * fail. Triangles for which a capacity is too small are left out with their
- * whole object and counted. No result depends on the number of workers, the
- * order of jobs or the tile size.
+ * Objects replace the pixels that they cover; their edges are blended in linear
+ * light. The caller passes all memory to glint_scene_init(); drawing never
+ * allocates and cannot fail. If the lists of tiles have no capacity for the
+ * triangles of an object, the object is left out and counted. No result depends
+ * on the number of workers, the order of jobs or the tile size.
  *
- * Spheres, planes, Phong and shadows are built in. All other parts are listed
- * in glint_scene_parts and linked only by programs that name them. */
+ * Spheres, planes, Phong shading and shadows are built in. All other modules
+ * are members of glint_scene_parts, pointers so that only programs that use a
+ * module link it. */
 #ifndef GLINT_SCENE_SCENE_H
 #define GLINT_SCENE_SCENE_H
 
@@ -50,14 +51,15 @@ extern const struct glint_scene_stones glint_scene_stones;
 extern const struct glint_scene_highlights glint_scene_highlights;
 extern const struct glint_scene_motions glint_scene_motions;
 
-/* Parts of the run time; NULL: absent; models that need it are rejected. */
+/* Optional modules, each a pointer to the variable of that name, or NULL:
+ * models that need the module are then rejected. */
 struct glint_scene_parts {
     const struct glint_scene_meshes *meshes;
     const struct glint_scene_textures *textures;
-    const struct glint_scene_bounces *bounces; /* reflection, passing through */
+    const struct glint_scene_bounces *bounces; /* reflection and transmission */
     const struct glint_scene_wards *wards;     /* environments, brushed metal */
     const struct glint_scene_stones *stones;   /* translucent objects */
-    /* highlights (glint/scene/highlights.h); no model needs them */
+    /* highlights (glint/scene/highlights.h); no model needs this module */
     const struct glint_scene_highlights *highlights;
     const struct glint_scene_motions *motions; /* recorded motion */
 };
@@ -66,132 +68,143 @@ struct glint_scene_config {
     struct glint_workers *workers; /* must outlive the scene; NULL: one thread.
                                       The output is the same for any number of
                                       threads */
-    unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C
-                      (kernels.h). Changes no output */
+    unsigned sets; /* instruction sets, glint_sets_here() or a subset; 0: plain
+                      C (kernels.h). The output is the same for all sets */
     int width, height; /* size of the picture, 1 .. GLINT_MAX_SIDE */
-    int tile_log2;     /* log2 of the side of a tile in pixels, 3 .. 6. Changes
-                          no output */
-    int edge_samples;  /* 1, 4, 8 or 16: samples of a pixel */
-    int shadow_points; /* 1, 4 or 16: points of a light that has an extent */
-    int half_shading;  /* 1: blocks of 2 x 2 pixels whose samples all see one
-                          object are shaded once, in their middle */
-    int ward_samples;  /* 1 .. 32: lookups of an environment for a place on
-                          brushed metal */
-    int highlights;    /* 0 .. 8: that are found at most; -1: as many as the
-                          model says */
+    int tile_log2; /* log2 of the side of a tile in pixels, 3 .. 6. The output
+                      is the same for any side */
+    int edge_samples;  /* 1, 4, 8 or 16: samples per pixel */
+    int shadow_points; /* 1, 4 or 16: points per light with an extent that are
+                          tested for shadows */
+    int half_shading;  /* 1: blocks of 2 x 2 pixels whose samples all see the
+                          same object are shaded once, in their middle */
+    int ward_samples;  /* 1 .. 32: lookups in the environment per shaded point
+                          of brushed metal */
+    int highlights;    /* max highlights that are found, 0 .. 8; -1: the number
+                          in the model */
     int dither;        /* 1: 8-bit output is dithered, deterministically */
     /* For GLINT_CAMERA_LENS: the focal length in pixels, 2^10 .. 2^40 _q16. */
     int64_t focal_q16;
-    /* Entries in the lists of all tiles, one for each triangle and tile; the
-     * statistics say what a frame needed. */
+    /* Max entries in the lists of all tiles, one entry for each triangle and
+     * tile; the statistics report how many a frame needed. */
     int max_refs;
     struct glint_scene_parts parts;
 };
 
 struct glint_scene_stats {
-    int objects;   /* that may be seen */
-    int triangles; /* of these objects */
+    int objects;   /* objects that may be visible */
+    int triangles; /* triangles of these objects */
     int refs, need_refs;
-    int dropped_objects; /* left out for want of max_refs */
+    int dropped_objects; /* objects left out because max_refs is too small */
 };
 
 struct glint_scene; /* opaque, in the caller's memory */
 
-/* Sets CFG to good starting values for pictures of WIDTH x HEIGHT, with no
- * parts. */
+/* Sets CFG to defaults for pictures of WIDTH x HEIGHT, without optional
+ * modules. */
 void glint_scene_defaults(struct glint_scene_config *cfg, int width,
                           int height);
 
 /* Returns the exact number of bytes that glint_scene_init() needs, or 0 if CFG
- * is out of range or MODEL needs a part that CFG does not name. */
+ * is out of range or MODEL needs a module that CFG lacks. */
 size_t glint_scene_bytes(const struct glint_scene_config *cfg,
                          const struct glint_scene_model *model);
 
-/* Returns the first part that MODEL needs and PARTS do not name: "meshes",
- * "textures", "bounces", "wards", "stones" or "motions"; NULL: none. */
+/* Returns the name of the first module that MODEL needs and PARTS lacks:
+ * "meshes", "textures", "bounces", "wards", "stones" or "motions". Returns NULL
+ * if there is no such module. */
 const char *glint_scene_lacks(const struct glint_scene_parts *parts,
                               const struct glint_scene_model *model);
 
-/* Places a scene in MEM[BYTES], aligned to 64, which needs no finish. MODEL is
- * copied; the file that it points into must outlive the scene. GLINT_E_MEMORY:
- * BYTES is too small. GLINT_E_UNSUPPORTED: MODEL needs a part that CFG does not
- * name. GLINT_E_FORMAT: its environment or a translucent medium is damaged, as
- * glint_environment_open() and glint_translucent_open() say. */
+/* Places a scene in MEM[BYTES], aligned to 64; it needs no cleanup. MODEL is
+ * copied; the file that it points into must outlive the scene. Returns
+ * GLINT_E_MEMORY if BYTES is too small. Returns GLINT_E_UNSUPPORTED if MODEL
+ * needs a module that CFG lacks. Returns GLINT_E_FORMAT if
+ * glint_environment_open() or glint_translucent_open() rejects an environment
+ * or a translucent medium of MODEL. */
 enum glint_status glint_scene_init(struct glint_scene **scene,
                                    const struct glint_scene_config *cfg,
                                    const struct glint_scene_model *model,
                                    void *mem, size_t bytes);
 
-/* Moves object OBJECT: point p of it to AT + TURN p. GLINT_E_ARGUMENT: the
- * object would leave +-GLINT_SCENE_SPAN, or TURN_Q30, w x y z, is not a unit
- * quaternion. */
+/* Sets the pose of object OBJECT: its point p moves to AT + TURN p. Returns
+ * GLINT_E_ARGUMENT if the object would leave +-GLINT_SCENE_SPAN, or TURN_Q30, w
+ * x y z, is not a unit quaternion. */
 enum glint_status glint_scene_set_pose(struct glint_scene *scene, int object,
                                        const int32_t at[3],
                                        const int32_t turn_q30[4]);
 
-/* Moves the camera; AXIS_Q30 are its unit vectors to the right, up and ahead,
- * at right angles. GLINT_E_ARGUMENT: out of range. */
+/* Moves the camera to AT, steps. AXIS_Q30 are its orthogonal unit vectors to
+ * the right, up and ahead. Returns GLINT_E_ARGUMENT if a parameter is out of
+ * range. */
 enum glint_status glint_scene_set_camera(struct glint_scene *scene,
                                          const int32_t at[3],
                                          const int32_t axis_q30[3][3]);
 
-/* Moves light LIGHT: a lamp to AT, steps; a sun to the unit vector AT, _q30.
- * GLINT_E_ARGUMENT: out of range. */
+/* Moves light LIGHT. For a lamp, AT is its position, steps; for a sun, AT is
+ * the unit vector towards it, _q30. Returns GLINT_E_ARGUMENT if a parameter is
+ * out of range. */
 enum glint_status glint_scene_set_light(struct glint_scene *scene, int light,
                                         const int32_t at[3]);
 
 /* Parameters of a material that may change between frames. */
 struct glint_scene_look {
-    int32_t rgb_q15[3]; /* ambient and diffuse colour, 0 .. 32768 */
-    /* Of brushed metal, as struct glint_scene_ward; of others 0. */
+    /* Ambient and diffuse colour, each channel 0 .. 32768. */
+    int32_t rgb_q15[3];
+    /* Brushed metal only, as in struct glint_scene_ward; 0 for other
+     * materials. */
     int32_t specular_q15[3], alpha_q24[2];
 };
 
-/* Sets LOOK to the current appearance of material MATERIAL, by its index;
- * GLINT_E_ARGUMENT: there is none. */
+/* Sets LOOK to the current appearance of the material with index MATERIAL.
+ * Returns GLINT_E_ARGUMENT if there is no such material. */
 enum glint_status glint_scene_get_look(const struct glint_scene *scene,
                                        int material,
                                        struct glint_scene_look *look);
 
-/* Changes the appearance, from the next frame on, without a bake; a metal's
- * lobe is rebuilt. The smaller alpha is raised to a tenth of the other.
- * GLINT_E_ARGUMENT: out of range, or a metal's members of another material. */
+/* Changes the appearance of a material from the next frame on, without baking
+ * again; the lobe of brushed metal is rebuilt. An alpha below a tenth of the
+ * other is raised to that. Returns GLINT_E_ARGUMENT if LOOK is out of range, or
+ * has members for brushed metal and the material is not brushed metal. */
 enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
                                        const struct glint_scene_look *look);
 
-/* Makes object OBJECT, where its triangles have none of their own, of material
- * MATERIAL. GLINT_E_ARGUMENT: there is no such one, or it is translucent and
- * the object has no map for it. */
+/* Sets the material of object OBJECT to MATERIAL, except for triangles with a
+ * material of their own. Returns GLINT_E_ARGUMENT if there is no such object or
+ * material, or the material is translucent and the object has no map for it. */
 enum glint_status glint_scene_set_material(struct glint_scene *scene,
                                            int object, int material);
 
-/* Sets the radius of ball OBJECT to RADIUS, steps. GLINT_E_ARGUMENT: it is not
- * a ball, or that is below 1 or leaves +-GLINT_SCENE_SPAN. */
+/* Sets the radius of sphere OBJECT to RADIUS, steps. Returns GLINT_E_ARGUMENT
+ * if OBJECT is not a sphere, RADIUS is below 1, or the sphere would leave
+ * +-GLINT_SCENE_SPAN. */
 enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
                                          int32_t radius);
 
-/* Shows environment ENVIRONMENT of the model, turned and as bright as the model
- * has it: nothing is baked, allocated or checked, metals' lobes are rebuilt.
- * GLINT_E_ARGUMENT: there is none. */
+/* Shows environment ENVIRONMENT of the model, with the turn and the brightness
+ * in the model. Nothing is baked, allocated or checked; lobes of brushed metals
+ * are rebuilt. Returns GLINT_E_ARGUMENT if there is no such environment. */
 enum glint_status glint_scene_set_environment(struct glint_scene *scene,
                                               int environment);
 
-/* Makes SCALE the factor of all the light of the environment that is shown.
- * GLINT_E_ARGUMENT: it is not above 0, or there is no environment. */
+/* Makes SCALE the factor on all light of the environment that is shown. Returns
+ * GLINT_E_ARGUMENT if SCALE is not above 0, or there is no environment. */
 enum glint_status glint_scene_scale_environment(struct glint_scene *scene,
                                                 struct glint_real scale);
 
-/* Turns the environment to the right, with its lights: TURN_Q30 are cosine and
- * sine, as of the model's header. GLINT_E_ARGUMENT: they are none, or there is
- * no environment. */
+/* Rotates the environment and its lights to the right. TURN_Q30 are cosine and
+ * sine of the angle, as in struct glint_scene_environment. Returns
+ * GLINT_E_ARGUMENT if TURN_Q30 is not a unit vector, or there is no
+ * environment. */
 enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
                                                const int32_t turn_q30[2]);
 
-/* Keeps a reduced copy of IMAGE, of the size of the configuration, as the
- * background of rays from mirrors and glass that meet nothing: as it is ahead,
- * repeated elsewhere. NULL: black, the default. Costs nothing if no visible
- * material reflects or transmits. Must be called between begin and draw, which
- * changes IMAGE. */
+/* Stores a reduced copy of IMAGE as the background for rays from mirrors and
+ * glass that hit nothing: rays ahead see it unchanged, in other directions it
+ * is repeated. IMAGE has the size of the configuration; NULL, the default, is
+ * black. Costs nothing if no visible material reflects or transmits. Must be
+ * called after glint_scene_begin() and before glint_scene_draw() changes
+ * IMAGE. */
 void glint_scene_look_around(struct glint_scene *scene,
                              const struct glint_image *image);
 
@@ -200,14 +213,14 @@ void glint_scene_show(struct glint_scene *scene, int object, int is_shown);
 
 /* ---------------------------------------------------------- recorded motion */
 
-/* What is shown of a recorded motion. */
+/* Visible elements of a recorded motion. */
 enum glint_scene_kind {
     GLINT_KIND_BODY,
     GLINT_KIND_SENSORS,
     GLINT_KIND_FOODS,
-    GLINT_KIND_SHELLS, /* about foods that are seen */
-    GLINT_KIND_LINES,  /* from these to the sensors that see them */
-    GLINT_KIND_BOX,    /* of all frames */
+    GLINT_KIND_SHELLS, /* around foods that are seen by a sensor */
+    GLINT_KIND_LINES,  /* from these foods to the sensors that see them */
+    GLINT_KIND_BOX,    /* bounding box of all frames */
     GLINT_KINDS
 };
 
@@ -215,67 +228,70 @@ enum glint_scene_kind {
 uint32_t glint_scene_frames(const struct glint_scene *scene);
 
 /* Moves body, sensors, foods, attached lamps, and a camera in a sensor to frame
- * FRAME, or to the last frame: the result does not depend on earlier frames. A
- * scene begins at frame 0. */
+ * FRAME, or to the last frame if FRAME is beyond it. The result does not depend
+ * on earlier calls. A scene begins at frame 0. */
 void glint_scene_seek(struct glint_scene *scene, uint32_t frame);
 
-/* Puts the camera into sensor SENSOR, with its field of view; -1: back to where
- * the scene has it. GLINT_E_ARGUMENT: there is no such sensor, or its field is
- * too wide for the picture's shape. */
+/* Moves the camera into sensor SENSOR, with the field of view of the sensor;
+ * -1: back to the camera of the scene. Returns GLINT_E_ARGUMENT if there is no
+ * such sensor, or its field of view is too wide for the aspect ratio of the
+ * picture. */
 enum glint_status glint_scene_enter(struct glint_scene *scene, int sensor);
 
-/* Shows or hides all of KIND. */
+/* Shows or hides all elements of KIND. */
 void glint_scene_show_kind(struct glint_scene *scene,
                            enum glint_scene_kind kind, int is_shown);
 
-/* Sets radius or width of all of KIND; of the body also how far sensors are
- * from its middle. GLINT_E_ARGUMENT: not within 1 .. GLINT_SCENE_SPAN / 4
- * steps, or there is no such thing. */
+/* Sets the radius or width of all elements of KIND; for the body, also the
+ * distance of sensors from its middle. Returns GLINT_E_ARGUMENT if STEPS is not
+ * within 1 .. GLINT_SCENE_SPAN / 4, or there are no elements of KIND. */
 enum glint_status glint_scene_size_kind(struct glint_scene *scene,
                                         enum glint_scene_kind kind,
                                         int32_t steps);
 
-/* Returns which sensors see food FOOD now, by bits. */
+/* Returns the set of sensors that see food FOOD in the current frame, a bit for
+ * each sensor. */
 uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food);
 
 /* ------------------------------------------------------------------- frame */
 
-/* Prepares a frame: visible objects, and their tiles. Must precede draw and
- * lights; may be called again. */
+/* Prepares a frame: finds the visible objects and their tiles. Must be called
+ * before glint_scene_draw() and glint_scene_lights(); may be called again. */
 void glint_scene_begin(struct glint_scene *scene,
                        struct glint_scene_stats *stats);
 
 /* Computes the light below translucent surfaces where it may be visible and has
- * changed; returns the number of texels. Draw calls it if the program did not
- * since begin. */
+ * changed; returns the number of texels. glint_scene_draw() calls this function
+ * if the program did not after glint_scene_begin(). */
 int glint_scene_spread(struct glint_scene *scene);
 
-/* Draws the scene onto IMAGE, which has the size of the configuration, and
- * stores the cover for glint_scene_cover(). May be called again. */
+/* Draws the scene onto IMAGE, which must have the size of the configuration,
+ * and stores coverage for glint_scene_cover(). May be called again. */
 void glint_scene_draw(struct glint_scene *scene,
                       const struct glint_image *image);
 
-/* Returns the fraction, 0 .. 256, of a disc of the picture drawn last that the
- * scene hides, shadows on catchers not counted: (X, Y) in pixels from the top
- * left corner of the picture, to 8 x 8 pixels. */
+/* Returns how much of a disc in the picture drawn last is hidden by the scene,
+ * in 256ths, at a resolution of 8 x 8 pixels; shadows on catchers do not count.
+ * (X, Y) is the middle of the disc, pixels from the top left corner. */
 int glint_scene_cover(const struct glint_scene *scene, int32_t x_q8,
                       int32_t y_q8, int32_t radius_q8);
 
 /* A light of the scene as the camera sees it. */
 struct glint_scene_lamp {
-    int light;          /* its index */
-    int share;          /* of 16 points of its disc, how many are not hidden */
-    int32_t x_q8, y_q8; /* pixels from the top left corner, y down */
-    int32_t radius_q8;  /* pixels, 0 .. 2^22 */
-    /* Light of each channel in the picture, display white times pixels, of the
-     * whole disc: what is seen of it is share / 16. */
+    int light; /* index of the light in the model */
+    int share; /* number of visible points, of 16 points of its disc */
+    /* Middle of the disc, pixels from the top left corner, y down. */
+    int32_t x_q8, y_q8;
+    int32_t radius_q8; /* radius of the disc, pixels, 0 .. 2^22 */
+    /* Light of the whole disc in the picture, by channel, display white times
+     * pixels; the visible fraction is share / 16. */
     struct glint_real rgb[3];
 };
 
 /* Sets LAMPS[GLINT_SCENE_MAX_LIGHTS] to the lights ahead of the camera, at most
- * 16384 pixels from the picture's middle, the hidden ones, too, and returns
- * their number; 0 if the scene shows the lens no lights. Objects hide lights
- * wholly, also those that let light through. */
+ * 16384 pixels from the middle of the picture, including hidden lights; returns
+ * their number. Returns 0 if flares are off in the scene. Objects hide lights
+ * completely, even if they transmit light. */
 int glint_scene_lights(const struct glint_scene *scene,
                        struct glint_scene_lamp *lamps);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/stone_bake.h - bakes a translucent medium from its text and a fit
- * of its scattering.
+ * glint/scene/stone_bake.h - bakes a translucent medium from its text and from
+ * a fit of its scattering.
  *
  *     glint_stone_parse(&text, data, bytes, "marble.translucent", &error);
  *     glint_scatter_compute(&text.stone, &watch, &rows, &error);
@@ -30,37 +30,39 @@ extern "C" {
 #define GLINT_STONE_FILE_BYTES 201
 
 struct glint_stone_text {
-    struct glint_stone stone; /* its mask is the caller's to set */
+    struct glint_stone stone; /* the slab; the caller sets its mask */
     struct glint_scatter_options fit;
-    /* Names of the mask's picture and of measured rows; empty: there are none.
-     */
+    /* Names of the picture of the mask and of the file of measured rows; empty:
+     * none. */
     char mask[GLINT_STONE_FILE_BYTES], rows[GLINT_STONE_FILE_BYTES];
 };
 
-/* What baking did. */
+/* Results of baking. */
 struct glint_stone_report {
-    double kernel_loss; /* of what kernels make of light together, the fraction
-                           that their ranks leave out, root mean square;
-                           factored: 0 */
-    int tap_bits;       /* that the largest tap of a column has: sums of many
-                           leave fewer than there are */
+    double kernel_loss; /* fraction, root mean square, of the response of all
+                           kernels to light that is lost because their rank is
+                           limited; 0 for factored fits */
+    int tap_bits;       /* bits of the largest tap of a column: with many taps
+                           their sum allows fewer bits than
+                           GLINT_TRANSLUCENT_TAP_BITS */
 };
 
-/* Sets TEXT to a slab of glint_stone_defaults(), clustered, of rank 3. */
+/* Sets TEXT to the slab of glint_stone_defaults(), with a clustered fit of rank
+ * 3. */
 void glint_stone_text_defaults(struct glint_stone_text *text);
 
-/* Reads DATA[BYTES], a text as tools/examples/scenes/README.md has it.
- * GLINT_E_LENS: ERROR states file, line, column and cause. */
+/* Parses DATA[BYTES], a text as described in tools/examples/scenes/README.md.
+ * On GLINT_E_LENS, ERROR states file, line, column and cause. */
 enum glint_status glint_stone_parse(struct glint_stone_text *text,
                                     const char *data, size_t bytes,
                                     const char *file_name,
                                     struct glint_error *error);
 
-/* Bakes FIT, with texel, index and rank of TEXT. NAME is kept in the file, its
- * first 63 characters of a-z, A-Z, 0-9, '-' and '_', as is KEY. *DATA is
- * malloc'ed. GLINT_E_ARGUMENT: one of them is out of range.
- * GLINT_E_UNSUPPORTED: ERROR states what of FIT no baked translucent medium can
- * have. GLINT_E_MEMORY. */
+/* Bakes FIT, with the texel size, index of refraction and rank of TEXT. The
+ * file stores KEY and the first 63 characters of NAME that are a-z, A-Z, 0-9,
+ * '-' or '_'. *DATA is malloc'ed. Returns GLINT_E_ARGUMENT if a parameter is
+ * out of range. On GLINT_E_UNSUPPORTED, ERROR states which property of FIT
+ * cannot be baked. May return GLINT_E_MEMORY. */
 enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
                                    const struct glint_stone_text *text,
                                    const char *name, uint64_t key,
@@ -68,9 +70,9 @@ enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
                                    struct glint_stone_report *report,
                                    struct glint_error *error);
 
-/* Sets RADIOSITY[side * side][3] to what the integers of STONE
- * make of IRRADIANCE, of the same shape, whose largest they take for 32767.
- * GLINT_E_MEMORY. */
+/* Sets RADIOSITY[side * side][3] to the light that leaves under IRRADIANCE[side
+ * * side][3], by the integer arithmetic of STONE; the largest value of
+ * IRRADIANCE is mapped to 32767. May return GLINT_E_MEMORY. */
 enum glint_status glint_stone_light(const struct glint_translucent *stone,
                                     const double *irradiance,
                                     double *radiosity);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * glint/scene/translucent_bake.h - scattering below the surface of a
- * translucent medium, computed or measured, and fitted by a few kernels, in
- * double precision.
+ * translucent medium, computed or measured, and its approximation by a few
+ * kernels, in double precision.
  *
  *     glint_stone_defaults(&stone);
  *     glint_scatter_compute(&stone, &watch, &rows, &error);
@@ -11,15 +11,16 @@
  *     glint_scatter_fit_close(&fit);
  *     glint_scatter_close(&rows);
  *
- *   in   two materials and where each is on a square of texels; or rows that
- *        were measured
- *   out  R_d as rows: R'(x_i, d = x_o - x_i), the fraction of the light that
- * falls on texel x_i and leaves by texel x_o, for all d of a square kernel; and
- * fits of it: clustered, factored, albedo times one kernel
+ *   in   two materials and their distribution over a square of texels; or
+ *        measured rows
+ *   out  R_d as rows, one for each texel x_i: R'(x_i, d = x_o - x_i), the
+ *        fraction of the light that falls on x_i and leaves from texel x_o, for
+ *        all d of a square kernel; and approximations of the rows by a fit:
+ *        clustered, factored, or albedo times one kernel
  *
  * An offset d = (u, v), each -kernel / 2 .. kernel / 2 across and down, is
  * entry (v + kernel / 2) * kernel + u + kernel / 2 of a kernel. Rows are 0
- * where x_o is outside the square: light that gets there is lost. Channels
+ * where x_o is outside the square: light that leaves there is lost. Channels
  * are R, G, B. The same input gives the same numbers. */
 #ifndef GLINT_SCENE_TRANSLUCENT_BAKE_H
 #define GLINT_SCENE_TRANSLUCENT_BAKE_H
@@ -36,9 +37,11 @@ extern "C" {
 #endif
 
 enum {
-    GLINT_SCATTER_MAX_SIDE = 256, /* texels of a translucent medium, each way */
-    GLINT_SCATTER_MAX_KERNEL = 63, /* texels of a kernel, each way */
-    GLINT_SCATTER_MAX_TERMS = 20,  /* of a factored fit; kernels of others */
+    GLINT_SCATTER_MAX_SIDE = 256,  /* max texels per side of a translucent
+                                      medium */
+    GLINT_SCATTER_MAX_KERNEL = 63, /* max texels per side of a kernel */
+    GLINT_SCATTER_MAX_TERMS = 20,  /* max terms of a factored fit, or kernels of
+                                      other fits */
     GLINT_SCATTER_MAX_RANK = 8
 };
 
@@ -52,29 +55,31 @@ struct glint_stone_material {
 
 enum glint_stone_pattern {
     GLINT_STONE_EVEN,  /* material 0 alone */
-    GLINT_STONE_CHESS, /* fields x fields squares, material 0 at the top left */
-    GLINT_STONE_VEINS, /* material 1 in veins through material 0, by seed */
-    GLINT_STONE_MASK   /* material 0 by the fraction in mask */
+    GLINT_STONE_CHESS, /* a chessboard of fields x fields squares, material 0 at
+                          the top left */
+    GLINT_STONE_VEINS, /* veins of material 1 in material 0, placed by seed */
+    GLINT_STONE_MASK   /* mask is the fraction of material 0 */
 };
 
-/* A slab; one face is lit and seen. */
+/* A slab of a translucent medium; one face is lit and visible. */
 struct glint_stone {
-    int side;        /* texels each way, 1 .. GLINT_SCATTER_MAX_SIDE */
-    int kernel;      /* texels each way, odd, 1 .. GLINT_SCATTER_MAX_KERNEL */
-    double texel_mm; /* 0.01 .. 100 */
+    int side;        /* texels per side, 1 .. GLINT_SCATTER_MAX_SIDE */
+    int kernel;      /* texels per side of a kernel, odd, 1 ..
+                        GLINT_SCATTER_MAX_KERNEL */
+    double texel_mm; /* side of a texel, 0.01 .. 100 */
     double slab_mm;  /* thickness, 0.1 .. 1000 */
-    double index;    /* of refraction, against air, 1 .. 3 */
+    double index;    /* index of refraction relative to air, 1 .. 3 */
     struct glint_stone_material material[2];
     enum glint_stone_pattern pattern;
-    int fields;         /* of chess, each way, 1 .. side */
-    uint32_t seed;      /* of veins */
+    int fields;         /* squares per side of GLINT_STONE_CHESS, 1 .. side */
+    uint32_t seed;      /* seed of GLINT_STONE_VEINS */
     const double *mask; /* [side][side], 0 .. 1; for GLINT_STONE_MASK, else
                            NULL */
 };
 
-/* Sets STONE to 128 texels of 0.61 mm, kernels of 29, 6 mm,
- * index 1.5, marble of [Jensen01] and a darker translucent medium, chess of 8
- * x 8. */
+/* Sets STONE to 128 texels per side of 0.61 mm, kernels of 29 texels, a slab of
+ * 6 mm, index 1.5, and a chessboard of 8 x 8 squares of the marble of
+ * [Jensen01] and a darker material. */
 void glint_stone_defaults(struct glint_stone *stone);
 
 /* -------------------------------------------------------------- its rows */
@@ -82,32 +87,33 @@ void glint_stone_defaults(struct glint_stone *stone);
 /* Progress and cancellation. All members may be NULL; so may the struct. */
 struct glint_watch {
     glint_progress_fn *progress;
-    bool (*stop)(void *ctx); /* asked as often; true: ends with
-                                GLINT_E_CLOSED */
+    bool (*stop)(void *ctx); /* called as often as progress; if it returns true,
+                                the function ends with GLINT_E_CLOSED */
     void *ctx;
 };
 
-/* Owned: all is malloc'ed. */
+/* Rows; arrays are malloc'ed, glint_scatter_close() frees them. */
 struct glint_scatter_rows {
     int side, kernel;
     float *r;      /* [side * side][3][kernel * kernel], row by row */
-    double *share; /* [side * side] fraction of material 0; NULL: measured */
+    double *share; /* [side * side]: fraction of material 0; NULL: rows were
+                      measured */
 };
 
-/* Computes ROWS of STONE by diffusion in the slab [Jensen01], each entry at
- * least 0, the sum of a row at most 1; R'(x, y - x) = R'(y, x - y). Uses 12
- * bytes per entry and about 25 MB besides; 128 texels with kernels of 29 use
- * 158 MiB. GLINT_E_ARGUMENT: ERROR names what is out of range. GLINT_E_MEMORY,
- * GLINT_E_CLOSED: ROWS is empty. */
+/* Computes ROWS of STONE by diffusion in the slab [Jensen01]. Each entry is at
+ * least 0, the sum of a row at most 1, and R'(x, y - x) = R'(y, x - y). Uses 12
+ * bytes per entry plus about 25 MB: 158 MiB for 128 texels per side with
+ * kernels of 29 texels. On GLINT_E_ARGUMENT, ERROR names what is out of range.
+ * On GLINT_E_MEMORY or GLINT_E_CLOSED, ROWS is empty. */
 enum glint_status glint_scatter_compute(const struct glint_stone *stone,
                                         const struct glint_watch *watch,
                                         struct glint_scatter_rows *rows,
                                         struct glint_error *error);
 
-/* Reads measured rows: PICTURE has SIDE x SIDE tiles of KERNEL x KERNEL pixels,
- * each the row of a texel. Numbers below 0 or not finite become 0 and are
- * counted in HELD, what lies outside the square becomes 0.
- * GLINT_E_UNSUPPORTED: PICTURE has another size. */
+/* Reads measured rows: PICTURE has SIDE x SIDE tiles of KERNEL x KERNEL pixels;
+ * each tile is the row of a texel. Numbers that are negative or not finite
+ * become 0 and are counted in *HELD. Entries outside the square become 0.
+ * Returns GLINT_E_UNSUPPORTED if PICTURE has another size. */
 enum glint_status glint_scatter_read(const struct glint_float_image *picture,
                                      int side, int kernel,
                                      struct glint_scatter_rows *rows,
@@ -116,18 +122,18 @@ enum glint_status glint_scatter_read(const struct glint_float_image *picture,
 
 void glint_scatter_close(struct glint_scatter_rows *rows);
 
-/* Sets RADIOSITY[side * side][3] to the product of ROWS and IRRADIANCE, which
- * has the same shape. */
+/* Sets RADIOSITY[side * side][3] to the light that leaves under IRRADIANCE[side
+ * * side][3], by ROWS. */
 void glint_scatter_light_rows(const struct glint_scatter_rows *rows,
                               const double *irradiance, double *radiosity);
 
 /* ------------------------------------------------------------------ fits */
 
-/* What changes from texel to texel scales light where it leaves, as that is
- * what is seen: with weights at x_i, edges of a pattern are as wide as a kernel
- * (15 to 20 dB on chess). */
+/* The models. Weights that vary between texels scale the light where it leaves
+ * (x_o), where it is visible: weights at x_i would blur the edges of a pattern
+ * to the width of a kernel (15 to 20 dB worse on chess). */
 enum glint_scatter_model {
-    /* R' = in(x_i) h_c(d) out(x_o), c the cluster of x_o */
+    /* R' = in(x_i) h_c(d) out(x_o), where c is the cluster of x_o */
     GLINT_SCATTER_CLUSTERED,
     /* R' = sum over j of h_j(d) f_j(x_o), h_j(u, v) = sum over q of
      * column_jq(v) row_jq(u) */
@@ -138,45 +144,49 @@ enum glint_scatter_model {
 
 struct glint_scatter_options {
     enum glint_scatter_model model;
-    int kernels; /* clusters or terms, 1 .. GLINT_SCATTER_MAX_TERMS; of albedo
-                    1 */
-    int rank;    /* of each h of the factored model, 1 ..
+    int kernels; /* clusters or terms, 1 .. GLINT_SCATTER_MAX_TERMS; 1 for
+                    GLINT_SCATTER_ALBEDO */
+    int rank;    /* rank of each h of the factored model, 1 ..
                     GLINT_SCATTER_MAX_RANK */
 };
 
-/* How far a fit is from its rows. Decibels are 10 log10(peak^2 / mean squared
- * error), 999 for no error. */
+/* Error of a fit. Decibels are 10 log10(peak^2 / mean squared error); 999 if
+ * there is no error. */
 struct glint_scatter_error {
-    double rmse;     /* of all entries, the largest entry = 1 */
-    double entry_db; /* the same in decibels */
-    double light_db; /* of the radiosity under lamps, shadows and a ramp, its
-                        peak = 1 */
-    double albedo;   /* largest error of the sum of a row: of energy */
+    double rmse;     /* RMS error of all entries, relative to the largest
+                        entry */
+    double entry_db; /* rmse in decibels */
+    double light_db; /* error of the radiosity under glint_scatter_test_light(),
+                        relative to its peak, in decibels */
+    double albedo;   /* max error of the sum of a row, i.e. of energy */
 };
 
-/* Owned: all pointers are malloc'ed, or NULL where a model has no such part. */
+/* A fit. All pointers are malloc'ed, or NULL where the model has no such array;
+ * glint_scatter_fit_close() frees them. */
 struct glint_scatter_fit {
     enum glint_scatter_model model;
     int side, kernel, kernels, rank;
     double *h;      /* [kernels][3][kernel * kernel] */
-    double *column; /* factored: [kernels][3][rank][kernel], down */
-    double *row;    /* the same, across */
+    double *column; /* factored: [kernels][3][rank][kernel], vertical factors */
+    double *row;    /* factored: the same shape, horizontal factors */
     double *f;      /* factored: [kernels][3][side * side] */
     double *in;     /* clustered: [side * side][3] */
     double *out;    /* clustered, albedo: [side * side][3] */
-    double *albedo; /* [side * side][3]: what each texel shows of even light of
-                       1, which all fits keep */
-    uint8_t *cluster; /* clustered: [side * side], below kernels */
+    double *albedo; /* [side * side][3]: light that leaves each texel under
+                       uniform light of 1; preserved by all fits */
+    uint8_t *cluster; /* clustered: [side * side]: index of the cluster, below
+                         kernels */
     struct glint_scatter_error error;
 };
 
-/* Sets OPTIONS to MODEL with 4 clusters, or 5 terms of rank 3. */
+/* Sets OPTIONS to MODEL with 4 clusters, or with 5 terms of rank 3. */
 void glint_scatter_defaults(struct glint_scatter_options *options,
                             enum glint_scatter_model model);
 
-/* Fits ROWS, which are turned meanwhile and the same afterwards, and measures
- * FIT. GLINT_E_ARGUMENT: OPTIONS are out of range.
- * GLINT_E_MEMORY, GLINT_E_CLOSED: FIT is empty. */
+/* Makes FIT, which approximates ROWS, and measures its error. ROWS are
+ * transposed during the call and restored before it returns. Returns
+ * GLINT_E_ARGUMENT if OPTIONS are out of range. On GLINT_E_MEMORY or
+ * GLINT_E_CLOSED, FIT is empty. */
 enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
                                     const struct glint_scatter_options *options,
                                     const struct glint_watch *watch,
@@ -184,17 +194,18 @@ enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
 
 void glint_scatter_fit_close(struct glint_scatter_fit *fit);
 
-/* Returns entry D of channel C of the row of texel X as FIT has it. */
+/* Returns the value that FIT gives entry D of channel C of the row of texel
+ * X. */
 double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
                            int d);
 
-/* Sets RADIOSITY[side * side][3] to what FIT makes of IRRADIANCE; may be below
- * 0. */
+/* Sets RADIOSITY[side * side][3] to the light that leaves under IRRADIANCE[side
+ * * side][3], by FIT; values may be negative. */
 void glint_scatter_light(const struct glint_scatter_fit *fit,
                          const double *irradiance, double *radiosity);
 
-/* Sets IRRADIANCE[side * side][3] to the light that glint_scatter_error's
- * light_db is measured under. */
+/* Sets IRRADIANCE[side * side][3] to the test light for light_db of struct
+ * glint_scatter_error: lamps, shadows and a ramp. */
 void glint_scatter_test_light(int side, double *irradiance);
 
 #ifdef __cplusplus
