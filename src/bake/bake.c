@@ -93,10 +93,11 @@ static void fit_told(void *ctx, double work, double share)
 }
 
 /* Factor on all tolerances of lenses that are not round: with two components of
- * the direction, tenths of a pixel take many times the systems. */
+ * the direction, errors of tenths of a pixel need many times as many
+ * systems. */
 #define SKEW_TOLERANCE 1.5
 
-/* The same of energies, which parts of the band make cheap. */
+/* The same factor for energies, which are cheap to fit in parts of the band. */
 #define SKEW_ENERGY 0.7
 
 static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
@@ -265,7 +266,8 @@ static int parts_of(const struct glint_fitted_ghost *ghost)
     return n;
 }
 
-/* Makes the further parts of ghosts ghosts of their own, after all others. */
+/* Turns the second and further parts of each ghost into separate ghosts,
+ * appended after all others. */
 static enum glint_status part_ghosts(struct bake_run *run)
 {
     struct glint_setup *s = &run->setup;

@@ -10,7 +10,7 @@ static const double looks[] = {1.5, 1.5, 25};
 static const double typicals[] = {4, 25, 110};
 /* How many ghosts the last of these counts for. */
 #define TRUST 3.0
-/* A ghost takes at most so many times what is expected. */
+/* Max cost of a ghost, as a multiple of its expected cost. */
 #define MOST 10.0
 /* Fraction of a ghost's angles for which the mean of the others counts. */
 #define BLUR 0.1
@@ -55,7 +55,7 @@ void glint_effort_end(struct glint_effort *e)
     e->share = 1;
 }
 
-/* Returns the work that is left for worker 0, if workers share it alike. */
+/* Returns the work left for worker 0 if all workers do equal shares. */
 static double left_of(const struct glint_effort *e)
 {
     const int rest = e->n_ghosts - 1 - e->ghost;

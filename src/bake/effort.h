@@ -9,12 +9,11 @@
  *     ... glint_effort_done(&effort) ...
  *
  * Work is counted in fits of a zone, about 40 ms. The work of a ghost in
- * progress is its work so far / the fraction of its angles that are done; that
- * of ghosts not yet begun is the mean of finished ones. Only worker 0 counts;
- * the others are assumed to be as fast. Limits: ghosts differ by a factor of
- * 100, so that the remaining work may be off by a factor of 2 or 3 in the first
- * half of a bake.
- */
+ * progress is its work so far / the fraction of its angles that are done; the
+ * work of a ghost not yet begun is the mean of the finished ghosts. Only worker
+ * 0 counts; the others are assumed to be as fast. Limits: ghosts differ by a
+ * factor of 100, so the estimate of the remaining work may be wrong by a factor
+ * of 2 or 3 in the first half of a bake. */
 #ifndef GLINT_BAKE_EFFORT_H
 #define GLINT_BAKE_EFFORT_H
 
@@ -30,11 +29,12 @@ struct glint_effort {
     int n_ended;     /* number of ghosts that worker 0 finished */
     double ended;    /* work of the finished ghosts */
     double work;     /* work of the current ghost of worker 0 */
-    double share;    /* fraction of its angles that are done, 0 .. 1 */
+    double share;    /* fraction of the current ghost's angles that are done, 0
+                        .. 1 */
 };
 
-/* Properties of a lens that make its ghosts slow to bake: it opens wider
- * than GLINT_WIDE, or has surfaces that are not spheres. */
+/* Classes of lenses by bake time. Ghosts are slow to bake if the lens opens
+ * wider than GLINT_WIDE or has surfaces that are not spheres. */
 enum glint_effort_kind {
     GLINT_EFFORT_NARROW,
     GLINT_EFFORT_WIDE,
@@ -52,8 +52,8 @@ void glint_effort_expect(struct glint_effort *effort, double head,
 
 void glint_effort_begin(struct glint_effort *effort, int ghost);
 
-/* Reports that the ghost has cost WORK fits so far, for the fraction of its
- * angles. */
+/* Reports that the ghost has cost WORK fits so far, for the fraction SHARE of
+ * its angles. */
 void glint_effort_spend(struct glint_effort *effort, double work, double share);
 
 void glint_effort_end(struct glint_effort *effort);

@@ -54,8 +54,8 @@ static void note(struct meter *b, int kind, double error)
     b->error[kind][b->n_of[kind]++] = fabs(error);
 }
 
-/* Notes the errors of barrels near their rim, where they cut: there the error
- * of r equals that of (1 + r^2) / 2. */
+/* Records the errors of barrels near their rim, where they cut: there the error
+ * of r equals the error of (1 + r^2) / 2. */
 static void note_barrels(struct meter *b, const struct glint_outputs *o,
                          double (*hits)[2])
 {
@@ -204,8 +204,8 @@ static bool set_bundle(struct meter *b, const struct glint_lens *lens,
     b->direction[0] = sine_q30 * 0x1p-30;
     b->direction[1] =
         f->skew ? f->y_lo + (0.5 + 0.5 * next(r)) * (f->y_hi - f->y_lo) : 0;
-    /* A bundle on a border may belong to the system beyond it, and the corner
-     * of a system may lie beyond all directions. */
+    /* A bundle on a border may belong to the next system, and the corner of a
+     * system may be no valid direction. */
     if (hypot(b->direction[0], b->direction[1]) >= 1 ||
         !init_transfer(b, lens, wave_q24) || b->transfer.system != s)
         return false;

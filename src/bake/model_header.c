@@ -15,11 +15,13 @@
 enum {
     /* Versions of the models: raised if a lens would bake to another model. */
     REVISION = 13,
-    WIDE_REVISION = 17, /* of those of lenses that open wider than GLINT_WIDE */
+    WIDE_REVISION = 17, /* revision of models of lenses that open wider than
+                           GLINT_WIDE */
     SHAPED_REVISION =
-        1, /* besides, of those with surfaces that are not spheres */
-    SKEW_REVISION = 2, /* of those that are not round */
-    FAR_REVISION = 3   /* and of round ones with lights beyond GLINT_FAR */
+        1, /* added for wide lenses with surfaces that are not spheres */
+    SKEW_REVISION = 2, /* revision of models of lenses that are not round */
+    FAR_REVISION = 3   /* revision of models of round lenses with lights beyond
+                          GLINT_FAR */
 };
 
 void glint_bake_defaults(struct glint_bake_options *options)
@@ -153,7 +155,8 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 
 enum {
     FLUX_NODES = 9,
-    BLADES = 8 /* of the stop by which the flux of wide stops is taken */
+    BLADES = 8 /* blades of the stop with which the flux of wide stops is
+                  measured */
 };
 
 /* Sets COEF to the polynomial in w that fits FLUX at the nodes W of the band.

@@ -10,9 +10,8 @@
 #include "glint/model.h"
 #include "glint/setup.h"
 
-/* Checks OPTIONS. GLINT_E_ARGUMENT: one is out of range, and ERROR states
- * which.
- */
+/* Checks OPTIONS. Returns GLINT_E_ARGUMENT if an option is out of range; ERROR
+ * then states which. */
 enum glint_status glint_bake_check(const struct glint_bake_options *options,
                                    struct glint_error *error);
 

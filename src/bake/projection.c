@@ -114,7 +114,7 @@ enum glint_status glint_projection_of(struct glint_projection *projection,
                                       struct glint_error *error)
 {
     struct glint_projection *const p = projection;
-    /* degrees: for most lenses, and for those of a few degrees */
+    /* degrees: for most lenses, and smaller for narrow fields */
     static const double steps[] = {1, 0.25, 0.05};
     double rho[ANGLES], step = 0;
     struct glint_optics optics;

@@ -31,7 +31,7 @@ static uint32_t put_terms(struct glint_draft *d,
     return glint_draft_put(d, power, (size_t)o->n_terms * sizeof *power);
 }
 
-/* Appends the coefficients: the wide ones, then the narrow ones. */
+/* Appends the coefficients: wide, then narrow. */
 static uint32_t put_coefficients(struct glint_draft *d,
                                  const struct glint_fitted_output *o,
                                  const struct glint_quantised_output *q)
@@ -113,7 +113,7 @@ static void write_system(struct glint_draft *d, uint32_t where,
                          const struct glint_fitted_system *f,
                          const struct glint_quantised_system *q)
 {
-    /* One after the other, as the order is part of the file. */
+    /* Written one after the other, as the order is part of the file format. */
     const int32_t range_q30[2] = {to_q30(f->y_lo), to_q30(f->y_hi)};
     const uint32_t across_at =
         f->skew ? glint_draft_put(d, range_q30, sizeof range_q30)

@@ -9,8 +9,8 @@
 #include "glint/bake.h"
 #include "glint/model.h"
 
-/* Appends the list of the ghosts that MODEL has; returns its place, 0 if it has
- * all. */
+/* Appends the list of the ghosts that MODEL has; returns the list's position in
+ * the file, or 0 if MODEL has all ghosts. */
 static uint32_t put_ghosts(struct glint_draft *d,
                            const struct glint_bake_model *model)
 {

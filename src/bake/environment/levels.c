@@ -12,13 +12,13 @@
 
 #include "glint/view.h"
 
-enum { BLOCKS = 32 }; /* along a side */
+enum { BLOCKS = 32 }; /* blocks per side */
 
-#define REACH 4.0 /* sigmas: 3e-4 of the weight lies beyond */
+#define REACH 4.0 /* sigmas; 3e-4 of the weight lies farther out */
 
 struct block {
     double toward[3], angle; /* of a cone that holds its texels */
-    double nearest; /* cosine of the farthest place that it can reach */
+    double nearest; /* cosine of the farthest direction that it can reach */
 };
 
 static double dot(const double a[3], const double b[3])
@@ -49,7 +49,7 @@ static void enclose(const struct glint_sphere *s, int i, int j, int side,
     b->angle = acos(cosine);
 }
 
-/* Adds what block (I, J) of side SIDE gives at TOWARD. */
+/* Adds the light of block (I, J), SIDE texels wide, toward TOWARD. */
 static void add_block(const struct glint_sphere *s, int i, int j, int side,
                       const double toward[3], double sigma, double nearest,
                       double sum[4])

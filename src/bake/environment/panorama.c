@@ -73,7 +73,7 @@ static double direction(const struct panorama *p, double x, double y,
     return size;
 }
 
-/* Sets LIGHT to pixel I, held. */
+/* Sets LIGHT to pixel I, clamped. */
 static void light_of(const struct panorama *p, size_t i, double light[3])
 {
     for (int c = 0; c < 3; c++) {

@@ -22,19 +22,19 @@ struct glint_sphere {
     struct glint_sphere_texel *texel; /* [side][side] */
 };
 
-/* Sets TOWARD to the direction of place (U, V), 0 .. 1 across and down the
- * square; returns its solid angle / the solid angle of the square. */
+/* Sets TOWARD to the direction of point (U, V) of the square, 0 .. 1 across and
+ * down; returns its solid angle / the solid angle of the square. */
 double glint_sphere_toward(double u, double v, double toward[3]);
 
-/* The same of the middle of texel I of a square of SIDE, over that of a texel.
- */
+/* Sets TOWARD to the direction of the middle of texel I of a square of SIDE;
+ * returns its solid angle / the solid angle of a texel of the square. */
 double glint_sphere_middle(int side, int i, double toward[3]);
 
-/* Sets U and V to the place of unit vector TOWARD. */
+/* Sets (U, V) to the point of the square in direction TOWARD, a unit vector. */
 void glint_sphere_place(const double toward[3], double *u, double *v);
 
 /* Returns the index of texel (X, Y) of a square of SIDE, each -1 .. SIDE, where
- * edges of the square meet those that lie there on the octahedron. */
+ * texels outside the square wrap to their neighbours on the octahedron. */
 size_t glint_sphere_index(int side, int x, int y);
 
 double glint_luminance(const double rgb[3]);
@@ -50,7 +50,7 @@ bool glint_sphere_shrink(struct glint_sphere *to, int side,
 
 /* panorama.c: projects PICTURE onto SPHERE, which is open and black, rotated
  * and scaled by OPTIONS; clamps and counts invalid pixels. Preserves the
- * energy. Returns false if PICTURE has another shape than those. */
+ * energy. Returns false if the shape of PICTURE is not supported. */
 bool glint_sphere_project(struct glint_sphere *sphere,
                           const struct glint_float_image *picture,
                           const struct glint_environment_options *options,
@@ -64,8 +64,8 @@ struct glint_split_light {
 };
 
 /* split.c: removes up to options->max_lights lights from SPHERE, the strongest,
- * and fills their places from their surroundings. Returns their number, or -1
- * without memory. */
+ * and fills the holes from their surroundings. Returns the number of lights, or
+ * -1 if there is no memory. */
 int glint_sphere_split(struct glint_sphere *sphere,
                        const struct glint_environment_options *options,
                        struct glint_split_light *lights,
@@ -82,8 +82,8 @@ bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
 void glint_sphere_irradiance(const struct glint_sphere *from, int side_log2,
                              double (*light)[3]);
 
-/* Writes N texels as codes, which a decoder takes for units: what is nearest in
- * light. UNIT is one unit; nothing is brighter than 511 * 2^19 of them. */
+/* Writes N texels as the codes nearest to their light in units of UNIT. No
+ * texel may be brighter than 511 * 2^19 units. */
 void glint_environment_put_9e5(const double (*light)[3], size_t n, double unit,
                                uint32_t *code);
 

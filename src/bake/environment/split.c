@@ -19,12 +19,13 @@
 
 enum {
     MAX_SPOTS = 4096,
-    RING = 2, /* texels around a light whose mean replaces it */
+    RING = 2, /* width in texels of the ring around a light; the mean of the
+                 ring replaces the light */
     NOBODY = -1
 };
 
 struct spot {
-    double light; /* luminance x sr; 0: it has become a part of another */
+    double light; /* luminance x sr; 0: merged into another spot */
 };
 
 struct split {
@@ -96,7 +97,7 @@ static double measure(const struct split *s, int n, double *square)
     return sum;
 }
 
-/* Makes the N texels of the queue one spot if they are a light. */
+/* Adds the N texels of the queue as one spot if they are a light. */
 static void try_spot(struct split *s, int n)
 {
     double square;
@@ -147,7 +148,7 @@ static void find_spots(struct split *s, int n, double above)
 }
 
 /* Sets MEAN to the light around spot K, whose texels are marked in round ROUND,
- * or to that of its darkest texel if other lights are all around. */
+ * or to the light of its darkest texel if other lights surround it. */
 static void ring_of(struct split *s, int k, int n, int round, double mean[3])
 {
     double weight = 0;
@@ -187,9 +188,9 @@ static void ring_of(struct split *s, int k, int n, int round, double mean[3])
         mean[c] = weight > 0 ? mean[c] / weight : 0;
 }
 
-/* Moves what spot K has above MEAN into LIGHT. */
-static void take(struct split *s, int k, int n, const double mean[3],
-                 struct glint_split_light *light)
+/* Moves the light of spot K above MEAN into LIGHT. */
+static void move_light(struct split *s, int k, int n, const double mean[3],
+                       struct glint_split_light *light)
 {
     double middle[3] = {0, 0, 0}, sum = 0, length, square;
 
@@ -240,7 +241,7 @@ static int take_strongest(struct split *s, int n, int most,
         if (best == NOBODY)
             break;
         ring_of(s, best, n, 64 + taken, mean);
-        take(s, best, n, mean, &lights[taken]);
+        move_light(s, best, n, mean, &lights[taken]);
         s->spot[best].light = 0;
         report->light_share +=
             glint_luminance(lights[taken++].irradiance) / s->all;

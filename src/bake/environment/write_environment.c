@@ -119,8 +119,8 @@ static bool gather(struct writer *w, const struct glint_float_image *picture,
     return w->n_lights >= 0;
 }
 
-/* Sets level K to means of the one before, or of the sphere. */
-static void shrink(struct writer *w, int k)
+/* Sets level K to means of level K - 1, or of the sphere if K is the first. */
+static void average_level(struct writer *w, int k)
 {
     const int side = 1 << (w->options->side_log2 - k);
 
@@ -176,7 +176,7 @@ static bool make_levels(struct writer *w)
         if (!w->level[k])
             return false;
         if (w->options->levels == GLINT_ENVIRONMENT_MIP)
-            shrink(w, k);
+            average_level(w, k);
         else if (!blur(w, k))
             return false;
     }

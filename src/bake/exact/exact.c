@@ -36,7 +36,7 @@ struct picture {
     int n_bundles;
     struct glint_cells cells; /* cells of the bundle being drawn */
     struct glint_path *path;
-    /* [n + 1][2]: least and largest y of a row of nodes, pixels. */
+    /* [n + 1][2]: min and max y of a row of nodes, pixels. */
     double *row_y;
     double *difference; /* [height][3][width + 2] */
     double weight[3];   /* flux of half a cell at energy 1, per channel */
@@ -114,8 +114,8 @@ static void deposit_edge(const struct picture *p, const struct band *band,
     }
 }
 
-/* Keeps the part of a polygon on the inner side of a horizontal or vertical
- * line: coordinate AXIS times SIGN at most LIMIT. Returns its number of
+/* Clips a polygon to the inner side of a horizontal or vertical line, where
+ * coordinate AXIS times SIGN is at most LIMIT. Returns the new number of
  * corners. */
 static int trim(double (*p)[2], int n, int axis, double sign, double limit)
 {
@@ -215,7 +215,7 @@ static void deposit_piece(const struct picture *p, const struct band *band,
 
 /* --------------------------------------------------------------------- jobs */
 
-/* Turns the places of one row of nodes into pixels. */
+/* Converts the positions of one row of nodes to pixels. */
 static void place_row(struct picture *p, int row)
 {
     const struct glint_view *view = &p->cfg->view;
@@ -236,7 +236,8 @@ static void place_row(struct picture *p, int row)
     }
 }
 
-/* Traces one row of rays, which of a round lens also gives its mirror image. */
+/* Traces one row of rays. With a round lens the mirror image of the row is set,
+ * too. */
 static void trace_job(void *ctx, int job, int worker)
 {
     struct picture *p = ctx;

@@ -8,8 +8,8 @@
 #include "glint/model.h"
 #include "glint/trace.h"
 
-/* Cells of a grid over the pupil, of which lenses that are not round have as
- * many down as across. */
+/* Cells of the grid over the pupil. Lenses that are not round use as many down
+ * as across. */
 enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN, WAVES = 3 };
 
 /* The light of a cell of the grid on the sensor. Of round lenses its mirror
@@ -28,8 +28,8 @@ struct task {
     double nm[WAVES];
     double half_mm[2]; /* half the width and height of the picture */
     double pixel_mm;   /* of a picture 1920 wide */
-    /* Azimuths of lenses that are not round, in turns: a quarter of one, with
-     * both ends, if the lens has two planes of symmetry; else all around. */
+    /* Azimuths of lenses that are not round, in turns: a quarter turn, with
+     * both ends, if the lens has two planes of symmetry; else a full turn. */
     int n_azimuths;
     double turns;
     enum glint_status status[GLINT_BRIGHTNESS_ANGLES];
@@ -69,7 +69,7 @@ static struct patch patch_of(const struct glint_ray *a,
                           a->sensor_x_mm, a->sensor_y_mm};
 }
 
-/* Adds the patches of one ghost; returns how many. */
+/* Adds the patches of one ghost; returns their number. */
 static int add_ghost(const struct task *t, int ghost, double sine,
                      struct patch *patch)
 {
@@ -134,8 +134,8 @@ static double level_at(const struct task *t, const struct patch *patch, int n,
     return HUGE_VAL;
 }
 
-/* Finds the level of one angle: the least over all azimuths, as the brightest
- * ghosts may lie outside the picture, which is then exposed for others. */
+/* Finds the level of one angle: the min over all azimuths. The brightest ghosts
+ * may lie outside the picture, which is then exposed for other ghosts. */
 static void angle_job(void *ctx, int job, int worker)
 {
     enum { AZIMUTHS = 7 }; /* azimuths from 0 to 90 degrees */
@@ -172,8 +172,8 @@ static bool is_in_picture(const struct task *t, const struct glint_ray *ray)
            fabs(ray->sensor_y_mm) <= t->half_mm[1];
 }
 
-/* Returns the light between ray A and its neighbours B and C; its area is that
- * of their ellipse of inertia, blurred by a pixel. */
+/* Returns the light between ray A and its neighbours B and C; its area is the
+ * area of their ellipse of inertia, blurred by a pixel. */
 static struct patch skew_patch_of(const struct task *t,
                                   const struct glint_ray *a,
                                   const struct glint_ray *b,
@@ -215,7 +215,8 @@ static void trace_row(const struct glint_path path[WAVES],
         rays->at[i].energy /= WAVES;
 }
 
-/* Adds the light of one ghost from DIRECTION; returns how many cells of it. */
+/* Adds the light of one ghost from DIRECTION; returns the number of cells
+ * added. */
 static int add_skew_ghost(const struct task *t, int ghost,
                           const double direction[3], struct patch *patch)
 {
@@ -257,8 +258,8 @@ static int add_skew_ghost(const struct task *t, int ghost,
     return n;
 }
 
-/* Returns the irradiance that 1/1000 of the picture exceeds; if less of it has
- * light, the least. */
+/* Returns the irradiance that 1/1000 of the picture exceeds, or the min
+ * irradiance if a smaller fraction has light. */
 static double skew_level_of(const struct task *t, struct patch *patch, int n)
 {
     double left = 0.001 * 4 * t->half_mm[0] * t->half_mm[1];
@@ -270,8 +271,8 @@ static double skew_level_of(const struct task *t, struct patch *patch, int n)
     return patch[k].irradiance;
 }
 
-/* Finds the level of one angle: the least over the azimuths that have light,
- * HUGE_VAL if none has. */
+/* Finds the level of one angle: the min over the azimuths that have light,
+ * HUGE_VAL if no azimuth has light. */
 static void skew_angle_job(void *ctx, int job, int worker)
 {
     struct task *t = ctx;
@@ -323,7 +324,7 @@ uint32_t glint_skew_mirrors(const struct glint_prescription *lens)
     for (int k = 0; k < lens->n_surfaces; k++) {
         const struct glint_shape *const a = &lens->surface[k].shape;
 
-        /* A turn about the y axis moves what lies at x. */
+        /* A tilt about the y axis breaks the symmetry in x. */
         if (a->decentre_mm[0] != 0.0 || a->tilt_deg[1] != 0.0)
             mirrors &= ~(uint32_t)GLINT_MIRRORS_X;
         if (a->decentre_mm[1] != 0.0 || a->tilt_deg[0] != 0.0)
@@ -355,7 +356,7 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
 
     t.pixel_mm = 2 * t.half_mm[0] / 1920;
     for (int k = 0; k < WAVES && !round; k++) {
-        /* The middle one first. */
+        /* The middle wavelength comes first. */
         const double node = (k + 1) % WAVES - 1.0;
         const double lo = pow(band_nm[1], -2), hi = pow(band_nm[0], -2);
 

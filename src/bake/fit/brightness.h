@@ -20,8 +20,8 @@ enum { GLINT_BRIGHTNESS_ANGLES = 11 };
 
 struct glint_brightness {
     double sine[GLINT_BRIGHTNESS_ANGLES];
-    /* Energy times pupil area over sensor area; without light 0, or HUGE_VAL of
-     * lenses that are not round. */
+    /* Energy times pupil area per sensor area. Without light: 0 for round
+     * lenses, HUGE_VAL for others. */
     double level[GLINT_BRIGHTNESS_ANGLES];
 };
 

@@ -16,13 +16,13 @@
 #define CROWD_DEG 1.5
 /* Degrees: narrower zones may fill their boxes less. */
 #define FILL_DEG 0.6
-/* Fraction of a part: cropping continues while it leaves less. */
+/* Cropping continues while it leaves a smaller fraction of the part. */
 #define WORTH_CROP 0.8
 
 enum {
     /* Times that a band can be halved, which follows from LEAST_BAND. */
     BAND_DEPTH = 2,
-    CROPS = 2 /* most times that a part is cropped */
+    CROPS = 2 /* max number of times that a part is cropped */
 };
 
 struct fitter {
@@ -75,7 +75,8 @@ profile_of(struct fitter *f, const struct glint_zone_piece *p)
 
     if (is_whole_band(p->w0, p->w1))
         return &f->profile;
-    /* NOLINTNEXTLINE: 0 and -0 may differ: a profile is then found again. */
+    /* NOLINTNEXTLINE: 0 and -0 may differ; the profile is then computed
+     * again. */
     if (memcmp(key, f->profiled, sizeof key) != 0) {
         glint_visible_narrow(&f->in_band, f->visible, p->w0, p->w1);
         glint_visible_profile_find(&f->in_band, range, &f->band_profile);
@@ -120,8 +121,8 @@ set_part(struct fitter *f, struct glint_zone_piece *p, struct glint_zone *zone)
     return band;
 }
 
-/* Traces and fits ZONE in BAND. If nothing comes through a part of a zone, it
- * gets no outputs. */
+/* Traces and fits ZONE in BAND. If no light comes through a part of a zone, the
+ * part gets no outputs. */
 static enum glint_status
 fit_zone(struct fitter *f, const struct glint_zone_piece *p,
          const struct glint_zone *zone, const struct glint_visible *band,
@@ -151,8 +152,8 @@ fit_zone(struct fitter *f, const struct glint_zone_piece *p,
     return status;
 }
 
-/* Fits P, unless its box or its barrels show that it is too wide. May crop P's
- * part. */
+/* Fits P unless its box or its barrels show that it is too wide. May crop the
+ * part of P. */
 static enum glint_status try_zone(struct fitter *f, struct glint_zone_piece *p,
                                   struct glint_fitted_system *system,
                                   struct glint_attempt *a)
@@ -211,8 +212,9 @@ static int push_halves(struct glint_zone_piece *stack, int n,
     return n + 2;
 }
 
-/* Counts the fit of P, which is done if KEPT. */
-static void tell(struct fitter *f, const struct glint_zone_piece *p, bool kept)
+/* Counts the fit of P; KEPT: the zone P is finished. */
+static void count_fit(struct fitter *f, const struct glint_zone_piece *p,
+                      bool kept)
 {
     f->work += p->thorough ? 2 : 1;
     if (kept)
@@ -226,8 +228,8 @@ static void tell(struct fitter *f, const struct glint_zone_piece *p, bool kept)
  * stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
-    /* Fewer than 20 halvings take a zone down to half of LEAST_DEG, or at the
-     * axis to a tenth of that. */
+    /* Fewer than 20 halvings shrink a zone to half of LEAST_DEG, or at the axis
+     * to a tenth of that size. */
     enum { DEEP = 24 + BAND_DEPTH + GLINT_MAX_AXIS_DEPTH };
     struct glint_zone_piece stack[DEEP] = {
         {range[0], range[1], HUGE_VAL, -1, 1, false, whole, 0}};
@@ -247,7 +249,7 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
         if (status == GLINT_OK)
             next =
                 n + 2 > DEEP ? GLINT_KEEP : glint_next(&f->rules, &p, &attempt);
-        tell(f, &p, next == GLINT_KEEP);
+        count_fit(f, &p, next == GLINT_KEEP);
         if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
         system.part = f->n_parts;
@@ -286,7 +288,7 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
     f->rules = (struct glint_next_rules){visible, tolerance};
     f->in_band.beside = f->beside_band;
     f->in_part.beside = f->beside_part;
-    /* There is no profile of a part of the band yet. */
+    /* No profile of a part of the band exists yet. */
     f->profiled[0] = HUGE_VAL;
     f->out = out;
     f->told = told;

@@ -21,10 +21,9 @@
 #include "bake/visible/visible.h"
 #include "glint/status.h"
 
-/* Called after each fit of a zone with how many that makes, where a thorough
- * one counts twice, and the fraction of the ghost's angles that are done, 0
- * .. 1.
- */
+/* Called after each fit of a zone with the number of fits so far, thorough fits
+ * counted twice, and the fraction 0 .. 1 of the ghost's angles that are
+ * done. */
 typedef void glint_fit_told_fn(void *ctx, double work, double share);
 
 /* Fits a ghost; TOLD may be NULL. The caller finishes OUT in any case.

@@ -15,8 +15,8 @@ struct glint_fitted_output {
     int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
     uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
     double *coef;
-    double grain; /* rounding of a coefficient that does no harm; 0: there is
-                     none */
+    double grain; /* max harmless rounding error of a coefficient; 0: keep all
+                     bits */
     int event;    /* event of the path, for a barrel */
     int roots;    /* times that the polynomial is squared to give the energy */
     double most;  /* largest value of the energy's polynomial where light gets
@@ -30,7 +30,7 @@ struct glint_fitted_system {
     int annulus; /* as in struct glint_model_system */
     double sine_lo, sine_hi;
     bool skew; /* true: sine_lo .. sine_hi is the range of the x component of
-                  directions, y_lo .. y_hi that of y */
+                  directions, y_lo .. y_hi the range of the y component */
     double y_lo, y_hi;
     double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
     double *box;             /* mm, with the layout of the model; owned */
@@ -45,7 +45,8 @@ struct glint_fitted_ghost {
     struct glint_fitted_system *system;
 };
 
-/* Moves the systems of part PART to OUT, which is empty. GLINT_E_MEMORY. */
+/* Moves the systems of part PART to OUT, which must be empty. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
                                     struct glint_fitted_ghost *out);
 
@@ -53,7 +54,7 @@ enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
 enum glint_status glint_fitted_append(struct glint_fitted_ghost *ghost,
                                       const struct glint_fitted_system *system);
 
-/* Frees what SYSTEM owns. */
+/* Frees the memory that SYSTEM owns. */
 void glint_fitted_drop(struct glint_fitted_system *system);
 
 void glint_fitted_finish(struct glint_fitted_ghost *ghost);

@@ -17,26 +17,27 @@
 #define STUCK_DEG 1.2
 /* Factor on STUCK_DEG for wide stops: nearly all of their zones. */
 #define WIDE_STUCK 16
-/* The same of shaped lenses and of far lights, whose zones of several degrees
- * leave parts that do not meet. */
+/* The same factor for shaped lenses and far lights. Their zones of several
+ * degrees would leave parts that do not meet. */
 #define SHAPED_STUCK 3
 /* Tolerances: zones with a larger error are divided into parts. If the ghost is
  * so faint that it hides more, the error may be up to MOST_HIDDEN times as
  * large. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
-/* Multiples of bearable(), which is PART_LEFT and more for faint ghosts: zones
- * with a larger error are divided at once, as more terms would not help. */
+/* Multiples of bearable(), which returns PART_LEFT, or more for faint ghosts:
+ * zones with a larger error are divided at once, as more terms would not
+ * help. */
 #define HOPELESS 20.0
 /* Tolerances: a wide zone with a larger error will be halved anyway. */
 #define HALVES_ANYWAY 10.0
-/* Half widths: if a box moves or grows by more over the band, the band is
+/* Half widths. If a box moves or grows by more over the band, the band is
  * halved. */
 #define WANDERS 0.5
 /* Width of a band in w, 0 .. 2: narrower ones are not halved. */
 #define LEAST_BAND 0.6
-/* Ease up to which errors of shaped lenses are worth all that is done, and from
- * which all that is bearable is kept. */
+/* Tolerance ease of shaped lenses up to which every attempt to reduce errors is
+ * made, and from which any bearable error is accepted. */
 #define NOT_FAINT 1.5
 #define FAINT     6.0
 
@@ -54,13 +55,13 @@ double glint_next_degrees(double lo, double hi)
     return (asin(hi) - asin(lo)) * (180 / GLINT_PI);
 }
 
-/* Returns how large the error of places of a zone may be, in tolerances. */
+/* Returns the max error of positions of a zone, in tolerances. */
 static double bearable(const struct glint_zone_aim *aim)
 {
     return PART_LEFT * fmin(aim->hidden, MOST_HIDDEN);
 }
 
-/* Returns up to which error, in tolerances, P is kept at once. */
+/* Returns the max error, in tolerances, at which P is accepted at once. */
 static double acceptable(const struct glint_next_rules *f,
                          const struct glint_zone_aim *aim)
 {
@@ -152,8 +153,8 @@ enum glint_next glint_next(const struct glint_next_rules *f,
     const double left = a->errors.worst;
     const bool helped = left <= STUCK * p->before;
     const double width = width_of(p, &a->aim), least = least_of(f, p);
-    /* Stacks of films make energies swing with the wavelength, which parts of
-     * the band follow and narrower zones would not. */
+    /* Stacks of films make energies swing with the wavelength. Parts of the
+     * band follow that, narrower zones would not. */
     const bool swings = glint_next_stacks(f->visible) && p->depth == 0 &&
                         left > 1 && left < HUGE_VAL && a->errors.shows <= 1 &&
                         p->w1 - p->w0 > LEAST_BAND;

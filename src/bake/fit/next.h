@@ -15,16 +15,15 @@
 #include "bake/visible/visible.h"
 #include "bake/fit/zone_fit.h"
 
-/* A zone, or a part of one, that waits to be fitted. BEFORE is the error of the
- * last attempt at the wider zone that it is a piece of. THOROUGH: it is fitted
+/* A zone, or a part of a zone, that waits to be fitted. BEFORE is the error of
+ * the last attempt at the wider zone that contains it. THOROUGH: it is fitted
  * with a box that follows the colours, a root of the energy, and more terms. */
 struct glint_zone_piece {
     double lo, hi, before;
-    double w0, w1; /* the part of the band, -1 .. 1 */
+    double w0, w1; /* range of the part within the band, -1 .. 1 */
     bool thorough;
     struct glint_zone_part part;
-    int depth; /* number of halvings that led to the part; 0: it is the whole
-                  zone */
+    int depth; /* number of halvings that led to the part; 0: the whole zone */
 };
 
 /* The outcome of an attempt at a zone. */
@@ -50,22 +49,22 @@ double glint_next_degrees(double lo, double hi);
 /* Returns whether a coating of several films reflects the ghost. */
 bool glint_next_stacks(const struct glint_visible *visible);
 
-/* The ghost, and what its zones are fitted to. */
+/* The ghost, and the rules by which its zones are divided. */
 struct glint_next_rules {
     const struct glint_visible *visible;
     const struct glint_tolerance *tolerance;
 };
 
-/* Returns the error, in tolerances, beyond which P will be halved or divided
- * anyway, so that its fit may stop early; 0: there is none. Narrow zones may be
+/* Returns the error, in tolerances, above which P will be halved or divided
+ * anyway, so that its fit may stop early; 0: no such error. Narrow zones may be
  * at the end of halving, where the error has to be known. */
 double glint_next_hopeless(const struct glint_next_rules *f,
                            const struct glint_zone_piece *p,
                            const struct glint_zone_aim *aim);
 
 /* Returns the error, in tolerances, above which glint_next() decides the same
- * for P, and later for its halves, however large the error is; 0: there is
- * none. */
+ * for P, and later for its halves, however large the error is; 0: no such
+ * error. */
 double glint_next_settled(const struct glint_next_rules *f,
                           const struct glint_zone_piece *p,
                           const struct glint_zone_aim *aim);

@@ -18,7 +18,7 @@ static double sum_of(const double *value, int n)
     return sum;
 }
 
-enum { LEAST_EXPONENT = -80 }; /* least binary exponent of a model */
+enum { LEAST_EXPONENT = -80 }; /* min binary exponent of a model */
 
 /* Returns the exponent at which the sum of N values, of magnitude SUM before
  * each was rounded, stays below the limit. */
@@ -54,9 +54,9 @@ static enum glint_status to_integers(const double *value, int n, int exponent,
 
 /* ---------------------------------------------------------------- intervals */
 
-/* The range of a number of the run time, and how far rounding may have taken it
- * from its true value, in its unit. Doubles hold these exactly enough: they
- * stay below 2^31, and errors are rounded up at the end. */
+/* The range of a number computed at run time, and the max distance between its
+ * rounded and its true value, in its unit. Doubles hold these exactly enough:
+ * they stay below 2^31, and errors are rounded up at the end. */
 struct range {
     double lo, hi, error;
 };
@@ -81,9 +81,10 @@ static struct range plus(struct proof *p, struct range a, struct range b)
     return seen(p, (struct range){a.lo + b.lo, a.hi + b.hi, a.error + b.error});
 }
 
-/* Returns the range of q_mul(a, x, 30). X is a variable within -1 .. 1, whose
- * error counts in units of 2^-30. */
-static struct range times(struct proof *p, struct range a, struct range x)
+/* Returns the range of q_mul(a, x, 30). X is a variable within -1 .. 1; its
+ * error is in units of 2^-30. */
+static struct range multiply_range(struct proof *p, struct range a,
+                                   struct range x)
 {
     const double c[4] = {a.lo * x.lo, a.lo * x.hi, a.hi * x.lo, a.hi * x.hi};
     const double most_x = fmax(fabs(x.lo), fabs(x.hi));
@@ -131,7 +132,8 @@ static void prove_table(struct proof *p, const struct glint_fitted_output *o,
 
         for (int x = 2; x < GLINT_VARIABLES; x++)
             if (o->power[k][x])
-                value = times(p, value, power_of(both_ways, o->power[k][x]));
+                value = multiply_range(p, value,
+                                       power_of(both_ways, o->power[k][x]));
         *to = plus(p, *to, value);
     }
 }
@@ -146,8 +148,8 @@ static struct range across(struct proof *p,
     struct range sum = {0, 0, 0};
 
     for (int b = GLINT_MAX_POWER - 1 + odd; b >= 0; b -= 2)
-        sum = plus(p, times(p, sum, v2), table[b][a]);
-    return odd ? times(p, sum, both_ways) : sum;
+        sum = plus(p, multiply_range(p, sum, v2), table[b][a]);
+    return odd ? multiply_range(p, sum, both_ways) : sum;
 }
 
 static void prove_output(struct proof *p, const struct glint_fitted_output *o,
@@ -165,7 +167,7 @@ static void prove_output(struct proof *p, const struct glint_fitted_output *o,
 
         if (skew)
             sum = plus(p, sum, across(p, table, a, true));
-        *result = plus(p, times(p, *result, both_ways), sum);
+        *result = plus(p, multiply_range(p, *result, both_ways), sum);
     }
 }
 
@@ -225,10 +227,10 @@ static void narrow(const struct glint_fitted_output *o,
 
 /* ------------------------------------------------------------------ systems */
 
-/* Returns 1 or -1, the distance in the list of outputs from one of KIND to that
- * of the other coordinate, with which it shares an exponent so that both can be
- * turned; 0: KIND is not a coordinate of a pair. */
-static int paired(enum glint_channel kind)
+/* Returns 1 or -1, the offset in the list of outputs from KIND to the other
+ * coordinate of its pair, or 0 if KIND is not a coordinate of a pair. Both
+ * coordinates have the same exponent so that they can be rotated together. */
+static int offset_to_pair(enum glint_channel kind)
 {
     return kind == GLINT_OUT_SENSOR_X || kind == GLINT_OUT_STOP_X   ? 1
            : kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y ? -1
@@ -243,8 +245,8 @@ static int output_exponent(const struct glint_fitted_system *s, int k)
 }
 
 /* Returns by how many bits a polynomial can be scaled up so that, where light
- * gets through, it stays below half of the largest integer that it may have;
- * for a fourth root, so that its energy does, as one bit of the root is four
+ * gets through, it stays below half of the largest allowed integer. For a
+ * fourth root the energy must stay below that, and one bit of the root is four
  * bits of the energy. */
 static int head_of(const struct glint_fitted_output *o, int exponent)
 {
@@ -262,7 +264,7 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
                                          struct glint_quantised_output *out)
 {
     const struct glint_fitted_output *o = &s->output[k];
-    const int pair = paired(o->kind);
+    const int pair = offset_to_pair(o->kind);
     enum glint_status status;
 
     out->exponent = output_exponent(s, k);

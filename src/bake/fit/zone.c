@@ -9,7 +9,8 @@
  * box would need higher powers of s, which the polynomials in it would have to
  * undo. */
 #define ENOUGH_FILL 0.6
-/* A higher degree in s is taken only if it fills the box so many times more. */
+/* A higher degree in s is chosen only if rays fill its box this many times as
+ * well. */
 #define FULLER 1.6
 
 double glint_zone_node(int k, int n)
@@ -41,7 +42,8 @@ double glint_zone_side(const struct glint_zone *zone,
                (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
-/* The boxes that a zone's box has to hold, at places s and w of the zone. */
+/* The boxes that a zone's box must contain, at values of s and w of the
+ * zone. */
 enum { ROOM = GLINT_PROFILE * GLINT_VISIBLE_WAVES };
 
 struct seen {
@@ -64,10 +66,10 @@ static void add(struct seen *seen, double s, double w,
     seen->narrowest = fmin(seen->narrowest, seen->half_x[i]);
 }
 
-/* Gathers the boxes of the zone and of one angle beyond each end, so that the
+/* Gathers the boxes of the zone and of one more angle at each end, so that the
  * ends are covered. */
-static void gather(const struct glint_visible_profile *p, double lo, double hi,
-                   bool by_colour, struct seen *seen)
+static void gather_boxes(const struct glint_visible_profile *p, double lo,
+                         double hi, bool by_colour, struct seen *seen)
 {
     int first = 0, last = p->n - 1;
 
@@ -123,7 +125,7 @@ static void follow(const struct seen *seen, const double *value, int degree,
 /* Returns minus the min value of the polynomial HALF over the zone, sampled:
  * the increase of its constant that makes it 0 or more; negative if it is
  * already. */
-static double lacks(const double half[GLINT_BOX_TERMS])
+static double missing_height(const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;
 
@@ -149,8 +151,8 @@ static void widen(struct glint_zone *z, const struct seen *seen)
     }
     z->half_x[0] += more_x;
     z->half_y[0] += more_y;
-    z->half_x[0] += fmax(0.01 * z->half_x[0], 1.1 * lacks(z->half_x));
-    z->half_y[0] += fmax(0.01 * z->half_y[0], 1.1 * lacks(z->half_y));
+    z->half_x[0] += fmax(0.01 * z->half_x[0], 1.1 * missing_height(z->half_x));
+    z->half_y[0] += fmax(0.01 * z->half_y[0], 1.1 * missing_height(z->half_y));
 }
 
 static double mean_fill(const struct glint_zone *z, const struct seen *seen)
@@ -184,7 +186,7 @@ void glint_zone_init(struct glint_zone *zone,
     struct seen seen;
     int most;
 
-    gather(profile, lo, hi, by_colour, &seen);
+    gather_boxes(profile, lo, hi, by_colour, &seen);
     most = seen.n_angles > 12 ? GLINT_BOX_POWERS - 1 : (seen.n_angles - 1) / 2;
     *zone = (struct glint_zone){.fill = 0};
     for (int degree = most < 1 ? most : 1;
@@ -243,7 +245,7 @@ void glint_zone_cut(struct glint_zone *zone, const struct glint_zone_part *part)
     zone->annulus = part->annulus;
 }
 
-/* Sets X to place number K of a low-discrepancy sequence, -1 .. 1 in each
+/* Sets X to point number K of a low-discrepancy sequence, -1 .. 1 in each
  * variable, which fills four dimensions evenly: the fractional parts of 1/2 +
  * (K + 1) / g, / g^2 .. / g^4, g being the root of x^5 = x + 1, spread over -1
  * .. 1. */
@@ -327,9 +329,9 @@ struct sighting {
     double low[GLINT_VARIABLES], high[GLINT_VARIABLES];
 };
 
-/* Traces T at wavelength WAVE of the ghost and of those beside it. */
-static void sight(const struct glint_visible *visible, int wave,
-                  struct glint_zone_batch *t, struct sighting *seen)
+/* Traces T at wavelength WAVE for the ghost and for the ghosts beside it. */
+static void trace_members(const struct glint_visible *visible, int wave,
+                          struct glint_zone_batch *t, struct sighting *seen)
 {
     for (int m = 0; m <= visible->n_beside; m++) {
         const struct glint_visible *const h = glint_visible_member(visible, m);
@@ -351,7 +353,8 @@ double glint_zone_crop(const struct glint_zone *zone,
                        struct glint_zone_part *part)
 {
     enum { ANGLES = 5, COLUMNS = GLINT_ZONE_BATCH, ROWS = 12 };
-    /* Rays of shaped lenses take long; few of their colours go apart. */
+    /* Rays of shaped lenses are slow to trace, and their colours rarely
+     * separate. */
     const int stride = visible->shaped ? (GLINT_VISIBLE_WAVES - 1) / 2 : 1;
     const double margin = 3.0 / COLUMNS;
     const struct glint_zone_part before = *part;
@@ -371,7 +374,7 @@ double glint_zone_crop(const struct glint_zone *zone,
 
             glint_zone_batch_add(&t, zone, x);
         }
-        sight(visible, wave, &t, &seen);
+        trace_members(visible, wave, &t, &seen);
     }
     if (seen.high[0] < seen.low[0])
         return 0;

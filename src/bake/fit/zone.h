@@ -30,8 +30,8 @@ struct glint_zone {
     double middle[GLINT_BOX_TERMS]; /* mm; terms as in a model */
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
     bool skew;
-    double y_lo, y_hi; /* range of the y component of a skew zone's directions,
-                          of which lo .. hi is that of x */
+    double y_lo, y_hi; /* range of the y component of a skew zone's directions;
+                          lo .. hi is the range of x */
     double middle_y[GLINT_BOX_TERMS]; /* mm; of a skew zone */
     double fill; /* mean fraction of the box that the ghost needs */
     int annulus; /* as in struct glint_model_system */
@@ -52,8 +52,8 @@ double glint_zone_side(const struct glint_zone *zone,
                        const double side[GLINT_BOX_TERMS],
                        const double x[GLINT_VARIABLES]);
 
-/* Sets the box for LO .. HI of PROFILE. BY_COLOUR: it moves with the wavelength
- * and takes more terms; else one box holds all colours. */
+/* Sets the box for LO .. HI of PROFILE. BY_COLOUR: the box moves with the
+ * wavelength and has more terms; else one box contains all colours. */
 void glint_zone_init(struct glint_zone *zone,
                      const struct glint_visible_profile *profile, double lo,
                      double hi, bool by_colour);
@@ -71,9 +71,9 @@ void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
 void glint_zone_cut(struct glint_zone *zone,
                     const struct glint_zone_part *part);
 
-/* Crops PART to what can be seen of it, with a margin; ZONE has been cut to
- * PART, and VISIBLE narrowed to its band. Returns the fraction that is left: 1
- * is all, 0 nothing. */
+/* Crops PART to its visible region, with a margin. ZONE must have been cut to
+ * PART and VISIBLE narrowed to its band. Returns the fraction of PART that is
+ * left, 0 .. 1. */
 double glint_zone_crop(const struct glint_zone *zone,
                        const struct glint_visible *visible,
                        struct glint_zone_part *part);
@@ -101,24 +101,24 @@ struct glint_zone_batch {
                [2]; /* mm; -1: not reached */
 };
 
-/* Adds the ray at X of the zone; its w is that of the path, its v 0 .. 1 from
- * the middle, or the inner end, of the box to its rim, or of a skew zone -1 ..
- * 1. */
+/* Adds the ray at X of the zone. X must have the w of the path; v is 0 .. 1
+ * from the middle, or the inner end, of the box to its rim, or of a skew zone
+ * -1 .. 1. */
 void glint_zone_batch_add(struct glint_zone_batch *batch,
                           const struct glint_zone *zone,
                           const double x[GLINT_VARIABLES]);
 
 void glint_zone_batch_trace(struct glint_zone_batch *batch);
 
-/* Returns the place of ray K at each event of the path, [n_events]. */
+/* Returns the position of ray K at each event of the path, [n_events]. */
 static inline double (*glint_zone_batch_hits(struct glint_zone_batch *batch,
                                              int k))[2]
 {
     return batch->hits + k * batch->path->n_events;
 }
 
-/* Sets X to place number K of a sequence that fills ZONE evenly: of five
- * dimensions if it is skew, else with v of 0 or more. */
+/* Sets X to point number K of a sequence that fills ZONE evenly, in five
+ * dimensions if ZONE is skew, else with v >= 0. */
 void glint_zone_scatter(const struct glint_zone *zone, int k,
                         double x[GLINT_VARIABLES]);
 

@@ -5,12 +5,12 @@
 
 /* Light of a ray below which its errors show no less. */
 #define LEAST_LIGHT 1e-3
-/* Least factor on the tolerances of places of skew zones that are brighter than
- * white: at their outlines a shift shows as many times as much. */
+/* Min factor on the position tolerances of skew zones that are brighter than
+ * white: a shift of their outlines shows more by the same factor. */
 #define CLIPPED 0.4
 /* Min factor on the position tolerance across a streak that is thinner than a
- * pixel: where it crosses from one pixel row to the next all of its light does.
- * */
+ * pixel: where the streak crosses from one pixel row to the next, all of its
+ * light moves. */
 #define THIN 0.1
 
 /* The rays of one angle and wavelength: how many are seen, and where they land.
@@ -201,8 +201,8 @@ double glint_zone_aim_off(const struct glint_zone_rays *r,
 
 /* ------------------------------------------------------------------- light */
 
-/* Returns the ray of the row before that of ray I, in its plane, which is
- * nearest to it; -1 if there is none. */
+/* Returns the ray nearest to ray I in the previous row of the same plane, or
+ * -1. */
 static int ray_before(const struct glint_zone_rays *r, int i)
 {
     int row = i, near = -1;

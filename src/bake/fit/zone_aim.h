@@ -12,10 +12,10 @@
 #include "bake/fit/zone_rays.h"
 
 struct glint_zone_aim {
-    /* Tolerances of places and of outlines on the sensor. */
+    /* Tolerances of positions and of outlines on the sensor. */
     double sensor_mm, edge_mm;
     double thin[2]; /* factors on sensor_mm along x and y */
-    double stop;    /* tolerance of places in the stop, radii */
+    double stop;    /* tolerance of positions in the stop, radii */
     double energy;  /* tolerance of the energy, as a fraction */
     double ease;    /* tolerance / tolerance of a bright ghost */
     double share;   /* brightness / brightness of a bright ghost */
@@ -34,9 +34,8 @@ void glint_zone_aim_light(const struct glint_tolerance *tolerance,
                           const struct glint_zone_aim *aim,
                           const struct glint_zone_rays *rays, double *light);
 
-/* Returns the root mean square error of OUTPUT over those of RAYS that get
- * through, the middle one of every STEP, times their LIGHT if that is not NULL.
- */
+/* Returns the RMS error of OUTPUT over the RAYS that get through, using the
+ * middle ray of every STEP rays, weighted by LIGHT unless it is NULL. */
 double glint_zone_aim_off(const struct glint_zone_rays *rays,
                           const struct glint_fitted_output *output,
                           const double *light, int step);

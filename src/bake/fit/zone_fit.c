@@ -9,13 +9,14 @@
 
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
-/* A single ray may be off by so many times the root mean square aimed at. */
+/* Max error of a single ray, as a multiple of the RMS error aimed at. */
 #define PEAK 5.0
 /* Ratio of max to min energy above which a root of it is fitted. */
 #define WIDE_ENERGY 60
 
-/* Outlines of wide stops show at the rim of a ghost, errors of places all over
- * it: a box is divided for an error of outlines so many times as large. */
+/* Outline errors of wide stops show at the rim of a ghost, position errors all
+ * over it: a box is divided for outline errors only if they are this many times
+ * as large. */
 #define RIM 4.0
 /* Least tolerance of a barrel, as a fraction of its largest; where light grazes
  * a half sphere a ghost lies within 0.003 of its rim. */
@@ -24,15 +25,15 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 /* For lights beyond GLINT_FAR: leaking rays / visible rays that count as one
  * tolerance of outlines. */
 #define LEAK 0.02
-/* Factor on the error of a fit, if it was not good anyway: a second one which
- * is worse than that is dropped. */
+/* If a fit missed its tolerance, a second fit is discarded when its error
+ * exceeds the first error times this factor. */
 #define HARM 1.5
 
 /* ----------------------------------------------------------------- degrees */
 
 enum {
     FEW_TERMS = 64,
-    MANY_TERMS = 96, /* terms of each output of places in thorough fits */
+    MANY_TERMS = 96, /* terms of each position output in thorough fits */
     PATIENCE = 36    /* number of terms after which a hopeless fit stops */
 };
 
@@ -107,16 +108,16 @@ static bool is_wide(const struct fit *f)
 }
 
 /* Returns the factor on the weight of a ray whose relative radius is EXCESS.
- * Of wide stops it falls, as places go to infinity towards total reflection:
- * errors there, which matter to nobody, would be all that a fit sees. */
+ * For wide stops it falls with EXCESS: positions go to infinity towards total
+ * reflection, and errors there, which are invisible, would dominate the fit. */
 static double far_out(const struct fit *f, double excess)
 {
     return !is_wide(f) ? 1 : 1 / (1 + 10 * fmax(0, excess * excess - 1.25));
 }
 
 /* Returns the weight of a ray: full up to a little past the edge, as cells
- * straddle it, and hardly any far outside, where a ray only has to stay unseen.
- */
+ * straddle it, and nearly 0 far outside, where a ray only has to stay
+ * invisible. */
 static double weight_past_edge(const struct fit *f, double excess)
 {
     const double past = (excess - 1.02) / 0.05;
@@ -124,9 +125,9 @@ static double weight_past_edge(const struct fit *f, double excess)
     return past <= 0 ? 1 : fmax(0.002 * far_out(f, excess), exp(-past * past));
 }
 
-/* Returns the factor on the weight of a ray's position for light beyond the
- * field, which only has to stay there: it may be off by a fifth of its distance
- * from the field. */
+/* Returns the factor on the weight of a ray's position for light outside the
+ * field, which only has to stay outside: its error may be a fifth of its
+ * distance from the field. */
 static double weight_past_field(const struct fit *f, double fields)
 {
     const double out_mm = (fields - 1.01) * f->task->visible->field_mm;
@@ -160,8 +161,8 @@ static void set_weights(struct fit *f)
     }
 }
 
-/* Returns whether the polynomials let ray I pass though the lens, and that of
- * any position beside it, stops it by far. */
+/* Returns whether the polynomials let ray I pass although the lens, at its own
+ * position and at every position beside it, stops the ray by far. */
 static bool leaks(const struct glint_zone_rays *r, int i,
                   const struct glint_fitted_system *system, double field_mm)
 {
@@ -266,8 +267,9 @@ static enum glint_status fit_output(struct fit *f,
 }
 
 /* Returns the factor on the weight of places of ray I. A stop of radius RHO
- * sees the rays within RHO alone, and its smaller ghost shows smaller errors.
- * Of wide stops that counts down to an eighth of the radius. */
+ * passes only the rays within RHO, and its smaller ghost shows smaller errors.
+ * For wide stops the factor accounts for radii down to an eighth of the full
+ * radius. */
 static double weight_inside(const struct fit *f, int i)
 {
     const struct glint_zone_rays *r = &f->buffers->rays;
@@ -309,9 +311,9 @@ static bool is_smooth(const struct fit *f, const struct glint_zone_rays *r)
     return f->task->stacks && glint_zone_rays_spread(r) <= GLINT_STEEP;
 }
 
-/* Returns the energy below which errors count as fractions of this one. Two
- * stacks of films let nearly nothing of some wavelengths into a ghost: there
- * half of the band's mean is what a colour shows. */
+/* Returns the min energy that errors are divided by; errors of smaller energies
+ * are also divided by it. Two stacks of films let almost no light of some
+ * wavelengths into a ghost; for them the min is half of the band's mean. */
 static double least_share(const struct fit *f, const struct glint_zone_rays *r,
                           double most)
 {
@@ -425,8 +427,8 @@ static void sum_up(struct fit *f, double energy)
     e->worst = fmax(fmax(e->places, e->outlines), energy);
 }
 
-/* Returns whether what happens to the zone does not depend on outputs that are
- * still to be fitted. */
+/* Returns whether the next step for the zone is the same whatever the errors of
+ * the outputs still to be fitted. */
 static bool is_decided(const struct fit *f)
 {
     const struct glint_zone_task *t = f->task;
@@ -439,7 +441,7 @@ static bool is_decided(const struct fit *f)
            (t->settled > 0 && left > t->settled);
 }
 
-/* Returns the tolerance of a place on sensor or stop. */
+/* Returns the tolerance of a position on the sensor or in the stop. */
 static double tolerance_of(const struct fit *f, int channel)
 {
     return channel <= RAY_SENSOR_Y
@@ -483,9 +485,9 @@ static enum glint_status fit_outputs(struct fit *f,
  */
 #define CHECK_RMS 1.6
 
-/* Raises the errors of places on sensor and stop to those at rays between the
- * ones that were fitted, over what is allowed there (CHECK_RMS tolerances). A
- * fit can be good at every node and nowhere else. */
+/* Raises the position errors on sensor and stop to the errors at rays between
+ * the fitted rays, divided by the CHECK_RMS tolerances allowed there. A fit can
+ * be good at every node and nowhere else. */
 static void check_zone(struct fit *f, const struct glint_fitted_system *system)
 {
     struct glint_zone_errors *const e = f->errors;
@@ -510,8 +512,8 @@ static void check_zone(struct fit *f, const struct glint_fitted_system *system)
 
 /* --------------------------------------------------------------------- all */
 
-/* Fits SYSTEM again with new weights. With wide stops, the previous fit is kept
- * if leaks cannot be removed without larger visible errors. */
+/* Fits SYSTEM again with new weights. With wide stops, restores the previous
+ * fit if leaks cannot be removed without larger visible errors. */
 static enum glint_status fit_again(struct fit *f,
                                    struct glint_fitted_system *system)
 {

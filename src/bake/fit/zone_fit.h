@@ -27,15 +27,15 @@ struct glint_zone_task {
     bool stacks;     /* the ghost is reflected by coatings of several films */
     double hopeless; /* tolerances: the fit of a zone with a larger error is
                         abandoned; 0: never */
-    /* Tolerances: if an output has a larger error, the remaining outputs are
+    /* In tolerances: if an output has a larger error, the remaining outputs are
      * skipped, as the zone will be fitted again in any case. In a thorough fit
-     * only errors of places and barrels count, of a skew zone as far as they
-     * show. 0: none is left out. */
+     * only errors of positions and barrels count, in a skew zone only as far as
+     * they are visible. 0: no output is skipped. */
     double settled;
 };
 
-/* Moments are at most those of the degrees of a skew zone's places, 18, 16, 10,
- * 8 and 10. */
+/* Max moments: the degrees of a skew zone's position outputs, 18, 16, 10, 8 and
+ * 10. */
 #define GLINT_ZONE_SCRATCH                                  \
     GLINT_REGRESS_DOUBLES(GLINT_ZONE_RAYS, GLINT_MAX_TERMS, \
                           GLINT_MAX_CANDIDATES, 19 * 17 * 11 * 9 * 11)
@@ -52,17 +52,18 @@ struct glint_zone_buffers {
 
 /* Largest errors of a fit, in tolerances. */
 struct glint_zone_errors {
-    double places;   /* of a place on the sensor */
-    double outlines; /* of a place in the stop or of a barrel */
-    double shows;    /* of places and outlines, as far as they show */
+    double places;   /* of positions on the sensor */
+    double outlines; /* of positions in the stop and of barrels */
+    double shows;    /* of positions and outlines, as far as they are visible */
     double dims;     /* of these, and the energy of wide stops: by this a box is
                         divided */
-    double worst;    /* of places, outlines and the energy */
+    double worst;    /* max of the errors of positions, outlines and energy */
     double energy;   /* of the energy */
 };
 
-/* Fits the outputs of SYSTEM, which has none yet. If errors pass TASK->hopeless
- * or TASK->settled some outputs are missing. GLINT_E_MEMORY. */
+/* Fits the outputs of SYSTEM, which must have no outputs yet. If errors exceed
+ * TASK->hopeless or TASK->settled, some outputs are left out. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_zone_fit(const struct glint_zone_task *task,
                                  const struct glint_zone_aim *aim,
                                  struct glint_zone_buffers *buffers,

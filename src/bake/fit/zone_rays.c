@@ -48,8 +48,8 @@ static void add_ray(const struct glint_visible *h,
     }
 }
 
-/* How far out rays of a batch are at the same ghost of other positions: at the
- * one at which they are least. */
+/* How far out the rays of a batch are in the same ghost at the other zoom
+ * positions: the values of the position where they are smallest. */
 struct beside {
     double excess[GLINT_ZONE_BATCH], field[GLINT_ZONE_BATCH];
 };
@@ -62,8 +62,8 @@ static bool is_nearer(const struct beside *b, int i, double excess,
     return fmax(excess, field) < fmax(b->excess[i], b->field[i]);
 }
 
-/* Traces the rays of T at wavelength WAVE of the ghosts beside that of VISIBLE.
- */
+/* Traces the rays of T at wavelength WAVE for the ghosts beside the ghost of
+ * VISIBLE. */
 static void trace_beside(const struct glint_visible *visible, int wave,
                          struct glint_zone_batch *t, struct beside *b)
 {
@@ -108,14 +108,14 @@ static void take_beside(const struct beside *b, int i,
 enum { SINES = 9, ACROSS = 24, DOWN = 12 };
 
 /* Returns the fractional part of N times R. */
-static double turn(int n, double r)
+static double fraction_of_turn(int n, double r)
 {
     return fmod(n * r, 1);
 }
 
 /* Traces rays at one angle and wavelength. With wide stops each gets a shifted
  * grid; otherwise polynomials could oscillate between the rays. In the finest
- * grid only every third ray far outside the visible part is kept. */
+ * grid only every third ray far outside the visible region is stored. */
 static void trace_plane(const struct glint_zone *zone,
                         const struct glint_visible *visible, int sine, int wave,
                         int stride, struct glint_zone_rays *rays)
@@ -125,8 +125,8 @@ static void trace_plane(const struct glint_zone *zone,
      * being the root of x^3 = x + 1. */
     const int plane = sine * 4 + wave;
     const double move = visible->wide ? stride : 0;
-    const double right = move * turn(plane, 0.75487766624669276);
-    const double up = move * turn(plane, 0.56984029099805327);
+    const double right = move * fraction_of_turn(plane, 0.75487766624669276);
+    const double up = move * fraction_of_turn(plane, 0.56984029099805327);
     struct glint_zone_batch t;
     struct beside beside;
 
@@ -325,7 +325,8 @@ void glint_zone_trace(const struct glint_zone *zone,
                    energies);
 }
 
-/* Adds those rays of T that get through, in groups of N that all do. */
+/* Adds the rays of T in groups of N consecutive rays; only groups whose rays
+ * all get through are added. */
 static void add_groups(const struct glint_visible *visible,
                        struct glint_zone_batch *t, int n,
                        struct glint_zone_rays *rays)
@@ -376,8 +377,8 @@ void glint_zone_check(const struct glint_zone *zone,
 
 /* ------------------------------------------------------------------ barrels */
 
-/* Chooses the barrels that cut in a zone: those that let no ray get far past
- * any other barrel. */
+/* Chooses barrels that cut in a zone so that no ray that they pass gets far
+ * past any other barrel. */
 
 /* Relative radius: of a barrel at which rays differ by less, what gets past it
  * counts as if they differed by so much. All of a ghost lies within 0.003 of a
@@ -398,14 +399,14 @@ struct sampling {
     double factor[GLINT_MAX_EVENTS + 1]; /* on what gets past each barrel */
 };
 
-/* Returns whether an event is one that no ray has reached. */
+/* Returns whether HIT marks an event that the ray did not reach. */
 static bool is_unreached(const double hit[2])
 {
     return hit[0] == -1 && hit[1] == -1;
 }
 
-/* Notes that a ray misses the first surface that it has no hit at: it passes by
- * MISS at least outside that. Returns the radius. */
+/* If a ray misses a surface, sets its relative radius at the first surface
+ * without a hit to MISS and returns MISS; else returns 0. */
 static double note_missed(double *radius, double (*hits)[2], int n_events)
 {
     int k = 0;
@@ -465,8 +466,7 @@ static void sample_rays(const struct glint_zone *z,
                         const struct glint_visible *visible,
                         struct sampling *sampling)
 {
-    /* Zones of two components of the direction are many, and rays of shaped
-     * lenses take long. */
+    /* Skew zones are many, and rays of shaped lenses are slow to trace. */
     const int n = GLINT_SAMPLING_RAYS / (z->skew ? 2 : visible->shaped ? 3 : 1);
     struct glint_zone_batch t;
 
@@ -504,8 +504,8 @@ static void sample_rays(const struct glint_zone *z,
     }
 }
 
-/* Returns how far ray RAY gets past the barrels that are not among the N
- * CHOSEN: relative radius beyond 1; 0 if a chosen one stops it. */
+/* Returns how far ray RAY gets past the barrels: its max relative radius - 1,
+ * weighted and at most 0.3; 0 if one of the N CHOSEN barrels stops it. */
 static double escape(const struct sampling *s, int ray, const int *chosen,
                      int n)
 {
@@ -537,8 +537,8 @@ static double escapes(const struct sampling *s, bool lost, const int *chosen,
     return sum;
 }
 
-/* Adds barrels, the most useful first, until no ray, or none but LOST ones,
- * gets farther than SHOWS past one that was not chosen. */
+/* Adds barrels, the most useful first, until escape() is at most SHOWS for all
+ * rays, or for all but the rays marked lost unless LOST. */
 static void choose_barrels(const struct sampling *s, bool lost, double shows,
                            struct glint_zone_rays *rays)
 {

@@ -24,8 +24,8 @@ enum {
      * beside it at which the larger of both is least. */
     RAY_EXCESS,
     RAY_FIELD,
-    RAY_SPREAD, /* area on the sensor over that of u and v, mm^2; of skew zones;
-                   0: unknown */
+    RAY_SPREAD, /* area on the sensor per area of u and v, mm^2; skew zones
+                   only; 0: unknown */
     RAY_CHANNELS
 };
 
@@ -48,7 +48,7 @@ static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,
     return r->at[RAY_EXCESS][ray] <= 1 && r->at[RAY_FIELD][ray] <= 1;
 }
 
-/* Sets X to the place of ray I. */
+/* Sets X to the zone coordinates of ray I. */
 static inline void glint_zone_rays_x(const struct glint_zone_rays *r, int i,
                                      double x[GLINT_VARIABLES])
 {
@@ -56,7 +56,7 @@ static inline void glint_zone_rays_x(const struct glint_zone_rays *r, int i,
         x[k] = r->x[k][i];
 }
 
-/* Returns whether rays I and J are of one direction and wavelength. */
+/* Returns whether rays I and J have the same direction and wavelength. */
 static inline bool glint_zone_rays_alike(const struct glint_zone_rays *r, int i,
                                          int j)
 {
@@ -65,7 +65,7 @@ static inline bool glint_zone_rays_alike(const struct glint_zone_rays *r, int i,
            r->x[GLINT_P][i] == r->x[GLINT_P][j];
 }
 
-/* Returns whether none of the rays is seen. */
+/* Returns true if none of the rays is visible. */
 bool glint_zone_rays_dark(const struct glint_zone_rays *rays);
 
 /* Returns the largest ratio of max to min energy of visible rays at one angle
@@ -84,8 +84,9 @@ void glint_zone_choose_barrels(const struct glint_zone *zone,
                                double shows, glint_zone_sampling *sampling,
                                struct glint_zone_rays *rays);
 
-/* Traces RAYS for positions and barrels, and ENERGIES at fewer places but more
- * wavelengths; of a skew zone RAYS are for energies, too. */
+/* Traces RAYS for positions and barrels, and ENERGIES at fewer points of the
+ * pupil but more wavelengths. For a skew zone RAYS are also used for
+ * energies. */
 void glint_zone_trace(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays,
@@ -101,9 +102,9 @@ static inline bool glint_zone_by_light(const struct glint_zone *zone,
 
 /* Sets RAYS to scattered rays of the zone, at angles and wavelengths between
  * those that were fitted, without barrels and what is seen beside alone.
- * Deterministic. Where light weighs they come in threes, the middle one with a
- * neighbour across and one along; of a skew zone that is the only one of them.
- */
+ * Deterministic. If rays are weighted by light they come in threes: the middle
+ * ray, a neighbour across and a neighbour along. In a skew zone only the middle
+ * ray counts. */
 void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays);

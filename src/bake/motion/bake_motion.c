@@ -35,13 +35,14 @@ struct glint_motion_baker {
     size_t n_bytes, byte_room;
     uint8_t *intensity;        /* [n_frames][n_foods][n_intensities] */
     long long number;          /* of the last frame */
-    struct glint_rigid sensed; /* what rv and tv sum up to */
+    struct glint_rigid sensed; /* sum of the motions rv and tv */
     struct glint_motion_report report;
 };
 
 enum {
     USUAL_UNIT_LOG2 = 24,
-    REACH_LOG2 = 29, /* steps that the farthest place is brought to, at most */
+    REACH_LOG2 = 29, /* log2 of the max coordinate of the farthest point, in
+                        steps */
     ROOMY_LOG2 = 3   /* by how many bits a motion may be smaller and have the
                          usual unit */
 };
@@ -185,7 +186,7 @@ static void widen(const double at[3], double low[3], double high[3])
     }
 }
 
-/* Sets LOW and HIGH to the box of the body's places and foods. */
+/* Sets LOW and HIGH to the bounding box of the body's points and foods. */
 static void box_of(const struct glint_motion_baker *baker, double low[3],
                    double high[3])
 {

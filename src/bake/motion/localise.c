@@ -32,9 +32,10 @@ static bool fit_all(const struct glint_localiser *l, int n,
                            pose);
 }
 
-/* Moves the place of each food towards where the others say that it is. */
-static void learn(struct glint_localiser *l, int n, const double (*seen)[3],
-                  const bool *is_new)
+/* Moves the position of each food towards the position that follows from the
+ * pose of the other foods. */
+static void update_places(struct glint_localiser *l, int n,
+                          const double (*seen)[3], const bool *is_new)
 {
     double said[MOST][3];
     bool is_said[MOST];
@@ -65,7 +66,7 @@ static const char *locate(struct glint_localiser *l, int n,
         return located->n_known < 3 ? "fewer than three foods are known"
                                     : "the foods that are known lie on a line";
     if (l->average)
-        learn(l, n, seen, is_new);
+        update_places(l, n, seen, is_new);
     for (int i = 0; i < n; i++)
         if (is_new[i]) {
             glint_rigid_take(&located->pose, seen[i], l->place[i]);
@@ -87,10 +88,11 @@ static void begin(struct glint_localiser *l, int n, const double (*seen)[3],
     l->has_begun = true;
 }
 
-/* Sets the residual: how far foods that are not new were seen from their
- * places before this frame. */
-static void judge(int n, const double (*places)[3], const double (*seen)[3],
-                  const bool *is_new, struct glint_located *located)
+/* Sets the residual: the max distance between where foods that are not new were
+ * seen and their positions before this frame. */
+static void set_residual(int n, const double (*places)[3],
+                         const double (*seen)[3], const bool *is_new,
+                         struct glint_located *located)
 {
     for (int i = 0; i < n; i++) {
         double at[3], square = 0;
@@ -123,6 +125,6 @@ const char *glint_localise(struct glint_localiser *localiser, int n,
         located->n_known += !is_new[i];
     wrong = locate(l, n, seen, is_new, located);
     if (!wrong)
-        judge(n, (const double(*)[3])before, seen, is_new, located);
+        set_residual(n, (const double(*)[3])before, seen, is_new, located);
     return wrong;
 }

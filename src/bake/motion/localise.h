@@ -20,21 +20,23 @@
 struct glint_localiser {
     bool average; /* over a food's life */
     double place[GLINT_MOTION_MAX_FOODS][3];
-    double age[GLINT_MOTION_MAX_FOODS]; /* frames that its place is a mean of */
+    double age[GLINT_MOTION_MAX_FOODS]; /* number of frames that the food's
+                                           position is averaged over */
     bool has_begun;                     /* private */
 };
 
 struct glint_located {
     struct glint_rigid pose;
-    int n_known;     /* foods that it is found from */
-    double residual; /* the most by which one of them was seen elsewhere */
+    int n_known;     /* number of foods that the pose is fitted to */
+    double residual; /* max distance of one of these foods from its expected
+                        position */
 };
 
 void glint_localiser_init(struct glint_localiser *localiser, bool average);
 
-/* Takes the N foods that are SEEN in the next frame, in the body's axes; those
- * that are NEW were not seen before. Returns NULL, or what is wrong, in static
- * text; the pose is then not to be had. N is the same for all frames. */
+/* Adds the next frame: the positions SEEN of N foods, in the body's axes; foods
+ * marked NEW were not seen before. N must be the same for all frames. Returns
+ * NULL, or the error as static text; then there is no pose. */
 const char *glint_localise(struct glint_localiser *localiser, int n,
                            const double (*seen)[3], const bool *is_new,
                            struct glint_located *located);

@@ -33,8 +33,10 @@ struct recording {
     int line, column;
     int key;                      /* of the value that is read */
     int piece_line, piece_column; /* of its first byte, from 1 */
-    long number;                  /* of its frame; -1: none */
-    bool is_kept;                 /* what is passed goes to TEXT */
+    long number;                  /* number of the current frame; -1: no
+                                     frame */
+    bool is_kept;                 /* true: skipped characters are appended to
+                                     TEXT */
     char *text;                   /* malloc'ed */
     size_t bytes, room;
 };
@@ -170,8 +172,8 @@ static void drop_comma(struct recording *r)
         r->text[i - 1] = ' ';
 }
 
-/* Passes any value; what it is made of is left to who reads it, but brackets.
- */
+/* Skips a value of any type. Only brackets are checked; the reader of the value
+ * checks the rest. */
 static bool pass_value(struct recording *r)
 {
     char close[MOST_DEEP];
@@ -207,8 +209,8 @@ static bool pass_value(struct recording *r)
     return true;
 }
 
-/* Writes that the piece, its frame if it is one, is wrong at a line and column
- * of its text; 1, 1: at its beginning. */
+/* Writes an error at a line and column of the current piece, with the number of
+ * the frame if the piece is a frame; 1, 1: at its beginning. */
 static bool fail_at(const struct recording *r, int line, int column,
                     const char *format, ...)
 {
@@ -232,7 +234,8 @@ static bool fail_at(const struct recording *r, int line, int column,
  */
 
 /* Returns the member of OBJECT that has one of two names, or NULL. */
-static json_t *either(const json_t *object, const char *name, const char *other)
+static json_t *get_member(const json_t *object, const char *name,
+                          const char *other)
 {
     json_t *const value = json_object_get(object, name);
 
@@ -244,7 +247,7 @@ static bool number(const struct recording *r, const json_t *object,
                    const char *name, const char *other, const char *what,
                    double *x)
 {
-    const json_t *value = either(object, name, other);
+    const json_t *value = get_member(object, name, other);
 
     if (!value)
         return fail_at(r, 1, 1, "%s has no '%s'", what, name);
@@ -253,9 +256,10 @@ static bool number(const struct recording *r, const json_t *object,
            fail_at(r, 1, 1, "'%s' of %s is no number", name, what);
 }
 
-/* Sets V to the vector NAME of OBJECT, zeros if there is none. */
-static bool vector(const struct recording *r, const json_t *object,
-                   const char *name, double v[3])
+/* Sets V to the vector NAME of OBJECT, or to zeros if OBJECT has no such
+ * member. */
+static bool read_vector(const struct recording *r, const json_t *object,
+                        const char *name, double v[3])
 {
     const json_t *value = json_object_get(object, name);
 
@@ -273,7 +277,7 @@ static bool vector(const struct recording *r, const json_t *object,
 static bool take_body(const struct recording *r, const json_t *object)
 {
     struct glint_motion_body body = {.n_sensors = 0};
-    const json_t *sensors = either(object, "sensors", "erzosejtek");
+    const json_t *sensors = get_member(object, "sensors", "erzosejtek");
     struct glint_error cause;
 
     if (!json_is_object(object))
@@ -302,12 +306,12 @@ static bool take_body(const struct recording *r, const json_t *object)
 /* -------------------------------------------------------------------- frames
  */
 
-/* Sets the intensities of food I, if it has any: a number, or one for each
- * sensor. */
+/* Sets the intensities of food I, if it has any: one number for all sensors, or
+ * one per sensor. */
 static bool take_intensities(const struct recording *r, const json_t *food,
                              int i, struct glint_motion_sight *s)
 {
-    const json_t *value = either(food, "i", "i1");
+    const json_t *value = get_member(food, "i", "i1");
     const size_t n = json_is_array(value) ? json_array_size(value)
                      : value              ? 1
                                           : 0;
@@ -351,7 +355,7 @@ static bool take_food(const struct recording *r, const json_t *food, int i,
 static bool read_frame(const struct recording *r, const json_t *object,
                        struct glint_motion_sight *s)
 {
-    const json_t *foods = either(object, "foods", "kajak");
+    const json_t *foods = get_member(object, "foods", "kajak");
     const json_t *of = json_object_get(object, "frame_num");
 
     *s = (struct glint_motion_sight){.number = -1};
@@ -369,7 +373,8 @@ static bool read_frame(const struct recording *r, const json_t *object,
         if (!take_food(r, json_array_get(foods, i), (int)i, s))
             return false;
     s->n_foods = (int)json_array_size(foods);
-    return vector(r, object, "rv", s->rv) && vector(r, object, "tv", s->tv);
+    return read_vector(r, object, "rv", s->rv) &&
+           read_vector(r, object, "tv", s->tv);
 }
 
 static enum glint_status take_frame(const struct recording *r,
@@ -419,8 +424,8 @@ static bool read_value(struct recording *r, int key)
     return r->status == GLINT_OK;
 }
 
-/* Passes what separates values; sets DONE to whether CLOSE follows. */
-static bool go_on(struct recording *r, char close, bool *done)
+/* Skips space and a comma; sets DONE to whether CLOSE follows. */
+static bool pass_separator(struct recording *r, char close, bool *done)
 {
     if (!pass_space(r))
         return false;
@@ -443,7 +448,7 @@ static bool read_frames(struct recording *r)
         return false;
     done = r->c == ']';
     for (r->number = 0; !done; r->number++)
-        if (!read_value(r, FRAMES) || !go_on(r, ']', &done))
+        if (!read_value(r, FRAMES) || !pass_separator(r, ']', &done))
             return false;
     r->number = -1;
     return pass(r);
@@ -476,7 +481,7 @@ static bool read_all(struct recording *r)
         return false;
     done = r->c == '}';
     while (!done)
-        if (!read_member(r, &seen) || !go_on(r, '}', &done))
+        if (!read_member(r, &seen) || !pass_separator(r, '}', &done))
             return false;
     r->at++;
     r->column++;

@@ -94,9 +94,9 @@ static void turn_of(const double s[3][3], struct glint_rigid *r)
     set_rows(r);
 }
 
-/* Returns whether N points about MIDDLE, by their sums of products C, span no
- * area: the sum of C's principal minors of two is small beside the square of
- * its trace, of which it is a third at most. */
+/* Returns whether points whose sums of products are C span no area: the sum of
+ * the principal 2 x 2 minors of C is far below its bound, a third of the
+ * squared trace. */
 static bool is_line(const double c[3][3])
 {
     const double trace = c[0][0] + c[1][1] + c[2][2];

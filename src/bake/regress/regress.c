@@ -103,13 +103,13 @@ static WIDE_VECTORS double largest(const double *a, int n)
 
 /* Fraction of its first length: a shorter column is a combination of others. */
 #define DEPENDENT 1e-9
-/* Fraction of its first value: a smaller square, worked out by differences, has
- * lost half of its digits. */
+/* A square computed by differences that is below this fraction of its first
+ * value has lost half of its digits. */
 #define DOUBTFUL 1e-8
 /* A candidate is represented by three numbers, was2, left2 and pull, which are
- * kept up to date by its fraction along each direction that is chosen. Shares
- * follow from products of terms, as in a Cholesky factorisation. A candidate is
- * made orthogonal only when it is chosen itself, or when left2 has become too
+ * updated from its fraction along each chosen direction. These fractions follow
+ * from products of terms, as in a Cholesky factorisation. A candidate is
+ * orthogonalised only when it is chosen itself, or when left2 has become too
  * small to be trusted. */
 struct column {
     uint8_t power[GLINT_VARIABLES];
@@ -126,7 +126,7 @@ struct column {
 
 enum {
     NEIGHBOURS = GLINT_VARIABLES + 2,
-    BLOCK = 512 /* rays whose values stay in the nearest cache */
+    BLOCK = 512 /* number of rays whose values fit into the L1 cache */
 };
 
 struct search {
@@ -135,15 +135,16 @@ struct search {
     int n_chosen, n_columns;
     int chosen[GLINT_MAX_TERMS]; /* columns, in the order they entered */
     struct column column[GLINT_MAX_CANDIDATES];
-    /* Products of two terms, NAN where not known yet: a product depends on the
-     * sums of both terms' powers alone, of which many pairs have the same. */
+    /* Products of two terms, NAN if not computed yet. A product depends only on
+     * the sums of both terms' powers, which many pairs have in common. */
     double *moment;
     double *residual;  /* [n] */
     double *direction; /* [terms][n], of length 1, orthogonal to each other */
     double *values;    /* [n_columns][n] */
 };
 
-/* Returns direction RANK, which may be the one to be chosen next. */
+/* Returns direction RANK; RANK may be the index of the next direction to
+ * choose. */
 static double *direction(const struct search *s, int rank)
 {
     return s->direction + (size_t)rank * (size_t)s->s->n;
@@ -239,8 +240,8 @@ static void subtract_all(const struct search *s, double *a, int first, int m,
 }
 
 /* Sets the next direction to the component of COLUMN orthogonal to all chosen
- * ones, not normalised yet. Orthogonalised twice, against rounding, to all of
- * them at once. */
+ * ones, not normalised yet. Orthogonalises twice, to all of them at once,
+ * because of rounding. */
 static void make_orthogonal(const struct search *s, struct column *column)
 {
     const int n = s->s->n;
@@ -260,10 +261,10 @@ static void make_orthogonal(const struct search *s, struct column *column)
     column->pull = dot(q, s->residual, n);
 }
 
-/* Sets COLUMN's values AT, [n]: from those of PARENT, of which its term is a
- * multiple, or from the weights if that is NULL. */
-static void fill(const struct search *s, struct column *column,
-                 const struct column *parent, double *at)
+/* Sets the values AT[n] of COLUMN from the values of PARENT, whose term divides
+ * its term, or from the weights if PARENT is NULL. */
+static void set_values(const struct search *s, struct column *column,
+                       const struct column *parent, double *at)
 {
     const struct glint_regress_samples *v = s->s;
     const double *const from = parent ? parent->at : v->weight;
@@ -283,8 +284,8 @@ static void fill(const struct search *s, struct column *column,
     column->pull = dot(at, s->residual, v->n);
 }
 
-/* Returns the place of the term POWER among moments: that of a product is the
- * sum of both places. */
+/* Returns the index of the term POWER among moments. The index of a product is
+ * the sum of both indices. */
 static int place_of(const struct glint_degrees *d, const uint8_t *power)
 {
     int place = 0;
@@ -295,7 +296,7 @@ static int place_of(const struct glint_degrees *d, const uint8_t *power)
 }
 
 /* Adds the term POWER as a candidate; returns it, or NULL if there is nothing
- * to add. Its shares are not noted yet. */
+ * to add. Its fractions are not set yet. */
 static struct column *add_candidate(struct search *s, const uint8_t *power,
                                     const struct column *parent)
 {
@@ -308,7 +309,8 @@ static struct column *add_candidate(struct search *s, const uint8_t *power,
             return NULL;
     *column = (struct column){.place = place_of(s->degrees, power)};
     memcpy(column->power, power, GLINT_VARIABLES);
-    fill(s, column, parent, s->values + (size_t)s->n_columns * (size_t)s->s->n);
+    set_values(s, column, parent,
+               s->values + (size_t)s->n_columns * (size_t)s->s->n);
     s->n_columns++;
     return column;
 }
@@ -400,7 +402,8 @@ static bool is_hopeless(const struct search *s, double left)
     return d->hopeless > 0 && left > d->hopeless && s->n_chosen >= d->patience;
 }
 
-/* Returns the residual over its limit: the larger ratio of RMS and of peak. */
+/* Returns the residual divided by its limit: the max of the RMS ratio and the
+ * peak ratio. */
 static double excess(const struct search *s, double rms, double peak)
 {
     const double sum2 = dot(s->residual, s->residual, s->s->n);
@@ -458,8 +461,8 @@ double glint_regress_fit(double *scratch,
         choose(&s, best);
     }
     if (s.n_chosen == 0 && s.n_columns > 0 && s.column[0].length > 0)
-        choose(&s, 0); /* A polynomial has at least one term, however little is
-                          asked of it. */
+        choose(&s, 0); /* A polynomial has at least one term, however large its
+                          tolerance. */
     solve(&s, y, poly);
     return left;
 }

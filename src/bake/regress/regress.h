@@ -37,8 +37,8 @@ struct glint_degrees {
     int total;                       /* largest weighted sum of powers */
     int parity; /* parity of variable 1: 0 even, 1 odd, -1 any */
     int terms;  /* largest number of terms, 1 .. GLINT_MAX_TERMS */
-    /* After PATIENCE terms the fit stops as soon as its error is more than
-     * HOPELESS times what it may be; 0: it never does. */
+    /* After PATIENCE terms the fit stops as soon as its error exceeds HOPELESS
+     * times its limit; 0: it never stops early. */
     double hopeless;
     int patience;
     bool leaps; /* terms two powers up in variable 0 are neighbours, too, and in
@@ -47,13 +47,14 @@ struct glint_degrees {
 
 struct glint_regress_samples {
     int n;
-    const double *x[GLINT_VARIABLES]; /* NULL for those that no term has */
+    const double *x[GLINT_VARIABLES]; /* NULL for variables that no term
+                                         contains */
     const double *weight;
 };
 
-/* Number of doubles that the scratch of a fit to N samples needs, if there are
- * at most TERMS terms, chosen of CANDIDATES. MOMENTS is the product of 2 MOST +
- * 1 over the variables. */
+/* Number of doubles that the scratch of a fit to N samples needs, with at most
+ * TERMS terms, chosen from CANDIDATES. MOMENTS is the product of 2 MOST + 1
+ * over the variables. */
 #define GLINT_REGRESS_DOUBLES(n, terms, candidates, moments) \
     ((size_t)(moments) + (size_t)(n) * (1 + (terms) + (candidates)))
 

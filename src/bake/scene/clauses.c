@@ -10,7 +10,7 @@
 /* letters of the words that are compared, and bytes of a hint */
 enum { NEAR_CHARS = 32, NEAR_BYTES = 64 };
 
-/* Finds the word that a mistyped one may have meant. */
+/* Finds the known word nearest to a mistyped word. */
 struct near {
     struct glint_word word;
     const char *best; /* nearest candidate so far, or NULL */
@@ -24,9 +24,9 @@ static int least(int a, int b, int c)
     return ab < c ? ab : c;
 }
 
-/* Returns how many letters have to be inserted, left out or changed to get from
- * WORD to CANDIDATE; NEAR_CHARS if either has that many. */
-static int distance(const struct glint_word *word, const char *candidate)
+/* Returns the edit distance from WORD to CANDIDATE, or NEAR_CHARS if either has
+ * NEAR_CHARS letters or more. */
+static int edit_distance(const struct glint_word *word, const char *candidate)
 {
     const int m = (int)strlen(candidate);
     int row[NEAR_CHARS];
@@ -36,7 +36,7 @@ static int distance(const struct glint_word *word, const char *candidate)
     for (int k = 0; k <= m; k++)
         row[k] = k;
     for (int i = 1; i <= word->length; i++) {
-        int corner = row[0]; /* of the row before, one letter back */
+        int corner = row[0]; /* entry of the previous row, one letter back */
 
         row[0] = i;
         for (int k = 1; k <= m; k++) {
@@ -57,7 +57,7 @@ static struct near near_begin(const struct glint_word *word)
 
 static void near_offer(struct near *near, const char *candidate)
 {
-    const int d = distance(&near->word, candidate);
+    const int d = edit_distance(&near->word, candidate);
     const int most = (int)strlen(candidate) / 3;
 
     if (d < near->distance && d <= (most > 1 ? most : 1)) {

@@ -24,8 +24,8 @@ struct glint_clause {
     struct glint_text_place place;
 };
 
-/* Reads the rest of the line as CLAUSE, of which LINE takes each once. Returns
- * false if it is something else; the error of TEXT is written. */
+/* Reads the rest of the line as clauses of CLAUSE, each at most once in LINE.
+ * Returns false, with the error of TEXT set, if there is anything else. */
 bool glint_clauses_read(struct glint_text *text, const char *line,
                         struct glint_clause *clause);
 
@@ -37,14 +37,15 @@ bool glint_numbers_read(struct glint_text *text, const char *what, int n,
 bool glint_name_read(struct glint_text *text, const char *what, char *name,
                      int bytes);
 
-/* Sets INDEX to the one of N names that WORD is; the first name stands in
- * NAMES, the next ones every STRIDE bytes. Refuses the word if it is none. */
+/* Sets INDEX to the index of WORD among N names; the first name is at NAMES,
+ * the next names follow every STRIDE bytes. Rejects a word that is not among
+ * them. */
 bool glint_name_find(struct glint_text *text, const struct glint_word *word,
                      const char *what, const char *names, size_t stride, int n,
                      int *index);
 
-/* Reads one of NAMES, NULL at the end, which LIST lists and LINE takes; returns
- * its index, or -1. */
+/* Reads one of NAMES, terminated by NULL, and returns its index, or -1. LIST is
+ * the list of names and LINE the line for the error message. */
 int glint_choice_read(struct glint_text *text, const char *line,
                       const char *list, const char *const *names);
 
@@ -54,9 +55,9 @@ struct glint_text_line {
     bool many; /* it may stand more than once */
 };
 
-/* Reads the first word of the line and sets INDEX to the one of N LINES that it
- * is; -1: the line is empty. FIRST[n], 0 at first, has the number of the line
- * that each was seen on. */
+/* Reads the first word of the line and sets INDEX to its index among N LINES,
+ * or to -1 if the line is empty. FIRST[n], initially 0, holds the number of the
+ * line where each was last read, or 0. */
 bool glint_line_begin(struct glint_text *text,
                       const struct glint_text_line *lines, int n, int *first,
                       int *index);

@@ -15,7 +15,8 @@ struct glint_describer {
     struct glint_error *error;
     enum glint_status status; /* of a failure that is not the text's */
     int room;                 /* triangles that there is memory for */
-    /* The camera's line, which is evaluated when the handedness is known. */
+    /* Position of the camera's line, which is evaluated when the handedness is
+     * known. */
     struct glint_text_place camera;
     struct glint_text_place background; /* of its word */
     double toward[3], up[3], orbit[3], distance, yaw_deg, pitch_deg;
@@ -25,13 +26,14 @@ struct glint_describer {
     char rides_on[GLINT_DESCRIPTION_NAME_BYTES];
 };
 
-/* describe_motion.c: motion, and once all lines are read what others say of
- * it. */
+/* describe_motion.c: reads the motion; the further functions run once all lines
+ * are read. */
 bool glint_describe_motion(struct glint_describer *d);
 bool glint_describe_sensors(struct glint_describer *d);
 
-/* describe_things.c: appends an object of KIND; the error states WHAT it is and
- * stands at PLACE. Returns NULL if there are too many, or one has that name. */
+/* describe_things.c: appends an object of KIND. Returns NULL if there are too
+ * many objects or the name is used; the error is at PLACE and calls the object
+ * WHAT. */
 struct glint_described_object *
 glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
                      const char *name, struct glint_text_place place);
@@ -53,8 +55,8 @@ bool glint_describe_material(struct glint_describer *d);
 bool glint_describe_find(struct glint_describer *d,
                          const struct glint_word *word, int *index);
 
-/* Refuses the object O, defined last, if what of it is translucent
- * has no place of its own on a map; PLACE is that of its material. Warns of
+/* Rejects the object O, defined last, if it is translucent and cannot be mapped
+ * to the texels of a map; PLACE is the position of its material. Warns of
  * stretch. */
 bool glint_describe_skin(struct glint_describer *d,
                          const struct glint_described_object *o,
@@ -78,7 +80,7 @@ bool glint_describe_unit(double x[3]);
 void glint_describe_file(const struct glint_word *word,
                          char name[GLINT_FILE_BYTES]);
 
-/* Fails because FILES did, with STATUS and what they wrote as the error. */
+/* Fails because FILES failed, with their STATUS and error text. */
 bool glint_describe_refuse(struct glint_describer *d,
                            struct glint_text_place place,
                            enum glint_status status);

@@ -15,7 +15,7 @@
 /* Half of the angle of a light that is a point. */
 #define LEAST_DEG 0.01
 
-/* Sets NAME to that of an environment of FILE. */
+/* Sets NAME to the name of an environment of FILE. */
 static void set_name(const char *file, char name[GLINT_DESCRIPTION_NAME_BYTES])
 {
     const char *const folder = strrchr(file, '/');
@@ -30,8 +30,8 @@ static void set_name(const char *file, char name[GLINT_DESCRIPTION_NAME_BYTES])
     name[n] = '\0';
 }
 
-/* Appends an environment of FILE, whose name stands at PLACE; NULL: there are
- * too many, or one has that name. */
+/* Appends an environment of FILE, whose name is at PLACE in the text. Returns
+ * NULL if there are too many environments or the name is used. */
 static struct glint_described_environment *append(struct glint_describer *d,
                                                   const char *file,
                                                   struct glint_text_place place)
@@ -121,7 +121,7 @@ static void set_sun(const struct glint_description *s,
 
 bool glint_describe_around(struct glint_describer *d)
 {
-    /* The place of a light of another environment. */
+    /* Fills the slots of lights that an environment lacks. */
     static const struct glint_environment_light dark = {
         .toward_q30 = {0, 1 << 30, 0}};
     struct glint_description *s = d->scene;

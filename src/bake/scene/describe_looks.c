@@ -60,8 +60,8 @@ static bool read_lobe(struct glint_describer *d,
     return true;
 }
 
-/* Reads a material's line from 'ward' on; TEXTURE becomes the name of its
- * texture, if there is one. */
+/* Reads a material's line from 'ward' on; TEXTURE receives the name of its
+ * texture, if it has one. */
 static bool read_metal(struct glint_describer *d,
                        struct glint_described_material *m,
                        struct glint_word *texture)
@@ -183,9 +183,9 @@ static bool read_stone(struct glint_describer *d,
 
 /* ------------------------------------------------------------------ objects */
 
-/* Sets SHORT and LONG to how long a step of one in the square of u and v is on
- * triangle T, at least and at most; returns its area, 0 if it has none there.
- */
+/* Sets SHORTEST and LONGEST to the min and max length on triangle T of a unit
+ * step in (u, v). Returns the triangle's area, or 0 if its area in (u, v) is
+ * 0. */
 static double stretch_of(const struct glint_described_triangle *t,
                          double *shortest, double *longest)
 {
@@ -247,7 +247,7 @@ static void check_stretch(struct glint_describer *d,
 }
 
 /* Checks triangle T of a translucent object; FIRST is the translucent medium of
- * those before, or -1. */
+ * the triangles before, or -1. */
 static bool check_triangle(struct glint_describer *d,
                            const struct glint_described_triangle *t,
                            struct glint_text_place place, int *first)
@@ -307,8 +307,8 @@ bool glint_describe_skin(struct glint_describer *d,
 /* Half of the sun's angle in the sky. */
 #define SUN_DEG 0.267
 
-/* Warns of a sun whose COLOUR was taken for the light that falls on objects: no
- * code of 8 bits would show it. */
+/* Warns of a sun whose COLOUR seems to be its irradiance on objects instead:
+ * its light would be below one 8-bit code. */
 static void check_sun(struct glint_describer *d,
                       const struct glint_described_light *sun)
 {
@@ -467,7 +467,7 @@ bool glint_describe_find(struct glint_describer *d,
                            sizeof *s->material, s->n_materials, index);
 }
 
-/* Checks what the parts of a material give together. */
+/* Checks that no sum of the fractions of a material exceeds 1. */
 static bool check_shares(struct glint_describer *d,
                          const struct glint_described_material *m,
                          const struct glint_clause *clause)

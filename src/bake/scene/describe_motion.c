@@ -15,7 +15,7 @@
 
 enum { NAME_BYTES = 19 /* with room for "-sensor32" */ };
 
-/* How parts look for which the text has no material of their name. */
+/* Default materials of the parts whose name is no material of the text. */
 static const struct glint_described_material looks[] = {
     {.name = "body",
      .ambient = .3,
@@ -42,7 +42,8 @@ static const struct glint_described_material looks[] = {
     {.name = "lines", .ambient = 1, .power = 1, .colour = {1, .95, .3}},
     {.name = "box", .ambient = 1, .power = 1, .colour = {.45, .5, .55}}};
 
-/* Sets INDEX to the material of the name of LOOK, or to that look. */
+/* Sets INDEX to the material with the name of LOOK, or to LOOK itself,
+ * added. */
 static bool set_material(struct glint_describer *d,
                          const struct glint_described_material *look,
                          struct glint_text_place place, int *index)

@@ -13,7 +13,7 @@
 
 #define REACH GLINT_DESCRIPTION_REACH
 #define LEAST GLINT_DESCRIPTION_LEAST
-/* How often a texture may repeat over a triangle. */
+/* Max repetitions of a texture over a triangle. */
 #define REPEATS 250.0
 #define NO_AXIS "the axis of a turn must not be 0 0 0"
 

@@ -25,7 +25,7 @@ static void cross(const double a[3], const double b[3], double c[3])
     c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Reads one of WORDS, which LINE takes, and sets INDEX to it. */
+/* Reads one of the words that LINE accepts and sets INDEX to its index. */
 static bool read_word(struct glint_describer *d, const char *line,
                       const char *list, const char *const *words, int *index)
 {
@@ -180,7 +180,7 @@ bool glint_describe_camera(struct glint_describer *d)
                            "camera needs 'at X Y Z toward X Y Z', or 'orbit'");
 }
 
-/* Sets place and direction of a camera that goes about a point. */
+/* Sets position and direction of a camera that orbits a point. */
 static void set_orbit(struct glint_describer *d)
 {
     struct glint_described_camera *c = &d->scene->camera;

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a grid, at most: cells for each triangle; triangles listed in cells, for
- * each triangle or in all, whichever is more. Cells become larger until that
- * holds, so that N triangles cost O(N), coincident ones too. */
+/* Limits of a grid: max cells per triangle; max list entries per triangle, or
+ * in total if that is more. Cells grow until both hold, so that N triangles
+ * cost O(N) even if they coincide. */
 #define CELLS_EACH 2
 #define REFS_EACH  64
 #define FEW_REFS   (1 << 22)
@@ -45,7 +45,7 @@ static uint32_t hash(const struct corner *c)
     return h ^ h >> 15;
 }
 
-/* Returns the vertex that is C, a new one if there is none. */
+/* Returns the index of the vertex equal to C; adds it if there is none yet. */
 static uint32_t vertex_of(struct mesher *m, const struct corner *c)
 {
     uint32_t at = hash(c) & (m->n_slots - 1);
@@ -60,8 +60,8 @@ static uint32_t vertex_of(struct mesher *m, const struct corner *c)
     return m->n_corners - 1;
 }
 
-/* Sets N to the unit vector of the triangle's own plane. Without an area, which
- * rounded places may well have, it is left as it is. */
+/* Sets N to the unit normal of the triangle's plane. Leaves N unchanged if the
+ * triangle has no area, which can happen by rounding. */
 static void face_of(const struct glint_described_triangle *t, double n[3])
 {
     double a[3], b[3], across[3], length;
@@ -79,7 +79,7 @@ static void face_of(const struct glint_described_triangle *t, double n[3])
         n[i] = across[i] / length;
 }
 
-/* Returns whether the triangle of these places has an area. */
+/* Returns whether the triangle with corners C has an area. */
 static bool has_area(const struct corner c[3])
 {
     int64_t a[3], b[3];
@@ -92,8 +92,8 @@ static bool has_area(const struct corner c[3])
            a[0] * b[1] != a[1] * b[0];
 }
 
-/* Sets C to the corners of T. Textures repeat, so that whole numbers are taken
- * off U and V where these are large; the file's V runs down. */
+/* Sets C to the corners of T. Integers are subtracted from large U and V, as
+ * textures repeat. The file's V runs down. */
 static void corners_of(const struct mesher *m,
                        const struct glint_described_triangle *t,
                        struct corner c[3])
@@ -167,10 +167,10 @@ static bool gather(struct mesher *m, struct glint_scene_bake_report *report)
 
 /* -------------------------------------------------------------------- ball */
 
-/* Sets LOW and HIGH to the box of all vertices, and the ball of MESH to one
- * that holds them. */
-static void bound(const struct mesher *m, struct glint_scene_mesh *mesh,
-                  int32_t low[3], int32_t high[3])
+/* Sets LOW and HIGH to the bounding box of all vertices, and the ball of MESH
+ * to a sphere that contains them. */
+static void set_bounds(const struct mesher *m, struct glint_scene_mesh *mesh,
+                       int32_t low[3], int32_t high[3])
 {
     double radius = 0;
 
@@ -259,9 +259,9 @@ static uint64_t count_refs(const struct mesher *m,
     return sum;
 }
 
-/* Chooses the cells of MESH over the box from LOW to HIGH: the smallest of
- * which, and of whose lists, there are few enough. Returns their number and
- * sets REFS to how often triangles are listed. */
+/* Chooses the cells of MESH over the box from LOW to HIGH: the smallest whose
+ * number and list entries are within the limits. Returns the number of cells
+ * and sets REFS to the number of list entries. */
 static uint64_t choose_cells(const struct mesher *m,
                              struct glint_scene_mesh *mesh,
                              const int32_t low[3], const int32_t high[3],
@@ -279,10 +279,11 @@ static uint64_t choose_cells(const struct mesher *m,
     }
 }
 
-/* Counts each triangle in the cells that it touches, or, if REF is not NULL,
- * writes it to where START says, which moves on. */
-static void list(const struct mesher *m, const struct glint_scene_mesh *mesh,
-                 uint32_t *start, uint32_t *ref)
+/* Counts the triangles that touch each cell in START, or, if REF is not NULL,
+ * writes each triangle to REF at its cells' START and advances that. */
+static void list_triangles(const struct mesher *m,
+                           const struct glint_scene_mesh *mesh, uint32_t *start,
+                           uint32_t *ref)
 {
     for (uint32_t i = 0; i < m->n_triangles; i++) {
         int32_t from[3], to[3];
@@ -324,11 +325,11 @@ static bool write_grid(struct glint_draft *draft, const struct mesher *m,
     start = calloc((size_t)n + 1, sizeof *start);
     ref = malloc(((size_t)sum + 1) * sizeof *ref);
     if (start && ref) {
-        list(m, mesh, start, NULL);
+        list_triangles(m, mesh, start, NULL);
         for (uint64_t i = 1; i <= n; i++)
             start[i] += start[i - 1];
         mesh->start_at = glint_draft_put(draft, start, ((size_t)n + 1) * 4);
-        list(m, mesh, start, ref);
+        list_triangles(m, mesh, start, ref);
         mesh->ref_at = glint_draft_put(draft, ref, (size_t)sum * 4);
         report->cells += (int)n;
         report->refs += (int)sum;
@@ -368,7 +369,7 @@ bool glint_grid_write(struct glint_draft *draft,
     if (good) {
         mesh->n_vertices = m.n_corners;
         mesh->n_triangles = m.n_triangles;
-        bound(&m, mesh, low, high);
+        set_bounds(&m, mesh, low, high);
         mesh->vertex_at =
             put_corners(draft, &m, offsetof(struct corner, place), 3);
         if (m.has_uv)

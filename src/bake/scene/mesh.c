@@ -13,8 +13,8 @@ struct list {
     int n, room, width;
 };
 
-/* A corner of a face: indices of place, texture and normal, from 0; -1: none.
- */
+/* A corner of a face: indices of position, texture coordinates and normal, from
+ * 0; -1: absent. */
 struct corner {
     int place, uv, normal;
 };
@@ -28,8 +28,8 @@ struct reader {
     bool out_of_memory;
 };
 
-/* Returns room for one more item of LIST, or NULL. */
-static double *more(struct reader *r, struct list *list)
+/* Returns memory for one more item of LIST, or NULL. */
+static double *append_item(struct reader *r, struct list *list)
 {
     if (list->n == list->room) {
         const int room = list->room ? 2 * list->room : 256;
@@ -46,7 +46,8 @@ static double *more(struct reader *r, struct list *list)
     return list->at + (ptrdiff_t)list->n++ * list->width;
 }
 
-/* Returns the next word, from the next line if this one ends in a backslash. */
+/* Returns the next word, which is on the next line if the current line ends in
+ * a backslash. */
 static struct glint_word next_word(struct reader *r)
 {
     struct glint_word word = glint_text_next_word(&r->text);
@@ -57,12 +58,12 @@ static struct glint_word next_word(struct reader *r)
     return word;
 }
 
-/* Reads an item of LIST, of which the last numbers may be missing: then they
- * are 0. Numbers behind it, weights and colours, are skipped. */
+/* Reads an item of LIST. Missing last numbers become 0; further numbers,
+ * weights and colours, are skipped. */
 static bool read_item(struct reader *r, struct list *list, int least,
                       const char *what)
 {
-    double *item = more(r, list);
+    double *item = append_item(r, list);
     char quote[GLINT_QUOTE_BYTES];
 
     for (int i = 0; item && i < list->width; i++) {

@@ -123,8 +123,10 @@ static void paint(struct painter *p, uint32_t triangle)
 /* ------------------------------------------------------------------- gutters
  */
 
-/* Gives a texel that has none the triangle of a neighbour in BEFORE. */
-static void spill(struct painter *p, const uint32_t *before, int x, int y)
+/* Assigns texel (X, Y), if it has no triangle, the triangle of a neighbour in
+ * BEFORE. */
+static void spread_texel(struct painter *p, const uint32_t *before, int x,
+                         int y)
 {
     uint32_t *to = &p->texel[(ptrdiff_t)y * p->side + x];
 
@@ -136,9 +138,9 @@ static void spill(struct painter *p, const uint32_t *before, int x, int y)
     }
 }
 
-/* Outside the edges of charts, within the reach of kernels, texels have the
- * light of the nearest place, so that light crosses from one chart to the next.
- * Returns false without memory. */
+/* Outside the edges of charts, within the reach of kernels, texels get the
+ * light of the nearest point, so that light crosses from one chart to the next.
+ * Returns false if there is no memory. */
 static bool spill_over(struct painter *p, int rings)
 {
     const size_t bytes = (size_t)p->side * (size_t)p->side * sizeof *p->texel;
@@ -148,7 +150,7 @@ static bool spill_over(struct painter *p, int rings)
         memcpy(before, p->texel, bytes);
         for (int y = 0; y < p->side; y++)
             for (int x = 0; x < p->side; x++)
-                spill(p, before, x, y);
+                spread_texel(p, before, x, y);
     }
     free(before);
     return before != NULL;
@@ -157,7 +159,7 @@ static bool spill_over(struct painter *p, int rings)
 /* -------------------------------------------------------------------- closed
  */
 
-/* An edge between two places, the lesser first. */
+/* An edge between two positions, the smaller first. */
 struct edge {
     int32_t place[2][3];
 };
@@ -187,8 +189,8 @@ static void set_edge(const struct painter *p,
     memcpy(e->place[1 - first], b, sizeof e->place[0]);
 }
 
-/* Sets CLOSED to whether each edge has two triangles. Returns false without
- * memory. */
+/* Sets CLOSED to 1 if each edge has two triangles, else 0. Returns false if
+ * there is no memory. */
 static bool find_closed(const struct painter *p, uint32_t *closed)
 {
     const size_t n = 3 * (size_t)p->mesh->n_triangles;

@@ -101,7 +101,7 @@ void glint_turn_after(const double a[4], const double b[4], double turn[4])
 void glint_described_upright(const double normal[3], double turn[4])
 {
     /* 1 + y.n and y x n: twice the cosine and sine of half the angle, times a
-     * length that is taken out. */
+     * length that is divided out. */
     const double w = 1 + normal[1];
     const double size =
         sqrt(w * w + normal[0] * normal[0] + normal[2] * normal[2]);

@@ -20,9 +20,8 @@ static uint8_t encode(double light)
     return (uint8_t)lrint(255 * fmin(fmax(x, 0.0), 1.0));
 }
 
-/* Sums into DST[N][3] the part of SRC[SRC_N][3] that each of N texels covers,
- * as fractions of that texel; STEP and SRC_STEP are those from texel to texel.
- */
+/* Sets each of N texels of DST to the mean of the SRC_N texels of SRC that it
+ * covers. STEP and SRC_STEP are the distances between texels, in numbers. */
 static void resize_row(double *dst, int n, ptrdiff_t step, const double *src,
                        int src_n, ptrdiff_t src_step)
 {

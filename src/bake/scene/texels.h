@@ -8,10 +8,10 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
-/* Makes the sides of IMAGE, a GLINT_RGB24 in sRGB without padding whose plane
- * is malloc'ed, the nearest powers of two, at most MOST: nearest by ratio, so
- * that 48 becomes 64. Sides that fit stay as they are, to the bit.
- * GLINT_E_MEMORY: IMAGE is unchanged. */
+/* Resizes IMAGE so that its sides are powers of two, at most MOST: the nearest
+ * by ratio, so that 48 becomes 64. IMAGE must be a GLINT_RGB24 in sRGB without
+ * padding whose plane is malloc'ed. If no side changes, texels are unchanged.
+ * Returns GLINT_E_MEMORY on failure; IMAGE is then unchanged. */
 enum glint_status glint_texels_fit(struct glint_image *image, int most);
 
 /* Writes to DST[height][width] the same picture with other sides: each texel

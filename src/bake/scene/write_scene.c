@@ -236,7 +236,7 @@ static bool write_meshes(struct writer *w)
     return good;
 }
 
-/* Sets O to object FROM, whose mesh, if it has one, is MESH. */
+/* Sets O to object FROM, with MESH if it is a mesh. */
 static bool set_object(const struct writer *w,
                        const struct glint_described_object *from, uint32_t mesh,
                        struct glint_scene_object *o)
@@ -268,7 +268,7 @@ static bool set_object(const struct writer *w,
     default:
         o->kind = GLINT_OBJECT_MESH;
         o->mesh = mesh;
-        if (from->material < 0) /* each triangle has its own */
+        if (from->material < 0) /* each triangle has its own material */
             o->material =
                 (uint32_t)w->scene->triangle[from->first_triangle].material;
     }

@@ -9,9 +9,8 @@
 #include "glint/scene/description.h"
 #include "glint/scene/model.h"
 
-/* Conversion from the description's axes and doubles to those of a baked scene:
- * left-handed steps and units in _q30. Right-handed scenes change the sign of
- * z. */
+/* Conversion from the description's axes and doubles to the left-handed steps
+ * and _q30 units of a baked scene. Right-handed scenes change the sign of z. */
 struct glint_steps {
     int unit_log2;
     double scale; /* 2^unit_log2 */
@@ -23,7 +22,7 @@ struct glint_steps {
 struct glint_steps glint_steps_of(const struct glint_description *scene,
                                   double *reach);
 
-/* Sets TO to place AT in steps. */
+/* Sets TO to position AT in steps. */
 void glint_steps_place(const struct glint_steps *steps, const double at[3],
                        int32_t to[3]);
 
@@ -38,12 +37,11 @@ void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
 /* Sets TURN to quaternion A after B. */
 void glint_turn_after(const double a[4], const double b[4], double turn[4]);
 
-/* Meshes of a baked scene: vertices in steps, each kept once, and a grid over
- * the triangles that states which of them a ray can meet. Writes the tables of
- * the triangles of OBJECT behind what is in DRAFT and sets MESH to where they
- * are. Adds to REPORT. Takes O(N) time and memory for N triangles. Returns
- * false without memory, or with an ERROR: too many triangles lie in one place.
- */
+/* Meshes of a baked scene: vertices in steps, each stored once, and a grid that
+ * lists the triangles that a ray can meet in each cell. Appends the tables of
+ * the triangles of OBJECT to DRAFT and sets MESH to their positions. Adds to
+ * REPORT. Needs O(N) time and memory for N triangles. Returns false if there is
+ * no memory, or with an ERROR if too many triangles coincide. */
 bool glint_grid_write(struct glint_draft *draft,
                       const struct glint_description *scene,
                       const struct glint_described_object *object,
@@ -56,10 +54,10 @@ bool glint_grid_write(struct glint_draft *draft,
 int glint_skin_material(const struct glint_description *scene,
                         const struct glint_described_object *object);
 
-/* Writes the table of SKIN, which place of it each texel is, of OBJECT, whose
- * triangles are MESH in DRAFT (of a ball NULL) and whose material is MATERIAL.
- * Returns false without memory, or with an ERROR: two places of a mesh have one
- * texel, or none has any. */
+/* Writes the table of SKIN, the surface point of each texel, for OBJECT with
+ * material MATERIAL. MESH is its triangles in DRAFT, or NULL for a ball.
+ * Returns false if there is no memory, or with an ERROR if two points of a mesh
+ * have the same texel or no point has a texel. */
 bool glint_skin_write(struct glint_draft *draft,
                       const struct glint_description *scene,
                       const struct glint_described_object *object,

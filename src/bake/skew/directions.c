@@ -26,10 +26,10 @@ struct extent {
     int i0, i1, j0, j1;
 };
 
-/* Sends a grid of rays over BOX; returns whether any gets through. */
-static bool look(const struct glint_visible *h, const struct glint_path *path,
-                 const double direction[3], const struct glint_pupil *box,
-                 struct extent *e)
+/* Traces a grid of rays over BOX; returns whether any ray gets through. */
+static bool trace_grid(const struct glint_visible *h,
+                       const struct glint_path *path, const double direction[3],
+                       const struct glint_pupil *box, struct extent *e)
 {
     struct glint_row row = {ACROSS + 1,
                             box->x0_mm,
@@ -72,7 +72,7 @@ static bool tighten(const struct glint_visible *h,
         const double dy = (old.y1_mm - old.y0_mm) / ACROSS;
         struct extent e;
 
-        if (!look(h, path, direction, box, &e))
+        if (!trace_grid(h, path, direction, box, &e))
             return round > 0;
         box->x0_mm = old.x0_mm + dx * fmax(0, e.i0 - 1);
         box->x1_mm = old.x0_mm + dx * fmin(ACROSS, e.i1 + 1);
@@ -84,11 +84,11 @@ static bool tighten(const struct glint_visible *h,
     return true;
 }
 
-/* Finds the box that is like NEAR, the one of another wavelength: grows that on
- * every side at which light still comes through. */
-static bool follow(const struct glint_visible *h, const struct glint_path *path,
-                   const double direction[3], const struct glint_pupil *near,
-                   struct glint_pupil *box)
+/* Finds the box near NEAR, the box of another direction or wavelength: grows
+ * NEAR on every side where light still gets through. */
+static bool grow_box(const struct glint_visible *h,
+                     const struct glint_path *path, const double direction[3],
+                     const struct glint_pupil *near, struct glint_pupil *box)
 {
     *box = *near;
     for (int round = 0; round < GROWS; round++) {
@@ -98,7 +98,7 @@ static bool follow(const struct glint_visible *h, const struct glint_path *path,
 
         if (round == 0)
             e = (struct extent){0, ACROSS, 0, ACROSS};
-        else if (!look(h, path, direction, box, &e))
+        else if (!trace_grid(h, path, direction, box, &e))
             return false;
         if (e.i0 > 0 && e.i1 < ACROSS && e.j0 > 0 && e.j1 < ACROSS)
             return tighten(h, path, direction, box);
@@ -119,14 +119,14 @@ static bool find(const struct glint_visible *h, const struct glint_path *path,
            tighten(h, path, direction, box);
 }
 
-/* A direction of a patch: places of its s and p among those of the patch. */
+/* A direction of a patch: indices of its s and p in the patch. */
 struct place {
     int i, j;
     double direction[3];
 };
 
-/* Returns where the place K of a side lies, -1 .. 1. */
-static double along(int k)
+/* Returns the coordinate of index K along a side, -1 .. 1. */
+static double coordinate_of(int k)
 {
     return 2.0 * k / (GLINT_PATCH_SIDE - 1) - 1;
 }
@@ -137,7 +137,7 @@ static double place_in(double x, double lo, double hi)
     return (2 * x - lo - hi) / (hi - lo);
 }
 
-/* Sets BOX to that of ZONE for light along DIRECTION of wave K. */
+/* Sets BOX to the box of ZONE for light along DIRECTION of wave K. */
 static void box_of(const struct glint_zone *zone, const double direction[3],
                    int k, struct glint_pupil *box)
 {
@@ -154,8 +154,8 @@ static void box_of(const struct glint_zone *zone, const double direction[3],
     box->y1_mm = box->y0_mm + 2 * half_y;
 }
 
-/* Finds the box of wave K at AT, at corners everywhere, elsewhere near the last
- * one that was seen, if there is one. */
+/* Finds the box of wave K at AT. Away from corners, searches near the last box
+ * found first, if there is one, and then everywhere. */
 static bool find_at(const struct glint_visible *h, const struct place *at,
                     int k, const struct glint_zone *within,
                     const struct glint_sights *seen, struct glint_pupil *box)
@@ -169,12 +169,13 @@ static bool find_at(const struct glint_visible *h, const struct place *at,
         return tighten(h, path, at->direction, box);
     }
     return (!corner && seen->n > 0 &&
-            follow(h, path, at->direction, &seen->at[seen->n - 1].box, box)) ||
+            grow_box(h, path, at->direction, &seen->at[seen->n - 1].box,
+                     box)) ||
            find(h, path, at->direction, box);
 }
 
-/* Adds the boxes of one direction; at every other one of the middle wave only.
- */
+/* Adds the boxes of one direction; at every other direction, of the middle wave
+ * only. */
 static void add_direction(const struct glint_visible *h, const struct place *at,
                           const struct glint_zone *within,
                           struct glint_sights *sights)
@@ -187,8 +188,8 @@ static void add_direction(const struct glint_visible *h, const struct place *at,
         if (!find_at(h, at, k, within, sights, &to->box))
             continue;
         to->x[GLINT_U] = to->x[GLINT_V] = 0;
-        to->x[GLINT_S] = along(at->i);
-        to->x[GLINT_P] = along(at->j);
+        to->x[GLINT_S] = coordinate_of(at->i);
+        to->x[GLINT_P] = coordinate_of(at->j);
         to->x[GLINT_W] = glint_zone_node(waves[k], GLINT_VISIBLE_WAVES);
         sights->n++;
     }
@@ -202,7 +203,8 @@ void glint_sights_find(const struct glint_visible *visible,
     sights->n = 0;
     for (int k = 0; k < GLINT_PATCH_SIDE * GLINT_PATCH_SIDE; k++) {
         const int i = k % GLINT_PATCH_SIDE, j = k / GLINT_PATCH_SIDE;
-        const double s = 0.5 + 0.5 * along(i), p = 0.5 + 0.5 * along(j);
+        const double s = 0.5 + 0.5 * coordinate_of(i),
+                     p = 0.5 + 0.5 * coordinate_of(j);
         const double x = patch->x0 + s * (patch->x1 - patch->x0);
         const double y = patch->y0 + p * (patch->y1 - patch->y0);
         const struct place at = {
@@ -255,9 +257,9 @@ static void fit_side(const struct sides *sides, int degree, double tolerance,
             fit.coef[k];
 }
 
-/* Returns minus the least value of the half size HALF over ZONE, sampled. */
-static double lacks(const struct glint_zone *zone,
-                    const double half[GLINT_BOX_TERMS])
+/* Returns minus the min value of the half size HALF over ZONE, sampled. */
+static double missing_size(const struct glint_zone *zone,
+                           const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;
 
@@ -282,7 +284,8 @@ static double middle_of(const struct glint_pupil *box, bool y)
              : 0.5 * (box->x0_mm + box->x1_mm);
 }
 
-/* Sets MIDDLE and HALF of ZONE along x or y to what holds all sights. */
+/* Sets MIDDLE and HALF of ZONE along x or y so that its box contains all
+ * sights. */
 static void set_sides(const struct glint_sights *sights, int degree, bool y,
                       const struct glint_zone *zone,
                       double middle[GLINT_BOX_TERMS],
@@ -310,7 +313,7 @@ static void set_sides(const struct glint_sights *sights, int degree, bool y,
         more = fmax(more, of.value[i] + off - glint_zone_side(zone, half, x));
     }
     half[0] += more;
-    half[0] += fmax(0.01 * half[0], 1.1 * lacks(zone, half));
+    half[0] += fmax(0.01 * half[0], 1.1 * missing_size(zone, half));
 }
 
 static double fill_of(const struct glint_sights *sights,
@@ -332,8 +335,8 @@ void glint_sights_zone(const struct glint_sights *sights,
                        const struct glint_directions *patch,
                        struct glint_zone *zone)
 {
-    /* As in zone.c: what is enough, and by how much a box of a higher
-     * degree has to be fuller. */
+    /* As in zone.c: the fill that suffices, and the factor by which a box of a
+     * higher degree has to be fuller. */
     const double enough = 0.6, fuller = 1.6;
 
     *zone = (struct glint_zone){.fill = 0};

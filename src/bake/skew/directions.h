@@ -17,7 +17,7 @@ struct glint_directions {
     double x0, x1, y0, y1;
 };
 
-/* Returns the least sine of an angle in PATCH. */
+/* Returns the min sine of the angle off the axis in PATCH. */
 double glint_directions_nearest(const struct glint_directions *patch);
 
 enum {
@@ -45,7 +45,7 @@ void glint_sights_find(const struct glint_visible *visible,
                        const struct glint_zone *within,
                        struct glint_sights *sights);
 
-/* Sets ZONE to PATCH, with a box that holds all of SIGHTS, one or more. */
+/* Sets ZONE to PATCH, with a box that contains all SIGHTS, one or more. */
 void glint_sights_zone(const struct glint_sights *sights,
                        const struct glint_directions *patch,
                        struct glint_zone *zone);

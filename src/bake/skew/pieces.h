@@ -19,7 +19,8 @@
 struct glint_skew_piece {
     struct glint_zone zone; /* its patch; its box if that is KNOWN or a part */
     double w0, w1;          /* its band, -1 .. 1 */
-    double before;          /* error of what it is a half of, in tolerances */
+    double before;          /* error of the piece that was halved into it, in
+                               tolerances */
     int depth;              /* number of halvings that led to it */
     int parts;              /* of these, of the box */
     bool known;             /* true: the box holds all light of the patch */
@@ -30,18 +31,18 @@ void glint_piece_halve(const struct glint_skew_piece *p, int variable,
                        struct glint_skew_piece *first,
                        struct glint_skew_piece *second);
 
-/* Crops the box of P, a part, to what is seen of it, with a margin. */
+/* Crops the box of P, a part, to its visible region, with a margin. */
 void glint_piece_crop(struct glint_skew_piece *p,
                       const struct glint_visible *visible);
 
-/* Sets SHARE to the fraction of the high powers of SYSTEM's polynomials (those
- * that missed their tolerance, if any did) that halving each variable would
- * remove. */
+/* Sets SHARE to the fraction of the high powers of SYSTEM's polynomials that
+ * halving each variable would remove. If some polynomials missed their
+ * tolerance, only these count. */
 void glint_piece_shares(const struct glint_fitted_system *system,
                         double share[GLINT_VARIABLES]);
 
-/* Returns the least number of a part that no system of GHOST has which shares
- * directions and wavelengths with SYSTEM. */
+/* Returns the smallest part number not used by a system of GHOST whose
+ * directions and wavelengths overlap SYSTEM. */
 int glint_piece_number(const struct glint_fitted_ghost *ghost,
                        const struct glint_fitted_system *system);
 

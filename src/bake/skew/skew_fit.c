@@ -15,7 +15,8 @@
 #define MOST_SIDE 0.22
 /* A smaller patch is not halved. */
 #define LEAST_SIDE 0.04
-/* A smaller one is kept if halving gained nothing and its error is endured. */
+/* A smaller patch is accepted if halving gained nothing and its error is
+ * endured. */
 #define STUCK_SIDE 0.12
 /* Fraction of the error of the whole patch: see fit.c. */
 #define STUCK 0.75
@@ -40,11 +41,11 @@
 #define PART_HOPELESS 20.0
 /* Most times that a box is halved. */
 #define MOST_PARTS 5
-/* A box is divided rather than directions if that takes away so many times as
- * much: all parts are drawn, but one patch. */
+/* A box is divided rather than directions if that removes this many times as
+ * much of the error: all parts are drawn, but only one patch. */
 #define RATHER 1.5
-/* Ease of tolerances up to which errors are worth all that is done, and from
- * which all that is bearable is kept. */
+/* Tolerance ease up to which every attempt to reduce errors is made, and from
+ * which any bearable error is accepted. */
 #define NOT_FAINT 1.5
 #define FAINT     6.0
 /* Degrees of angles, fits a ghost and direction, and fits a ghost, surface and
@@ -74,7 +75,7 @@ struct fitter {
 struct attempt {
     struct glint_zone_errors errors; /* worst: HUGE_VAL if nothing was fitted */
     double bearable; /* error up to which a box is not divided */
-    double kept;     /* error up to which the patch is kept at once */
+    double kept;     /* max error at which the patch is accepted at once */
     bool dark;
 };
 
@@ -244,9 +245,9 @@ static enum glint_status try_piece(struct fitter *f, struct glint_skew_piece *p,
 
 enum { KEEP = -1 };
 
-/* Returns how much the box moves and grows with terms FIRST and SQUARE, over
- * its half sizes. */
-static double moves(const struct glint_zone *z, int first, int square)
+/* Returns how much the box moves and grows with terms FIRST and SQUARE, divided
+ * by its half sizes. */
+static double motion_of_box(const struct glint_zone *z, int first, int square)
 {
     return (fabs(z->middle[first]) + fabs(z->middle[square]) +
             fabs(z->half_x[first])) /
@@ -272,8 +273,8 @@ static int component(const struct glint_skew_piece *p,
                                                                      : GLINT_S;
 }
 
-/* Returns the error of what is drawn where, in tolerances. */
-static double left_of(const struct attempt *a)
+/* Returns the max of the errors of positions and outlines, in tolerances. */
+static double placing_error(const struct attempt *a)
 {
     return fmax(a->errors.places, a->errors.outlines);
 }
@@ -283,15 +284,15 @@ static int choose(const struct glint_skew_piece *p, const struct attempt *a,
                   const struct glint_fitted_system *system)
 {
     const bool parts =
-        may_part(p) && left_of(a) > a->bearable && system->n_outputs > 0;
+        may_part(p) && placing_error(a) > a->bearable && system->n_outputs > 0;
     double share[GLINT_VARIABLES];
     int along, across;
 
     glint_piece_shares(system, share);
     across = share[GLINT_V] > share[GLINT_U] ? GLINT_V : GLINT_U;
     if (system->n_outputs == 0) {
-        share[GLINT_S] = moves(&p->zone, 1, 2);
-        share[GLINT_P] = moves(&p->zone, 3, 5);
+        share[GLINT_S] = motion_of_box(&p->zone, 1, 2);
+        share[GLINT_P] = motion_of_box(&p->zone, 3, 5);
     }
     along = component(p, share);
     if (parts && (!may_halve(p) || share[across] > RATHER * share[along]))
@@ -302,13 +303,13 @@ static int choose(const struct glint_skew_piece *p, const struct attempt *a,
 static int next_step(const struct glint_skew_piece *p, const struct attempt *a,
                      const struct glint_fitted_system *system)
 {
-    const double left = left_of(a);
+    const double left = placing_error(a);
     const bool helped = left <= STUCK * p->before;
 
     if (a->dark || (p->parts > 0 && system->n_outputs == 0))
         return KEEP;
-    /* Coatings make energies swing with the wavelength, which parts of the band
-     * follow with a fifth of the terms, and smaller patches do not. */
+    /* Coatings make energies swing with the wavelength. Parts of the band
+     * follow that with a fifth of the terms; smaller patches do not. */
     if (left <= a->kept)
         return a->errors.energy > 1 && p->parts == 0 &&
                        p->w1 - p->w0 > LEAST_BAND
@@ -320,7 +321,7 @@ static int next_step(const struct glint_skew_piece *p, const struct attempt *a,
     return choose(p, a, system);
 }
 
-/* Fits PATCH and, if it has to be, its halves. */
+/* Fits PATCH or, if necessary, its halves. */
 static enum glint_status fit_patch(struct fitter *f,
                                    const struct glint_directions *patch)
 {
@@ -355,7 +356,7 @@ static enum glint_status fit_patch(struct fitter *f,
         } else {
             glint_fitted_drop(&system);
         }
-        p.before = left_of(&a);
+        p.before = placing_error(&a);
         p.known = next != GLINT_W && p.zone.fill > SOLID;
         if (next != KEEP) {
             glint_piece_halve(&p, next, &stack[n + 1], &stack[n]);

@@ -245,8 +245,8 @@ const struct glint_glass *glint_glass_find(const char *name, size_t bytes)
     return NULL;
 }
 
-/* Returns how many letters of A[N] and of the terminated B differ, with those
- * that one of them has more; letters may slip by one place, and '-' is none. */
+/* Returns the edit distance between A[N] and the terminated B, both without
+ * '-'. */
 static int letters_apart(const char *a, size_t n, const char *b)
 {
     enum { LONGEST = 24 };

@@ -27,7 +27,7 @@ enum { HEIGHTS = 12, TURNS = 8 };
 #define MOST_SQUEEZE 16.0
 
 /* Returns the sag of element E at (X, Y) from the axis of the lens. Of a tilt
- * it sees what it lifts. */
+ * only the change in sag counts. */
 static double sag_mm(const struct glint_prescription *lens, int e, double x,
                      double y)
 {
@@ -53,9 +53,9 @@ static bool is_shaped(const struct glint_prescription *lens, int e)
     return k >= 0 && glint_surface_is_shaped(&lens->surface[k]);
 }
 
-/* Returns the least gap between element E and the next, and the height AT which
- * it is. A stop that comes first may lie behind the front vertex, so that the
- * glass reaches through its opening: its rim alone has to be free. */
+/* Returns the min gap between element E and the next element, and sets AT to
+ * its height. A stop in front of the lens may lie behind the front vertex, with
+ * the glass reaching through its opening: only its rim has to be free. */
 static double least_gap_mm(const struct glint_prescription *lens, int e,
                            double *at)
 {
@@ -88,7 +88,7 @@ static double least_gap_mm(const struct glint_prescription *lens, int e,
 }
 
 /* Checks that surface K is a function of its height up to its rim, and that its
- * powers do not carry it away, as those of a misprint do. */
+ * aspheric terms stay small; those of a misprint are large. */
 static bool check_surface(const struct glint_surface *s,
                           const struct glint_text *text,
                           struct glint_text_place place)
@@ -122,9 +122,10 @@ static bool check_surface(const struct glint_surface *s,
 
 /* Checks that each element ends before the next begins. The distance between
  * two spheres only rises or only falls from the axis to the rim, and vertices
- * are in order, so one height decides. It is not the very rim, as published
- * semi-diameters are often estimates: surfaces of the Canon zoom meet at 0.92
- * of theirs. Other surfaces are compared at many heights up to that. */
+ * are in order, so one height decides. That height is somewhat below the rim,
+ * as published semi-diameters are often estimates: surfaces of the Canon zoom
+ * meet at 0.92 of their semi-diameter. Other surfaces are compared at many
+ * heights up to it. */
 static bool check_rims(const struct glint_prescription *lens,
                        const struct glint_text *text,
                        const struct glint_places *places)

@@ -25,14 +25,14 @@
 #define GLINT_MIN_F_NUMBER 0.5
 #define GLINT_MAX_F_NUMBER 1000.0
 
-/* The places of the table's numbers in its text. */
+/* Positions of the table's numbers in its text. */
 struct glint_places {
     /* Places of the f-number and of the stop's semi-diameter. */
     struct glint_text_place f_number, stop;
     struct glint_text_place focal, back_focal; /* line 0: not stated */
     struct glint_text_place thickness[GLINT_MAX_ELEMENTS];
     struct glint_text_place semi[GLINT_MAX_SURFACES];
-    struct glint_text_place medium; /* place of the last surface's medium */
+    struct glint_text_place medium; /* position of the last surface's medium */
 };
 
 /* Returns whether LENS is good; if not, the error of TEXT is written. */

@@ -13,13 +13,13 @@ static const struct glint_text_range quarters_range = {"coating thickness",
 /* ------------------------------------------------------------------- names */
 
 /* Indices are those of magnesium fluoride 1.38, aluminium oxide 1.63 to 1.69,
- * as it is evaporated, and zirconium oxide 2.1. The layer of 1.38 by itself and
- * two quarters are in every textbook; three layers of a quarter, a half and a
+ * evaporated, and zirconium oxide 2.1. The single layer of 1.38 and two
+ * quarters are in every textbook; three layers of a quarter, a half and a
  * quarter are those of Cox, Hass and Thelen, Triple-layer antireflection
  * coatings on glass for the visible and near infrared, JOSA 52(9), 1962. Four
  * layers have two materials, the half wave's inner neighbour being a thin pair
- * of both; their thicknesses are those that reflect least from 420 to 680 nm
- * on glasses of 1.52 to 1.7, searched for. */
+ * of both; a search found the thicknesses that reflect least from 420 to 680 nm
+ * on glasses of 1.52 to 1.7. */
 static const struct {
     const char *name;
     struct glint_coating coating;
@@ -52,7 +52,7 @@ void glint_coating_single(struct glint_coating *coating, double nm)
 
 /* Cuts WORD before the first SIGN; returns what follows it, of length 0 if
  * there is no sign and negative if nothing follows. */
-static struct glint_word cut(struct glint_word *word, char sign)
+static struct glint_word split_word(struct glint_word *word, char sign)
 {
     const char *found = word->length > 0
                             ? memchr(word->start, sign, (size_t)word->length)
@@ -83,7 +83,8 @@ static bool read_value(const struct glint_text *text, struct glint_word word,
     return glint_text_value_of(text, &word, range, value);
 }
 
-/* Reads "none", a name or a wavelength. TAKES: how many words may follow. */
+/* Reads "none", a name or a wavelength. TAKES: the max number of words that may
+ * follow. */
 static bool read_kind(const struct glint_text *text,
                       const struct glint_word *word,
                       struct glint_coating *coating, int *takes)
@@ -114,7 +115,7 @@ static bool read_kind(const struct glint_text *text,
     return true;
 }
 
-/* Reads what follows the kind of COATING: word number AT. */
+/* Reads word number AT after the kind of COATING. */
 static bool read_more(const struct glint_text *text, struct glint_word word,
                       bool is_named, int at, struct glint_coating *coating)
 {
@@ -123,7 +124,7 @@ static bool read_more(const struct glint_text *text, struct glint_word word,
 
     if (is_named)
         return read_value(text, word, &nm_range, &coating->nm);
-    quarters = cut(&word, ':');
+    quarters = split_word(&word, ':');
     film->quarters = 1;
     coating->n_films = at + 1;
     return read_value(text, word, &index_range, &film->index) &&
@@ -131,12 +132,12 @@ static bool read_more(const struct glint_text *text, struct glint_word word,
             read_value(text, quarters, &quarters_range, &film->quarters));
 }
 
-/* The parts of a coating: words of the line, or of one word what slashes
- * divide. */
+/* The parts of a coating: the words of the line, or the parts of one word that
+ * slashes divide. */
 struct parts {
     struct glint_text *text;
     bool in_word;
-    struct glint_word rest; /* what is left of the word */
+    struct glint_word rest; /* unread rest of the word */
 };
 
 static struct glint_word next_part(struct parts *parts)
@@ -145,7 +146,7 @@ static struct glint_word next_part(struct parts *parts)
 
     if (!parts->in_word)
         return glint_text_next_word(parts->text);
-    parts->rest = cut(&part, '/');
+    parts->rest = split_word(&part, '/');
     if (part.length == 0 && parts->rest.length)
         part.length = -1; /* nothing between two slashes */
     return part;

@@ -10,12 +10,13 @@
 
 #define GLINT_MGF2_INDEX 1.38
 
-/* Sets COATING to one quarter of NM of magnesium fluoride. */
+/* Sets COATING to a layer of magnesium fluoride, a quarter of wavelength NM
+ * thick. */
 void glint_coating_single(struct glint_coating *coating, double nm);
 
-/* Reads a coating from the rest of the line: "none", NAME [NM] or
- * NM [INDEX[:QUARTERS]]... A word that is none of it is left. If it returns
- * false the error is written, as below. */
+/* Reads a coating from the rest of the line: "none", NAME [NM] or NM
+ * [INDEX[:QUARTERS]]... Leaves a word that fits none of these unread. Returns
+ * false with the error written. */
 bool glint_coating_read(struct glint_text *text, struct glint_coating *coating);
 
 /* Reads coatings from the rest of the line, at least one word, to its end. */

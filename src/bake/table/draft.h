@@ -26,16 +26,16 @@ uint32_t glint_draft_put(struct glint_draft *draft, const void *data,
 void glint_draft_amend(struct glint_draft *draft, uint32_t where,
                        const void *data, size_t bytes);
 
-/* Sets what the HEADER of every baked file begins with, but size and checksum.
- * Its name has the first 63 characters of NAME that such a name may have, a-z,
- * A-Z, 0-9, '-' and '_', or is INSTEAD if there are none. */
+/* Sets the fields that the HEADER of every baked file begins with, except size
+ * and checksum. The name becomes the first 63 characters of NAME that are a-z,
+ * A-Z, 0-9, '-' or '_'; INSTEAD if there are none. */
 void glint_draft_begin(void *header, const struct glint_blob_kind *kind,
                        uint32_t variant, uint64_t key, const char *name,
                        const char *instead);
 
-/* Writes HEADER to the front of the file, of which all is GOOD, and sets size,
- * checksum, DATA and BYTES. Returns false if it is not good, or without memory;
- * DRAFT is freed then. */
+/* Writes HEADER to the beginning of the file and sets size, checksum, DATA and
+ * BYTES. Returns false if GOOD is false or there is no memory; DRAFT is then
+ * freed. */
 bool glint_draft_finish(struct glint_draft *draft, const void *header,
                         size_t header_bytes, bool good, unsigned char **data,
                         size_t *bytes);

@@ -62,8 +62,8 @@ static inline double *glint_gap_of(struct glint_prescription *lens, int e)
     return k < 0 ? &lens->stop_thickness_mm : &lens->surface[k].thickness_mm;
 }
 
-/* Returns how far behind the last surface paraxial rays meet that come from the
- * axis OBJECT_MM before the front vertex. */
+/* Returns the distance behind the last surface at which paraxial rays from the
+ * axis point OBJECT_MM before the front vertex meet. */
 double glint_image_mm(const struct glint_prescription *lens, double object_mm);
 
 /* Checks that elements do not collide and that the stop opens wide enough.

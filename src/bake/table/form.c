@@ -6,12 +6,12 @@
 
 #include "engine/setup/degrees.h"
 
-/* Fraction of the semi-diameter up to which a profile is as the table says. */
+/* Fraction of the semi-diameter up to which a profile follows the table. */
 #define GLASS_ENDS 1.1
-/* Fraction of END2 beyond it over which curvature fades. */
+/* Curvature fades over this fraction of END2 behind END2. */
 #define FADES 0.25
 
-/* Factor on the squares of slopes, for what lies between those sampled. */
+/* Factor on the squares of slopes, a margin for slopes between the samples. */
 #define STEEPER 1.1
 
 enum { MOST_STEPS = 80, MOST_HALVINGS = 60, SLOPES = 64 };
@@ -44,7 +44,7 @@ bool glint_prescription_is_round(const struct glint_prescription *lens)
 /* --------------------------------------------------------------------- sag */
 
 /* Sets AT to the profile at the height whose square is H2, and to its first and
- * second derivatives by H2; as the table says. */
+ * second derivatives by H2, by the table. */
 static void profile_inside(const struct glint_form *f, double h2, double at[3])
 {
     const double c = f->curvature, a = (1.0 + f->conic) * c * c;
@@ -126,8 +126,8 @@ static double behind(const struct glint_form *f, const struct line *line,
     return t * d[2] - sag;
 }
 
-/* Finds two places BRACKET on the ray, the nearest first, with the form between
- * them. Returns false if there are none near the barrel. */
+/* Sets BRACKET to two positions on the ray, the nearer first, with the form
+ * between them. Returns false if there are none near the barrel. */
 static bool bracket_root(const struct glint_form *f, const struct line *line,
                          double bracket[2])
 {
@@ -153,7 +153,8 @@ static bool bracket_root(const struct glint_form *f, const struct line *line,
     return false;
 }
 
-/* Returns the place between LOW and HIGH at which the ray meets the form. */
+/* Returns the position on the ray, between LOW and HIGH, where it meets the
+ * form. */
 static double refine(const struct glint_form *f, const struct line *line,
                      double low, double high)
 {
@@ -280,7 +281,7 @@ static void place(struct glint_form *f, const struct glint_shape *s,
     f->shift[2] += s->pivot_mm;
 }
 
-/* Sets what level forms are met by. */
+/* Sets the members that intersection with level forms needs. */
 static void set_level(struct glint_form *f, const struct glint_shape *s)
 {
     const double *const along = f->turn[f->bend == GLINT_BEND_Y];

@@ -24,7 +24,7 @@
 void glint_form_init(struct glint_form *form, const struct glint_surface *s,
                      double phi_deg);
 
-/* Returns the sag at (X, Y) in the form's own frame, NAN where there is none;
+/* Returns the sag at (X, Y) in the form's own frame, or NAN outside the form;
  * SLOPE receives its derivatives by x and y. */
 double glint_form_sag(const struct glint_form *form, double x, double y,
                       double slope[2]);
@@ -40,9 +40,9 @@ void glint_form_leave(const struct glint_form *form, double at[3],
 
 /* Moves the ray at AT along the unit vector DIRECTION, both in the form's own
  * frame and AT in its vertex plane, to the form. NORMAL receives the unit
- * normal, of positive z, and COSINE that between both, of the sign of
- * DIRECTION's z; of a ray that misses, which returns false, they may be those
- * of the axis. */
+ * normal, with positive z, and COSINE the cosine between it and DIRECTION, with
+ * the sign of DIRECTION's z. Returns false if the ray misses; NORMAL and COSINE
+ * may then be those of the axis. */
 bool glint_form_meet(const struct glint_form *form, double at[3],
                      const double direction[3], double normal[3],
                      double *cosine);

@@ -27,14 +27,15 @@ static double curvature_in(const struct glint_prescription *lens, int e,
     return s->across_mm != 0.0 ? 1.0 / s->across_mm : 0.0;
 }
 
-/* Moves RAY in PLANE from the vertex plane of the front surface to element LAST
- * and through it. */
-static void lead(struct paraxial_ray *ray,
-                 const struct glint_prescription *lens, int last, int plane)
+/* Traces RAY in PLANE from the vertex plane of the front surface through
+ * element LAST. */
+static void trace_through(struct paraxial_ray *ray,
+                          const struct glint_prescription *lens, int last,
+                          int plane)
 {
     double n = 1.0;
 
-    /* a stop in front is reached backwards through air. */
+    /* a stop before the first surface is reached backwards through air. */
     if (lens->stop_after == 0)
         ray->y_mm -= ray->nu * element_gap_mm(lens, 0);
     for (int e = 0; e <= last; e++) {
@@ -54,19 +55,20 @@ double glint_image_mm(const struct glint_prescription *lens, double object_mm)
 {
     struct paraxial_ray ray = {object_mm, 1.0};
 
-    lead(&ray, lens, surface_element(lens, lens->n_surfaces - 1), GLINT_BEND_Y);
+    trace_through(&ray, lens, surface_element(lens, lens->n_surfaces - 1),
+                  GLINT_BEND_Y);
     return -ray.y_mm / ray.nu;
 }
 
-/* Returns how far off the axis, over its tangent, light meets the sensor that
- * passes the middle of the entrance pupil. */
+/* Returns the distance from the axis at which light through the middle of the
+ * entrance pupil meets the sensor / the tangent of the light's angle. */
 static double scale_of(const struct glint_prescription *lens,
                        const struct glint_optics *optics)
 {
     struct paraxial_ray chief = {-optics->entrance_z_mm, 1.0};
 
-    lead(&chief, lens, surface_element(lens, lens->n_surfaces - 1),
-         GLINT_BEND_Y);
+    trace_through(&chief, lens, surface_element(lens, lens->n_surfaces - 1),
+                  GLINT_BEND_Y);
     return chief.y_mm +
            chief.nu * element_gap_mm(lens, element_count(lens) - 1);
 }
@@ -77,12 +79,12 @@ void glint_optics_of(const struct glint_prescription *lens,
     struct paraxial_ray marginal = {1.0, 0.0}, to_stop = {1.0, 0.0};
     struct paraxial_ray slanted = {0.0, 1.0}, flat = {1.0, 0.0};
 
-    lead(&marginal, lens, surface_element(lens, lens->n_surfaces - 1),
-         GLINT_BEND_Y);
-    lead(&to_stop, lens, lens->stop_after, GLINT_BEND_Y);
-    lead(&slanted, lens, lens->stop_after, GLINT_BEND_Y);
-    lead(&flat, lens, surface_element(lens, lens->n_surfaces - 1),
-         GLINT_BEND_X);
+    trace_through(&marginal, lens, surface_element(lens, lens->n_surfaces - 1),
+                  GLINT_BEND_Y);
+    trace_through(&to_stop, lens, lens->stop_after, GLINT_BEND_Y);
+    trace_through(&slanted, lens, lens->stop_after, GLINT_BEND_Y);
+    trace_through(&flat, lens, surface_element(lens, lens->n_surfaces - 1),
+                  GLINT_BEND_X);
 
     optics->squeeze = flat.nu / marginal.nu;
     optics->focal_mm = -1.0 / marginal.nu;

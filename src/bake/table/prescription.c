@@ -75,7 +75,7 @@ static bool read_bend(struct glint_text *text, struct glint_shape *shape,
     return cylinder || read_radius(text, &shape->across_mm);
 }
 
-/* Reads what WORD says of a shape. */
+/* Reads the part of a shape that begins with WORD. */
 static bool read_word(struct glint_text *text, struct glint_shape *shape,
                       const struct glint_word *word)
 {
@@ -102,9 +102,9 @@ static bool read_word(struct glint_text *text, struct glint_shape *shape,
                            glint_word_quote(word, quote));
 }
 
-/* Reads the rest of a line "shape [conic K] [A4 V] .. [A20 V]
- * [cylinder AXIS | toric AXIS RADIUS]" into SHAPE, whose other members stay.
- * Returns false with the error of TEXT, also if something is given twice. */
+/* Reads the rest of a line "shape [conic K] [A4 V] .. [A20 V] [cylinder AXIS |
+ * toric AXIS RADIUS]" into SHAPE; its other members do not change. Returns
+ * false with the error of TEXT set on errors, also if a part is given twice. */
 static bool read_shape_words(struct glint_text *text, struct glint_shape *shape)
 {
     struct glint_word word = glint_text_next_word(text);
@@ -148,8 +148,9 @@ static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
  */
 #define LEAST_ZOOM 1e-3
 
-/* Cuts what stands before the next slash off REST. */
-static struct glint_word cut(struct glint_word *rest)
+/* Removes the text before the next slash, and the slash, from REST; returns the
+ * text. */
+static struct glint_word cut_before_slash(struct glint_word *rest)
 {
     const char *slash = memchr(rest->start, '/', (size_t)rest->length);
     struct glint_word word = *rest;
@@ -189,7 +190,7 @@ static bool read(struct glint_text *text, const struct glint_text_range *range,
             "%s has %d positions, but what stands above has %d", range->name,
             *n, zoom->n_positions);
     for (int k = 0; k < *n; k++) {
-        const struct glint_word one = cut(&word);
+        const struct glint_word one = cut_before_slash(&word);
 
         if (!glint_text_value_of(text, &one, range, &column[k]))
             return false;
@@ -202,8 +203,9 @@ static bool read(struct glint_text *text, const struct glint_text_range *range,
 }
 
 /* Reads a number in RANGE, or one for each position of ZOOM, into COLUMN; a
- * single one holds for all of them. PLACE receives its place. Returns false,
- * with the error written, if it is none, or not as many as those before. */
+ * single number holds for all positions. PLACE receives its position in the
+ * text. Returns false, with the error written, if there is no valid number, or
+ * a different count than before. */
 static bool read_columns(struct glint_text *text,
                          const struct glint_text_range *range,
                          struct glint_zoom *zoom,
@@ -241,8 +243,8 @@ static bool read_gap(struct glint_text *text,
 
 /* ------------------------------------------------------------------- check */
 
-/* Puts LENS at column K, with what the table states there. */
-static void put_at(struct glint_prescription *lens, int k)
+/* Sets LENS to the zoom position of column K, with the values of the table. */
+static void set_position(struct glint_prescription *lens, int k)
 {
     const struct glint_zoom *const z = &lens->zoom;
 
@@ -293,7 +295,7 @@ static bool check_columns(struct glint_prescription *lens,
     for (int k = 0; k < (z->n_positions ? z->n_positions : 1); k++) {
         struct glint_optics optics;
 
-        put_at(lens, k);
+        set_position(lens, k);
         if (!glint_prescription_check(lens, text, places))
             return false;
         glint_optics_of(lens, &optics);
@@ -301,7 +303,7 @@ static bool check_columns(struct glint_prescription *lens,
         z->back_mm[k] = optics.back_focal_mm;
         z->last_gap_mm[k] = element_gap_mm(lens, element_count(lens) - 1);
     }
-    put_at(lens, 0);
+    set_position(lens, 0);
     return !z->n_positions || set_along(z, text, places);
 }
 
@@ -354,8 +356,8 @@ enum field {
 struct parser {
     struct glint_text text;
     struct glint_prescription lens;
-    struct glint_text_place word[N_FIELDS]; /* place of the last line of each
-                                               kind; line 0: there was none */
+    struct glint_text_place word[N_FIELDS]; /* position of the last line of each
+                                               kind; line 0: no such line */
     struct glint_places places;
     struct glint_coating coating; /* coating of surfaces without their own */
     bool has_coating[GLINT_MAX_SURFACES];
@@ -578,8 +580,8 @@ static bool read_gap_and_semi(struct parser *p,
            glint_text_value(&p->text, &semi_range, semi_mm, semi);
 }
 
-/* Reads the coating of surface K, if it has its own. CEMENTED: there is glass
- * on both sides. */
+/* Reads the coating of surface K, if it has its own. CEMENTED: glass on both
+ * sides. */
 static bool read_surface_coating(struct parser *p, int k, bool cemented)
 {
     struct glint_surface *s = &p->lens.surface[k];

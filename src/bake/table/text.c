@@ -257,8 +257,8 @@ static void read_digits(struct digits *digits)
     }
 }
 
-/* Skips C1 or C2; returns whether one of them was there. */
-static bool skip(struct digits *digits, char c1, char c2)
+/* Skips the next character if it is C1 or C2; returns whether it was. */
+static bool skip_char(struct digits *digits, char c1, char c2)
 {
     if (digits->at == digits->end || (*digits->at != c1 && *digits->at != c2))
         return false;
@@ -270,7 +270,7 @@ static bool read_sign(struct digits *digits)
 {
     const bool negative = digits->at < digits->end && *digits->at == '-';
 
-    skip(digits, '+', '-');
+    skip_char(digits, '+', '-');
     return negative;
 }
 
@@ -300,9 +300,8 @@ static double power_of_ten(int n)
     return power;
 }
 
-/* Reads all of WORD: DIGITS of its digits, and the power of ten by which they
- * are to be multiplied if none had been left out. Returns false if it is no
- * number. */
+/* Parses WORD into DIGITS and a power of ten; their product is the number if no
+ * digits were dropped. Returns false if WORD is not a number. */
 static bool split_number(const struct glint_word *word, struct digits *digits,
                          bool *negative, int *exponent)
 {
@@ -314,10 +313,10 @@ static bool split_number(const struct glint_word *word, struct digits *digits,
     read_digits(digits);
     whole = digits->n;
     digits->n = 0;
-    if (skip(digits, '.', '.'))
+    if (skip_char(digits, '.', '.'))
         read_digits(digits);
     if (whole + digits->n == 0 ||
-        (skip(digits, 'e', 'E') && !read_exponent(digits, exponent)) ||
+        (skip_char(digits, 'e', 'E') && !read_exponent(digits, exponent)) ||
         digits->at != digits->end)
         return false;
     *exponent -= digits->n;
@@ -357,7 +356,7 @@ const char *glint_word_number(const struct glint_word *word, double *value)
     /* Terms of h^20 are small: 1e-25 is a tenth of a millimetre at 14 mm. */
     if (exponent + more < -60 || exponent + more > 22)
         return "is too large or too small";
-    /* Of so few digits both operands are exact, so one rounding gives the
+    /* With so few digits both operands are exact, so one rounding gives the
      * nearest double. */
     magnitude = more > 0 || exponent < -22 ? nearest_of(word, exponent)
                 : exponent < 0 ? (double)digits.value / power_of_ten(-exponent)

@@ -28,7 +28,7 @@
 #define GLINT_NUMBER_DIGITS 15    /* that fit a double, whichever they are */
 
 struct glint_text_place {
-    /* both count from 1, columns in bytes; line 0: no place */
+    /* both count from 1, columns in bytes; line 0: no position */
     int line, column;
 };
 
@@ -47,8 +47,8 @@ struct glint_text {
     int line_number;
 };
 
-/* Opens DATA[BYTES], which is not copied and must outlive TEXT, as must
- * FILE_NAME and ERROR. Returns false if it is not text; ERROR states why. */
+/* Opens DATA[BYTES] without a copy. DATA, FILE_NAME and ERROR must outlive
+ * TEXT. Returns false if DATA is not text; ERROR states why. */
 bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
                      const char *file_name, struct glint_error *error);
 
@@ -64,15 +64,15 @@ bool glint_text_next_line(struct glint_text *text);
 /* Returns the next word of the line. */
 struct glint_word glint_text_next_word(struct glint_text *text);
 
-/* Reads the next word of the line into WORD, of length 0 if none is left.
- * Refuses others than ONLY. */
+/* Reads the next word of the line into WORD, of length 0 if no word is left.
+ * Rejects any word but ONLY. */
 bool glint_text_may_follow(struct glint_text *text, const char *only,
                            struct glint_word *word);
 
 /* Returns all that is left of the line, without blanks at either end. */
 struct glint_word glint_text_rest(struct glint_text *text);
 
-/* Returns the place where the text ends. */
+/* Returns the position of the end of the text. */
 struct glint_text_place glint_text_end(const struct glint_text *text);
 
 /* Writes "FILE:LINE:COLUMN: FORMAT ..." into the error; always false. */
@@ -85,8 +85,8 @@ struct glint_text_range {
     double min, max;
 };
 
-/* Reads WORD as a number called NAME, of any size. Returns false if it is none,
- * and writes the error, as do the next three functions. */
+/* Reads WORD as a number called NAME, of any size. Returns false and writes the
+ * error if WORD is not a number, as do the next three functions. */
 bool glint_text_number_of(const struct glint_text *text,
                           const struct glint_word *word, const char *name,
                           double *value);
@@ -100,8 +100,8 @@ bool glint_text_value_of(const struct glint_text *text,
                          const struct glint_word *word,
                          const struct glint_text_range *range, double *value);
 
-/* Reads the next word as a number in RANGE. PLACE, unless NULL, receives its
- * place. */
+/* Reads the next word as a number in RANGE. PLACE, unless NULL, receives the
+ * position of the word. */
 bool glint_text_value(struct glint_text *text,
                       const struct glint_text_range *range, double *value,
                       struct glint_text_place *place);
@@ -114,9 +114,8 @@ bool glint_word_is(const struct glint_word *word, const char *string);
 const char *glint_word_quote(const struct glint_word *word,
                              char quote[GLINT_QUOTE_BYTES]);
 
-/* Reads WORD as [+-] digits [. digits] [e [+-] digits]. Returns NULL, or what
- * is wrong with it, to follow the word in a message; VALUE is unchanged then.
- */
+/* Reads WORD as [+-] digits [. digits] [e [+-] digits]. Returns NULL, or an
+ * error text to print after the word; VALUE is then unchanged. */
 const char *glint_word_number(const struct glint_word *word, double *value);
 
 /* Reads WORD likewise, with any number of digits: VALUE is within 4e-15 of it.

@@ -4,8 +4,8 @@
 
 #include "bake/table/elements.h"
 
-/* Share by which a focal length may lie beyond the ends of the zoom, as they
- * are rounded on barrels. */
+/* Fraction by which a focal length may exceed the ends of the zoom range, as
+ * lens barrels state rounded values. */
 #define BEYOND 2e-3
 
 /* ---------------------------------------------------------------- cubic */
@@ -31,8 +31,8 @@ static double slope_at(const struct glint_zoom *z, const double *value, int k)
                    : 3.0 * (h0 + h1) /
                          ((2.0 * h1 + h0) / d0 + (h1 + 2.0 * h0) / d1);
     }
-    /* At an end: the parabola through three columns, held so that it does not
-     * overshoot. */
+    /* At an end: the parabola through three columns, clamped so that it does
+     * not overshoot. */
     h0 = k ? x[last] - x[last - 1] : x[1] - x[0];
     h1 = k ? x[last - 1] - x[last - 2] : x[2] - x[1];
     d0 = (k ? value[last] - value[last - 1] : value[1] - value[0]) / h0;
@@ -43,9 +43,9 @@ static double slope_at(const struct glint_zoom *z, const double *value, int k)
     return d0 * d1 <= 0.0 && fabs(slope) > 3.0 * fabs(d0) ? 3.0 * d0 : slope;
 }
 
-/* Returns what VALUE, of each column, is at ALONG. */
-static double follow(const struct glint_zoom *z, const double *value,
-                     double along)
+/* Interpolates VALUE, given for each column, at ALONG. */
+static double interpolate(const struct glint_zoom *z, const double *value,
+                          double along)
 {
     int k = 0;
     double h, t, a, b;
@@ -79,14 +79,14 @@ static void move(struct glint_prescription *lens, double along)
         column |= !(along < z->along[k] || along > z->along[k]);
     }
     for (int m = 0; m < z->n_moves; m++)
-        *glint_gap_of(lens, z->move[m]) = follow(z, z->gap_mm[m], along);
-    *glint_gap_of(lens, last) = follow(z, z->last_gap_mm, along);
-    lens->f_number = follow(z, z->f_number, along);
+        *glint_gap_of(lens, z->move[m]) = interpolate(z, z->gap_mm[m], along);
+    *glint_gap_of(lens, last) = interpolate(z, z->last_gap_mm, along);
+    lens->f_number = interpolate(z, z->f_number, along);
     if (column)
         return;
     glint_optics_of(lens, &optics);
     *glint_gap_of(lens, last) =
-        optics.back_focal_mm + follow(z, defocus, along);
+        optics.back_focal_mm + interpolate(z, defocus, along);
 }
 
 static enum glint_status no_zoom(const struct glint_prescription *lens,

@@ -12,12 +12,11 @@
 #include "base/compiler.h"
 #include "glint/trace.h"
 
-/* Rays are traced eight at a time: a root or a division waits for the one
- * before it in its own ray, but not for those of other rays. All code is loops
- * over N lanes, and a condition of a ray is a choice between two values, so
- * that compilers can use vectors; a invalid ray continues with meaningless
- * values. The operations of a ray do not depend on N, and neither do its bits.
- */
+/* Rays are traced eight at a time: a root or a division waits for the previous
+ * result of its own ray, but not of other rays. All code is loops over N lanes,
+ * and conditions select between two values, so that compilers can use vectors;
+ * an invalid ray continues with meaningless values. The operations of a ray do
+ * not depend on N, and neither do its bits. */
 enum { LANES = 8 };
 
 struct beam {

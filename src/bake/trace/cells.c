@@ -169,7 +169,7 @@ struct cut {
     double normal[2], limit, scale, middle[2];
 };
 
-/* Sets AT to the place at UV in the unit disc of CUT. */
+/* Sets AT to the position in the unit disc of CUT at UV of the cell. */
 static void in_disc(const struct shape *s, const struct cut *cut,
                     const double uv[2], double at[2])
 {
@@ -282,9 +282,9 @@ static double polygon_area(const double (*p)[2], int n)
     return 0.5 * sum;
 }
 
-/* Picks the corners of triangle HALF of a cell; returns false if one is lost.
- * Diagonals mirror each other about the light's plane, so that the picture of a
- * symmetric light is symmetric. */
+/* Picks the corners of triangle HALF of a cell; returns false if a corner's ray
+ * is invalid. Diagonals mirror each other about the light's plane, so that the
+ * picture of a symmetric light is symmetric. */
 static bool pick_corners(const struct glint_cells *c, int i, int j, int half,
                          const double **corner)
 {

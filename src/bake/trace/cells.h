@@ -16,11 +16,11 @@
 
 enum { GLINT_MAX_CUTS = 48, GLINT_MAX_PIECE = 192 };
 
-/* Channels of a node. From NODE_CUT on there are x and y over the semi-diameter
- * at each barrel that may cut. */
+/* Channels of a node. From NODE_CUT on: x and y at each barrel that may cut,
+ * divided by its semi-diameter. */
 enum {
-    NODE_STATE, /* 0 lost, 1 traced, 2 traced and clear of every cut */
-    NODE_X, /* place on the sensor: mm in the camera's frame, or as the owner
+    NODE_STATE, /* 0: invalid ray; 1: traced; 2: traced and inside every cut */
+    NODE_X, /* position on the sensor: mm in the camera's frame, or as the owner
                maps it */
     NODE_Y,
     NODE_STOP_X, /* stop radii, in the camera's frame */
@@ -65,15 +65,14 @@ struct glint_piece {
     int n; /* number of corners; 0: nothing is visible */
     double xy[GLINT_MAX_PIECE][2];
     double share;  /* fraction of the triangle's pupil area, 0 .. 1 */
-    double energy; /* mean over the piece */
+    double energy; /* mean energy over the piece */
 };
 
 /* Clips triangle HALF (0 or 1) of cell (I, J). */
 void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
                       struct glint_piece *piece);
 
-/* Returns whether NODE_Y of cell (I, J) has values between LOW and HIGH, or on
- * both sides of that range. */
+/* Returns whether the range of NODE_Y in cell (I, J) overlaps LOW .. HIGH. */
 bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
                        double low, double high);
 

@@ -14,7 +14,7 @@ int glint_coating_at(const struct glint_coating *coating, double wavelength_nm,
     return coating->n_films;
 }
 
-/* The matrix (m11, i m12; i m21, m22) of one polarisation. */
+/* The characteristic matrix (m11, i m12; i m21, m22) for one polarisation. */
 struct matrix {
     double m11, m12, m21, m22;
 };
@@ -32,7 +32,7 @@ static void multiply(struct matrix *m, double c, double s, double f,
     m->m22 = old.m22 * c - old.m21 * upper;
 }
 
-/* Returns what M reflects between media of the admittances A and B. */
+/* Returns the reflectance of M between media of the admittances A and B. */
 static double reflected(const struct matrix *m, double a, double b)
 {
     const double minus = a * m->m11 - b * m->m22,
@@ -87,7 +87,7 @@ double glint_reflectance(double n_from, double n_to, double cos_from,
     const double c2 = cosine_behind(n_from, n_to, cos_from);
 
     if (!(c2 > 0.0))
-        return 1.0; /* grazing incidence, or beyond the critical angle */
+        return 1.0; /* grazing incidence, or total reflection */
     if (n_films > 1)
         return stack_reflectance(n_from, cos_from, n_to, c2, film, n_films);
     if (n_films == 1) {

@@ -88,13 +88,12 @@ static inline double film_reflectance(double n1, double c1, double n2,
     return mean_ratio(minus_s, plus_s, minus_p, plus_p);
 }
 
-/* Sets S and P to what FILM[N], from the medium of the smaller index on,
- * reflects of the two polarisations:
- * characteristic matrices multiplied. Each is (cos D, i sin D / f; i f sin D,
- * cos D), with D half the phase of the film and its admittance f as above. What
- * is imaginary stays so, and beyond the critical angle inside a film both f and
- * D are imaginary, so that all is done in real numbers. [Macleod, Thin-Film
- * Optical Filters, ch. 2] */
+/* Sets S and P to the reflectance of FILM[N] for the two polarisations, the
+ * product of characteristic matrices. FILM starts at the medium of the smaller
+ * index. Each is (cos D, i sin D / f; i f sin D, cos D), with D half the phase
+ * of the film and its admittance f as above. Off-diagonal elements stay
+ * imaginary, and in a film with total reflection both f and D are imaginary, so
+ * real numbers suffice. [Macleod, Thin-Film Optical Filters, ch. 2] */
 void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
                                 const struct glint_film_at *film, int n,
                                 double *s, double *p);

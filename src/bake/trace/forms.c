@@ -55,8 +55,8 @@ static WHOLLY_INLINE void set_heights(const struct beam *b, int n,
 }
 
 /* Sets SAG to the profile of F at the heights whose squares are Q, and SLOPE to
- * its derivative by them; as the table says. TERMS, a constant, is at least
- * those of F: a ray's sums then stay in registers. */
+ * its derivative by them, by the table. TERMS, a constant, must be at least the
+ * number of terms of F; a ray's sums then stay in registers. */
 static WHOLLY_INLINE void profiles_of(const struct glint_form *f, int n,
                                       int terms, const double *q, double *sag,
                                       double *slope)
@@ -244,7 +244,7 @@ void glint_beam_leave_form(struct beam *b, int n, const struct glint_form *form)
     }
 }
 
-/* Does what turn() does, at a form. */
+/* Refracts or reflects at a form, like turn(). */
 static WHOLLY_INLINE void turn_at_form(struct beam *b, int k, double s,
                                        double part, double way)
 {

@@ -22,17 +22,18 @@ struct glint_sampling {
     int cut_weight[GLINT_MAX_EVENTS]; /* a larger weight: the barrel makes up
                                          more of the outline */
     double bend_mm; /* second difference of the sensor position over the pupil's
-                       box, RMS over the rays that pass: a grid of n cells is
-                       off by bend_mm / (8 n^2) */
+                       box, RMS over the rays that pass: a grid of n cells per
+                       side has an error of bend_mm / (8 n^2) */
     double outline_mm; /* the largest such bend of the stop position or of a
                           barrel that cuts, converted to mm on the sensor */
     double round_mm;   /* such a bend of a round stop's outline */
     int n_inside; /* number of rays that pass and have both neighbours along a
                      line of the grid, across and down counted apart */
-    /* Stop radii by which rays move over the pupil's box: harmonic mean over
-     * neighbouring rays that the opening may lie between. */
+    /* Distance in the stop, in stop radii, that rays cover over the pupil's
+     * box: harmonic mean over neighbouring rays between which the opening may
+     * lie. */
     double step;
-    bool folds; /* true: some light arrives turned over, some does not */
+    bool folds; /* true: some of the light arrives mirrored, some does not */
 };
 
 /* Traces a grid of SIDE x SIDE cells (SIDE even, up to GLINT_MAX_SAMPLING) over

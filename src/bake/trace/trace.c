@@ -31,7 +31,7 @@ struct route {
     const struct glint_prescription *lens;
     struct glint_path *path;
     double wavelength_nm, phi_deg;
-    int at; /* last element, -1: none yet */
+    int at; /* last element met; -1: none yet */
 };
 
 /* Sets the indices before surface K and after it. */
@@ -171,8 +171,9 @@ static WHOLLY_INLINE void meet(struct beam *b, int n, double c)
     }
 }
 
-/* Sets the direction to S times itself plus PART times the normal. Rays that
- * then do not run the way WAY, 1 as before or -1 back, are lost. */
+/* Sets the direction to S times itself plus PART times the normal. Rays whose z
+ * direction then does not follow WAY, 1 for forwards as before, -1 for
+ * reversed, become invalid. */
 static WHOLLY_INLINE void turn(struct beam *b, int k, double c, double s,
                                double part, double way)
 {
@@ -280,7 +281,7 @@ static WHOLLY_INLINE void start(struct beam *b, int k,
     b->status[k] = judge(GLINT_RAY_OK, b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
-/* Sets HIT to the place of ray K, in the surface's own frame. */
+/* Sets HIT to the position of ray K, in the surface's own frame. */
 static WHOLLY_INLINE void note_hit(const struct beam *b, int k,
                                    const struct glint_form *form, double hit[2])
 {
@@ -290,8 +291,8 @@ static WHOLLY_INLINE void note_hit(const struct beam *b, int k,
         hit[i] = form->turn[i][0] * b->x[k] + form->turn[i][1] * b->y[k];
 }
 
-/* Takes rays through one event. HITS[k * n_events] receives the place of lane
- * K, below ASKED. */
+/* Traces rays through one event. HITS[k * n_events] receives the position of
+ * lane K, for K below ASKED. */
 static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
                                const struct glint_path *path,
                                const struct glint_event *e, bool energies,

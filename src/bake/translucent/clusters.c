@@ -15,17 +15,17 @@
 
 enum {
     ROUNDS = 8, /* errors fall by less than 1 % from there on */
-    ABOUT = 2   /* texels about one whose materials count */
+    ABOUT = 2   /* radius, in texels, of the neighbourhood whose materials
+                   count */
 };
 
 struct clusters {
     const struct glint_scatter_rows *rows;
     struct glint_scatter_fit *fit;
-    double *above, *below; /* sums of least squares: a texel or an entry each */
+    double *above, *below; /* sums of least squares, per texel or per entry */
 };
 
-/* What is the same in the entries of one row of a kernel: the last is U_TO - 1.
- */
+/* Values common to the entries of one row of a kernel, U_FROM .. U_TO - 1. */
 struct span {
     int x, c, u_from, u_to;
     const float *data;
@@ -52,7 +52,7 @@ static struct span span_of(const struct clusters *p,
         .u_to = in->u_to,
         .data = glint_scatter_row(p->rows, x, c) + v * n,
         .kernel = kernel_of(p->fit, j, c) + v * n,
-        /* the place of an entry that counts is in the square */
+        /* entries that count lie inside the square */
         .in =
             p->fit->in + c + 3 * (x + (v - n / 2) * side + in->u_from - n / 2),
     };
@@ -95,8 +95,8 @@ static void set_out(const struct clusters *p)
         }
 }
 
-/* Sets N scales, of entries of kernels or of what gets IN, to the ratios of
- * their sums of least squares. */
+/* Sets N scales, of kernel entries or, if IN_SCALES, of the light that gets in,
+ * to the ratios of their sums of least squares. */
 static void set_scales(const struct clusters *p, bool in_scales, double *scale,
                        size_t n)
 {

@@ -21,8 +21,9 @@ struct factors {
     struct glint_scatter_fit *fit;
     int c;
     double *h, *f, *column, *row; /* of channel C: first of kernels, 3 apart */
-    int *whole;                   /* texels whose rows are whole */
-    double *gram, *side;          /* normal equations, one for each entry */
+    int *whole;                   /* texels whose rows are complete */
+    double *gram, *side;          /* normal equations, one system for each
+                                     entry */
 };
 
 static double *term(double *all, int j, size_t n)
@@ -49,7 +50,8 @@ static void whole_row(const void *ctx, int i, double *to)
         to[d] = (double)row[d];
 }
 
-/* Sets kernels by the rows that are whole, all if none is. */
+/* Initialises the kernels from the complete rows, or from all rows if none is
+ * complete. */
 static bool begin(struct factors *p)
 {
     const int side = p->fit->side, n = p->fit->kernel, k2 = n * n;
@@ -95,7 +97,8 @@ static void cut(const struct factors *p, int j)
 
         for (int v = 0; v < n; v++)
             length += a[q * n + v] * a[q * n + v];
-        root = sqrt(sqrt(length)); /* shared by both */
+        root = sqrt(sqrt(length)); /* the length is split between both
+                                      factors */
         for (int v = 0; v < n && root > 0; v++) {
             column[q * n + v] = a[q * n + v] / root;
             row[q * n + v] = turn[q * n + v] * root;
@@ -139,7 +142,7 @@ static void mirror(double *a, int n)
             a[k * n + i] = a[i * n + k];
 }
 
-/* Weights by least squares, kernels as they are. */
+/* Sets the weights by least squares for the current kernels. */
 static void set_weights(const struct factors *p)
 {
     double gram[GLINT_SCATTER_MAX_TERMS * GLINT_SCATTER_MAX_TERMS];
@@ -178,7 +181,7 @@ static void add_entries(const struct factors *p, int x)
         }
 }
 
-/* Kernels by least squares, weights as they are. */
+/* Sets the kernels by least squares for the current weights. */
 static void set_kernels(const struct factors *p)
 {
     const int k2 = glint_scatter_kernel2(p->fit->kernel), k = p->fit->kernels;

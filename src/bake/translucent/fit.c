@@ -29,7 +29,7 @@ static const double *kernel_of(const struct glint_scatter_fit *fit, int j,
            (size_t)(j * 3 + c) * (size_t)glint_scatter_kernel2(fit->kernel);
 }
 
-/* Weight of kernel J in what leaves texel X. */
+/* Returns the weight of kernel J in the light that leaves texel X. */
 static double weight_of(const struct glint_scatter_fit *fit, int j, int c,
                         int x)
 {
@@ -54,7 +54,8 @@ double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
     return fit->in ? sum * fit->in[3 * x + c] : sum;
 }
 
-/* Sum of kernel H, whose offsets lead to texel X, with channel C of LIGHT. */
+/* Returns the light that texel X receives from channel C of LIGHT through
+ * kernel H, whose offsets lead to X. */
 static double gather(const struct glint_scatter_fit *fit, int x,
                      const double *h, const double *light, int c)
 {
@@ -94,7 +95,7 @@ void glint_scatter_light(const struct glint_scatter_fit *fit,
 /* A ramp with a shadow's edge across it, and three lamps: sharp and wide. */
 void glint_scatter_test_light(int side, double *irradiance)
 {
-    static const double lamp[3][4] = {/* place, radius, light */
+    static const double lamp[3][4] = {/* position, radius, light */
                                       {0.3, 0.35, 0.03, 4},
                                       {0.7, 0.25, 0.12, 1.5},
                                       {0.55, 0.75, 0.008, 8}};
@@ -168,7 +169,8 @@ static double even_light(const struct glint_scatter_fit *fit, int x, int c)
     return sum;
 }
 
-/* Scales what leaves each texel so that even light is as the data have it. */
+/* Scales the light that leaves each texel so that under even light it equals
+ * the data's albedo. */
 static void keep_albedo(struct glint_scatter_fit *fit)
 {
     const int texels = fit->side * fit->side;
@@ -177,7 +179,7 @@ static void keep_albedo(struct glint_scatter_fit *fit)
         for (int c = 0; c < 3; c++) {
             const double sum = even_light(fit, x, c);
             const double want = fit->albedo[3 * x + c];
-            /* A fit that has next to none of the light cannot be scaled. */
+            /* A fit with almost no light cannot be scaled. */
             const double scale = sum > 0.1 * want && want > 0 ? want / sum : 1;
 
             for (int j = 0; fit->f && j < fit->kernels; j++)
@@ -198,7 +200,8 @@ static void reverse(double *a, int n)
     }
 }
 
-/* Makes offsets to where light came from those to where it goes. */
+/* Mirrors the kernels: offsets to the source of light become offsets to its
+ * destination. */
 static void turn_kernels(struct glint_scatter_fit *fit)
 {
     const int n = fit->kernel;
@@ -256,8 +259,8 @@ static void set_mean(const struct glint_scatter_rows *rows,
         h[d] /= sum;
 }
 
-/* Of rows at the rim the square has a part only: how much they would scatter
- * follows from h, and h from that. */
+/* The square contains only a part of the rows at the rim: their full scatter
+ * follows from h, and h from their scatter. */
 static enum glint_status albedo_fit(const struct glint_scatter_rows *rows,
                                     struct glint_scatter_fit *fit)
 {

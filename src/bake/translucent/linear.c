@@ -9,15 +9,15 @@
 #include "glint/scene/translucent_bake.h"
 
 enum {
-    SPARE = 8, /* vectors beyond those that are wanted: what the error of the
-                  last one falls by */
+    SPARE = 8, /* extra vectors, which make the error of the last wanted vector
+                  fall faster */
     ROUNDS = 300,
     SWEEPS = 60
 };
 
-#define SAME    1e-15 /* cosine of columns that are at right angles */
-#define NOTHING 1e-13 /* fraction of what was, below which nothing is left */
-#define STILL   1e-15 /* change of a sum that has come to rest */
+#define SAME    1e-15 /* cosine of columns that count as orthogonal */
+#define NOTHING 1e-13 /* shorter vectors, relative to before, count as 0 */
+#define STILL   1e-15 /* relative change of a sum at which iteration stops */
 
 static double dot(const double *a, const double *b, int n)
 {
@@ -115,7 +115,7 @@ void glint_solve(double *a, int n, double *b)
     }
 }
 
-/* Makes N rows of V orthonormal; those that are nothing become 0. */
+/* Makes N rows of V orthonormal; rows that depend on earlier rows become 0. */
 static void orthonormal(double *v, int n, int m)
 {
     for (int i = 0; i < n; i++) {
@@ -152,8 +152,8 @@ static void times(const double *g, const double *v, int n, int m, double *to)
         }
 }
 
-/* Sets V[n][m] to the space of the N largest eigenvalues of G, of which the
- * first WANTED count. */
+/* Sets V[n][m] to a basis of the space of the N largest eigenvalues of G; only
+ * the first WANTED vectors need to converge. */
 static void subspace(const double *g, int m, double *v, int n, int wanted,
                      double *scratch)
 {
@@ -202,7 +202,7 @@ static void gram(const struct glint_tall *a, double *g, double *row)
             g[j * m + k] = g[k * m + j];
 }
 
-/* Moves the N leading terms of Y[][rows], which are at right angles, and of
+/* Moves the N leading terms of Y[][rows], whose rows must be orthogonal, and of
  * V[][columns] into TERMS. */
 static void take_terms(const double *y, const double *v,
                        const struct glint_tall *a, struct glint_terms *terms)
@@ -271,8 +271,8 @@ void glint_terms_close(struct glint_terms *terms)
 
 enum { MOST = GLINT_SCATTER_MAX_KERNEL, FEW_SWEEPS = 30 };
 
-/* How light on a texel and on the next one are correlated. From .5 to .99 the
- * decibels under lamps are the same within .3; at 0 they are 1 to 10 fewer. */
+/* Correlation of the light on neighbouring texels. From .5 to .99 the PSNR
+ * under lamps is the same within .3 dB; at 0 it is 1 to 10 dB lower. */
 static const double correlation = 0.8;
 
 /* Transposed: A[i] and V[i] are columns. V begins as the unit matrix; A = K V
@@ -301,8 +301,8 @@ static int part(struct work *w, int i, int j)
     return 1;
 }
 
-/* Of light whose correlation C falls by the same fraction from texel to texel,
- * C = L L', sets every STEP-th number of X[N] to L' X. */
+/* Sets every STEP-th number of X[N] to L' X, where L L' = C is the correlation
+ * of light, which falls by the same fraction from texel to texel. */
 static void weigh(double *x, int n, int step)
 {
     const double own = sqrt(1 - correlation * correlation);

@@ -14,7 +14,7 @@
 
 #include "glint/status.h"
 
-/* A tall matrix, whose rows are made one at a time. */
+/* A tall matrix whose rows are computed one at a time. */
 struct glint_tall {
     int rows, columns;
     void (*row)(const void *ctx, int i, double *to); /* sets TO[columns] */
@@ -23,7 +23,7 @@ struct glint_tall {
 
 /* A = sum over j of value[j] left_j right_j'. */
 struct glint_terms {
-    int n;         /* values fall; those that are 0 have zero vectors */
+    int n;         /* values in falling order; a value of 0 has zero vectors */
     double *value; /* [n] */
     double *left;  /* [n][rows] unit vectors */
     double *right; /* [n][columns] unit vectors */
@@ -35,12 +35,13 @@ bool glint_terms_of(const struct glint_tall *a, int n,
                     struct glint_terms *terms);
 void glint_terms_close(struct glint_terms *terms);
 
-/* Rotates N columns of A, [n][rows], until they are at right angles, sorted by
- * falling length. TURN[n][m] takes the same rotations if it is not NULL. */
+/* Rotates N columns of A, [n][rows], until they are orthogonal, and sorts them
+ * by falling length. The same rotations are applied to TURN[n][m] unless it is
+ * NULL. */
 void glint_jacobi(double *a, int rows, int n, double *turn, int m);
 
-/* Solves the symmetric system A[n][n] X = B[n], in place of B; what A does not
- * determine becomes 0. Changes A. */
+/* Solves the symmetric system A[n][n] X = B[n], X overwrites B; components that
+ * A does not determine become 0. Changes A. */
 void glint_solve(double *a, int n, double *b);
 
 /* A kernel as a sum of products of a column and a row that minimises the
@@ -50,12 +51,12 @@ void glint_solve(double *a, int n, double *b);
  * that. */
 struct glint_separated {
     double *column, *row; /* [rank][n]; product r is column[r][v] row[r][u] */
-    double all, lost;     /* squares of all weighted entries, and of what the
-                             products leave out, summed */
+    double all, lost;     /* sum of squares of all weighted entries, and of the
+                             residual of the products */
 };
 
 /* Sets TO to RANK products for KERNEL[N][N], N at most
- * GLINT_SCATTER_MAX_KERNEL; those beyond N are 0. */
+ * GLINT_SCATTER_MAX_KERNEL; entries from N on are 0. */
 void glint_separate(const double *kernel, int n, int rank,
                     struct glint_separated *to);
 

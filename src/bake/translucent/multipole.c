@@ -10,12 +10,13 @@
 #define PI 3.14159265358979323846
 
 enum {
-    FINE = 16,  /* parts of a texel, each way, of entries next to the middle */
+    FINE = 16,  /* subdivisions per texel, in each direction, for entries next
+                   to the middle */
     COARSE = 4, /* of others */
     IMAGES = 8, /* pairs either way, and more in thin slabs */
     MORE = 32,
-    LATTICE = 256 /* places of the grid that stands for one without an end, and
-                     no less than four kernels */
+    LATTICE = 256 /* nodes per side of the grid that stands for an infinite
+                     grid; at least four kernels */
 };
 
 /* Ratio of fluence and flux at a face that reflects back [Jensen01]. */
@@ -24,7 +25,7 @@ static double face(double index)
     const double back =
         -1.440 / (index * index) + 0.710 / index + 0.668 + 0.0636 * index;
 
-    /* The fit is not a share where there is no step of the index. */
+    /* Without a step of the index the fit would not give a fraction. */
     return index > 1 ? (1 + back) / (1 - back) : 1;
 }
 
@@ -75,7 +76,7 @@ static double corner(double u, double v, double z)
 }
 
 /* Flux through a square of side STEP about (U, V) of a source at depth Z, which
- * may be negative. What is lost on the way is that of the middle. */
+ * may be negative. The loss on the way is that of the square's middle. */
 static double flux(double u, double v, double z, double step, double loss)
 {
     const double h = step / 2, depth = fabs(z);
@@ -101,8 +102,8 @@ static double images(const struct glint_slab *s, int pairs, double u, double v,
     return s->albedo * sum;
 }
 
-/* The mean over the texel that is lit, at offset (X, Y) texels: offsets of its
- * points and those of the other weigh as a tent. */
+/* Returns the mean over the lit texel at offset (X, Y) texels. The distribution
+ * of offsets between points of both texels is a tent. */
 static double entry_at(const struct glint_slab *s, int pairs, int x, int y)
 {
     const int parts = x <= 1 && y <= 1 ? FINE : COARSE;

@@ -33,7 +33,8 @@ struct writer {
     int rank, texels;
     double *column, *row; /* [kernels][3][rank][kernel] */
     double *largest;      /* [3][kernels] of factors */
-    double in[CHANNELS];  /* largest of what gets in; clustered, else 1 */
+    double in[CHANNELS];  /* max of the light that gets in if clustered, else
+                             1 */
 };
 
 /* ----------------------------------------------------------------- kernels */
@@ -87,8 +88,8 @@ static double factor_of(const struct writer *w, int p, int c, int x)
     return fit->out[CHANNELS * (size_t)x + (size_t)c];
 }
 
-/* Appends N codes, VALUE[i] of MOST being a full one of BITS without the sign.
- */
+/* Appends N codes of BITS bits without the sign; VALUE[i] = MOST becomes the
+ * largest code. */
 static bool put_codes(struct writer *w, const double *value, int n, double most,
                       int bits)
 {
@@ -103,8 +104,8 @@ static bool put_codes(struct writer *w, const double *value, int n, double most,
     return code != NULL;
 }
 
-/* Writes the factors of channel C; of clusters each texel has that of its own.
- */
+/* Writes the factors of channel C; with clusters each texel has the factor of
+ * its cluster. */
 static bool put_factors(struct writer *w, int c, double *value)
 {
     const bool is_factored = w->fit->model == GLINT_SCATTER_FACTORED;
@@ -183,9 +184,9 @@ static double sum(const double *x, int n)
     return all;
 }
 
-/* Returns the largest factor for taps of which the largest is MOST and N sum to
- * ALL, at most GLINT_TRANSLUCENT_MOST_TAPS when they are rounded; 0: they are
- * all 0. */
+/* Returns the largest factor for N taps, with max MOST and sum ALL, such that
+ * the rounded taps sum to at most GLINT_TRANSLUCENT_MOST_TAPS. Returns 0 if all
+ * taps are 0. */
 static double scale_of(double most, double all, int n)
 {
     const double tap = (1 << (GLINT_TRANSLUCENT_TAP_BITS - 1)) - 1;

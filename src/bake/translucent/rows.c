@@ -113,8 +113,8 @@ struct glint_watch glint_watch_of(struct glint_watch_part *part)
     return (struct glint_watch){part_progress, part_stop, part};
 }
 
-/* Sets the row of texel X from its tile of PICTURE; returns how many numbers
- * were held. */
+/* Sets the row of texel X from its tile of PICTURE; returns how many invalid
+ * numbers were set to 0. */
 static long long read_row(const struct glint_float_image *picture,
                           const struct glint_scatter_rows *rows, int x)
 {

@@ -26,26 +26,26 @@ static inline float *glint_scatter_row(const struct glint_scatter_rows *rows,
 
 /* The offsets of a kernel that stay within the square from texel X. */
 struct glint_scatter_inside {
-    int u_from, u_to, v_from, v_to; /* to: one past the last */
+    int u_from, u_to, v_from, v_to; /* the _to members are one past the last */
 };
 struct glint_scatter_inside glint_scatter_inside(int side, int kernel, int x);
 
 /* Index of the texel that entry D of texel X leads to, or -1. */
 int glint_scatter_target(int side, int kernel, int x, int d);
 
-/* Makes ROWS of SIDE and KERNEL, all 0, with shares if SHARED; returns false
- * without memory, ROWS then empty. */
+/* Allocates ROWS for SIDE and KERNEL, all 0, with shares if SHARED. Returns
+ * false if there is no memory; ROWS is then empty. */
 bool glint_scatter_open(struct glint_scatter_rows *rows, int side, int kernel,
                         bool shared);
 
-/* Exchanges both directions of each pair of texels: ROWS are those of where
- * light leaves then, and the other way round. */
+/* Transposes ROWS: rows of texels where light enters become rows of texels
+ * where light leaves, and vice versa. */
 void glint_scatter_turn(struct glint_scatter_rows *rows);
 
 /* Returns true if the work is to end; DONE is its fraction, 0 .. 1. */
 bool glint_watch_ends(const struct glint_watch *watch, double done);
 
-/* A part of the work of WATCH, from share FROM on, as long as LENGTH. */
+/* A part of the work of WATCH: the fractions FROM .. FROM + LENGTH. */
 struct glint_watch_part {
     const struct glint_watch *whole;
     double from, length;
@@ -55,11 +55,11 @@ struct glint_watch_part {
 struct glint_watch glint_watch_of(struct glint_watch_part *part);
 
 /* The fits that a run time can draw, beside albedo: least squares over the
- * entries inside the square, as what lies outside is lost anyway, and if it
- * counted, rows at the rim would be a kind of their own. Each fills the parts
- * of FIT, all 0, that are its model's, but for the energy; albedo is set. Of
- * ROWS, and of h that they set, texel x is where light leaves, and offsets lead
- * to where it came from. */
+ * entries inside the square. Light outside is lost anyway, and would make rows
+ * at the rim differ from all others. Each function fills the members of FIT
+ * that its model uses, except the energy; FIT must be all 0 but for albedo. In
+ * ROWS, and in the h that these functions set, light leaves at texel x, and
+ * offsets lead to where the light came from. */
 enum glint_status glint_scatter_clusters(const struct glint_scatter_rows *rows,
                                          const struct glint_watch *watch,
                                          struct glint_scatter_fit *fit);

@@ -21,15 +21,15 @@
  *
  * With S_j the blocks that elimination from the top leaves on the diagonal and
  * E_j the joints downwards, T_j = S_j^-1 E_j carries columns of the inverse
- * upwards: G(j, l) = T_j G(j + 1, l) for l > j, and G(j, j) = S_j^-1 + T_j
- * G(j + 1, j). Only blocks up to REACH below are kept. Entries of T fall
- * exponentially away from the diagonal; what is below SMALL of the largest is
- * left out. */
+ * upwards: G(j, l) = T_j G(j + 1, l) for l > j, and G(j, j) = S_j^-1 + T_j G(j
+ * + 1, j). Only blocks up to REACH below the diagonal are stored. Entries of T
+ * fall exponentially away from the diagonal; entries below SMALL times the
+ * largest are dropped. */
 #define SMALL 1e-11
 
-/* A symmetric positive matrix of BLOCKS x BLOCKS blocks of SIDE x SIDE, of
- * which those on the diagonal are tridiagonal and those beside them diagonal:
- * a grid whose nodes are joined to four neighbours. */
+/* A symmetric positive matrix of BLOCKS x BLOCKS blocks of SIDE x SIDE, where
+ * diagonal blocks are tridiagonal and the blocks next to them diagonal: a grid
+ * whose nodes are joined to four neighbours. */
 struct blocks {
     int side;            /* and number of blocks */
     const double *own;   /* [side][side] diagonal, by block */
@@ -132,8 +132,8 @@ static void eliminate(struct inverse *v, int j)
     invert(s, v->scratch, n);
 }
 
-/* Sets T of row J and what of it counts. */
-static void carry(struct inverse *v, int j)
+/* Sets T of row J and the range of its entries that are not negligible. */
+static void set_transfer(struct inverse *v, int j)
 {
     const int n = v->b->side;
     const double *s = eliminated(v, j), *e = v->b->down + j * n;
@@ -190,15 +190,15 @@ static void close_row(const struct inverse *v, int j, const double *below,
     multiply_add(v, v->scratch, to);
 }
 
-/* Makes the ring that of row J from that of J + 1. */
-static void climb(struct inverse *v, int j)
+/* Moves the ring from row J + 1 to row J. */
+static void move_ring_up(struct inverse *v, int j)
 {
     const int below = v->b->side - 1 - j;
     const int kept = below < v->reach ? below : v->reach;
     const size_t block = (size_t)v->b->side * (size_t)v->b->side;
     double *free_block = v->ring[v->reach];
 
-    carry(v, j);
+    set_transfer(v, j);
     for (int i = 0; i < kept; i++) {
         double *to = v->scratch;
 
@@ -229,7 +229,7 @@ static enum glint_status walk(struct inverse *v, int reach,
     for (int j = n - 1; j >= 0; j--) {
         const int done = n - j;
 
-        climb(v, j);
+        move_ring_up(v, j);
         for (int l = j; l < n && l <= j + reach; l++)
             take(ctx, j, l, v->ring[l - j]);
         if (glint_watch_ends(watch, first + (1.0 - first) * done / n))
@@ -271,7 +271,7 @@ static enum glint_status inverse_of(const struct blocks *blocks, int reach,
 
 enum { OCTAVES = 4 };
 
-/* A number 0 .. 1 of a place of a lattice. */
+/* Returns a pseudo-random number, 0 .. 1, for a lattice point. */
 static double hashed(uint32_t seed, int x, int y)
 {
     uint32_t h = seed * UINT32_C(0x9e3779b1) ^
@@ -288,8 +288,7 @@ static double smooth(double t)
     return t * t * (3 - 2 * t);
 }
 
-/* Noise of CELLS x CELLS cells over places 0 .. 1, which continues at its
- * edges; 0 .. 1. */
+/* Returns periodic noise, 0 .. 1, of CELLS x CELLS cells at (U, V), 0 .. 1. */
 static double noise(uint32_t seed, int cells, double u, double v)
 {
     const int x = (int)floor(u * cells), y = (int)floor(v * cells);
@@ -304,8 +303,8 @@ static double noise(uint32_t seed, int cells, double u, double v)
 }
 
 /* Veins run where a wave across the translucent medium, bent by noise, is near
- * 0. The translucent medium continues at its edges, since it meets itself
- * around a ball: the wave has whole numbers of halves along both. */
+ * 0. The pattern is periodic, since its edges meet around a ball: the wave has
+ * a whole number of half periods along both axes. */
 static double vein(uint32_t seed, double u, double v)
 {
     enum { CELLS = 3, ALONG_U = 3, ALONG_V = 2 };
@@ -347,8 +346,8 @@ void glint_stone_shares(const struct glint_stone *stone, double *share)
 enum {
     MARGIN =
         8, /* texels by which a translucent medium continues, as its rim is */
-    LEVELS = 8 /* steps between the materials of which the closed form is
-                  computed */
+    LEVELS = 8 /* number of steps between both materials at which the closed
+                  form is computed */
 };
 
 struct compute {
@@ -359,7 +358,8 @@ struct compute {
     double *share;                              /* [wide][wide] */
     double *diffusion, *absorb;                 /* [wide][wide] */
     double *own, *right, *down, *source, *exit; /* of a mode */
-    double *closed[LEVELS + 1]; /* [kernel * kernel] what to add, or NULL */
+    double *closed[LEVELS + 1]; /* [kernel * kernel] correction to add, or
+                                   NULL */
     double beyond;              /* z_b of all, mm */
 };
 
@@ -379,8 +379,9 @@ void glint_stone_defaults(struct glint_stone *stone)
     };
 }
 
-/* Returns what is out of range, or NULL. */
-static const char *wrong(const struct glint_stone *s)
+/* Returns the valid range, as text, of a parameter that is out of range, or
+ * NULL. */
+static const char *find_invalid(const struct glint_stone *s)
 {
     if (!(s->side >= 1 && s->side <= GLINT_SCATTER_MAX_SIDE))
         return "size is 1 to 256 texels";
@@ -420,7 +421,7 @@ static int held(int x, int most)
     return x < 0 ? 0 : x > most ? most : x;
 }
 
-/* Sets what the channel's texels are made of. */
+/* Sets the material of each texel for channel C. */
 static void set_channel(struct compute *p, int c)
 {
     const int n = p->wide * p->wide;
@@ -442,7 +443,8 @@ static double joint(double a, double b)
     return 2 * a * b / (a + b);
 }
 
-/* Sets the matrix of mode N, and what texels put into it and let out. */
+/* Sets the matrix of mode N, and how much light each texel puts into the mode
+ * and lets out of it. */
 static void set_mode(struct compute *p, int n)
 {
     const int w = p->wide;
@@ -497,7 +499,8 @@ static void take(void *ctx, int j, int l, const double *block)
     }
 }
 
-/* Computes what level LEVEL lacks of the closed form, once for a channel. */
+/* Computes the closed form minus the modes for level LEVEL, once per
+ * channel. */
 static bool set_closed(struct compute *p, int level)
 {
     const int k2 = glint_scatter_kernel2(p->rows->kernel);
@@ -539,7 +542,8 @@ static double lacks(const struct compute *p, int x, int d)
            (high && t > 0 ? t * high[d] : 0);
 }
 
-/* Adds the closed form's part to the channel; what is below 0 then is 0. */
+/* Adds the correction by the closed form to the channel and clamps negative
+ * entries to 0. */
 static bool add_closed(struct compute *p)
 {
     const int side = p->rows->side, n = p->rows->kernel;
@@ -567,11 +571,13 @@ static bool add_closed(struct compute *p)
     return true;
 }
 
-/* Scales rows whose sums are over 1, and what leads to their texels alike. */
-static void limit(const struct compute *p)
+/* Scales down rows whose sums exceed 1, and the entries that lead to their
+ * texels by the same factors. */
+static void limit_rows(const struct compute *p)
 {
     const int side = p->rows->side, n = p->rows->kernel;
-    double *scale = p->own; /* the lattice has no less texels */
+    double *scale = p->own; /* large enough: the lattice has at least as many
+                               texels */
 
     for (int x = 0; x < side * side; x++) {
         const float *row = glint_scatter_row(p->rows, x, p->channel);
@@ -619,7 +625,7 @@ static enum glint_status compute_channel(struct compute *p, int c,
     if (!add_closed(p))
         return GLINT_E_MEMORY;
     drop_closed(p);
-    limit(p);
+    limit_rows(p);
     return GLINT_OK;
 }
 
@@ -656,7 +662,7 @@ enum glint_status glint_scatter_compute(const struct glint_stone *stone,
 {
     struct compute p = {
         .stone = stone, .rows = rows, .wide = stone->side + 2 * MARGIN};
-    const char *cause = wrong(stone);
+    const char *cause = find_invalid(stone);
     enum glint_status status = GLINT_E_MEMORY;
 
     *rows = (struct glint_scatter_rows){0};

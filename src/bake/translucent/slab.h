@@ -26,7 +26,7 @@ struct glint_slab {
     double diffusion;       /* D, mm */
     double beyond;          /* z_b, mm */
     double depth;           /* of the source, mm */
-    double albedo;          /* of one scattering: power of the source */
+    double albedo;          /* of single scattering: power of the source */
 };
 
 /* Sets SLAB to channel C of a mix of the materials of STONE, with the fraction
@@ -36,13 +36,15 @@ void glint_slab_of(const struct glint_stone *stone, double share, int c,
 
 /* Mode N, 1 .. GLINT_SLAB_MODES, of a slab. */
 double glint_slab_wave(const struct glint_slab *slab, int n); /* k, 1/mm */
-/* What light of power 1 puts into it, and what of it leaves, 1/mm. */
+/* Return the source of mode N for incident light of power 1, in 1/mm, and the
+ * light that leaves per unit of the mode. */
 double glint_slab_source(const struct glint_slab *slab, int n);
 double glint_slab_exit(const struct glint_slab *slab, int n);
 
-/* Sets ENTRY[kernel * kernel] to the row of a translucent medium without an
- * end, by its closed form: sources and their images at the faces, the multipole
- * of which the dipole is the first pair, over the area of both texels. */
+/* Sets ENTRY[kernel * kernel] to the row of a laterally infinite translucent
+ * medium, in closed form: the sources and their images at the faces, integrated
+ * over the area of both texels. This is the multipole, whose first pair is the
+ * dipole. */
 void glint_slab_closed(const struct glint_slab *slab, int kernel,
                        double *entry);
 

@@ -13,7 +13,8 @@ struct reader {
     struct glint_stone_text *to;
     char name[MOST_STONES][32];
     int n_stones;
-    bool is_turned; /* the pattern has its second translucent medium first */
+    bool is_turned; /* true: the pattern names its second translucent medium
+                       first */
     struct glint_text_place pattern;
 };
 
@@ -219,8 +220,8 @@ static bool (*const read[N_LINES])(struct reader *) = {
     read_size,  read_texel,   read_kernel, read_slab, read_index,
     read_stone, read_pattern, read_data,   read_model};
 
-/* Checks what lines say together. */
-static bool check(struct reader *r)
+/* Checks that the lines are consistent. */
+static bool check_lines(struct reader *r)
 {
     struct glint_stone_text *t = r->to;
 
@@ -263,7 +264,7 @@ enum glint_status glint_stone_parse(struct glint_stone_text *text,
             glint_line_begin(&r.text, lines, N_LINES, first, &i) &&
             (i < 0 || (read[i](&r) && glint_line_ends(&r.text, lines[i].word)));
     }
-    good = good && check(&r);
+    good = good && check_lines(&r);
     if (good && r.is_turned) {
         const struct glint_stone_material m = text->stone.material[0];
 

@@ -132,8 +132,8 @@ static bool sample_box(const struct glint_visible *h,
     return extent->i1 >= 0;
 }
 
-/* Shrinks BOX to those rays of a grid that get through, and a cell around them.
- * Returns whether there are any. */
+/* Shrinks BOX to the rays of a grid that get through, and a cell around them.
+ * Returns false if no ray gets through. */
 static bool shrink(const struct glint_visible *h, const struct glint_path *path,
                    double sine, int across, int down, struct glint_pupil *box)
 {
@@ -149,11 +149,11 @@ static bool shrink(const struct glint_visible *h, const struct glint_path *path,
     return true;
 }
 
-/* Grows BOX on every side at which light still comes through, until none does.
- */
-static bool enclose(const struct glint_visible *h,
-                    const struct glint_path *path, double sine,
-                    struct glint_pupil *box)
+/* Grows BOX on every side where light still gets through, until no light
+ * does. */
+static bool grow_box(const struct glint_visible *h,
+                     const struct glint_path *path, double sine,
+                     struct glint_pupil *box)
 {
     enum { COARSE = 16, DOWN = 8, ROUNDS = 8 };
 
@@ -220,8 +220,8 @@ static double miss_of(const struct glint_visible *h,
     return fmax(ray->rel_radius, fmax(stop, field));
 }
 
-/* Shrinks BOX to a cell and a half around the ray of a grid that misses by
- * least. Returns its miss; HUGE_VAL if all rays are invalid. */
+/* Shrinks BOX to a cell and a half around the ray of a grid that misses by the
+ * smallest distance. Returns its miss; HUGE_VAL if all rays are invalid. */
 static double close_in(const struct glint_visible *h,
                        const struct glint_path *path, double sine,
                        struct glint_pupil *box)
@@ -253,8 +253,9 @@ static double close_in(const struct glint_visible *h,
 /* Finds a part of the pupil that a grid over BOX misses: if the field is far
  * smaller than the front, so is the part of the pupil through which it is seen.
  */
-static bool seek(const struct glint_visible *h, const struct glint_path *path,
-                 double sine, struct glint_pupil *box)
+static bool search_hidden_part(const struct glint_visible *h,
+                               const struct glint_path *path, double sine,
+                               struct glint_pupil *box)
 {
     enum { ROUNDS = 4 };
 
@@ -262,7 +263,7 @@ static bool seek(const struct glint_visible *h, const struct glint_path *path,
         return false;
     for (int round = 0; round < ROUNDS; round++)
         if (close_in(h, path, sine, box) <= 1)
-            return enclose(h, path, sine, box);
+            return grow_box(h, path, sine, box);
     return false;
 }
 
@@ -271,7 +272,8 @@ static double degrees_of(double sine)
     return asin(sine) * (180 / GLINT_PI);
 }
 
-/* Finds the box at SINE wherever it is; returns whether there is one. */
+/* Finds the box at SINE anywhere in the pupil; returns false if there is
+ * none. */
 static bool find_box(const struct glint_visible *h,
                      const struct glint_path *path, double sine,
                      struct glint_pupil *box)
@@ -286,10 +288,11 @@ static bool find_box(const struct glint_visible *h,
     if (tighten(h, path, sine, box))
         return true;
     *box = spot;
-    return seek(h, path, sine, box) && tighten(h, path, sine, box);
+    return search_hidden_part(h, path, sine, box) &&
+           tighten(h, path, sine, box);
 }
 
-/* Returns NEAR and what lies around it. */
+/* Returns NEAR grown by a margin. */
 static struct glint_pupil grown(const struct glint_pupil *near)
 {
     const double more = 0.2 * (near->x1_mm - near->x0_mm);
@@ -302,20 +305,23 @@ static struct glint_pupil grown(const struct glint_pupil *near)
 }
 
 /* Finds the box at SINE, looking around NEAR first. */
-static bool follow(const struct glint_visible *h, const struct glint_path *path,
-                   double sine, const struct glint_pupil *near,
-                   struct glint_pupil *box)
+static bool find_box_near(const struct glint_visible *h,
+                          const struct glint_path *path, double sine,
+                          const struct glint_pupil *near,
+                          struct glint_pupil *box)
 {
     *box = grown(near);
-    return (enclose(h, path, sine, box) && tighten(h, path, sine, box)) ||
+    return (grow_box(h, path, sine, box) && tighten(h, path, sine, box)) ||
            find_box(h, path, sine, box);
 }
 
 /* ------------------------------------------------------------------ profile */
 
 enum {
-    AFRESH = 4, /* angles after which boxes are looked for everywhere again */
-    AFRESH_SHAPED = 12 /* the same of shaped lenses, whose rays take long */
+    AFRESH = 4, /* number of angles after which boxes are searched everywhere
+                   again */
+    AFRESH_SHAPED = 12 /* the same for shaped lenses, whose rays are slow to
+                          trace */
 };
 
 /* Returns BOX moved on by RATIO times the way from BEFORE to BOX. */
@@ -338,8 +344,9 @@ struct box_samples {
 };
 
 /* Finds the boxes of one wavelength at the angles that WANTED marks. */
-static void look(const struct glint_visible *h, const double *sine,
-                 const bool *wanted, int wave, struct box_samples *g)
+static void find_boxes_of_wave(const struct glint_visible *h,
+                               const double *sine, const bool *wanted, int wave,
+                               struct box_samples *g)
 {
     const struct glint_path *path = &h->position_path[wave];
     struct glint_pupil box = {.y1_mm = 0}, before = box;
@@ -357,7 +364,7 @@ static void look(const struct glint_visible *h, const double *sine,
         if (have > 1)
             near = predict(&before, &box, (s[0] - s[-1]) / (s[-1] - s[-2]));
         before = box;
-        now = have ? follow(h, path, *s, &near, &box)
+        now = have ? find_box_near(h, path, *s, &near, &box)
                    : find_box(h, path, *s, &box);
         if (have && k % (h->shaped ? AFRESH_SHAPED : AFRESH) == 0 &&
             find_box(h, path, *s, &near)) {
@@ -391,9 +398,9 @@ static void add_angle(struct glint_visible_profile *p, double sine,
     p->n++;
 }
 
-/* Finds the boxes of one ghost at the angles SINE. If it is ALONE it is seen at
- * all of them in some colour, so that all wavelengths are tried where three are
- * not; one of several beside each other may be dark. */
+/* Finds the boxes of one ghost at the angles SINE. A ghost that is ALONE is
+ * visible at every angle in some colour, so all wavelengths are tried where
+ * three see nothing. One of several ghosts beside each other may be dark. */
 static void find_boxes(const struct glint_visible *h, bool alone,
                        const double *sine, struct box_samples *g)
 {
@@ -403,7 +410,7 @@ static void find_boxes(const struct glint_visible *h, bool alone,
     for (int k = 0; k < GLINT_PROFILE; k++)
         wanted[k] = true;
     for (int i = 0; i < 3; i++)
-        look(h, sine, wanted, glint_visible_colour[i], g);
+        find_boxes_of_wave(h, sine, wanted, glint_visible_colour[i], g);
     /* Where only some of the three colours get through, boxes of others may lie
      * between them. */
     for (int k = 0; k < GLINT_PROFILE; k++) {
@@ -415,7 +422,7 @@ static void find_boxes(const struct glint_visible *h, bool alone,
     }
     for (int wave = 1; wave < GLINT_VISIBLE_WAVES - 1; wave++)
         if (wave != GLINT_VISIBLE_WAVES / 2)
-            look(h, sine, wanted, wave, g);
+            find_boxes_of_wave(h, sine, wanted, wave, g);
 }
 
 /* Widens the boxes A to contain B. */
@@ -463,8 +470,8 @@ enum {
     FARTHER = 4
 };
 
-/* Returns whether light gets through at one of the first N of these
- * wavelengths, and its BOX. */
+/* Returns whether light gets through at one of the first N wavelengths of
+ * glint_visible_colour, and sets BOX to its box. */
 static bool passes_in(const struct glint_visible *h, double sine, int n,
                       struct glint_pupil *box)
 {
@@ -481,9 +488,9 @@ static bool passes(const struct glint_visible *h, double sine, int n)
     return passes_in(h, sine, n, &box);
 }
 
-/* Returns whether light of the middle of the band gets through; of shaped
- * lenses, whose rays take long, looks where it did a step before first. BOX is
- * that of the step before if INSIDE, and becomes this one's. */
+/* Returns whether light of the middle of the band gets through; for shaped
+ * lenses, whose rays are slow to trace, searches near the box of the previous
+ * step first. If INSIDE, BOX must be that box. BOX receives the new box. */
 static bool still_passes(const struct glint_visible *h, double sine,
                          bool inside, struct glint_pupil *box)
 {
@@ -523,9 +530,9 @@ static double edge(const struct glint_visible *h, double with, double without)
     return with;
 }
 
-/* Ends range N - 1 of N at HI. Returns how many ranges there are then: an empty
- * range is dropped, and one that begins before the last one has ended is joined
- * to that. */
+/* Ends range N - 1 of N at HI. Returns the new number of ranges: an empty range
+ * is dropped, and a range that begins before the previous range ends is merged
+ * with it. */
 static int end_range(double (*range)[2], int n, double hi)
 {
     double *last = range[n - 1];

@@ -24,7 +24,7 @@ enum {
     GLINT_VISIBLE_WAVES = 11,
     GLINT_VISIBLE_COLOURS = 3,
     GLINT_MAX_RANGES = 8,
-    /* Number of angles of a range at which boxes are found. */
+    /* number of angles per range at which boxes are found */
     GLINT_PROFILE = 49,
     GLINT_MAX_BESIDE = 2
 };
@@ -36,21 +36,21 @@ extern const int glint_visible_colour[GLINT_VISIBLE_COLOURS];
  * sampling and weights. */
 #define GLINT_WIDE 10
 
-/* Degrees: of lights further off the axis, of fisheyes, rays of any stop come
- * near the equators of surfaces as those of wide stops do. */
+/* Degrees: rays of fisheyes from lights farther off the axis come near the
+ * equators of surfaces at any stop, as rays of wide stops do. */
 #define GLINT_FAR 60
 
-/* One ghost, and what all its ranges share. */
+/* One ghost, and the data common to all its ranges. */
 struct glint_visible {
     const struct glint_setup *setup;
     int ghost;
-    double field_mm; /* radius about the sensor's centre beyond which light does
-                        not count */
+    double field_mm; /* radius about the sensor's centre outside which light
+                        does not count */
     bool wide; /* whether the lens opens wider than GLINT_WIDE: its rays come
                   near singularities, and the model is used with much narrower
                   stops */
-    bool far; /* whether lights beyond GLINT_FAR are requested, of a round lens;
-                 it is wide then */
+    bool far;  /* true: lights beyond GLINT_FAR are requested and the lens is
+                  round; it then counts as wide */
     /* Whether the lens is round, opens wider than GLINT_WIDE and has surfaces
      * that are not spheres, whose powers grow steeply: zones that cannot be
      * fitted are accepted where errors are invisible instead of being halved
@@ -59,16 +59,17 @@ struct glint_visible {
     double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
     struct glint_path path[GLINT_VISIBLE_WAVES]; /* paths at wavelengths from
                                                     wave_lo to wave_hi */
-    struct glint_path position_path[GLINT_VISIBLE_WAVES]; /* those paths, for
+    struct glint_path position_path[GLINT_VISIBLE_WAVES]; /* the same paths, for
                                                              positions only */
     /* The ghost of the same lens at nearby positions of a zoom: light that is
      * visible or cut there counts here too, so that models can be interpolated.
      * */
     int n_beside;
-    struct glint_visible *beside; /* [n_beside], with none of their own */
+    struct glint_visible *beside; /* [n_beside]; their own n_beside is 0 */
 };
 
-/* Returns the ghost itself for K of 0, and then those beside it. */
+/* Returns the ghost itself for K = 0, and the ghost beside it number K - 1 for
+ * larger K. */
 static inline const struct glint_visible *
 glint_visible_member(const struct glint_visible *visible, int k)
 {
@@ -82,8 +83,8 @@ void glint_visible_init(struct glint_visible *visible,
 /* Sets the max angle of lights, MAX_DEG. */
 void glint_visible_reach(struct glint_visible *visible, double max_deg);
 
-/* Sets VISIBLE for the part W0 .. W1, -1 .. 1, of the band of WHOLE; it has
- * room for as many beside it. */
+/* Sets VISIBLE to WHOLE with its band narrowed to W0 .. W1, -1 .. 1. VISIBLE
+ * must have memory for as many ghosts beside it as WHOLE. */
 void glint_visible_narrow(struct glint_visible *visible,
                           const struct glint_visible *whole, double w0,
                           double w1);
@@ -97,9 +98,9 @@ void glint_visible_path(const struct glint_visible *visible, double w,
 int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
                          double (*range)[2]);
 
-/* Adds the range MORE to N of GLINT_MAX_RANGES that do not touch, by rising
- * sine, and joins it to those that it touches; without room for it, it is left
- * out. Returns how many there are then. */
+/* Inserts the range MORE into N disjoint ranges in rising order and merges it
+ * with ranges that it touches. Drops MORE if GLINT_MAX_RANGES other ranges
+ * remain. Returns the new number of ranges. */
 int glint_visible_add_range(double (*range)[2], int n, const double more[2]);
 
 /* The box of visible light at one angle and wavelength. */
@@ -108,8 +109,9 @@ struct glint_box_sample {
     struct glint_pupil box;
 };
 
-/* Boxes over a range of angles: at each angle, the one that holds the visible
- * light of the whole band, and those of single wavelengths, by rising angle. */
+/* Boxes over a range of angles: for each angle, the box that contains the
+ * visible light of the whole band, and the boxes of single wavelengths, by
+ * rising angle. */
 struct glint_visible_profile {
     int n, n_samples;
     double sine[GLINT_PROFILE];
