@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Gives an account of what became of a frame's bundles, and why. No other file
- * refers to this one, so a program that does not request it does not link it.
- */
+ * Reports the outcome of each bundle of a frame, and its cause. No other file
+ * refers to this file, so programs that do not use it do not link it. */
 #include "base/q.h"
 #include "flare/by_edges.h"
 #include "flare/dim.h"
 #include "flare/wave_sets.h"
 
-/* Returns the number of a bundle among all that there could be. */
+/* Returns the number of a bundle among all combinations of light, ghost and
+ * wave. */
 static int64_t number_of(const struct glint_flare *f, int ghost, int light,
                          int wave)
 {
@@ -19,8 +19,9 @@ static int64_t number_of(const struct glint_flare *f, int ghost, int light,
            wave;
 }
 
-/* Returns the index of the first planned bundle whose number is not below
- * NUMBER, or n_bundles if there is none. Planned bundles rise by number. */
+/* Returns the index of the first planned bundle whose number is at least
+ * NUMBER, or n_bundles if there is no such bundle. Planned bundles are sorted
+ * by number. */
 static int first_from(const struct glint_flare *f, int64_t number)
 {
     int low = 0, high = f->n_bundles;
@@ -37,8 +38,9 @@ static int first_from(const struct glint_flare *f, int64_t number)
     return low;
 }
 
-/* Returns the index of a bundle among those planned; -1: it was not planned. */
-static int find(const struct glint_flare *f, int64_t number)
+/* Returns the index of a bundle among the planned bundles, or -1 if it was not
+ * planned. */
+static int find_bundle(const struct glint_flare *f, int64_t number)
 {
     const int at = first_from(f, number);
 
@@ -50,7 +52,7 @@ static int find(const struct glint_flare *f, int64_t number)
                : -1;
 }
 
-/* Returns the set of waves that GHOST took for LIGHT; 0 if no bundle of them
+/* Returns the set of waves chosen for GHOST and LIGHT; 0 if no bundle of both
  * was kept. */
 static int set_of(const struct glint_flare *f, int ghost, int light)
 {
@@ -62,11 +64,11 @@ static int set_of(const struct glint_flare *f, int ghost, int light)
                : 0;
 }
 
-/* Returns which of the flare's max_bundles places, counted from 0, must exist
- * for the plan to look at the bundle at all. Without sets that is the place
- * numbered as the bundle. With sets the plan first looks at all waves of the
- * first set, for each ghost and light, and then chooses: it is the place of the
- * last of these waves. */
+/* Returns the index of the slot, of the flare's max_bundles slots, that must
+ * exist for the plan to consider the bundle at all. Without sets the index is
+ * the bundle's number. With sets the plan first considers all waves of the
+ * first set, for each ghost and light, and then chooses a set: it is the slot
+ * of the last of these waves. */
 static int64_t place_of(const struct glint_flare *f, int ghost, int light,
                         int wave)
 {
@@ -97,7 +99,7 @@ static void count_outputs(const struct glint_transfer *t,
         }
 }
 
-/* Returns how many rows of the picture EDGE crosses. */
+/* Returns the number of rows of the picture that EDGE crosses. */
 static int rows_of(const struct glint_edge *edge, int height)
 {
     const int first = edge->y_q8 > 0 ? edge->y_q8 >> 8 : 0;
@@ -120,7 +122,8 @@ static void count_edges(const struct glint_flare *f,
     }
 }
 
-/* Returns whether LIGHT gave all of its light for GHOST to another one. */
+/* Returns whether, for GHOST, all light of LIGHT was merged into another
+ * light. */
 static int is_shared(const struct glint_flare *f, int ghost, int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -136,7 +139,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     const int64_t number = number_of(flare, ghost, light, wave);
     const int64_t place = place_of(flare, ghost, light, wave);
     const struct glint_wave_sets *sets = flare->plan.frame->sets;
-    const int at = find(flare, number);
+    const int at = find_bundle(flare, number);
     struct glint_bundle_plan planned = {
         .ghost = ghost, .light = light, .wave = wave};
     struct glint_bundle bundle;

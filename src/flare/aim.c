@@ -26,8 +26,8 @@ static int32_t ratio(struct glint_real small, struct glint_real large)
     return (int32_t)real_integer(real_over(small, large), 30, 1 << 30);
 }
 
-/* Sets cosine and sine of the direction from (0, 0) to (X, Y), both 0 or more.
- * The direction to (0, 0) itself is that of x. */
+/* Sets COSINE and SINE of the direction from (0, 0) to (X, Y); X and Y must not
+ * be negative. For (0, 0) it is the direction of x. */
 static void direction(struct glint_real x, struct glint_real y,
                       int32_t *cosine_q30, int32_t *sine_q30)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a flare: bundles become edges, edges go into tiles, rows of tiles
- * become pixels. */
+ * Draws a flare: turns bundles into edges, sorts edges into tiles, and turns
+ * rows of tiles into pixels. */
 #include "base/divide.h"
 #include "base/q.h"
 #include "flare/by_edges.h"
@@ -9,7 +9,7 @@
 
 /* ------------------------------------------------------------------ memory */
 
-/* Returns the larger of the number of bundles and that of rows of tiles. */
+/* Returns the max of the number of bundles and the number of rows of tiles. */
 static size_t most_jobs(const struct glint_flare_config *c)
 {
     const size_t rows = glint_flare_count_tiles(1, c->height, c->tile_log2);
@@ -17,7 +17,8 @@ static size_t most_jobs(const struct glint_flare_config *c)
     return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
 }
 
-/* Both run twice: once to measure, which gives NULL, and once to place. */
+/* Both functions are called twice: first to measure, when they return NULL,
+ * then to allocate. */
 struct glint_by_edges *glint_edges_carve(struct glint_arena *a,
                                          const struct glint_flare_config *c)
 {
@@ -74,8 +75,9 @@ void glint_edges_begin(struct glint_flare *f)
 
 typedef int weight_fn(const struct glint_flare *f, int job);
 
-/* Sorts N jobs by falling weight, to a power of two, so that no worker begins a
- * long job when the others have finished. Changes no output. */
+/* Sorts N jobs by descending log2 of their weight, so that no worker begins a
+ * long job when the others have finished. The order does not change the
+ * output. */
 static void set_order(struct glint_flare *f, int n, weight_fn *weight)
 {
     int32_t *order = glint_by_edges_of(f)->order;
@@ -107,8 +109,8 @@ static int edges_in_row(const struct glint_flare *f, int row)
 
 /* ----------------------------------------------------------------- bundles */
 
-/* Returns the flux of a bundle at energy 1, display white times pixels, at most
- * 2^26. */
+/* Returns the flux of a bundle at energy 1, display white times pixels, clamped
+ * to 2^26. */
 static int64_t flux_of(const struct glint_bundle *b)
 {
     const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* 2^20 at most */
@@ -122,10 +124,10 @@ static int64_t flux_of(const struct glint_bundle *b)
     return ((up < 0 ? flux >> -up : flux << up) >> 8) + 1;
 }
 
-/* Returns the most light that one cell may give a pixel. Sums of _q36 in
- * colours up to 4 stay below 2^63 while no pixel gets more than 2^24. No cell
- * can give a pixel more than its flux; if the flux of all bundles passes 2^24,
- * each cell is limited to its fraction of half of that. */
+/* Returns the max light that one cell may give a pixel. Sums of _q36 in colours
+ * up to 4 stay below 2^63 as long as no pixel gets more than 2^24. No cell can
+ * give a pixel more than its flux; if the flux of all bundles reaches 2^24,
+ * each cell is limited to 2^23 / the number of cells. */
 static int32_t light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;
@@ -150,9 +152,9 @@ static int add_refs(const struct glint_flare *f, int refs, int first, int n)
     return refs;
 }
 
-/* Turns a bundle into edges in what is left of the worker's fraction of them.
- * If they do not fit, none is kept, and the entries that they would take in
- * BINS are counted in the slot's refs, unless BINS is NULL. */
+/* Turns a bundle into edges in the free rest of the worker's range of edges. If
+ * they do not fit, all are dropped, and the number of entries that they need in
+ * BINS is stored in the slot's refs, unless BINS is NULL. */
 static void emit_bundle(struct glint_flare *f, int bundle, int worker,
                         const struct glint_bins *bins)
 {
@@ -207,7 +209,7 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
     w->n_edges += ghost.n_edges;
 }
 
-/* Returns the bins with the places that WORKER fills. */
+/* Returns the bins with the indices of WORKER's own entries. */
 static struct glint_bins bins_of(const struct glint_flare *f, int worker)
 {
     struct glint_bins bins = f->bins;
@@ -235,8 +237,8 @@ static void emit_job(void *ctx, int job, int worker)
     count_bundle(f, bundle, worker);
 }
 
-/* Gives each of N workers an equal part of the edges. */
-static void share_out(struct glint_flare *f, int n)
+/* Gives each of N workers an equal range of the array of edges. */
+static void split_edges(struct glint_flare *f, int n)
 {
     const int part = f->cfg.max_primitives / n;
 
@@ -266,8 +268,8 @@ static int all_placed(const struct glint_flare *f)
     return 1;
 }
 
-/* Gives bundles that did not fit into their worker's share a place in the
- * fraction of any worker that has enough room. */
+/* Makes the edges of each bundle that did not fit into its worker's range in
+ * the range of any worker with enough space left. */
 static void emit_leftovers(struct glint_flare *f)
 {
     const int n_workers = glint_workers_count(f->cfg.workers);
@@ -284,13 +286,13 @@ static void emit_leftovers(struct glint_flare *f)
         }
 }
 
-/* Turns all bundles into edges again, in order and into one list, so that which
- * ones are left out does not depend on the workers' timing. */
+/* Turns all bundles into edges again, in order and into one list, so that the
+ * set of dropped bundles does not depend on the workers' timing. */
 static void emit_in_order(struct glint_flare *f)
 {
     int full = 0;
 
-    share_out(f, 1);
+    split_edges(f, 1);
     clear_counts(f);
     for (int i = 0; i < f->n_bundles; i++) {
         struct glint_bundle_slot *slot = &f->slot[i];
@@ -306,9 +308,9 @@ static void emit_in_order(struct glint_flare *f)
     }
 }
 
-static void emit(struct glint_flare *f)
+static void emit_all(struct glint_flare *f)
 {
-    share_out(f, glint_workers_count(f->cfg.workers));
+    split_edges(f, glint_workers_count(f->cfg.workers));
     clear_counts(f);
     set_order(f, f->n_bundles, cells_across);
     glint_workers_run(f->cfg.workers, f->n_bundles, emit_job, f);
@@ -328,8 +330,8 @@ static void emit(struct glint_flare *f)
 
 /* -------------------------------------------------------------------- bins */
 
-/* Keeps the first bundles whose entries fit. The counts in the bins are
- * meaningless afterwards. */
+/* Keeps the longest run of first bundles whose entries fit into the bins. The
+ * counts in the bins are undefined afterwards. */
 static void drop_refs(struct glint_flare *f)
 {
     struct glint_bins bins = bins_of(f, 0);
@@ -348,8 +350,8 @@ static void drop_refs(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
-/* Turns counts into places: in each tile, a worker's entries follow those of
- * the workers before it. Returns the number of all entries. */
+/* Turns counts into first indices: in each tile, a worker's entries follow the
+ * entries of the workers before it. Returns the number of all entries. */
 static int place_refs(struct glint_flare *f)
 {
     const int n_tiles = f->bins.tiles_x * f->bins.tiles_y;
@@ -370,8 +372,8 @@ static int place_refs(struct glint_flare *f)
     return sum;
 }
 
-/* Job JOB puts into the bins what worker JOB counted: the edges of its bundles,
- * at the places that place_refs() gave that worker. Any worker may run it. */
+/* Job JOB puts the edges that worker JOB counted into the bins, at the indices
+ * that place_refs() computed for that worker. Any worker may run it. */
 static void put_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
@@ -393,7 +395,7 @@ void glint_edges_bin(struct glint_flare *flare)
 
     glint_by_edges_of(flare)->limit_q8 = light_limit_q8(flare);
     flare->n_drawn = 0;
-    emit(flare);
+    emit_all(flare);
     s->refs = place_refs(flare);
     s->need_refs = glint_flare_add_need(s->need_refs, s->refs);
     if (s->refs > flare->cfg.max_refs) {

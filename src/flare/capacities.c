@@ -2,9 +2,9 @@
 #include "base/q.h"
 #include "glint/flare.h"
 
-/* Edges of one light, of one bundle, and of a frame. There are two entries in
- * tiles for each edge, so up to 131072 for a light; the lenses of this
- * repository take up to 67000, at 1280x720 in linear light. */
+/* Max edges per light, per bundle, and per frame. Tiles have room for two
+ * entries per edge, so up to 131072 per light; the lenses of this repository
+ * need up to 67000, at 1280x720 in linear light. */
 enum { EDGES = 1 << 16, EDGES_OF_BUNDLE = 1 << 10, MOST_EDGES = 1 << 24 };
 
 void glint_flare_defaults(struct glint_flare_config *cfg, int width, int height)

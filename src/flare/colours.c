@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Works out the colours of a frame in integers, for programs without floating
+ * Computes the colours of a frame in integers, for programs without floating
  * point. */
 #include "base/real.h"
 #include "glint/flare.h"
 
-/* Returns the flux of the direct image times 2^FRAC, mm^2, at W_Q30, the place
- * in the band of wavelengths. Each coefficient is clamped to 2^27, so sums stay
- * below 2^30. */
+/* Returns the flux of the direct image times 2^FRAC, mm^2, at W_Q30, the
+ * position in the band of wavelengths, -1 .. 1. Each coefficient is clamped to
+ * 2^27, so sums stay below 2^30. */
 static int32_t direct_flux(const struct glint_model_header *h, int32_t w_q30,
                            int frac)
 {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Between two nodes logarithms are interpolated, so that a ghost's share is
- * steady as its light moves or fades. From a node at which some wave does not
- * get through to both neighbouring nodes, the ghost counts as bright. */
+ * Logarithms are interpolated between nodes, so that a ghost's share changes
+ * smoothly as its light moves or fades. If a wave does not get through at a
+ * node, the ghost counts as bright from the node before it to the node after
+ * it. */
 #include "flare/dim.h"
 
 enum { BRIGHT_Q8 = 1 << 16 };
@@ -21,7 +22,8 @@ static int32_t value_at(const struct glint_flare_frame *frame, int32_t sine_q30,
     return a + q_narrow(q_shift((int64_t)(b - a) * (at_q16 & 65535), 16));
 }
 
-/* Returns whether all waves get through at node NODE, or there is none. */
+/* Returns whether all waves of the ghost get through at node NODE. Returns 1 if
+ * NODE is out of range. */
 static int is_known(const struct glint_flare_frame *frame, int ghost, int node)
 {
     const int16_t *value;
@@ -35,9 +37,10 @@ static int is_known(const struct glint_flare_frame *frame, int ghost, int node)
     return 1;
 }
 
-/* If the ghost counts as bright between the two nodes before or after these
- * two, it falls from 1 at the node they have in common to what it
- * would be without that, halfway to the other node at the latest. */
+/* If the ghost counts as bright in the interval before or after this interval,
+ * the result falls from 1, at the node shared by both intervals, to the
+ * interpolated value. It reaches that value halfway to the other node at the
+ * latest. */
 int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
                            const struct glint_light *light, int ghost)
 {

@@ -12,11 +12,13 @@
 #include "glint/flare.h"
 
 enum {
-    GLINT_DIM_WAVE = 1,  /* the wave whose rays represent all */
-    GLINT_DIM_WAVES = 3, /* with any other number no ghost is dim */
+    GLINT_DIM_WAVE = 1,  /* the wave whose rays represent all waves */
+    GLINT_DIM_WAVES = 3, /* with any other number of waves no ghost is treated
+                            as dim */
     GLINT_DIM_WHOLE_Q8 = 256,
     GLINT_DIM_LAST = GLINT_DIM_NODES - 1,
-    GLINT_DIM_DARK = INT16_MIN, /* value where a wave does not get through */
+    GLINT_DIM_DARK = INT16_MIN, /* value of a wave whose light does not get
+                                   through the lens */
     GLINT_LIGHT_HELD =
         14 /* extra fraction bits of colours while lights merge */
 };
@@ -25,20 +27,23 @@ struct glint_flare;
 
 /* The functions of the table that a plan calls. */
 struct glint_dim_method {
-    /* Fills those nodes, which are angles, that lie next to the angles of the
-     * plan's first N_LIGHTS lights and are not filled yet. */
+    /* Fills the nodes (sampled angles) next to the angles of the plan's first
+     * N_LIGHTS lights, unless they are filled already. */
     void (*fill)(struct glint_flare *flare, int n_lights);
     /* Lets dim ghosts of the plan's first N_LIGHTS lights share rays: for each
-     * ghost, a light is merged into the nearest light before it if the ghost is
-     * so dim that it may move that far; both are drawn as one, between them.
-     * The merged fraction falls gradually as a ghost becomes brighter. */
+     * ghost, a light is merged into the nearest of the lights before it in the
+     * list if the ghost is so dim that the shift is invisible. Both lights are
+     * then drawn as one light between them. The fraction of the light that is
+     * merged falls gradually as a ghost becomes brighter. */
     void (*gather)(struct glint_flare *flare, int n_lights);
-    /* Returns the merged light that LIGHT is drawn as for GHOST, until the
-     * first bundle of both is planned; NULL: no capacity. */
+    /* Returns the merged light that is drawn in place of LIGHT for GHOST, or
+     * NULL if max_bundles is too small. Valid until the first bundle of this
+     * ghost and light is planned. */
     struct glint_light *(*gathered)(struct glint_flare *flare, int ghost,
                                     int light);
-    /* Returns the fraction of its light that light I, LIGHT after merging,
-     * keeps for GHOST, 0 to GLINT_DIM_WHOLE_Q8. */
+    /* Returns the fraction of its own light that light I keeps for GHOST, 0 to
+     * GLINT_DIM_WHOLE_Q8; the rest is merged into another light. LIGHT is light
+     * I as merged so far. */
     int (*kept_q8)(const struct glint_flare_frame *frame,
                    const struct glint_light *light, int i, int ghost);
     /* glint_dim_share_q8() and glint_dim_ratio_q16() */
@@ -48,19 +53,19 @@ struct glint_dim_method {
                          int32_t sine_q30, int ghost, int wave);
 };
 
-/* Returns log2 of the mean light of GHOST from LIGHT over the dimmest of the
- * frame; much above 0 if that is not known. */
+/* Returns log2 of the ratio of the mean light of GHOST from LIGHT to the
+ * frame's dimmest; a value far above 0 if the mean light is not known. */
 int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
                            const struct glint_light *light, int ghost);
 
-/* Returns the fraction of its light that each wave of ghost GHOST of LIGHT
- * draws by its own rays, 0 to GLINT_DIM_WHOLE_Q8; the rays of GLINT_DIM_WAVE
- * draw the rest. */
+/* Returns the fraction of a wave's light, in ghost GHOST of LIGHT, that is
+ * drawn with rays of that wave, 0 to GLINT_DIM_WHOLE_Q8; the rays of
+ * GLINT_DIM_WAVE draw the rest. */
 int glint_dim_share_q8(const struct glint_flare_frame *frame,
                        const struct glint_light *light, int ghost);
 
-/* Returns the light of wave WAVE of that ghost over that of GLINT_DIM_WAVE,
- * both before they are given the colours of the waves; 2^27 at most. */
+/* Returns the ratio of the ghost's light in wave WAVE to its light in
+ * GLINT_DIM_WAVE, both without the colours of the waves; at most 2^27. */
 int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
                             int32_t sine_q30, int ghost, int wave);
 
@@ -69,19 +74,20 @@ int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
 uint64_t glint_light_apart2_q60(const struct glint_light *a,
                                 const struct glint_light *b);
 
-/* Merges B into A: A gets the power and colour of both, and a direction
- * between. Colours have GLINT_LIGHT_HELD more fraction bits. */
+/* Merges B into A: A gets the summed power, the mean colour and a direction
+ * between both. Colours have GLINT_LIGHT_HELD additional fraction bits. */
 void glint_light_merge(struct glint_light *a, const struct glint_light *b);
 
-/* Returns log2 of X, which is above 0; between powers of two it is
- * interpolated. */
+/* Returns log2 of X, interpolated linearly between powers of two. X must be
+ * above 0. */
 static inline int32_t glint_dim_log2_q8(struct glint_real x)
 {
     return q_clamp_sat(x.exponent, -120, 120) * 256 + 30 * 256 +
            ((x.mantissa >> 22) - 256);
 }
 
-/* Returns the place of the angle of SINE among the nodes, counted from 0. */
+/* Returns the position of the angle of sine SINE in the table, as a fractional
+ * node index. */
 static inline int32_t glint_dim_node_q16(const struct glint_flare_frame *frame,
                                          int32_t sine_q30)
 {
@@ -93,8 +99,9 @@ static inline int32_t glint_dim_node_q16(const struct glint_flare_frame *frame,
 }
 
 /* Returns the GLINT_DIM_VALUES logarithms of ghost GHOST at node NODE, for a
- * white light of power 1: of its mean light by GLINT_DIM_WAVE in display white,
- * eight times that if it folds; then of all the light of each wave. */
+ * white light of power 1. First: log2 of the ghost's mean light by
+ * GLINT_DIM_WAVE, display white, or of eight times that if the ghost folds.
+ * Then, for each wave: log2 of all its light. */
 static inline int16_t *glint_dim_values(const struct glint_flare_frame *frame,
                                         int node, int ghost)
 {

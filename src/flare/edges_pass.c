@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pass of a flare: edges become sums of a tile, sums become light
- * of its rows. */
+ * The pass of a flare: turns edges into the sums of a tile, and the sums into
+ * the light of its rows. */
 #include <stddef.h>
 
 #include "flare/by_edges.h"
 #include "flare/edges/ghost_shade.h"
 
-/* Frames of more outlines than this take sums of _q20. Rounding to _q16 loses
- * up to half a unit of each, 1/40 of a code near black. */
+/* Frames with more outlines use sums of _q20. Rounding to _q16 has an error of
+ * up to half a unit per outline, 1/40 of a code near black. */
 enum { FINE_OUTLINES = 1024 };
 
-/* Returns whether the bundles of F, each as many outlines as a soft edge may
- * have, take sums of _q20. */
+/* Returns whether F needs sums of _q20. With a soft edge each bundle may have
+ * GLINT_SOFT_RINGS outlines. */
 static int is_fine(const struct glint_flare *f)
 {
     const struct glint_shade *shade = f->cfg.stop.shade;
@@ -21,7 +21,7 @@ static int is_fine(const struct glint_flare *f)
     return f->n_bundles > FINE_OUTLINES / rings;
 }
 
-/* Returns whether light runs on into the rows of the next tile. */
+/* Returns whether any row carries light into the next tile. */
 static int runs_on(const struct glint_edge_sums *s)
 {
     int64_t any = 0;
@@ -42,7 +42,7 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     w->at_tile = ((row.y0 - f->bins.region.y0) >> log2) * f->bins.tiles_x;
     s->shade = f->cfg.stop.shade;
     s->patch = s->shade ? s->shade->method->draw : NULL;
-    s->scratch = w->rows; /* of no use while pixels are drawn */
+    s->scratch = w->rows; /* unused while pixels are drawn */
     s->linear = glint_by_edges_of(f)->linear;
     s->fine = is_fine(f);
     s->lit = 0;

@@ -8,7 +8,7 @@
 #include "flare/wave_sets.h"
 
 enum {
-    WHOLE_OPENING_Q30 = 1 << 30, /* as wide as the model's stop */
+    WHOLE_OPENING_Q30 = 1 << 30, /* a stop as wide as the model's stop */
     LEAST_OPENING_Q30 = 1 << 20
 };
 
@@ -27,7 +27,7 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
     w->edges = glint_edges_carve_worker(a, c);
 }
 
-/* Runs twice: once to measure, which gives NULL, and once to place. */
+/* Called twice: first to measure, when it returns NULL, then to allocate. */
 static struct glint_flare *carve(struct glint_arena *a,
                                  const struct glint_flare_config *c)
 {
@@ -144,8 +144,8 @@ enum glint_status glint_flare_set_stop(struct glint_flare *flare,
 
 /* ------------------------------------------------------------------ bundles */
 
-/* Sets the size in pixels that is drawn: the picture's, or with HALF 1 half of
- * it each way. */
+/* Sets the size that is drawn: the size of the picture, or if HALF is 1 half of
+ * its width and height. */
 static void set_size(struct glint_flare *f, int half)
 {
     f->half = half;
@@ -211,8 +211,8 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* -------------------------------------------------------------------- plan */
 
-/* Returns N without trailing lights outside the model's range, so that a frame
- * with no other lights costs nothing. */
+/* Returns N less the trailing lights outside the model's range, so that a frame
+ * with only such lights costs nothing. */
 static int n_within(const struct glint_lens *lens,
                     const struct glint_light *lights, int n)
 {
@@ -228,7 +228,7 @@ static void plan_job(void *ctx, int job, int worker)
     const struct glint_flare_frame *r = f->plan.frame;
     const int n_ghosts = (int)r->lens->header->n_ghosts;
     const int ghost = job % n_ghosts, i = job / n_ghosts;
-    /* a copy, as it lies where the first bundle will */
+    /* a copy, as the merged light lies in the memory of the first bundle */
     const struct glint_light light =
         f->plan.dims ? *r->dim->method->gathered(f, ghost, i)
                      : f->plan.light[i];
@@ -248,9 +248,9 @@ static void plan_job(void *ctx, int job, int worker)
     }
 }
 
-/* Leaves out invisible ghosts. The light of all lights is summed, for each
- * ghost and wave: together they may be visible although none is alone. A ghost
- * is left out, in a wave, for all lights at once. Sums are integers, so their
+/* Leaves out invisible ghosts. For each ghost and wave the light from all lamps
+ * is summed, as the sum may be visible although each summand is not. A ghost is
+ * left out, in a wave, for all lights at once. Sums are integers, so their
  * order does not matter. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
@@ -267,7 +267,7 @@ static void leave_out_faint(struct glint_flare *f, int n)
     }
 }
 
-/* Keeps those of the first N bundles that can be seen, without gaps. */
+/* Removes invisible bundles from the first N bundles and closes the gaps. */
 static void keep_seen(struct glint_flare *f, int n)
 {
     for (int i = 0; i < n; i++) {
@@ -282,8 +282,8 @@ static void keep_seen(struct glint_flare *f, int n)
     }
 }
 
-/* Plans N_JOBS pairs of a ghost and a light, all waves of each. Returns how
- * many bundles that makes. */
+/* Plans all waves of N_JOBS pairs of a ghost and a light. Returns the number of
+ * bundles. */
 static int plan_all(struct glint_flare *f, int n_jobs)
 {
     const int n_waves = f->plan.frame->n_waves;
@@ -329,7 +329,7 @@ void glint_flare_plan(struct glint_flare *flare,
         .shaded = flare->cfg.stop.shade != NULL,
         .opening_q30 = flare->cfg.stop.opening_q30 ? flare->cfg.stop.opening_q30
                                                    : WHOLE_OPENING_Q30};
-    /* What is known of dim ghosts is known by the angle alone. */
+    /* The table of dim ghosts depends on the angle of the light alone. */
     if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
         frame->n_waves == GLINT_DIM_WAVES &&
         !(frame->lens && glint_basis_is_lens(frame->lens->header->basis))) {
@@ -385,9 +385,9 @@ int64_t glint_flare_looked(const struct glint_flare *flare)
     return n;
 }
 
-/* Sets the totals of the statistics; they count only bundles that the bins
- * kept. */
-static void total(struct glint_flare *f)
+/* Sets the totals of the statistics over the bundles whose edges fit into the
+ * bins. */
+static void sum_statistics(struct glint_flare *f)
 {
     struct glint_flare_stats *s = &f->stats;
 
@@ -410,7 +410,7 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
     if (flare->reusable != GLINT_REUSABLE_BINNED) {
         if (flare->n_bundles > 0)
             glint_edges_bin(flare);
-        total(flare);
+        sum_statistics(flare);
     }
     if (flare->reusable != GLINT_REUSABLE_NOT)
         flare->cfg.reuse->turn(flare);
@@ -443,7 +443,7 @@ void glint_flare_draw(struct glint_flare *flare,
     if (flare->bins.region.y0 == 0)
         glint_flare_forget(flare);
     if (flare->stats.primitives == 0)
-        return; /* the bins may be those of an earlier frame */
+        return; /* the bins may hold the edges of an earlier frame */
     tiles = glint_flare_start(flare, image);
     glint_edges_draw(flare, &tiles, pass, 0);
 }

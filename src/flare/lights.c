@@ -1,29 +1,30 @@
 /* SPDX-License-Identifier: MIT
  *
- * Merges many lights into few, so that their images move least.
+ * Merges many lights into few, moving their images as little as possible.
  *
  *   in   lights in any order
  *   out  fewer, with the same light from nearly the same directions
  *
  * Method: lights are sorted along a Z-order curve through the plane of their
  * direction sines, and neighbours on the curve are compared. A curve separates
- * some neighbours of the plane, so each round takes a curve through a shifted
+ * some neighbours of the plane, so each round uses a curve through a shifted
  * plane.
  *
  * Lights that cannot be distinguished merge first. Then, while there are too
- * many, the pairs of lowest cost merge: if fluxes a and b lie d apart, they
+ * many, the pairs of lowest cost merge. If fluxes a and b lie d apart, they
  * move by d b / (a + b) and d a / (a + b), which shifts the outlines of all
- * their ghosts, and the squared error of a shifted outline is the square of its
- * light times the shift; the sum is a b d. So faint lights merge over long
- * distances while bright ones keep their places. A round merges a part of the
- * lights that have to go, by the cheapest pairs it finds, so that costs rise
+ * their ghosts. The squared error of a shifted outline is the square of its
+ * light times the shift; the sum of both is a b d. So faint lights merge over
+ * long distances while bright lights hardly move. Each round merges only a
+ * fraction of the surplus, the cheapest pairs that it finds, so that costs rise
  * slowly.
  *
- * In place: O(n log n) for all rounds, as each leaves fewer lights. Nothing
- * depends on the order that lights came in, as the sort compares all members of
- * a light. During the work rgb_q14 of a light has HELD more fraction bits, or
- * the colour of a faint light would be lost in the rounding of a bright one's.
- */
+ * Lights are merged in place, in O(n log n) for all rounds, as each leaves
+ * fewer lights. The result does not depend on the order of the input, as the
+ * sort compares all members of a light. Between prepare_lights() and
+ * finish_lights(), rgb_q14 of a light has HELD additional fraction bits;
+ * otherwise the colour of a faint light would be lost in rounding when it
+ * merges with a bright light. */
 #include "base/q.h"
 #include "base/real.h"
 #include "base/sort.h"
@@ -31,12 +32,12 @@
 #include "glint/flare.h"
 
 enum {
-    CURVES = 3, /* curves along which lights are sought that cannot be
-                   distinguished */
-    PART = 4,   /* a round merges 1 / PART of the lights that have to go */
-    BINS = 64,  /* bins of the histogram of costs */
+    CURVES = 3, /* number of curves along which indistinguishable lights are
+                   searched for */
+    PART = 4,   /* a round merges 1 / PART of the surplus lights */
+    BINS = 64,  /* number of bins of the histogram of costs */
     HELD = GLINT_LIGHT_HELD,
-    WORDS = 10 /* 32-bit words that a light consists of */
+    WORDS = 10 /* number of 32-bit words of a light */
 };
 
 #define ONE_Q30 (INT32_C(1) << 30)
@@ -65,13 +66,13 @@ uint64_t glint_light_apart2_q60(const struct glint_light *a,
     return (uint64_t)(x * x) + (uint64_t)(y * y) + (uint64_t)(z * z);
 }
 
-/* Sets the azimuth of B to that of (X, Y); returns the length of (X, Y). If
- * that is 0, straight ahead, the azimuth does not matter. */
+/* Sets the azimuth of B to the direction of (X, Y); returns the length of (X,
+ * Y). If the length is 0 (light on the axis), the azimuth does not matter. */
 static int64_t set_azimuth(struct glint_light *b, int32_t x_q30, int32_t y_q30)
 {
     const uint32_t size = (uint32_t)(x_q30 < 0 ? -x_q30 : x_q30) |
                           (uint32_t)(y_q30 < 0 ? -y_q30 : y_q30);
-    /* Lifts short vectors, whose last bits matter. */
+    /* Scales short vectors up to keep precision. */
     const int up = 30 - bit_length(size);
     const int64_t scale = INT64_C(1) << (up > 0 ? up : 0);
     const int64_t x = x_q30 * scale, y = y_q30 * scale;
@@ -84,13 +85,13 @@ static int64_t set_azimuth(struct glint_light *b, int32_t x_q30, int32_t y_q30)
     return (length + scale / 2) / scale;
 }
 
-/* Points B in the direction D, which need not have length 1. */
+/* Sets the direction of B to D. D may have any length. */
 static void set_direction(struct glint_light *b, const struct direction *d)
 {
     const int64_t off = set_azimuth(b, d->x_q30, d->y_q30), z = d->z_q30;
     const int64_t length = q_root((uint64_t)(off * off + z * z));
 
-    /* The length is 0 between two lights on opposite sides of the horizon. */
+    /* The length is 0 for the mean of two lights in opposite directions. */
     b->sine_q30 =
         length ? q_clamp_sat(off * ONE_Q30 / length, 0, ONE_Q30) : ONE_Q30;
     b->cosine_q30 = length ? q_clamp_sat(z * ONE_Q30 / length, 0, ONE_Q30) : 0;
@@ -98,11 +99,11 @@ static void set_direction(struct glint_light *b, const struct direction *d)
 
 /* ------------------------------------------------------------------- order */
 
-/* The lights, and how they are sorted. */
+/* The lights and their sort order. */
 struct order {
     struct glint_light *light;
     int by_power; /* 1: the brightest first; 0: along a curve */
-    /* Where the curve begins, in units of 2^-30 below (-1, -1). */
+    /* Start of the curve, as an offset below (-1, -1), _q30. */
     uint32_t x0, y0;
 };
 
@@ -119,7 +120,7 @@ static void words_of(const struct glint_light *b, int32_t *word)
     word[9] = b->apart_q30;
 }
 
-/* Returns whether A comes before B: compares all members, power first. */
+/* Returns whether A comes before B. Compares all members, power first. */
 static int is_brighter(const struct glint_light *a, const struct glint_light *b)
 {
     int32_t p[WORDS], q[WORDS];
@@ -132,8 +133,8 @@ static int is_brighter(const struct glint_light *a, const struct glint_light *b)
     return 0;
 }
 
-/* Returns how far V, -1 .. 1, lies from the beginning of a side of the plane,
- * which is at -1 - ZERO; _q30. */
+/* Returns the distance of V, -1 .. 1, from the start of a side of the plane at
+ * -1 - ZERO; _q30. */
 static uint32_t along(int32_t v_q30, uint32_t zero)
 {
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
@@ -150,8 +151,8 @@ static int is_before(const void *order, int i, int j)
 
     if (o->by_power || (dx | dy) == 0)
         return is_brighter(a, b);
-    /* The highest bit that differs decides; of the same bit, y's comes before
-     * x's. */
+    /* Order along the Z curve: the highest differing bit decides; y's bit ranks
+     * above x's of the same weight. */
     return dx < dy && dx < (dx ^ dy) ? py < qy : px < qx;
 }
 
@@ -214,8 +215,7 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b)
     set_direction(a, &mean);
 }
 
-/* Returns the exponent to base 2 of the square of what merging A and B costs.
- */
+/* Returns the base-2 exponent of the squared cost of merging A and B. */
 static int cost_of(const struct glint_light *a, const struct glint_light *b)
 {
     const uint64_t d2_q59 = glint_light_apart2_q60(a, b) >> 1 | 1;
@@ -227,11 +227,10 @@ static int cost_of(const struct glint_light *a, const struct glint_light *b)
 
 /* The rule by which neighbours merge. */
 struct rule {
-    uint64_t near2_q60; /* not 0: lights merge if their squared distance is at
-                           most this */
-    int cost; /* if near2_q60 is 0: largest cost at which lights merge, as of
-                 cost_of() */
-    int most; /* number of lights at which merging ends */
+    uint64_t near2_q60; /* if not 0: lights merge if their squared distance is
+                           at most this */
+    int cost; /* if near2_q60 is 0: max cost_of() at which lights merge */
+    int most; /* merging stops at this number of lights */
 };
 
 static int may_merge(const struct rule *r, const struct glint_light *a,
@@ -241,8 +240,8 @@ static int may_merge(const struct rule *r, const struct glint_light *a,
                         : cost_of(a, b) <= r->cost;
 }
 
-/* Merges neighbours in the list of N lights by rule R; returns how many are
- * left. */
+/* Merges neighbours in the list of N lights by rule R; returns the number of
+ * lights left. */
 static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
 {
     int last = 0, left = n;
@@ -256,8 +255,8 @@ static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
     return left;
 }
 
-/* Returns the least cost, up to 1 / BINS of the range of costs, at which enough
- * of the neighbours merge: 1 / PART of the N - MOST lights that have to go. */
+/* Returns the min cost, to within 1 / BINS of the range of costs, at which
+ * enough neighbours merge: 1 / PART of the N - MOST surplus lights. */
 static int next_cost(const struct glint_light *b, int n, int most)
 {
     int count[BINS] = {0}, low = INT32_MAX, high = INT32_MIN, width, bin = 0;
@@ -277,9 +276,9 @@ static int next_cost(const struct glint_light *b, int n, int most)
     return low + (bin + 1) * width - 1;
 }
 
-/* Leaves out lights without power or colour, gives colours HELD more fraction
- * bits, and returns how many lights are kept. */
-static int take_in(struct glint_light *b, int n)
+/* Removes lights without power or colour, gives colours HELD additional
+ * fraction bits, and returns the number of lights left. */
+static int prepare_lights(struct glint_light *b, int n)
 {
     int kept = 0;
 
@@ -296,7 +295,7 @@ static int take_in(struct glint_light *b, int n)
     return kept;
 }
 
-static void give_out(struct glint_light *b, int n)
+static void finish_lights(struct glint_light *b, int n)
 {
     struct order brightest_first = {.light = b, .by_power = 1};
 
@@ -311,7 +310,7 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
 {
     struct rule rule = {
         .near2_q60 = (uint64_t)near_q30 * (uint64_t)near_q30 + 1, .most = 1};
-    int n = take_in(lights, n_lights), round = 0;
+    int n = prepare_lights(lights, n_lights), round = 0;
 
     for (; round < CURVES && n > 1; round++) {
         sort_along(lights, n, round);
@@ -324,6 +323,6 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
         rule.cost = next_cost(lights, n, rule.most);
         n = merge_neighbours(lights, n, &rule);
     }
-    give_out(lights, n);
+    finish_lights(lights, n);
     return n;
 }

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fills the table of flare/dim.h: logarithms of each ghost's light at nodes of
- * the sine of the light's angle, of a white light of power 1, wherever the
- * picture lies. And lets lights near each other share the rays of dim ghosts.
- */
+ * Fills the table of flare/dim.h: logarithms of the light of each ghost, inside
+ * the picture or not, for a white light of power 1 at nodes of the sine of its
+ * angle. Also merges lights near each other for dim ghosts. */
 #include "base/compiler.h"
 #include "flare/dim.h"
 #include "flare/state.h"
 
 enum {
     MOST_Q8 = 1 << 14,
-    FOLD_Q8 = 3 << 8 /* a fold is as much brighter than its ghost's mean */
+    FOLD_Q8 = 3 << 8 /* log2 of how much brighter a fold is than the mean of its
+                        ghost */
 };
 
 struct fill {
@@ -26,7 +26,7 @@ static int16_t value_of(int32_t log2)
     return (int16_t)q_clamp_sat(log2, -MOST_Q8, MOST_Q8);
 }
 
-/* Returns the largest channel of wave W. */
+/* Returns the largest magnitude of the channels of wave W. */
 static struct glint_real channel_of(const struct glint_wave *w)
 {
     int32_t most = 0;
@@ -39,7 +39,8 @@ static struct glint_real channel_of(const struct glint_wave *w)
     return real_of(most, -14);
 }
 
-/* One ghost at a node. A picture without end holds all of it. */
+/* Computes one ghost at a node, in a picture so large that it contains the
+ * whole ghost. */
 static void fill_job(void *ctx, int ghost, int worker)
 {
     const struct fill *fill = ctx;
@@ -117,14 +118,14 @@ static void fill_nodes(struct glint_flare *flare, int n_lights)
 /* ----------------------------------------------------------------- sharing */
 
 enum {
-    /* Lights apart by 1 / SIDE of the picture's longer side, four pixels of
-     * 1920, may share the rays of a ghost that is as bright as the dimmest one.
-     * Errors of N lights add up by the root of N. */
+    /* Lights that are 1 / SIDE of the picture's longer side apart (four pixels
+     * of 1920) may share the rays of a ghost that is as bright as the frame's
+     * dimmest. Errors of N lights add up to sqrt(N) errors. */
     SIDE = 480,
     FARTHEST_Q8 = 1 << 14
 };
 
-/* Lights as they are drawn lie in the memory of their first bundle. */
+/* The merged light of a ghost is stored in the memory of its first bundle. */
 static struct glint_light *gathered(struct glint_flare *f, int ghost, int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -136,8 +137,9 @@ static struct glint_light *gathered(struct glint_flare *f, int ghost, int light)
 
 STATIC_ASSERT(sizeof(struct glint_light) <= sizeof(struct glint_bundle_plan));
 
-/* Sets the nearest light before each of N lights, and log2 of how far that is
- * over 1 / SIDE of the picture's longer side and over the root of 1 / N. */
+/* For each of N lights, finds the nearest light before it in the list and log2
+ * of the distance to it. The unit of distance is 1 / SIDE of the picture's
+ * longer side, over sqrt(N). */
 static void find_nearest(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -170,8 +172,9 @@ static void find_nearest(struct glint_flare *f, int n)
     }
 }
 
-/* A ghost's error is its light times the distance that it moves: half of what
- * is allowed lets all light go, all of it none. */
+/* The error of a merged ghost is its light times the distance that it moves: up
+ * to half of the allowed error all light is merged, from the allowed error on
+ * no light. */
 static int kept_q8(const struct glint_flare_frame *frame,
                    const struct glint_light *light, int i, int ghost)
 {
@@ -183,9 +186,10 @@ static int kept_q8(const struct glint_flare_frame *frame,
                        0, GLINT_DIM_WHOLE_Q8);
 }
 
-/* Gives the light of B, light I, that it does not keep to the nearest before
- * it. */
-static void give(struct glint_flare *f, struct glint_light *b, int ghost, int i)
+/* Moves the fraction of light that B, light I, does not keep to the nearest
+ * light before it. */
+static void merge_rest(struct glint_flare *f, struct glint_light *b, int ghost,
+                       int i)
 {
     struct glint_light part = *b;
     const int left_q8 = kept_q8(f->plan.frame, b, i, ghost);
@@ -204,8 +208,8 @@ struct gather {
     int n_lights;
 };
 
-/* From the last light to the first, so that light merged into one is merged
- * onwards with it. */
+/* Merges from the last light to the first, so that light merged into a light is
+ * merged onwards with it. */
 static void gather_job(void *ctx, int ghost, int worker)
 {
     const struct gather *g = ctx;
@@ -225,7 +229,7 @@ static void gather_job(void *ctx, int ghost, int worker)
         b = gathered(g->flare, ghost, i);
         if (!b)
             continue;
-        give(g->flare, b, ghost, i);
+        merge_rest(g->flare, b, ghost, i);
         for (int c = 0; c < 3; c++)
             b->rgb_q14[c] = q_narrow(q_shift(b->rgb_q14[c], GLINT_LIGHT_HELD));
     }

@@ -8,14 +8,15 @@
 #include "flare/plan_cells.h"
 
 enum {
-    /* cells across of the small probe: a row of it is as many rays as are
-     * computed at once */
+    /* cells across the small probe, whose rows have GLINT_RAYS rays, as many as
+     * are computed at once */
     FEW_ACROSS = GLINT_RAYS - 1,
     FEW_DOWN = 4,
     FEW_INSIDE = 6,
     ONE_Q16 = 1 << 16,
-    WIDEST_Q16 = 64 << 16, /* times that a ghost is drawn larger, at most */
-    FARTHEST_Q8 = 1 << 20  /* pixels from the middle that its centre may lie */
+    WIDEST_Q16 = 64 << 16, /* max factor by which a ghost is enlarged */
+    FARTHEST_Q8 = 1 << 20  /* max distance of its centre from the middle,
+                              pixels */
 };
 
 /* Converts X from units of the sensor outputs of T to pixels, clamped to +-2^23
@@ -28,26 +29,27 @@ static int64_t pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
-/* Returns the length that X, a length of a ghost in pixels, has in the picture,
- * where the ghost may be drawn larger. */
+/* Returns the length in the picture of X, a length within a ghost in pixels,
+ * after the ghost's enlargement. */
 static int64_t widened(const struct glint_bundle_plan *s, int64_t x_q8)
 {
     return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
 }
 
-/* The box about a bundle's light: half its length along the light's azimuth and
- * half its width across, and how far along and across it lies; pixels. */
+/* The bounding box of a bundle's light, pixels: the position of its middle
+ * along (middle) and across the light's azimuth, and half its size along (wide)
+ * and across (high). */
 struct reach {
     int64_t middle_q8, across_q8, wide_q8, high_q8;
 };
 
-/* Returns half the extent of E across. */
+/* Returns half the extent of E across the light's azimuth. */
 static int64_t half_height(const struct glint_probe_extent *e)
 {
     return (e->y_high - e->y_low) / 2;
 }
 
-/* Makes the box of the range E of the probe's rays, grown by a tenth. */
+/* Returns the box of the range E of the probe's rays, enlarged by a tenth. */
 static struct reach reach_of(const struct glint_plan *p,
                              const struct glint_bundle_plan *planned,
                              const struct glint_transfer *t,
@@ -64,8 +66,8 @@ static struct reach reach_of(const struct glint_plan *p,
         widened(planned, pixels_q8(p, t, high + q_divide(high, 10))) + 256};
 }
 
-/* Returns whether E, turned as the ghost is, meets the picture. It lies aside
- * only where it is not turned. */
+/* Returns whether E, rotated by TURN, meets the picture. across is nonzero only
+ * for ghosts that are not rotated. */
 static int is_in_view(const struct glint_plan *p, struct glint_azimuth turn,
                       const struct reach *e)
 {
@@ -80,8 +82,8 @@ static int is_in_view(const struct glint_plan *p, struct glint_azimuth turn,
                p->height * 128 >> p->half;
 }
 
-/* Returns the fraction, 0 to 255, of a span about MIDDLE, WIDE to each side,
- * that lies between -HALF and HALF. */
+/* Returns the fraction, 0 to 255, of the span MIDDLE +- WIDE that lies between
+ * -HALF and HALF. */
 static int64_t span_q8(int64_t middle, int64_t wide, int64_t half)
 {
     const int64_t low = middle - wide > -half ? middle - wide : -half;
@@ -90,7 +92,7 @@ static int64_t span_q8(int64_t middle, int64_t wide, int64_t half)
     return high > low && wide > 0 ? q_divide(255 * (high - low), 2 * wide) : 0;
 }
 
-/* Returns the fraction of the upright box about E, turned as the ghost is, that
+/* Returns the fraction of the upright bounding box of E, rotated by TURN, that
  * lies in the picture. */
 static uint8_t view_q8(const struct glint_plan *p, struct glint_azimuth turn,
                        const struct reach *e)
@@ -112,9 +114,9 @@ static struct glint_real box_side(const struct glint_transfer *t, int k)
     return real_of(t->box[k], t->box_exponent);
 }
 
-/* Returns the light of wave WAVE that the rays of PLANNED draw, over that of
- * the wave of PLANNED: 1 for that wave itself, for others what their own rays
- * do not draw. */
+/* Returns the ratio of the light of wave WAVE that the rays of PLANNED draw to
+ * the light of the wave of PLANNED: 1 for that wave itself; for other waves it
+ * counts only the light that their own rays do not draw. */
 static int64_t part_q16(const struct glint_plan *p,
                         const struct glint_bundle_plan *planned, int wave,
                         int share_q8)
@@ -127,7 +129,8 @@ static int64_t part_q16(const struct glint_plan *p,
                    8);
 }
 
-/* The colour of the bundle, its largest channel 1; returns what that was. */
+/* Sets RGB to the colour of the bundle, scaled to a largest channel of 1;
+ * returns the largest channel before scaling. */
 static struct glint_real colour_of(const struct glint_plan *p,
                                    const struct glint_light *b,
                                    const struct glint_bundle_plan *planned,
@@ -164,7 +167,8 @@ static struct glint_real colour_of(const struct glint_plan *p,
 }
 
 /* Returns the flux of the bundle, display white times pixels, if all rays of
- * its window had energy 2^EXPONENT. An annular box counts without its hole. */
+ * its window had energy 2^EXPONENT. The hole of an annular box does not
+ * count. */
 static struct glint_real flux_of(const struct glint_plan *p,
                                  const struct glint_light *b,
                                  const struct glint_bundle_plan *s,
@@ -174,10 +178,10 @@ static struct glint_real flux_of(const struct glint_plan *p,
     const struct glint_wave *w = &p->frame->wave[s->wave];
     struct glint_real x = real_times(box_side(t, 1), box_side(t, 2));
 
-    /* Both sides are halves of the box; so is the window's unless it is whole.
-     */
+    /* Both sides are halves of the box; so is the window's height unless T is
+     * whole. */
     x.exponent += (t->whole ? 1 : 2) + exponent;
-    /* Pixels at half resolution are as large as four. */
+    /* A pixel at half resolution covers four pixels of the picture. */
     x.exponent -= 2 * p->half;
     if (t->annulus)
         x = real_over(x, real_of(t->annulus + 1, 0));
@@ -189,9 +193,10 @@ static struct glint_real flux_of(const struct glint_plan *p,
     return real_times(x, colour);
 }
 
-/* Returns the most light that a cell can give a pixel: twice the flux of a cell
- * of the probe over the least area of one on the sensor, as cells between may
- * be brighter. 0 for folded ghosts, whose areas say little. */
+/* Returns the max light that a cell can give a pixel: 2 * (flux of a cell of
+ * the probe) / (min area of such a cell on the sensor), as the light between
+ * probed rays may be brighter. Returns 0 for folded ghosts, whose areas do not
+ * bound their brightness. */
 static struct glint_real brightest_of(const struct glint_plan *p,
                                       const struct glint_bundle_plan *planned,
                                       const struct glint_probe *s,
@@ -211,13 +216,13 @@ static struct glint_real brightest_of(const struct glint_plan *p,
             area,
             real_of((int64_t)planned->wider_q16 * planned->wider_q16, -32));
     flux.exponent += 1;
-    /* Number of cells over the whole box. */
+    /* the number of cells over the whole box */
     area = real_times(area, real_of(s->across * s->rows, 0));
     return real_over(flux, area);
 }
 
-/* Returns BRIGHTEST in units of the faintest light that shows; 2^20 if it is
- * not known, and for linear pictures. */
+/* Returns BRIGHTEST in units of the faintest visible light; 2^20 of them if
+ * BRIGHTEST is 0 (not known), and for linear pictures. */
 static int64_t peak_q20(const struct glint_plan *p, struct glint_real brightest)
 {
     const int64_t most = INT64_C(1) << 40;
@@ -227,7 +232,7 @@ static int64_t peak_q20(const struct glint_plan *p, struct glint_real brightest)
     return real_integer(real_over(brightest, p->frame->faintest), 20, most);
 }
 
-/* Sets the members that glint_planned() returns besides the light. */
+/* Sets inside_q8 and contrast_q4, which glint_flare_planned() returns. */
 static void set_shape(const struct glint_probe *s, struct glint_real brightest,
                       struct glint_bundle_plan *planned)
 {
@@ -286,8 +291,8 @@ struct glint_place glint_plan_place(const struct glint_plan *plan,
     return place;
 }
 
-/* Returns log2 of the factor by which energies can be raised without overflow,
- * with a quarter to spare over what the probe saw. */
+/* Returns log2 of the factor by which energies can be scaled up without
+ * overflow, if they are at most 5/4 of the probe's max ENERGY. */
 static int energy_up(int64_t energy)
 {
     const int up = 29 - bit_length((uint64_t)(energy + energy / 4));
@@ -302,7 +307,7 @@ static void set_flux(struct glint_bundle *b, const struct glint_transfer *t,
     const struct glint_real cell =
         real_over(flux, real_of((int64_t)b->n_cells * rows, 0));
 
-    /* below -400 nothing can be seen; above 400 light is clamped anyway */
+    /* below 2^-400 nothing is visible; above 2^400 light is clamped anyway */
     b->flux_q31 = cell.exponent < -400 ? 0 : cell.mantissa;
     b->flux_exponent = cell.exponent > 400 ? 431 : cell.exponent + 31;
 }
@@ -313,8 +318,8 @@ int glint_plan_is_beyond(const struct glint_lens *lens,
     return light->sine_q30 > lens->header->sine_hi_q30;
 }
 
-/* Returns whether ghost or part GHOST is not muted and belongs to the pair of
- * surfaces of only_ghost. */
+/* Returns whether ghost (or piece of a ghost) GHOST is not muted and belongs to
+ * the pair of surfaces of only_ghost. */
 static int is_wanted(const struct glint_flare_frame *r, int ghost)
 {
     const struct glint_model_ghost *g = &r->lens->ghost[ghost];
@@ -325,7 +330,7 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
            (!r->tints || r->tints[ghost].gain.mantissa > 0);
 }
 
-/* Returns the distance of (X, Y), each of a magnitude below 2^31, from 0. */
+/* Returns the length of (X, Y); both magnitudes must be below 2^31. */
 static int64_t far_from(int64_t x, int64_t y)
 {
     if (y == 0)
@@ -333,12 +338,13 @@ static int64_t far_from(int64_t x, int64_t y)
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Sets the magnification of the ghost, at most WIDEST_Q16. A small ghost of a
- * point would be separate from those of the lamp's neighbouring points, and the
- * lamp's ghost would be a pattern of dots; so it is enlarged to two and a half
- * times their distance. The ghost moves with the light in proportion to its
- * distance from the middle. For a light on the axis nothing is set. Its centre
- * may lie aside only where it is not turned, but mirrored. */
+/* Sets the magnification of the ghost, at most WIDEST_Q16. A lamp with extent
+ * is sampled by points. If the ghosts of the points are smaller than their
+ * distance, the lamp's ghost becomes a pattern of dots; so each is enlarged to
+ * two and a half times the distance between neighbours. A ghost moves with the
+ * light in proportion to its distance from the middle. Lights on the axis need
+ * no magnification. The centre may have an offset across the azimuth only if
+ * the ghost is mirrored rather than rotated. */
 static void set_wider(const struct glint_plan *p, const struct glint_light *b,
                       struct glint_bundle_plan *planned,
                       const struct glint_transfer *t,
@@ -367,8 +373,8 @@ static void set_wider(const struct glint_plan *p, const struct glint_light *b,
         pixels_q8(p, t, t->side ? -across : across), -FARTHEST_Q8, FARTHEST_Q8);
 }
 
-/* Narrows the window of T to what the stop lets through, if that is narrower
- * than the model's stop; returns 0 if nothing is left. */
+/* Narrows the window of the transfer to the rays that the stop lets through, if
+ * the stop is narrower than the model's. Returns 0 if no ray is left. */
 static int set_window(const struct glint_plan *plan,
                       struct glint_bundle_plan *planned,
                       struct glint_plan_scratch *scratch)
@@ -384,8 +390,8 @@ static int set_window(const struct glint_plan *plan,
     return any;
 }
 
-/* Sends few rays, and more where hardly any gets through. Returns whether any
- * does. */
+/* Traces a few rays, and more if hardly any gets through. Returns whether any
+ * ray gets through. */
 static int probe(const struct glint_plan *plan, struct glint_transfer *transfer,
                  struct glint_probe *s)
 {
@@ -396,7 +402,7 @@ static int probe(const struct glint_plan *plan, struct glint_transfer *transfer,
     return s->n_inside > 0;
 }
 
-/* Returns the area of the box about the range E of rays, pixels. */
+/* Returns the area of the bounding box of the range E of rays, pixels. */
 static struct glint_real area_of(const struct glint_plan *p,
                                  const struct glint_bundle_plan *planned,
                                  const struct glint_transfer *t,
@@ -412,7 +418,7 @@ static struct glint_real area_of(const struct glint_plan *p,
     return real_times(real_of(wide_q8, -7), real_of(high_q8, -7));
 }
 
-/* Returns the rotation of the outputs of T, for light at AZIMUTH. */
+/* Returns the rotation that the outputs of T need for light at AZIMUTH. */
 static struct glint_azimuth turn_of(const struct glint_transfer *t,
                                     struct glint_azimuth azimuth)
 {

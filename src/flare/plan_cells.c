@@ -15,10 +15,10 @@ static int64_t root_mean(uint64_t sum, int n)
     return n ? (int64_t)q_root((uint64_t)q_divide((int64_t)sum, n)) << 5 : 0;
 }
 
-/* Returns how much the outputs A and B bend over the box, converted to a
- * distance on the sensor, in units of the sensor outputs times
- * 2^GLINT_PROBE_FINE_LOG2: second differences over first ones, times those of
- * the sensor. */
+/* Returns the curvature of the outputs A and B over the box as a distance on
+ * the sensor, in units of the sensor outputs times 2^GLINT_PROBE_FINE_LOG2:
+ * second differences / first differences, times the first differences of the
+ * sensor outputs. */
 static int64_t bend_of(const struct glint_probe *s, int a, int b)
 {
     const int64_t second = root_mean(
@@ -42,8 +42,8 @@ static int64_t stop_change(const struct glint_probe *s)
                      s->n_bends);
 }
 
-/* Returns the change of the place on the sensor over the box, in units of the
- * sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns the change of the position on the sensor over the box, in units of
+ * the sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t sensor_change(const struct glint_probe *s)
 {
     return root_mean(s->change[GLINT_OUT_SENSOR_X].first +
@@ -61,10 +61,10 @@ static int64_t one_radius(const struct glint_probe *s)
     return radius > 0 ? radius : 1;
 }
 
-/* Returns what bend_of() does for the outline of a stop of curvature ROUND; of
- * a round one it is (1 + r^2) / 2 as for a barrel: where r is 1, it changes as
- * fast as the stop position s does, and bends by the square of the derivative
- * of s. */
+/* Like bend_of(), for the outline of a stop of curvature ROUND. A round stop
+ * cuts where (1 + r^2) / 2 is 1, like a barrel: at r = 1 this function changes
+ * as fast as the stop position s, and its second difference is the square of
+ * the first difference of s. */
 static int64_t round_bend(const struct glint_probe *s, int32_t round_q16)
 {
     const int64_t change = (stop_change(s) >> 2) * round_q16 >> 16;
@@ -74,10 +74,11 @@ static int64_t round_bend(const struct glint_probe *s, int32_t round_q16)
     return q_divide(change * sensor, (one_radius(s) >> 2) + 1);
 }
 
-/* Returns how many of N cells a side a picture in codes needs. Errors of a
- * fainter ghost are seen less: in codes its light shrinks by 2^(5/12) with each
- * octave, its errors with the square of the cells. Folds are brighter than the
- * ghost's mean. */
+/* Reduces N cells per side to the number that a picture in codes (not linear
+ * light) needs. Errors of fainter ghosts are less visible: with each octave
+ * that a ghost gets fainter, its light in codes shrinks by 2^(5/12); errors
+ * shrink with the square of the cells. Folds are brighter than the ghost's
+ * mean. */
 static int cells_for_codes(const struct glint_probe *s,
                            struct glint_real irradiance, int n)
 {
@@ -91,19 +92,19 @@ static int cells_for_codes(const struct glint_probe *s,
     return n;
 }
 
-/* Returns how many times more outlines may bend than light. The factor is 5
- * where three or more barrels cut: the second barrel of a vertex is the
- * tightest of all but the first, and has kinks where these meet, so that tips
- * of outlines come and go with the grid. It is 5 for a round stop, too, which
- * curves all outlines. */
+/* Returns the ratio of the error allowed for outlines to the error allowed for
+ * light. The ratio is 5 if three or more barrels cut: the second barrel of a
+ * vertex is the tightest of all but the first, and has kinks where these meet,
+ * so that tips of outlines come and go with the grid. It is also 5 for a round
+ * stop, which curves all outlines. */
 static int outline_over_light(const struct glint_plan *p,
                               const struct glint_transfer *t)
 {
     return p->round_q16 || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
-/* Returns the cells a side of which each, in parts (edges/ghost_shade.h),
- * resolves the shade of the stop to a pixel. */
+/* Returns the cells per side with which subdivided cells (edges/ghost_shade.h)
+ * resolve the shade of the stop to a pixel. */
 static int cells_for_shade(const struct glint_plan *p,
                            const struct glint_probe *s,
                            const struct glint_transfer *t)
@@ -116,8 +117,8 @@ static int cells_for_shade(const struct glint_plan *p,
     return (int)real_integer(pixels, -SHADE_CELL_LOG2, MOST_SHADE_CELLS);
 }
 
-/* Returns the cells a side by the rule of lens/grid.h, from what the probe saw.
- */
+/* Returns the cells per side by the rule of lens/grid.h, from the probe's
+ * results. */
 static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
                     const struct glint_transfer *t,
                     struct glint_real irradiance)
@@ -150,7 +151,7 @@ static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
                                                   GLINT_PROBE_FINE_LOG2),
                                 plan_pixels_per_mm(p)),
                      8, INT64_C(1) << 40);
-    /* the root of 12.5 times the bend in pixels, times fineness / 64 */
+    /* sqrt(12.5 * bend in pixels) * fineness / 64 */
     n = q_narrow(
         ((int64_t)q_root((uint64_t)bend_q8 * 3200) * r->fineness + 16383) >>
         14);
@@ -185,8 +186,8 @@ int glint_plan_cells(const struct glint_plan *plan,
     return transfer->annulus ? annular_cells(n) : n;
 }
 
-/* Returns how much output K bends over the box, across and down together, in
- * its units times 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns the sum of the mean second differences of output K across and down
+ * the box, in the output's unit times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t bowl_of(const struct glint_probe *s, int k)
 {
     int64_t sum = 0;
@@ -197,9 +198,8 @@ static int64_t bowl_of(const struct glint_probe *s, int k)
     return sum;
 }
 
-/* Returns how much (1 + r^2) / 2 bends over the box for a round stop, across
- * and down together: each way by the square of the distance that the stop
- * position moves, in stop radii. */
+/* The same sum for (1 + r^2) / 2 of a round stop: in each direction the square
+ * of the distance that the stop position moves, in stop radii. */
 static int64_t round_bowl_q16(const struct glint_probe *s)
 {
     const struct glint_real change =
@@ -208,16 +208,17 @@ static int64_t round_bowl_q16(const struct glint_probe *s)
     return 2 * real_integer(real_times(change, change), 16, INT64_C(1) << 40);
 }
 
-/* Returns the mean height of straight lines between the rays of N_CELLS above a
- * bowl: if a cell bends by D across and E down, (D + E) / 12. */
+/* Returns the mean height, above a paraboloid, of the straight lines between
+ * the rays of a grid of N_CELLS: (D + E) / 12 for second differences D across
+ * and E down a cell. */
 static uint16_t sag_q16(int64_t bowl_q16, int n_cells)
 {
     return (uint16_t)q_clamp_sat(
         q_divide(bowl_q16, 12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
 }
 
-/* A barrel's (1 + r^2) / 2 is a bowl. Once its sag is subtracted, outlines lie
- * outside the true ones as often as inside. */
+/* A barrel's (1 + r^2) / 2 is a paraboloid. After the sag is subtracted, drawn
+ * outlines lie outside the true outlines as often as inside. */
 void glint_plan_sags(struct glint_bundle_plan *planned,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer, int n_cells,

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Chooses the fineness of a bundle's grid from the bend of its rays.
+ * Chooses the fineness of a bundle's grid from the second differences of its
+ * rays.
  *
  *   in   a probe of the bundle, its irradiance
- *   out  cells a side; how far straight lines between rays lie off outlines */
+ *   out  cells per side; mean error of straight lines between rays (sags) */
 #ifndef GLINT_FLARE_PLAN_CELLS_H
 #define GLINT_FLARE_PLAN_CELLS_H
 
@@ -18,8 +19,8 @@ static inline struct glint_real plan_pixels_per_mm(const struct glint_plan *p)
 }
 
 /* Returns the cells per side of the grid of a bundle that shines with
- * IRRADIANCE, display white. For an annular box this includes the two rows of
- * cells next to the middle, which carry no light. */
+ * IRRADIANCE, display white. For an annular box the number includes the two
+ * rows of cells next to the middle, which carry no light. */
 int glint_plan_cells(const struct glint_plan *plan,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer,

@@ -57,7 +57,7 @@ static int is_inside(const struct glint_probe *s,
     return 1;
 }
 
-/* Sends the rays of row J, 0 .. s->down. */
+/* Traces the rays of row J, 0 .. s->down. */
 static void send_row(struct glint_probe *s, struct glint_transfer *t, int j)
 {
     const int32_t one_q30 = INT32_C(1) << 30;
@@ -84,8 +84,9 @@ static void send_row(struct glint_probe *s, struct glint_transfer *t, int j)
     }
 }
 
-/* Adds the differences at B between its neighbours A and C. STEPS such steps
- * make up the whole box; WAY is 0 across, 1 down. */
+/* Adds the first and second differences at B, a ray between its neighbours A
+ * and C. The whole box has STEPS cells in this direction; WAY is 0 across, 1
+ * down. */
 static void add_bend(struct glint_probe *s, const struct glint_probe_node *a,
                      const struct glint_probe_node *b,
                      const struct glint_probe_node *c, int steps, int way)
@@ -98,7 +99,7 @@ static void add_bend(struct glint_probe *s, const struct glint_probe_node *a,
         const int64_t second =
             ((int64_t)a->at[k] - 2 * (int64_t)b->at[k] + c->at[k]) * steps *
             steps;
-        /* squares below 2^62, over 2^10: some hundred of them fit a sum */
+        /* squares below 2^62 / 2^10: the sum holds several hundred of them */
         const int64_t f =
             q_clamp_sat(first >> GLINT_PROBE_FINE_LOG2, -INT32_MAX, INT32_MAX);
         const int64_t d =
@@ -141,7 +142,7 @@ static void widen(const struct glint_probe *s, struct glint_probe_extent *e,
     e->y_high = high > e->y_high ? high : e->y_high;
 }
 
-/* Adds the cell between A, B and C, D below them to the reach, if one of its
+/* Extends the reach by the cell of A, B and, below them, C, D, if one of its
  * rays is inside. */
 static void add_reach(struct glint_probe *s, const struct glint_probe_node *a,
                       const struct glint_probe_node *b,

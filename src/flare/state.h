@@ -24,67 +24,74 @@ struct glint_flare_worker {
 
 struct glint_bundle_slot {
     int first_vertex;
-    int first; /* first edge; -1: there was no room for them */
+    int first; /* index of the first edge; -1: the edges did not fit */
     int n, n_dropped, n_held;
-    int worker; /* worker that made it */
-    int refs;   /* entries in the bins; only set if the bundle found no room */
+    int worker; /* index of the worker that made the edges */
+    int refs;   /* entries in the bins; set only if the edges did not fit */
 };
 
-/* What of the plan is in the bins. */
+/* Whether the bins hold the edges of the plan. */
 enum glint_reusable {
     GLINT_REUSABLE_NOT,
-    GLINT_REUSABLE_PLANNED, /* nothing yet: it waits to be binned */
-    GLINT_REUSABLE_BINNED   /* all of it, and nothing else */
+    GLINT_REUSABLE_PLANNED, /* planned, but not binned yet */
+    GLINT_REUSABLE_BINNED   /* the bins hold the whole plan and nothing else */
 };
 
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    /* 1: half resolution; and the size in pixels that is drawn. */
+    /* half is 1 at half resolution; width and height: the size that is drawn,
+     * in its pixels. */
     int half, width, height;
     const struct glint_half *quads; /* set only at half resolution */
-    int n_bundles, n_vertices;      /* bundles and vertices taken in so far */
-    /* What computes vertices; NULL: they are stored, or planned. */
+    int n_bundles, n_vertices;      /* bundles and vertices added so far */
+    /* Computes vertices on demand. NULL: vertices are stored, or computed from
+     * the plan. */
     const struct glint_flare_rays *rays;
-    struct glint_plan plan; /* plan for a lens, unless plan.frame is NULL */
-    struct glint_bundle_plan *planned; /* plan of each bundle planned */
-    struct glint_real flux, brightest; /* flux of all bundles planned, and the
-                                          largest mean irradiance of one */
-    int n_drawn; /* number of bundles, the first ones, that bin kept */
+    struct glint_plan plan; /* the plan for a lens; plan.frame is NULL if
+                               nothing is planned */
+    struct glint_bundle_plan *planned; /* the plan of each bundle */
+    struct glint_real flux, brightest; /* flux of all planned bundles, and the
+                                          largest mean irradiance of a bundle */
+    int n_drawn; /* number of bundles that glint_edges_bin() kept; they are the
+                    first ones */
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
     struct glint_by_edges *edges;
-    void *reuse;                  /* state of cfg.reuse; NULL: there is none */
-    enum glint_reusable reusable; /* always NOT without cfg.reuse */
+    void *reuse;                  /* state of cfg.reuse, or NULL without it */
+    enum glint_reusable reusable; /* always GLINT_REUSABLE_NOT without
+                                     cfg.reuse */
     struct glint_bins bins;
     struct glint_flare_worker *worker;
     /* Tables for the picture that is being drawn. */
     struct glint_resolve *resolve;
 };
 
-/* Reuse of what was binned (reuse/). */
+/* Reuse of binned edges from frame to frame (reuse/). */
 struct glint_reuse {
-    /* Carves its state; returns NULL while A only measures. */
+    /* Carves the state of the reuse out of A; returns NULL while A only
+     * measures. */
     void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
-    /* Returns whether a plan of these inputs would equal the last one, which is
-     * still binned, and then reuses that; otherwise records the inputs of the
-     * next plan. */
+    /* Returns whether a plan of these inputs would equal the last plan and that
+     * plan is still binned; it is then reused. Otherwise records the inputs for
+     * the next plan and returns 0. */
     int (*take)(struct glint_flare *f, const struct glint_flare_frame *frame,
                 const struct glint_light *lights, int n_lights);
-    /* Gives the bundles that are binned the factors of the frame. */
+    /* Applies the frame's factors to the binned bundles. */
     void (*turn)(struct glint_flare *f);
 };
 
-/* Forgets the counts of the last draw, and the passes that were under it. */
+/* Clears the tile counts of the last draw and the blend with passes under the
+ * flare. */
 void glint_flare_forget(struct glint_flare *flare);
 
-/* Sets up the flare's tables for IMAGE (NULL: light is dropped) and returns the
- * tiles that a frame is drawn onto. */
+/* Prepares the flare's tables for IMAGE (NULL: light is discarded) and returns
+ * the tiles that the frame is drawn in. */
 struct glint_tiles glint_flare_start(struct glint_flare *flare,
                                      const struct glint_image *image);
 
-/* Returns A + B, at most INT32_MAX: a need that large cannot be met anyway. */
+/* Returns A + B, clamped to INT32_MAX; so large a need cannot be met anyway. */
 static inline int glint_flare_add_need(int a, int b)
 {
     return a > INT32_MAX - b ? INT32_MAX : a + b;

@@ -6,13 +6,13 @@
 
 enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
 
-/* One ghost and one light. While bundles have no places yet, jobs lie in the
- * memory of their slots. */
+/* One ghost and one light. Jobs are stored in the memory of the bundles' slots,
+ * which are not in use until bundles have their final indices. */
 struct job {
     int ghost, light;
-    int set;      /* index of its set, or UNSEEN */
-    int peak_q20; /* light of all its waves together, 2^20 at most: see peak_q20
-                     in struct glint_bundle_plan */
+    int set;      /* index of the chosen set of waves, or UNSEEN */
+    int peak_q20; /* sum of peak_q20 (see struct glint_bundle_plan) over all
+                     waves, at most 2^20 */
     int first;    /* index of its first bundle */
 };
 
@@ -46,8 +46,8 @@ int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave)
 
 /* -------------------------------------------------------------- the choice */
 
-/* Sets AT_Q8 to where the rays of PLANNED land, in pixels. Rays are spread
- * evenly over half of its window. */
+/* Sets AT_Q8 to the positions of rays of PLANNED in the picture, pixels. The
+ * rays are spread evenly over half of the bundle's window. */
 static void trace(const struct glint_plan *plan,
                   const struct glint_bundle_plan *planned,
                   struct glint_transfer *t, int32_t at_q8[ROWS][2][GLINT_RAYS])
@@ -106,12 +106,14 @@ static int64_t span_of(const struct glint_flare_frame *r, int set)
     return span < 0 ? -span : span;
 }
 
-/* Returns whether no step between waves of set SET shows in a ghost with the
- * sum of light LIGHT: a tenth of 5 LIGHT / n, which is about how much light
- * changes from one of n waves to the next, is below the step that may show.
- * APART is the distance of the first set's outermost outlines, pixels _q8. */
-static int serves(const struct glint_flare_frame *r, int set, int64_t apart,
-                  struct glint_real light)
+/* Returns whether the steps between the waves of set SET are invisible in a
+ * ghost whose waves have the sum of light LIGHT. From one of n waves to the
+ * next, light changes by about 5 LIGHT / n; the step is invisible if a tenth of
+ * that is below s->step, or if the outlines are near enough to each other.
+ * APART is the distance between the first set's outermost outlines, pixels
+ * _q8. */
+static int hides_steps(const struct glint_flare_frame *r, int set,
+                       int64_t apart, struct glint_real light)
 {
     const struct glint_wave_sets *s = r->sets;
     const int64_t gaps = s->size[set] - 1;
@@ -122,11 +124,12 @@ static int serves(const struct glint_flare_frame *r, int set, int64_t apart,
            apart * span_of(r, set) <= s->apart_q8 * gaps * span_of(r, 0);
 }
 
-/* Returns the smallest set that serves a ghost, given its bundles of the first
- * set. */
-static int choose(const struct glint_plan *plan,
-                  const struct glint_bundle_plan *planned,
-                  const struct glint_bundle *bundle, struct glint_transfer *t)
+/* Returns the smallest set whose steps are invisible in a ghost, from the
+ * ghost's bundles of the first set. */
+static int choose_set(const struct glint_plan *plan,
+                      const struct glint_bundle_plan *planned,
+                      const struct glint_bundle *bundle,
+                      struct glint_transfer *t)
 {
     const struct glint_flare_frame *r = plan->frame;
     const int n = r->sets->size[0];
@@ -137,12 +140,12 @@ static int choose(const struct glint_plan *plan,
     for (int i = 0; i < n; i++)
         if (bundle[i].n_cells)
             light = real_plus(light, planned[i].irradiance);
-    if (r->sets->n_sets > 1 && !serves(r, 0, FARTHEST_Q8, light)) {
+    if (r->sets->n_sets > 1 && !hides_steps(r, 0, FARTHEST_Q8, light)) {
         const int64_t apart =
             both ? apart_q8(plan, &planned[0], &planned[n - 1], t)
                  : FARTHEST_Q8;
 
-        while (set < r->sets->n_sets - 1 && !serves(r, set, apart, light))
+        while (set < r->sets->n_sets - 1 && !hides_steps(r, set, apart, light))
             set++;
     }
     return set;
@@ -164,8 +167,8 @@ static void plan_waves(struct glint_flare *f, const struct job *job, int at,
     }
 }
 
-/* Plans a ghost and a light with the first set of waves, and chooses its set.
- */
+/* Plans a ghost and a light with the first set of waves, and chooses the set
+ * that they need. */
 static void look_job(void *ctx, int number, int worker)
 {
     struct glint_flare *f = ctx;
@@ -185,8 +188,8 @@ static void look_job(void *ctx, int number, int worker)
         }
     job->peak_q20 = (int)q_clamp_sat(peak_q20, 0, 1 << 20);
     if (job->set == 0)
-        job->set = choose(&f->plan, &f->planned[at], &f->bundle[at],
-                          &f->worker[worker].plan->transfer);
+        job->set = choose_set(&f->plan, &f->planned[at], &f->bundle[at],
+                              &f->worker[worker].plan->transfer);
 }
 
 static void more_job(void *ctx, int number, int worker)
@@ -198,8 +201,8 @@ static void more_job(void *ctx, int number, int worker)
         plan_waves(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
-/* Leaves out each ghost that stays too faint to be seen in any pixel even if
- * its peaks by all lights fall on the same one. */
+/* Leaves out each ghost that is too faint to be seen even if its brightest
+ * pixels by all lights coincide. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;
@@ -215,9 +218,9 @@ static void leave_out_faint(struct glint_flare *f, int n)
     }
 }
 
-/* Moves N bundles; goes from the last to the first where they move up, as the
- * places may overlap. */
-static void move(struct glint_flare *f, int from, int to, int n)
+/* Moves N bundles from index FROM to TO. Moves the last bundle first if TO is
+ * larger, as both ranges may overlap. */
+static void move_bundles(struct glint_flare *f, int from, int to, int n)
 {
     for (int i = 0; i < n && from != to; i++) {
         const int k = to > from ? n - 1 - i : i;
@@ -227,7 +230,8 @@ static void move(struct glint_flare *f, int from, int to, int n)
     }
 }
 
-/* Keeps those of N jobs that can be seen, without gaps; returns how many. */
+/* Removes invisible jobs from the N jobs and closes the gaps; returns the
+ * number of jobs left. */
 static int keep_seen(struct glint_flare *f, int n)
 {
     const int size = f->plan.frame->sets->size[0];
@@ -237,15 +241,15 @@ static int keep_seen(struct glint_flare *f, int n)
     for (int i = 0; i < n; i++)
         if (job[i].set != UNSEEN) {
             job[kept] = job[i];
-            move(f, i * size, kept++ * size, size);
+            move_bundles(f, i * size, kept++ * size, size);
         }
     return kept;
 }
 
-/* Gives N jobs places for their bundles; a job without room for its set takes
- * the first set. Returns how many bundles there are; *NEED receives how many
- * there would be with enough room. */
-static int place(struct glint_flare *f, int n, int64_t *need)
+/* Assigns bundle indices to N jobs; if the set of a job does not fit, the job
+ * falls back to the first set. Returns the number of bundles; *NEED receives
+ * the number of bundles without a limit. */
+static int assign_indices(struct glint_flare *f, int n, int64_t *need)
 {
     const int *size = f->plan.frame->sets->size;
     struct job *job = jobs_of(f);
@@ -263,7 +267,7 @@ static int place(struct glint_flare *f, int n, int64_t *need)
     }
     for (int i = n - 1; i >= 0; i--)
         if (job[i].set == 0)
-            move(f, i * size[0], job[i].first, size[0]);
+            move_bundles(f, i * size[0], job[i].first, size[0]);
     return total;
 }
 
@@ -281,7 +285,7 @@ static int plan_sets(struct glint_flare *flare, int n_jobs)
         glint_workers_run(flare->cfg.workers, n, look_job, flare);
         leave_out_faint(flare, n);
         n = keep_seen(flare, n);
-        total = place(flare, n, &need);
+        total = assign_indices(flare, n, &need);
     }
     if (n > 0)
         glint_workers_run(flare->cfg.workers, n, more_job, flare);

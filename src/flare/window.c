@@ -31,11 +31,11 @@ static int has(const struct glint_transfer *t, int kind)
     return t->outputs >> kind & 1;
 }
 
-static void send(struct glint_window_nodes *n, struct glint_transfer *t)
+static void trace_nodes(struct glint_window_nodes *n, struct glint_transfer *t)
 {
     const uint32_t outputs = t->outputs;
 
-    /* The window depends neither on where rays land nor on their energy. */
+    /* The window depends neither on positions on the sensor nor on energies. */
     t->outputs &=
         ~(UINT32_C(1) << GLINT_OUT_SENSOR_X |
           UINT32_C(1) << GLINT_OUT_SENSOR_Y | UINT32_C(1) << GLINT_OUT_ENERGY);
@@ -59,9 +59,9 @@ static void send(struct glint_window_nodes *n, struct glint_transfer *t)
     n->n_rays += ACROSS * DOWN;
 }
 
-/* Returns how much output K bends about node (I, J): twice the distance that it
- * may lie from a straight line between rays. About 2^31 at most, as values are
- * below 2^30. */
+/* Returns the second difference of output K about node (I, J): twice the
+ * distance by which it may deviate from a straight line between rays. About
+ * 2^31 at most, as values are below 2^30. */
 static int64_t bend_of(const struct glint_window_nodes *n, int k, int i, int j)
 {
     const int32_t(*at)[ACROSS] = n->at[k];
@@ -75,8 +75,8 @@ static int64_t bend_of(const struct glint_window_nodes *n, int k, int i, int j)
     return ((across < 0 ? -across : across) + (down < 0 ? -down : down)) / 4;
 }
 
-/* Returns the sides of the octagon around the stop that a node lies beyond, a
- * bit each. */
+/* Returns the sides of the octagon around the stop that a node lies outside of,
+ * a bit each. */
 static uint32_t beyond_stop(int64_t x, int64_t y, int64_t radius, int64_t bend)
 {
     const int64_t straight = radius + bend;
@@ -88,7 +88,7 @@ static uint32_t beyond_stop(int64_t x, int64_t y, int64_t radius, int64_t bend)
                       (x - y > slanted) << 6 | (x - y < -slanted) << 7);
 }
 
-static void look_at(struct glint_window_nodes *n, int i, int j)
+static void test_node(struct glint_window_nodes *n, int i, int j)
 {
     const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
     const int64_t y = n->at[GLINT_OUT_STOP_Y][j][i];
@@ -101,10 +101,10 @@ static void look_at(struct glint_window_nodes *n, int i, int j)
     n->inside[j][i] = x * x + y * y < n->radius * n->radius;
 }
 
-/* Sets the bits of the barrels that each node lies beyond, next to the bits of
- * the stop. */
-static void look_at_barrels(struct glint_window_nodes *n,
-                            const struct glint_transfer *t)
+/* Sets, next to the bits of the stop, a bit for each barrel that a node lies
+ * outside of. */
+static void test_barrels(struct glint_window_nodes *n,
+                         const struct glint_transfer *t)
 {
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         int64_t one;
@@ -134,7 +134,8 @@ static void widen(struct extent *e, int32_t across_q16, int32_t down_q16)
     }
 }
 
-/* Returns the distance of a node from the middle of the stop, in its units. */
+/* Returns the distance of a node from the middle of the stop, in units of the
+ * stop outputs. */
 static int64_t distance(const struct glint_window_nodes *n, int i, int j)
 {
     const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
@@ -143,8 +144,9 @@ static int64_t distance(const struct glint_window_nodes *n, int i, int j)
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Widens E to where the circle crosses the line from node (I, J), which is
- * inside, to the next node: WAY is 0 across or 1 down, STEP 1 or -1. */
+/* Extends E to where the stop's circle crosses the line from node (I, J) to the
+ * next node, if that node lies outside. WAY is 0 across or 1 down, STEP 1 or
+ * -1. Node (I, J) must be inside. */
 static void widen_to_circle(struct extent *e,
                             const struct glint_window_nodes *n, int i, int j,
                             int way, int step)
@@ -164,8 +166,8 @@ static void widen_to_circle(struct extent *e,
           j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
 }
 
-/* Returns whether the cell at (I, J) is small against the stop, and hardly
- * bent. */
+/* Returns whether the cell at (I, J) is small compared with the stop, and
+ * hardly curved. */
 static int is_fine(const struct glint_window_nodes *n, int i, int j)
 {
     int64_t size = 0, bend = 0;
@@ -207,17 +209,17 @@ static void add_cell(struct extent *e, const struct glint_window_nodes *n,
     }
 }
 
-/* Returns the part of the window of T from which rays may get through. */
-static struct extent look(struct glint_window_nodes *n,
-                          struct glint_transfer *t)
+/* Returns the range of the window of T from which rays may get through. */
+static struct extent find_extent(struct glint_window_nodes *n,
+                                 struct glint_transfer *t)
 {
     struct extent e = {{INT32_MAX, INT32_MAX}, {-1, -1}};
 
-    send(n, t);
+    trace_nodes(n, t);
     for (int j = 0; j < DOWN; j++)
         for (int i = 0; i < ACROSS; i++)
-            look_at(n, i, j);
-    look_at_barrels(n, t);
+            test_node(n, i, j);
+    test_barrels(n, t);
     for (int j = 0; j < DOWN - 1; j++)
         for (int i = 0; i < ACROSS - 1; i++)
             add_cell(&e, n, i, j);
@@ -226,9 +228,9 @@ static struct extent look(struct glint_window_nodes *n,
 
 /* ------------------------------------------------------------------- window */
 
-/* Widens E along K, 0 across or 1 down, by 1 / PART of its size on either side,
- * within 0 .. STEPS: between the lines of the grid a circle that spans six
- * cells or more bulges by a hundredth of itself. */
+/* Extends E along K, 0 across or 1 down, by 1 / PART of its size on either
+ * side, within 0 .. STEPS: between the lines of the grid a circle that spans
+ * six cells or more bulges by a hundredth of its size. */
 static void loosen(struct extent *e, int k, int steps, int part)
 {
     const int32_t most_q16 = steps * ONE_NODE_Q16;
@@ -240,7 +242,7 @@ static void loosen(struct extent *e, int k, int steps, int part)
     e->high_q16[k] = e->high_q16[k] < most_q16 ? e->high_q16[k] : most_q16;
 }
 
-/* Narrows the window of T to its part E; returns whether it became much
+/* Narrows the window of T to its subrange E; returns whether it became much
  * smaller. */
 static int narrow(struct glint_transfer *t, struct extent *e)
 {
@@ -274,13 +276,13 @@ int glint_window_find(struct glint_window_nodes *nodes,
     nodes->radius += !nodes->radius;
     nodes->n_rays = 0;
     for (int pass = 0; more && pass < MOST_PASSES; pass++) {
-        struct extent e = look(nodes, t);
+        struct extent e = find_extent(nodes, t);
 
         if (e.high_q16[0] < 0)
             return 0;
         loosen(&e, 0, ACROSS - 1, 48);
-        loosen(&e, 1, DOWN - 1, 24); /* The extent is half of the height, so a
-                                        24th of it is a 48th of the whole. */
+        loosen(&e, 1, DOWN - 1, 24); /* E covers half the height, so 1/24 of it
+                                        is 1/48 of the whole height. */
         more =
             narrow(t, &e) && t->window.u_half_q30 > LEAST_HALF_Q30 &&
             (int64_t)t->window.v_to_q30 - t->window.v_from_q30 > LEAST_HALF_Q30;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps over time: spots of one picture after the other become tracks.
+ * Tracks lamps over time, from the spots of successive pictures.
  *
- * In each step tracks move to where they should be by now and take the spots
- * they find there (match.h); each continues with its spot or without
- * (record.h); spots that are left over become tracks; the strongest tracks are
+ * In each step tracks move to their predicted positions and are matched with
+ * the spots there (match.h); each track continues with its spot or without a
+ * spot (record.h); unmatched spots become new tracks; the strongest tracks are
  * shown. */
 #include "glint/lamp_tracker.h"
 
@@ -23,10 +23,11 @@ enum {
 };
 
 #define MAX_ELAPSED_US 10000000
-/* Time after which a lost lamp may be found one reach farther away. */
+/* Microseconds after which a lost lamp is searched for within one more reach,
+ * up to MAX_REACHES. */
 #define REACH_US    1000000
 #define MAX_REACHES 3
-/* microseconds in which white darkens to 1/e; a stop takes a second */
+/* microseconds in which white falls to 1/e, one stop per second */
 #define WHITE_US 1442695
 
 struct glint_lamp_tracker {
@@ -60,8 +61,7 @@ static int is_valid(const struct glint_lamp_tracker_config *c)
            is_time(c->smooth_ms);
 }
 
-/* Runs twice: once to measure, and once to place. Returns NULL if measuring or
- * full. */
+/* Allocates a tracker from A. Returns NULL if A only measures or is full. */
 static struct glint_lamp_tracker *
 carve(struct glint_arena *a, const struct glint_lamp_tracker_config *c)
 {
@@ -167,7 +167,7 @@ static int32_t reach_of_q8(const struct glint_lamp_tracker *t,
     return t->reach_q8 + (more_q8 < most_q8 ? (int32_t)more_q8 : most_q8);
 }
 
-/* Makes a seeker of each track, at the place where it should be by now. */
+/* Makes a seeker for each track, at its predicted position. */
 static void send_seekers(struct glint_lamp_tracker *t)
 {
     struct glint_match *m = &t->match;
@@ -191,7 +191,8 @@ static void send_seekers(struct glint_lamp_tracker *t)
 }
 
 /* Returns the squared distance within which a spot is the same lamp if there
- * are N spots: among many, one always is in reach by chance. */
+ * are N spots. It shrinks with N, as among many spots one is within reach by
+ * chance. */
 static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
 {
     const int64_t reach2_q16 = (int64_t)t->reach_q8 * t->reach_q8;
@@ -200,7 +201,7 @@ static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
 }
 
 /* Returns the flux that spot NOW has in common with BEFORE, the lamp's last
- * spot; 0 if NOW is too far from the place that S predicts. */
+ * spot; 0 if NOW is too far from the predicted position of S. */
 static int64_t kept_of(const struct glint_seeker *s,
                        const struct glint_spot *before,
                        const struct glint_spot *now, int64_t limit2_q16)
@@ -215,15 +216,15 @@ static int64_t kept_of(const struct glint_seeker *s,
     return p_q16 < q_q16 ? p_q16 : q_q16;
 }
 
-/* One side of a cut: the flux seen in one picture, and how much of it the other
- * picture has, too. */
+/* One side of a cut: the flux seen in one picture, and the flux that is also in
+ * the other picture. */
 struct side {
     int64_t flux, kept;
     int n;
 };
 
-/* Returns whether most of A is not in B. If A has no flux, several lamps in B
- * indicate a cut: all of them appeared, or vanished, at once. */
+/* Returns whether most of the flux of A is not in B. If A has no flux, several
+ * lamps in B indicate a cut: all of them appeared, or vanished, at once. */
 static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
                     const struct side *b)
 {
@@ -231,8 +232,8 @@ static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
                        : b->n >= MANY_LIGHTS;
 }
 
-/* Returns whether most of the flux seen before is gone and most of that seen
- * now is new. */
+/* Returns whether most of the previous flux is gone and most of the current
+ * flux is new. */
 static int is_cut(const struct glint_lamp_tracker *t,
                   const struct glint_spot *spots, int n)
 {
@@ -260,7 +261,7 @@ static int is_cut(const struct glint_lamp_tracker *t,
     return is_apart(t, &before, &now) && is_apart(t, &now, &before);
 }
 
-/* Gives each track its spot; after a cut all tracks are forgotten. */
+/* Assigns spots to tracks; after a cut all tracks are dropped. */
 static void match(struct glint_lamp_tracker *t, const struct glint_spot *spots,
                   int n)
 {
@@ -276,8 +277,8 @@ static void match(struct glint_lamp_tracker *t, const struct glint_spot *spots,
 
 /* --------------------------------------------------------------------- new */
 
-/* Returns whether P should make room before Q: lost lamps do first, then faint
- * ones, then young ones. */
+/* Returns whether P should be replaced before Q: first lost lamps, then faint
+ * lamps, then young lamps. */
 static int yields_first(const struct glint_record *p,
                         const struct glint_record *q)
 {
@@ -289,8 +290,9 @@ static int yields_first(const struct glint_record *p,
     return p_q16 != q_q16 ? p_q16 < q_q16 : p->id > q->id;
 }
 
-/* Returns the place for a new lamp of POWER: a free one, else that of a track
- * which is not shown and is lost or fainter; NULL if there is none. */
+/* Returns the record for a new lamp of POWER: a free record, else the record of
+ * a track that is not shown and is lost or fainter. Returns NULL if there is no
+ * such record. */
 static struct glint_record *place_for(struct glint_lamp_tracker *t,
                                       int64_t power_q16)
 {
@@ -324,7 +326,7 @@ static int is_brighter(const void *ctx, int32_t a, int32_t b)
     return p_q16 != q_q16 ? p_q16 > q_q16 : a < b;
 }
 
-/* Makes tracks of the spots that no track took, the brightest first. */
+/* Makes tracks of the unmatched spots, the brightest first. */
 static void begin_tracks(struct glint_lamp_tracker *t,
                          const struct glint_spot *spots, int n)
 {
@@ -350,8 +352,8 @@ static void begin_tracks(struct glint_lamp_tracker *t,
 
 /* -------------------------------------------------------------------- shown */
 
-/* Returns the power of R for ranking. A track that is shown counts for a
- * quarter more, so that two of similar power do not take turns. */
+/* Returns the power of R for ranking. The power of shown tracks is raised by a
+ * quarter, so that two tracks of similar power do not alternate. */
 static int64_t score_of(const struct glint_record *r)
 {
     const int64_t power_q16 = r->of[GLINT_CHANNEL_POWER].value;
@@ -367,8 +369,8 @@ static int is_stronger(const void *ctx, int32_t a, int32_t b)
     return p != q ? p > q : record[a].id < record[b].id;
 }
 
-/* Lists all tracks in t->order, the strongest first, and picks those that are
- * shown. Returns how many there are. */
+/* Lists all tracks in t->order, the strongest first, and selects the shown
+ * tracks. Returns the number of all tracks. */
 static int rank_tracks(struct glint_lamp_tracker *t)
 {
     int n = 0, n_shown = 0;

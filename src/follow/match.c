@@ -51,8 +51,8 @@ static void list_numbers(const struct glint_spot *s, int64_t v[SPOT_NUMBERS])
     v[14] = s->sin_q15;
 }
 
-/* Orders spots by all their members; only spots that are equal in all of these
- * may change places. */
+/* Orders spots by all their members; the order is ambiguous only for equal
+ * spots. */
 static int spot_before(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_spot *spots = ctx;
@@ -82,8 +82,8 @@ static int pair_before(const void *ctx, int32_t a, int32_t b)
 
 /* -------------------------------------------------------------------- pairs */
 
-/* Returns the squared distance of SPOT, more if it is faint or the lamp lost;
- * -1 if it is too far away, or too large a faint spot. */
+/* Returns the squared distance of SPOT, multiplied if it is faint or the lamp
+ * lost; -1 if it is too far away, or faint and too large. */
 static int64_t cost_q16(const struct glint_seeker *s,
                         const struct glint_spot *spot)
 {
@@ -120,7 +120,7 @@ static int first_from(const struct glint_match *m,
 }
 
 /* Keeps PAIR if it is among the NEAREST_SPOTS of its seeker. The seeker's pairs
- * begin at FIRST, by rising cost; equal ones stay in the order of by_x. */
+ * begin at FIRST, sorted by cost; equal costs stay in the order of by_x. */
 static void keep_near(struct glint_match *m, int first, struct glint_pair pair)
 {
     int at = m->n_pairs;

@@ -4,8 +4,7 @@
 #include "base/q.h"
 
 #define VELOCITY_US 100000 /* microseconds over which velocity is averaged */
-/* microseconds in which a lamp whose motion is not seen loses 1 - 1/e of its
- * velocity */
+/* microseconds in which an unseen lamp loses 1 - 1/e of its velocity */
 #define COAST_US     1000000
 #define MAX_FLUX_Q16 (INT64_C(1) << 42)
 #define FULL_Q30     (INT32_C(1) << 30)
@@ -14,37 +13,38 @@
 /* ---------------------------------------------------------------- one number
  */
 
-/* Follows one number of a lamp over time: noise is averaged, change is
- * followed.
+/* Filters one number of a lamp over time: noise is averaged, change is followed
+ * at once.
  *
- *   in   the number as each picture shows it, at any rate
- *   out  a number that does not scatter, lag or jump
+ *   in   the number measured in each picture, at any frame rate
+ *   out  a number that does not fluctuate, lag or jump
  *
  * Method: errors of the number are averaged with their signs (drift) and
- * without (spread). Noise drifts nowhere, so its drift is a small part of the
- * spread, and the number moves a small part of the way, as an average over the
- * pace's time does. A change drifts all one way, or is far larger than the
- * spread, and the number follows it at once. So the filter adapts to the noise
- * of each lamp, and lags behind steady change by no more than five times an
- * error that does no harm (floor).
+ * without (spread). The drift of noise is a small fraction of its spread; the
+ * number then moves only a small fraction of the error, like an average over
+ * the pace's time. The errors of a change have one sign, or are far larger than
+ * the spread; the number then follows at once. So the filter adapts to the
+ * noise of each lamp, and lags behind steady change by at most five times the
+ * tolerated error (floor).
  *
- * A change that must not be seen at once is blended: the number has it, and the
- * shown number goes there at a bounded speed.
+ * A change that must not show as a jump is blended: the value changes at once,
+ * and the shown number approaches it at a bounded speed.
  *
- * A number that repeats bit for bit has no noise; it is reached soon and
- * exactly.
+ * A number that repeats bit for bit has no noise; the filter reaches it soon
+ * and exactly.
  *
  * Limits: numbers are below 2^43 in magnitude, times below 2^26 us. */
 #define SETTLE_US 60000
 
 /* Ratios of drift to spread up to which an error is noise, and from which it is
- * change. Noise of a bell curve passes the first in one picture of 100, and
- * exceeds SUDDEN times the spread in one of 1000. */
+ * change. Gaussian noise exceeds the first in one picture of 100, and SUDDEN
+ * times the spread in one of 1000. */
 #define NOISE_Q15  Q_CONST(0.8, 15)
 #define CHANGE_Q15 Q_CONST(0.95, 15)
 #define SUDDEN     6
 
-/* Returns X times GAIN, rounded away from 0, so that a remainder ends in 0. */
+/* Returns X times GAIN, rounded away from 0, so that repeated corrections reach
+ * 0. */
 static int64_t part_of(int64_t x, int32_t gain_q15)
 {
     return x < 0 ? -((-x * gain_q15 + ONE_Q15 - 1) >> 15)
@@ -58,7 +58,7 @@ static int64_t size_of(int64_t x)
 
 enum follow_as {
     FOLLOW_JUDGED,   /* the errors so far decide between noise and change */
-    FOLLOW_REPEATED, /* all members of the lamp are as they were */
+    FOLLOW_REPEATED, /* all members of the spot are unchanged */
     FOLLOW_CHANGED
 };
 
@@ -69,8 +69,8 @@ int32_t glint_pace_part_q15(int32_t elapsed_us, int32_t time_us)
     return (int32_t)((((int64_t)elapsed_us << 15) + sum / 2) / sum);
 }
 
-/* Returns ELAPSED_US / TIME_US, 1 at most: the part of the way at a steady
- * speed. */
+/* Returns ELAPSED_US / TIME_US, at most 1: the fraction of a linear
+ * transition. */
 static int32_t pace_share_q15(int32_t elapsed_us, int32_t time_us)
 {
     return q_clamp_sat(((int64_t)elapsed_us << 15) / time_us, 0, ONE_Q15);
@@ -84,13 +84,14 @@ struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us)
         .settle_q15 = glint_pace_part_q15(elapsed_us, SETTLE_US)};
 }
 
-/* Begins at VALUE; its errors are assumed to be SPREAD until they are known. */
+/* Starts the filter at VALUE; errors are assumed to be SPREAD until they are
+ * known. */
 static void follow_start(struct glint_follow *f, int64_t value, int64_t spread)
 {
     *f = (struct glint_follow){.value = value, .spread = spread};
 }
 
-/* Moves the shown number towards the value for ELAPSED_US; a whole stride takes
+/* Moves the shown number towards the value for ELAPSED_US, at one stride per
  * TIME_US. */
 static void follow_blend(struct glint_follow *f, int32_t elapsed_us,
                          int32_t time_us)
@@ -104,8 +105,8 @@ static void follow_blend(struct glint_follow *f, int32_t elapsed_us,
         f->offset -= f->offset < 0 ? -step : step;
 }
 
-/* Returns whether the errors so far are noise, 0, or a change, 1, or between.
- */
+/* Returns a number from 0, if the errors so far are noise, to 1, if they are a
+ * change. */
 static int32_t judge_q15(const struct glint_follow *f, int64_t floor)
 {
     const int64_t one_way_q15 = (size_of(f->drift) << 15) / (f->spread + floor);
@@ -115,13 +116,14 @@ static int32_t judge_q15(const struct glint_follow *f, int64_t floor)
                        0, ONE_Q15);
 }
 
-/* Takes ERROR into drift and spread; returns how much of a change it is, 0 ..
- * 1. */
+/* Adds ERROR to drift and spread; returns the degree to which it is a change, 0
+ * .. 1. */
 static int32_t learn_q15(struct glint_follow *f, int64_t error, int64_t floor,
                          int32_t smooth_q15, enum follow_as as)
 {
     if (as == FOLLOW_CHANGED || size_of(error) > SUDDEN * (f->spread + floor)) {
-        f->drift = error / 2; /* Earlier errors are of no use after a change. */
+        f->drift = error / 2; /* Earlier errors are irrelevant after a
+                                 change. */
         f->spread = size_of(error / 2);
         return ONE_Q15;
     }
@@ -130,8 +132,8 @@ static int32_t learn_q15(struct glint_follow *f, int64_t error, int64_t floor,
     return judge_q15(f, floor);
 }
 
-/* Follows TARGET; FLOOR is an error that does no harm, >= 1. Returns how much
- * of a change it was, 0 .. 1. */
+/* Moves the value towards TARGET. FLOOR is the tolerated error, at least 1.
+ * Returns the degree to which the error is a change, 0 .. 1. */
 static int32_t follow_step_q15(struct glint_follow *f, int64_t target,
                                int64_t floor, const struct glint_pace *pace,
                                enum follow_as as)
@@ -149,8 +151,8 @@ static int32_t follow_step_q15(struct glint_follow *f, int64_t target,
     return change_q15;
 }
 
-/* Goes from AHEAD towards TARGET as for noise, and assumes noise of at least
- * SPREAD until more is known. */
+/* Moves the value from AHEAD towards TARGET as for noise, and assumes noise of
+ * at least SPREAD until more is known. */
 static void follow_doubt(struct glint_follow *f, int64_t ahead, int64_t target,
                          int64_t spread, const struct glint_pace *pace)
 {
@@ -165,8 +167,8 @@ static int64_t follow_shown(const struct glint_follow *f)
     return f->value + f->offset;
 }
 
-/* Sets the value, but continues showing SHOWN; blends then move from there to
- * the value, within their time unless more changes follow. */
+/* Sets the value, but continues to show SHOWN; blends then move the shown
+ * number to the value, within their time unless more changes follow. */
 static void follow_jump(struct glint_follow *f, int64_t value, int64_t shown)
 {
     f->value = value;
@@ -177,7 +179,7 @@ static void follow_jump(struct glint_follow *f, int64_t value, int64_t shown)
 
 /* ----------------------------------------------------------------- one lamp */
 
-/* Repetitions in a row that count; a single one may be chance. */
+/* Min consecutive repetitions; a single repetition may be chance. */
 enum { REPEATS = 2 };
 
 enum {
@@ -204,7 +206,7 @@ int64_t glint_record_power_q16(const struct glint_spot *spot)
 }
 
 /* Sets cosine and sine of twice the orientation of S: both directions of an
- * axis give the same. */
+ * axis have the same values. */
 static void double_angle(const struct glint_spot *s, int64_t *cos2_q15,
                          int64_t *sin2_q15)
 {
@@ -232,8 +234,8 @@ static void list_targets(const struct glint_spot *s,
         target[GLINT_CHANNEL_RED + i] = clamp(s->rgb_q15[i], 0, 1 << 20);
 }
 
-/* Returns an error of VALUE that does no harm: 1/32 pixel for places, 1/64 for
- * all other channels, and 1/16 pixel more for sizes. */
+/* Returns the tolerated error of VALUE: 1/32 pixel for positions; 1/64 of the
+ * value for all other channels, plus 1/16 pixel for sizes. */
 static int64_t floor_of(int channel, int64_t value)
 {
     switch (channel) {
@@ -294,9 +296,9 @@ static void slow_down(struct glint_record *r,
     r->velocity_q16[axis] -= r->velocity_q16[axis] * part_q15 / (1 << 15);
 }
 
-/* Averages the velocity with that of the last step from BEFORE; noise counts
- * half as much as change. Velocities are clamped to 16 times the picture's
- * width a second. */
+/* Averages the velocity with the velocity of the last step from BEFORE; noise
+ * counts half as much as change. Velocities are clamped to 16 times the
+ * picture's width a second. */
 static void learn_velocity(struct glint_record *r,
                            const struct glint_record_step *step, int axis,
                            int64_t before_q16, int32_t change_q15)
@@ -315,10 +317,10 @@ static void learn_velocity(struct glint_record *r,
         (now_q16 - r->velocity_q16[axis]) * part_q15 / (1 << 15);
 }
 
-/* Takes a place that belongs to a changed shape, which is not a motion. Close
- * to the expected place, within half the lamp's radius, it counts as noise;
- * farther away the shown place moves on as before, and is blended to the new
- * one. */
+/* Updates the position after a change of shape, which is not a motion. Within
+ * half the lamp's radius of the expected position it counts as noise; farther
+ * away the shown position moves on as before and is blended to the new
+ * position. */
 static void doubt_place(struct glint_record *r,
                         const struct glint_record_step *step, int axis,
                         int64_t target_q16)
@@ -334,17 +336,17 @@ static void doubt_place(struct glint_record *r,
 }
 
 /* Returns whether the lamp moves along AXIS by more than half a pixel and a
- * sixteenth of its radius in the time of a picture. Its errors are motion then,
- * not noise: where the motion turns or ends, the drift points the wrong way for
- * some pictures. */
+ * sixteenth of its radius per picture. Its errors are then motion, not noise:
+ * when the motion turns or ends, the drift has the wrong sign for some
+ * pictures. */
 static int is_moving(const struct glint_record *r, int axis)
 {
     return size_of(r->ahead_q16[axis] - r->of[X + axis].value) >
            r->of[SIZE].value * 16 + 65536 / 2;
 }
 
-/* Returns how to follow a place: an error of more than three quarters of the
- * lamp's radius is change, not noise, and so is any of a lamp that moves. */
+/* Returns how to follow a position: an error of more than three quarters of the
+ * lamp's radius, or any error of a moving lamp, is change. */
 static enum follow_as judge_place(const struct glint_record *r, int axis,
                                   int64_t error_q16, int is_repeat)
 {
@@ -354,9 +356,9 @@ static enum follow_as judge_place(const struct glint_record *r, int axis,
     return is_repeat ? FOLLOW_REPEATED : FOLLOW_JUDGED;
 }
 
-/* Returns whether TARGET is too far for the lamp's motion: twice its radius and
- * an eighth of the match distance from the expected place. It may be motion
- * that begins, or another lamp. */
+/* Returns whether TARGET is too far for the lamp's motion: farther from the
+ * expected position than twice its radius plus an eighth of the match distance.
+ * The cause may be a motion that begins, or another lamp. */
 static int is_leap(const struct glint_record *r,
                    const struct glint_record_step *step, int axis,
                    int64_t target_q16)
@@ -389,7 +391,7 @@ static void follow_place(struct glint_record *r,
     learn_velocity(r, step, axis, before_q16, change_q15);
 }
 
-/* Moves a lamp without a spot on; a hidden one slows down. */
+/* Moves a lamp without a spot on; a hidden lamp slows down. */
 static void coast(struct glint_record *r, const struct glint_record_step *step)
 {
     for (int axis = 0; axis < 2; axis++) {
@@ -399,7 +401,7 @@ static void coast(struct glint_record *r, const struct glint_record_step *step)
     }
 }
 
-/* Returns whether the lamp moves out of the picture, through a side close to
+/* Returns whether the lamp is near a side of the picture and moves out through
  * it. */
 static int is_leaving(const struct glint_record *r,
                       const struct glint_record_step *step)
@@ -425,9 +427,9 @@ static int is_leaving(const struct glint_record *r,
 
 /* -------------------------------------------------------------------- light */
 
-/* Returns how to follow light of CHANNEL. What a clipped core hides is guessed
- * from its rim, and may be half or twice as much in noise, so that powers are
- * judged by the errors so far, but where pictures repeat. */
+/* Returns how to follow light of CHANNEL. The power of a clipped core is
+ * estimated from its rim, and noise may halve or double it, so powers are
+ * judged by the errors so far unless pictures repeat. */
 static enum follow_as judge_light(int channel, int64_t change, int64_t larger,
                                   int64_t floor, int is_repeat)
 {
@@ -437,15 +439,15 @@ static enum follow_as judge_light(int channel, int64_t change, int64_t larger,
     return is_repeat ? FOLLOW_REPEATED : FOLLOW_JUDGED;
 }
 
-/* Returns the time in us in which all of a lamp may appear or vanish. */
+/* Returns the time in us in which a lamp may fully appear or vanish. */
 static int32_t blend_us(const struct glint_lamp_tracker_config *cfg,
                         int64_t change)
 {
     return 1000 * (change > 0 ? cfg->attack_ms : cfg->release_ms);
 }
 
-/* Follows TARGET. A change that is faster than all of the light in the attack
- * or release time is blended over that time. */
+/* Follows TARGET. A change faster than all light within the attack or release
+ * time is blended over that time. */
 static void follow_light(struct glint_record *r,
                          const struct glint_record_step *step, int channel,
                          int64_t target, int is_repeat)
@@ -454,7 +456,8 @@ static void follow_light(struct glint_record *r,
     const int64_t before = f->value, shown = follow_shown(f);
     const int64_t larger =
         channel == GLINT_CHANNEL_COS2 || channel == GLINT_CHANNEL_SIN2
-            ? ONE_Q15 /* in units of a full axis, whichever way it lies */
+            ? ONE_Q15 /* in units of a full axis, independent of its
+                         direction */
         : target > before ? target
                           : before;
     const int64_t floor = floor_of(channel, larger);
@@ -532,7 +535,7 @@ void glint_record_see(struct glint_record *r,
 }
 
 /* Returns whether the lamp is so far outside the picture that it neither
- * comes back nor throws a flare into it. */
+ * returns nor flares in it. */
 static int is_far(const struct glint_record *r)
 {
     const int64_t limit_q16 = (int64_t)4 * GLINT_MAX_SIDE << 16;
@@ -562,8 +565,8 @@ void glint_record_miss(struct glint_record *r,
 
 /* -------------------------------------------------------------------- level */
 
-/* Returns the part of full level by which a level may change in the time of
- * STEP, if all of it takes MS. */
+/* Returns the max change of a level in the time of STEP, if a change from 0 to
+ * full level lasts MS. */
 static int32_t level_step_q30(const struct glint_record_step *step, int32_t ms)
 {
     const int64_t part_q30 =
@@ -601,7 +604,7 @@ void glint_record_set_level(struct glint_record *r,
         fade(r, step);
 }
 
-/* Sets the axis to half the angle; it is horizontal if both are 0. */
+/* Sets the axis to half the angle of (COS2, SIN2); horizontal if both are 0. */
 static void set_axis(struct glint_lamp_track *track, int64_t cos2_q15,
                      int64_t sin2_q15)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * One lamp over time: its record, and how a picture changes it.
+ * The record of one lamp over time, and its updates by pictures.
  *
  *     glint_record_begin(r, id, spot);               once
  *     glint_record_look_ahead(r, &step);             each picture
@@ -12,29 +12,30 @@
 
 #include "glint/lamp_tracker.h"
 
-/* One number of a lamp that is followed (record.c). */
+/* The filter of one number of a lamp (record.c). */
 struct glint_follow {
     int64_t value;
-    /* Means of errors with their signs, and of their magnitudes. */
+    /* Means of the signed errors, and of their magnitudes. */
     int64_t drift, spread;
-    int64_t offset; /* value + offset is shown */
-    int64_t stride; /* distance that the offset moves in the time of a blend */
+    int64_t offset; /* the number shown is value + offset */
+    int64_t stride; /* change of the offset over the time of a blend */
 };
 
 /* The filter's parameters for the time between two pictures. */
 struct glint_pace {
     int32_t elapsed_us;
-    int32_t smooth_q15; /* part of the way for noise */
-    int32_t settle_q15; /* part of the way for change that repeats */
+    int32_t smooth_q15; /* fraction of the error corrected per picture for
+                           noise */
+    int32_t settle_q15; /* the same for changes that repeat */
 };
 
 struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us);
 
-/* Returns ELAPSED_US / (ELAPSED_US + TIME_US): the part of the way that an
- * average over that time goes; TIME_US >= 1. */
+/* Returns ELAPSED_US / (ELAPSED_US + TIME_US): the fraction of an error that an
+ * average over TIME_US corrects. TIME_US must be at least 1. */
 int32_t glint_pace_part_q15(int32_t elapsed_us, int32_t time_us);
 
-/* The channels that are followed: places in _q16, all others as in struct
+/* The channels of the filter: positions in _q16, all others as in struct
  * glint_spot. */
 enum glint_record_channel {
     GLINT_CHANNEL_X,
@@ -53,29 +54,30 @@ enum glint_record_channel {
 };
 
 struct glint_record {
-    uint32_t id; /* 0: the record is free */
+    uint32_t id; /* identifies the lamp; 0: the record is free */
     enum glint_lamp_state state;
     struct glint_follow of[GLINT_CHANNELS];
-    struct glint_spot last; /* the spot that it was last seen as */
-    int n_same; /* number of pictures in a row, after the first, that showed the
-                   same spot */
-    int64_t velocity_q16[2]; /* pixels a second */
-    int64_t ahead_q16[2];    /* pixels: predicted place of the lamp */
+    struct glint_spot last; /* the last spot that was assigned to the lamp */
+    int n_same; /* number of consecutive pictures, after the first, with an
+                   equal spot */
+    int64_t velocity_q16[2]; /* pixels per second */
+    int64_t ahead_q16[2];    /* predicted position of the lamp, pixels */
     int32_t level_q30;
-    int32_t lost_us; /* time since it was last seen; 0: it is seen now */
-    int is_shown; /* set by the caller: the level rises while the lamp is seen
-                   */
+    int32_t lost_us; /* microseconds since it was last seen; 0: it is seen in
+                        this picture */
+    int is_shown; /* set by the caller: true if the level rises while the lamp
+                     is seen */
 };
 
 /* The values that all records of a picture share. */
 struct glint_record_step {
     const struct glint_lamp_tracker_config *cfg;
     struct glint_pace pace;
-    int is_fresh; /* 1: a lamp that begins is at full level at once */
+    int is_fresh; /* 1: new lamps start at full level */
 };
 
-/* Returns the flux of a spot, clamped to 0 .. 2^42: the largest picture, all
- * white. */
+/* Returns the flux of a spot, clamped to 0 .. 2^42, the flux of the largest
+ * picture if all white. */
 int64_t glint_record_flux_q16(const struct glint_spot *spot);
 
 /* Returns the power of a spot, clamped to 0 .. 2^42. */
@@ -84,7 +86,7 @@ int64_t glint_record_power_q16(const struct glint_spot *spot);
 void glint_record_begin(struct glint_record *r, uint32_t id,
                         const struct glint_spot *spot);
 
-/* Predicts the place of the lamp. */
+/* Predicts the position of the lamp. */
 void glint_record_look_ahead(struct glint_record *r,
                              const struct glint_record_step *step);
 
@@ -92,12 +94,13 @@ void glint_record_see(struct glint_record *r,
                       const struct glint_record_step *step,
                       const struct glint_spot *spot);
 
-/* Continues a record without a spot: the lamp moves on, and is forgotten after
- * a while. */
+/* Continues a record without a spot: the lamp moves on with its velocity, and
+ * is forgotten after a time. */
 void glint_record_miss(struct glint_record *r,
                        const struct glint_record_step *step);
 
-/* Raises or lowers the level by the time of the step, and sets the state. */
+/* Raises or lowers the level according to the time of the step, and sets the
+ * state. */
 void glint_record_set_level(struct glint_record *r,
                             const struct glint_record_step *step);
 

@@ -27,8 +27,8 @@ void glint_bright_init(struct glint_bright *b, int width)
     b->curve_tone = -1;
 }
 
-/* Sets BEYOND: 250 below luma 192, then one more for each 15 of luma, up to 255
- * from luma 252 on. */
+/* Sets BEYOND, the brightness of clipped pixels by luma: 250 below luma 192,
+ * then 1 more per 15 of luma, up to 255 from luma 252 on. */
 static void set_beyond(uint8_t beyond[256])
 {
     for (int luma = 0; luma < 256; luma++)
@@ -55,8 +55,8 @@ void glint_bright_begin(struct glint_bright *b, const struct glint_image *image)
     set_beyond(b->beyond);
 }
 
-/* Returns the least Y code whose luma is LUMA or more, or 256 if there is none.
- */
+/* Returns the min Y code whose luma is LUMA or more, or 256 if there is no such
+ * code. */
 static int least_of_luma(const struct glint_bright *b, int luma)
 {
     int code = luma > 0 ? 1 : 0;

@@ -13,15 +13,15 @@
  *
  * Brightness is the largest channel, so that a lamp of any colour counts. Below
  * BRIGHT_CLIPPED it is that channel's full-range code. From there on the
- * largest channel is clipped, and brightness rises with luma, which tells how
- * far the other channels are clipped, too: a sun is more than the red sky
+ * largest channel is clipped, and brightness rises with luma, which shows how
+ * far the other channels are clipped, too: the sun is brighter than the red sky
  * around it.
  *
- * Most of a picture by night is dark, which shows without colour: eight bytes
- * at a time are compared with the codes that a bright pixel must exceed, and
- * blocks of BRIGHT_BLOCK pixels without such a byte are left out. In Y, Cb, Cr
- * the largest luma of a block and the extremes of its chroma bound its
- * channels. */
+ * Most of a night picture is dark, and this can be tested without computing
+ * brightness: eight bytes at a time are compared with the codes that a bright
+ * pixel must exceed, and blocks of BRIGHT_BLOCK pixels without such a byte are
+ * skipped. In Y, Cb, Cr the largest luma of a block and the extremes of its
+ * chroma bound its channels. */
 #ifndef GLINT_LAMPS_BRIGHT_H
 #define GLINT_LAMPS_BRIGHT_H
 
@@ -32,14 +32,14 @@ struct glint_arena;
 
 enum {
     BRIGHT_BLOCK = 32,    /* pixels */
-    BRIGHT_CLIPPED = 250, /* a channel that is this or more is clipped and has
+    BRIGHT_CLIPPED = 250, /* channels of this code or more are clipped and have
                              no colour information */
     /* brightness of clipped pixels whose luma is 237 .. 251 */
     BRIGHT_WHITE = 254,
     BRIGHT_HOT = 255 /* brightness of clipped pixels of luma 252 or more */
 };
 
-/* Where one code of the pixels of a row lies. */
+/* The addresses of one code of the pixels of a row. */
 struct glint_bright_code {
     const uint8_t *first;
     int step, shift; /* the code of pixel x is at first + (x >> shift) * step */
@@ -47,11 +47,12 @@ struct glint_bright_code {
 
 struct glint_bright {
     int width;
-    uint8_t *value; /* brightness of the row's pixels in marked blocks; has room
-                       for the whole of the last block */
-    uint8_t *block; /* [width / BRIGHT_BLOCK, rounded up]: the greatest
-                       brightness in a block, or 0 if all of it is below low */
-    int32_t *marked; /* indices of the blocks that are not 0, from the left */
+    uint8_t *value; /* brightness of the row's pixels in marked blocks; padded
+                       to whole blocks */
+    uint8_t *block; /* [width / BRIGHT_BLOCK, rounded up]: the max brightness in
+                       a block, or 0 if it is below low */
+    int32_t *marked; /* indices of the blocks with nonzero block[i], from the
+                        left */
     int n_marked;
 
     /* Private. */
@@ -61,19 +62,20 @@ struct glint_bright {
     struct glint_bright_code code[3];
     int n_codes;  /* number of codes in use; the others repeat the first */
     int low;      /* min brightness of a bright pixel, 1 .. 255 */
-    int low_code; /* min byte, of grey or of R, G or B, of a bright pixel; 256
-                     if no code is bright */
-    int32_t low_sum_q16; /* min of the largest channel, from Y, Cb, Cr, of a
-                            bright pixel, minus one code for rounding */
+    int low_code; /* min code (grey, R, G or B) of a bright pixel; 256 if no
+                     code is bright */
+    int32_t low_sum_q16; /* min, over bright pixels, of the largest channel
+                            computed from Y, Cb, Cr, minus one code for
+                            rounding */
     struct glint_curve *curve;
-    int curve_tone; /* transfer function of curve; -1: curve is not set yet */
+    int curve_tone; /* transfer function of curve, or -1 if curve is not set */
     struct glint_ycc ycc;
     uint8_t *full_luma; /* full-range luma of each Y code */
     uint8_t *beyond;    /* brightness of a clipped pixel, by luma */
 };
 
-/* Takes the tables for rows of WIDTH pixels from ARENA, which may only measure.
- */
+/* Allocates the tables for rows of WIDTH pixels from ARENA, or only measures
+ * them. */
 void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
                         int width);
 void glint_bright_init(struct glint_bright *b, int width);
@@ -82,20 +84,20 @@ void glint_bright_init(struct glint_bright *b, int width);
 void glint_bright_begin(struct glint_bright *b,
                         const struct glint_image *image);
 
-/* Sets the min brightness of bright pixels, LOW, 1 .. 255; to be called before
- * the first scan. */
+/* Sets the min brightness of bright pixels to LOW, 1 .. 255. Must be called
+ * before the first scan. */
 void glint_bright_set_low(struct glint_bright *b, int low);
 
-/* Sets block and value for row Y. Returns the greatest brightness, or 0 if all
- * of it is below low. */
+/* Sets block and value for row Y. Returns the max brightness, or 0 if it is
+ * below low. */
 int glint_bright_scan(struct glint_bright *b, int y);
 
-/* Sets RGB to the linear light, 0 .. white, of pixel X of the row that was
- * scanned or sought last. */
+/* Sets RGB to the linear light, 0 .. white, of pixel X in the row of the last
+ * glint_bright_scan() or glint_bright_seek_row(). */
 void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
 
 /* Returns the step in linear light from the code of LIGHT to the next code of
- * channel C where codes have fewer than 8 bits; else 0. */
+ * channel C if codes have fewer than 8 bits, else 0. */
 int32_t glint_bright_step_q20(const struct glint_bright *b, int c,
                               int32_t light_q20);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Codes of single pixels, for loops over rows to inline. */
+ * Reads single pixels; functions to be inlined in loops over rows. */
 #ifndef GLINT_LAMPS_BRIGHT_CODE_H
 #define GLINT_LAMPS_BRIGHT_CODE_H
 
@@ -89,8 +89,8 @@ static WHOLLY_INLINE int bright_value_of_rgb(const struct glint_bright *b,
     return largest < BRIGHT_CLIPPED ? largest : b->beyond[bright_luma(rgb)];
 }
 
-/* Returns what the chroma of pixel X adds to its largest channel, in full-range
- * codes. */
+/* Returns the contribution of chroma to the largest channel of pixel X, in
+ * full-range codes. */
 static WHOLLY_INLINE int32_t bright_chroma_q16(const struct glint_bright *b,
                                                int x)
 {
@@ -114,7 +114,7 @@ static WHOLLY_INLINE int bright_value_of_luma(const struct glint_bright *b,
     return b->beyond[b->full_luma[code]];
 }
 
-/* Returns the brightness of pixel X of the row that B is at. */
+/* Returns the brightness of pixel X of B's current row. */
 static WHOLLY_INLINE int bright_value_at(const struct glint_bright *b, int x)
 {
     if (bright_is_rgb(b))

@@ -9,8 +9,8 @@
 
 /* ------------------------------------------------------------ one threshold */
 
-/* Returns the OR, over N words at P, of the high bits of those bytes that are
- * CODE or more. */
+/* Returns, ORed over N words at P, the high bit of each byte that is CODE or
+ * more. */
 static WHOLLY_INLINE uint64_t high_codes(const uint8_t *p, int n, int code,
                                          int is_above_128)
 {
@@ -21,8 +21,8 @@ static WHOLLY_INLINE uint64_t high_codes(const uint8_t *p, int n, int code,
     return found;
 }
 
-/* Returns the least number of N_BITS bits that becomes CODE or more when its
- * highest bits are repeated below it. */
+/* Returns the min number of N_BITS bits that expands to CODE or more, when its
+ * highest bits are repeated below it to make 8 bits. */
 static int least_of_565(int code, int n_bits)
 {
     int v = 0;
@@ -33,8 +33,8 @@ static int least_of_565(int code, int n_bits)
     return v;
 }
 
-/* Returns the OR, over N words of four pixels at P, of a bit for each pixel
- * that has a sample of CODE or more. */
+/* Returns, ORed over N words of four pixels at P, a bit for each pixel that has
+ * a sample of CODE or more. */
 static uint64_t high_565(const uint8_t *p, int n, int code)
 {
     const uint64_t each = UINT64_C(0x0001000100010001);
@@ -52,7 +52,8 @@ static uint64_t high_565(const uint8_t *p, int n, int code)
     return found;
 }
 
-/* Returns a mask of the bytes of a word that are samples of a colour. */
+/* Returns a mask of the bytes of a word that hold colour samples, not
+ * padding. */
 static uint64_t bytes_of_light(const struct glint_layout *layout)
 {
     const struct glint_layout_sample *s = &layout->sample[0];
@@ -67,8 +68,8 @@ static WHOLLY_INLINE uint64_t high_of(const uint8_t *p, int n, int code)
     return code > 128 ? high_codes(p, n, code, 1) : high_codes(p, n, code, 0);
 }
 
-/* Returns a mask of bits of each byte of which at least one is set where the
- * byte is CODE or more. */
+/* Returns a mask for each byte of a word: if a byte is CODE or more, at least
+ * one of the masked bits is set. */
 static uint64_t bits_of_code(int code)
 {
     const int highest = (1 << bit_length((uint64_t)code)) >> 1;
@@ -76,8 +77,8 @@ static uint64_t bits_of_code(int code)
     return (uint64_t)(256 - (highest < 128 ? highest : 128)) * BYTES_EACH;
 }
 
-/* Returns the OR of N words at P. If load and OR were one expression, gcc would
- * make single bytes of it. */
+/* Returns the OR of N words at P. Load and OR are separate statements, as gcc
+ * would otherwise load single bytes. */
 static WHOLLY_INLINE uint64_t bits_of(const uint8_t *p, int n)
 {
     uint64_t bits = 0;
@@ -91,8 +92,8 @@ static WHOLLY_INLINE uint64_t bits_of(const uint8_t *p, int n)
     return bits;
 }
 
-/* Marks the whole blocks of a row at PX without chroma, STEP bytes a pixel.
- * Most blocks are dark, which the OR of their bytes shows. */
+/* Marks the whole blocks of a row without chroma at PX, with STEP bytes per
+ * pixel. Most blocks are dark, and the OR of their bytes proves it. */
 static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
                                      int step)
 {
@@ -111,8 +112,8 @@ static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
     return any;
 }
 
-/* Marks whole blocks as mark_blocks() does, with constant steps so that its
- * inner loops have constant ends. */
+/* Calls mark_blocks() with constant steps, so that its inner loops have
+ * constant bounds. */
 static int mark_row(struct glint_bright *b, const uint8_t *px)
 {
     switch (b->layout->sample[0].step) {
@@ -139,7 +140,7 @@ static int mark_row_565(struct glint_bright *b, const uint8_t *px)
 
 /* ------------------------------------------------------------- Y, Cb and Cr */
 
-/* The greatest and the least of bytes, by their index modulo 4. */
+/* The max and min of bytes, per index modulo 4. */
 struct extremes {
     uint8_t most[4], least[4];
 };
@@ -154,10 +155,10 @@ static WHOLLY_INLINE uint8_t smaller(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* Sets HALF[0 .. 7] to the greatest byte v, by its index modulo 8, of 16 N
- * bytes at P, and HALF[8 .. 15] to the greatest 255 - v. N is 1, 2 or 4; with
- * less than 4 some bytes are read twice. Compilers vectorize these loops as
- * long as no other loop is around them. */
+/* Sets HALF[0 .. 7] to the max byte v, per index modulo 8, of 16 N bytes at P,
+ * and HALF[8 .. 15] to the max of 255 - v. N must be 1, 2 or 4; if it is below
+ * 4, some bytes are read twice. Compilers vectorize these loops as long as no
+ * other loop is around them. */
 static NEVER_INLINE void find_halves(uint8_t half[16], const uint8_t *p, int n)
 {
     const uint8_t *q = n > 1 ? p + 16 : p;
@@ -193,7 +194,7 @@ static WHOLLY_INLINE void find_extremes(struct extremes *e, const uint8_t *p,
     unite_halves(e, half);
 }
 
-/* Returns the greatest byte at all four places. */
+/* Returns the max over all four indices. */
 static WHOLLY_INLINE int most_of(const struct extremes *e)
 {
     return bright_larger(bright_larger(e->most[0], e->most[1]),
@@ -206,7 +207,8 @@ static WHOLLY_INLINE int least_of(const struct extremes *e)
                    smaller(e->least[2], e->least[3]));
 }
 
-/* Returns the most that chroma in LEAST .. MOST adds to the largest channel. */
+/* Returns the max contribution of chroma in LEAST .. MOST to the largest
+ * channel. */
 static WHOLLY_INLINE int32_t most_added_q16(const struct glint_bright *b,
                                             const int most[2],
                                             const int least[2])
@@ -221,8 +223,8 @@ static WHOLLY_INLINE int32_t most_added_q16(const struct glint_bright *b,
 }
 
 /* Returns whether a pixel may be bright whose luma is at most LUMA and whose
- * chroma is in LEAST .. MOST: no channel in the block can exceed those of this
- * extreme. One code is left for rounding. */
+ * chroma is in LEAST .. MOST: no channel can exceed the channels of these
+ * extremes. One code is allowed for rounding. */
 static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b, int luma,
                                        const int most[2], const int least[2])
 {
@@ -231,8 +233,8 @@ static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b, int luma,
            b->low_sum_q16;
 }
 
-/* Returns whether a block of YUYV or UYVY may be bright, by all its extremes.
- */
+/* Returns whether a block of YUYV or UYVY may be bright, from the extremes of
+ * its bytes. */
 static int may_be_bright_packed(const struct glint_bright *b,
                                 const uint8_t half[16])
 {
@@ -247,11 +249,11 @@ static int may_be_bright_packed(const struct glint_bright *b,
                          (const int[]){e.least[cb], e.least[cr]});
 }
 
-/* distance of chroma from grey, in codes, that most blocks stay within */
+/* max distance of chroma from grey, in codes, in most blocks */
 enum { QUIET_CHROMA = 24 };
 
-/* Returns the least luma code from which a pixel of quiet chroma may be bright,
- * 0 .. 256. */
+/* Returns the min luma code, 0 .. 256, at which a pixel with chroma within
+ * QUIET_CHROMA may be bright. */
 static int loud_luma(const struct glint_bright *b)
 {
     const int most[2] = {128 + QUIET_CHROMA, 128 + QUIET_CHROMA};
@@ -262,15 +264,16 @@ static int loud_luma(const struct glint_bright *b)
     return q_clamp_sat(left_q16 > 0 ? luma : 0, 0, 256);
 }
 
-/* Returns the number that carries into the ninth bit of each 16 bits when it is
- * added to a byte of CODE or more. */
+/* Returns a number that sets bit 8 of each 16 bits when it is added to bytes of
+ * CODE or more. */
 static uint64_t carry_from(int code)
 {
     return (uint64_t)(256 - code) * UINT64_C(0x0001000100010001);
 }
 
-/* Returns whether some luma is loud, or some chroma in MOST or INVERSE. Luma is
- * in the low bytes of pairs if Y is 0, else in the high ones. */
+/* Returns whether some luma, or some chroma in MOST or INVERSE, exceeds the
+ * limits of quiet blocks. Luma is in the low bytes of pairs if Y is 0, else in
+ * the high bytes. */
 static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
                                  uint64_t luma_carry, uint64_t chroma_carry)
 {
@@ -287,8 +290,8 @@ static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
 /* Number of blocks of YUYV or UYVY that are checked together at first. */
 enum { TOGETHER = 4 };
 
-/* By index modulo 16: the greatest byte v, and the greatest 255 - v, of pixels
- * of quiet chroma that are below loud luma. */
+/* Limits of quiet blocks, per index modulo 16: the max byte v and the max 255 -
+ * v of pixels with chroma within QUIET_CHROMA and luma below loud_luma(). */
 struct quiet {
     uint8_t most[16], inverse[16];
 };
@@ -315,9 +318,8 @@ static WHOLLY_INLINE uint8_t least_of_8(const uint8_t *p)
                    smaller(smaller(p[64], p[80]), smaller(p[96], p[112])));
 }
 
-/* Sets ABOVE to nonzero at places, by index modulo 16, where some byte of
- * TOGETHER blocks at P exceeds QUIET. Compilers vectorize it as find_halves().
- */
+/* Sets ABOVE[i] to nonzero if some byte of TOGETHER blocks at P, of index i
+ * modulo 16, exceeds QUIET. Compilers vectorize it like find_halves(). */
 static NEVER_INLINE void find_above(uint8_t above[restrict 16],
                                     const uint8_t *restrict p,
                                     const struct quiet *restrict quiet)
@@ -344,12 +346,13 @@ static WHOLLY_INLINE int are_quiet(const uint8_t *p, const struct quiet *quiet)
     return bits_of(above, 2) == 0;
 }
 
-/* Marks the whole blocks of a row of YUYV or UYVY at PX; Y is the place of the
+/* Marks the whole blocks of a row of YUYV or UYVY at PX; Y is the offset of the
  * first luma. Most blocks are quiet: neither bright nor strongly coloured. This
- * is tested for TOGETHER blocks at once, else for one block, by the greatest
- * luma and the extremes of all chroma; only a loud block is then tested by its
- * extremes of Cb and of Cr. After a loud block the next ones are mostly loud,
- * too, and so are tested one by one. If loud_luma() is 0, no block is quiet. */
+ * is tested for TOGETHER blocks at once, else for single blocks, by the max
+ * luma and the extremes of all chroma; only other (loud) blocks are then tested
+ * by their extremes of Cb and of Cr. Loud blocks mostly follow each other, so
+ * blocks after a loud block are tested one by one. If loud_luma() is 0, no
+ * block is quiet. */
 static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
                                     int y)
 {
@@ -391,8 +394,8 @@ static int mark_row_packed(struct glint_bright *b, const uint8_t *px)
                                        : mark_pairs(b, px, 0);
 }
 
-/* Returns whether a block of planes may be bright: Y at PX, 16 N bytes of
- * chroma at each of C. */
+/* Returns whether a block of a planar picture may be bright: Y is at PX, 16 N
+ * bytes of chroma at each of C. */
 static WHOLLY_INLINE int may_be_bright_in_planes(const struct glint_bright *b,
                                                  const uint8_t *px,
                                                  const uint8_t *const c[2],
@@ -408,8 +411,8 @@ static WHOLLY_INLINE int may_be_bright_in_planes(const struct glint_bright *b,
                          (const int[]){least_of(&cb), least_of(&cr)});
 }
 
-/* Returns whether a block may be bright whose chroma shares a plane, at C; CB
- * is the place of the first Cb, 0 or 1. */
+/* Returns whether a block with interleaved chroma at C may be bright; CB is the
+ * offset of the first Cb, 0 or 1. */
 static WHOLLY_INLINE int may_be_bright_shared(const struct glint_bright *b,
                                               const uint8_t *px,
                                               const uint8_t *c, int cb)
@@ -461,8 +464,9 @@ static int mark_row_planes(struct glint_bright *b)
     return any;
 }
 
-/* Sets block[i] to whether block i may have a pixel of low or above, except for
- * a last block that is not whole. Returns 0 if none may. */
+/* Sets block[i] to whether block i may have a pixel of brightness low or more;
+ * an incomplete last block is not tested. Returns 0 if no block may have
+ * one. */
 static int mark(struct glint_bright *b)
 {
     const uint8_t *first = b->code[0].first;
@@ -478,7 +482,7 @@ static int mark(struct glint_bright *b)
 
 /* --------------------------------------------------------------- R, G and B */
 
-/* Returns the brightness of pixel X, which is clipped. */
+/* Returns the brightness of pixel X, which must be clipped. */
 static WHOLLY_INLINE uint8_t beyond_of_rgb(const struct glint_bright *b, int x)
 {
     int rgb[3];
@@ -487,7 +491,7 @@ static WHOLLY_INLINE uint8_t beyond_of_rgb(const struct glint_bright *b, int x)
     return b->beyond[bright_luma(rgb)];
 }
 
-/* Sets the values of pixels X .. END - 1; returns the greatest. */
+/* Sets the values of pixels X .. END - 1; returns the max. */
 static int read_values_rgb(struct glint_bright *b, int x, int end)
 {
     int greatest = 0;
@@ -508,8 +512,8 @@ static int read_values_rgb(struct glint_bright *b, int x, int end)
 enum { RGB_BYTES = 3 * BRIGHT_BLOCK };
 
 /* Sets LARGEST[I] to the largest of bytes P[I .. I + 2], for each I up to
- * RGB_BYTES - 3; returns the greatest of all. The last vector overlaps the one
- * before. */
+ * RGB_BYTES - 3; returns the max of all. The last vector overlaps the vector
+ * before it. */
 static NEVER_INLINE int find_largest(const uint8_t *p,
                                      uint8_t largest[RGB_BYTES])
 {
@@ -532,7 +536,7 @@ static NEVER_INLINE int find_largest(const uint8_t *p,
     return greatest;
 }
 
-/* Does what read_values_rgb() does, for a whole block from X with three bytes a
+/* Like read_values_rgb(), for a whole block from X with three bytes per
  * pixel. */
 static int read_block_rgb24(struct glint_bright *b, int x)
 {
@@ -596,8 +600,8 @@ static WHOLLY_INLINE void mix_block(const struct glint_bright *b,
 }
 
 /* Copies the codes of a block that are STEP bytes apart. */
-static WHOLLY_INLINE void take(uint8_t code[BRIGHT_BLOCK], const uint8_t *px,
-                               int step)
+static WHOLLY_INLINE void copy_codes(uint8_t code[BRIGHT_BLOCK],
+                                     const uint8_t *px, int step)
 {
     for (int k = 0; k < BRIGHT_BLOCK; k++)
         code[k] = px[k * step];
@@ -605,16 +609,16 @@ static WHOLLY_INLINE void take(uint8_t code[BRIGHT_BLOCK], const uint8_t *px,
 
 /* Copies the codes of a block that are STEP bytes apart, each for two pixels.
  */
-static WHOLLY_INLINE void take_twice(uint8_t code[BRIGHT_BLOCK],
-                                     const uint8_t *px, int step)
+static WHOLLY_INLINE void copy_codes_twice(uint8_t code[BRIGHT_BLOCK],
+                                           const uint8_t *px, int step)
 {
     for (int k = 0; k < BRIGHT_BLOCK / 2; k++)
         code[2 * k] = code[2 * k + 1] = px[k * step];
 }
 
-/* Copies code I of the pixels of a block from X; past the end of the row it
- * repeats that of the last pixel. With constant steps and ends compilers
- * vectorize the usual cases. */
+/* Copies code I of the pixels of a block from X; past the end of the row the
+ * code of the last pixel is repeated. Steps and bounds are constant so that
+ * compilers vectorize the usual cases. */
 static void gather(const struct glint_bright *b, int i, int x,
                    uint8_t code[BRIGHT_BLOCK])
 {
@@ -627,22 +631,22 @@ static void gather(const struct glint_bright *b, int i, int x,
             code[k] = px[((k < n ? k : n - 1) >> c->shift) * c->step];
     } else if (c->shift == 0) {
         if (c->step == 1)
-            take(code, px, 1);
+            copy_codes(code, px, 1);
         else
-            take(code, px, 2);
+            copy_codes(code, px, 2);
     } else {
         if (c->step == 1)
-            take_twice(code, px, 1);
+            copy_codes_twice(code, px, 1);
         else if (c->step == 2)
-            take_twice(code, px, 2);
+            copy_codes_twice(code, px, 2);
         else
-            take_twice(code, px, 4);
+            copy_codes_twice(code, px, 4);
     }
 }
 
 /* Sets the values of the block from pixel X, from luma and chroma or from luma
- * alone. Returns the greatest, or 0, without setting any, if all are below low
- * and none is clipped. */
+ * alone. Returns the max; or 0 without setting any value if all are below low
+ * and no pixel is clipped. */
 static NEVER_INLINE int read_values_ycc(struct glint_bright *b, int x)
 {
     uint8_t luma[BRIGHT_BLOCK], cb[BRIGHT_BLOCK], cr[BRIGHT_BLOCK];
@@ -672,8 +676,8 @@ static NEVER_INLINE int read_values_ycc(struct glint_bright *b, int x)
     return greatest;
 }
 
-/* Sets the values of block I, which may have pixels of low or above. Returns
- * the greatest, or 0 if it is below low. */
+/* Sets the values of block I, which was marked. Returns the max, or 0 if it is
+ * below low. */
 static int read_block(struct glint_bright *b, int i)
 {
     const int x = i * BRIGHT_BLOCK;
@@ -699,7 +703,7 @@ int glint_bright_scan(struct glint_bright *b, int y)
     b->n_marked = 0;
     glint_bright_seek_row(b, y);
     any = mark(b);
-    /* a last block that is not whole is always read. */
+    /* An incomplete last block is always read. */
     if (n_blocks * BRIGHT_BLOCK > b->width)
         any = b->block[n_blocks - 1] = 1;
     for (int i = 0; any && i < n_blocks; i++)

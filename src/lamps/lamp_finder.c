@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Makes lamps of the regions of a picture.
+ * Finds lamps among the bright regions of a picture.
  *
  * Regions of all levels are linked first, by brightness alone. Then the light
- * of a row is summed, only where it belongs to a region that may still be a
- * lamp. A region that qualifies becomes a candidate. The brightest
- * LIGHT_CANDIDATES are kept, and none are merged before all have been found. */
+ * of a row is summed, only for regions that may still be lamps. A region that
+ * qualifies becomes a candidate. The brightest LIGHT_CANDIDATES are kept; they
+ * are merged after all have been found. */
 #include "glint/lamps.h"
 
 #include "base/arena.h"
@@ -20,8 +20,8 @@
 /* --------------------------------------------------------------------- list
  */
 
-/* merge distances within which a lamp in excess of MAX joins one that is kept
- */
+/* radius, in merge distances, within which a lamp in excess of MAX joins a kept
+ * lamp */
 #define JOIN_REACH 4
 
 static int is_brighter(const struct glint_lamp_finder *f, int32_t a, int32_t b)
@@ -63,9 +63,10 @@ static void sort_by_flux(struct glint_lamp_finder *f)
     glint_heap_sort(&heap, f->n);
 }
 
-/* Adds CANDIDATE; if there are LIGHT_CANDIDATES already, drops the faintest. */
-static void hold(struct glint_lamp_finder *f,
-                 const struct glint_candidate *candidate)
+/* Adds CANDIDATE; drops the faintest candidate if there were LIGHT_CANDIDATES
+ * already. */
+static void add_candidate(struct glint_lamp_finder *f,
+                          const struct glint_candidate *candidate)
 {
     const struct glint_heap heap = heap_of(f);
     struct glint_candidate *last = &f->candidate[LIGHT_CANDIDATES];
@@ -89,7 +90,7 @@ static void hold(struct glint_lamp_finder *f,
     f->dropped += !last->faint;
 }
 
-/* Removes candidates that are gone from the order. */
+/* Removes candidates marked gone from f->order. */
 static void compact(struct glint_lamp_finder *f)
 {
     const int n_before = f->n;
@@ -112,7 +113,7 @@ static void locate(struct glint_lamp_finder *f)
     }
 }
 
-/* Returns the number of lamps, which come first among the sorted candidates. */
+/* Returns the number of lamps; they come first among the sorted candidates. */
 static int count_lights(const struct glint_lamp_finder *f)
 {
     int n = f->n;
@@ -130,16 +131,17 @@ static int64_t distance2_q16(const struct glint_candidate *a,
     return dx_q8 * dx_q8 + dy_q8 * dy_q8;
 }
 
-/* Adds CANDIDATE to INTO, whose place stays until the next locate(). */
-static void give(struct glint_candidate *candidate,
-                 struct glint_candidate *into)
+/* Merges CANDIDATE into INTO; the position of INTO is updated by the next
+ * locate(). */
+static void merge_candidate(struct glint_candidate *candidate,
+                            struct glint_candidate *into)
 {
     glint_region_absorb(&into->sum, &candidate->sum);
     candidate->gone = 1;
 }
 
 /* Merges once: each lamp, the brightest first, absorbs the lamps within the
- * merge distance of its place. Returns whether any were merged. */
+ * merge distance of its position. Returns whether any lamps were merged. */
 static int merge_once(struct glint_lamp_finder *f)
 {
     const int n_before = f->n;
@@ -155,23 +157,24 @@ static int merge_once(struct glint_lamp_finder *f)
             struct glint_candidate *other = &f->candidate[f->order[j]];
 
             if (!other->gone && distance2_q16(c, other) < f->merge2_q16)
-                give(other, c);
+                merge_candidate(other, c);
         }
     }
     compact(f);
     return f->n < n_before;
 }
 
-/* Sorts the candidates by falling flux and merges lamps that are nearer than
- * the merge distance, until none are. Faint ones are not merged. */
+/* Sorts the candidates by descending flux and merges lamps nearer than the
+ * merge distance until no such pair is left. Faint candidates are not
+ * merged. */
 static void merge(struct glint_lamp_finder *f)
 {
     while (merge_once(f))
         ;
 }
 
-/* Returns that of the first MAX candidates which is nearest to C, or NULL if
- * none is in reach. */
+/* Returns the candidate nearest to C among the first MAX, or NULL if no
+ * candidate is within JOIN_REACH. */
 static struct glint_candidate *nearest_kept(const struct glint_lamp_finder *f,
                                             const struct glint_candidate *c,
                                             int max)
@@ -191,9 +194,9 @@ static struct glint_candidate *nearest_kept(const struct glint_lamp_finder *f,
     return best;
 }
 
-/* Leaves at most MAX candidates: each lamp in excess joins the nearest that is
- * kept, if that is within reach, or is dropped. */
-static void cap(struct glint_lamp_finder *f, int max)
+/* Leaves at most MAX candidates: each lamp in excess joins the nearest kept
+ * lamp within JOIN_REACH, or is dropped. */
+static void limit_lamps(struct glint_lamp_finder *f, int max)
 {
     const int n_lights = count_lights(f);
 
@@ -202,7 +205,7 @@ static void cap(struct glint_lamp_finder *f, int max)
         struct glint_candidate *kept = nearest_kept(f, c, max);
 
         if (kept)
-            give(c, kept);
+            merge_candidate(c, kept);
         else
             f->dropped++;
     }
@@ -218,17 +221,16 @@ static void cap(struct glint_lamp_finder *f, int max)
 #define SEED_LOG2 3
 
 /* Costs of levels, subtracted from the scores of their regions to choose among
- * regions that lie within each other. A lamp is taken to be as wide as it is at
- * the thresholds, unless its clipped core looks clearly more like a lamp. A
- * region of a white that is darker than codes clip counts only if nothing in it
- * is a lamp. DARK_SHARE: fraction of the picture above which such regions are
- * not sought. */
+ * nested regions. A lamp gets its width at the thresholds, unless its clipped
+ * core is clearly more like a lamp. A region of a level whose white is below
+ * clipping counts only if it contains no other lamp. DARK_SHARE: fraction of
+ * the picture above which such regions are not searched for. */
 #define COST_CLIPPED_Q8 64
 #define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024
 #define DARK_SHARE_Q15  Q_CONST(0.125, 15)
 
-/* Adds the level of regions at the thresholds, counted from LIGHT as white. */
+/* Adds the level of regions at the thresholds, relative to LIGHT as white. */
 static void add_level(struct glint_lamp_finder *f, int32_t light_q20)
 {
     const struct glint_bright *b = &f->bright;
@@ -240,8 +242,8 @@ static void add_level(struct glint_lamp_finder *f, int32_t light_q20)
     level->cost_q8 = 0;
 }
 
-/* Adds two levels for a picture that is darker than white: regions at both
- * thresholds, and at the upper one alone. Adds none if more than DARK_SHARE of
+/* Adds two levels for a picture darker than white: regions at both thresholds,
+ * and at the upper threshold alone. Adds no level if more than DARK_SHARE of
  * the picture reaches the lower threshold. */
 static void add_dark_level(struct glint_lamp_finder *f)
 {
@@ -257,17 +259,16 @@ static void add_dark_level(struct glint_lamp_finder *f)
         f->n_levels = 0;
 }
 
-/* Adds the level of regions of brightness LOW and above, which are clipped in
- * one channel or in all. */
+/* Adds the level of clipped regions, of brightness LOW and above. */
 static void add_core(struct glint_lamp_finder *f, int low, int32_t cost_q8)
 {
     f->level[f->n_levels++] =
         (struct glint_level){low, BRIGHT_CLIPPED, BRIGHT_CLIPPED, cost_q8};
 }
 
-/* Measures white and sets the levels. In a picture that is darker than where
- * codes clip, lamps may be darker than that or clipped: regions of both kinds
- * are sought. */
+/* Measures white and sets the levels. In a picture whose white is below
+ * clipping, lamps may be clipped or not: both kinds of regions are searched
+ * for. */
 static void set_levels(struct glint_lamp_finder *f)
 {
     const int white_code = f->cfg.white_code;
@@ -301,7 +302,7 @@ static int is_light(const struct glint_lamp_finder *f,
            sum->n_seeds >= sum->area >> SEED_LOG2;
 }
 
-/* Returns whether SUM is large enough to be the remains of a lamp. */
+/* Returns whether SUM is large enough to be a faded lamp. */
 static int is_faint(const struct glint_lamp_finder *f,
                     const struct glint_region *sum)
 {
@@ -315,16 +316,17 @@ static void offer(void *finder, const struct glint_region *sum)
     const int light = is_light(f, sum);
 
     if (sum->area <= f->max_area && (light || is_faint(f, sum)))
-        hold(f, &(struct glint_candidate){.sum = *sum,
-                                          .level = (int16_t)f->at,
-                                          .faint = (uint8_t)!light,
-                                          .doubt = light ? GLINT_DOUBT_NONE
-                                                         : GLINT_DOUBT_DIM});
+        add_candidate(f,
+                      &(struct glint_candidate){
+                          .sum = *sum,
+                          .level = (int16_t)f->at,
+                          .faint = (uint8_t)!light,
+                          .doubt = light ? GLINT_DOUBT_NONE : GLINT_DOUBT_DIM});
 }
 
 /* --------------------------------------------------------------------- rows */
 
-/* Returns how many of N values are CODE or more. */
+/* Counts the values among N that are CODE or more. */
 static WHOLLY_INLINE int count_from(const uint8_t *value, int n, int code,
                                     int is_above_128)
 {
@@ -338,8 +340,8 @@ static WHOLLY_INLINE int count_from(const uint8_t *value, int n, int code,
     return (int)found;
 }
 
-/* Returns how many pixels of RUN, all of which are LEAST or more, are CODE or
- * more. */
+/* Counts the pixels of RUN that are CODE or more. All its pixels must be LEAST
+ * or more. */
 static int count_of_run(const uint8_t *value, const struct glint_run *run,
                         int least, int code)
 {
@@ -365,9 +367,9 @@ static void count_run(struct glint_region *sum,
     sum->n_clipped += count_of_run(value, run, level->low, level->clipped);
 }
 
-/* Notes that the light of RUN is needed, in the run of the first level that
- * contains it: *OUTER or a later one. */
-static void want(struct glint_run **outer, const struct glint_run *run)
+/* Marks the light of RUN as needed in the run of the first level that contains
+ * it: *OUTER or a later run. */
+static void mark_needed(struct glint_run **outer, const struct glint_run *run)
 {
     while ((*outer)->x1 <= run->x0)
         ++*outer;
@@ -377,8 +379,8 @@ static void want(struct glint_run **outer, const struct glint_run *run)
         (*outer)->want1 = run->x1;
 }
 
-/* Returns whether the region may be a lamp, which is not larger than max_area.
- */
+/* Returns whether the region may be a lamp: it must not be larger than
+ * max_area. */
 static int may_be_light(const struct glint_lamp_finder *f,
                         const struct glint_region *sum)
 {
@@ -399,11 +401,11 @@ static void link_level(struct glint_lamp_finder *f, int greatest, int y)
 
         count_run(sum, f, &r->here.run[i], y);
         if (may_be_light(f, sum))
-            want(&outer, &r->here.run[i]);
+            mark_needed(&outer, &r->here.run[i]);
     }
 }
 
-/* Sums the light of the row where a region of any level needs it. */
+/* Sums the light of the pixels of the row that regions of any level need. */
 static void sum_row(struct glint_lamp_finder *f)
 {
     const struct glint_run_row *row = &f->regions[0].here;
@@ -477,8 +479,8 @@ static int is_valid(const struct glint_lamp_finder_config *c)
            c->merge_q15 <= 1 << 15 && c->keep_faint >= 0 && c->keep_faint <= 1;
 }
 
-/* Takes a finder and its tables from A, once to measure and once to place it.
- * Returns NULL if A measures or is full. */
+/* Allocates a finder and its tables from A. Returns NULL if A only measures or
+ * is full. */
 static struct glint_lamp_finder *carve(struct glint_arena *a,
                                        const struct glint_lamp_finder_config *c)
 {
@@ -552,8 +554,8 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 
 /* -------------------------------------------------------------------- score */
 
-/* Keeps candidates with the score of a lamp, and with keep_faint those with a
- * slightly lower score, marked faint. */
+/* Keeps candidates with the score of a lamp. If keep_faint is set, candidates
+ * with a slightly lower score are kept and marked faint. */
 static void judge(struct glint_lamp_finder *f)
 {
     const struct glint_score score = {&f->bright,    f->white, f->cfg.width,
@@ -581,7 +583,7 @@ static void judge(struct glint_lamp_finder *f)
 /* ------------------------------------------------------------------- result */
 
 /* Returns the spot of CANDIDATE. Coordinates of spots count from the corner of
- * the first pixel, those of regions from its centre. */
+ * the first pixel, coordinates of regions from its centre. */
 static struct glint_spot spot_of(const struct glint_candidate *candidate)
 {
     const struct glint_region *sum = &candidate->sum;
@@ -611,7 +613,7 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
         judge(finder);
     finder->alone_q8 = SCORE_ALONE;
     merge(finder);
-    cap(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
+    limit_lamps(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
     for (int i = 0; i < finder->n; i++)
         spots[i] = spot_of(&finder->candidate[finder->order[i]]);
     return finder->n;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The finder of lamps (lamp_finder.c), whose candidates a corpus lists. */
+ * The state of the lamp finder (lamp_finder.c), for programs that list its
+ * candidates. */
 #ifndef GLINT_LAMPS_LAMP_FINDER_H
 #define GLINT_LAMPS_LAMP_FINDER_H
 
@@ -29,17 +30,18 @@ struct glint_lamp_finder {
     struct glint_regions regions[LIGHT_LEVELS];
     struct glint_level level[LIGHT_LEVELS]; /* levels, by rising brightness */
     int n_levels;
-    int at; /* index of the level that is worked on */
-    /* [LIGHT_CANDIDATES + 1]: candidates; the last place takes one that may
-     * replace the faintest */
+    int at; /* index of the level in work */
+    /* [LIGHT_CANDIDATES + 1]: candidates; the last slot is for a new candidate
+     * that may replace the faintest */
     struct glint_candidate *candidate;
     int32_t *order; /* indices of candidates: a heap while they are collected,
-                       then sorted by falling flux */
-    int n;          /* number of candidates in order, the faint ones last */
+                       then sorted by descending flux */
+    int n;          /* number of candidates in order; faint candidates come
+                       last */
     int dropped;
 };
 
-/* Replaces the candidates by candidates of IMAGE. */
+/* Replaces all candidates by the candidates of IMAGE. */
 void glint_lamps_collect(struct glint_lamp_finder *f,
                          const struct glint_image *image);
 

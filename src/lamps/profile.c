@@ -4,9 +4,8 @@
 #include "base/arena.h"
 #include "lamps/unclip.h"
 
-/* Takes a profile from A, once to measure and once to place it. Returns NULL if
- * A measures or is full. No row is scanned, so that tables for one pixel are
- * enough. */
+/* Allocates a profile from A. Returns NULL if A only measures or is full. No
+ * row is scanned, so tables for one pixel are enough. */
 static struct glint_profile *carve(struct glint_arena *a)
 {
     struct glint_profile *placed = glint_arena_take(a, 1, sizeof *placed);
@@ -40,8 +39,8 @@ enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
     return GLINT_OK;
 }
 
-/* Measures the spots in place: a measured one keeps its position and its
- * size_q8, which are all that the others depend on. */
+/* Measures the spots in place: measuring a spot keeps its position and size_q8,
+ * and other spots depend on nothing else of it. */
 void glint_profile_measure(struct glint_profile *profile,
                            const struct glint_image *image,
                            struct glint_spot *spots, int n)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The struct behind glint/profile.h: the light around the spots of one picture.
- */
+ * The struct of glint/profile.h, which measures the light around spots. */
 #ifndef GLINT_LAMPS_PROFILE_H
 #define GLINT_LAMPS_PROFILE_H
 

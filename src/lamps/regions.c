@@ -60,15 +60,15 @@ void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
     *y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
 }
 
-/* Returns the RMS radius of a box of even light; DIAGONAL2: its squared
- * diagonal. */
+/* Returns the RMS radius of a box of uniform light whose squared diagonal is
+ * DIAGONAL2. */
 static int32_t box_radius_q8(uint64_t diagonal2)
 {
     return (int32_t)q_root((diagonal2 << 16) / 12);
 }
 
-/* Moves the sums to the pixel nearest to the centroid first, exactly, modulo
- * 2^64. */
+/* First moves the origin of the sums to the pixel nearest to the centroid,
+ * exactly, modulo 2^64. */
 int32_t glint_region_radius_q8(const struct glint_region *sum)
 {
     const int64_t across = sum->x1 - sum->x0, down = sum->y1 - sum->y0;
@@ -90,9 +90,9 @@ int32_t glint_region_radius_q8(const struct glint_region *sum)
     return (int32_t)q_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
 }
 
-/* A clipped pixel tells little of colour, so it counts 1/64 of one of the rim.
- * So the rim decides where there is much of it, a region that is all clipped to
- * white comes out white, and there is no jump in between. */
+/* Clipped pixels have little colour information, so their weight is 1/64 of a
+ * rim pixel's. So a large rim determines the colour, a region clipped to white
+ * becomes white, and the transition is continuous. */
 void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3])
 {
     int64_t c[3], y;
@@ -159,8 +159,8 @@ static int32_t new_label(struct glint_regions *r, int32_t first)
     return label;
 }
 
-/* Returns the bits of the pixels of a block, the first lowest, that are LOW or
- * more. */
+/* Returns a bit for each pixel of a block that is LOW or more; bit 0 is the
+ * first pixel. */
 static WHOLLY_INLINE uint32_t reach_of(const uint8_t value[BRIGHT_BLOCK],
                                        int low, int is_above_128)
 {
@@ -181,9 +181,9 @@ static WHOLLY_INLINE void end_run(struct glint_run_row *row, int begin, int end)
             (struct glint_run){.x0 = begin, .x1 = end, .label = -1};
 }
 
-/* Adds the runs of a block from X to ROW: pixels whose bits of BITS are set.
- * BEGIN is where a run that is still open begins, or -1; returns the begin of
- * the run that is open after the block, or -1. */
+/* Adds the runs of set bits of BITS, a block from X, to ROW. BEGIN is the start
+ * of a run that is open before the block, or -1. Returns the start of the run
+ * that is open after the block, or -1. */
 static int find_runs(struct glint_run_row *row, uint32_t bits, int x, int begin)
 {
     uint32_t edges = bits ^ (bits << 1 | (begin >= 0));
@@ -202,7 +202,7 @@ static void find_all_runs(struct glint_run_row *row,
 {
     const int last = (b->width - 1) / BRIGHT_BLOCK;
     const int past = (last + 1) * BRIGHT_BLOCK - b->width;
-    int begin = -1, next = 0; /* next: the block after the one read last */
+    int begin = -1, next = 0; /* next: index after the last block read */
 
     row->n_runs = 0;
     for (int k = 0; k < b->n_marked; k++) {
@@ -226,12 +226,12 @@ static void find_all_runs(struct glint_run_row *row,
     end_run(row, begin, next < b->width ? next : b->width);
 }
 
-/* Gives each run of row Y the label of the runs above that it touches, which
- * become one region, or a new label. */
+/* Labels each run of row Y: unites the regions of the runs that it touches in
+ * the row above, or makes a new label if it touches none. */
 static void link_runs(struct glint_regions *r, int y)
 {
     const struct glint_run_row *above = &r->above;
-    int first = 0; /* first run above that may touch run i or a later one */
+    int first = 0; /* first run above that may touch run i or a later run */
 
     for (int i = 0; i < r->here.n_runs; i++) {
         struct glint_run *run = &r->here.run[i];

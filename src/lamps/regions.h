@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds regions of a picture: bright pixels that touch, also by corners.
+ * Finds regions of a picture: sets of bright pixels that are connected by sides
+ * or corners.
  *
  *   in   brightness of one row after the other, and the light of its pixels
  *   out  each region once, after the rows have passed it: area, moments, colour
@@ -13,17 +14,18 @@
  *         glint_regions_end_row(r, done, ctx, y);
  *     glint_regions_end_row(r, done, ctx, height);
  *
- * One pass. The runs of a row that reach the threshold join the runs that they
- * touch in the row above (union-find). A component that a row does not continue
- * is finished, and its label is free again. So labels for twice the runs of a
- * row are enough for any shape.
+ * Regions are found in one pass. The runs of pixels above the threshold in a
+ * row are united with the runs that they touch in the row above (union-find). A
+ * component that the next row does not continue is finished, and its label is
+ * freed. So twice the max number of runs per row is enough labels for any
+ * shape.
  *
  * Limits: weights w are linear luminance, _q14, 1 .. 2^14. With at most 2^30
  * pixels of coordinates below 2^15, the sums of w and of w x reach 2^44 and
- * 2^59 at most. The sum of w (x^2 + y^2) may wrap, in unsigned; its value about
- * the centroid, which is the one needed, is at most the sum of w times a
- * quarter of the box's squared diagonal. Where that might be 2^63 or more, as
- * for a square of 5800 x 5800 white pixels, the radius is that of the box. */
+ * 2^59 at most. The sum of w (x^2 + y^2) may wrap, in unsigned; only its value
+ * about the centroid is needed, which is at most the sum of w times a quarter
+ * of the box's squared diagonal. If that might be 2^63 or more, as for a square
+ * of 5800 x 5800 white pixels, the radius of the box is returned. */
 #ifndef GLINT_LAMPS_REGIONS_H
 #define GLINT_LAMPS_REGIONS_H
 
@@ -36,28 +38,28 @@ struct glint_bright;
 
 /* The sums over the pixels of a region. */
 struct glint_region {
-    int32_t first; /* y * width + x of its first pixel, which no two regions
-                      share */
-    /* Numbers of pixels: all, at the upper threshold, clipped; the caller
-     * counts the last two. */
+    int32_t first; /* y * width + x of its first pixel; identifies the region */
+    /* Numbers of all pixels, of pixels at the upper threshold or above, and of
+     * clipped pixels. The caller counts the last two. */
     int32_t area, n_seeds, n_clipped;
-    /* Box: its pixels are in x0 .. x1 - 1, y0 .. y1 - 1. */
+    /* Bounding box: columns x0 .. x1 - 1, rows y0 .. y1 - 1. */
     int32_t x0, y0, x1, y1;
     int64_t w_q14, wx_q14, wy_q14;
     uint64_t wr2_q14;
     int64_t rgb_q14[3];     /* sums of linear colour over all pixels */
-    int64_t rim_rgb_q14[3]; /* sums over pixels with no channel clipped, of the
-                               region and up to ROW_LIGHT_RIM beside its runs */
+    int64_t rim_rgb_q14[3]; /* sums over pixels without a clipped channel, in
+                               the region and up to ROW_LIGHT_RIM pixels beside
+                               its runs */
 };
 
-/* The light that a pixel adds. */
+/* The light of a pixel, as added to a region. */
 struct glint_region_light {
     int64_t w_q14;
     int32_t rgb_q14[3];
 };
 
 /* Returns the linear luminance, BT.709, of R, G, B times 2^15;
- * region_luminance() returns it without that factor. */
+ * region_luminance() returns it without the factor. */
 static inline int64_t region_wide_luminance(int64_t r, int64_t g, int64_t b)
 {
     return r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
@@ -111,15 +113,15 @@ void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3]);
 
 struct glint_component {
     struct glint_region sum;
-    int32_t parent; /* label of the parent; a root has its own */
+    int32_t parent; /* label of the parent; a root has its own label */
     int32_t last_row;
 };
 
 struct glint_run {
-    int32_t x0, x1; /* first pixel, and one past the last */
+    int32_t x0, x1; /* first pixel, and last pixel + 1 */
     int32_t label;
     int32_t want0, want1; /* the caller needs the light of pixels want0 .. want1
-                             - 1; 0, 0: of none */
+                             - 1; 0, 0: of no pixels */
 };
 
 struct glint_run_row {
@@ -131,31 +133,31 @@ struct glint_regions {
     int width;
     struct glint_run_row above, here;
     struct glint_component *component;
-    int32_t *active, *idle; /* labels in use, and free ones */
+    int32_t *active, *idle; /* labels in use, and free labels */
     int n_active, n_idle;
 };
 
-/* Takes the tables for rows of WIDTH pixels from ARENA, which may only measure.
- */
+/* Allocates the tables for rows of WIDTH pixels from ARENA, or only measures
+ * them. */
 void glint_regions_carve(struct glint_regions *r, struct glint_arena *arena,
                          int width);
 
 void glint_regions_begin(struct glint_regions *r);
 
-/* Fills r->here with the runs of pixels of row Y that are LOW or above, where
- * LOW is at least the low of BRIGHT, and labels each by the runs above that it
- * touches. */
+/* Fills r->here with the runs of pixels of row Y that are LOW or above, and
+ * labels each by the runs that it touches in the row above. LOW must be at
+ * least the low of BRIGHT. */
 void glint_regions_link_row(struct glint_regions *r,
                             const struct glint_bright *bright, int low, int y);
 
-/* Returns the sums of the region that run I of r->here belongs to so far. */
+/* Returns the sums so far of the region that run I of r->here belongs to. */
 struct glint_region *glint_regions_of_run(struct glint_regions *r, int i);
 
-/* Takes a finished REGION, valid during the call. */
+/* Receives a finished REGION, which is valid only during the call. */
 typedef void glint_region_fn(void *ctx, const struct glint_region *region);
 
-/* Gives DONE each region that row Y does not continue, and frees its label and
- * those of regions that were united. */
+/* Calls DONE for each region that row Y does not continue, and frees its
+ * labels. */
 void glint_regions_end_row(struct glint_regions *r, glint_region_fn *done,
                            void *ctx, int y);
 

@@ -7,9 +7,9 @@
 
 #define WHITE_Q20 LINEAR_WHITE_Q20
 #define ONE_Q16   (1 << 16)
-/* About code 231: brighter pixels are clipped in part. */
+/* About code 231: brighter pixels count as partly clipped. */
 #define CLIP_FIRST Q_CONST(0.80, 20)
-/* About code 253: brighter pixels are clipped. */
+/* About code 253: brighter pixels count as clipped. */
 #define CLIP_LAST     Q_CONST(0.98, 20)
 #define RIM_LIGHT     Q_CONST(0.95, 20)
 #define MAX_BLACK_Q20 Q_CONST(15.0 / 16, 20)
@@ -17,11 +17,11 @@
 enum {
     SECTORS = 8,
     BORDERS = 4,
-    SAMPLES = 32, /* most samples along the radius of the inner disc */
+    SAMPLES = 32, /* max samples along the radius of the inner disc */
     RAYS = 16,
     RAY_SAMPLES = 64, /* steps of a ray along the core's radius */
-    RIM_RADIUS = 32,  /* least radius of a core whose rim is looked at, pixels:
-                         an eighth of it is more than a lens blurs */
+    RIM_RADIUS = 32,  /* min radius of a core whose rim is measured, pixels: an
+                         eighth of it exceeds the blur of a lens */
     RINGS = GLINT_PROFILE_RINGS,
     LEVELS = GLINT_PROFILE_LEVELS,
     NEAR = GLINT_PROFILE_NEAR
@@ -29,13 +29,13 @@ enum {
 
 /* ------------------------------------------------------------------- window */
 
-/* The line between a spot and its neighbour: pixels beyond it are the
- * neighbour's. */
+/* The line between a spot and its neighbour: pixels beyond it belong to the
+ * neighbour. */
 struct border {
     int x, y;      /* vector to the neighbour, pixels */
-    int64_t limit; /* pixels whose dot product with (x, y) is larger are beyond
+    int64_t limit; /* pixels with a larger dot product with (x, y) are beyond
                       the line */
-    int32_t at_q8; /* pixels from the middle to the line */
+    int32_t at_q8; /* distance of the line from the middle, pixels */
 };
 
 struct window {
@@ -45,12 +45,12 @@ struct window {
     int width, height;
     int x, y;   /* pixel in the middle */
     int radius; /* radius of the inner disc; ring i ends at radius << i */
-    int step; /* distance of samples in the inner disc, pixels; it is step << i
-                 in ring i */
+    int step; /* distance of samples in the inner disc, pixels; in ring i it is
+                 step << i */
 };
 
-/* A pixel that is read, which stands for SHARE pixels. DX, DY: its offset from
- * the middle of the window, pixels. */
+/* A sampled pixel; it represents SHARE pixels. DX, DY: its offset from the
+ * middle of the window, pixels. */
 struct sample {
     int32_t rgb_q20[3];
     int dx, dy, share, ring;
@@ -104,9 +104,9 @@ static void see_run(const struct window *w, int x0, int x1, struct sample *at,
     }
 }
 
-/* In the row DY off the middle of a disc of RADIUS, samples lie at multiples of
- * STEP from the middle. Returns how far off the last one inside the disc is, or
- * -1 if the row misses the disc. */
+/* Returns the largest multiple of STEP that is the x offset of a pixel inside a
+ * disc of RADIUS, in the row DY below its middle; -1 if the row misses the
+ * disc. */
 static int last_in(int radius, int dy, int step)
 {
     const int64_t left = (int64_t)radius * radius - (int64_t)dy * dy;
@@ -146,7 +146,7 @@ static int32_t reach_of_q8(const struct glint_spot *spot)
     return q_clamp_sat(spot->size_q8, 0, GLINT_MAX_SIDE << 8) * 3 / 2 + 256;
 }
 
-/* Adds BORDER to W if it is among the nearest. */
+/* Adds BORDER to W if it is among the BORDERS nearest. */
 static void add_border(struct window *w, struct border border)
 {
     int at = w->n_borders;
@@ -187,7 +187,7 @@ static int is_left(const void *ctx, int32_t a, int32_t b)
                                           : a < b;
 }
 
-/* Adds the borders to the spots around the I-th from the left. */
+/* Adds the borders between the I-th spot from the left and its neighbours. */
 static void find_borders(struct window *w, const struct glint_rings *rings,
                          const struct glint_spot *spots, int n, int i)
 {
@@ -245,8 +245,8 @@ static void sort(struct part *part, int n)
         }
 }
 
-/* Returns the mean light between FROM and TO eighths of the ring, its PARTs in
- * order of light. */
+/* Returns the mean light between FROM and TO eighths of the ring, whose parts
+ * are sorted by light. */
 static int32_t mean_between(const struct part *part, int n, int64_t all,
                             int from, int to)
 {
@@ -265,8 +265,8 @@ static int32_t mean_between(const struct part *part, int n, int64_t all,
 }
 
 /* Sets the background: the mean of the middle half of the ring, its sectors in
- * order of light. The spread is by how much the last quarter of that half is
- * brighter than the first. */
+ * order of light. The spread is the difference between the means of the last
+ * and the first quarter of that half. */
 static void set_background(struct glint_profile_channel *of,
                            const struct sectors *sectors, int c)
 {
@@ -303,9 +303,8 @@ static int32_t clipped_q8(int32_t light_q20)
                                         ((CLIP_LAST - CLIP_FIRST) >> 4);
 }
 
-/* Adds SHARE pixels of light U to the number of their level, and in part to its
- * area. add_up() adds them to the areas of the later levels, which they have
- * wholly. */
+/* Adds SHARE pixels of light U to the number of their level, and a fraction of
+ * them to its area. add_up() adds them wholly to the areas of later levels. */
 static void add_levels(struct glint_profile_channel *of, int32_t u_q16,
                        int share, int ring)
 {
@@ -337,8 +336,8 @@ static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
 
 /* ---------------------------------------------------------------------- rim */
 
-/* Returns the largest channel of the pixel that is X, Y from the middle; -1 if
- * it belongs to another spot or is outside the picture. */
+/* Returns the largest channel of the pixel at offset (X, Y) from the middle; -1
+ * if it belongs to another spot or is outside the picture. */
 static int32_t light_at(const struct window *w, int32_t x_q8, int32_t y_q8)
 {
     const int dx = (x_q8 + 128) >> 8, dy = (y_q8 + 128) >> 8;
@@ -353,8 +352,8 @@ static int32_t light_at(const struct window *w, int32_t x_q8, int32_t y_q8)
 }
 
 /* Returns the drop along ray I at the rim of a core of RADIUS, as a fraction of
- * white; -1 if it cannot be measured. A rim near the middle counts as 0: such a
- * core is a ring. */
+ * white; -1 if it cannot be measured. Returns 0 if the rim is near the middle,
+ * as such a core is a ring. */
 static int32_t lost_along(const struct window *w, int i, int32_t radius_q8)
 {
     static const int16_t sine_q14[RAYS + RAYS / 4] = {
@@ -446,7 +445,7 @@ static void see_light(void *ctx, const struct sample *s)
         add_moments(sums, most_q16, s);
 }
 
-/* Adds to the area of each level the pixels that are brighter. */
+/* Adds to the area of each level the pixels of the brighter levels. */
 static void add_up(struct glint_profile_channel *of)
 {
     int64_t n = 0;

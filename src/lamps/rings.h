@@ -4,20 +4,20 @@
  *
  *   in   a picture, a spot in it
  *   out  per channel: areas by brightness, flux, clipped area; the colour of
- *        the fringe; second moments of the core; how sharp its rim is
+ *        the fringe; second moments of the core; sharpness of its rim
  *
- * Method: the window around the spot is a disc and GLINT_PROFILE_RINGS rings,
- * each twice as wide as the one before. Of the disc, which covers the core and
- * its rim, all pixels are read if it is small, else every s-th of every s-th
- * row; each ring is sampled half as densely as the one inside. The background
- * is the light of the outermost ring: the middle of its eight sectors in order
- * of light, so that bright or dark objects beside the lamp do not count. Light
- * u is counted over the background, as a fraction of the difference between
- * white and background.
+ * Method: the window around the spot is a disc, which covers the core and its
+ * rim, and GLINT_PROFILE_RINGS rings, each twice as wide as the ring before.
+ * All pixels of a small disc are read, else every s-th pixel of every s-th row;
+ * each ring is sampled half as densely as the ring inside it. The background is
+ * the light of the outermost ring: the mean of the middle half of its eight
+ * sectors in order of light, so that bright or dark objects beside the lamp do
+ * not affect it. Light is expressed as u = (light - background) / (white -
+ * background).
  *
- * A pixel counts to the areas by soft steps: to the area of level k by how far
- * u is from 2^-k to 2^(1-k), to the clipped area by how far its light is from
- * CLIP_FIRST to CLIP_LAST. So no sum jumps.
+ * A pixel counts to the areas by ramps: to the area of level k by a ramp of u
+ * from 2^-k to 2^(1-k), to the clipped area by a ramp of its light from
+ * CLIP_FIRST to CLIP_LAST. So sums change continuously.
  *
  * The rim of a large core is also sampled along rays from the middle: the drop,
  * as a fraction of white, from the end of the core to an eighth of its radius
@@ -35,7 +35,7 @@
 enum {
     GLINT_PROFILE_RINGS = 3,
     GLINT_PROFILE_LEVELS = 7,
-    /* Levels up to this are not counted in the second ring and beyond. */
+    /* Levels up to this level are not counted outside the first ring. */
     GLINT_PROFILE_NEAR = 3,
     GLINT_PROFILE_SPOTS = 1024
 };
@@ -43,17 +43,17 @@ enum {
 struct glint_profile_channel {
     int32_t black_q20, scale_q16; /* background, linear light; 1 / (1 -
                                      background), at most 16 */
-    int32_t spread_q16;           /* spread of the background, in u */
+    int32_t spread_q16;           /* spread of the background's light, in u */
     int32_t step_q16; /* distance in u from the background to the next code if
                          codes have fewer than 8 bits; else 0 */
-    /* [k]: number of pixels with u of 2^-k or more, those below 2^(1 - k) in
-     * part; [0]: number of clipped pixels */
+    /* [k]: number of pixels with u of 2^-k or more; pixels below 2^(1 - k)
+     * count as fractions; [0]: number of clipped pixels */
     int64_t area_q8[GLINT_PROFILE_LEVELS + 1];
     /* [k]: number of pixels with u from 2^-k to below 2^(1 - k); [0]: with u of
      * 1 or more. */
     int64_t n[GLINT_PROFILE_LEVELS + 1];
-    int64_t fringe_q16; /* light of pixels that are not clipped, and of clipped
-                           ones, each weighted by its largest u */
+    int64_t fringe_q16; /* light of unclipped and of clipped pixels, each
+                           weighted by its largest u */
     int64_t white_q16;
 };
 
@@ -63,9 +63,9 @@ struct glint_profile_sums {
      * steps. */
     int64_t w_q16, moment_q16[2], square_q16[3]; /* xx, yy, xy */
     int step;        /* pixels between samples of the core */
-    int32_t rim_q15; /* drop at the rim as a fraction of white, the median over
-                        all rays; 0 for a small core, or if too few rays end in
-                        the picture */
+    int32_t rim_q15; /* drop of light at the rim as a fraction of white, the
+                        median over all rays; 0 for a small core, or if too few
+                        rays end in the picture */
 };
 
 struct glint_rings {
@@ -74,8 +74,8 @@ struct glint_rings {
                                           right */
 };
 
-/* Begins with IMAGE and its N SPOTS, at most GLINT_PROFILE_SPOTS; rings->bright
- * must be initialized. */
+/* Prepares for the N SPOTS of IMAGE. N must be at most GLINT_PROFILE_SPOTS, and
+ * rings->bright must be initialized. */
 void glint_rings_begin(struct glint_rings *rings,
                        const struct glint_image *image,
                        const struct glint_spot *spots, int n);

@@ -17,8 +17,8 @@ void glint_row_light_begin(struct glint_row_light *row)
     row->end = -1;
 }
 
-/* Sets OF to the sums of one pixel of linear light RGB. It counts to the rim
- * only if no channel is CLIPPED or more. */
+/* Sets OF to the sums of one pixel of linear light RGB. The pixel counts to the
+ * rim only if all channels are below CLIPPED. */
 static WHOLLY_INLINE void set_sums(int32_t of[ROW_LIGHT_SUMS],
                                    const int32_t rgb_q20[3],
                                    int32_t clipped_q20)
@@ -35,7 +35,7 @@ static WHOLLY_INLINE void set_sums(int32_t of[ROW_LIGHT_SUMS],
     }
 }
 
-/* Sets *NEXT to SUM and a pixel of column X, whose sums are OF. */
+/* Sets *NEXT to SUM plus a pixel of column X, whose sums are OF. */
 static WHOLLY_INLINE void add_pixel(struct glint_row_sum *restrict next,
                                     const struct glint_row_sum *restrict sum,
                                     const int32_t of[ROW_LIGHT_SUMS], int x)
@@ -54,7 +54,7 @@ static int64_t sum_below(int64_t n)
     return n * (n - 1) / 2;
 }
 
-/* Sets *AT to SUM, which is of the pixels left of X, and N pixels that are like
+/* Sets *AT to SUM, the sum of the pixels left of X, plus N pixels equal to
  * pixel X; SUM[1] includes pixel X. */
 static void add_alike(struct glint_row_sum *at,
                       const struct glint_row_sum *restrict sum, int x, int n)
@@ -69,8 +69,8 @@ static void add_alike(struct glint_row_sum *at,
                                           region_squares_below(x));
 }
 
-/* Sets CHROMA to what the chroma of CODES adds to each channel, in full-range
- * codes, and half of the step that decode_ycc() rounds to. */
+/* Sets CHROMA to the contribution of chroma in CODES to each channel, in
+ * full-range codes, plus half a unit for the rounding in decode_ycc(). */
 static WHOLLY_INLINE void set_chroma(const struct glint_ycc *ycc, int32_t codes,
                                      int32_t chroma_q16[3])
 {
@@ -81,8 +81,9 @@ static WHOLLY_INLINE void set_chroma(const struct glint_ycc *ycc, int32_t codes,
         chroma_q16[i] = cb * m_q16[i][1] + cr * m_q16[i][2] + (1 << 8);
 }
 
-/* Sets RGB to the linear light of luma Y and CHROMA, as ycc_to_rgb and
- * curve_decode do; the first column of the matrix has one value in all rows. */
+/* Sets RGB to the linear light of luma Y and CHROMA, with the results of
+ * ycc_to_rgb and curve_decode. The first column of the matrix has the same
+ * value in all rows. */
 static WHOLLY_INLINE void decode_ycc(const struct glint_bright *b, int y,
                                      const int32_t chroma_q16[3],
                                      int32_t rgb_q20[3])
@@ -98,8 +99,8 @@ static WHOLLY_INLINE void decode_ycc(const struct glint_bright *b, int y,
     }
 }
 
-/* How the codes of a row lie: first codes STEP bytes apart, second and third
- * codes STEP_C, each of 1 << SHIFT pixels. */
+/* The layout of the codes of a row: first codes are STEP bytes apart; second
+ * and third codes STEP_C bytes, each for 1 << SHIFT pixels. */
 struct packing {
     enum glint_layout_kind kind;
     int step, step_c, shift;
@@ -115,8 +116,8 @@ static WHOLLY_INLINE int32_t codes_at(const struct glint_bright *b,
            b->code[2].first[at_c] << 16;
 }
 
-/* Sets the sums of pixels X0 .. X1 - 1. Of equal pixels on end only the sums
- * after the first and the last are kept. */
+/* Sets the sums of pixels X0 .. X1 - 1. For a run of equal pixels only the sums
+ * after the first and the last pixel are stored. */
 static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
                                      const struct glint_bright *b, int x0,
                                      int x1, struct packing p)
@@ -158,7 +159,7 @@ static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
     }
 }
 
-/* Calls sum_pixels() with constant steps if they are usual ones. */
+/* Calls sum_pixels(), with constant steps for the usual formats. */
 static void sum_stretch(struct glint_row_light *row,
                         const struct glint_bright *b, int x0, int x1)
 {
@@ -188,7 +189,8 @@ void glint_row_light_extend(struct glint_row_light *row,
         row->end = x1;
 }
 
-/* Returns the sum of the pixels left of X, made in *ROOM if it is not kept. */
+/* Returns the sum of the pixels left of X; if it is not stored, it is computed
+ * in *ROOM. */
 static const struct glint_row_sum *sum_at(const struct glint_row_light *row,
                                           int x, struct glint_row_sum *room)
 {

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light of the bright stretches of a row, summed once for regions of all
+ * Sums the light of the bright stretches of a row once, for the regions of all
  * levels.
  *
  *   in   a row of a picture, and which of its pixels lie in regions
  *   out  the light of any of its runs
  *
- * Regions of the levels lie within each other. So running sums are made once
- * for each stretch of pixels, and the light of a run is the difference of two.
+ * Regions of different levels are nested. So prefix sums are computed once per
+ * stretch of pixels, and the light of a run is the difference of two prefix
+ * sums.
  *
  *     glint_row_light_begin(row);
  *     for each stretch from the left:
@@ -28,24 +29,24 @@ enum { ROW_LIGHT_RIM = 2 };
 /* Indices of the sums in 32 bits. */
 enum {
     ROW_LIGHT_W,   /* linear luminance, _q14 */
-    ROW_LIGHT_RGB, /* linear R, G, B, _q14; below, those of pixels with no
-                      channel clipped */
+    ROW_LIGHT_RGB, /* linear R, G, B, _q14, of all pixels, then R, G, B of
+                      pixels without a clipped channel */
     ROW_LIGHT_RIM_RGB = ROW_LIGHT_RGB + 3,
-    ROW_LIGHT_SUMS = 8 /* a power of two: for vectors */
+    ROW_LIGHT_SUMS = 8 /* a power of two, for vectorization */
 };
 
-/* Sums over the pixels left of a column, from the beginning of its stretch. */
+/* Prefix sums: over the pixels of a stretch left of a column. */
 struct glint_row_sum {
     int32_t of[ROW_LIGHT_SUMS];
     int64_t wx_q14, wx2_q14;
 };
 
 struct glint_row_light {
-    struct glint_row_sum *sum; /* [width + 1]: sums, kept where from[x] is x */
-    /* [width + 1]: the column itself if its sum is kept; else the first column
-     * of its run of equal pixels */
+    struct glint_row_sum *sum; /* [width + 1]: sums; valid where from[x] is x */
+    /* [width + 1]: the column itself if its sum is stored; else the first
+     * column of its run of equal pixels */
     uint16_t *from;
-    int end; /* end of the last stretch; -1: there is none */
+    int end; /* end of the last stretch; -1: no stretch yet */
 };
 
 void glint_row_light_carve(struct glint_row_light *row,
@@ -53,14 +54,14 @@ void glint_row_light_carve(struct glint_row_light *row,
 
 void glint_row_light_begin(struct glint_row_light *row);
 
-/* Sums pixels X0 .. X1 - 1 of the row that BRIGHT is at. X0 must not fall from
- * call to call. */
+/* Sums pixels X0 .. X1 - 1 of the current row of BRIGHT. X0 must not decrease
+ * from call to call. */
 void glint_row_light_extend(struct glint_row_light *row,
                             const struct glint_bright *bright, int x0, int x1);
 
-/* Adds the light of pixels X0 .. X1 - 1 of row Y to REGION, and that of pixels
- * up to ROW_LIGHT_RIM beside them to its rim. All must be within a stretch, or
- * past the picture's edge at WIDTH. */
+/* Adds the light of pixels X0 .. X1 - 1 of row Y to REGION, and the light of
+ * pixels up to ROW_LIGHT_RIM beside them to its rim. All must be within a
+ * stretch, or outside the picture, whose width is WIDTH. */
 void glint_row_light_add(const struct glint_row_light *row,
                          struct glint_region *region, int x0, int x1, int width,
                          int y);

@@ -5,31 +5,32 @@
 #include "base/sort.h"
 
 enum {
-    FLOOR_Q20 = 1 << 12, /* added to light, or noise in the dark is contrast */
+    FLOOR_Q20 = 1 << 12, /* added to light, so that noise in the dark is not
+                            contrast */
     LEAST_Q8 = -256,     /* contrasts are clamped to -1 .. 6 stops */
     MOST_Q8 = 6 * 256,
     SMALL_Q8 = -2424, /* log2 of 1/709 of the picture: up to this size colour
-                         counts wholly */
+                         counts fully */
     LARGE_Q8 = -1400, /* log2 of 1/44 of the picture: from this size on colour
                          does not count */
     HALO_MOST_Q8 = 512,
     WIDE_Q8 = 1400,  /* log2 span over which a region becomes large: from 1/1960
                         of the picture to 1/44 */
-    DRAWN_AREA = 36, /* pixels; smaller squares may be round lamps */
+    DRAWN_AREA = 36, /* min area, pixels; smaller squares may be round lamps */
     DRAWN_BOX_Q8 = 250,
     SCORE_PARTS = EVIDENCE_DARK_32 - EVIDENCE_DARK_2 + 1
 };
 
-/* Adds WEIGHT times MEASURE, which is clamped to LEAST .. MOST, less LEAST. */
+/* A term of the score: WEIGHT * (MEASURE clamped to LEAST .. MOST - LEAST). */
 struct term {
     int8_t measure;
     int16_t least_q8, most_q8, weight_q8;
 };
 
-/* Weights from a logistic regression, each limited to the sign that its measure
- * should have: tests/corpus/fit prints them. 64 are a factor e of the odds. The
- * last is set by hand: no lamp of the corpus is drawn, and a bright box in the
- * dark still is one. */
+/* Weights from a logistic regression, each constrained to the sign that its
+ * measure should have; tests/corpus/fit prints them. A step of 64 is a factor e
+ * of the odds. The last weight is set by hand: no lamp of the corpus fills its
+ * box, but a bright box in the dark still is a lamp. */
 enum { BIAS_Q8 = -1438 };
 
 static const struct term terms[] = {
@@ -64,8 +65,8 @@ static void stops_of(const int64_t rgb_q20[3], int32_t stops_q8[2])
     stops_q8[1] = glint_stops_q8(y_q20 + FLOOR_Q20);
 }
 
-/* Returns by how many stops IN exceeds pixel X of the row, in the largest
- * channel or in luminance, whichever is more. */
+/* Returns the stops by which IN exceeds pixel X of the row: the max of the
+ * largest channel's and the luminance's. */
 static int32_t contrast_at(const struct glint_score *s, const int32_t in_q8[2],
                            int x)
 {
@@ -82,8 +83,8 @@ static int32_t contrast_at(const struct glint_score *s, const int32_t in_q8[2],
                        MOST_Q8);
 }
 
-/* Sets X, Y to point I of an ellipse in SUM's box enlarged by D on all sides.
- */
+/* Sets (X, Y) to point I of the ellipse inscribed in SUM's box enlarged by D on
+ * all sides. */
 static void point_of(const struct glint_region *sum, int32_t d, int i,
                      int32_t *x, int32_t *y)
 {
@@ -139,8 +140,8 @@ static void sort(int32_t *v, int n)
         }
 }
 
-/* Returns the distance of ring I from the box of SUM, pixels: one part grows
- * with the picture's side, one with the box's. */
+/* Returns the distance of ring I from the box of SUM, pixels: a sum of a term
+ * proportional to the picture's side and a term proportional to the box's. */
 static int32_t distance_of(const struct glint_score *s,
                            const struct glint_region *sum, int i)
 {
@@ -159,7 +160,8 @@ struct ring {
     int32_t mean_q8, lower_q8, upper_q8; /* mean and quartiles, 1/256 stops */
 };
 
-/* Sets RING at distance D; leaves it if no point is in the picture. */
+/* Sets RING to the contrasts at distance D; leaves it unchanged if no point is
+ * in the picture. */
 static void look_at_ring(struct ring *ring, const struct glint_score *s,
                          const struct glint_region *sum, int32_t d,
                          const int32_t in_q8[2])
@@ -184,7 +186,7 @@ static void mean_stops(const struct glint_region *sum, int32_t stops_q8[2])
     stops_of(mean_q20, stops_q8);
 }
 
-/* Returns VALUE times how large C is, 0 .. 1. */
+/* Returns VALUE times the degree, 0 .. 1, to which C is a large region. */
 static int32_t wide_q8(const struct glint_candidate *c, int32_t value_q8)
 {
     const int64_t size_q8 = (int64_t)c->evidence_q8[EVIDENCE_SIZE];
@@ -194,8 +196,8 @@ static int32_t wide_q8(const struct glint_candidate *c, int32_t value_q8)
 
 /* -------------------------------------------------------------------- shape */
 
-/* Returns the area of SUM over 2 pi r^2, at most 2: 256 for a disc. r is the
- * RMS radius; 1/6, that of a single pixel, is added to r^2. */
+/* Returns area / (2 pi r^2) of SUM, at most 2: 256 for a disc. r is the RMS
+ * radius; 1/6, the value of a single pixel, is added to r^2. */
 static int32_t fill_q8(const struct glint_region *sum)
 {
     const int64_t r_q8 = glint_region_radius_q8(sum);
@@ -205,7 +207,7 @@ static int32_t fill_q8(const struct glint_region *sum)
     return q_clamp_sat(((int64_t)sum->area << 24) / disc_q16, 0, 512);
 }
 
-/* Returns EVIDENCE_DRAWN of a region that fills BOX_Q8 of its box. */
+/* Returns EVIDENCE_DRAWN of a region that fills the fraction BOX of its box. */
 static int32_t drawn_q8(const struct glint_region *sum, int32_t box_q8)
 {
     return sum->area < DRAWN_AREA
@@ -230,9 +232,10 @@ static int64_t share_q20(const struct glint_score *s, int64_t pixels)
     return (pixels << 20) / ((int64_t)s->width * s->height);
 }
 
-/* Returns by how much less than 5 stops the picture's median is below the white
- * of LEVEL, 0 .. 5 stops; 0 if that white is where codes clip. An underexposed
- * picture by night has lamps that do not clip; a grey one has grey objects. */
+/* Returns 5 stops minus the stops from the picture's median to the white of
+ * LEVEL, 0 .. 5 stops; 0 if that white is where codes clip. An underexposed
+ * night picture has lamps that do not clip; a picture that is grey overall has
+ * grey objects. */
 static int32_t dim_q8(const struct glint_score *s,
                       const struct glint_level *level)
 {
@@ -247,8 +250,8 @@ static int32_t dim_q8(const struct glint_score *s,
                        0, 5 * 256);
 }
 
-/* Returns how many stops below white the brightness is that 1 / 2^PART_LOG2 of
- * the picture reaches. */
+/* Returns the stops below white of the brightness that 1 / 2^PART_LOG2 of the
+ * picture reaches. */
 static int32_t below_white_q8(const struct glint_score *s, int part_log2)
 {
     const int32_t *light_q20 = s->bright->curve->decode_q20;
@@ -258,7 +261,7 @@ static int32_t below_white_q8(const struct glint_score *s, int part_log2)
         light_q20[code < BRIGHT_CLIPPED ? code : BRIGHT_CLIPPED] + FLOOR_Q20);
 }
 
-/* How far parts of the picture are below white. */
+/* EVIDENCE_DARK_2, EVIDENCE_DARK_4 and EVIDENCE_DARK_32 of the picture. */
 struct dark {
     int32_t part_q8[SCORE_PARTS];
 };
@@ -315,8 +318,8 @@ static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
     return sum_q16 >> 8;
 }
 
-/* Returns the doubt that MEASURE stands for; none for measures that only some
- * lamps have. */
+/* Returns the doubt that a low MEASURE means, or no doubt for measures that
+ * only some lamps have. */
 static enum glint_doubt doubt_of(int measure)
 {
     switch (measure) {
@@ -367,7 +370,8 @@ enum glint_doubt glint_score_doubt(const struct glint_candidate *c)
     return doubt_of(worst);
 }
 
-/* Returns the first ring that MEASURE depends on, or SCORE_RINGS if none. */
+/* Returns the first ring that MEASURE depends on, or SCORE_RINGS if it depends
+ * on no ring. */
 static int ring_of(int measure)
 {
     switch (measure) {
@@ -383,7 +387,7 @@ static int ring_of(int measure)
     }
 }
 
-/* Returns the most that rings FIRST and later can add to a score. */
+/* Returns the max that rings FIRST and later can add to a score. */
 static int32_t most_of_rings(int first)
 {
     int32_t sum_q16 = 0;
@@ -399,8 +403,8 @@ static int32_t most_of_rings(int first)
 }
 
 /* Sets the measures of the rings so low that they add nothing, as
- * most_of_rings() adds the most that they can; but EVIDENCE_WIDE_HALO, which
- * that function leaves out, to its largest value. */
+ * most_of_rings() accounts for their max; except EVIDENCE_WIDE_HALO, which
+ * most_of_rings() leaves out: it is set to its max. */
 static void hope_for_rings(struct glint_candidate *c)
 {
     for (int i = 0; i < EVIDENCES; i++)
@@ -409,7 +413,7 @@ static void hope_for_rings(struct glint_candidate *c)
     c->evidence_q8[EVIDENCE_WIDE_HALO] = wide_q8(c, HALO_MOST_Q8);
 }
 
-/* Sets the measures of C that ring I completes. */
+/* Sets the measures of C that are known after ring I. */
 static void learn_of_ring(struct glint_candidate *c, const struct ring *ring,
                           int i)
 {
@@ -431,9 +435,9 @@ static void learn_of_ring(struct glint_candidate *c, const struct ring *ring,
     }
 }
 
-/* Returns the score of C. If is_brief is set, its rings are looked at only as
- * long as they may lift it to -SCORE_DOUBT. MOST[I]: the most that ring I and
- * later ones can add. */
+/* Returns the score of C. If the level's is_brief is set, rings are read only
+ * as long as they may raise the score to -SCORE_DOUBT. MOST[I]: the max that
+ * ring I and later rings can add. */
 static int32_t score_by_rings(struct glint_candidate *c,
                               const struct glint_score *s,
                               const int32_t most_q8[SCORE_RINGS])
@@ -494,9 +498,9 @@ void glint_score_all(const struct glint_score *score,
 
 /* ------------------------------------------------------------------- choice */
 
-/* Chooses which regions are lamps, by their scores, and which one of regions
- * that lie within each other stands for the lamp. */
-enum { SURE_Q8 = 384 }; /* higher scores count as this one */
+/* Chooses the regions that are lamps, by their scores, and for nested regions
+ * the one that represents the lamp. */
+enum { SURE_Q8 = 384 }; /* higher scores count as this score */
 
 static int by_rank(const void *ctx, int32_t a, int32_t b)
 {
@@ -510,7 +514,7 @@ static int by_rank(const void *ctx, int32_t a, int32_t b)
     return p->sum.first < q->sum.first;
 }
 
-/* Returns whether INNER, of a higher level, lies in the box of OUTER. */
+/* Returns whether INNER is of a higher level than OUTER and lies in its box. */
 static int is_within(const struct glint_candidate *inner,
                      const struct glint_candidate *outer)
 {

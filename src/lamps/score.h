@@ -2,29 +2,30 @@
  *
  * Scores whether a bright region is a lamp.
  *
- *   in   the bright regions of a picture, at each of the levels of brightness
- *        that they were sought at, and the picture around them
- *   out  a score of each: from 0 on a region is a lamp; 64 are a factor e of
- *        its odds; below -SCORE_DOUBT it is not one, even if it was before
+ *   in   the bright regions of a picture at each level of brightness, and the
+ *        picture around them
+ *   out  a score per region: from 0 on it is a lamp; a step of 64 is a factor
+ *        e of the odds; below -SCORE_DOUBT it is not a lamp, even if it was
+ *        a lamp in the frame before
  *
  * Lamps are seldom alone: in a picture with SCORE_SEVERAL lamps, the threshold
  * is -SCORE_COMPANY. In a picture without any, the best region is accepted if
  * its score is not far below 0, since a picture for a flare usually has a lamp:
- * from -SCORE_ALONE in a still picture. A region of a video has another chance
- * in each frame, whether it is a lamp or not, and so must reach
+ * from -SCORE_ALONE in a still picture. A region of a video is scored again in
+ * each frame, which gives false lamps more chances, so it must reach
  * -SCORE_ALONE_VIDEO.
  *
  * The score is a sum of terms, each a measure clamped to a range and weighted,
- * so that it moves little where the picture does. Regions of the levels lie
- * within each other, as a lamp does in its glow in the sky; of these the one
- * with the highest score is taken.
+ * so that small changes of the picture change it little. Regions of different
+ * levels are nested, like a lamp in its glow in the sky; among nested regions
+ * the one with the highest score is chosen.
  *
  * Around a region SCORE_POINTS pixels are read on each of SCORE_RINGS ellipses.
  * Their distances grow with the region and with the picture, so that the same
  * scene in more pixels has the same score.
  *
- * Limits: each term is below 2^13 * 2^10, so that the sum of some 20 fits 32
- * bits; areas and boxes are computed in 64. */
+ * Limits: each term is below 2^13 * 2^10, so that the sum of about 20 terms
+ * fits 32 bits; areas and boxes are computed in 64 bits. */
 #ifndef GLINT_LAMPS_SCORE_H
 #define GLINT_LAMPS_SCORE_H
 
@@ -39,49 +40,52 @@ enum {
     SCORE_DOUBT = 256,
     SCORE_SEVERAL = 2,
     SCORE_COMPANY = 96,
-    SCORE_ALONE = 48, /* in a still picture; see tests/figures/finder.md */
+    SCORE_ALONE = 48, /* for still pictures; see tests/figures/finder.md */
     SCORE_ALONE_VIDEO = 32,
     SCORE_LEVELS = 8
 };
 
 /* Measures, _q8. */
 enum glint_evidence {
-    EVIDENCE_AROUND, /* lower quartile of the contrast at the middle distance,
+    EVIDENCE_AROUND, /* lower quartile of the contrast at the middle ellipse,
                         stops */
-    EVIDENCE_HALO, /* stops by which contrast is larger at the farthest ellipse
-                      than at the nearest: fall-off of light */
-    EVIDENCE_SPREAD, /* stops between the quartiles of the contrast close
-                        around: large where light does not fall off alike in all
-                        directions */
+    EVIDENCE_HALO,   /* contrast at the farthest ellipse minus contrast at the
+                        nearest, stops: fall-off of light */
+    EVIDENCE_SPREAD, /* difference between the quartiles of the contrast at the
+                        nearest ellipse, stops: large if light falls off
+                        differently by direction */
     EVIDENCE_FILL,   /* area / area of a disc of the same RMS radius: 256 for a
                         disc */
-    EVIDENCE_BOX,    /* area / area of its box: 256 if it fills the box */
-    EVIDENCE_SIZE,   /* log2 of its fraction of the picture, 0 or less */
-    EVIDENCE_COLOUR, /* saturation, 256 if it is one channel alone; less in a
-                        large region */
-    EVIDENCE_DIM, /* stops by which the picture's median is less than five below
-                     the level's white, if that white is darker than codes clip;
-                     else 0 */
+    EVIDENCE_BOX,    /* area / area of its bounding box: 256 if the box is
+                        full */
+    EVIDENCE_SIZE,   /* log2 of the region's fraction of the picture, 0 or
+                        less */
+    EVIDENCE_COLOUR, /* saturation, 256 for a single channel; reduced for large
+                        regions */
+    EVIDENCE_DIM,   /* if the level's white is below clipping: 5 minus the stops
+                       from the picture's median to that white, at least 0; else
+                       0 */
     EVIDENCE_CLOSE, /* lower quartile of the contrast close to the edge, stops:
                        lamps have steep edges */
-    EVIDENCE_WHITE, /* stops of its mean luminance over its level's white */
-    EVIDENCE_CROWD, /* log2 of the number of regions of its level: lamps are few
-                     */
+    EVIDENCE_WHITE, /* mean luminance of the region over its level's white,
+                       stops */
+    EVIDENCE_CROWD, /* log2 of the number of regions of the same level: lamps
+                       are few */
     EVIDENCE_HIGH,  /* height above the picture's lower edge: 256 is the top */
-    /* EVIDENCE_HALO of a large region, which is the sun or a lampshade; 0 for a
-     * small one. */
+    /* EVIDENCE_HALO of a large region (the sun or a lampshade); 0 for a small
+     * region. */
     EVIDENCE_WIDE_HALO,
     EVIDENCE_WIDE_HOT, /* 256 for a large region as bright as its level's white;
-                          0 for a small or a darker one */
+                          0 for a small or darker region */
     /* Stops below white of the brightness that one pixel in 2, 4, 32 of the
-     * picture reaches: where nearly all is dark, bright objects are lit from
-     * within. */
+     * picture reaches: if nearly all of it is dark, bright objects are light
+     * sources. */
     EVIDENCE_DARK_2,
     EVIDENCE_DARK_4,
     EVIDENCE_DARK_32,
-    /* How far a region of 36 pixels or more fills its upright box: 0 up to
-     * 250/256 of the box, 256 from 254/256 on. Bars, cursors and windows of a
-     * screen fill theirs. */
+    /* Degree to which a region of 36 pixels or more fills its upright box: 0 up
+     * to 250/256 of the box, 256 from 254/256 on. Bars, cursors and windows of
+     * a screen fill their boxes. */
     EVIDENCE_DRAWN,
     EVIDENCES
 };
@@ -95,18 +99,18 @@ struct glint_candidate {
     int32_t rank_q8;
     uint8_t faint;
     uint8_t doubt; /* enum glint_doubt */
-    uint8_t gone; /* 1: merged into another region, or replaced by one of higher
-                     rank */
+    uint8_t gone;  /* 1: merged into another region, or replaced by a region of
+                      higher rank */
     int32_t evidence_q8[EVIDENCES];
 };
 
-/* A level of brightness at which regions are sought. */
+/* A level of brightness at which regions are searched for. */
 struct glint_level {
-    int low;           /* least brightness of the pixels of its regions */
-    int seed, clipped; /* brightness from which pixels count as seeds, or as
+    int low;           /* min brightness of pixels of its regions */
+    int seed, clipped; /* min brightness of pixels that count as seeds, or as
                           clipped */
-    int32_t cost_q8; /* subtracted from the score when regions within each other
-                        are compared */
+    int32_t cost_q8;   /* subtracted from the score when nested regions are
+                          compared */
 };
 
 struct glint_score {
@@ -114,11 +118,11 @@ struct glint_score {
     const struct glint_white *white;
     int width, height;
     const struct glint_level *level;
-    int is_brief; /* 1: the rings of a region are not read once its score must
-                     be below -SCORE_DOUBT; the score is then below that, but
-                     may be too high */
-    int32_t alone_q8; /* how far below 0 the best score may be for a lamp if
-                         none reaches 0 */
+    int is_brief;     /* 1: the rings of a region are not read once its score is
+                         certain to be below -SCORE_DOUBT; the score returned is
+                         then an upper bound below -SCORE_DOUBT */
+    int32_t alone_q8; /* how far below 0 the best score may be for a lamp if no
+                         score reaches 0 */
 };
 
 /* Sets the scores of the N candidates that ORDER lists. */
@@ -130,16 +134,16 @@ void glint_score_all(const struct glint_score *score,
  * of its range. */
 enum glint_doubt glint_score_doubt(const struct glint_candidate *c);
 
-/* Returns the min score of a lamp: 0, or -SCORE_COMPANY in a picture of
- * SCORE_SEVERAL lamps, or the best score if none reaches 0 and that is not
- * below -alone_q8. Changes the order of ORDER. */
+/* Returns the min score of a lamp: 0; -SCORE_COMPANY in a picture of
+ * SCORE_SEVERAL lamps; or the best score if no score reaches 0 but the best is
+ * at least -alone_q8. Reorders ORDER. */
 int32_t glint_score_least(const struct glint_score *score,
                           struct glint_candidate *candidate, int32_t *order,
                           int n);
 
-/* Sorts ORDER by falling rank, which is the score less the cost of its level,
- * and marks each candidate gone that lies within or around one of higher rank.
- */
+/* Sorts ORDER by descending rank (the score minus the cost of the level), and
+ * marks each candidate gone that lies within or around a candidate of higher
+ * rank. */
 void glint_score_choose(const struct glint_score *score,
                         struct glint_candidate *candidate, int32_t *order,
                         int n);

@@ -14,7 +14,7 @@ enum {
     LEVELS = GLINT_PROFILE_LEVELS,
     FEATURES = GLINT_UNCLIP_FEATURES,
     UNITS = GLINT_UNCLIP_UNITS,
-    SHOWN = 5 /* last level whose light counts as seen */
+    SHOWN = 5 /* last level whose light counts as shown by the picture */
 };
 
 /* ------------------------------------------------------------------- colour */
@@ -26,9 +26,9 @@ static int64_t luminance(const int64_t v[3])
            15;
 }
 
-/* Sets the colour. Clipped light counts 1/63 of that of the fringe: the fringe
- * decides where there is much of it, a spot that is all clipped to white comes
- * out white, and there is no jump in between. */
+/* Sets the colour. The weight of clipped light is 1/63 of the fringe's: a large
+ * fringe determines the colour, a spot clipped to white becomes white, and the
+ * transition is continuous. */
 static void set_colour(struct glint_spot *spot,
                        const struct glint_profile_sums *sums)
 {
@@ -73,10 +73,10 @@ static void list_moments(const struct glint_profile_sums *sums,
     }
 }
 
-/* Returns the radius of the lamp as a fraction of its clipped core's, 0 .. 1.
- * The glare of a small lamp far over white is clipped, too, and falls off over
- * half of the core's radius or more; a large lamp has a sharp rim, of a pixel.
- */
+/* Returns the radius of the lamp as a fraction of the radius of its clipped
+ * core, 0 .. 1. The glare of a small lamp far over white is clipped, too, and
+ * falls off over half of the core's radius or more; a large lamp has a sharp
+ * rim, one pixel wide. */
 static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
 {
     const struct glint_profile_channel *of = &sums->of[0];
@@ -85,7 +85,7 @@ static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
     for (int c = 1; c < 3; c++)
         if (sums->of[c].area_q8[0] > of->area_q8[0])
             of = &sums->of[c];
-    /* radii of circles, times the root of pi */
+    /* radii of circles, times sqrt(pi) */
     inner_q8 = q_root((uint64_t)of->area_q8[0] << 8);
     outer_q8 = q_root((uint64_t)of->area_q8[2] << 8);
     rim_q8 = outer_q8 - inner_q8 - Q_CONST(1.7725, 8);
@@ -95,10 +95,9 @@ static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
            q_clamp_sat(q_divide(rim_q8 << 16, inner_q8), 0, 1 << 15);
 }
 
-/* Returns the radius of the lamp as a fraction of its core's, 0 .. 1, by the
- * rim of a large core: all of the core is the lamp's face if more light is lost
- * at the rim than a glare could lose, whatever light is around it. 0 for a
- * small core. */
+/* Returns the radius of the lamp as a fraction of the core's radius, 0 .. 1,
+ * from the rim of a large core: the whole core is the lamp if light drops more
+ * at the rim than glare can drop. Returns 0 for a small core. */
 static int32_t face_share_q15(const struct glint_profile_sums *sums)
 {
     const int32_t over_q15 = sums->rim_q15 - RIM_GLARE;
@@ -106,15 +105,16 @@ static int32_t face_share_q15(const struct glint_profile_sums *sums)
     return q_clamp_sat(over_q15 * 32768 / (RIM_FACE - RIM_GLARE), 0, 1 << 15);
 }
 
-/* Semi-axes by the second moments of the pixels, the lamp's glare included. */
+/* Semi-axes from the second moments of the pixels, including the lamp's
+ * glare. */
 struct axes {
     int32_t major_q8, minor_q8;
-    int64_t half, apart; /* of the moments: half of xx - yy, and half of the
-                            difference between their eigenvalues */
+    int64_t half, apart; /* half of xx - yy, and half of the difference between
+                            the eigenvalues of the moments */
     int is_down;
 };
 
-/* Returns the semi-axes, which are the roots of the eigenvalues of the second
+/* Returns the semi-axes: the square roots of the eigenvalues of the second
  * moments. */
 static struct axes axes_of(const struct glint_profile_sums *sums)
 {
@@ -156,9 +156,9 @@ static int32_t log_of_q8(int64_t area_q8)
            8 * ONE_Q16;
 }
 
-/* Returns the weight of level K: 1 for levels 1 and 2; for others from 1 if the
- * background's spread is at most half of the level's min light, down to 0 if it
- * equals that. */
+/* Returns the weight of level K: 1 for levels 1 and 2; for other levels it
+ * falls from 1, if the background's spread is at most half of the level's min
+ * light, to 0, if it equals that light. */
 static int32_t weight_q16(const struct glint_profile_channel *of, int k)
 {
     const int32_t spread_q16 =
@@ -168,8 +168,8 @@ static int32_t weight_q16(const struct glint_profile_channel *of, int k)
                   : q_clamp_sat(-k * ONE_Q16 - spread_q16, 0, ONE_Q16);
 }
 
-/* Returns the sum of u over the pixels of levels up to SHOWN. A step of level k
- * goes from 2^-k to twice that, so that areas times steps sum up to u -
+/* Returns the sum of u over the pixels of levels up to SHOWN. Level k ranges
+ * from 2^-k to 2^(1 - k), so that areas times these ranges sum up to u -
  * 2^-SHOWN; the last area adds the missing 2^-SHOWN. */
 static int64_t flux_q16(const struct glint_profile_channel *of)
 {
@@ -216,8 +216,8 @@ static int32_t brightest_q15(const struct glint_spot *spot)
     return most;
 }
 
-/* Returns how much of LEVEL the codes of the picture show: all of it if its
- * least light is two steps of a code over the background, none if it is one. */
+/* Returns the fraction of LEVEL that the codes of the picture resolve: 1 if its
+ * min light is two code steps above the background, 0 if it is one step. */
 static int32_t shown_q16(const struct glint_profile_sums *sums, int level)
 {
     int32_t step_q16 = 1;
@@ -229,11 +229,11 @@ static int32_t shown_q16(const struct glint_profile_sums *sums, int level)
                        0, ONE_Q16);
 }
 
-/* Sets GROWTH to how many octaves larger than the core the area of each level
- * is. Where codes are as coarse as in RGB565, the area of a low level only
- * shows where the border between two codes is; such a level is taken to grow as
- * the one before it did. Levels are an octave apart, so at most one is shown in
- * part. Sums are below 2^26. */
+/* Sets GROWTH to log2 of the area of each level / the area of the core. With
+ * codes as coarse as RGB565, the area of a low level only reflects the border
+ * between two codes; such a level is assumed to grow like the level before it.
+ * Levels are an octave apart, so at most one level is partly resolved. Sums are
+ * below 2^26. */
 static void list_growth(int32_t growth_q16[LEVELS],
                         const struct glint_profile_sums *sums, int32_t core_q16)
 {
@@ -291,11 +291,11 @@ static int64_t weighed_q26(const int16_t weight_q10[FEATURES + 1],
     return sum_q26;
 }
 
-/* Returns the stops of the core over white, -6 .. 14: a perceptron with one
- * layer of rectified units beside a linear term. The units stand for products
- * of features: a halo tells one object beside a core of three pixels and
- * another beside one of a hundred, or on an even background and among windows.
- * A unit is below 2^32 in _q16, times a weight 2^47, and there are six. */
+/* Returns the stops of the core over white, -6 .. 14: a linear term plus a
+ * perceptron with one layer of rectified units. The units model interactions of
+ * features: a halo means different objects around a core of three pixels and of
+ * a hundred, or on a uniform background and among windows. A unit is below 2^32
+ * in _q16, times a weight 2^47, and there are six. */
 static int32_t stops_q16(const int32_t feature_q16[FEATURES])
 {
     int64_t sum_q26 = weighed_q26(linear_q10, feature_q16);
@@ -321,9 +321,9 @@ void glint_unclip_light(int64_t *seen_q16, int64_t *core_q16,
     *core_q16 = q_divide(widest_q8(sums, 0) << 23, brightest_q15(spot));
 }
 
-/* Sets the power: light that is seen, and light that the clipped core hides,
- * estimated from its features. Hidden light is clamped to 2^27 white pixels,
- * seen and hidden light together to MAX_POWER. */
+/* Sets the power: the light shown by the picture plus the light lost to
+ * clipping in the core, estimated from features. The lost light is clamped to
+ * 2^27 white pixels, the sum to MAX_POWER. */
 static void set_power(struct glint_spot *spot,
                       const struct glint_profile_sums *sums)
 {

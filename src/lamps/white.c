@@ -4,8 +4,8 @@
 #include "base/q.h"
 #include "lamps/bright_code.h"
 
-/* With f the part after the leading bit, log2(1 + f) is within 0.002 of
- * f + f (1 - f) (0.4273 - 0.175 f). */
+/* With f the fraction after the leading bit, log2(1 + f) is within 0.002 of f +
+ * f (1 - f) (0.4273 - 0.175 f). */
 int32_t glint_stops_q8(int64_t light_q20)
 {
     const uint64_t v = light_q20 > 0 ? (uint64_t)light_q20 : 1;
@@ -20,8 +20,8 @@ int32_t glint_stops_q8(int64_t light_q20)
            (int32_t)q_shift(f_q12 + q_mul(bent_q12, by_q12, 12), 4);
 }
 
-/* Returns the least code, at most BRIGHT_CLIPPED, whose linear light is STOPS
- * or more. */
+/* Returns the min code, at most BRIGHT_CLIPPED, whose linear light is STOPS or
+ * more. */
 static int code_of_stops(const struct glint_bright *b, int32_t stops_q8)
 {
     int code = 1;
@@ -32,8 +32,8 @@ static int code_of_stops(const struct glint_bright *b, int32_t stops_q8)
     return code;
 }
 
-/* Steps through the columns or rows of a grid, N in SIDE pixels: number i is at
- * (2 i + 1) SIDE / (2 N), rounded down. */
+/* Steps through the N columns or rows of a grid over SIDE pixels: number i is
+ * at (2 i + 1) SIDE / (2 N), rounded down. */
 struct grid {
     int at, past, step, step_past, whole;
 };

@@ -6,9 +6,9 @@
  *   out number of pixels of a grid that reach each brightness; codes
  *
  * In an underexposed picture a lamp may be far darker than full white. So white
- * is where codes clip if one pixel in 2^WHITE_PART_LOG2 does. Else it is the
- * code that as many pixels reach, but at least WHITE_LEAST, or noise would be
- * lamps. */
+ * is the code at which codes clip if at least one pixel in 2^WHITE_PART_LOG2
+ * clips. Else it is the code that this fraction of pixels reaches, but at least
+ * WHITE_LEAST, so that noise is not taken for lamps. */
 #ifndef GLINT_LAMPS_WHITE_H
 #define GLINT_LAMPS_WHITE_H
 
@@ -23,29 +23,29 @@ enum {
 
 struct glint_white {
     int n;                 /* pixels read */
-    int32_t at_least[257]; /* [i]: number of those pixels with brightness i or
+    int32_t at_least[257]; /* [i]: number of pixels read with brightness i or
                               more */
     int32_t light_q20;     /* linear light of white */
 };
 
-/* Measures the picture of HEIGHT rows that BRIGHT has begun with. */
+/* Measures the picture given to glint_bright_begin(), of HEIGHT rows. */
 void glint_white_measure(struct glint_white *white, struct glint_bright *bright,
                          int height);
 
-/* Returns the least code, 1 .. BRIGHT_CLIPPED, whose light is at least LIGHT
- * times 2^(EV / 256), EV 0 or less. */
+/* Returns the min code, 1 .. BRIGHT_CLIPPED, whose light is at least LIGHT
+ * times 2^(EV / 256). EV must be 0 or less. */
 int glint_white_code(const struct glint_bright *bright, int32_t light_q20,
                      int32_t ev_q8);
 
-/* Returns the min brightness that at most 1 / 2^PART_LOG2 of the pixels reach.
- * */
+/* Returns the min brightness reached by at most 1 / 2^PART_LOG2 of the
+ * pixels. */
 int glint_white_reached_by(const struct glint_white *white, int part_log2);
 
 /* Returns the fraction of pixels that have VALUE or more, _q15. */
 int32_t glint_white_share_q15(const struct glint_white *white, int value);
 
-/* Returns log2 of LIGHT in 1/256 stops over white, within 1/256 of a stop; 0 is
- * taken for 2^-20. */
+/* Returns log2 of LIGHT / white, in 1/256 stops, with an error of at most 1/256
+ * stop. Light of 0 counts as 2^-20. */
 int32_t glint_stops_q8(int64_t light_q20);
 
 #endif

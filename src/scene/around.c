@@ -31,7 +31,7 @@ struct look {
 };
 
 /* Returns the mean of N pixels, 1 .. 2^12, whose light is SUM. Whole cells have
- * 2^WHOLE_LOG2 pixels; only those at the picture's edge take a division. */
+ * 2^WHOLE_LOG2 pixels; only cells cut by the picture's edge need a division. */
 static uint16_t mean(int64_t sum_q20, int n, int whole_log2)
 {
     const int64_t max_q20 = (int64_t)n << 21;
@@ -44,8 +44,8 @@ static uint16_t mean(int64_t sum_q20, int n, int whole_log2)
     return (uint16_t)(mean_q15 < MOST_Q15 ? mean_q15 : MOST_Q15);
 }
 
-/* Adds rows Y0 .. Y1 - 1 of the pixels from X0 on to their cells. Its codes and
- * its caller's sums are too large for one frame of the stack. */
+/* Adds rows Y0 .. Y1 - 1 of N pixels from X0 on to their cells. Not inlined, as
+ * its codes and its caller's sums are too large for one stack frame. */
 static NEVER_INLINE void add_stretch(const struct look *l, int x0, int n,
                                      int y0, int y1, int64_t (*rgb_q20)[3])
 {
@@ -107,16 +107,16 @@ void glint_around_look(struct glint_around *around,
 
 /* ------------------------------------------------------------------- light */
 
-/* A place between two cells of an axis. */
+/* A position between two cells of an axis. */
 struct between {
     int cell, next;
-    int32_t part_q15; /* of the next one */
+    int32_t part_q15; /* weight of next */
 };
 
 static struct between find_cells(int32_t share_q16, int side, int n,
                                  int cell_log2)
 {
-    /* Cells from the middle of the first one on. */
+    /* in cells, from the middle of the first cell */
     const int64_t at_q15 =
         q_shift((int64_t)share_q16 * side, cell_log2 + 1) - (1 << 14);
     const int32_t held_q15 = q_clamp_sat(at_q15, 0, (n - 1) << 15);

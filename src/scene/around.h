@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * The camera's picture as the background of rays from mirrors and glass.
+ * The camera's picture as the background of rays reflected by mirrors or
+ * refracted by glass.
  *
- * It is kept as means of cells of 2^n x 2^n pixels, 320 on its longer side at
- * most, and is straight between their middles. */
+ * It is stored as means of cells of 2^n x 2^n pixels, at most 320 cells on the
+ * longer side, and interpolated linearly between their middles. */
 #ifndef GLINT_SCENE_AROUND_H
 #define GLINT_SCENE_AROUND_H
 
@@ -16,22 +17,25 @@ struct glint_around {
     int cell_log2, n_x, n_y;
     int has_picture;
     int has_curve;
-    enum glint_tone transfer; /* of the curve, if there is one yet */
+    enum glint_tone transfer; /* transfer function of the curve, once it is
+                                 set */
     struct glint_light_curve *curve;
     uint16_t *light_q15; /* [n_y][n_x][3], display white = 32768 */
 };
 
-/* Allocates memory for pictures of WIDTH x HEIGHT; there is no picture yet. */
+/* Allocates memory for pictures of WIDTH x HEIGHT, and starts without a
+ * picture. */
 void glint_around_carve(struct glint_around *around, struct glint_arena *arena,
                         int width, int height);
 
-/* Stores a reduced copy of IMAGE, of that size; NULL: no picture. */
+/* Stores a reduced copy of IMAGE, which must have that size, or NULL for no
+ * picture. */
 void glint_around_look(struct glint_around *around,
                        const struct glint_image *image,
                        struct glint_workers *workers);
 
-/* Sets RGB_Q15, 0 .. 65535, to the light at (X, Y): fractions of the picture's
- * width from its left and of its height from its top, 0 .. 1. */
+/* Sets RGB_Q15, 0 .. 65535, to the light at (X, Y): X is a fraction of the
+ * picture's width from the left, Y of its height from the top, 0 .. 1. */
 void glint_around_at(const struct glint_around *around, int32_t x_q16,
                      int32_t y_q16, int32_t rgb_q15[3]);
 

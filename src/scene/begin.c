@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Prepares a frame: positions of objects, those that may be visible, and data
+ * Prepares a frame: positions of objects, potentially visible objects, and data
  * of lights. */
 #include "scene/quick.h"
 #include "scene/visible.h"
@@ -8,7 +8,7 @@
 
 enum { ONE_Q30 = 1 << 30 };
 
-/* The pixels that a ball may touch: those of a box about it. */
+/* Returns the pixels that a ball may touch, from its bounding box. */
 static struct glint_box ball_box(const struct glint_scene *s,
                                  const int32_t seen[3], int32_t reach)
 {
@@ -20,8 +20,9 @@ static struct glint_box ball_box(const struct glint_scene *s,
     return glint_view_box(&s->view, (const int32_t(*)[3])v, 8);
 }
 
-/* How far apart rays of one pixel are at the far side of a ball: a little more
- * than to its samples, 104/256 of a pixel to four of them. */
+/* Returns the distance, at the far side of a ball, between the middle ray of a
+ * pixel and its samples' rays, rounded up; four samples are 104/256 of a pixel
+ * away. */
 static int32_t margin_of(const struct glint_scene *s, const int32_t seen[3],
                          int32_t reach)
 {
@@ -65,7 +66,7 @@ int32_t glint_scene_place(const struct glint_scene *s, struct glint_placed *p)
     return p->is_seen ? seen[2] - p->reach : GLINT_FAR;
 }
 
-/* The depths of planes, once what is nearest is known. */
+/* Sets the depths of planes; s->nearest must be set. */
 static void place_planes(struct glint_scene *s)
 {
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
@@ -81,7 +82,7 @@ static void place_planes(struct glint_scene *s)
     }
 }
 
-/* Grids of shadows are rebuilt where anything has moved. */
+/* Rebuilds the grids of shadows if anything has moved. */
 static void prepare_shadows(struct glint_scene *s)
 {
     s->n_planes = 0;
@@ -115,14 +116,14 @@ void glint_scene_begin(struct glint_scene *scene,
     }
     if (scene->motion) /* lines may be nearer than all objects */
         nearest = q_smaller(nearest, farthest >> 13);
-    /* What is nearer than 2^-14 of the farthest shares its depth. */
+    /* All that is nearer than 2^-14 of the farthest z gets the same depth. */
     scene->nearest =
         q_clamp_sat(q_larger(nearest, farthest >> 14), 1, GLINT_SCENE_SPAN);
     place_planes(scene);
     glint_quick_begin(scene);
     if (scene->motion)
         scene->cfg.parts.motions->project(scene);
-    else /* shells and lines request true depths */
+    else /* shells and lines need true depths */
         glint_scene_flatten(scene);
     scene->has_triangles = scene->is_spread = 0;
     if (scene->bins.start)

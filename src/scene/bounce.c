@@ -3,29 +3,28 @@
  * Reflection and transmission: one reflection, and up to eight surfaces of
  * transmission.
  *
- * A sphere that is entered is left at the other end of the ray's chord, at the
- * angle at which it was entered: only light from within a ball can be mirrored
- * for good, and none of that comes out. With index 1 rays pass straight on, and
- * what is behind the last thing that they pass is the picture itself; else it
- * is the background's colour, as it is of reflections, its environment, or the
- * camera's picture all around.
+ * A ray that enters a sphere leaves it at the other end of its chord, at the
+ * angle of entry, so total reflection inside does not occur. With index 1 rays
+ * pass straight on, and the background behind the last object is the picture
+ * itself; otherwise, as for reflections, it is the background's colour, the
+ * environment, or the camera's picture extended to all directions.
  *
- * Directions that the camera sees then have the light of the picture there.
- * Outside the picture, and behind the camera, it continues, mirrored at its
- * edge. */
+ * In the last case directions that the camera sees have the light of the
+ * picture; all others get the picture mirrored at its edge. */
 #include "scene/parts.h"
 #include "scene/state.h"
 
-/* A ray on its way, and what it starts from. */
+/* A ray on its way, and the surface that it starts from. */
 struct passing {
     struct glint_scene_ray ray;
     uint32_t object, triangle;
-    int32_t weight_q15; /* of what it meets */
-    int is_bent;        /* it no longer goes where the picture's ray goes */
-    int64_t spread_q40; /* angular variance of what a pixel sees there */
+    int32_t weight_q15; /* weight of the light that it meets */
+    int is_bent;        /* true: it no longer follows the primary ray */
+    int64_t spread_q40; /* angular variance of a pixel's rays at this point */
 };
 
-/* Starts a ray from SURFACE, on the side it came from or BEYOND it. */
+/* Starts a ray from SURFACE, on the side that it came from, or if BEYOND is set
+ * on the other side. */
 static void start(const struct glint_scene *s,
                   const struct glint_met_surface *surface, int beyond,
                   struct passing *p)
@@ -42,10 +41,10 @@ static void start(const struct glint_scene *s,
     p->triangle = surface->triangle;
 }
 
-/* Sets RGB to the light of the camera's picture where P goes. With the
- * picture's edge at 1, direction (x, y, z) is at (x, y) / z of it. M = max(|x|,
- * |y|) is z at the edge; beyond, z is mirrored there: (x, y) / (2 M - z).
- * Straight back is the middle again, and there is no step on the way. */
+/* Sets RGB to the light of the camera's picture in the direction of P. With the
+ * picture's edge at 1, direction (x, y, z) is at (x, y) / z. M = max(|x|, |y|)
+ * is z at the edge; outside, z is mirrored there: (x, y) / (2 M - z). The map
+ * is continuous, and straight back is the middle again. */
 static void look_around(const struct glint_scene *s, const struct passing *p,
                         int32_t rgb_q15[3])
 {
@@ -99,9 +98,10 @@ static int next_surface(const struct glint_scene *s, const struct passing *p,
            glint_scene_surface(s, &p->ray, &met, next);
 }
 
-/* Turns P's direction at SURFACE as glass does; returns 1 if it is mirrored. */
-static int bend(const struct glint_met_surface *surface, uint32_t index_q16,
-                struct passing *p)
+/* Refracts P's direction at SURFACE; returns 1 if it is totally reflected
+ * instead. */
+static int refract_ray(const struct glint_met_surface *surface,
+                       uint32_t index_q16, struct passing *p)
 {
     /* 2^44 / index: 2^28 times 1 / index, or the index itself */
     const uint32_t eta_q28 =
@@ -119,7 +119,7 @@ static int bend(const struct glint_met_surface *surface, uint32_t index_q16,
     return 0;
 }
 
-/* Takes P through a sphere that it has entered: to where it leaves. */
+/* Moves P through a sphere that it has entered, to where it leaves. */
 static void cross_sphere(const struct glint_scene *s,
                          const struct glint_met_surface *surface,
                          int is_straight, struct passing *p)
@@ -129,17 +129,17 @@ static void cross_sphere(const struct glint_scene *s,
     struct glint_chord chord;
 
     if (!glint_ray_sphere(&p->ray, ball->at, ball->radius, &chord))
-        return; /* grazing: it leaves where it entered */
+        return; /* grazing: the ray leaves where it entered */
     glint_chord_end(&chord, &p->ray, ball->at, 1, end.place, end.normal_q30);
     for (int k = 0; k < 3; k++)
         end.normal_q30[k] = -end.normal_q30[k];
     end.is_inside = 1;
     if (!is_straight)
-        bend(&end, (uint32_t)surface->material->index_q16, p);
+        refract_ray(&end, (uint32_t)surface->material->index_q16, p);
     start(s, &end, 1, p);
 }
 
-/* Takes P through SURFACE. */
+/* Continues P through SURFACE. */
 static void pass_through(const struct glint_scene *s,
                          const struct glint_met_surface *surface,
                          struct passing *p)
@@ -153,15 +153,16 @@ static void pass_through(const struct glint_scene *s,
     p->weight_q15 = q_mul(p->weight_q15, m->pass_q15, 15);
     p->is_bent |= !is_straight;
     if (!is_straight)
-        is_mirrored = bend(surface, (uint32_t)m->index_q16, p);
+        is_mirrored = refract_ray(surface, (uint32_t)m->index_q16, p);
     start(s, surface, !is_mirrored, p);
     if (is_sphere && surface->is_inside && is_mirrored)
-        p->weight_q15 = 0; /* such light never leaves a ball */
+        p->weight_q15 = 0; /* totally reflected light never leaves a ball */
     else if (is_sphere && !surface->is_inside && !is_mirrored)
         cross_sphere(s, surface, is_straight, p);
 }
 
-/* A mirror that is bent shows more of what is around within a pixel. */
+/* Returns the angular variance of a pixel's rays after reflection; a curved
+ * mirror increases it. */
 static int64_t mirror_spread_q40(const struct glint_scene *s,
                                  const struct glint_scene_ray *ray,
                                  const struct glint_met_surface *surface)

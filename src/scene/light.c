@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights: how bright they are at a place, and whether they reach it. */
+ * Lights: their brightness at a point, and whether they reach it. */
 #include "base/divide.h"
 #include "scene/state.h"
 
@@ -32,7 +32,8 @@ static const int32_t log2_q30[(1 << STEPS_LOG2) + 2] = {
     1024560487, 1030794226, 1037002979, 1043186948, 1049346328, 1055481314,
     1061592099, 1067678873, 1073741824, 1079781138};
 
-/* Points of the unit disc, spread evenly: four, and sixteen along a spiral. */
+/* Evenly distributed points of the unit disc: four, and sixteen along a
+ * spiral. */
 static const int32_t four_q15[4][2] = {
     {21773, 7925}, {-7925, 21773}, {-21773, -7925}, {7925, -21773}};
 static const int32_t sixteen_q15[16][2] = {
@@ -44,8 +45,8 @@ static const int32_t sixteen_q15[16][2] = {
 
 /* ------------------------------------------------------------------- power */
 
-/* Returns -log2(X), X_Q30 1 .. 2^30, _q26, off by 2^-23: by a parabola through
- * three neighbours of the table. */
+/* Returns -log2(X), _q26, with an error of 2^-23, by a parabola through three
+ * neighbours of the table. X_Q30 must be 1 .. 2^30. */
 static int32_t minus_log2_q26(uint32_t x_q30)
 {
     const int up = 31 - bit_length(x_q30), low = 30 - STEPS_LOG2;
@@ -62,7 +63,8 @@ static int32_t minus_log2_q26(uint32_t x_q30)
     return (int32_t)(((int64_t)up << 26) - q_shift(y_q30, 4));
 }
 
-/* 2^-f, f = 0 .. 1, by six terms of its series: off by 2^-12.6 at most. */
+/* 2^-f, f = 0 .. 1, is computed by six terms of its series, with a max error of
+ * 2^-12.6. */
 int32_t glint_power_q15(int32_t x_q30, int32_t k_q8)
 {
     int64_t down_q26;
@@ -85,7 +87,7 @@ int32_t glint_power_q15(int32_t x_q30, int32_t k_q8)
 
 /* ------------------------------------------------------------------- level */
 
-/* Returns REAL times 4^UNIT_LOG2 over SQUARE, q15, which saturates. */
+/* Returns REAL * 4^UNIT_LOG2 / SQUARE, q15, saturated. */
 static int32_t level_of(struct glint_real real, int unit_log2, uint64_t square)
 {
     const int up = q_up(square);
@@ -144,8 +146,8 @@ void glint_scene_frame_of(const int32_t d_q30[3], int32_t u_q30[3],
     glint_unit(cross, v_q30);
 }
 
-/* Turns RAY to point I of the N of a disc, RADIUS wide, T steps away, which
- * lies along U and V. */
+/* Turns RAY to point I of N of a disc of radius RADIUS, T steps away, spanned
+ * by U and V. */
 static void aim(struct glint_scene_ray *ray, const int32_t u_q30[3],
                 const int32_t v_q30[3], int32_t t, int32_t radius, int i, int n)
 {

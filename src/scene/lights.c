@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights of the scene as the camera sees them, for the lens, and what of the
- * picture the scene hides. */
+ * Lights of the scene as lamps seen by the camera, for the lens, and the part
+ * of the picture that the scene hides. */
 #include "base/real.h"
 #include "scene/state.h"
 
 enum { POINTS = 16 };
 
-/* Returns how many of 16 points of LIT the camera sees, in the direction that
- * RAY has, T away. */
+/* Returns the number of the 16 points of LIT that the camera sees. RAY points
+ * to its middle, T steps away. */
 static int share_of(const struct glint_scene *s, const struct glint_lit *lit,
                     const struct glint_scene_ray *ray, int32_t t)
 {
@@ -24,8 +24,8 @@ static int share_of(const struct glint_scene *s, const struct glint_lit *lit,
     return seen * (POINTS / n);
 }
 
-/* Sets the light of LAMP, T away: pi times that of a white surface, times the
- * pixels of a solid angle, f^2 / cosine^3. */
+/* Sets the power of LAMP, T steps away: pi times the light of a white surface,
+ * times the pixels per solid angle, f^2 / cosine^3. */
 static void set_power(const struct glint_scene *s, const struct glint_lit *lit,
                       int32_t t, int32_t cosine_q30,
                       struct glint_scene_lamp *lamp)
@@ -49,7 +49,7 @@ static void set_power(const struct glint_scene *s, const struct glint_lit *lit,
         lamp->rgb[c] = real_times(lit->light->rgb[c], factor);
 }
 
-/* Sets LAMP to light LIT; returns 0 if it is not ahead of the camera. */
+/* Sets LAMP to light LIT; returns 0 if LIT is not in front of the camera. */
 static int project_light(const struct glint_scene *s,
                          const struct glint_lit *lit,
                          struct glint_scene_lamp *lamp)

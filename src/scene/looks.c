@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * How materials look, from one frame to the next: a scene draws by its own copy
- * of the model's tables. */
+ * Changes of materials from frame to frame. A scene draws with its own copy of
+ * the model's tables. */
 #include "scene/valid.h"
 #include "scene/parts.h"
 #include "scene/state.h"
@@ -18,7 +18,7 @@ void glint_scene_copy_looks(struct glint_scene *scene)
     scene->model.ward = scene->ward;
 }
 
-/* Returns the metal that M is; NULL: it is none. */
+/* Returns the metal of material M, or NULL if M is not a metal. */
 static struct glint_scene_ward *metal_of(const struct glint_scene *s,
                                          const struct glint_scene_material *m)
 {
@@ -46,8 +46,8 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
     return GLINT_OK;
 }
 
-/* Returns whether LOOK is in range, of a metal or not; WARD takes the metal's
- * members. */
+/* Returns whether LOOK is in range, for a metal if IS_METAL; WARD receives the
+ * metal's members. */
 static int is_look(const struct glint_scene_look *look, int is_metal,
                    struct glint_scene_ward *ward)
 {
@@ -89,8 +89,8 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
     return GLINT_OK;
 }
 
-/* Returns whether object P may have material MATERIAL: of a translucent medium
- * only one that it has a map for. */
+/* Returns whether object P may have material MATERIAL: a translucent medium
+ * needs a map of the object. */
 static int has_map(const struct glint_scene_model *m,
                    const struct glint_placed *p, uint32_t material)
 {
@@ -139,7 +139,7 @@ enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
 
 /* ------------------------------------------------------------- environments */
 
-/* What is lit once for several frames is to be lit again. */
+/* Invalidates light that is computed once for several frames. */
 static enum glint_status relight(struct glint_scene *scene)
 {
     if (scene->stones)

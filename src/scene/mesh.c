@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Triangles in the picture: vertices moved to the camera once, triangles listed
- * by tiles, and in a tile three exact edge functions for each.
+ * Rasterises triangles: vertices are transformed to camera coordinates once per
+ * frame, triangles are sorted into tiles, and in a tile each has three exact
+ * edge functions.
  *
  * Nothing is clipped. Edges are cross products of homogeneous corners (view.h):
  * with x, y within 2^22 and w 1, or all within 2^16, their elements stay below
- * 2^39, +-2^40 the last; a sample is within 2^22, so a sum is below 2^62. A
- * corner is rounded once, alike in all triangles that have it, so that these
- * neither leak nor overlap. A sample on an edge is on one side of it by the
- * edge's own direction, which two neighbours see the other way round. */
+ * 2^39, the last within +-2^40; samples are within 2^22, so sums are below
+ * 2^62. A corner is rounded once, in the same way for all its triangles, so
+ * that these neither leak nor overlap. A sample on an edge is assigned to a
+ * side by the direction of the edge, which is opposite in two neighbours. */
 #include "scene/mesh.h"
 
 #include "base/compiler.h"
@@ -19,13 +20,13 @@
 
 /* -------------------------------------------------------------------- small */
 
-/* Small triangles in the picture: all samples of a pixel at once, in 32 bits,
- * which compilers turn into vectors. Samples are inside where they are of
- * others; depths are those of the corners where the picture has them, straight
- * between these. */
+/* Small triangles in the picture: all samples of a pixel are tested at once, in
+ * 32 bits, in loops that compilers vectorize. The inside test is the same as
+ * for large triangles; depths are interpolated linearly in the picture between
+ * the corners' depths. */
 
-/* The line through two corners: at place (x, y) it is across x + down y + at,
- * above 0 on one side. */
+/* The line through two corners: the function across x + down y + at of position
+ * (x, y), above 0 on one side. */
 struct line {
     int64_t across, down, at;
 };
@@ -35,19 +36,19 @@ static inline int64_t line_at(const struct line *l, int64_t x, int64_t y)
     return l->across * x + l->down * y + l->at;
 }
 
-/* The same of a small triangle, in 32 bits. */
+/* The lines of a small triangle, in 32 bits. */
 struct small {
     uint32_t id;
-    int32_t across[3], down[3]; /* of lines, from pixel to pixel */
-    int32_t at[3];              /* at the first pixel of the box */
+    int32_t across[3], down[3]; /* change of the lines per pixel */
+    int32_t at[3];              /* lines at the first pixel of the box */
     struct glint_depth depth;
     int32_t off[3][GLINT_SCENE_SAMPLES], deeper[GLINT_SCENE_SAMPLES];
 };
 
 enum { DEPTH_BITS = 12, MOST_DEEPER = 1 << 28 };
 
-/* Sets DEPTH_Q30 to the depths of the corners of a triangle; returns 0 if one
- * is out of range. */
+/* Sets DEPTH_Q30 to the depths of the corners of a triangle; returns 0 if a
+ * depth is out of range. */
 static inline int corner_depths(const struct glint_scene *s, uint32_t object,
                                 const struct glint_scene_triangle *t,
                                 int32_t depth_q30[3])
@@ -65,7 +66,7 @@ static inline int corner_depths(const struct glint_scene *s, uint32_t object,
     return fits;
 }
 
-/* Returns whether all samples of BOX see what is nearer than DEPTH_Q30. */
+/* Returns whether all samples of B see something nearer than DEPTH_Q30. */
 static int is_nearer(const struct glint_scene_worker *w, struct glint_box b,
                      int32_t depth_q30)
 {
@@ -83,9 +84,9 @@ static int is_nearer(const struct glint_scene_worker *w, struct glint_box b,
     return 1;
 }
 
-/* Samples inside lie between the corners, but for rounding: lines may be 1 too
- * low (mesh.c), three of them, which are at most half of twice an area of 6,
- * and slopes of depth are cut. Slopes, at most 2 * 2 * 48 * 256 range / area,
+/* Samples inside lie between the corners, apart from rounding: each of three
+ * lines may be 1 too low, together at most half of twice an area of 6, and
+ * slopes of depth are truncated. Slopes, at most 2 * 2 * 48 * 256 range / area,
  * are below 2^20, so that depths are set as below. */
 static int is_hidden(const struct glint_scene_worker *w, uint32_t id,
                      const struct glint_scene_triangle *t, struct glint_box b)
@@ -110,8 +111,8 @@ static int is_hidden(const struct glint_scene_worker *w, uint32_t id,
            is_nearer(w, b, most + range + SLACK);
 }
 
-/* Sets depths by those of the corners, of which the lines say the shares.
- * Returns 0 if they change too much for 32 bits. */
+/* Sets the depth function from the corners' depths, with the lines as
+ * barycentric weights. Returns 0 if slopes are too large for 32 bits. */
 static int set_depths(const struct glint_scene *s, uint32_t object,
                       const struct glint_scene_triangle *t,
                       const struct line line[3], struct small *small)
@@ -143,7 +144,7 @@ static int set_depths(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Sets what samples of all pixels have in common; the first is at (X, Y). */
+/* Sets the data that all pixels share; the first pixel is at (X, Y). */
 static inline void set_small(const struct glint_scene *s, int n,
                              const struct line line[3], int32_t x_q8,
                              int32_t y_q8, struct small *small)
@@ -171,8 +172,8 @@ static inline void set_small(const struct glint_scene *s, int n,
                       DEPTH_BITS);
 }
 
-/* Draws N samples of a pixel, whose middle is at depth Z, AT its lines: as one
- * vector, if no compiler unrolls the loop before it looks for them. */
+/* Draws N samples of a pixel with lines AT and depth Z at its middle. The loop
+ * is written so that compilers vectorize it before they unroll it. */
 static inline void look_at_samples(const struct small *small, int n,
                                    const int32_t at[3], int32_t z,
                                    int32_t *restrict depth,
@@ -222,9 +223,8 @@ static inline void look_at_rows(struct glint_scene_worker *w, int n,
     }
 }
 
-/* Draws triangle T, ID, whose corners are all in the picture or near it and
- * whose lines are below 2^30 at places of B, in 32 bits; returns 0 if its
- * depths need more. */
+/* Draws triangle T, ID, in 32 bits; returns 0 if its depths need more bits. All
+ * corners must be in the picture or near it, and lines below 2^30 in B. */
 static int look_small(struct glint_scene_worker *w, uint32_t id,
                       const struct glint_scene_triangle *t,
                       const struct line line[3], struct glint_box b)
@@ -255,11 +255,11 @@ static int look_small(struct glint_scene_worker *w, uint32_t id,
 
 /* Rays through a mesh's grid, in the mesh's own space.
  *
- * A ray starts where it comes near the mesh, so that what is subtracted stays
- * below 2^29, and goes from cell to cell by comparing products: which side of
- * the cell it leaves first, dx / |d.x| < dy / |d.y|, takes no division. Lists
- * hold triangles 16 steps beyond their cells, so that rounding of the start
- * loses none. */
+ * A ray starts where it comes near the mesh, so that differences stay below
+ * 2^29, and goes from cell to cell by comparing products: the side of the cell
+ * that it leaves by, dx / |d.x| < dy / |d.y|, needs no division. Lists include
+ * triangles up to 16 steps outside their cells, so that rounding of the start
+ * misses none. */
 
 /* A ray in a mesh's space. */
 struct inside {
@@ -267,14 +267,15 @@ struct inside {
     const struct glint_scene_mesh *mesh;
     struct glint_scene_ray ray;
     struct glint_sheared sheared;
-    int32_t start; /* how far along the ray in space it begins */
-    uint32_t but;  /* triangle that is not asked */
+    int32_t start; /* distance along the original ray at which it begins */
+    uint32_t but;  /* triangle that is skipped */
 };
 
-/* Turns RAY into the space of OBJECT; T from where on. */
-static int enter(const struct glint_scene *s, uint32_t object,
-                 const struct glint_scene_ray *ray, int32_t t,
-                 struct inside *in)
+/* Transforms RAY to the space of OBJECT; T is the distance at which it
+ * begins. */
+static int enter_space(const struct glint_scene *s, uint32_t object,
+                       const struct glint_scene_ray *ray, int32_t t,
+                       struct inside *in)
 {
     const struct glint_placed *p = &s->placed[object];
     int32_t place[3], off[3];
@@ -293,16 +294,17 @@ static int enter(const struct glint_scene *s, uint32_t object,
 
 /* --------------------------------------------------------------------- grid */
 
-/* Where a ray is in the grid. */
+/* The position of a ray in the grid. */
 struct walk {
     int32_t cell[3], step[3];
-    int64_t away[3];  /* steps to the side of the cell that it leaves by */
+    int64_t away[3];  /* distance to the side of the cell that the ray leaves
+                         by, steps */
     int64_t speed[3]; /* |direction|, q30 */
 };
 
-/* Sets up a walk from where the ray enters the grid; returns 0 if it does not.
- * A start that rounding has put beside the grid counts as in the cell next to
- * it. */
+/* Starts a walk at the point where the ray enters the grid; returns 0 if the
+ * ray misses it. A start that rounding has moved outside the grid is clamped to
+ * the nearest cell. */
 static int begin(struct inside *in, struct walk *w)
 {
     enum { SLACK = GLINT_SCENE_MARGIN / 2 };
@@ -346,19 +348,19 @@ static int begin(struct inside *in, struct walk *w)
     return 1;
 }
 
-/* Moves to the next cell. Returns 0 where the grid ends, or nothing nearer
- * than LIMIT, counted from where the walk began, can follow. */
+/* Moves to the next cell. Returns 0 if the grid ends, or if the next cell is
+ * farther from the start of the walk than LIMIT. */
 static int go_on(const struct inside *in, struct walk *w, int64_t limit)
 {
     const struct glint_scene_mesh *m = in->mesh;
     int next = 0;
 
-    for (int k = 1; k < 3; k++) /* the fastest is not 0 */
+    for (int k = 1; k < 3; k++) /* the largest speed is not 0 */
         next = w->speed[k] > w->speed[next] ? k : next;
     for (int k = 0; k < 3; k++)
         if (w->away[k] * w->speed[next] < w->away[next] * w->speed[k])
             next = k;
-    /* away / speed > limit; away is below 2^30, and so are the others; it may
+    /* away / speed > limit; away, speed and limit are below 2^30, and away may
      * be a few steps below 0 */
     if (w->away[next] * (INT64_C(1) << 30) > limit * w->speed[next])
         return 0;
@@ -367,9 +369,10 @@ static int go_on(const struct inside *in, struct walk *w, int64_t limit)
     return w->cell[next] >= 0 && w->cell[next] < (int32_t)m->cells[next];
 }
 
-/* Asks the triangles of the cell; sets MET to the nearest within MET->t. */
-static int ask(const struct inside *in, const struct walk *w,
-               struct glint_met *met)
+/* Tests the triangles of the cell; sets MET to the nearest intersection within
+ * MET->t. */
+static int test_cell(const struct inside *in, const struct walk *w,
+                     struct glint_met *met)
 {
     const struct glint_scene_mesh *m = in->mesh;
     const size_t cell =
@@ -411,16 +414,16 @@ static int meet(const struct glint_scene *scene, uint32_t object,
     met->object = object;
     if (!glint_ray_sphere(ray, p->centre, p->reach, &chord) ||
         chord.t[1] <= 0 || chord.t[0] >= met->t ||
-        !enter(scene, object, ray, q_larger(0, chord.t[0]), &in) ||
+        !enter_space(scene, object, ray, q_larger(0, chord.t[0]), &in) ||
         !begin(&in, &w))
         return 0;
     do {
-        found |= ask(&in, &w, met);
+        found |= test_cell(&in, &w, met);
     } while (!(found && any) && go_on(&in, &w, (int64_t)met->t - in.start));
     return found;
 }
 
-/* Vertices are in camera coordinates once a frame. */
+/* Uses the vertices in camera coordinates, computed once per frame. */
 static int hold(const struct glint_scene *scene, uint32_t object,
                 uint32_t triangle, const int32_t seen_q30[3],
                 struct glint_met *met)
@@ -447,7 +450,7 @@ static int hold(const struct glint_scene *scene, uint32_t object,
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* Returns the mean of three rows of N numbers by weights that sum to 1. */
+/* Sets TO to the mean of three rows of N numbers, weighted by SPOT. */
 static void mean(const struct glint_spot_on *spot, const int32_t *const row[3],
                  int n, int32_t *to)
 {
@@ -469,7 +472,7 @@ static void rows_of(const struct glint_scene *s,
             (const int32_t *)glint_mesh_table(s, at) + (size_t)n * t->vertex[k];
 }
 
-/* Returns log2 of the length of V, q16, -2^24 if it is 0. */
+/* Returns log2 of the length of V, q16, or -2^24 if V is 0. */
 static int32_t log2_length_q16(const int64_t v[3])
 {
     const uint64_t any =
@@ -482,7 +485,7 @@ static int32_t log2_length_q16(const int64_t v[3])
     return square ? q_log2_q16(square) / 2 + down * 65536 : -(1 << 24);
 }
 
-/* Sets u, v, and how large the triangle is in them. */
+/* Sets u, v and the triangle's area in uv space. */
 static void map(const struct glint_scene *s, const struct glint_scene_mesh *m,
                 const struct glint_scene_triangle *t,
                 const int32_t *const vertex[3], const struct glint_met *met,
@@ -583,30 +586,31 @@ static void move_vertices(struct glint_scene *s, uint32_t object)
     }
 }
 
-/* Returns how far samples lie from the middle of their pixel at most. */
+/* Returns the max offset of samples from the middle of their pixel. */
 static int32_t max_off_q8(const struct glint_scene *s)
 {
     return s->cfg.edge_samples > 4 ? 120 : 96;
 }
 
-/* Returns the first pixel with a sample at X or right of it, or below it. */
+/* Returns the first pixel that may have a sample at X or after it. */
 static int first_at(int32_t x_q8, int side, int32_t off_q8)
 {
     return (x_q8 + 128 * (side - 1) - off_q8 + 255) >> 8;
 }
 
-/* Returns one more than the last with a sample at X or before. */
+/* Returns the index after the last pixel that may have a sample at X or before
+ * it. */
 static int end_at(int32_t x_q8, int side, int32_t off_q8)
 {
     return ((x_q8 + 128 * (side - 1) + off_q8) >> 8) + 1;
 }
 
-/* Lines of triangles that are as wide and high as this at most are below 2^30
- * at places less than 256 beside them, and so are sums of two. */
+/* Lines of triangles up to this width and height are below 2^30 within 256 of
+ * the triangle, and so are sums of two lines. */
 enum { SMALL_Q8 = 48 << 8 };
 
-/* The pixels that a triangle may touch: all, where a corner is behind the
- * camera or far out. */
+/* Returns the pixels that a triangle may touch: all if a corner is behind the
+ * camera or far off-screen. */
 static struct glint_box box_of(const struct glint_scene *s, uint32_t object,
                                const struct glint_scene_triangle *t,
                                int *is_small)
@@ -641,7 +645,7 @@ static struct glint_box box_of(const struct glint_scene *s, uint32_t object,
 
 /* -------------------------------------------------------------------- lists */
 
-/* Returns how many entries the triangles of an object take. */
+/* Returns the number of entries of an object's triangles. */
 static int64_t span_of(struct glint_scene *s, uint32_t object)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(s, object);
@@ -655,7 +659,7 @@ static int64_t span_of(struct glint_scene *s, uint32_t object)
     return n;
 }
 
-/* Returns whether a triangle turns its front to the camera, or may. */
+/* Returns whether a triangle may face the camera. */
 static int is_facing(const struct glint_scene *s, uint32_t object,
                      const struct glint_scene_triangle *t)
 {
@@ -670,8 +674,8 @@ static int is_facing(const struct glint_scene *s, uint32_t object,
 
 enum { BOTH_SIDES = -1 };
 
-/* Counts the triangles of all meshes, or puts into the lists those that face
- * the camera, or those that do not. */
+/* Counts the triangles of all meshes, or lists those that face the camera, or
+ * those that do not. */
 static void list(struct glint_scene *s, int facing)
 {
     for (uint32_t k = 0; k < s->model.header->n_objects; k++) {
@@ -726,7 +730,7 @@ static void project_meshes(struct glint_scene *s,
     stats->need_refs = q_clamp_sat(need, 0, INT32_MAX);
     list(s, BOTH_SIDES);
     glint_bins_sum(&s->bins);
-    list(s, 1); /* these hide most of the others */
+    list(s, 1); /* these hide most other triangles */
     list(s, 0);
     glint_bins_close(&s->bins);
     s->has_triangles = stats->refs > 0;
@@ -742,9 +746,9 @@ static struct line line_of(const struct glint_corner *a,
                          (int64_t)a->x * b->y - (int64_t)b->x * a->y};
 }
 
-/* Makes a line that a sample on it is inside, or not, as the first of its
- * numbers that is not 0 says; returns 0 if all are. */
-static int settle(struct line *l)
+/* Adjusts a line so that samples on it are inside or outside according to the
+ * sign of its first nonzero coefficient; returns 0 if all are 0. */
+static int settle_line(struct line *l)
 {
     const int is_out =
         l->across < 0 ||
@@ -756,8 +760,8 @@ static int settle(struct line *l)
     return 1;
 }
 
-/* The three lines of a triangle, 0 and more inside; returns 0 if it is seen
- * from its side, or not at all. */
+/* Sets the three lines of a triangle, 0 or more inside; returns 0 if it is
+ * edge-on or not visible. */
 static int lines_of(const struct glint_scene *s, uint32_t object,
                     const struct glint_scene_triangle *t, struct line line[3])
 {
@@ -776,7 +780,7 @@ static int lines_of(const struct glint_scene *s, uint32_t object,
         if (side < 0)
             line[k] =
                 (struct line){-line[k].across, -line[k].down, -line[k].at};
-        if (!settle(&line[k]))
+        if (!settle_line(&line[k]))
             return 0;
     }
     return 1;
@@ -800,8 +804,8 @@ struct seen {
     uint32_t id;
     struct line line[3];
     struct glint_depth depth;
-    /* What the lines and the depth differ by from a pixel's middle to its
-     * samples; of lines less the most that any of the pixel's does. */
+    /* Differences of lines and depth between a pixel's middle and its samples;
+     * for lines minus the max over the samples. */
     int64_t off[GLINT_SCENE_SAMPLES][3], most[3], deeper[GLINT_SCENE_SAMPLES];
 };
 
@@ -827,8 +831,8 @@ static void set_offsets(const struct glint_scene *s, struct seen *seen)
                           seen->depth.down * glint_sample(s, k, 1);
 }
 
-/* Draws the samples of a pixel, which begin at I; AT is of the lines there,
- * plus the most. */
+/* Draws the samples of a pixel, which begin at index I; AT has the lines at its
+ * middle plus the max difference. */
 static inline void look_at_pixel(const struct glint_scene_worker *w,
                                  const struct seen *seen, int64_t at_0,
                                  int64_t at_1, int64_t at_2, int64_t depth,
@@ -854,7 +858,7 @@ static inline void look_at_pixel(const struct glint_scene_worker *w,
     }
 }
 
-/* Goes along rows by adding what each line changes by from pixel to pixel. */
+/* Draws row by row, updating lines incrementally from pixel to pixel. */
 static void look_at_box(struct glint_scene_worker *w, const struct seen *seen,
                         struct glint_box b)
 {
@@ -883,7 +887,7 @@ static void look_at_box(struct glint_scene_worker *w, const struct seen *seen,
     }
 }
 
-/* At length: in 64 bits. */
+/* Draws a triangle of any size, in 64 bits. */
 static NEVER_INLINE void look_at_large(struct glint_scene_worker *w,
                                        uint32_t id,
                                        const struct glint_scene_triangle *t,

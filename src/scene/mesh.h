@@ -27,7 +27,8 @@ glint_mesh_triangle(const struct glint_scene *s,
            i;
 }
 
-/* Points AT to the vertices of a triangle, in the mesh's own space. */
+/* Sets AT to the addresses of a triangle's vertices, in the mesh's own
+ * space. */
 static inline void glint_mesh_vertices(const struct glint_scene *s,
                                        const struct glint_scene_mesh *m,
                                        uint32_t i, const int32_t *at[3])

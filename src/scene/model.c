@@ -3,11 +3,11 @@
  * Checks a baked scene once, so that drawing need not check anything.
  *
  *   in   bytes that may hold anything
- *   out  a model that points into them, or the reason why not
+ *   out  a model that points into them, or the text of an error
  *
  * Drawing relies on this:
  *   - every table lies inside the file, and every index inside its table;
- *   - every point of space that a file or a pose can name is within
+ *   - every point that a file or a pose can specify is within
  *     GLINT_SCENE_SPAN, 2^28 steps, so that differences are below 2^29;
  *   - unit vectors are units to 2^-20;
  *   - weights and colours are 0 .. 1, and lights are not negative. */
@@ -95,8 +95,8 @@ static const char *check_triangles(struct check *c,
     return NULL;
 }
 
-/* The cells, FIRST to LAST along each axis, that the box of triangle T reaches
- * into. */
+/* Sets FIRST and LAST to the range of cells, along each axis, that the box of
+ * triangle T overlaps. */
 static void cells_of(const struct glint_scene_mesh *m, const int32_t *vertex,
                      const struct glint_scene_triangle *t, int32_t first[3],
                      int32_t last[3])
@@ -116,7 +116,7 @@ static void cells_of(const struct glint_scene_mesh *m, const int32_t *vertex,
     }
 }
 
-/* Returns whether cell C is one of those that T reaches into. */
+/* Returns whether the box of T overlaps cell C. */
 static int is_needed(const struct glint_scene_mesh *m, const int32_t *vertex,
                      const struct glint_scene_triangle *t, const uint32_t c[3])
 {
@@ -129,9 +129,9 @@ static int is_needed(const struct glint_scene_mesh *m, const int32_t *vertex,
     return is;
 }
 
-/* Checks that each triangle is in the list of each cell that it reaches into:
- * lists rise, so that there are as many entries of this kind as there have to
- * be only where none is missing. */
+/* Checks that each triangle is in the list of each cell that it overlaps. Lists
+ * are sorted without duplicates, so if the number of such entries is right,
+ * none is missing. */
 static const char *check_lists(const struct check *check,
                                const struct glint_scene_mesh *m,
                                const uint32_t *start, const uint32_t *ref)
@@ -197,8 +197,8 @@ static const char *check_grid(struct check *c, const struct glint_scene_mesh *m)
     return check_lists(c, m, start, ref);
 }
 
-/* Return texts that say what is wrong, or NULL. Objects are checked last: they
- * refer to all else. */
+/* Return the text of an error, or NULL. Objects are checked last, as they refer
+ * to everything else. */
 static const char *check_mesh(struct check *check,
                               const struct glint_scene_mesh *mesh)
 {
@@ -260,8 +260,8 @@ static const char *check_stone(struct check *c,
     return NULL;
 }
 
-/* Returns log2 of the side of the translucent medium of SKIN, of which the
- * header alone was seen; 0: it is out of range. */
+/* Returns log2 of the side of the translucent medium of SKIN, from its
+ * unchecked header, or 0 if it is out of range. */
 static uint32_t side_log2_of(const struct glint_scene_model *m,
                              const struct glint_scene_skin *skin)
 {
@@ -333,13 +333,13 @@ static const char *check_skin(struct check *c, uint32_t i)
                                 UINT32_C(1) << log2);
 }
 
-/* Returns whether object I, if it is translucent, has the map for
- * that. */
+/* Returns whether object I has the map that it needs if it is translucent. */
 static int has_map(const struct glint_scene_model *m, uint32_t i)
 {
     for (uint32_t k = 0; k < m->header->n_stones; k++) {
         int has = m->stone[k].material != m->object[i].material ||
-                  m->object[i].catcher_q15 > 0; /* which shows no material */
+                  m->object[i].catcher_q15 > 0; /* a catcher shows no
+                                                   material */
 
         for (uint32_t j = 0; j < m->header->n_skins; j++)
             has |= m->skin[j].object == i && m->skin[j].stone == k;
@@ -349,8 +349,8 @@ static int has_map(const struct glint_scene_model *m, uint32_t i)
     return 1;
 }
 
-/* Checks translucent media and skins, but not the files of translucent media,
- * which the part for them opens. */
+/* Checks translucent media and skins, but not the files of translucent media;
+ * their module checks those when it opens them. */
 static const char *check_stones(struct check *c)
 {
     const struct glint_scene_header *h = c->model.header;
@@ -366,7 +366,7 @@ static const char *check_stones(struct check *c)
     return wrong;
 }
 
-/* The file is used in place: its layout is what these structs are. */
+/* The file is used in place: its layout is the layout of these structs. */
 STATIC_ASSERT(sizeof(struct glint_scene_camera) == 60);
 STATIC_ASSERT(sizeof(struct glint_scene_light) == 88);
 STATIC_ASSERT(sizeof(struct glint_scene_texture) == 12);
@@ -381,7 +381,7 @@ STATIC_ASSERT(sizeof(struct glint_scene_skin) == 16);
 STATIC_ASSERT(sizeof(struct glint_scene_environment) == 56);
 STATIC_ASSERT(sizeof(struct glint_scene_header) == 268);
 
-/* The header begins as that of every baked file does. */
+/* The header begins like the header of every baked file. */
 GLINT_BLOB_HEADER(struct glint_scene_header, variant);
 
 enum { ONE_Q15 = 1 << 15, ONE_Q30 = 1 << 30, MAX_HIGHLIGHTS = 8 };
@@ -455,7 +455,7 @@ static const char *check_material(const struct check *c,
     return NULL;
 }
 
-/* The environment's own file is checked by who shows it. */
+/* The environment's own file is checked by the module that shows it. */
 static const char *check_environment(struct check *c,
                                      const struct glint_scene_environment *e)
 {
@@ -470,7 +470,8 @@ static const char *check_environment(struct check *c,
                : OUTSIDE;
 }
 
-/* The last lights are suns, which those of environments become. */
+/* Checks that the last lights are suns; the lights of environments replace
+ * them. */
 static const char *check_suns(const struct glint_scene_model *m)
 {
     const struct glint_scene_header *h = m->header;
@@ -481,7 +482,7 @@ static const char *check_suns(const struct glint_scene_model *m)
     return NULL;
 }
 
-/* The motion's own file is checked by who plays it. */
+/* The motion's own file is checked by the module that plays it. */
 static const char *check_motion(const struct glint_scene_header *h,
                                 const struct glint_scene_motion *m)
 {
@@ -639,8 +640,8 @@ static int is_same(const char *a, const char *b)
     return *a == *b;
 }
 
-/* Returns which of N names, STRIDE bytes apart from NAMES on, is NAME, or -1.
- */
+/* Returns the index of NAME among N names, STRIDE bytes apart from NAMES on, or
+ * -1. */
 static int find_name(const char *names, size_t stride, uint32_t n,
                      const char *name)
 {

@@ -1,34 +1,36 @@
 /* SPDX-License-Identifier: MIT
  *
- * Optional modules of a scene, linked by address (glint/scene/scene.h): the
- * functions that the rest calls. */
+ * The functions of a scene's optional modules. Modules are linked only if their
+ * address is used (glint/scene/scene.h). */
 #ifndef GLINT_SCENE_PARTS_H
 #define GLINT_SCENE_PARTS_H
 
 #include "scene/state.h"
 
 struct glint_scene_meshes {
-    /* Moves the vertices of all meshes into the camera and lists triangles by
-     * tiles; run by glint_scene_begin(). */
+    /* Transforms the vertices of all meshes to camera coordinates and sorts
+     * triangles into tiles; called by glint_scene_begin(). */
     void (*project)(struct glint_scene *scene, struct glint_scene_stats *stats);
     /* Draws the depth and ids of triangle ID into the samples of a tile. */
     void (*look)(struct glint_scene_worker *w, uint32_t id);
-    /* MET->t is the limit, and is set if something is nearer. ANY: it need not
-     * be the nearest. Returns whether it is. */
+    /* Intersects RAY with the mesh OBJECT, without triangle BUT_TRIANGLE. On
+     * entry MET->t is the max distance. Sets MET and returns 1 if a triangle is
+     * met nearer. If ANY is set, the first triangle found suffices. */
     int (*meet)(const struct glint_scene *scene, uint32_t object,
                 uint32_t but_triangle, const struct glint_scene_ray *ray,
                 int any, struct glint_met *met);
-    /* The same for a ray of the picture towards SEEN_Q30, in camera
-     * coordinates, held inside TRIANGLE. */
+    /* The same for TRIANGLE alone and a primary ray of direction SEEN_Q30 in
+     * camera coordinates. A point slightly outside is clamped to the
+     * triangle. */
     int (*hold)(const struct glint_scene *scene, uint32_t object,
                 uint32_t triangle, const int32_t seen_q30[3],
                 struct glint_met *met);
     int (*surface)(const struct glint_scene *scene, const struct glint_met *met,
                    struct glint_met_surface *surface);
-    /* Returns whether triangles A and B, ids of one object, are of one
-     * material and share a vertex, and its normal. */
+    /* Returns whether triangles A and B of one object have the same material
+     * and share a vertex and its normal. */
     int (*joins)(const struct glint_scene *scene, uint32_t a, uint32_t b);
-    /* Surfaces in the middle of pixels, the quick way (quick.h). */
+    /* Finds the surface in the middle of a pixel by the fast path (quick.h). */
     int (*find)(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
                 int32_t y_q8, struct glint_met_surface *surface);
 };
@@ -38,12 +40,12 @@ struct glint_scene_textures {
     void (*colour)(const struct glint_scene *scene,
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface, int32_t rgb_q15[3]);
-    /* Makes the table that it decodes by. */
+    /* Prepares the table that decodes texels. */
     void (*prepare)(struct glint_curve *curve);
 };
 
 struct glint_scene_bounces {
-    /* Adds reflected and transmitted light of SURFACE. */
+    /* Adds the reflected and transmitted light at SURFACE. */
     void (*follow)(const struct glint_scene *scene,
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface,
@@ -57,27 +59,28 @@ struct glint_scene_wards {
     /* Allocates the memory of the module; NULL while it is measured. */
     struct glint_ward_state *(*carve)(const struct glint_scene *scene,
                                       struct glint_arena *arena);
-    /* Opens the environment and makes the lobes of all metals. */
+    /* Opens the environment and computes the lobes of all metals. */
     enum glint_status (*open)(struct glint_scene *scene);
-    /* Makes the lobe of metal I again. */
+    /* Recomputes the lobe of metal I. */
     void (*change)(const struct glint_scene *scene, uint32_t i);
     /* Shows environment I, with its lights. */
     void (*show)(struct glint_scene *scene, uint32_t i);
-    /* Makes SCALE the factor of its light. */
+    /* Sets the factor of the environment's light to SCALE. */
     void (*scale)(struct glint_scene *scene, struct glint_real scale);
-    /* Turns it. */
+    /* Rotates the environment by an angle of cosine and sine TURN_Q30. */
     void (*turn)(struct glint_scene *scene, const int32_t turn_q30[2]);
-    /* Returns by how much the normal of SURFACE turns within the pixel of RAY,
-     * as struct glint_brushed has it. */
+    /* Returns the variation of SURFACE's normal within the pixel of RAY, as in
+     * spread_q30 of struct glint_brushed. */
     int32_t (*spread)(const struct glint_scene *scene,
                       const struct glint_scene_ray *ray,
                       const struct glint_met_surface *surface);
-    /* Finds the tangent frame of the metal of SURFACE, without its spread. */
+    /* Finds the tangent frame of the metal of SURFACE; does not set its
+     * spread. */
     void (*lie)(const struct glint_scene *scene,
                 const struct glint_met_surface *surface,
                 struct glint_brushed *brushed);
-    /* Adds what SURFACE, of diffuse COLOUR_Q15, leaves along RAY of the
-     * environment light, times WEIGHT_Q15. BRUSHED is NULL if it is not a
+    /* Adds the environment light that SURFACE, of diffuse COLOUR_Q15, reflects
+     * along RAY, times WEIGHT_Q15. BRUSHED must be NULL if it is not a
      * metal. */
     void (*reflect)(const struct glint_scene *scene,
                     const struct glint_scene_ray *ray,
@@ -85,17 +88,17 @@ struct glint_scene_wards {
                     const struct glint_brushed *brushed,
                     const int32_t colour_q15[3], int32_t weight_q15,
                     int32_t rgb_q15[3]);
-    /* Sets RGB_Q15 to what the metal of SURFACE leaves along RAY of a light of
-     * LEVEL_Q15 from TOWARD_Q30, of an angular radius of that sine. Returns 0,
-     * and sets nothing, if it is nothing. */
+    /* Sets RGB_Q15 to the light that the metal of SURFACE reflects along RAY
+     * from a light of LEVEL_Q15 in direction TOWARD_Q30, whose angular radius
+     * is given by its sine. Returns 0, and sets nothing, if that is 0. */
     int (*shine)(const struct glint_scene *scene,
                  const struct glint_scene_ray *ray,
                  const struct glint_met_surface *surface,
                  const struct glint_brushed *brushed,
                  const int32_t toward_q30[3], const int32_t level_q15[3],
                  int32_t radius_q30, int32_t rgb_q15[3]);
-    /* Sets RGB_Q15 to the environment's light, with its bright lights, from
-     * TOWARD_Q30, in the mean of a spot of that angular variance. */
+    /* Sets RGB_Q15 to the environment's light from TOWARD_Q30, its bright
+     * lights included, averaged over a spot of angular variance SPREAD_Q40. */
     void (*look)(const struct glint_scene *scene, const int32_t toward_q30[3],
                  int64_t spread_q40, int32_t rgb_q15[3]);
 };
@@ -104,17 +107,18 @@ struct glint_scene_stones {
     /* Allocates the memory of the module; NULL while it is measured. */
     struct glint_stone_state *(*carve)(const struct glint_scene *scene,
                                        struct glint_arena *arena);
-    /* Opens all translucent media; before that, of SCENE the model alone is
-     * there. */
+    /* Opens all translucent media. Of SCENE only the model is set at this
+     * time. */
     enum glint_status (*open)(struct glint_scene *scene);
-    /* Notes what there is of environment light, which has changed. */
+    /* Updates the state after a change of environment light. */
     void (*relight)(struct glint_scene *scene);
-    /* Updates the maps for the frame that was begun; returns the number of
-     * texels computed. */
+    /* Updates the maps for the current frame; returns the number of texels
+     * computed. */
     int (*update)(struct glint_scene *scene);
-    /* Adds what comes out of SURFACE along RAY, times WEIGHT_Q15. Returns how
-     * many times what it does straight ahead its coat mirrors there, q15, below
-     * 2^30; 0 if its material is not a translucent medium. */
+    /* Adds the light that leaves SURFACE along RAY, times WEIGHT_Q15. Returns
+     * the ratio of the coat's reflectance there to its reflectance at normal
+     * incidence, q15, below 2^30; 0 if the material is not a translucent
+     * medium. */
     int32_t (*add)(const struct glint_scene *scene,
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface, int32_t weight_q15,
@@ -130,7 +134,7 @@ struct glint_scene_highlights {
     /* Begins a picture. */
     void (*begin)(struct glint_highlight_state *bright);
     /* Adds light of object OBJECT in the pixel whose middle is (X, Y), pixels
-     * q8 from the top left corner: SHARE_Q4 of RGB_Q15. */
+     * q8 from the top left corner: the fraction SHARE_Q4 of RGB_Q15. */
     void (*note)(struct glint_highlight_state *bright, uint32_t object,
                  int32_t x_q8, int32_t y_q8, const int32_t rgb_q15[3],
                  int share_q4);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a surface sends back of ambient light and of lights [Phong75]. Light is
- * q15, up to 2^30, where it saturates: products with weights, q15 up to 1, are
- * below 2^45. */
+ * Reflection of ambient light and of lights [Phong75]. Light is q15 and
+ * saturates at 2^30; products with weights, q15 up to 1, are below 2^45. */
 #include "base/divide.h"
 #include "scene/parts.h"
 #include "scene/state.h"
@@ -23,12 +22,12 @@ static inline void add_weighted(int32_t *to_q15, int64_t light_q15,
 
 /* ------------------------------------------------------------------- gloss */
 
-/* Where x^k is below 2^-17, it is 0: from 1 - 2^(-17 / k) on. */
+/* x^k below 2^-17 counts as 0: from y = 1 - 2^(-17 / k) on. */
 void glint_gloss_prepare(struct glint_gloss *gloss, int32_t power_q8)
 {
     int32_t end_q30 = 1 << 30;
 
-    /* The least y, by halves, of which (1 - y)^k is 0. */
+    /* bisects for the min y with (1 - y)^k = 0 */
     for (int32_t step_q30 = 1 << 29; step_q30; step_q30 /= 2)
         if (end_q30 > step_q30 &&
             glint_power_q15((1 << 30) - (end_q30 - step_q30), power_q8) == 0)
@@ -42,8 +41,8 @@ void glint_gloss_prepare(struct glint_gloss *gloss, int32_t power_q8)
             power_q8);
 }
 
-/* Returns the fraction of a light's rays, mirrored at the surface, that go back
- * along the ray: the mirrored direction is L - 2 (L.N) N. */
+/* Returns the specular factor of a light: the power of the cosine between the
+ * ray and the light's mirrored direction L - 2 (L.N) N. */
 static inline int32_t gloss_q15(const struct glint_gloss *gloss,
                                 const struct glint_scene_ray *ray,
                                 const struct glint_met_surface *surface,
@@ -69,7 +68,8 @@ static inline int32_t gloss_q15(const struct glint_gloss *gloss,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Adds what metal shows of LIT, T away, of which SHARE_Q15 counts. */
+/* Adds the reflection in metal of the fraction SHARE_Q15 of LIT, T steps
+ * away. */
 static void add_shine(const struct glint_scene *s,
                       const struct glint_scene_ray *ray,
                       const struct glint_met_surface *surface,
@@ -95,7 +95,7 @@ static void add_shine(const struct glint_scene *s,
         add_weighted(&rgb_q15[c], shine_q15[c], share_q15);
 }
 
-/* BRUSHED is NULL if SURFACE is not a metal. */
+/* BRUSHED must be NULL if SURFACE is not a metal. */
 static WHOLLY_INLINE void
 add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
           const struct glint_met_surface *surface,
@@ -140,7 +140,7 @@ add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
     }
 }
 
-/* Inlined where the weight is 1, which most pixels have. */
+/* Inlined for the weight 1 of most pixels. */
 static WHOLLY_INLINE void phong(const struct glint_scene *scene,
                                 const struct glint_scene_ray *ray,
                                 const struct glint_met_surface *surface,
@@ -186,8 +186,8 @@ void glint_scene_phong(const struct glint_scene *scene,
     phong(scene, ray, surface, weight_q15, rgb_q15);
 }
 
-/* Of a plane that only takes shadows: how much of all light that lights would
- * send there does not come. */
+/* For a plane that only receives shadows: returns the fraction of the lights'
+ * light that is shadowed. */
 static int caught_q8(const struct glint_scene *s,
                      const struct glint_met_surface *surface,
                      int32_t catcher_q15)

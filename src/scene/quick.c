@@ -8,8 +8,8 @@ enum { ONE_Q30 = 1 << 30, LEAST_UP = 17 };
 
 /* -------------------------------------------------------------------- rays */
 
-/* The picture's farthest corner is 2^29 to 2^30 away from the middle, or the
- * plane of the picture is 2^28 away. */
+/* Coordinates are scaled so that the picture's farthest corner is 2^29 to 2^30
+ * from the middle, or the picture's plane 2^28 away. */
 void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
                      int32_t y_q8, struct glint_scene_ray *ray,
                      int32_t seen_q30[3])
@@ -27,8 +27,8 @@ void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
 
 /* ------------------------------------------------------------------- balls */
 
-/* Balls are met in units of their radius, from a camera outside them and at
- * most 2^13 radii away. */
+/* The fast path computes in units of the ball's radius. The camera must be
+ * outside the ball and at most 2^13 radii away. */
 static void begin_ball(const struct glint_scene *s, struct glint_placed *p)
 {
     int32_t to[3];
@@ -51,9 +51,9 @@ static void begin_ball(const struct glint_scene *s, struct glint_placed *p)
     p->over_up = up;
 }
 
-/* Prepares spans: M towards the ball's middle, C its rim's cosine squared, a
- * place (X, Y) of the picture in tangents: it is on the ball where
- * (M.x X + M.y Y + M.z)^2 >= C (1 + X^2 + Y^2). */
+/* Prepares spans. With M towards the ball's middle and C the squared cosine of
+ * its rim, position (X, Y) of the picture, in tangents, is on the ball if (M.x
+ * X + M.y Y + M.z)^2 >= C (1 + X^2 + Y^2). */
 static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
 {
     int32_t seen[3], away;
@@ -66,7 +66,7 @@ static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
     for (int k = 0; k < 3; k++)
         to[k] = seen[k];
     away = (int32_t)glint_root((uint64_t)v3_dot(seen, seen));
-    /* with room for samples beside the middles of rows */
+    /* with a margin for samples off the middles of rows */
     sine_q30 = glint_ratio(
         ((uint64_t)p->radius + 2 * (uint64_t)p->margin) << 30, (uint64_t)away);
     if (!glint_unit(to, p->span.m_q30) || sine_q30 < 1 << 22 ||
@@ -76,7 +76,7 @@ static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
     p->span.a_q30 =
         (int32_t)(((int64_t)p->span.m_q30[0] * p->span.m_q30[0] >> 30) -
                   p->span.c_q30);
-    /* an ellipse, not too flat */
+    /* the rim must be an ellipse, and not too flat */
     if (p->span.a_q30 > -(1 << 26))
         return;
     p->span.up = q_up((uint64_t)-p->span.a_q30);
@@ -127,8 +127,8 @@ void glint_quick_begin(struct glint_scene *scene)
         glint_quick_ball(scene, &scene->placed[i]);
 }
 
-/* The ray's line passes the ball's middle at A = L x D, in radii. The normal
- * is A x D - sqrt(1 - A.A) D, a unit vector. Near the rim that is not exact
+/* The ray passes the ball's middle at the distance |A|, A = L x D, in radii.
+ * The unit normal is A x D - sqrt(1 - A.A) D. Near the rim that is not exact
  * enough. */
 int glint_quick_meet(const struct glint_placed *p,
                      const struct glint_scene_ray *ray, int32_t across_q30[3],
@@ -193,8 +193,8 @@ static int find_ball(const struct glint_placed *p,
 
 /* ------------------------------------------------------------------ planes */
 
-/* A direction off by 2^-24 is a place beside in the picture by as much, however
- * the plane lies. */
+/* A direction error of 2^-24 shifts the point by as much in the picture, for
+ * any orientation of the plane. */
 static int find_plane(const struct glint_placed *p,
                       const struct glint_scene_ray *ray,
                       struct glint_met_surface *surface)

@@ -3,7 +3,7 @@
  * Fast path for surfaces in the middle of pixels: 26 bits suffice for shading,
  * and work that all pixels of an object share is done once.
  *
- * Visibility there has been decided exactly (visible.c). */
+ * Visibility has been decided exactly before (visible.c). */
 #ifndef GLINT_SCENE_QUICK_H
 #define GLINT_SCENE_QUICK_H
 
@@ -11,8 +11,9 @@
 
 /* ------------------------------------------------------------------- roots */
 
-/* Returns 2^31 / sqrt(S), S = S_Q32 / 2^32 from 1/4 to below 1, off by 2^-25.8
- * of itself, never above: Newton's method from 2^-6.9 of the table's. */
+/* Returns 2^31 / sqrt(S) for S = S_Q32 / 2^32, 1/4 <= S < 1. The relative error
+ * is at most 2^-25.8, never above the true value: Newton's method from a table
+ * of error 2^-6.9. */
 static inline uint32_t glint_quick_root_q31(uint32_t s_q32)
 {
     uint32_t r_q31 = glint_inverse_root_start(s_q32 >> 25) << 24;
@@ -27,14 +28,15 @@ static inline uint32_t glint_quick_root_q31(uint32_t s_q32)
     return r_q31;
 }
 
-/* Returns by how many bits X, not 0, is to be shifted up to have 63 or 64. */
+/* Returns the even number of bits by which X must be shifted up to have 63 or
+ * 64 bits. X must not be 0. */
 static inline int glint_quick_up(uint64_t x)
 {
     return (64 - bit_length(x | 1)) & ~1;
 }
 
-/* Sets UNIT_Q30 to V / |V|; elements of V are within +-2^30, and one is from
- * 2^20 on. */
+/* Sets UNIT_Q30 to V / |V|. Elements of V must be within +-2^30, and at least
+ * one must have a magnitude of 2^20 or more. */
 static inline void glint_quick_unit(const int32_t v[3], int32_t unit_q30[3])
 {
     const uint64_t square = (uint64_t)v3_dot(v, v); /* below 3 * 2^60 */
@@ -51,10 +53,10 @@ static inline void glint_quick_unit(const int32_t v[3], int32_t unit_q30[3])
 /* Prepares the balls of a frame. */
 void glint_quick_begin(struct glint_scene *scene);
 
-/* Sets RAY to that of place (X, Y), each element off by 2^-24, and SURFACE to
- * where it meets ID, held inside if that is a triangle. Returns 0 where that is
- * not to be had this way: near the rim of a ball, of triangles that come near
- * the camera or have a texture. */
+/* Sets RAY to the ray through (X, Y), with an error of 2^-24 per element, and
+ * SURFACE to its intersection with ID, clamped to ID if that is a triangle.
+ * Returns 0 if the fast path does not apply: near the rim of a ball, and for
+ * triangles that come near the camera or have a texture. */
 int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
                      int32_t y_q8, struct glint_scene_ray *ray,
                      struct glint_met_surface *surface);

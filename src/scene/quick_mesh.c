@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Triangles in the middle of pixels: a few are kept as they were prepared. */
+ * Triangles in the middle of pixels. A few prepared triangles are cached. */
 #include "base/divide.h"
 #include "scene/quick.h"
 #include "scene/mesh.h"
 
 /* --------------------------------------------------------------- triangles */
 
-/* Sets T's corners in the picture; returns 0 if they are not all there. */
+/* Sets T's corners in the picture; returns 0 if a corner cannot be
+ * projected. */
 static int set_corners(const struct glint_scene *s, uint32_t object,
                        const struct glint_scene_triangle *of,
                        struct glint_quick_triangle *t)
@@ -48,7 +49,7 @@ static int set_corners(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Sets T's places and normals, towards the camera. */
+/* Sets T's vertices and normals; normals face the camera. */
 static int set_surface(const struct glint_scene *s, uint32_t object,
                        const struct glint_scene_triangle *of,
                        struct glint_quick_triangle *t)
@@ -91,7 +92,7 @@ static int set_surface(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Returns triangle ID as it was prepared; NULL: it cannot be. */
+/* Returns the prepared triangle ID, or NULL if it cannot be prepared. */
 static struct glint_quick_triangle *triangle_of(struct glint_scene_worker *w,
                                                 uint32_t id)
 {
@@ -114,8 +115,8 @@ static struct glint_quick_triangle *triangle_of(struct glint_scene_worker *w,
     return t->is_there ? t : NULL;
 }
 
-/* Sets weights of the second and third corner at a place of the picture:
- * fractions of its area, held inside, over their depths. */
+/* Sets the weights of the second and third corner at a position of the picture:
+ * perspective-correct fractions of the area, clamped to the triangle. */
 static void weigh(const struct glint_quick_triangle *t, int32_t x_q8,
                   int32_t y_q8, int64_t part_q30[2])
 {
@@ -128,7 +129,7 @@ static void weigh(const struct glint_quick_triangle *t, int32_t x_q8,
         int64_t edge = t->at[k] + x * t->across[k] + y * t->down[k];
 
         edge = edge < 0 ? 0 : edge;
-        /* up makes the area 2^31 to 2^32 */
+        /* up scales the area to 2^31 .. 2^32 */
         edge = t->up < 0 ? edge >> -t->up : edge * (INT64_C(1) << t->up);
         edge = edge > UINT32_MAX ? UINT32_MAX : edge;
         weight_q30[k] =

@@ -22,9 +22,9 @@ int glint_ray_go(const struct glint_scene_ray *ray, int32_t t, int32_t to[3])
 /* ------------------------------------------------------------------ sphere */
 
 /* Elements of L are within 2^29 and |D| is 1: |L.D| and each element of L x D
- * are below 2^60 in _q30. Those of the latter are cut to UP fraction bits once
- * they are known to be below the radius, 2^30, so that their squares sum to
- * less than 3 * 2^60. */
+ * are below 2^60 in _q30. Elements of L x D are truncated to UP fraction bits
+ * once they are known to be below the radius, 2^30, so that their squares sum
+ * to less than 3 * 2^60. */
 int glint_ray_sphere(const struct glint_scene_ray *ray, const int32_t centre[3],
                      int32_t radius, struct glint_chord *chord)
 {
@@ -73,7 +73,8 @@ void glint_chord_end(const struct glint_chord *chord,
         from[i] = chord->middle[i] + (k ? along : -along);
         place[i] = q_narrow(centre[i] + q_shift(from[i], chord->up));
     }
-    glint_unit(from, normal_q30); /* its length is the radius, so not 0 */
+    glint_unit(from, normal_q30); /* the length of from is the radius, so not
+                                     0 */
 }
 
 /* ------------------------------------------------------------------- plane */
@@ -89,7 +90,7 @@ int32_t glint_ray_plane(const struct glint_scene_ray *ray, const int32_t at[3],
     along_q60 = v3_dot(ray->toward_q30, normal_q30);
     if (away_q30 == 0 || along_q60 == 0 || (away_q30 < 0) != (along_q60 < 0))
         return 0;
-    /* away is below 2^60: made longer, for the other is 1 at most. */
+    /* away is below 2^60 and is scaled up, as the divisor is at most 1. */
     t = glint_ratio(q_magnitude(away_q30),
                     (q_magnitude(along_q60) + (1 << 29)) >> 30);
     return q_smaller(t, GLINT_PLANE_END);
@@ -100,7 +101,7 @@ int32_t glint_ray_plane(const struct glint_scene_ray *ray, const int32_t at[3],
 void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to)
 {
     const int32_t *d_q30 = ray->toward_q30;
-    uint64_t most = 1; /* not 0: a direction has a length */
+    uint64_t most = 1; /* not 0, as a direction has length 1 */
     int longest = 0, is_back;
     uint32_t one_over_q30;
 
@@ -114,7 +115,8 @@ void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to)
     is_back = d_q30[longest] < 0;
     for (int k = 0; k < 3; k++)
         to->axis[k] = (longest + 1 + k) % 3;
-    /* 2^63 / (4 most) is q31; 4 most, above 2^31, may be 2^32 or a bit more. */
+    /* 2^63 / (4 * most) is q31; 4 * most is above 2^31 and may slightly exceed
+     * 2^32. */
     one_over_q30 =
         (q_reciprocal(most < ONE_Q30 ? (uint32_t)(4 * most) : UINT32_MAX) + 1) /
         2;
@@ -123,14 +125,14 @@ void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to)
     to->y_q29 = q_mul(d_q30[to->axis[1]], to->along_q30, 31);
 }
 
-/* A triangle as a sheared ray sees it: edge functions, and depths. */
+/* A triangle in the space of a sheared ray: edge functions and depths. */
 struct seen {
     int64_t edge[3], sum;
     int32_t x[3], y[3], z[3];
 };
 
-/* Moves the vertices as the shear says. Differences of places are within 2^29
- * and the shear is 1 at most: x and y are below 2^30. */
+/* Applies the shear to the vertices. Differences of points are within 2^29 and
+ * the shear is at most 1, so x and y are below 2^30. */
 static void shear(const struct glint_sheared *ray,
                   const int32_t *const vertex[3], struct seen *to)
 {
@@ -240,8 +242,8 @@ int glint_triangle_normal(const int32_t *const vertex[3], int32_t normal_q30[3])
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* N is a unit only to a step or so: divided by N.N, to first order, the
- * length of D stays. */
+/* |N| is 1 only to within rounding; dividing by N.N, to first order, preserves
+ * the length of D. */
 void glint_mirror(const int32_t d_q30[3], const int32_t n_q30[3],
                   int32_t to_q30[3])
 {
@@ -253,7 +255,8 @@ void glint_mirror(const int32_t d_q30[3], const int32_t n_q30[3],
         to_q30[k] = (int32_t)(d_q30[k] - q_shift(along_q30 * n_q30[k], 29));
 }
 
-/* sine is that before the surface: eta sine behind it, below 16. */
+/* sine is the sine before the surface; the sine behind it is eta * sine, below
+ * 16. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3])
 {

@@ -1,38 +1,39 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where a ray meets a sphere, a plane or a triangle, in integers.
+ * Intersects rays with spheres, planes and triangles, in integers.
  *
- * Distances along rays are whole steps. What is parallel, has no area or lies
- * in the ray is missed; nothing is ever divided by 0. */
+ * Distances along rays are integer steps. Surfaces that are parallel to the
+ * ray, contain it or have no area are missed, so nothing is divided by 0. */
 #ifndef GLINT_SCENE_RAY_H
 #define GLINT_SCENE_RAY_H
 
 #include "scene/vector.h"
 
 struct glint_scene_ray {
-    int32_t at[3];         /* place */
+    int32_t at[3];         /* origin */
     int32_t toward_q30[3]; /* direction */
 };
 
-/* Sets TO to the place T steps along RAY. T is within +-GLINT_FAR. Returns 0 if
- * that is not within +-2^29 of the origin. */
+/* Sets TO to the point T steps along RAY. T must be within +-GLINT_FAR. Returns
+ * 0 if the point is not within +-2^29 of the origin. */
 int glint_ray_go(const struct glint_scene_ray *ray, int32_t t, int32_t to[3]);
 
 /* ------------------------------------------------------------------ sphere */
 
-/* The chord of a ray in a sphere: its middle, counted from the sphere's centre,
- * and its half, both with UP fraction bits, which make the radius 2^29 to
- * 2^30. */
+/* The chord of a ray in a sphere: its middle relative to the sphere's centre,
+ * and half its length, both with UP fraction bits, chosen so that the radius is
+ * 2^29 to 2^30. */
 struct glint_chord {
     int up;
     int32_t middle[3], half;
-    int32_t t[2]; /* where it begins and ends; behind the ray's start below 0 */
+    int32_t t[2]; /* its start and end along the ray; negative behind the ray's
+                     start */
 };
 
-/* Finds the chord of RAY in the sphere about CENTRE, RADIUS 1 .. 2^27; returns
- * 0 if there is none. The ray's distance from the centre is the length of L x
- * D, L from its start to the centre: products that are exact, so that nothing
- * cancels however far away the sphere is. */
+/* Finds the chord of RAY in the sphere about CENTRE; returns 0 if the ray
+ * misses it. RADIUS must be 1 .. 2^27. The ray's distance from the centre is |L
+ * x D| with L from the ray's start to the centre; the products are exact, so
+ * that no precision is lost at any distance. */
 int glint_ray_sphere(const struct glint_scene_ray *ray, const int32_t centre[3],
                      int32_t radius, struct glint_chord *chord);
 
@@ -43,24 +44,25 @@ void glint_chord_end(const struct glint_chord *chord,
 
 /* ------------------------------------------------------------------- plane */
 
-/* What is farther away on a plane counts as here: a plane moves to its
- * horizon, and places on it stay in range. */
+/* Max distance of an intersection with a plane; farther points are moved here,
+ * so that they stay in range. */
 #define GLINT_PLANE_END (INT32_C(1) << 28)
 
-/* Returns the distance along RAY to the plane through AT, 1 ..
- * GLINT_PLANE_END; 0 if RAY does not meet it. */
+/* Returns the distance along RAY to the plane through AT, 1 .. GLINT_PLANE_END,
+ * or 0 if RAY does not meet it. */
 int32_t glint_ray_plane(const struct glint_scene_ray *ray, const int32_t at[3],
                         const int32_t normal_q30[3]);
 
 /* ---------------------------------------------------------------- triangle */
 
-/* A ray as triangles take it: sheared so that it runs along its longest axis
- * [Woop13]. */
+/* A ray prepared for triangle tests: sheared so that it runs along its longest
+ * axis [Woop13]. */
 struct glint_sheared {
     int32_t at[3];
-    int axis[3];          /* the longest last */
-    int32_t x_q29, y_q29; /* direction over its longest element */
-    int32_t along_q30;    /* 1 / the longest element, +-2^30 .. 2^30.8 */
+    int axis[3];          /* axes; the longest is last */
+    int32_t x_q29, y_q29; /* direction / its longest element */
+    int32_t along_q30;    /* 1 / the longest element; magnitude 2^30 ..
+                             2^30.8 */
 };
 
 struct glint_spot_on {
@@ -70,37 +72,37 @@ struct glint_spot_on {
 
 void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to);
 
-/* Finds where RAY meets the triangle; returns 0 if it does not. The edges are
- * part of it. Vertices are moved by the shear, and rounded, alike in every
- * triangle that has them, and the rest is exact: no ray passes between two
+/* Finds the intersection of RAY and the triangle, edges included; returns 0 if
+ * RAY misses it. Vertices are sheared and rounded in the same way in every
+ * triangle that has them, and all else is exact: no ray passes between two
  * triangles that share an edge. */
 int glint_ray_triangle(const struct glint_sheared *ray,
                        const int32_t *const vertex[3],
                        struct glint_spot_on *spot);
 
-/* The same for a ray that is known to meet the triangle, or to miss it by a
- * little: SPOT is held inside. Returns 0 if the triangle has no area. */
+/* The same for a ray that is known to meet the triangle, or to miss it
+ * slightly: SPOT is clamped to the triangle. Returns 0 if it has no area. */
 int glint_ray_hold(const struct glint_sheared *ray,
                    const int32_t *const vertex[3], struct glint_spot_on *spot);
 
-/* Sets the weights of three vertices from EDGE functions that all have the sign
- * of SUM, which they sum to, or are 0. SUM is not 0. */
+/* Sets the weights of three vertices from their EDGE functions, whose sum is
+ * SUM. Each must be 0 or have the sign of SUM, and SUM must not be 0. */
 void glint_weigh(const int64_t edge[3], int64_t sum, int32_t part_q30[3]);
 
-/* Sets NORMAL_Q30 of a triangle, towards whom sees its vertices clockwise;
- * returns 0 if it has no area. */
+/* Sets NORMAL_Q30 of a triangle; it points to the side from which the vertices
+ * appear clockwise. Returns 0 if the triangle has no area. */
 int glint_triangle_normal(const int32_t *const vertex[3],
                           int32_t normal_q30[3]);
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* Turns direction D_Q30 at a surface of normal N_Q30: D - 2 (D.N) N. */
+/* Reflects direction D_Q30 at a surface of normal N_Q30: D - 2 (D.N) N. */
 void glint_mirror(const int32_t d_q30[3], const int32_t n_q30[3],
                   int32_t to_q30[3]);
 
-/* Bends direction D_Q30 at a surface whose normal N_Q30 points back, D.N < 0,
- * by Snell's law: ETA_Q28 is the index before over that behind, at most 16.
- * Returns 0, and sets nothing, where all light is reflected. */
+/* Refracts direction D_Q30 by Snell's law at a surface of normal N_Q30; D.N
+ * must be negative. ETA_Q28 is the index before the surface / the index behind
+ * it, at most 16. Returns 0, and sets nothing, at total reflection. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3]);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Memory of a scene, and the order of a frame's work. */
+ * Memory of a scene, and the sequence of a frame's steps. */
 #include "scene/visible.h"
 
 #include "base/compiler.h"
@@ -64,7 +64,7 @@ static size_t vertices_of(const struct glint_scene_model *m)
     return n;
 }
 
-/* Returns whether N is one of the powers of two whose sum is ALL. */
+/* Returns whether N is a power of two that is set in ALL. */
 static int is_one_of(int n, int all)
 {
     return n > 0 && (n & all) == n && (n & (n - 1)) == 0;
@@ -81,7 +81,7 @@ static int is_in_range(const struct glint_scene_config *c)
            glint_workers_count(c->workers) <= 64;
 }
 
-/* What a grid of shadows lists: all triangles and balls. */
+/* Returns the number of items in a grid of shadows: all triangles and balls. */
 static size_t things_of(const struct glint_scene_model *m)
 {
     size_t n = 0;
@@ -93,8 +93,8 @@ static size_t things_of(const struct glint_scene_model *m)
     return n;
 }
 
-/* The grids of suns that throw shadows. In a frame of its own, as what is
- * measured takes room on the stack. */
+/* Allocates the grids of suns that throw shadows. Not inlined, as its dummy for
+ * measuring is large on the stack. */
 static NEVER_INLINE void carve_shadows(struct glint_scene *s,
                                        struct glint_arena *a)
 {
@@ -124,7 +124,7 @@ static NEVER_INLINE void carve_shadows(struct glint_scene *s,
     }
 }
 
-/* WORKER is NULL while its memory is measured. */
+/* WORKER must be NULL while memory is only measured. */
 static void carve_worker(struct glint_scene *s, struct glint_arena *a,
                          struct glint_scene_worker *worker)
 {
@@ -150,7 +150,8 @@ static void carve_worker(struct glint_scene *s, struct glint_arena *a,
         *worker = w;
 }
 
-/* Returns whether anything mirrors or bends rays to the camera's picture. */
+/* Returns whether any material reflects or refracts rays to the camera's
+ * picture. */
 static int shows_picture(const struct glint_scene_model *model)
 {
     const struct glint_scene_header *h = model->header;
@@ -163,7 +164,7 @@ static int shows_picture(const struct glint_scene_model *model)
     return any && h->background == GLINT_BACKGROUND_CAMERA;
 }
 
-/* Runs twice: to measure, which gives NULL, and to place. */
+/* Called twice: first to measure, when it returns NULL, then to allocate. */
 static struct glint_scene *carve(struct glint_arena *a,
                                  const struct glint_scene_config *cfg,
                                  const struct glint_scene_model *model)
@@ -237,7 +238,7 @@ static int skin_of(const struct glint_scene_model *model, uint32_t i)
     return -1;
 }
 
-/* Sets all objects to where the model has them. */
+/* Sets all objects to their positions in the model. */
 static int place_objects(struct glint_scene *s)
 {
     const struct glint_scene_model *model = &s->model;
@@ -314,7 +315,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     for (uint32_t i = 0; i < model->header->n_materials; i++)
         glint_gloss_prepare(&s->gloss[i], model->material[i].power_q8);
     if (!place_objects(s))
-        return GLINT_E_ARGUMENT; /* was checked when it was opened */
+        return GLINT_E_ARGUMENT; /* the model was checked when it was opened */
     if (s->motion && cfg->parts.motions->open(s) != GLINT_OK)
         return GLINT_E_FORMAT;
     *scene = s;
@@ -347,7 +348,7 @@ void glint_scene_turn_of(const int32_t q[4], struct glint_scene_turn *to)
         }
 }
 
-/* Returns whether P lies so already. */
+/* Returns whether P already has this pose. */
 static int is_same_pose(const struct glint_placed *p, const int32_t at[3],
                         const struct glint_scene_turn *turn)
 {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene as a pass: a pixel is shaded once per object that its samples see,
- * at its middle, and per sample for reflecting or transparent objects; its
- * uncovered part stays. */
+ * The scene as a pass: a pixel is shaded once, at its middle, per object that
+ * its samples see; reflecting and transparent objects are shaded per sample.
+ * The uncovered fraction of a pixel keeps its light. */
 #include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
 
-enum { SUMMED = 4 /* samples that light and cover are sums of */ };
+enum { SUMMED = 4 /* number of samples in the sums of light and cover */ };
 
 static void *begin_row(const void *self, struct glint_box row, int worker)
 {
@@ -25,24 +25,29 @@ static int go_on(void *state, struct glint_box tile)
     return glint_scene_look(state, tile);
 }
 
-/* Returns whether samples of ID are shaded one by one: edges of what it mirrors
- * and lets through lie within it. */
+/* Returns whether samples of ID are shaded one by one, as reflections and
+ * transmitted objects have edges inside it. */
 static inline int is_split(const struct glint_scene *s, uint32_t id)
 {
     return s->has_split && id != GLINT_NOTHING && s->placed[id >> 20].is_split;
 }
 
-enum { MIDDLE = -1, QUAD = -2 /* in place of a sample: see find_surface() */ };
+enum {
+    MIDDLE = -1,
+    QUAD = -2 /* special values of a sample index; see
+                 find_surface() */
+};
 
-/* Returns where sample K lies from a pixel's middle; QUAD: where it meets its
- * right and lower neighbours. */
+/* Returns the offset of sample K from a pixel's middle; for QUAD the corner
+ * shared with the right and lower neighbours. */
 static int32_t off_of(const struct glint_scene *s, int k, int axis)
 {
     return k >= 0 ? glint_sample(s, k, axis) : k == QUAD ? 128 : 0;
 }
 
-/* Finds the surface of ID at pixel (X, Y): on the ray through its middle, or,
- * where that misses it or samples are shaded one by one, through sample K. */
+/* Finds the surface of ID at pixel (X, Y): on the ray through its middle; or,
+ * if that misses ID or samples are shaded one by one, on the ray through sample
+ * K. */
 static NEVER_INLINE int find_at_length(struct glint_scene_worker *w,
                                        uint32_t id, int x, int y, int k,
                                        struct glint_scene_ray *ray,
@@ -58,7 +63,7 @@ static NEVER_INLINE int find_at_length(struct glint_scene_worker *w,
         const int32_t x_q8 = glint_place(s, x, 0) + off_of(s, at, 0);
         const int32_t y_q8 = glint_place(s, y, 1) + off_of(s, at, 1);
 
-        /* in the middle find_surface() has tried */
+        /* find_surface() has tried the middle */
         if (i > 0 && glint_quick_find(w, id, x_q8, y_q8, ray, surface))
             return 1;
         glint_view_ray(&s->view, x_q8, y_q8, ray, seen_q30);
@@ -68,7 +73,7 @@ static NEVER_INLINE int find_at_length(struct glint_scene_worker *w,
     return 0;
 }
 
-/* Finds the surface that sample K sees; most pixels take the fast path. */
+/* Finds the surface that sample K sees; most pixels use the fast path. */
 static inline int find_surface(struct glint_scene_worker *w, uint32_t id, int x,
                                int y, int k, struct glint_scene_ray *ray,
                                struct glint_met_surface *surface)
@@ -94,8 +99,8 @@ static void see_background(const struct glint_scene *s, int x, int y,
     glint_scene_behind(s, ray.toward_q30, glint_scene_pixel_q40(s), rgb_q15);
 }
 
-/* Shades what sample K of pixel (X, Y) sees; returns whether that is an object.
- */
+/* Shades the object or background that sample K of pixel (X, Y) sees; returns
+ * whether it is an object. */
 static inline int shade_id(struct glint_scene_worker *w, uint32_t id, int x,
                            int y, int k, struct glint_met_shade *shade)
 {
@@ -126,7 +131,7 @@ static inline int is_empty(const uint32_t *id, int n)
     return all == GLINT_NOTHING;
 }
 
-/* Returns whether ID only takes shadows, which hide no lamps. */
+/* Returns whether ID only receives shadows; such objects hide no lamps. */
 static inline int is_catcher(const struct glint_scene *s, uint32_t id)
 {
     return s->has_catchers && id != GLINT_NOTHING &&
@@ -143,7 +148,7 @@ static int is_joined(const struct glint_scene *s, uint32_t a, uint32_t b)
             s->cfg.parts.meshes->joins(s, a, b));
 }
 
-/* Sets TIMES to how many samples each sample is shaded for. */
+/* Sets TIMES to the number of samples that each sample is shaded for. */
 static inline void share(const struct glint_scene *s, const uint32_t *id, int n,
                          int times[GLINT_SCENE_SAMPLES])
 {
@@ -163,8 +168,9 @@ static inline void share(const struct glint_scene *s, const uint32_t *id, int n,
     }
 }
 
-/* Notes what is over white of SHADE, SHARE_Q4 of a pixel whose middle is OFF_Q8
- * from the top left corner of pixel (X, Y). */
+/* Records the light of SHADE above white as a highlight, with the fraction
+ * SHARE_Q4 of a pixel whose middle is OFF_Q8 from the top left corner of pixel
+ * (X, Y). */
 static inline void note(const struct glint_scene *s, uint32_t id,
                         const struct glint_met_shade *shade, int x, int y,
                         int32_t off_q8, int share_q4)
@@ -178,7 +184,7 @@ static inline void note(const struct glint_scene *s, uint32_t id,
                                       256 * y + off_q8, rgb_q15, share_q4);
 }
 
-/* Adds TIMES samples, of N, of ID and SHADE. */
+/* Adds SHADE of object ID to SUM, for TIMES of N samples. */
 static inline void add_samples(const struct glint_scene *s, uint32_t id,
                                const struct glint_met_shade *shade, int times,
                                struct glint_scene_sum *sum)
@@ -190,8 +196,8 @@ static inline void add_samples(const struct glint_scene *s, uint32_t id,
         sum->rgb_q17[c] += (int64_t)times * shade->rgb_q15[c];
 }
 
-/* Shades what the samples of pixel (X, Y) see one by one, where that differs.
- */
+/* Shades the samples of pixel (X, Y) one by one, except those that can share a
+ * result. */
 static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
                                        const uint32_t *id, int n, int x, int y,
                                        struct glint_scene_sum *sum)
@@ -218,7 +224,7 @@ static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
     sum->shadow_q10 = (sum->shadow_q10 + down) >> down;
 }
 
-/* Returns whether N samples from ID on see the same. */
+/* Returns whether all N samples from ID on see THING. */
 static inline int is_one(const uint32_t *id, int n, uint32_t thing)
 {
     uint32_t other = 0;
@@ -228,7 +234,7 @@ static inline int is_one(const uint32_t *id, int n, uint32_t thing)
     return other == 0;
 }
 
-/* Returns whether N samples from ID on may be shaded as THING is. */
+/* Returns whether N samples from ID on may share the shading of THING. */
 static int is_joined_to(const struct glint_scene *s, const uint32_t *id, int n,
                         uint32_t thing)
 {
@@ -242,8 +248,8 @@ static int is_joined_to(const struct glint_scene *s, const uint32_t *id, int n,
     return 1;
 }
 
-/* Returns whether (X, Y) is one of two by two pixels that all see one object,
- * or triangles around one of a smooth surface. */
+/* Returns whether the 2 x 2 pixels around (X, Y) all see one object, or
+ * adjacent triangles of one smooth surface. */
 static int is_quad(const struct glint_scene_worker *w, int n, int x, int y)
 {
     const struct glint_box b = w->touched;
@@ -299,8 +305,7 @@ static inline void write_pixel(const struct glint_scene_worker *w,
                 (uint16_t)q_clamp_sat((sum_q17[c] + 1) >> 1, 0, 65535);
 }
 
-/* Sets N pixels from X on of row ROW to light and cover that are the same for
- * all of them. */
+/* Sets N pixels from X on of row ROW to the same light and cover. */
 static void put_same(const struct glint_scene_worker *w,
                      const struct glint_pass_rows *rows, int row, int x, int n,
                      const int32_t rgb_q15[3], int cover_q8)
@@ -328,7 +333,7 @@ static void put_same(const struct glint_scene_worker *w,
     }
 }
 
-/* Adds whole cover of pixels X0 .. X1 - 1 of row Y. */
+/* Adds full cover to pixels X0 .. X1 - 1 of row Y. */
 static void cover_wholly(const struct glint_scene *s, int y, int x0, int x1)
 {
     enum { SIDE = 1 << GLINT_COVER_LOG2 };
@@ -341,8 +346,7 @@ static void cover_wholly(const struct glint_scene *s, int y, int x0, int x1)
     }
 }
 
-/* Sets pixels X0 .. X1 - 1 of row ROW to what is seen where there is no object.
- */
+/* Sets pixels X0 .. X1 - 1 of row ROW to the background. */
 static void put_background(const struct glint_scene_worker *w,
                            const struct glint_pass_rows *rows, int row, int x0,
                            int x1)
@@ -367,8 +371,8 @@ static void put_background(const struct glint_scene_worker *w,
     }
 }
 
-/* Draws pixel X of row ROW, whose N samples see ID; returns whether anything is
- * to be seen. */
+/* Draws pixel X of row ROW, whose N samples see ID; returns whether it is
+ * visible. */
 static inline int draw_pixel(struct glint_scene_worker *w,
                              const struct glint_pass_rows *rows, int row, int x,
                              const uint32_t *id, int n)
@@ -387,7 +391,8 @@ static inline int draw_pixel(struct glint_scene_worker *w,
     return sum.cover_q10 || sum.rgb_q17[0] || sum.rgb_q17[1] || sum.rgb_q17[2];
 }
 
-/* Draws row ROW, N samples a pixel; returns whether anything is to be seen. */
+/* Draws row ROW with N samples per pixel; returns whether any pixel is
+ * visible. */
 static inline int draw_row(struct glint_scene_worker *w,
                            const struct glint_pass_rows *rows, int row, int n)
 {
@@ -398,7 +403,7 @@ static inline int draw_row(struct glint_scene_worker *w,
     const int x0 = is_in ? b.x0 : w->tile.x1, x1 = is_in ? b.x1 : w->tile.x1;
     const uint32_t *id = &w->id[glint_sample_index(w, x0, y, 0)];
     int any = s->model.header->background != GLINT_BACKGROUND_CAMERA;
-    int same = x0; /* up to where the same layers are over pixels */
+    int same = x0; /* end of the run of pixels with the same layers */
 
     w->n_spans = w->n_over = 0;
     if (s->motion && is_in)
@@ -439,7 +444,7 @@ static enum glint_given draw_rows(void *state,
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-/* Pixels of the tile that a worker draws in, as a pass. */
+/* Returns the pass of the scene. */
 static struct glint_pass pass_of(const struct glint_scene *scene)
 {
     return (struct glint_pass){scene, begin_row, go_on, draw_rows};

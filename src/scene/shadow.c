@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * What throws shadows, as a sun sees it [Haines86]: a grid at right angles to
- * its rays, whose cells list all that can stand between the sun and a place in
- * them. A place outside the grid, or in an empty cell, is lit.
+ * Shadow casters as seen from a sun [Haines86]: a grid perpendicular to its
+ * rays, whose cells list all objects that may lie between the sun and a point
+ * in the cell. A point outside the grid, or in an empty cell, is lit.
  *
- *   in   where objects are; the directions to the points of a sun's disc
- *   out  whether a place sees such a point
+ *   in   positions of objects; the directions to the points of a sun's disc
+ *   out  whether a point of the scene sees a point of the disc
  *
- * Places are u, v across and h along the sun's middle ray, whole steps, within
- * +-2^29: vertices are turned once a frame and rounded alike in all triangles
- * that have them, so that no ray passes between two of these. Rays to other
- * points of the disc lean by less than a cell's margin: footprints are as much
- * larger as they lean between the top of an object and the lowest place that
- * the grid answers for. */
+ * Coordinates are u, v across and h along the sun's middle ray, integer steps,
+ * within +-2^29. Vertices are rotated once per frame and rounded in the same
+ * way in all their triangles, so that no ray passes between two of these. Rays
+ * to other points of the disc are slanted: footprints are enlarged by the slant
+ * between the top of an object and the lowest point that the grid answers
+ * for. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/mesh.h"
@@ -21,17 +21,18 @@
 enum {
     CELLS = 1 << GLINT_SHADOW_CELLS_LOG2,
     SLACK = 4,  /* steps, for rounding */
-    SORTED = 64 /* objects of a list that is sorted, at most */
+    SORTED = 64 /* max length of lists that are sorted */
 };
 
-/* Returns how far rays lean over a height, below 2^32. */
+/* Returns the max displacement of rays over HEIGHT, which must be below
+ * 2^32. */
 static inline int64_t lean_of(const struct glint_shadow *shadow, int64_t height)
 {
     return q_shift(height * shadow->lean_q30, 30);
 }
 
-/* Returns where X, within +-2^33, is along AXIS of the grid, in 256ths of a
- * cell, which is SLACK steps at least; within +-2^15. */
+/* Returns the position of X along AXIS of the grid, in 1/256 of a cell, within
+ * +-2^15. X must be within +-2^33. A cell has at least SLACK steps. */
 static inline int32_t across_q8(const struct glint_shadow *shadow, int64_t x,
                                 int axis)
 {
@@ -57,8 +58,9 @@ static void grow(struct glint_shadow *shadow, const int32_t at[3],
     }
 }
 
-/* Sets the box of all that throws shadows; returns 0 if nothing does. */
-static int enclose(const struct glint_scene *s, struct glint_shadow *shadow)
+/* Sets the bounding box of all objects that throw shadows; returns 0 if there
+ * are none. */
+static int find_bounds(const struct glint_scene *s, struct glint_shadow *shadow)
 {
     for (int k = 0; k < 3; k++) {
         shadow->lo[k] = INT32_MAX;
@@ -76,9 +78,9 @@ static int enclose(const struct glint_scene *s, struct glint_shadow *shadow)
     return shadow->lo[0] <= shadow->hi[0];
 }
 
-/* Makes room for rays that lean: the grid answers for places as far below
- * objects as these are large. */
-static void widen(struct glint_shadow *shadow)
+/* Enlarges the grid for slanted rays: it answers for points down to one size of
+ * the objects below them. */
+static void enlarge_grid(struct glint_shadow *shadow)
 {
     const int32_t side =
         q_larger(shadow->hi[0] - shadow->lo[0], shadow->hi[1] - shadow->lo[1]);
@@ -99,7 +101,7 @@ static void widen(struct glint_shadow *shadow)
 
 /* ------------------------------------------------------------------- lists */
 
-/* Returns the cells of an object. */
+/* Returns the cells that T covers. */
 static struct glint_box cells_of(const struct glint_shadow_thing *t)
 {
     return glint_box_cut((struct glint_box){0, 0, CELLS, CELLS},
@@ -108,7 +110,7 @@ static struct glint_box cells_of(const struct glint_shadow_thing *t)
                                             (t->hi[1] >> 8) + 1});
 }
 
-/* Sets T to what an object within LO .. HI can shadow. */
+/* Sets T to the box that an object within LO .. HI can shadow. */
 static void set_thing(const struct glint_shadow *shadow, const int32_t lo[3],
                       const int32_t hi[3], uint32_t id,
                       struct glint_shadow_thing *t)
@@ -126,7 +128,7 @@ static void set_thing(const struct glint_shadow *shadow, const int32_t lo[3],
     }
 }
 
-/* Sets the objects of mesh I from T on; returns how many. */
+/* Lists the triangles of mesh I at THING; returns their number. */
 static int set_triangles(const struct glint_scene *s,
                          const struct glint_shadow *shadow, uint32_t i,
                          struct glint_shadow_thing *thing)
@@ -150,7 +152,7 @@ static int set_triangles(const struct glint_scene *s,
     return (int)mesh->n_triangles;
 }
 
-/* Sets all objects; returns how many entries they have in all cells. */
+/* Lists all objects; returns the number of their entries in all cells. */
 static int64_t set_things(const struct glint_scene *s,
                           struct glint_shadow *shadow)
 {
@@ -205,7 +207,7 @@ static void list(struct glint_shadow *shadow)
     glint_bins_close(&shadow->bins);
 }
 
-/* Puts the highest objects of each list first, but of long lists. */
+/* Sorts each list by height, the highest object first, except long lists. */
 static void sort_lists(struct glint_shadow *shadow)
 {
     for (int i = 0; i < CELLS * CELLS; i++) {
@@ -223,8 +225,8 @@ static void sort_lists(struct glint_shadow *shadow)
     }
 }
 
-/* Returns whether a list has an object but OWN that is above LOWEST and can
- * shadow places within LO .. HI. */
+/* Returns whether the list of CELL has an object other than OWN that is above
+ * LOWEST and can shadow points within LO .. HI. */
 static int can_shadow(const struct glint_shadow *shadow, int cell, uint32_t own,
                       int32_t lowest, const int32_t lo_q8[2],
                       const int32_t hi_q8[2])
@@ -242,8 +244,8 @@ static int can_shadow(const struct glint_shadow *shadow, int cell, uint32_t own,
     return 0;
 }
 
-/* Returns whether nothing can come between the sun and ball I. Places on it are
- * found to 2^-20 of its radius at least (quick.c). */
+/* Returns whether no object can shadow ball I from the sun. Points on it are
+ * computed to within 2^-20 of its radius (quick.c). */
 static int is_open(const struct glint_scene *s,
                    const struct glint_shadow *shadow, uint32_t i)
 {
@@ -266,7 +268,7 @@ static int is_open(const struct glint_scene *s,
     return 1;
 }
 
-/* Marks the balls that nothing can come before. */
+/* Marks the balls that no object can shadow. */
 static void mark_open(const struct glint_scene *s,
                       const struct glint_shadow *shadow)
 {
@@ -305,7 +307,7 @@ static void turn_vertices(const struct glint_scene *s,
     }
 }
 
-/* Sets the points of the disc: how their rays lean. */
+/* Sets the points of the disc and the slopes of their rays. */
 static void set_points(const struct glint_scene *s, const struct glint_lit *lit,
                        struct glint_shadow *shadow)
 {
@@ -345,11 +347,11 @@ void glint_shadow_prepare(const struct glint_scene *s,
         row_q30[2][k] = lit->toward_q30[k];
     glint_scene_frame_of(row_q30[2], row_q30[0], row_q30[1]);
     set_points(s, lit, shadow);
-    shadow->is_empty = !enclose(s, shadow);
+    shadow->is_empty = !find_bounds(s, shadow);
     shadow->is_ready = 1;
     if (shadow->is_empty)
         return;
-    widen(shadow);
+    enlarge_grid(shadow);
     for (int k = 0; k < 2; k++)
         shadow->cells_q32[k] = (int32_t)q_divide(
             INT64_C(1) << (32 + GLINT_SHADOW_CELLS_LOG2),
@@ -367,8 +369,8 @@ void glint_shadow_prepare(const struct glint_scene *s,
 
 /* -------------------------------------------------------------------- boxes */
 
-/* Finds the place of plane P that the sun sees at (U, V); returns 0 if it is
- * out of the grid's reach. */
+/* Finds the point of plane P at (U, V) of the sun's grid; returns 0 if it is
+ * out of range. */
 static int plane_place(const struct glint_shadow *shadow,
                        const struct glint_placed *p, int32_t u, int32_t v,
                        int32_t place[3])
@@ -409,7 +411,7 @@ struct glint_box glint_shadow_box(const struct glint_scene *s,
     return glint_view_box(&s->view, (const int32_t(*)[3])seen, 4);
 }
 
-/* in place of a cell: nothing is above; the grid does not answer */
+/* special cell values: no object is above; the grid does not answer */
 enum { NONE = -1, BEYOND = -2 };
 
 /* -------------------------------------------------------------------- rays */
@@ -420,9 +422,9 @@ static int is_aside(const int32_t x[3])
     return (x[0] & x[1] & x[2]) < 0 || (-x[0] & -x[1] & -x[2]) < 0;
 }
 
-/* Returns whether a ray from AT that leans by LEAN meets a triangle above it,
- * by edge functions. A triangle is at most 2^28 long, and AT, in a cell of its
- * own, as near: with what the ray leans elements are below 2^30. */
+/* Returns, by edge functions, whether a ray from AT of slope LEAN meets a
+ * triangle above it. A triangle is at most 2^28 long, and AT, in one of its
+ * cells, is as near; with the ray's displacement elements are below 2^30. */
 static int meets_triangle(const int32_t *const vertex[3], const int32_t at[3],
                           const int32_t lean_q30[2])
 {
@@ -482,14 +484,15 @@ static int meets_ball(const struct glint_shadow *shadow,
     return glint_ray_sphere(&ray, p->at, p->radius, &chord) && chord.t[1] > 0;
 }
 
-/* A place as the sun sees it: CELL, and where that is in 256ths of cells. */
+/* A point in the coordinates of the sun, and its cell. */
 struct below {
     int32_t at[3];
     int cell;
     int32_t across_q8[2];
 };
 
-/* Returns whether anything in the list but SURFACE itself is on the ray. */
+/* Returns whether the ray meets any object of the list other than SURFACE
+ * itself. */
 static int
 is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
            const struct below *below, const struct glint_shadow_point *point,
@@ -532,7 +535,7 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
     return 0;
 }
 
-/* Finds PLACE below the sun. */
+/* Sets BELOW to the coordinates and the cell of PLACE. */
 static WHOLLY_INLINE void project_place(const struct glint_shadow *shadow,
                                         const int32_t place[3],
                                         struct below *below)
@@ -561,8 +564,8 @@ static WHOLLY_INLINE void project_place(const struct glint_shadow *shadow,
         below->cell = NONE;
 }
 
-/* Returns whether a sun that is a point reaches SURFACE, where no plane throws
- * shadows and a list of the grid answers. */
+/* Returns whether a point-like sun reaches SURFACE. No plane may throw shadows
+ * on it, and BELOW must have a list. */
 static int is_lit(const struct glint_scene *s,
                   const struct glint_shadow *shadow, const struct below *below,
                   const int32_t place[3],
@@ -574,7 +577,7 @@ static int is_lit(const struct glint_scene *s,
            !is_blocked(s, shadow, below, p, place, surface);
 }
 
-/* Returns the fraction of 1, 4 or 16 points that REACHED of them are. */
+/* Returns REACHED / the number of points (1, 4 or 16). */
 static int32_t share(const struct glint_shadow *shadow, int reached)
 {
     return reached << (shadow->n_points == 1   ? 15
@@ -582,8 +585,8 @@ static int32_t share(const struct glint_shadow *shadow, int reached)
                                                : 11);
 }
 
-/* The fraction of a disc's points that are above SURFACE, where nothing else
- * comes before them. */
+/* Returns the fraction of the disc's points above the plane of SURFACE, if
+ * nothing else hides them. */
 static int32_t share_above(const struct glint_shadow *shadow,
                            const struct glint_met_surface *surface)
 {
@@ -594,7 +597,8 @@ static int32_t share_above(const struct glint_shadow *shadow,
     return share(shadow, above);
 }
 
-/* The fraction of a disc's points, one by one. */
+/* Returns the fraction of the disc's points that reach SURFACE, by testing
+ * each. */
 static NEVER_INLINE int32_t
 share_of_points(const struct glint_scene *s, const struct glint_shadow *shadow,
                 const struct glint_met_surface *surface,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where rays meet objects. Few objects, or meshes with grids: all are tested in
- * turn. */
+ * Intersects rays with objects. All objects are tested in turn, as scenes have
+ * few objects and meshes have grids. */
 #include "scene/parts.h"
 #include "scene/state.h"
 
@@ -23,8 +23,8 @@ static int meets_plane(const struct glint_placed *p,
     return met->t > 0;
 }
 
-/* Asks object I. MET->t is the limit on entry. ANY: the nearest is not needed.
- */
+/* Intersects RAY with object I. On entry MET->t is the max distance. If ANY is
+ * set, the nearest intersection is not needed. */
 static int meets(const struct glint_scene *s, uint32_t i,
                  const struct glint_scene_ray *ray, uint32_t but_triangle,
                  int any, struct glint_met *met)

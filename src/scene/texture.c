@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Textures: bilinear in linear light, between the two levels whose texels are
- * about as large as a pixel is on the surface, along its longer side. */
+ * Textures: bilinear in linear light, blended between the two levels whose
+ * texels are about as large as the longer side of a pixel on the surface. */
 #include "base/log2.h"
 #include "base/real.h"
 #include "scene/parts.h"
@@ -30,7 +30,7 @@ static void map_plane(const struct glint_scene *scene,
     for (int k = 0; k < 2; k++) {
         const struct glint_real uv = real_of(k ? -at[2] : at[0], -unit_log2);
 
-        /* Only what is beyond whole repeats counts. */
+        /* Whole repeats are removed. */
         s->uv_q16[k] =
             (int32_t)(real_integer(uv, 16, INT64_C(1) << 62) & ((1 << 24) - 1));
     }
@@ -39,7 +39,7 @@ static void map_plane(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------- texels */
 
-/* Returns the level, q16: by the longer side of a pixel on the surface, in
+/* Returns the level, q16, from the longer side of a pixel on the surface in
  * texels. */
 static int32_t level_of(const struct glint_scene *scene,
                         const struct glint_scene_ray *ray,
@@ -59,7 +59,8 @@ static int32_t level_of(const struct glint_scene *scene,
     return q_clamp_sat(side_q16 + area_q16 / 2, 0, most << 16);
 }
 
-/* Where a sample lies between two texels. */
+/* Sets I to the two texels around a coordinate; returns the weight of the
+ * second. */
 static uint32_t between(int32_t uv_q16, uint32_t log2, uint32_t i[2])
 {
     const int64_t at_q16 = (int64_t)uv_q16 * (1 << log2) - (1 << 15);

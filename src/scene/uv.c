@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Places on balls as u and v. */
+ * Texture coordinates u and v of balls. */
 #include "scene/state.h"
 
-/* Returns atan(Y / X) / 2 pi, q30, of X, Y from 0, not both; off by 2^-19: a
- * polynomial for a ratio up to 1. */
+/* Returns atan(Y / X) / 2 pi, q30, with an error of 2^-19, by a polynomial for
+ * ratios up to 1. X and Y must not be negative, nor both 0. */
 static int32_t quarter_turn(int32_t x, int32_t y)
 {
     const int is_steep = y > x;
@@ -22,7 +22,7 @@ static int32_t quarter_turn(int32_t x, int32_t y)
     return is_steep ? (1 << 28) - a_q30 : a_q30;
 }
 
-/* Returns the angle of (X, Y) over 2 pi, -1/2 .. 1/2, q30. */
+/* Returns the angle of (X, Y) / 2 pi, -1/2 .. 1/2, q30. */
 static int32_t turn_of(int32_t x, int32_t y)
 {
     int32_t a_q30;

@@ -66,7 +66,8 @@ int glint_scene_fits(const struct glint_scene_model *model,
 
     if (object->kind == GLINT_OBJECT_MESH) {
         mesh = &model->mesh[object->mesh];
-        /* Two steps for vertices on the ball, two for turning them. */
+        /* The margin is two steps for rounding of vertices on the ball, and two
+         * for rounding of rotations. */
         reach = glint_scene_length(mesh->centre) + mesh->radius + 4;
     }
     return reach < GLINT_SCENE_SPAN &&

@@ -14,10 +14,10 @@ const uint8_t glint_root_start_q7[96] = {
     134, 134, 133, 132, 132, 131, 131, 130, 130, 129, 129, 128};
 /* clang-format on */
 
-/* Returns 2^31 / sqrt(S), S = S_Q64 / 2^64 from 1/4 to below 1, off by 2^-31
- * of itself at most: 2^31 .. 2^32 - 1. The table is off by 2^-6.9, Newton's
- * method squares that (times 3/2) three times: 2^-13.2, 2^-25.9, then the last
- * digit. */
+/* Returns 2^31 / sqrt(S), for S = S_Q64 / 2^64, 1/4 <= S < 1: 2^31 .. 2^32 - 1,
+ * with a relative error of at most 2^-31. The table has an error of 2^-6.9;
+ * each of three Newton steps squares it (times 3/2): 2^-13.2, 2^-25.9, then the
+ * last digit. */
 static uint32_t inverse_root_q31(uint64_t s_q64)
 {
     const uint32_t hi = (uint32_t)(s_q64 >> 32), lo = (uint32_t)s_q64;
@@ -25,7 +25,8 @@ static uint32_t inverse_root_q31(uint64_t s_q64)
                      << 24;
 
     for (int i = 0; i < 3; i++) {
-        /* sqrt(S) by this r, q32 of at most 1.01; then r (3 - S r^2) / 2. */
+        /* sqrt(S) from the current r, q32, at most 1.01; then r (3 - S r^2) /
+         * 2. */
         const uint64_t root_q32 = (hi * r_q31 + (lo * r_q31 >> 32)) >> 31;
         const int64_t rest_q62 =
             (INT64_C(1) << 62) - (int64_t)(root_q32 * r_q31 >> 1);

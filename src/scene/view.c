@@ -5,8 +5,9 @@
 
 enum { NEAR_BITS = 22, FAR_BITS = 16 };
 
-/* 2^24 tan over half of SIDE pixels: tan 2^25 / SIDE in _q56 for 1/256 pixel.
- * tan is 2^6 at most, so that 128 SIDE of them are 2^62. */
+/* Returns the tangent of 1/256 pixel, _q56, if TAN is the tangent of half of
+ * SIDE pixels. TAN is at most 2^6, so that 128 SIDE results are at most
+ * 2^62. */
 static int64_t step_of(int32_t tan_q24, int side)
 {
     return q_divide((int64_t)tan_q24 << 25, side > 1 ? side : 1);
@@ -41,7 +42,8 @@ int glint_view_init(struct glint_scene_view *view,
     if (view->step_q56[0] >> 1 > q_divide(max_q56, 256 * width) ||
         view->step_q56[1] >> 1 > q_divide(max_q56, 256 * height))
         return 0;
-    /* 128 sides of steps, the tangent, is below 2^(57 + wide) */
+    /* 128 * side * step, the tangent at the picture's edge, is below 2^(57 +
+     * wide) */
     view->per_tan_q8 = (int64_t)q_divide(INT64_C(1) << 56, view->step_q56[0]);
     view->wide = 0;
     while ((view->step_q56[0] * width | view->step_q56[1] * height) >>
@@ -78,7 +80,8 @@ void glint_view_seen(const struct glint_scene_view *view,
 
 /* ---------------------------------------------------------------- corners */
 
-/* Returns X / 2^DOWN, which must fit, rounded; DOWN may be negative. */
+/* Returns X / 2^DOWN, rounded. The result must fit 32 bits; DOWN may be
+ * negative. */
 static int32_t shorter(int64_t x, int down)
 {
     if (down > 62)
@@ -87,9 +90,9 @@ static int32_t shorter(int64_t x, int down)
                                : x * (INT64_C(1) << (down < -62 ? 0 : -down)));
 }
 
-/* Returns X times the focal length over Z, of which ONE_OVER is 2^63 / (Z
- * 2^UP); sets *FITS to 0 if it is too large. X 2^up is made 2^30, so the
- * quotient keeps 30 bits however small it is. */
+/* Returns X times the focal length / Z, where ONE_OVER must be 2^63 / (Z 2^UP);
+ * sets *FITS to 0 if the result is too large. X is scaled up to 2^30 first, so
+ * that small quotients keep 30 bits. */
 static int32_t place_q8(int32_t x, struct glint_real focal_q8,
                         uint32_t one_over, int up, int *fits)
 {
@@ -107,7 +110,7 @@ static int32_t place_q8(int32_t x, struct glint_real focal_q8,
     return (int32_t)q_shift(product, down);
 }
 
-/* The direction to V as homogeneous numbers of 16 bits. */
+/* Returns the direction to V as homogeneous coordinates of 16 bits. */
 static struct glint_corner direction(const struct glint_scene_view *view,
                                      const int32_t v[3])
 {
@@ -166,7 +169,7 @@ struct glint_box glint_view_box(const struct glint_scene_view *view,
 /* ------------------------------------------------------------------ depths */
 
 /* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1). Coefficients
- * get so many fraction bits that each term stays below 2^60. */
+ * get the most fraction bits with which each term stays below 2^60. */
 int glint_view_depth(const struct glint_scene_view *view, const int32_t v[3],
                      const int32_t normal_q30[3], int32_t nearest,
                      struct glint_depth *depth)

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
  * Visibility at the samples of a tile: spheres by the ray of each sample,
- * planes by 1 / z, triangles by the part for meshes.
+ * planes by 1 / z, triangles by the module for meshes.
  *
- * A sphere whose rim is farther away from a pixel's middle than its samples are
- * gives all of them the depth of the middle. Spheres come last: one that no
- * other ball can hide in part requests no depth where all that is there is
- * farther away than its far side. */
+ * If the rim of a sphere is farther from a pixel's middle than the samples, all
+ * samples get the depth of the middle. Spheres are drawn last: a sphere that no
+ * other ball can partly hide needs no depth where everything drawn so far is
+ * farther than its far side. */
 #include "scene/visible.h"
 #include "scene/parts.h"
 
-/* The corners of a square that is turned; eight and sixteen that are spread as
- * evenly as rows and columns of their own let them. */
+/* Sample positions: the corners of a rotated square; eight and sixteen samples,
+ * each in its own row and column, as evenly spread as that allows. */
 /* clang-format off */
 static const int8_t one_q8[1][2] = {{0, 0}};
 static const int8_t four_q8[4][2] = {
@@ -32,14 +32,14 @@ const int8_t (*glint_scene_samples(int n))[2]
 
 /* ----------------------------------------------------------------- spheres */
 
-/* A ray of the picture, and what of a ball it meets. */
+/* A primary ray, and its chord in a ball. */
 struct look {
     struct glint_scene_ray ray;
     struct glint_chord chord;
     int32_t seen_q30[3]; /* the ray's direction in camera coordinates */
 };
 
-/* Finds the chord of the ray of place (X, Y) in PLACED. */
+/* Finds the chord in PLACED of the ray through (X, Y). */
 static int look_at(const struct glint_scene *s,
                    const struct glint_placed *placed, int32_t x_q8,
                    int32_t y_q8, struct look *look)
@@ -63,8 +63,8 @@ static void put_look(struct glint_scene_worker *w, const struct look *look,
                      id);
 }
 
-/* Returns whether what samples FIRST .. END - 1 see so far is farther away than
- * all of the ball. */
+/* Returns whether everything that samples FIRST .. END - 1 see so far is
+ * farther than the ball's far side. */
 static int is_nearer(const struct glint_scene_worker *w,
                      const struct glint_placed *placed, int first, int end)
 {
@@ -75,7 +75,7 @@ static int is_nearer(const struct glint_scene_worker *w,
     return placed->flat_depth && most < placed->far_depth;
 }
 
-/* Has samples FIRST .. END - 1 see the ball. */
+/* Sets samples FIRST .. END - 1 to the ball. */
 static void set_samples(struct glint_scene_worker *w,
                         const struct glint_placed *placed, uint32_t id,
                         int first, int end)
@@ -86,8 +86,8 @@ static void set_samples(struct glint_scene_worker *w,
     }
 }
 
-/* Returns whether all samples meet PLACED if LOOK, through their middle, does.
- */
+/* Returns whether all samples of a pixel meet PLACED, given that LOOK, the ray
+ * through its middle, does. */
 static int is_well_inside(const struct glint_placed *placed,
                           const struct look *look)
 {
@@ -98,8 +98,8 @@ static int is_well_inside(const struct glint_placed *placed,
            v3_dot(look->chord.middle, look->chord.middle) <= within * within;
 }
 
-/* Returns whether all samples of the pixel, and rays a little beside them, meet
- * the ball. */
+/* Draws the ball in a pixel; returns whether all samples of the pixel, and rays
+ * slightly beside them, meet the ball. */
 static int look_at_pixel(struct glint_scene_worker *w,
                          const struct glint_placed *placed, uint32_t id, int x,
                          int y)
@@ -132,9 +132,9 @@ static int look_at_pixel(struct glint_scene_worker *w,
     return 0;
 }
 
-/* Looks at a ball in row Y. What lies between two pixels well inside is inside,
- * too: where one depth serves all of it, rays are asked there only of what may
- * be nearer. */
+/* Draws a ball in row Y. Pixels between two pixels well inside are inside, too:
+ * if one depth suffices for the ball, rays are traced there only where the ball
+ * may be hidden. */
 static void look_at_row(struct glint_scene_worker *w,
                         const struct glint_placed *placed, uint32_t id,
                         struct glint_box b, int y)
@@ -158,7 +158,7 @@ static void look_at_row(struct glint_scene_worker *w,
 
 /* ------------------------------------------------------------------ planes */
 
-/* What 1 / z of a plane differs by from a pixel's middle to its samples. */
+/* Differences of a plane's 1 / z between a pixel's middle and its samples. */
 struct deeper {
     int64_t by[GLINT_SCENE_SAMPLES];
 };
@@ -210,10 +210,10 @@ static void look_at_plane(struct glint_scene_worker *w,
 
 /* ------------------------------------------------------------------- frame */
 
-enum { MOST_COMPARED = 64 /* objects: all with all */ };
+enum { MOST_COMPARED = 64 /* max number of objects for pairwise comparison */ };
 
-/* Returns whether B may hide what A shows, or A what B does, but not all of it.
- */
+/* Returns whether A and B may partly hide each other, so that one depth per
+ * ball does not order them. */
 static int is_tangled(const struct glint_placed *a,
                       const struct glint_placed *b)
 {
@@ -258,8 +258,8 @@ static int is_before(const struct glint_scene *s, const struct glint_placed *p,
            q_magnitude(away) > (uint64_t)p->reach + 2;
 }
 
-/* Confines a catcher to pixels in which shadows may be, or objects that it may
- * hide. */
+/* Restricts a catcher to the pixels that may have shadows, or objects that it
+ * may hide. */
 static void confine(const struct glint_scene *s, struct glint_placed *plane)
 {
     struct glint_box box = {0, 0, 0, 0};
@@ -294,8 +294,8 @@ void glint_scene_confine(struct glint_scene *s)
 
 /* -------------------------------------------------------------------- tile */
 
-/* Returns the pixels of a tile that may see an object. Those of meshes count if
- * the tile lists triangles. */
+/* Returns the pixels of a tile that may see an object. Meshes count if the tile
+ * lists triangles. */
 static struct glint_box touch(const struct glint_scene *s,
                               struct glint_box tile, int has_triangles)
 {

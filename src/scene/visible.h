@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * The samples of a tile: each keeps the nearest object, and of two equally near
- * the one with the lower index, in any order of drawing. */
+ * The samples of a tile. Each keeps the nearest object, or the lower index of
+ * two equally near objects, in any order of drawing. */
 #ifndef GLINT_SCENE_VISIBLE_H
 #define GLINT_SCENE_VISIBLE_H
 
 #include "scene/state.h"
 
-/* Returns the place of pixel I, across (AXIS 0) or down (1), q8 from the
- * middle. */
+/* Returns the coordinate of pixel I, across (AXIS 0) or down (AXIS 1), q8 from
+ * the picture's middle. */
 static inline int32_t glint_place(const struct glint_scene *s, int i, int axis)
 {
     return 256 * i - 128 * ((axis ? s->view.height : s->view.width) - 1);
 }
 
-/* Returns where sample K lies from a pixel's middle, q8, within half a pixel
- * each way: no two are in one row or column. */
+/* Returns the offset of sample K from its pixel's middle along AXIS, q8, within
+ * half a pixel. No two samples have the same x or the same y. */
 static inline int32_t glint_sample(const struct glint_scene *s, int k, int axis)
 {
     return s->sample_q8[k][axis];
@@ -50,25 +50,27 @@ static inline void glint_put_sample(struct glint_scene_worker *w, int x, int y,
 
 /* ------------------------------------------------------------------- balls */
 
-/* Balls in the middle of pixels, the quick way (quick.h). */
+/* Balls in the middle of pixels, by the fast path (quick.h). */
 
-/* Prepares ball P, which is placed. */
+/* Prepares ball P after it is placed. */
 void glint_quick_ball(const struct glint_scene *scene, struct glint_placed *p);
 
 /* Sets RAY to the ray through (X, Y), and SEEN_Q30 to its direction in camera
- * coordinates, each element off by 2^-24. */
+ * coordinates; elements have an error of 2^-24. */
 void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
                      int32_t y_q8, struct glint_scene_ray *ray,
                      int32_t seen_q30[3]);
 
-/* Sets COSINE_Q30 to that between RAY and the normal of P, where P->over_up is
- * not 0, and ACROSS_Q30 to the middle's distance from the ray, in radii, turned
- * to a right angle. Returns 0 beside P and near its rim. */
+/* Sets COSINE_Q30 to the cosine between RAY and the normal of P, and ACROSS_Q30
+ * to the distance vector of the ball's middle from the ray, in radii, rotated
+ * by a right angle. P->over_up must not be 0. Returns 0 if the ray misses P or
+ * passes near its rim. */
 int glint_quick_meet(const struct glint_placed *p,
                      const struct glint_scene_ray *ray, int32_t across_q30[3],
                      int32_t *cosine_q30);
 
-/* Returns how far along RAY that is, steps, to 2^-13 of a radius. */
+/* Returns the distance along RAY of that intersection, steps, with an error of
+ * 2^-13 radii. */
 int32_t glint_quick_away(const struct glint_placed *p,
                          const struct glint_scene_ray *ray, int32_t cosine_q30);
 
@@ -95,28 +97,29 @@ struct glint_scene_motions {
                          struct glint_scene_worker *worker);
     /* Opens the motion and seeks frame 0. */
     enum glint_status (*open)(struct glint_scene *scene);
-    /* Finds where shells, lines and box are in the picture. */
+    /* Finds the positions of shells, lines and box in the picture. */
     void (*project)(struct glint_scene *scene);
-    /* Returns how many of KIND are in the picture. */
+    /* Returns the number of layers of KIND in the picture. */
     int (*count)(const struct glint_scene *scene, enum glint_scene_kind kind);
-    /* Returns the pixels of TILE that they may touch. */
+    /* Returns the pixels of TILE that layers may touch. */
     struct glint_box (*touch)(const struct glint_scene *scene,
                               struct glint_box tile);
-    /* Lists in W those that may touch its row Y, from back to front. */
+    /* Lists in W the layers that may touch row Y of its tile, from back to
+     * front. */
     void (*list)(struct glint_scene_worker *w, int y);
-    /* Sets W->over to the layers of the list over pixel X. Returns the end of
-     * the pixels that the same layers are over. */
+    /* Sets W->over to the listed layers over pixel X. Returns the end of the
+     * run of pixels with the same layers. */
     int (*next)(struct glint_scene_worker *w, int x);
-    /* Draws W->over over pixel (X, Y), whose light so far is SUM. */
+    /* Composites W->over over pixel (X, Y), whose light so far is SUM. */
     void (*over)(const struct glint_scene_worker *w, int x, int y,
                  struct glint_scene_sum *sum);
 };
 
-/* Sets TO to the turn by the unit quaternion Q_Q30. */
+/* Sets TO to the rotation by the unit quaternion Q_Q30. */
 void glint_scene_turn_of(const int32_t q_q30[4], struct glint_scene_turn *to);
 
-/* Finds where P, whose centre and reach are known, is in the picture; returns
- * its least z, or GLINT_FAR if it is not seen. */
+/* Finds the pixels that P may touch; its centre and reach must be set. Returns
+ * its min z, or GLINT_FAR if it is not visible. */
 int32_t glint_scene_place(const struct glint_scene *scene,
                           struct glint_placed *p);
 

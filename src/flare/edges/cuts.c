@@ -17,8 +17,7 @@ static int64_t radius2_q32(const struct glint_vertex *v)
            (int64_t)v->stop_y_q16 * v->stop_y_q16;
 }
 
-/* Returns half the number of sides if each has a parallel one opposite, else 0.
- */
+/* Returns half the number of sides if opposite sides are parallel, else 0. */
 static int half_sides(const struct glint_stop *stop)
 {
     const int half = stop->n_blades / 2;
@@ -30,7 +29,8 @@ static int half_sides(const struct glint_stop *stop)
     return stop->n_blades % 2 ? 0 : half;
 }
 
-/* Returns 1 - (1 + r^2) / 2 at V in the round stop, clamped far outside. */
+/* Returns 1 - (1 + r^2) / 2 at V in a round stop, minus its inset; clamped far
+ * outside. */
 static int64_t disc_q16(const struct glint_stop *stop,
                         const struct glint_vertex *v)
 {
@@ -40,10 +40,10 @@ static int64_t disc_q16(const struct glint_stop *stop,
     return value_q16 > -(1 << 30) ? value_q16 : -(1 << 30);
 }
 
-/* Returns a bit for each side that V lies on or beyond, which is where
- * glint_side_q16() is 0 or less. LEAST is the apothem less half a unit of _q16,
- * as that function rounds. HALF is the number of pairs of parallel sides, whose
- * two sides are tested together; 0: sides are tested one by one. */
+/* Returns a bit for each side that V lies on or outside of, where
+ * glint_side_q16() is 0 or less. LEAST is the apothem minus half a unit of
+ * _q16, as glint_side_q16() rounds. HALF is the number of pairs of parallel
+ * sides, which are tested together; if it is 0, sides are tested one by one. */
 static inline uint64_t sides_of(const struct glint_stop *stop, int half,
                                 const struct glint_vertex *v, int64_t least_q46)
 {
@@ -61,7 +61,7 @@ static inline uint64_t sides_of(const struct glint_stop *stop, int half,
     return half ? sides | opposite << half : sides;
 }
 
-/* Returns a bit for each arc that V lies on or beyond. */
+/* Returns a bit for each arc that V lies on or outside of. */
 static uint64_t arcs_of(const struct glint_stop *stop,
                         const struct glint_vertex *v)
 {
@@ -124,8 +124,9 @@ struct interval {
     int cut[2];
 };
 
-static void shorten(const struct glint_stop *stop, struct interval *in, int cut,
-                    const struct glint_vertex *a, const struct glint_vertex *b)
+static void shorten_interval(const struct glint_stop *stop, struct interval *in,
+                             int cut, const struct glint_vertex *a,
+                             const struct glint_vertex *b)
 {
     const int64_t fa = cut_q16(stop, cut, a), fb = cut_q16(stop, cut, b);
     const int end = fb <= 0; /* index of the end that is outside */
@@ -144,8 +145,9 @@ static void shorten(const struct glint_stop *stop, struct interval *in, int cut,
     }
 }
 
-static void place(const struct glint_vertex *a, const struct glint_vertex *b,
-                  int64_t t_q30, int32_t at_q8[2])
+static void interpolate_point(const struct glint_vertex *a,
+                              const struct glint_vertex *b, int64_t t_q30,
+                              int32_t at_q8[2])
 {
     at_q8[0] =
         a->x_q8 + q_narrow(q_shift((b->x_q8 - (int64_t)a->x_q8) * t_q30, 30));
@@ -170,23 +172,23 @@ void glint_cuts_part(const struct glint_stop *stop,
     if (!part->visible)
         return;
     for (uint64_t m = at_a.sides | at_b.sides; m; m &= m - 1)
-        shorten(stop, &in, lowest_bit(m), a, b);
+        shorten_interval(stop, &in, lowest_bit(m), a, b);
     for (int k = 0; k < 2; k++)
         if ((at_a.barrels | at_b.barrels) >> k & 1)
-            shorten(stop, &in, BARREL + k, a, b);
+            shorten_interval(stop, &in, BARREL + k, a, b);
     part->visible = in.t_q30[0] < in.t_q30[1];
     for (int k = 0; k < 2 && part->visible; k++) {
-        place(a, b, in.t_q30[k], part->end_q8[k]);
+        interpolate_point(a, b, in.t_q30[k], part->end_q8[k]);
         part->cut[k] = in.cut[k];
     }
 }
 
 /* ----------------------------------------------------------------- corners */
 
-/* The plane through the values at four corners: middle + u along + v across,
- * with u and v from -1/2 to 1/2. */
+/* The plane fitted to the values at four corners: middle + u * slope + v *
+ * slope, with u and v from -1/2 to 1/2. */
 struct plane {
-    /* Members are scaled to stay whole: the middle by 4, the slopes by 2. */
+    /* Members are scaled to stay integers: the middle by 4, the slopes by 2. */
     int64_t middle4, u2, v2;
 };
 
@@ -197,8 +199,8 @@ static struct plane plane_of(const int64_t value[4])
                           value[3] - value[0] + value[2] - value[1]};
 }
 
-/* Sets *Q16 to X / Y if that lies within the cell or near it; else returns 0.
- */
+/* Sets *Q16 to X / Y if the quotient lies in the cell or near it (-3/4 .. 3/4);
+ * else returns 0. */
 static int near_q16(int64_t x, int64_t y, int64_t *q16)
 {
     const int wide = bit_length(q_magnitude(x));

@@ -9,8 +9,9 @@
 
 #define ONE_Q40 (INT64_C(1) << 40)
 
-/* Returns ACROSS / DOWN, rounded towards 0 by at most 2^-31 of it and one unit.
- * DOWN > 0, both below 2^30. */
+/* Returns ACROSS / DOWN, rounded towards 0 with an error of at most 2^-31 of
+ * the result plus one unit. DOWN must be above 0, both magnitudes below
+ * 2^30. */
 static int64_t slope_of(int32_t across, int32_t down)
 {
     const int up = q_up((uint32_t)down);
@@ -49,16 +50,16 @@ void glint_edge_make_snapped(struct glint_edge *edge)
 
 enum visit { COUNT, PUT, SPAN };
 
-/* Returns the tile, in its row, of column X; LAST is the last column of the
- * region. */
+/* Returns the index, in a row of tiles, of the tile of column X; LAST is the
+ * last column of the region. */
 static inline int tile_of(int x, int last, int log2)
 {
     return (x < 0 ? 0 : x > last ? last : x) >> log2;
 }
 
-/* Visits the tiles that EDGE crosses, or those of a patch's box, one row of
- * tiles after the other. Parts left of the region belong to its first column.
- * Returns how many entries that is. */
+/* Visits the tiles that edge E crosses, or the tiles of a patch's box, one row
+ * of tiles after the other. Parts left of the region belong to its first
+ * column. Returns the number of entries. */
 static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
                                    const struct glint_bins *bins,
                                    enum visit visit, int32_t index)

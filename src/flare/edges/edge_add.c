@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Adds the light of edges to one tile's sums: smooth edges by the area that
- * they cover in each pixel, edges on whole pixels by their height in each row.
+ * they cover in each pixel, pixel-snapped edges by their height in each row.
  * edge.h has the formats. */
 #include "flare/edges/edge.h"
 
@@ -14,14 +14,15 @@
 #define ONE_Q16 (INT32_C(1) << 16)
 #define ONE_Q40 (INT64_C(1) << 40)
 
-/* An integer below 2^31, of the width that the CPU adds fastest. */
+/* An integer type for values below 2^31, of the width that the CPU adds
+ * fastest. */
 typedef int_fast32_t fast;
 
 /* Sums have 64 bits, or 32 if light stays below MOST_NARROW, _q16 or _q20. */
 enum mode { WIDE, NARROW };
 
-/* A tile's edges lie apart in memory, so each is fetched so many edges before
- * it is added. */
+/* A tile's edges are scattered in memory, so each is prefetched AHEAD edges
+ * before it is added. */
 enum { AHEAD = 12 };
 #define MOST_NARROW (INT64_C(1) << 23)
 
@@ -30,15 +31,16 @@ struct run {
     union {
         uint64_t *wide;
         uint32_t *narrow;
-    } row;      /* the mode tells which member is in use */
-    int less;   /* low bits of areas _q16 that are dropped: 8, or 0 for linear
-                   light */
+    } row;      /* the mode selects the member */
+    int less;   /* number of low bits of areas _q16 that are dropped: 8, or 0
+                   for linear light */
     int x0, x1; /* the tile's columns */
     int64_t light;
     int64_t rise_q32; /* rise of the covered area per pixel, see rise_of() */
 };
 
-static inline void change(const struct run *r, enum mode mode, int x, fast area)
+static inline void add_change(const struct run *r, enum mode mode, int x,
+                              fast area)
 {
     if (mode == NARROW)
         r->row.narrow[x] += (uint32_t)r->light * (uint32_t)area;
@@ -46,7 +48,7 @@ static inline void change(const struct run *r, enum mode mode, int x, fast area)
         r->row.wide[x] += (uint64_t)(r->light * area);
 }
 
-/* Returns AREA, one pixel at most, in the units of the sums. */
+/* Returns AREA, at most one pixel, in the units of the sums. */
 static inline fast units(const struct run *r, enum mode mode, fast area_q16)
 {
     const int less = mode == NARROW ? 8 : r->less;
@@ -63,7 +65,8 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
 {
     const int first = (int)(a_q40 >> 40), last = (int)(b_q40 >> 40);
     const int64_t a_q16 = a_q40 >> 24, b_q16 = b_q40 >> 24;
-    /* The last pixel before the tile counts, too, if there is one. */
+    /* The pixel left of the tile, if there is one, is needed for the first
+     * difference. */
     const int begin = r->x0 > 0 ? r->x0 - 1 : 0;
     const int from = first > begin ? first : begin;
     const int to = last < r->x1 - 1 ? last : r->x1 - 1;
@@ -76,25 +79,25 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
         const fast high = i < last
                               ? (fast)(r->rise_q32 * (side_q16 - a_q16) >> 32)
                               : height_q16;
-        /* distances of both ends of the piece from the pixel's right side,
-         * summed */
+        /* sum of the distances of the piece's two ends from the pixel's right
+         * side */
         const fast far_q16 = (fast)((i > first ? ONE_Q16 : side_q16 - a_q16) +
                                     (i < last ? 0 : side_q16 - b_q16));
         const fast area =
             units(r, mode, low + (fast)((int64_t)(high - low) * far_q16 >> 17));
 
         if (i >= r->x0)
-            change(r, mode, i, area - before);
+            add_change(r, mode, i, area - before);
         before = area;
         low = high;
     }
     if (last < r->x1 && last >= r->x0)
-        change(r, mode, last + 1, units(r, mode, height_q16) - before);
+        add_change(r, mode, last + 1, units(r, mode, height_q16) - before);
 }
 
-/* Returns the rise of an edge, height over width, both _q16, with 32 fraction
- * bits more. Edges so steep that they move by less than 2^-16 pixels get a
- * smaller rise. */
+/* Returns the rise of an edge, height _q16 / width _q16, with 32 additional
+ * fraction bits. Edges so steep that they move by less than 2^-16 pixels per
+ * 1/256 pixel of height get a smaller rise. */
 static int64_t rise_of(int64_t slope_q40)
 {
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
@@ -108,7 +111,7 @@ static int64_t rise_of(int64_t slope_q40)
     return (r << 8) >> (7 - up);
 }
 
-/* Adds a piece that lies in one pixel or two, both in the tile: it needs only
+/* Adds a piece that lies in one or two pixels of the tile, using only
  * registers. */
 static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
                             fast b_q16, fast height_q16)
@@ -122,8 +125,8 @@ static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
         const int64_t area_q33 = (int64_t)height_q16 * (far_q16 + left_q16);
         const fast area = units(r, mode, (fast)(area_q33 >> 17));
 
-        change(r, mode, first, area);
-        change(r, mode, first + 1, height - area);
+        add_change(r, mode, first, area);
+        add_change(r, mode, first + 1, height - area);
     } else {
         const fast low_q16 = (fast)(r->rise_q32 * far_q16 >> 32);
         const int64_t rest_q33 =
@@ -132,13 +135,13 @@ static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
             units(r, mode, (fast)((int64_t)low_q16 * far_q16 >> 17));
         const fast two = units(r, mode, low_q16 + (fast)(rest_q33 >> 17));
 
-        change(r, mode, first, one);
-        change(r, mode, first + 1, two - one);
-        change(r, mode, first + 2, height - two);
+        add_change(r, mode, first, one);
+        add_change(r, mode, first + 1, two - one);
+        add_change(r, mode, first + 2, height - two);
     }
 }
 
-/* Adds the piece from A to B over HEIGHT; A and B in any order. */
+/* Adds the piece from A to B over HEIGHT. A may be larger than B. */
 static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
                              int64_t b_q40, fast height_q16)
 {
@@ -146,9 +149,10 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
     const int64_t high_q40 = a_q40 < b_q40 ? b_q40 : a_q40;
     const int first = (int)(low_q40 >> 40), last = (int)(high_q40 >> 40);
 
-    if (last < r->x0) { /* A piece left of the picture counts from its side. */
+    if (last < r->x0) { /* A piece left of the picture counts as one at the
+                           picture's left side. */
         if (r->x0 == 0)
-            change(r, mode, 0, units(r, mode, height_q16));
+            add_change(r, mode, 0, units(r, mode, height_q16));
     } else if (first >= r->x1) {
         return;
     } else if (first == last ||
@@ -175,8 +179,8 @@ static uint64_t rows_between(int a, int b)
     return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
 }
 
-/* Adds N whole rows of an edge that begins at X and moves by STEP in each row.
- */
+/* Adds N complete rows of an edge that begins at X and moves by STEP per
+ * row. */
 static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
                             int64_t step_q40, int stride)
 {
@@ -187,8 +191,8 @@ static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
     }
 }
 
-/* Does as add_rows() for rows that lie within the tile, each in one pixel or
- * two. */
+/* Like add_rows(), but in each row the edge must cross only one or two pixels
+ * of the tile. */
 static inline void add_rows_within(struct run r, enum mode mode, int n,
                                    int64_t x_q40, int64_t step_q40, int stride)
 {
@@ -277,21 +281,21 @@ static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
         add_piece(&p.run, mode, p.x_q40, end_q40, (p.end_q8 - p.y_q8) * 256);
 }
 
-/* Adds a row's light, AREA, to the pixel that the edge is in there and all to
- * its right. X_Q40 counts from the tile's left side. An edge left of the
- * picture counts from its side. */
+/* Adds AREA, the area of one row, to the pixel of the edge in that row and all
+ * pixels on its right. X_Q40 counts from the tile's left side. An edge left of
+ * the picture counts as one at the picture's left side. */
 static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
                              fast area)
 {
     const int x = (int)(x_q40 >> 40);
 
     if ((unsigned)x < (unsigned)r->x1)
-        change(r, mode, x, area);
+        add_change(r, mode, x, area);
     else if (x < 0 && r->x0 == 0)
-        change(r, mode, 0, area);
+        add_change(r, mode, 0, area);
 }
 
-/* Does as add_whole() in N whole rows, moving by STEP in each. */
+/* Like add_whole(), for N complete rows; the edge moves by STEP per row. */
 static inline void add_full_rows(struct run r, enum mode mode, int n,
                                  int64_t x_q40, int64_t step_q40, int stride)
 {
@@ -311,19 +315,20 @@ static inline void add_full_rows(struct run r, enum mode mode, int n,
     for (; n > 0 && (uint64_t)x_q40 >= end_q40; n--, x_q40 += step_q40)
         go_down(&r, mode, stride);
     for (; n > 0 && (uint64_t)x_q40 < end_q40; n--, x_q40 += step_q40) {
-        change(&r, mode, (int)(x_q40 >> 40), full);
+        add_change(&r, mode, (int)(x_q40 >> 40), full);
         go_down(&r, mode, stride);
     }
 }
 
-/* Adds all rows of P as an edge on whole pixels. */
+/* Adds all rows of P as a pixel-snapped edge. */
 static inline void add_whole_rows(const struct glint_edge_sums *s,
                                   enum mode mode, const struct glint_edge *e,
                                   struct part p)
 {
     int n;
 
-    go_down(&p.run, mode, p.run.x0); /* Columns are the tile's from here on. */
+    go_down(&p.run, mode, p.run.x0); /* From here on columns count from the
+                                        tile's left side. */
     p.x_q40 -= p.run.x0 * ONE_Q40;
     p.run.x1 -= p.run.x0;
     if (p.y_q8 & 255) {
@@ -366,7 +371,7 @@ static int64_t step_of(const struct glint_edge *e, int32_t colour_q14, int less)
            q_shift(coloured_q20(e->left, colour_q14), less);
 }
 
-/* Adds patch E in the colour RGB. Returns the most light of a channel, with
+/* Adds patch E in the colour RGB. Returns the max light over the channels, with
  * LESS of the 20 fraction bits dropped. */
 static int64_t add_patch(const struct glint_edge_sums *s, enum mode mode,
                          const struct glint_edge *e, const int32_t rgb_q14[3],
@@ -383,7 +388,7 @@ static int64_t add_patch(const struct glint_edge_sums *s, enum mode mode,
 }
 
 /* Adds the edges to the sums of MODE. Returns the sum of the magnitudes of all
- * changes of light: the farthest that a sum can get from where it begins. */
+ * changes of light, a bound on how far a sum can get from its start. */
 static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
                                      enum mode mode,
                                      const struct glint_edge *edge,
@@ -414,8 +419,8 @@ static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
                 continue;
             far[c] += step < 0 ? -step : step;
             if (mode == NARROW && far[c] >= MOST_NARROW)
-                return far[c]; /* The narrow sums cannot hold this tile; the
-                                  wide ones have to. */
+                return far[c]; /* The narrow sums could overflow in this tile;
+                                  the caller uses the wide sums. */
             if (e->whole)
                 add_whole_rows(s, mode, e, part_of(s, mode, e, step, c));
             else
@@ -443,7 +448,7 @@ void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
                     int n_refs)
 {
     const int64_t most = MOST_NARROW * 256;
-    int64_t far = 0; /* light times areas, as of the sums */
+    int64_t far = 0; /* light times area, in the units of the sums */
 
     sums->in_narrow = 0;
     if (!sums->linear)

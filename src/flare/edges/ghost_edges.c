@@ -16,7 +16,7 @@ typedef int32_t point_q8[2];
 /* ------------------------------------------------------------------- edges */
 
 /* Returns whether the change from LIGHT to OTHER is so small that its edge may
- * lie on whole pixels. */
+ * be pixel-snapped. */
 static int is_weak(const struct glint_ghost_edges *g, int32_t light,
                    int32_t other)
 {
@@ -41,7 +41,7 @@ static void make_edge(const struct glint_ghost_edges *g,
         glint_edge_make_snapped(edge);
 }
 
-/* Counts the entries in the bins of an edge that has no room. */
+/* Counts the entries in the bins of an edge that did not fit. */
 static void count_only(struct glint_ghost_edges *g, const int32_t a_q8[2],
                        const int32_t b_q8[2], int32_t light, int32_t other)
 {
@@ -101,9 +101,8 @@ static int64_t turn_q16(const struct glint_corners *c, int i)
     return glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, d->x_q8, d->y_q8);
 }
 
-/* Returns the sign of the turn at each corner if it is the same at all four,
- * else 0. The turns at opposite corners add up to twice the area of the cell.
- */
+/* Returns the sign of the cell's area if the cell is convex, else 0. turn_q16()
+ * of two opposite corners adds up to twice the area of the cell. */
 static int convexity(const struct glint_corners *c)
 {
     const int64_t one = turn_q16(c, 0), other = c->area2_q16 - one;
@@ -116,8 +115,8 @@ static int convexity(const struct glint_corners *c)
 
 /* Sets the steps of irradiance in each octave. Codes of a picture resolve
  * fainter light more coarsely: the light of one code shrinks by only 2^(7/12)
- * with each octave, so 3/4 of the steps would do; 7/8 are taken, as many ghosts
- * may overlap. */
+ * with each octave, so 3/4 of the steps per octave would suffice; 7/8 are used,
+ * as many ghosts may overlap. */
 static void set_steps(struct glint_ghost_edges *g)
 {
     int steps_q8 = g->steps * 256;
@@ -129,9 +128,9 @@ static void set_steps(struct glint_ghost_edges *g)
     }
 }
 
-/* Sets, for each octave, the light of snap_codes: with each octave below white
- * the light of one code falls to 2/3, about 2^(-7/12), down to where codes are
- * linear. */
+/* Sets, for each octave, the light of snap_codes_q8 codes: with each octave
+ * below white the light of one code falls to 2/3, about 2^(-7/12), until codes
+ * are linear in light. */
 static void set_weak(struct glint_ghost_edges *g)
 {
     const int32_t least_q20 = 318;
@@ -146,7 +145,7 @@ static void set_weak(struct glint_ghost_edges *g)
     }
 }
 
-/* Returns X, below 2^44, rounded to the nearest step of its octave. */
+/* Returns X rounded to the nearest step of its octave. X must be below 2^44. */
 static int64_t in_steps(int64_t x, const uint16_t *steps_of)
 {
     const int log2 = bit_length((uint64_t)x | 1) - 1;
@@ -248,8 +247,8 @@ void glint_ghost_add_alone(struct glint_ghost_edges *g,
     }
 }
 
-/* Draws a cell that is not a convex quad: as two triangles, or as the one
- * triangle whose corners are not lost. */
+/* Draws a cell that is not a convex quad: as two triangles, or as one triangle
+ * if one corner is invalid. */
 static NEVER_INLINE void add_triangles(struct glint_ghost_edges *g,
                                        const struct glint_ghost_cell *c)
 {
@@ -272,8 +271,8 @@ static NEVER_INLINE void add_triangles(struct glint_ghost_edges *g,
     }
 }
 
-/* Draws a cell that shares no side with its neighbours. TURN is the sign of the
- * turn at its corners, 0 if it is not convex. */
+/* Draws a cell that shares no side with its neighbours. TURN is its
+ * convexity(). */
 static NEVER_INLINE void add_odd(struct glint_ghost_edges *g,
                                  const struct glint_ghost_cell *c,
                                  const struct glint_corners *corners, int turn)
@@ -307,7 +306,7 @@ static void part_of_side(const struct glint_ghost_edges *g,
     }
 }
 
-/* Adds the chords of a cell that is cut: they link the visible parts of its
+/* Adds the chords of a cell that is cut: they connect the visible parts of its
  * sides. */
 static void add_chords(struct glint_ghost_edges *g,
                        const struct glint_ghost_cell *c, int32_t light)
@@ -353,7 +352,7 @@ static void set_corners(const struct glint_ghost_edges *g, int i, int j,
 }
 
 /* Returns whether the cells of row J touch the middle row of nodes of an
- * annular box: that row has no rays, but no light is lost there. */
+ * annular box: that row has no rays, and there is no light to draw. */
 static int is_in_hole(const struct glint_ghost_edges *g, int j)
 {
     const int middle = g->bundle->n_cells / 2;
@@ -362,10 +361,11 @@ static int is_in_hole(const struct glint_ghost_edges *g, int j)
            (j == middle - 1 || j == middle);
 }
 
-/* Dims the corners of a cell that is drawn by itself. DIMMED is where they are
- * then, if the stop has a shade. */
-static void dim(const struct glint_ghost_edges *g, struct glint_ghost_cell *c,
-                struct glint_corners *corners, struct glint_vertex dimmed[4])
+/* Dims the corners of a cell that is drawn separately. If the stop has a shade,
+ * DIMMED receives the dimmed corners. */
+static void dim_cell(const struct glint_ghost_edges *g,
+                     struct glint_ghost_cell *c, struct glint_corners *corners,
+                     struct glint_vertex dimmed[4])
 {
     const struct glint_shade *shade = g->stop->shade;
 
@@ -375,9 +375,9 @@ static void dim(const struct glint_ghost_edges *g, struct glint_ghost_cell *c,
     glint_corners_set(corners, c->corner, 4);
 }
 
-/* Returns the light of the cell at (I, J) for the edges that it shares. Cells
- * that are drawn by themselves, or not at all, return 0. Nearly all cells lie
- * wholly outside the visible part or wholly inside it. */
+/* Returns the light of the cell at (I, J) for the edges that it shares with its
+ * neighbours, or 0 for cells that are drawn separately or not at all. Nearly
+ * all cells lie wholly outside the visible part or wholly inside it. */
 static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
 {
     const struct glint_ghost_rows *r = g->rows;
@@ -397,12 +397,12 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
         return 0;
     if (some & NODE_LOST) {
         set_cell(g, i, j, &cell);
-        dim(g, &cell, &corners, dimmed);
+        dim_cell(g, &cell, &corners, dimmed);
         add_triangles(g, &cell);
         return 0;
     }
-    /* The cell is cut off by one side or barrel, or none of its edges can
-     * change a pixel. */
+    /* The whole cell lies outside one side or barrel, or off-screen where its
+     * edges change no pixel. */
     if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
         return 0;
     set_corners(g, i, j, &corners);
@@ -415,7 +415,7 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     if (odd || cuts)
         set_cell(g, i, j, &cell);
     if (odd) {
-        dim(g, &cell, &corners, dimmed);
+        dim_cell(g, &cell, &corners, dimmed);
         add_odd(g, &cell, &corners, turn);
         return 0;
     }

@@ -6,19 +6,20 @@
  *   out  edges across which the irradiance changes
  *
  * A cell has one irradiance: its flux over its area on the screen, negative
- * where the ghost is mirrored. Neighbours share an edge, which is drawn once,
- * with the irradiance on either side, and not at all if both are equal:
+ * where the ghost is mirrored. The edge between two neighbours is drawn once,
+ * with the irradiance on either side. It is not drawn if both are equal, and
  * irradiance is rounded to steps so that they often are. Only the part of an
- * edge is drawn that lies within the stop's sides and the barrels, which are
- * linear between its ends; where a side or barrel crosses a cell, a chord
- * closes the cell. Every part of an edge follows from its two ends alone, so
- * that neighbours agree to the bit and outlines close.
+ * edge within the stop's sides and the barrels is drawn; both are taken as
+ * linear between its ends. Where a side or barrel crosses a cell, a chord
+ * closes the cell. Each visible part depends on the two ends of its edge alone,
+ * so that neighbours agree to the bit and outlines close.
  *
  * Cells that are folded, have an invalid corner, are thinner than a sixteenth
  * of a pixel, or are crossed by more than two sides are drawn separately as
- * closed outlines: outline.h. A round stop cuts like a barrel, lowered by its
- * sag. If vertices are given instead of polynomials, its sag is unknown, and
- * cells that it crosses are drawn separately. */
+ * closed outlines: outline.h. A round stop cuts like a barrel, corrected by its
+ * sag (see struct glint_bundle_plan). If vertices are given instead of
+ * polynomials, the sag is unknown, and cells that a round stop crosses are
+ * drawn separately. */
 #ifndef GLINT_FLARE_GHOST_EDGES_H
 #define GLINT_FLARE_GHOST_EDGES_H
 
@@ -40,30 +41,31 @@ enum {
 struct glint_ghost_rows {
     struct glint_outline outline;
     struct glint_vertex vertex[2][GLINT_MAX_CELLS + 1];
-    /* [j]: the mirror image of row j, which is one of the rows after the middle
-     * one. In small grids it is computed together with row j. */
+    /* [j]: the mirror image of row j, one of the rows after the middle row. In
+     * small grids it is computed together with row j. */
     struct glint_vertex held[GLINT_HELD_CELLS / 2][GLINT_HELD_CELLS + 1];
     uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* sides of the stop that each node
                                                lies outside, a bit each */
-    /* Bits of the barrels that each node lies outside, and NODE_ bits. */
+    /* Bits of the barrels that each node lies outside, and NODE_ bits
+     * (ghost_parts.h). */
     uint8_t barrels[2][GLINT_MAX_CELLS + 1];
     int32_t light[2][GLINT_MAX_CELLS]; /* irradiance of each cell of two rows,
                                           packed */
     /* Steps of irradiance in each octave. */
     uint16_t steps[GLINT_LIGHT_OCTAVES];
     int32_t weak_q20[GLINT_LIGHT_OCTAVES]; /* edges with smaller changes of
-                                              light are pixel-snapped; by the
+                                              light are pixel-snapped; per
                                               octave of the light */
 };
 
 struct glint_patch;
 struct glint_ghost_edges {
-    /* [n_cells + 1][n_cells + 1]; not used if TRANSFER or RAYS is set: vertices
-     * are then computed, row by row */
+    /* [n_cells + 1][n_cells + 1]; not used if transfer or rays is set, as
+     * vertices are then computed row by row */
     const struct glint_vertex *vertex;
     struct glint_transfer *transfer;
     const struct glint_flare_rays *rays;
-    int worker; /* number of the worker, for RAYS */
+    int worker; /* number of the worker, passed to the functions of rays */
     struct glint_place place;
     const uint16_t *sag_q16; /* see struct glint_bundle_plan */
     const struct glint_bundle *bundle;
@@ -72,27 +74,30 @@ struct glint_ghost_edges {
      */
     struct glint_real flux, irradiance;
     const struct glint_stop *stop;
-    int width, top, height; /* pixels that are drawn: 0 .. width - 1 and top ..
-                               height - 1 */
-    int32_t limit_q8; /* most light that a cell may give a pixel at energy 1,
+    int width, top, height; /* the pixels that are drawn: columns 0 .. width -
+                               1, rows top .. height - 1 */
+    int32_t limit_q8; /* max light that a cell may give a pixel at energy 1,
                          display white */
-    int steps;        /* per octave of irradiance; 0: not rounded */
+    int steps;        /* steps per octave of irradiance; 0: irradiance is not
+                         rounded */
     int coded; /* 1: the picture is in codes, which resolve faint light more
                   coarsely */
     int snap_codes_q8; /* see struct glint_flare_frame */
     struct glint_ghost_rows *rows;
-    /* While a cell of the shade is drawn by itself: what lies in it. */
+    /* Set only while a cell with dust or masks is drawn separately: the patch
+     * over it. */
     struct glint_patch *patch;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;
-    /* Bins in which more_refs counts the entries of edges without room; NULL:
-     * they are not counted. */
+    /* The bins for which more_refs counts the entries of edges that do not fit;
+     * NULL: they are not counted. */
     const struct glint_bins *bins;
-    /* The two rows of nodes that are at work. */
+    /* The two rows of nodes that are in use. */
     const struct glint_vertex *row[2];
     /* Results. */
     int n_edges; /* number of all edges; only the first max_edges are written */
-    int more_refs; /* entries in the bins that edges without room would take */
+    int more_refs; /* number of entries in the bins of the edges that did not
+                      fit */
     int n_dropped; /* cells left out because a corner is invalid */
     int n_held;    /* cells, or halves of cells, whose light was clamped to
                       limit_q8 */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The soft edge of a stop, as outlines inside each other. */
+ * Draws the soft edge of a stop as nested outlines. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
@@ -14,7 +14,7 @@ static const uint16_t depth_q16[GLINT_SOFT_RINGS] = {
     6938,  12393, 16384, 19804, 22914, 25838, 28650, 31402,
     34134, 36886, 39698, 42622, 45732, 49152, 53143, 58598};
 
-/* Returns log2 of X, rounded down, below 31; 0 for less than 2. */
+/* Returns log2 of X, rounded down and clamped to 0 .. 30. */
 static int log2_of(struct glint_real x)
 {
     const int64_t n = real_integer(x, 0, INT64_C(1) << 30);
@@ -22,21 +22,21 @@ static int log2_of(struct glint_real x)
     return bit_length((uint64_t)n | 1) - 1;
 }
 
-/* Returns log2 of the number of rings: no nearer to each other than a pixel,
- * nor with less light than half a code. */
+/* Returns log2 of the number of rings, limited so that they are at least a
+ * pixel apart and each has the light of at least half a code. */
 static int rings_log2(const struct glint_ghost_edges *g)
 {
     int log2 = MOST_LOG2;
 
     if (g->irradiance.mantissa && g->coded) {
-        /* the light of a code falls with 2^(7/12) by octave */
+        /* the light of a code falls by 2^(7/12) per octave */
         const int octaves = -(g->irradiance.exponent + 31);
         const int codes_log2 = 8 - (octaves > 0 ? octaves * 5 / 12 : 0);
 
         log2 = codes_log2 < log2 ? codes_log2 : log2;
     }
     if (g->irradiance.mantissa) {
-        /* (2 pixels)^2 = area soft^2 */
+        /* (2 * pixels)^2 = area * soft^2 */
         const struct glint_real soft = real_of(g->stop->shade->soft_q16, -16);
         const struct glint_real pixels2 = real_times(
             real_over(g->flux, g->irradiance), real_times(soft, soft));
@@ -47,7 +47,8 @@ static int rings_log2(const struct glint_ghost_edges *g)
     return log2 > 0 ? log2 : 0;
 }
 
-/* Moves the outline of STOP inwards by DEPTH; returns 0 if nothing is left. */
+/* Moves the outline of STOP inwards by BY, in stop radii; returns 0 if no
+ * opening is left. */
 static int shrink(struct glint_stop *stop, int32_t by_q16)
 {
     if (stop->n_blades == 0)

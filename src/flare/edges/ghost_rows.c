@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fills rows of nodes of a grid: their vertices, and which of stop, barrels and
- * sides of the picture each node lies outside. */
+ * Fills rows of nodes of a grid: their vertices, and for each node the sides of
+ * the stop, the barrels and the sides of the picture that it lies outside
+ * of. */
 #include "flare/edges/ghost_parts.h"
 
 #include <stddef.h>
@@ -16,10 +17,10 @@ static int vertex_valid(const struct glint_vertex *v)
            (uint32_t)v->y_q8 + most <= 2 * most;
 }
 
-/* Lowers the barrels' values in a row by their sag, and moves the stop
+/* Subtracts the sag from the barrels' values in a row, and moves the stop
  * positions inwards by the sag of a round stop. */
-static struct glint_vertex *lower(const struct glint_ghost_edges *g,
-                                  struct glint_vertex *row)
+static struct glint_vertex *subtract_sags(const struct glint_ghost_edges *g,
+                                          struct glint_vertex *row)
 {
     const int64_t nearer_q16 = g->sag_q16[2];
     const int lowers = g->sag_q16[0] | g->sag_q16[1];
@@ -54,8 +55,8 @@ static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
     else if (2 * j < n)
         glint_transfer_rows(g->transfer, &g->place, n, j, row, r->held[j]);
     else
-        return lower(g, r->held[n - j]);
-    return lower(g, row);
+        return subtract_sags(g, r->held[n - j]);
+    return subtract_sags(g, row);
 }
 
 void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j)

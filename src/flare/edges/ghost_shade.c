@@ -27,19 +27,22 @@ static int shift_of(const struct glint_shade *s, int level)
     return 17 - s->log2 + level;
 }
 
-/* Returns a place in the stop from the table's first node on. */
-static int32_t held(int64_t at_q16)
+/* Returns a coordinate in the stop as a distance from the table's first node,
+ * clamped to the table. */
+static int32_t clamp_to_table(int64_t at_q16)
 {
     return q_clamp_sat(at_q16 + (1 << 16), 0, (1 << 17) - 1);
 }
 
-/* Returns the light at (X, Y), stop radii _q16, by the four nodes about it. */
+/* Returns the light at (X, Y), in stop radii, interpolated between the four
+ * nodes around it. */
 static int32_t light_q15(const struct glint_shade *s, int level, int64_t x_q16,
                          int64_t y_q16)
 {
     const int shift = shift_of(s, level);
     const int side = (1 << (s->log2 - level)) + 1;
-    const int32_t one = 1 << shift, x = held(x_q16), y = held(y_q16);
+    const int32_t one = 1 << shift, x = clamp_to_table(x_q16),
+                  y = clamp_to_table(y_q16);
     const int32_t u = x & (one - 1), v = y & (one - 1);
     const uint16_t *at =
         s->level_q15[level] + (ptrdiff_t)(y >> shift) * side + (x >> shift);
@@ -50,7 +53,7 @@ static int32_t light_q15(const struct glint_shade *s, int level, int64_t x_q16,
     return (int32_t)q_shift(low * (one - v) + high * v, 2 * shift);
 }
 
-/* Returns how far finer levels differ from LEVEL about (X, Y). */
+/* Returns the max difference of finer levels from LEVEL near (X, Y). */
 static int rough_q8(const struct glint_shade *s, int level, int64_t x_q16,
                     int64_t y_q16)
 {
@@ -58,11 +61,11 @@ static int rough_q8(const struct glint_shade *s, int level, int64_t x_q16,
     const int side = (1 << (s->log2 - level)) + 1;
     const int32_t half = 1 << (shift - 1);
 
-    return s->rough_q8[level][((held(y_q16) + half) >> shift) * side +
-                              ((held(x_q16) + half) >> shift)];
+    return s->rough_q8[level][((clamp_to_table(y_q16) + half) >> shift) * side +
+                              ((clamp_to_table(x_q16) + half) >> shift)];
 }
 
-/* Returns the level whose nodes lie as far apart as the corners of C, or at
+/* Returns the level whose nodes are as far apart as the corners CORNER, or at
  * least half as far. */
 static int level_of(const struct glint_shade *s,
                     const struct glint_vertex *const *corner)
@@ -80,9 +83,9 @@ static int level_of(const struct glint_shade *s,
     return level < 0 ? 0 : level < s->log2 ? level : s->log2 - 1;
 }
 
-/* Returns the smallest visible difference of light near LIGHT: a 128th of it,
- * or half of a code. With each octave below white the light of a code falls to
- * 2/3, as far as codes are not linear. */
+/* Returns the smallest visible difference of light near LIGHT: LIGHT / 128 for
+ * linear pictures, else the light of a code. With each octave below white that
+ * falls to 2/3, until codes are linear in light. */
 static int64_t tolerance_q20(const struct glint_ghost_edges *g,
                              int64_t light_q20)
 {
@@ -98,14 +101,16 @@ static int64_t tolerance_q20(const struct glint_ghost_edges *g,
 
 /* ----------------------------------------------------------------- patches */
 
-/* A change along both sides of a cell: pixels, and places in the stop. */
+/* The change of the position in the picture, pixels, and of the position in the
+ * stop, stop radii, along two opposite sides of a cell. */
 struct span {
     int64_t x_q8, y_q8, stop_q16[2];
 };
 
-/* Returns twice the mean of the sides from corner A to B and from D to C. */
-static struct span twice(const struct glint_vertex *const *at, int a, int b,
-                         int d, int c)
+/* Returns the sum of the changes along the sides from corner A to B and from D
+ * to C. */
+static struct span add_sides(const struct glint_vertex *const *at, int a, int b,
+                             int d, int c)
 {
     return (struct span){
         (int64_t)at[b]->x_q8 - at[a]->x_q8 + at[c]->x_q8 - at[d]->x_q8,
@@ -116,8 +121,8 @@ static struct span twice(const struct glint_vertex *const *at, int a, int b,
              at[d]->stop_y_q16}};
 }
 
-/* Returns (A B - C D) / DET as _q24, within LIMIT: A, C _q16, B, D _q8, DET
- * _q16. */
+/* Returns (A B - C D) / DET as _q24, clamped to +-2^32. A and C are _q16, B and
+ * D _q8, DET _q16. */
 static int64_t slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
                          struct glint_real det)
 {
@@ -125,12 +130,14 @@ static int64_t slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
                         INT64_C(1) << 32);
 }
 
-/* Sets where in the stop pixels of P lie, from the corners AT of a cell; BOX of
- * P is set. Returns 0 if they move too fast. */
+/* Sets the map from pixels of P to positions in the stop, from the corners AT
+ * of a cell. The box of P must be set. Returns 0 if the slope is out of
+ * range. */
 static int set_map(struct glint_patch *p, const struct glint_vertex *const *at)
 {
     const int64_t most_q24 = INT64_C(1) << 24;
-    const struct span a = twice(at, 0, 1, 3, 2), b = twice(at, 0, 3, 1, 2);
+    const struct span a = add_sides(at, 0, 1, 3, 2),
+                      b = add_sides(at, 0, 3, 1, 2);
     const struct glint_real det =
         real_of(a.x_q8 * b.y_q8 - a.y_q8 * b.x_q8, -16);
     const int64_t x_q8 =
@@ -159,7 +166,7 @@ static int set_map(struct glint_patch *p, const struct glint_vertex *const *at)
             sum_q16 * 64 + q_shift(across * (p->box.x0 * 256 + 128 - x_q8) +
                                        down * (p->box.y0 * 256 + 128 - y_q8),
                                    8);
-        /* modulo 2^32, as only pixels within the cell count */
+        /* modulo 2^32, as only pixels within the cell are used */
         p->at_q24[k] = (int32_t)(uint32_t)(uint64_t)from_q24;
         p->across_q24[k] = (int32_t)across;
         p->down_q24[k] = (int32_t)down;
@@ -167,7 +174,8 @@ static int set_map(struct glint_patch *p, const struct glint_vertex *const *at)
     return 1;
 }
 
-/* Sets the pixels that the corners of P reach; returns 0 if there are none. */
+/* Sets the box of pixels within the corners of P; returns 0 if no pixel of the
+ * picture is in it. */
 static int set_box(struct glint_patch *p, const struct glint_ghost_edges *g)
 {
     int32_t low[2] = {INT32_MAX, INT32_MAX}, high[2] = {INT32_MIN, INT32_MIN};
@@ -196,7 +204,7 @@ static void set_level(struct glint_patch *p, const struct glint_shade *s)
     p->level = p->level < 0 ? 0 : p->level < s->log2 ? p->level : s->log2 - 1;
 }
 
-/* Adds P, whose corners are set, over cell AT. */
+/* Adds patch P over the cell of corners AT. The corners of P must be set. */
 static void add_patch(struct glint_ghost_edges *g, struct glint_patch *p,
                       const struct glint_vertex *const *at)
 {
@@ -223,7 +231,7 @@ static void add_patch(struct glint_ghost_edges *g, struct glint_patch *p,
                                   glint_edge_span(&head, g->bins));
 }
 
-static void of_outline(struct glint_ghost_edges *g, int32_t light)
+static void patch_outline(struct glint_ghost_edges *g, int32_t light)
 {
     const struct glint_outline *o = &g->rows->outline;
     struct glint_patch *p = g->patch;
@@ -239,7 +247,8 @@ static void of_outline(struct glint_ghost_edges *g, int32_t light)
 
 /* ------------------------------------------------------------------- cells */
 
-/* Returns log2 of how many pixels wide or high a cell is, rounded down. */
+/* Returns log2 of the larger of a cell's width and height in pixels, rounded
+ * down. */
 static int pixels_log2(const struct glint_vertex *const *corner)
 {
     int64_t far = 0;
@@ -251,8 +260,8 @@ static int pixels_log2(const struct glint_vertex *const *corner)
     return bit_length((uint64_t)far >> 8) - 1;
 }
 
-/* Returns how far the light differs within a cell from the mean of LIGHT, that
- * of its corners at LEVEL. */
+/* Returns a bound on how far the shade's light within a cell differs from the
+ * mean of LIGHT, the light of the cell's corners at LEVEL. */
 static int roughness_q8(const struct glint_shade *s, int level,
                         const struct glint_vertex *const *corner,
                         const int32_t light[4])
@@ -271,8 +280,8 @@ static int roughness_q8(const struct glint_shade *s, int level,
     return most + ((high - low) >> 7);
 }
 
-static int cell(struct glint_ghost_edges *g, const struct glint_corners *c,
-                int turn, int cuts, int64_t *energy_q16)
+static int draw_cell(struct glint_ghost_edges *g, const struct glint_corners *c,
+                     int turn, int cuts, int64_t *energy_q16)
 {
     const struct glint_shade *s = g->stop->shade;
     const struct glint_vertex *const *corner = c->at;
@@ -339,7 +348,7 @@ static void dim_corners(const struct glint_shade *shade,
 }
 
 const struct glint_shade_method glint_shade_method = {.emit = glint_rings_emit,
-                                                      .cell = cell,
-                                                      .patch = of_outline,
+                                                      .cell = draw_cell,
+                                                      .patch = patch_outline,
                                                       .draw = glint_patch_draw,
                                                       .corners = dim_corners};

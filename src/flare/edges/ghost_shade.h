@@ -4,16 +4,15 @@
  *
  *   in   a cell of a ghost's grid, tables of the light that the stop lets
  *        through
- *   out  the light of the cell, and edges of what is in it
+ *   out  the light of the cell, and patches of the details in it
  *
- * A soft edge is a few outlines, one inside the other, of the same light each.
+ * A soft edge is drawn as a few nested outlines of equal light.
  *
- * The tables come in levels, each half as fine as the one before. A cell is as
- * wide as the nodes of one of them, and takes the light of that. Where finer
- * levels differ visibly from it, the cell is drawn in parts, down to a pixel:
- * as edges of each part's difference from the cell's clearest corner, so that
- * clear parts need no edges. No rays are computed for that, as between the rays
- * of a grid all is linear. */
+ * The tables have levels, each half as fine as the level before. A cell gets
+ * its light from the level whose nodes are about as far apart as its corners.
+ * Where finer levels differ visibly from it, a patch (patch.h) adds the
+ * difference pixel by pixel. No rays are computed for that, as everything is
+ * linear between the rays of a grid. */
 #ifndef GLINT_FLARE_GHOST_SHADE_H
 #define GLINT_FLARE_GHOST_SHADE_H
 
@@ -22,24 +21,25 @@
 enum { GLINT_SOFT_RINGS = 16 }; /* max outlines of a soft edge */
 
 struct glint_shade_method {
-    /* Turns a bundle into edges, for glint_ghost_edges_emit(). */
+    /* Turns a bundle into edges; called by glint_ghost_edges_emit(). */
     void (*emit)(struct glint_ghost_edges *g);
-    /* Draws what lies in a convex cell of TURN with the mean energy *ENERGY
-     * that is crossed by CUTS cuts. Sets *ENERGY to that of the cell without
-     * what was drawn; returns 0 if all of it was drawn, and the cell shares no
-     * edges. */
+    /* Draws dust and masks in a convex cell of orientation TURN, with the mean
+     * energy *ENERGY and crossed by CUTS cuts. Sets *ENERGY to the energy that
+     * the cell's own edges have to draw. Returns 0 if the whole cell was drawn;
+     * it then shares no edges with its neighbours. */
     int (*cell)(struct glint_ghost_edges *g, const struct glint_corners *c,
                 int turn, int cuts, int64_t *energy_q16);
-    /* Adds the patch of a cell that is drawn by itself, over its outline. */
+    /* Adds the patch over the outline of a cell that is drawn separately. */
     void (*patch)(struct glint_ghost_edges *g, int32_t light);
     glint_patch_fn *draw;
-    /* Dims the corners of a cell that is drawn by itself: DIMMED receives them,
-     * and C refers to those. */
+    /* Dims the corners of a cell that is drawn separately: DIMMED receives the
+     * dimmed corners, and C is set to point to them. */
     void (*corners)(const struct glint_shade *shade, struct glint_ghost_cell *c,
                     struct glint_vertex dimmed[4]);
 };
 
-/* The member emit: once, or for each ring of a soft edge. */
+/* The member emit: draws the bundle once, or once for each ring of a soft
+ * edge. */
 void glint_rings_emit(struct glint_ghost_edges *g);
 
 /* Returns whether SHADE is in range. */

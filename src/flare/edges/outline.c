@@ -16,7 +16,8 @@ int64_t glint_disc_q16(const struct glint_vertex *v)
                        -(1 << 30), 1 << 30);
 }
 
-/* A place 2^14 stop radii off has a value of 2^31, times 2^30. */
+/* A point 2^14 stop radii away has a value of 2^31; times 2^30 it fits 64
+ * bits. */
 int64_t glint_arc_q16(const struct glint_stop *stop, int64_t straight_q16,
                       int64_t disc_q16)
 {
@@ -24,8 +25,8 @@ int64_t glint_arc_q16(const struct glint_stop *stop, int64_t straight_q16,
                    30);
 }
 
-/* Sets VALUE[N] to how far each corner lies inside side SIDE; DISC[N] has
- * glint_disc_q16() of each where sides are round. */
+/* Sets VALUE[N] to the distance of each corner inside side SIDE. If sides are
+ * round, DISC[N] must have glint_disc_q16() of each corner. */
 static void set_side(const struct glint_stop *stop, int side,
                      const struct glint_vertex *const *at, int n,
                      const int64_t *disc, int64_t *value)
@@ -69,9 +70,9 @@ static enum side barrel_side(const struct glint_corners *c)
     return all;
 }
 
-/* Returns on which side of the disc a primitive lies. The disc may bulge into a
- * primitive whose corners all lie outside, so only far ones count as OUTSIDE.
- */
+/* Returns the position of a primitive relative to the disc. The disc may bulge
+ * into a primitive whose corners all lie outside, so only primitives far away
+ * count as OUTSIDE. */
 static enum side disc_side(const struct glint_corners *c,
                            const struct glint_stop *stop)
 {
@@ -127,15 +128,15 @@ static int64_t value_at(const int64_t *value_q16, const struct glint_uv *p)
                                   28);
 }
 
-/* Returns the place between A and B where a function with the values FA and FB
- * is 0. Products are below 2^28 times 2^33. */
-static int32_t between(int32_t a_q28, int32_t b_q28, int64_t fa, int64_t fb)
+/* Returns the point between A and B where a linear function with the values FA
+ * and FB is 0. Products are below 2^28 times 2^33. */
+static int32_t find_zero(int32_t a_q28, int32_t b_q28, int64_t fa, int64_t fb)
 {
     return a_q28 + (int32_t)q_divide((b_q28 - a_q28) * fa, fa - fb);
 }
 
-/* Keeps the part of O on the inner side of one half plane, given the function's
- * values at the triangle's corners. */
+/* Cuts O by one half plane, given the values of its linear function at the
+ * triangle's corners: negative is outside. */
 static void cut_one(struct glint_outline *o, const int64_t *value_q16)
 {
     int64_t here, next;
@@ -153,8 +154,8 @@ static void cut_one(struct glint_outline *o, const int64_t *value_q16)
             o->kept[n++] = *a;
         if ((here >= 0) != (next >= 0))
             o->kept[n++] =
-                (struct glint_uv){between(a->u_q28, b->u_q28, here, next),
-                                  between(a->v_q28, b->v_q28, here, next)};
+                (struct glint_uv){find_zero(a->u_q28, b->u_q28, here, next),
+                                  find_zero(a->v_q28, b->v_q28, here, next)};
     }
     o->n = n < 3 ? 0 : n;
     for (int i = 0; i < o->n; i++)
@@ -217,8 +218,10 @@ static void cut_stop(struct glint_outline *o,
     }
 }
 
-/* Turns the corners' u and v into pixels: differences below 2^29 times 2^28. */
-static void place(struct glint_outline *o, const struct glint_vertex *const *at)
+/* Converts the corners' u and v to pixels. Products are below 2^29 times
+ * 2^28. */
+static void set_pixels(struct glint_outline *o,
+                       const struct glint_vertex *const *at)
 {
     const int64_t ux = at[1]->x_q8 - at[0]->x_q8;
     const int64_t uy = at[1]->y_q8 - at[0]->y_q8;
@@ -235,8 +238,10 @@ static void place(struct glint_outline *o, const struct glint_vertex *const *at)
     }
 }
 
-/* Sets share and energy of O. The triangle's area is 1/2 in u and v. */
-static void weigh(struct glint_outline *o, const struct glint_vertex *const *at)
+/* Sets the share and the energy of O. The whole triangle has an area of 1/2 in
+ * u and v. */
+static void set_share(struct glint_outline *o,
+                      const struct glint_vertex *const *at)
 {
     const int64_t energy_q16[3] = {at[0]->energy_q16, at[1]->energy_q16,
                                    at[2]->energy_q16};
@@ -272,8 +277,8 @@ void glint_outline_cut(struct glint_outline *outline,
         cut_barrels(outline, at);
     if (cut & GLINT_CUT_STOP)
         cut_stop(outline, at, stop, cut & GLINT_CUT_LOWERED);
-    place(outline, at);
-    weigh(outline, at);
+    set_pixels(outline, at);
+    set_share(outline, at);
 }
 
 void glint_outline_whole(struct glint_outline *outline,
@@ -295,8 +300,9 @@ void glint_outline_whole(struct glint_outline *outline,
 
 /* ------------------------------------------------------------------- widen */
 
-/* Widens A to B, whose first coordinate is the one along the strip, A's the
- * smaller, to the least length. Returns twice the strip's area, q32. */
+/* Lengthens the strip from A to B to the min length. The first coordinate is
+ * along the strip; A's must not be larger than B's. Returns twice the strip's
+ * area, q32. */
 static int64_t strip(int64_t a[2], int64_t b[2])
 {
     const int64_t middle = (a[0] + b[0]) >> 1;

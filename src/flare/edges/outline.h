@@ -4,13 +4,13 @@
  *
  *   in   a triangle of a primitive's corners, the stop, two barrels
  *   out  the polygon that the stop's sides and the barrels leave, all of them
- *        linear between the corners: corners in pixels, fraction of the
- * triangle, mean energy
+ *        linear between the corners: its corners in pixels, its fraction of
+ *        the triangle, its mean energy
  *
  * Method: half planes cut the triangle in barycentric coordinates u, v of its
- * second and third corner, one after the other, so that a triangle without area
- * on the screen is cut as well as any other. A round stop is taken as a half
- * plane, too: (1 - r^2) / 2 at the corners, raised by the mean height of its
+ * second and third corner, one after the other, so that triangles without area
+ * on the screen are cut correctly, too. A round stop is also treated as a half
+ * plane: (1 - r^2) / 2 at the corners, plus the mean height of the function's
  * bulge over the triangle, which makes the area right.
  *
  * Formats: u, v _q28; functions _q16, below 2^33, times u or v below 2^61;
@@ -24,21 +24,21 @@
 #include "flare/edges/primitive.h"
 #include "glint/light.h"
 
-/* Returns (1 - r^2) / 2 at V, clamped far outside: the value of a round stop's
- * cut. */
+/* Returns (1 - r^2) / 2 at V, the function that a round stop cuts by; clamped
+ * far outside. */
 int64_t glint_disc_q16(const struct glint_vertex *v);
 
-/* Returns how far a place lies inside the arc between two corners that is
- * STRAIGHT inside the straight line and has DISC by glint_disc_q16(). With a
- * circle of radius 1 / k whose centre lies d behind the stop's, k^-2 - |v + d
- * n|^2 is 2 d straight + 1 - r^2 wherever both corners have r = 1; it is
- * multiplied by k / 2 here, after which it is the distance where that is small.
- */
+/* Returns how far a point lies inside the arc between two corners of the stop,
+ * in stop radii. STRAIGHT is its distance inside the straight line between the
+ * corners, DISC is glint_disc_q16() of it. For a circle of radius 1 / k whose
+ * centre lies d behind the stop's centre, k^-2 - |v + d n|^2 is 2 d STRAIGHT +
+ * 1 - r^2 if both corners have r = 1. The result is that times k / 2, which
+ * equals the distance where it is small. */
 int64_t glint_arc_q16(const struct glint_stop *stop, int64_t straight_q16,
                       int64_t disc_q16);
 
-/* Returns how far V lies inside the straight line of side SIDE, in stop radii.
- */
+/* Returns how far V lies inside the straight line of side SIDE, in stop radii;
+ * negative outside. */
 static inline int64_t glint_straight_q16(const struct glint_stop *stop,
                                          int side, const struct glint_vertex *v)
 {
@@ -49,8 +49,8 @@ static inline int64_t glint_straight_q16(const struct glint_stop *stop,
            q_shift(nx * v->stop_x_q16 + ny * v->stop_y_q16, 30);
 }
 
-/* Return how far V lies inside side SIDE of a stop, in stop radii, and how far
- * inside a barrel, as 1 - (1 + r^2) / 2. */
+/* Return how far V lies inside side SIDE of a stop, in stop radii, or inside a
+ * barrel, as 1 - (1 + r^2) / 2. Negative outside. */
 static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,
                                      const struct glint_vertex *v)
 {
@@ -66,13 +66,13 @@ static inline int64_t glint_barrel_q16(int barrel, const struct glint_vertex *v)
     return (INT64_C(1) << 16) - v->barrel_q16[barrel];
 }
 
-/* Three corners of a triangle, one more for each cut, and room for the copy of
- * the first corner after the last. */
+/* Three corners of a triangle, one more per cut, and a copy of the first corner
+ * after the last. */
 enum { GLINT_OUTLINE_CORNERS = GLINT_MAX_BLADES + 8 };
 
 /* Scratch of a worker, 2.3 KB. */
 struct glint_outline {
-    int n; /* number of corners; 0: nothing is seen */
+    int n; /* number of corners; 0: nothing is visible */
     int64_t x_q16[GLINT_OUTLINE_CORNERS], y_q16[GLINT_OUTLINE_CORNERS];
     int32_t
         share_q28; /* fraction of the triangle that the cuts leave, 0 .. 1 */
@@ -82,8 +82,8 @@ struct glint_outline {
     } uv[GLINT_OUTLINE_CORNERS], kept[GLINT_OUTLINE_CORNERS];
 };
 
-/* Returns the set of GLINT_CUT_ that cross the primitive, or -1 if nothing of
- * it is seen. The stop has no mask. */
+/* Returns the set of GLINT_CUT_ flags of the cuts that cross the primitive, or
+ * -1 if all of it is outside. Masks of the stop are ignored. */
 int glint_outline_classify(const struct glint_corners *corners,
                            const struct glint_stop *stop);
 
@@ -91,8 +91,8 @@ int glint_outline_classify(const struct glint_corners *corners,
 void glint_outline_whole(struct glint_outline *outline,
                          const struct glint_corners *corners);
 
-/* Sets OUTLINE to the part that the cuts CUT leave of the triangle of corners
- * 0, K + 1 and K + 2. */
+/* Sets OUTLINE to the part of the triangle of corners 0, K + 1 and K + 2 that
+ * the cuts CUT leave. */
 void glint_outline_cut(struct glint_outline *outline,
                        const struct glint_corners *corners, int k,
                        const struct glint_stop *stop, int cut);

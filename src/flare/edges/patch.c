@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Patches in the places of edges. */
+ * Stores patches in slots of the array of edges. */
 #include "flare/edges/patch.h"
 
-enum { WORDS = 7 }; /* words that the place of an edge carries */
+enum { WORDS = 7 }; /* words per slot */
 
 static void set_word(struct glint_edge *e, int i, int32_t word)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds patches to a tile's sums, row by row: as an edge does, by the changes
- * from pixel to pixel. */
+ * Adds patches to a tile's sums, row by row, as changes from pixel to pixel
+ * like edges. */
 #include <stddef.h>
 
 #include "base/compiler.h"
@@ -15,42 +15,45 @@ enum {
     MOST_TILE = 64,
     RUN_LOG2 = 3, /* log2 of the pixels of a run */
     RUN = 1 << RUN_LOG2,
-    STEEP_Q16 = 1 << 10 /* sides that are as good as level bound no columns */
+    STEEP_Q16 = 1 << 10 /* sides with a smaller across_q16 are nearly horizontal
+                           and bound no columns */
 };
 
-/* A side of a patch. The distance of a pixel's middle from it, positive inside
- * and in pixels over |x| + |y| of its normal, is linear. */
+/* A side of a patch, as a linear function: the distance of a pixel's middle
+ * from it, positive inside, in pixels divided by |x| + |y| of its unit
+ * normal. */
 struct side {
-    int64_t at_q24; /* at the middle of the first pixel, pixel 0 of row Y0 */
+    int64_t at_q24; /* value at the middle of the first pixel of the box */
     int32_t across_q16, down_q16;
-    /* The smaller part of the normal, and 1 / (2 p q) of both parts and 1 / q
-     * of the larger one: what the fraction of a pixel takes. */
+    /* For the covered fraction of a pixel: with p and q the smaller and larger
+     * component of the scaled normal, less is p, square 1 / (2 p q), larger 1 /
+     * q. */
     int32_t less_q16, square_q16, larger_q16;
-    /* Column at which the distance is -1/2 in row 0, and its change by row;
-     * unless the side is as good as level. */
+    /* The column at which the function is -1/2 in row 0, and its change per
+     * row; not set if the side is nearly horizontal. */
     int64_t column_q16, step_q16;
 };
 
-/* A side in a row. */
+/* A side that cuts pixels of the current row. */
 struct part {
     const struct side *side;
-    int64_t at_q16; /* at the row's first pixel */
+    int64_t at_q16; /* value at the row's first pixel */
 };
 
 struct draw {
     const struct glint_edge_sums *sums;
     struct glint_patch patch;
     struct side side[GLINT_OUTLINE_CORNERS];
-    /* Of the level, and of the one whose nodes are two runs apart; NULL: there
-     * is none. */
+    /* Nodes of the patch's level, and of the level whose nodes are two runs
+     * apart; NULL: there is no such level. */
     const uint16_t *node_q15, *run_q15;
     int run_nodes, run_shift;
-    uint32_t once_q24[2], twice_q24[2]; /* change of place over one pixel, over
-                                           two */
-    int nodes, shift;     /* nodes a side; log2 of their distance, _q24 */
+    uint32_t once_q24[2], twice_q24[2]; /* change of the position in the stop
+                                           per pixel and per two pixels */
+    int nodes, shift;     /* nodes per side; log2 of their distance, _q24 */
     struct glint_box box; /* the part of the patch within the tile */
-    /* Of a row: the sides that cut pixels, and fractions of the clear light,
-     * for one pixel more than it has. */
+    /* The current row: the sides that cut its pixels, and for each pixel and
+     * one more the difference from the edges' light, see area_of(). */
     int n_parts;
     struct part part[GLINT_OUTLINE_CORNERS];
     int32_t area[MOST_TILE + 2 * RUN];
@@ -94,11 +97,12 @@ static void set_side(struct side *s, const struct draw *d, int i)
             : 0;
 }
 
-/* Returns the fraction of a pixel whose middle lies DISTANCE inside S. */
+/* Returns the fraction of a pixel inside S; DISTANCE is the function of S at
+ * the pixel's middle. */
 static int32_t share_q16(const struct side *s, int64_t distance_q16)
 {
     const int upper = distance_q16 > 0;
-    /* from the pixel's first corner on, of the half that is less */
+    /* distance of the side from the nearer extreme corner of the pixel */
     const int64_t t_q16 = HALF_Q16 - (upper ? distance_q16 : -distance_q16);
     int64_t part_q16;
 
@@ -134,7 +138,8 @@ static int32_t held_q24(int32_t at_q24)
     return at_q24 < -one ? 0 : at_q24 >= one ? 2 * one - 1 : at_q24 + one;
 }
 
-/* Returns the light of the shade at a place, by the four nodes about it. */
+/* Returns the light of the shade at a position, interpolated between the four
+ * nodes around it. */
 static inline int32_t light_q15(const struct draw *d, int32_t s_q24,
                                 int32_t t_q24)
 {
@@ -148,9 +153,10 @@ static inline int32_t light_q15(const struct draw *d, int32_t s_q24,
     return (int32_t)((low * (256 - v) + high * v + (1 << 15)) >> 16);
 }
 
-/* A stretch of a row: the place in the stop of its pixels. */
+/* The position in the stop, in stop radii, of a pixel. */
 struct place {
-    uint32_t at_q24[2]; /* modulo 2^32, as only places in the stop count */
+    uint32_t at_q24[2]; /* modulo 2^32, as only positions within the stop
+                           matter */
 };
 
 static struct place place_of(const struct draw *d, int y, int x)
@@ -176,8 +182,9 @@ static inline int32_t area_of(const struct draw *d, int32_t light_q15)
     return d->sums->linear ? off_q15 * 2 : (off_q15 + 64) >> 7;
 }
 
-/* Returns whether a run from AT on is as edges draw it: about the nearest node
- * of a level whose nodes are two runs apart all finer ones are alike. */
+/* Returns whether edges alone draw the run from AT on correctly: the shade at
+ * the nearest node of the level whose nodes are two runs apart equals the
+ * edges' light, clear or dark. */
 static int is_even(const struct draw *d, struct place at)
 {
     const struct glint_patch *p = &d->patch;
@@ -206,9 +213,9 @@ static inline void go_on(struct place *at, const uint32_t by_q24[2])
     at->at_q24[1] += by_q24[1];
 }
 
-/* Sets the areas of a run from X on, which begins at AT: in linear pictures of
- * each pixel, in codes of every second one, and between them the mean. Returns
- * whether there are any. */
+/* Sets the areas of a run that begins at pixel X, whose position in the stop is
+ * AT. In linear pictures each pixel is computed; in codes every second pixel,
+ * and means between them. Returns nonzero if any area is nonzero. */
 static int32_t add_run(struct draw *d, struct place at, int x)
 {
     int32_t any = 0, area = area_at(d, &at);
@@ -233,9 +240,9 @@ static int32_t add_run(struct draw *d, struct place at, int x)
     return any;
 }
 
-/* Sets the areas of row Y, as if all of it were in the patch, of the runs that
- * have pixels FROM .. END - 1. Runs begin at multiples of their length, so that
- * tiles do not show. Returns whether there are any. */
+/* Sets the areas of row Y, without cuts by the patch's sides, for all runs that
+ * contain pixels FROM .. END - 1. Runs begin at multiples of their length, so
+ * that tiles do not show. Returns whether any area is nonzero. */
 static int add_inside(struct draw *d, int y, int from, int end)
 {
     int any = 0;
@@ -252,13 +259,13 @@ static int add_inside(struct draw *d, int y, int from, int end)
     return any;
 }
 
-static void cut(struct draw *d, int x, int32_t cover_q16)
+static void scale_area(struct draw *d, int x, int32_t cover_q16)
 {
     d->area[x] = (int32_t)(((int64_t)d->area[x] * cover_q16 + HALF_Q16) >> 16);
 }
 
-/* Sets the areas of row Y between the columns FROM and END, which the patch may
- * reach. Returns whether there are any. */
+/* Sets the areas of row Y in columns FROM .. END - 1, those that the patch may
+ * touch. Returns 0 if all areas are 0. */
 static int set_row(struct draw *d, int y, int from, int end)
 {
     int32_t cover;
@@ -267,15 +274,16 @@ static int set_row(struct draw *d, int y, int from, int end)
     if (!add_inside(d, y, from, end))
         return 0;
     for (; x < last && (cover = cover_q16(d, x)) < ONE_Q16; x++)
-        cut(d, x, cover);
+        scale_area(d, x, cover);
     for (; last > x && (cover = cover_q16(d, last - 1)) < ONE_Q16; last--)
-        cut(d, last - 1, cover);
+        scale_area(d, last - 1, cover);
     d->area[end] = 0;
     return 1;
 }
 
-/* Finds the columns of the box that the patch may reach in row Y: a side that
- * rises along x bounds them to the left, one that falls to the right. */
+/* Finds the columns of the box that the patch may touch in row Y. Sides whose
+ * function rises along x bound them on the left, sides whose function falls
+ * bound them on the right. */
 static void find_columns(const struct draw *d, int y, int *from, int *end)
 {
     int64_t low = 0, high = d->box.x1 - d->box.x0;
@@ -331,7 +339,8 @@ static void add_wide(uint64_t *row, const int32_t *area, int n, int64_t light)
     }
 }
 
-/* Adds the areas of row Y between the columns FROM and END. */
+/* Adds the areas of row Y in columns FROM .. END - 1, times LIGHT, to the
+ * sums. */
 static void add_row(const struct draw *d, int narrow, int y, int from, int end,
                     const int64_t light[3])
 {

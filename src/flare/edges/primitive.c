@@ -46,8 +46,8 @@ int glint_corners_lean(const struct glint_corners *corners)
            area2 == 0;
 }
 
-/* The box is grown by half the width of a strip, and 1/256 pixel for rounding.
- */
+/* The box is enlarged by half the width of a strip, and by 1/256 pixel for
+ * rounding. */
 struct glint_box glint_corners_reach(const struct glint_corners *corners,
                                      int width, int height)
 {
@@ -61,8 +61,8 @@ struct glint_box glint_corners_reach(const struct glint_corners *corners,
         clamp(((e.y1 + grow) >> GLINT_VERTEX_FRAC) + 1, height)};
 }
 
-/* Returns MANTISSA * 2^UP, light, clamped to LIMIT; adds 1 to *N_HELD if it was
- * larger. */
+/* Returns the light MANTISSA * 2^UP, clamped to LIMIT; adds 1 to *N_HELD if it
+ * was clamped. */
 static int64_t scaled_sat(int64_t mantissa, int up, int64_t limit, int *n_held)
 {
     int64_t x;
@@ -81,7 +81,7 @@ int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
                              int64_t area, int frac, int32_t limit_q8,
                              int *n_held)
 {
-    /* The area is brought to 32 bits before it divides. */
+    /* The area is scaled to 32 bits before the division. */
     const int up = q_up((uint64_t)area);
     const uint32_t area_32 = q_upper((uint64_t)area, up);
     /* Rounding makes this exact if the area is a power of two. */
@@ -89,15 +89,15 @@ int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
         (int64_t)(((uint64_t)bundle->flux_q31 * q_reciprocal(area_32) +
                    (1 << 30)) >>
                   31);
-    /* The least area that light falls on counts as one pixel. limit_q8 is below
-     * 2^20, the area at least 2^-33. */
+    /* An area below one pixel counts as one pixel for the limit. limit_q8 is
+     * below 2^20, the area at least 2^-33. */
     const int64_t limit_q22 =
         (area >> frac ? (int64_t)limit_q8
                       : q_divide((int64_t)limit_q8 << frac, area))
         << 14;
 
-    /* The flux is 2^(e - 31), the area area_32 2^(-up - frac), and RATIO is
-     * that of both mantissas times 2^32; the result is q22. */
+    /* The flux is 2^(e - 31), the area area_32 2^(-up - frac), and ratio is the
+     * quotient of both mantissas times 2^32; the result is q22. */
     return scaled_sat(
         ratio, bundle->flux_exponent - 31 + share_log2 + up + frac - 32 + 22,
         limit_q22, n_held);

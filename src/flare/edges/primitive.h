@@ -10,13 +10,13 @@
 #include "tile/box.h"
 
 enum {
-    GLINT_CUT_STOP = 1,   /* the outline of the stop may cross it */
-    GLINT_CUT_BARREL = 2, /* a barrel may cross it */
+    GLINT_CUT_STOP = 1,   /* the outline of the stop may cross the cell */
+    GLINT_CUT_BARREL = 2, /* a barrel may cross the cell */
     /* The functions of round cuts are already lowered by their sag. */
     GLINT_CUT_LOWERED = 16
 };
 
-/* Most light that a cell may give a pixel, display white. */
+/* Max light that a cell may give a pixel, display white. */
 enum { GLINT_LIMIT_Q8 = 1 << 19 };
 
 /* Fraction bits of a vertex position. */
@@ -29,23 +29,24 @@ struct glint_corners {
     int64_t area2_q16; /* twice the area, pixels squared, > 0 */
 };
 
-/* Returns (B - A) x (P - A): positive if A, B, P turn the way from x to y.
- * Within +-2^60 for coordinates inside GLINT_VERTEX_LIMIT_Q8. */
+/* Returns (B - A) x (P - A): positive if A, B, P turn in the direction from the
+ * x axis to the y axis. Within +-2^60 for coordinates inside
+ * GLINT_VERTEX_LIMIT_Q8. */
 static inline int64_t glint_turn_q16(int32_t ax, int32_t ay, int32_t bx,
                                      int32_t by, int32_t px, int32_t py)
 {
     return (int64_t)(bx - ax) * (py - ay) - (int64_t)(by - ay) * (px - ax);
 }
 
-/* Returns the irradiance of 2^SHARE_LOG2 cells that cover AREA / 2^FRAC pixels,
- * FRAC up to 33, AREA at least 1. It is clamped so that no pixel gets more than
- * LIMIT_Q8; *N_HELD then rises by 1. */
+/* Returns the irradiance of 2^SHARE_LOG2 cells that cover AREA / 2^FRAC pixels.
+ * FRAC must be at most 33, AREA at least 1. The result is clamped so that no
+ * pixel gets more than LIMIT_Q8; *N_HELD is incremented if it was. */
 int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
                              int64_t area, int frac, int32_t limit_q8,
                              int *n_held);
 
-/* Returns every pixel that CORNERS, or the strip that replaces thin ones, may
- * cover. */
+/* Returns the box of all pixels that CORNERS may cover, or the strip that
+ * replaces CORNERS if they are thin. */
 struct glint_box glint_corners_reach(const struct glint_corners *corners,
                                      int width, int height);
 
@@ -80,8 +81,8 @@ static inline int64_t glint_reach(const struct glint_vertex *a,
     return (x < 0 ? -x : x) + (y < 0 ? -y : y);
 }
 
-/* Returns whether C is surely not thin: twice its area is at least 32 times the
- * sum of its diagonals, which is more than its width and height. */
+/* Returns whether C is certainly not thin: twice its area is at least 32 times
+ * the sum of its diagonals, and that sum exceeds its width and height. */
 static inline int glint_corners_stout(const struct glint_corners *c)
 {
     return c->n == 4 && (c->area2_q16 < 0 ? -c->area2_q16 : c->area2_q16) >=
@@ -89,8 +90,8 @@ static inline int glint_corners_stout(const struct glint_corners *c)
                                   glint_reach(c->at[1], c->at[3]));
 }
 
-/* Return whether CORNERS are thinner than a sixteenth of a pixel; the thin
- * variant makes a quick test first. */
+/* Return whether CORNERS are thinner than a sixteenth of a pixel;
+ * glint_corners_thin() makes a quick test first. */
 int glint_corners_lean(const struct glint_corners *corners);
 static inline int glint_corners_thin(const struct glint_corners *corners)
 {

@@ -25,7 +25,7 @@ void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
     sums->touched[channel] &= ~(UINT64_C(1) << row);
 }
 
-/* Returns how many fraction bits a sum has beyond _q16. */
+/* Returns the number of fraction bits of a sum in addition to _q16. */
 static int more_bits(const struct glint_edge_sums *s)
 {
     return s->fine ? 12 : 8;
@@ -61,7 +61,7 @@ int glint_edge_dark(const struct glint_edge_sums *sums, int row)
            (carry[0] | carry[side] | carry[2 * side]) == 0;
 }
 
-/* Fills a row with the same light everywhere; returns whether there is any. */
+/* Fills a row with constant light; returns whether the light is above 0. */
 static int even_light(int64_t carry, int n, int more, uint16_t *light_q16)
 {
     const uint16_t light = rounded_q16(carry, more);

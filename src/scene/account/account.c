@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Statistics of each object of a frame: visibility is computed as for drawing,
- * and surfaces are found, but not shaded. */
+ * Statistics of each object of a frame: visibility and surfaces are computed as
+ * for drawing, but surfaces are not shaded. */
 #include "glint/scene/account.h"
 
 #include "scene/mesh.h"
@@ -9,9 +9,10 @@
 #include "scene/parts.h"
 
 enum {
-    TEXELS = 8,     /* of a place: four of each of two levels */
-    MAP_TEXELS = 4, /* of a place on a translucent medium */
-    POINTS = 16     /* of a light's disc, as it hides behind objects */
+    TEXELS = 8,     /* texels per lookup: four of each of two levels */
+    MAP_TEXELS = 4, /* texels per lookup in the map of a translucent medium */
+    POINTS = 16     /* points of a light's disc that are tested for
+                       visibility */
 };
 
 struct account {
@@ -50,8 +51,8 @@ static int is_stone(const struct glint_scene *s,
                                       .material];
 }
 
-/* Counts a place of SURFACE that is shaded: its lights, and the environment on
- * metal. Translucent medium without a coat shows its map alone. */
+/* Counts a shaded point of SURFACE: its lights, and the environment on metal. A
+ * translucent medium without a coat needs only its map. */
 static void count_lit(const struct glint_scene *s,
                       const struct glint_met_surface *surface,
                       struct glint_scene_part *part)
@@ -69,8 +70,8 @@ static void count_lit(const struct glint_scene *s,
         part->count[GLINT_SCENE_LOOKUPS] += s->cfg.ward_samples;
 }
 
-/* Continues along RAY from SURFACE, and counts what is met and shaded there.
- * Returns 0 if there is nothing. */
+/* Continues along RAY from SURFACE, and counts the surface that it meets and
+ * shades. Returns 0 if it meets none. */
 static int go_on(const struct glint_scene *s, struct glint_scene_ray *ray,
                  struct glint_met_surface *surface,
                  struct glint_scene_part *part)
@@ -88,7 +89,7 @@ static int go_on(const struct glint_scene *s, struct glint_scene_ray *ray,
     return 1;
 }
 
-/* Counts what RAY does after it has met SURFACE. */
+/* Counts the reflections and transmissions of RAY after SURFACE. */
 static void count_bounces(const struct glint_scene *s,
                           const struct glint_scene_ray *ray,
                           const struct glint_met_surface *surface,
@@ -108,7 +109,7 @@ static void count_bounces(const struct glint_scene *s,
             return;
 }
 
-/* Counts a place of ID that is shaded, at (X, Y), q8. */
+/* Counts a shaded point of ID, at (X, Y), q8. */
 static void count_shade(const struct account *a, uint32_t id, int32_t x_q8,
                         int32_t y_q8)
 {
@@ -144,14 +145,14 @@ static int is_split(const struct glint_scene *s, uint32_t id)
     return m->reflect_q15 || m->pass_q15;
 }
 
-/* Returns whether A and B are one object's. */
+/* Returns whether A and B belong to the same object. */
 static int is_same(uint32_t a, uint32_t b)
 {
     return a != GLINT_NOTHING && (a ^ b) >> 20 == 0;
 }
 
-/* Returns whether this is one of two by two pixels that see one object and are
- * shaded as one. */
+/* Returns whether the 2 x 2 pixels around (X, Y) see one object and are shaded
+ * once. */
 static int is_quad(const struct glint_scene_worker *w, int x, int y,
                    uint32_t id)
 {
@@ -169,7 +170,7 @@ static int is_quad(const struct glint_scene_worker *w, int x, int y,
     return 1;
 }
 
-/* Counts what the samples of pixel (X, Y) see. */
+/* Counts the objects that the samples of pixel (X, Y) see. */
 static void count_pixel(const struct account *a,
                         const struct glint_scene_worker *w, int x, int y)
 {
@@ -238,8 +239,8 @@ static int meets(const struct glint_scene *s, uint32_t i, int x, int y)
     return glint_scene_meet_id(s, &ray, seen_q30, glint_id(i, 0), &met);
 }
 
-/* Sets the fate of an object that is in the picture, but at no sample: which
- * object is seen at most of its pixels, by votes [Boyer91]. */
+/* Finds the object that covers most pixels of object I, which is in the picture
+ * but visible at no sample, by majority vote [Boyer91]. */
 static void find_cover(const struct account *a, uint32_t i)
 {
     const struct glint_scene *s = a->scene;

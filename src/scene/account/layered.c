@@ -2,7 +2,7 @@
 #include "glint/scene/account.h"
 #include "scene/visible.h"
 
-/* Adds what is laid over row Y of the tile of W. */
+/* Counts the layers over row Y of W's tile. */
 static void count_row(struct glint_scene_worker *w, int y,
                       struct glint_scene_layered of[GLINT_KINDS])
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * What glints on objects: light over white, summed in squares of the picture
- * while that is drawn, and the squares that touch, which are one highlight.
+ * Finds highlights on objects: light above white is summed in squares of the
+ * picture during drawing; connected squares form one highlight.
  *
- * A square belongs to one row of tiles, which one worker draws, and all sums
- * are integers wide enough. */
+ * Results do not depend on workers, as a square belongs to one row of tiles,
+ * drawn by one worker, and all sums are integers. */
 #include "glint/scene/highlights.h"
 
 #include "base/divide.h"
@@ -14,23 +14,25 @@ enum {
     ONE_Q15 = GLINT_SCENE_ONE_Q15,
     SIDE_LOG2 = 3,
     SIDE_Q8 = 256 << SIDE_LOG2,
-    LEAST_Q19 = 8,   /* light of a spot, _q16 1 */
-    KEPT = 64,       /* max number of highlights before near ones are merged */
+    LEAST_Q19 = 8,   /* min light of a spot, 1 in _q16 */
+    KEPT = 64,       /* max number of highlights before near highlights are
+                        merged */
     WEIGHT_LOG2 = 26 /* sums of weights are below 2^26 */
 };
 
-/* The light of a square; a pixel counts 16, of which a sample is a part. Light
- * is below 2^30, that of 64 pixels below 2^40, moments below 2^62. */
+/* The sums of a square; a pixel has weight 16, which its samples share. Light
+ * is below 2^30, sums over 64 pixels below 2^40, moments below 2^62. */
 struct glint_highlight_cell {
-    int64_t flux_q19;   /* luminance of what counts */
-    int64_t at_q27[2];  /* times the place in the square */
-    int64_t square_q35; /* times the square of both */
+    int64_t flux_q19;   /* sum of luminance above white */
+    int64_t at_q27[2];  /* sum of luminance times the position in the square */
+    int64_t square_q35; /* sum of luminance times the squared distance */
     int64_t red_q19, blue_q19;
-    int32_t peak_q15; /* the brightest pixel, and the object it shows */
+    int32_t peak_q15; /* light of the brightest pixel, and the object visible
+                         there */
     uint32_t object;
 };
 
-/* A highlight: the list of its squares, and what they sum to. */
+/* A highlight: the list of its squares, and their sums. */
 struct gathered {
     int first, n;
     int64_t flux_q19, red_q19, blue_q19;
@@ -42,8 +44,8 @@ struct gathered {
 struct glint_highlight_state {
     int across, down;
     struct glint_highlight_cell *cell; /* [down][across] */
-    /* While squares are gathered: the next of a highlight; UNSEEN, or the last
-     * of a list, END. */
+    /* Per square, while highlights are gathered: the next square of the same
+     * highlight, END for the last, or UNSEEN. */
     int32_t *next;
     struct gathered *kept; /* [KEPT] */
 };
@@ -115,8 +117,8 @@ static void add_cell(const struct glint_highlight_cell *c, struct gathered *g)
     }
 }
 
-/* Puts the squares about square I that have light, and are in no list, behind
- * LAST; returns the last of the list then. */
+/* Appends the neighbours of square I that have light and are in no list to the
+ * list that ends with LAST; returns the new last square. */
 static int put_around(struct glint_highlight_state *b, int i, int last)
 {
     const int x = i % b->across, y = i / b->across;
@@ -134,7 +136,7 @@ static int put_around(struct glint_highlight_state *b, int i, int last)
     return last;
 }
 
-/* Returns the middle of square I, along both axes, pixels q8. */
+/* Sets AT to the middle of square I, pixels q8. */
 static void middle_of(const struct glint_highlight_state *b, int i,
                       int32_t at[2])
 {
@@ -146,7 +148,7 @@ static void middle_of(const struct glint_highlight_state *b, int i,
                 glint_ratio((uint64_t)c->at_q27[k], (uint64_t)c->flux_q19);
 }
 
-/* Returns what square C counts in a highlight of FLUX_Q19. */
+/* Returns the weight of square C in a highlight of flux FLUX_Q19. */
 static uint64_t weight_of(const struct glint_highlight_cell *c,
                           int64_t flux_q19)
 {
@@ -156,7 +158,7 @@ static uint64_t weight_of(const struct glint_highlight_cell *c,
     return (uint64_t)c->flux_q19 >> down;
 }
 
-/* Sets the middle of G, whose squares are listed. */
+/* Sets the middle of G from its squares. */
 static void set_middle(const struct glint_highlight_state *b,
                        struct gathered *g)
 {
@@ -175,7 +177,8 @@ static void set_middle(const struct glint_highlight_state *b,
         g->at_q8[k] = glint_ratio(at[k], weight);
 }
 
-/* Gathers the highlight that square I, in no list yet, is part of. */
+/* Gathers the highlight that contains square I. The square must be in no
+ * list. */
 static struct gathered gather(struct glint_highlight_state *b, int i)
 {
     struct gathered g = {.first = i};
@@ -192,8 +195,8 @@ static struct gathered gather(struct glint_highlight_state *b, int i)
 
 /* ----------------------------------------------------------------- choosing */
 
-/* Puts G among the N brightest so far, KEPT at most; returns how many there
- * are. Of equals the one found first, higher up, stands first. */
+/* Inserts G into the list of the N brightest so far, at most KEPT; returns the
+ * new number. Equal highlights stay in the order in which they were found. */
 static int keep(struct gathered *kept, int n, const struct gathered *g)
 {
     int i = n < KEPT ? n : KEPT - 1;
@@ -214,7 +217,7 @@ static int is_near(const struct gathered *a, const struct gathered *b)
     return x * x + y * y < most * most;
 }
 
-/* Makes TO of itself and FROM, whose list it takes. */
+/* Merges FROM and its list of squares into TO. */
 static void join(struct glint_highlight_state *b, struct gathered *to,
                  const struct gathered *from)
 {
@@ -241,8 +244,8 @@ static int drop(struct gathered *kept, int n, int i)
     return n - 1;
 }
 
-/* Makes one of the first two of *N that are near each other, which stands where
- * its brightness puts it. Returns whether there were two. */
+/* Merges the first pair of the *N highlights that are near each other, and
+ * sorts the result by brightness. Returns whether there was such a pair. */
 static int join_two(struct glint_highlight_state *b, struct gathered *kept,
                     int *n)
 {
@@ -266,8 +269,8 @@ struct spread {
     int64_t x_q8, y_q8, xy_q8;
 };
 
-/* Those of the middles of its squares, and in the mean those within each, which
- * count as round. */
+/* Returns the variances of the middles of G's squares, plus the mean variance
+ * within squares, taken as isotropic. */
 static struct spread spread_of(const struct glint_highlight_state *b,
                                const struct gathered *g)
 {
@@ -302,7 +305,7 @@ static struct spread spread_of(const struct glint_highlight_state *b,
                                (int64_t)glint_ratio(q_magnitude(xy), weight)};
 }
 
-/* Returns the root of a variance, pixels q8; half a pixel at least. */
+/* Returns the square root of a variance, pixels q8, at least half a pixel. */
 static int32_t root_q8(int64_t variance_q8)
 {
     return q_larger(
@@ -333,11 +336,11 @@ static void set_extent(const struct spread *s, struct glint_spot *spot)
         spot->sin_q15 = -spot->sin_q15;
 }
 
-/* Sets the colour of G, of a luminance of 1. */
+/* Sets the colour of SPOT to the colour of G at luminance 1. */
 static void set_colour(const struct gathered *g, struct glint_spot *spot)
 {
     const uint64_t flux = (uint64_t)g->flux_q19;
-    /* Blue is 2^4 times the flux at most. */
+    /* Blue is at most 2^4 times the flux. */
     const int up = (int)q_clamp_sat(q_up(flux) + 26, 0, 15);
     int64_t rest;
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shells about foods that are seen, lines to the sensors that see them, and the
- * box of all frames: where they are in a picture, and how they are laid over
- * the pixels of a tile.
+ * Shells around visible foods, lines to the sensors that see them, and the box
+ * of all frames: their positions in a picture, and their compositing over the
+ * pixels of a tile.
  *
- * A line is as wide as it is: what of a pixel it covers is the overlap of the
- * pixel with its width, at the distance of its middle, in q8. Widths below 3/4
- * of a pixel count as that. What shells cover is off by 2^-11 within them;
+ * A line has a width in space: its cover of a pixel is the overlap of the pixel
+ * with the width, at the distance of the pixel's middle, in q8. Widths are at
+ * least 3/4 of a pixel. The cover of shells has an error of 2^-11 inside them;
  * their rims are found by exact rays. */
 #include "base/compiler.h"
 #include "base/divide.h"
@@ -15,8 +15,8 @@
 enum {
     ALL_Q8 = 256,
     SUMMED = 4,
-    MOST_HALF_Q8 = 1 << 16, /* half of the widest line */
-    LEAST_HALF_Q8 = 96      /* half of the width that a line has at least */
+    MOST_HALF_Q8 = 1 << 16, /* max half width of a line */
+    LEAST_HALF_Q8 = 96      /* min half width of a line */
 };
 
 /* ---------------------------------------------------------------- projection
@@ -33,8 +33,8 @@ static int64_t inside(const struct side *side, const int32_t v[3])
     return side->by[0] * v[0] + side->by[1] * v[1] + side->by[2] * v[2];
 }
 
-/* Cuts what of A .. B is outside SIDE; returns 0 if nothing is left. */
-static int cut(const struct side *side, int32_t a[3], int32_t b[3])
+/* Clips A .. B to SIDE; returns 0 if nothing is left. */
+static int clip_line(const struct side *side, int32_t a[3], int32_t b[3])
 {
     const int64_t in[2] = {inside(side, a), inside(side, b)};
     int32_t part_q30;
@@ -55,9 +55,9 @@ static int cut(const struct side *side, int32_t a[3], int32_t b[3])
     return 1;
 }
 
-/* Sets SIDE[2] to planes along axis K of the picture, as far outside its
- * edges as the widest line reaches and two pixels more. FAR steps are below
- * 2^72, so they are cut to 30 bits, and coordinates are below 2^30. */
+/* Sets SIDE[2] to planes along axis K of the picture, outside its edges by the
+ * max half width of a line plus two pixels. Coefficients are below 2^72, so
+ * they are truncated to 30 bits, and coordinates are below 2^30. */
 static void set_sides(const struct glint_scene_view *v, int k,
                       struct side side[2])
 {
@@ -75,10 +75,10 @@ static void set_sides(const struct glint_scene_view *v, int k,
     }
 }
 
-/* Clips A .. B, camera coordinates, to the region ahead and near the picture.
- */
-static int cut_all(const struct glint_scene_view *v, int32_t near, int32_t a[3],
-                   int32_t b[3])
+/* Clips A .. B, camera coordinates, to the region in front of the camera and
+ * near the picture. */
+static int clip_to_view(const struct glint_scene_view *v, int32_t near,
+                        int32_t a[3], int32_t b[3])
 {
     struct side side[4];
     const int32_t behind[2] = {a[2] - near, b[2] - near};
@@ -99,7 +99,7 @@ static int cut_all(const struct glint_scene_view *v, int32_t near, int32_t a[3],
         out[2] = q_larger(out[2], near);
     }
     for (int k = 0; k < 4; k++)
-        if (!cut(&side[k], a, b))
+        if (!clip_line(&side[k], a, b))
             return 0;
     return a[2] > 0 && b[2] > 0;
 }
@@ -125,7 +125,7 @@ static void set_box(const struct glint_scene *s, struct glint_motion_layer *l,
                  ((q_larger(end[0].y, end[1].y) + y_q8 + far_q8) >> 8) + 2});
 }
 
-/* Adds a line of KIND, WIDTH steps wide, from A to B, places. */
+/* Adds a line of KIND, WIDTH steps wide, from point A to point B. */
 static void add_line(struct glint_scene *s, const int32_t a[3],
                      const int32_t b[3], int32_t width,
                      enum glint_scene_kind kind)
@@ -139,7 +139,7 @@ static void add_line(struct glint_scene *s, const int32_t a[3],
 
     glint_view_seen(&s->view, a, v[0]);
     glint_view_seen(&s->view, b, v[1]);
-    if (!l || width < 1 || !cut_all(&s->view, near, v[0], v[1]))
+    if (!l || width < 1 || !clip_to_view(&s->view, near, v[0], v[1]))
         return;
     for (int k = 0; k < 2; k++) {
         end[k] = glint_view_corner(&s->view, v[k]);
@@ -171,8 +171,8 @@ static void add_line(struct glint_scene *s, const int32_t a[3],
     s->motion->n_layers += !glint_box_empty(l->box) && l->length_q8 > 0;
 }
 
-/* Moves A towards B by STEPS; returns 0 if they are nearer than that. */
-static int shorten(int32_t a[3], const int32_t b[3], int32_t steps)
+/* Moves A towards B by STEPS; returns 0 if their distance is smaller. */
+static int move_towards(int32_t a[3], const int32_t b[3], int32_t steps)
 {
     int64_t off[3];
     int32_t d[3], unit_q30[3];
@@ -188,14 +188,15 @@ static int shorten(int32_t a[3], const int32_t b[3], int32_t steps)
     return 1;
 }
 
-/* Returns the radius of object FIRST + I, 0 if there is none. */
+/* Returns the radius of object FIRST + I, or 0 if there is no such object. */
 static int32_t radius_of(const struct glint_scene *s, uint32_t first,
                          uint32_t i)
 {
     return first == GLINT_SCENE_NONE ? 0 : s->placed[first + i].radius;
 }
 
-/* Lines from the surface of food F to that of each sensor that sees it. */
+/* Adds lines from the surface of food F to the surface of each sensor that sees
+ * it. */
 static void add_lines(struct glint_scene *s, uint32_t f)
 {
     const struct glint_motion_state *m = s->motion;
@@ -209,14 +210,14 @@ static void add_lines(struct glint_scene *s, uint32_t f)
             a[k] = m->food_at[f][k];
             b[k] = m->sensor_at[i][k];
         }
-        if (shorten(a, b, radius_of(s, m->how->food, f)) &&
-            shorten(b, a, radius_of(s, m->how->sensor, i)))
+        if (move_towards(a, b, radius_of(s, m->how->food, f)) &&
+            move_towards(b, a, radius_of(s, m->how->sensor, i)))
             add_line(s, a, b, m->line, GLINT_KIND_LINES);
     }
 }
 
-/* Returns the least cosine, between P's normal and a ray, of pixels that see it
- * with all samples. */
+/* Returns the min cosine between P's normal and a ray at which all samples of a
+ * pixel meet P. */
 static int32_t inner_q30(const struct glint_placed *p)
 {
     const int64_t within = (int64_t)p->radius - p->margin;
@@ -277,7 +278,7 @@ static void add_box(struct glint_scene *s)
         }
 }
 
-/* From back to front; of two as far away the first stays the first. */
+/* Sorts layers from back to front; a stable sort. */
 static void sort(struct glint_motion_state *m)
 {
     for (int i = 1; i < m->n_layers; i++) {
@@ -330,7 +331,7 @@ static struct glint_box touch(const struct glint_scene *s,
     return all;
 }
 
-/* Confines X0 .. X1 - 1 to pixels of row Y that line L may touch. */
+/* Narrows X0 .. X1 - 1 to the pixels of row Y that line L may touch. */
 static void confine(const struct glint_scene *s,
                     const struct glint_motion_layer *l, int y, int *x0, int *x1)
 {
@@ -343,7 +344,7 @@ static void confine(const struct glint_scene *s,
         << 14;
     int64_t at[2];
 
-    if (q_magnitude(u[1]) < 1 << 8) /* it runs along the row */
+    if (q_magnitude(u[1]) < 1 << 8) /* the line is nearly parallel to the row */
         return;
     for (int k = 0; k < 2; k++)
         at[k] = q_divide((int64_t)down * u[0] + (k ? reach : -reach), u[1]) +
@@ -393,7 +394,7 @@ static int seen_q8(const struct glint_scene_worker *w, int x, int y,
     return seen * ALL_Q8 >> glint_samples_log2(n);
 }
 
-/* Returns what of pixel (X, Y) line L covers, q8. */
+/* Returns the fraction of pixel (X, Y) that line L covers, q8. */
 static int line_q8(const struct glint_scene_worker *w,
                    const struct glint_motion_layer *l, int x, int y)
 {
@@ -425,7 +426,7 @@ static int line_q8(const struct glint_scene_worker *w,
            8;
 }
 
-/* Returns the depth of what is T steps away towards SEEN_Q30. */
+/* Returns the depth of the point T steps away in direction SEEN_Q30. */
 static int32_t depth_of(const struct glint_scene *s, int32_t t,
                         const int32_t seen_q30[3])
 {
@@ -434,11 +435,11 @@ static int32_t depth_of(const struct glint_scene *s, int32_t t,
     return q_larger(1, glint_ratio((uint64_t)s->nearest << 30, (uint64_t)z));
 }
 
-/* Sets CHORD to that of the ray of place (X, Y) in BALL, and DEPTH to that of
- * where it enters; returns 0 if it misses it. */
-static int enter(const struct glint_scene *s, const struct glint_placed *ball,
-                 int32_t x_q8, int32_t y_q8, struct glint_chord *chord,
-                 int32_t *depth)
+/* Sets CHORD to the chord in BALL of the ray through (X, Y), and DEPTH to the
+ * depth of the chord's start; returns 0 if the ray misses BALL. */
+static int find_entry(const struct glint_scene *s,
+                      const struct glint_placed *ball, int32_t x_q8,
+                      int32_t y_q8, struct glint_chord *chord, int32_t *depth)
 {
     struct glint_scene_ray ray;
     int32_t seen_q30[3];
@@ -451,9 +452,9 @@ static int enter(const struct glint_scene *s, const struct glint_placed *ball,
     return 1;
 }
 
-/* Returns the fraction of pixels that a shell of COSINE_Q15 covers, q15: as
- * much as its material does not let pass at the rim, half of that in its
- * middle. Both factors are taken twice. */
+/* Returns the cover of a shell at COSINE_Q15 between normal and ray: 1 minus
+ * the material's transmission at the rim, half of that in the middle. The
+ * result is q31, as both q15 factors are doubled. */
 static int64_t shell_q31(const struct glint_scene *s,
                          const struct glint_motion_layer *l, int32_t cosine_q15)
 {
@@ -463,8 +464,8 @@ static int64_t shell_q31(const struct glint_scene *s,
     return (int64_t)share_q15 * (2 * GLINT_SCENE_ONE_Q15 - cosine_q15);
 }
 
-/* Returns the cover of pixel (X, Y) by a shell, q8, near its rim, or with the
- * camera in it. */
+/* Returns the cover of pixel (X, Y) by a shell, q8, near the shell's rim, or if
+ * the camera is inside it. */
 static NEVER_INLINE int rim_q8(const struct glint_scene_worker *w,
                                const struct glint_motion_layer *l, int x, int y)
 {
@@ -476,7 +477,7 @@ static NEVER_INLINE int rim_q8(const struct glint_scene_worker *w,
     int32_t depth = 0, cosine_q15 = 0;
     int hits = 0, is_inner = 0;
 
-    if (enter(s, ball, x_q8, y_q8, &chord, &depth)) {
+    if (find_entry(s, ball, x_q8, y_q8, &chord, &depth)) {
         const int64_t radius = (int64_t)ball->radius * (INT64_C(1) << chord.up);
         const int64_t within =
             ((int64_t)ball->radius - ball->margin) * (INT64_C(1) << chord.up);
@@ -493,8 +494,8 @@ static NEVER_INLINE int rim_q8(const struct glint_scene_worker *w,
         struct glint_chord at;
         int32_t sample_depth;
 
-        if (!enter(s, ball, x_q8 + glint_sample(s, k, 0),
-                   y_q8 + glint_sample(s, k, 1), &at, &sample_depth))
+        if (!find_entry(s, ball, x_q8 + glint_sample(s, k, 0),
+                        y_q8 + glint_sample(s, k, 1), &at, &sample_depth))
             continue;
         depth = q_larger(depth, sample_depth);
         hits++;
@@ -519,7 +520,7 @@ static int is_clear(const struct glint_scene_worker *w, int x, int y,
     return !nearer;
 }
 
-/* Returns what of pixel (X, Y) a shell covers, q8. */
+/* Returns the fraction of pixel (X, Y) that a shell covers, q8. */
 static int shell_q8(const struct glint_scene_worker *w,
                     const struct glint_motion_layer *l, int x, int y)
 {
@@ -535,7 +536,8 @@ static int shell_q8(const struct glint_scene_worker *w,
     if (!glint_quick_meet(l->ball, &ray, across_q30, &cosine_q30) ||
         cosine_q30 < l->inner_q30)
         return rim_q8(w, l, x, y);
-    if (!is_clear(w, x, y, l->depth[0])) { /* by the shell's farthest point */
+    if (!is_clear(w, x, y, l->depth[0])) { /* compared with the shell's farthest
+                                              point */
         t = glint_quick_away(l->ball, &ray, cosine_q30);
         all_q8 = seen_q8(w, x, y, depth_of(s, t, seen_q30));
     }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads a recorded motion, block by block. Of a file in memory all is checked
- * when it is opened, of others each record when it is read. */
+ * Reads a recorded motion, block by block. A file in memory is checked
+ * completely when it is opened; records of other files are checked when they
+ * are read. */
 #include "glint/scene/motion.h"
 
 #include "base/blob.h"
@@ -9,7 +10,7 @@
 #include "base/q.h"
 #include "scene/valid.h"
 
-/* The file is used in place: its layout is what these structs are. */
+/* The file is used in place: its layout is the layout of these structs. */
 STATIC_ASSERT(sizeof(struct glint_motion_pose) == 20);
 STATIC_ASSERT(sizeof(struct glint_motion_event) == 20);
 STATIC_ASSERT(sizeof(struct glint_motion_sensor) == 12);
@@ -59,7 +60,8 @@ static enum glint_status fetch(struct glint_motion *m, uint32_t block,
     return GLINT_OK;
 }
 
-/* Sets RECORD to record I, of BYTES, of the table that begins with BLOCK. */
+/* Sets RECORD to record I, of BYTES bytes, of the table that begins at
+ * BLOCK. */
 static enum glint_status read_record(struct glint_motion *m, uint32_t block,
                                      uint32_t i, size_t bytes,
                                      const void **record)
@@ -74,7 +76,7 @@ static enum glint_status read_record(struct glint_motion *m, uint32_t block,
 
 /* ------------------------------------------------------------------- checks */
 
-/* Returns how many blocks N records of BYTES take. */
+/* Returns the number of blocks of N records of BYTES bytes. */
 static uint64_t blocks_of(uint64_t n, size_t bytes)
 {
     const uint64_t each = bytes ? glint_motion_per_block(bytes) : 1;
@@ -153,7 +155,7 @@ static int is_pose(const struct glint_motion_header *h,
 
     for (int k = 0; k < 4; k++)
         square_q28 += (int64_t)p->turn_q14[k] * p->turn_q14[k];
-    /* each is off by half a step, the sum by 2^15 */
+    /* the error is half a unit per element, up to 2^15 for the sum */
     return is_within(h, p->at) && square_q28 >= (1 << 28) - (1 << 16) &&
            square_q28 <= (1 << 28) + (1 << 16);
 }
@@ -214,7 +216,7 @@ enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
     return GLINT_OK;
 }
 
-/* Sets the place of each food at frame K. */
+/* Sets the position of each food at frame K. */
 static enum glint_status place_foods(struct glint_motion *m, uint32_t k,
                                      struct glint_motion_frame *frame)
 {
@@ -314,7 +316,7 @@ static const char *check_poses(struct glint_motion *m)
     return NULL;
 }
 
-/* Checks that events rise, and begin with one for each food. */
+/* Checks that events are sorted by frame, and begin with one event per food. */
 static const char *check_events(struct glint_motion *m)
 {
     uint32_t last = 0;
@@ -330,7 +332,7 @@ static const char *check_events(struct glint_motion *m)
     return NULL;
 }
 
-/* Checks that the index has what the events say. */
+/* Checks that the index agrees with the events. */
 static const char *check_index(struct glint_motion *m)
 {
     const uint32_t each =

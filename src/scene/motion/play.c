@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Moves the objects of a recorded motion, and finds which sensors see which
- * foods. All that is shown of a frame comes from that frame alone. */
+ * foods. A frame depends on no other frame. */
 #include "scene/motion/play.h"
 
 #include "base/divide.h"
@@ -10,8 +10,8 @@
 
 /* ------------------------------------------------------------------ opening */
 
-/* Sets N_FOODS and N_SENSORS from the file, which is only checked when it is
- * opened: here they are clamped. */
+/* Sets N_FOODS and N_SENSORS from the file. They are clamped, as the file is
+ * not checked before it is opened. */
 static void count(const struct glint_scene_motion *how, uint32_t *n_foods,
                   uint32_t *n_sensors)
 {
@@ -52,13 +52,13 @@ struct glint_motion_state *glint_motion_carve(const struct glint_scene *scene,
     return m;
 }
 
-/* Returns by how many bits a step of the motion is longer than the scene's. */
+/* Returns log2 of the ratio of the motion's step to the scene's step. */
 static int up_of(const struct glint_scene *s)
 {
     return s->model.header->unit_log2 - s->motion->motion.header.unit_log2;
 }
 
-/* Sets TO to FROM, a place of the motion, in the scene. */
+/* Converts point FROM of the motion to steps of the scene. */
 static void to_scene(const struct glint_scene *s, const int32_t from[3],
                      int32_t to[3])
 {
@@ -73,7 +73,8 @@ static void to_scene(const struct glint_scene *s, const int32_t from[3],
     }
 }
 
-/* Returns whether all places of the motion, with what is about them, fit. */
+/* Returns whether all points of the motion, with the objects around them, are
+ * in the scene's range. */
 static int fits(const struct glint_scene *s)
 {
     const struct glint_motion_header *h = &s->motion->motion.header;
@@ -168,7 +169,7 @@ static int is_less(struct wide a, struct wide b)
     return a.high != b.high ? a.high < b.high : a.low < b.low;
 }
 
-/* |axis| is 1: the cosine is dot / |d|, and is compared by squares. */
+/* |axis| is 1, so the cosine is dot / |d|; squares are compared. */
 int glint_motion_sees(const int32_t axis_q30[3], int32_t cos_half_q30,
                       const int32_t d[3])
 {
@@ -211,8 +212,8 @@ uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food)
 
 /* --------------------------------------------------------------------- seek */
 
-/* Sets TURN_Q30 to the unit quaternion of the body, mirrored as the scene is.
- */
+/* Sets TURN_Q30 to the unit quaternion of the body in the scene's
+ * handedness. */
 static void set_turn(const struct glint_scene *s, int32_t turn_q30[4])
 {
     const int16_t *q14 = s->motion->frame.pose.turn_q14;
@@ -231,7 +232,7 @@ static void set_turn(const struct glint_scene *s, int32_t turn_q30[4])
     }
 }
 
-/* Sets AT to where OFFSET, in the body's axes, is. */
+/* Sets AT to the position of OFFSET, given in the body's axes. */
 static void on_body(const struct glint_motion_state *m, const int32_t offset[3],
                     int32_t at[3])
 {
@@ -258,7 +259,7 @@ static void move_sensors(struct glint_scene *s)
     }
 }
 
-/* Puts the camera where the sensor is that it is in. */
+/* Moves the camera to its sensor. */
 static enum glint_status move_camera(struct glint_scene *s)
 {
     const struct glint_motion_state *m = s->motion;
@@ -318,7 +319,7 @@ static void move_things(struct glint_scene *s, const int32_t turn_q30[4])
     }
 }
 
-/* Places all again by the frame that is there. */
+/* Moves all objects to their positions in the current frame. */
 static void move(struct glint_scene *s)
 {
     struct glint_motion_state *m = s->motion;
@@ -355,7 +356,7 @@ uint32_t glint_scene_frames(const struct glint_scene *scene)
 
 /* -------------------------------------------------------------------- looks */
 
-/* Sets FIRST to the first object of KIND; returns how many there are. */
+/* Sets FIRST to the first object of KIND; returns their number. */
 static uint32_t things_of(const struct glint_motion_state *m,
                           enum glint_scene_kind kind, uint32_t *first)
 {
@@ -428,7 +429,7 @@ enum glint_status glint_scene_enter(struct glint_scene *scene, int sensor)
         glint_scene_set_camera(scene, c->at, (const int32_t(*)[3])c->axis_q30);
     if (status != GLINT_OK)
         m->sensor = before;
-    /* its ball is about the camera */
+    /* the camera is inside the sensor's ball */
     glint_scene_show_kind(scene, GLINT_KIND_SENSORS,
                           glint_motion_shows(m, GLINT_KIND_SENSORS));
     return status;

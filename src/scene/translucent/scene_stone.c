@@ -11,11 +11,11 @@
 enum {
     GLINT_BLOCK_WIDTH = GLINT_STRIP,
     GLINT_BLOCK_HEIGHT = 16,
-    /* Blocks */
-    GLINT_BLOCK_SEEN = 1,  /* may be seen in this frame */
-    GLINT_BLOCK_LIT = 2,   /* has its light */
-    GLINT_BLOCK_READY = 4, /* light has spread */
-    GLINT_BLOCK_WANTED = 8 /* is to be lit, or spread, now */
+    /* state of a block of the map */
+    GLINT_BLOCK_SEEN = 1,  /* may be visible in this frame */
+    GLINT_BLOCK_LIT = 2,   /* its entering light is computed */
+    GLINT_BLOCK_READY = 4, /* its light has been spread */
+    GLINT_BLOCK_WANTED = 8 /* is to be lit or spread in this update */
 };
 
 /* The map of an object. */
@@ -23,32 +23,33 @@ struct glint_stone_skin {
     const struct glint_scene_skin *of;
     uint32_t material;
     int fresnel;
-    int32_t max_coat_q15; /* of what its coat mirrors straight ahead, where it
-                              mirrors all; 0: there is no coat */
+    int32_t max_coat_q15; /* max reflectance of the coat / its reflectance at
+                             normal incidence; 0: there is no coat */
     struct glint_translucent stone;
     struct glint_spread spread;
     const uint32_t *triangle;     /* mesh: [height][width] */
-    const int32_t (*turn_q30)[2]; /* ball: of columns, then of rows */
+    const int32_t (*turn_q30)[2]; /* ball: rotations of columns, then of rows */
     int across, down;             /* blocks */
     uint8_t *block;               /* [down][across] */
-    uint16_t *list;               /* [down][across] blocks to be lit */
+    uint16_t *list;               /* [down][across]: blocks to be lit */
     int n_list;
-    int shift;      /* light, q15, is that of the map times 2^shift */
-    int is_lit;     /* has been once */
-    uint32_t moved; /* what the scene had when it was */
+    int shift;      /* light, q15, is the map's value times 2^shift */
+    int is_lit;     /* the map was lit at least once */
+    uint32_t moved; /* moved of the scene at that time */
 };
 
 struct glint_stone_state {
     struct glint_stone_skin *skin;        /* [n_skins] */
     struct glint_spread_scratch *scratch; /* [workers] */
-    int32_t around_q15; /* no surface has more from the environment */
+    int32_t around_q15; /* max irradiance by the environment */
 };
 
-/* Returns the fraction of light that passes the surface at a cosine, q15. */
+/* Returns the fraction of light, q15, that passes the surface at COSINE to the
+ * normal. */
 static inline int32_t glint_stone_passes(const struct glint_stone_skin *skin,
                                          int32_t cosine_q30)
 {
-    enum { LOW = 23 }; /* 2^30 over GLINT_TRANSLUCENT_COSINES */
+    enum { LOW = 23 }; /* log2 of 2^30 / GLINT_TRANSLUCENT_COSINES */
     const int32_t c_q30 = q_smaller(cosine_q30, 1 << 30);
     const uint16_t *at_q15;
     int i;
@@ -81,8 +82,8 @@ static void see_all(struct glint_stone_skin *skin)
 /* --------------------------------------------------------------------- balls
  */
 
-/* A quarter of a block of a ball's map reaches 12.6 degrees from its middle
- * where that is 256 wide, 25.2 where it is 128, and in both a texel more. */
+/* A quarter of a block of a ball's map extends 12.6 degrees from its middle if
+ * the map is 256 wide, 25.2 degrees if it is 128 wide, plus a texel. */
 struct reach {
     int32_t cosine_q30, sine_q30;
 };
@@ -95,8 +96,8 @@ static struct reach reach_of(const struct glint_stone_skin *skin)
     return skin->spread.width < 256 ? wide : less;
 }
 
-/* Returns whether the texel at (X, Y) of ball P has a cosine above LIMIT to the
- * camera. */
+/* Returns whether, at texel (X, Y) of ball P, the cosine between the normal and
+ * the camera's direction is above LIMIT. */
 static int faces(const struct glint_placed *p,
                  const struct glint_stone_skin *skin, int x, int y,
                  const int32_t toward_q30[3], int32_t limit_q30)
@@ -111,8 +112,9 @@ static int faces(const struct glint_placed *p,
     return v3_cosine_q30(turned_q30, toward_q30) > limit_q30;
 }
 
-/* Sees the blocks of which a place faces the camera: n.d > R / D, of a unit
- * vector d to the camera, D away. Seen from within all are. */
+/* Marks the blocks with points that face the camera: n.d > R / D, where d is
+ * the unit vector to the camera at distance D. Marks all blocks if the camera
+ * is inside. */
 static void see_ball(const struct glint_scene *s, const struct glint_placed *p,
                      struct glint_stone_skin *skin)
 {
@@ -147,8 +149,8 @@ static void see_ball(const struct glint_scene *s, const struct glint_placed *p,
 /* -------------------------------------------------------------------- meshes
  */
 
-/* Returns whether triangle T may be seen: it reaches into the picture, and does
- * not show its back. */
+/* Returns whether triangle T may be visible: it overlaps the picture and does
+ * not face away. */
 static int is_seen(const struct glint_scene *s, const struct glint_placed *p,
                    const struct glint_stone_skin *skin,
                    const struct glint_scene_triangle *t)
@@ -175,7 +177,8 @@ static int is_seen(const struct glint_scene *s, const struct glint_placed *p,
            lo[1] <= all.y1 + 512;
 }
 
-/* Sees the blocks that the triangle of UV touches, and a texel more. */
+/* Marks the blocks that the triangle of UV touches, with a margin of a
+ * texel. */
 static void see_uv(struct glint_stone_skin *skin,
                    const int32_t *const uv_q16[3])
 {
@@ -218,8 +221,8 @@ static void see_mesh(const struct glint_scene *s, const struct glint_placed *p,
     }
 }
 
-/* Marks the blocks of SKIN that may be seen: more of them cost time, fewer
- * would show as black. */
+/* Marks the blocks of SKIN that may be visible. Superfluous blocks cost time; a
+ * missing block would show as black. */
 static void mark_visible(const struct glint_scene *scene,
                          struct glint_stone_skin *skin)
 {
@@ -227,7 +230,8 @@ static void mark_visible(const struct glint_scene *scene,
 
     for (int i = 0; i < skin->across * skin->down; i++)
         skin->block[i] &= (uint8_t)~GLINT_BLOCK_SEEN;
-    if (scene->has_split) /* mirrors show what the camera does not see */
+    if (scene->has_split) /* mirrors show points that face away from the
+                             camera */
         see_all(skin);
     else if (!p->is_seen)
         return;
@@ -239,7 +243,7 @@ static void mark_visible(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------- around */
 
-/* Adds to RGB_Q15 what the environment shows a white surface of NORMAL_Q30. */
+/* Adds to RGB_Q15 the environment's light on a white surface of NORMAL_Q30. */
 static void add_around(const struct glint_scene *s, const int32_t normal_q30[3],
                        int32_t weight_q15, int32_t rgb_q15[3])
 {
@@ -254,8 +258,8 @@ static void add_around(const struct glint_scene *s, const int32_t normal_q30[3],
                                 rgb_q15);
 }
 
-/* Normals over the faces of a cube; between them irradiance is below an eighth
- * more. */
+/* Returns a bound on the environment's irradiance, sampled at normals over the
+ * faces of a cube; between them irradiance is at most an eighth larger. */
 static int32_t max_around(const struct glint_scene *scene)
 {
     enum { STEPS = 8 };
@@ -281,8 +285,8 @@ static int32_t max_around(const struct glint_scene *scene)
 
 /* ----------------------------------------------------------------- exposure */
 
-/* Returns the most that LIT makes of a white surface on object P: of a lamp at
- * the nearest place, but a sixteenth of the object's size away at least. */
+/* Returns the max light of LIT on a white surface of object P: for a lamp at
+ * the nearest point, but at least a sixteenth of the object's size away. */
 static int32_t max_of(const struct glint_scene *s, const struct glint_lit *lit,
                       const struct glint_placed *p)
 {
@@ -299,7 +303,7 @@ static int32_t max_of(const struct glint_scene *s, const struct glint_lit *lit,
     return q_larger(level_q15[0], q_larger(level_q15[1], level_q15[2]));
 }
 
-/* Sets the shift of SKIN by the most light that may fall on it. */
+/* Sets the shift of SKIN from the max light that may fall on it. */
 static void expose(const struct glint_scene *scene,
                    struct glint_stone_skin *skin)
 {
@@ -336,8 +340,9 @@ static void ball_surface(const struct glint_scene *s,
     }
 }
 
-/* Sets weights of the corners of the triangle of UV at texel (X, Y), held
- * inside; returns 0 if it has no area. Elements of UV are within +-2^24. */
+/* Sets weights of the corners of the triangle of UV at texel (X, Y), clamped to
+ * the triangle; returns 0 if it has no area. Elements of UV must be within
+ * +-2^24. */
 static int weigh_texel(const int32_t *const uv_q16[3], int32_t u_q16,
                        int32_t v_q16, int32_t part_q30[3])
 {
@@ -361,7 +366,8 @@ static int weigh_texel(const int32_t *const uv_q16[3], int32_t u_q16,
     return 1;
 }
 
-/* The same of a mesh; returns 0 if the texel is none of it. */
+/* Sets SURFACE to texel (X, Y) of a mesh; returns 0 if no triangle covers the
+ * texel. */
 static int mesh_surface(const struct glint_scene *s,
                         const struct glint_stone_skin *skin, int x, int y,
                         struct glint_met_surface *surface)
@@ -391,7 +397,7 @@ static int mesh_surface(const struct glint_scene *s,
 
 /* -------------------------------------------------------------------- light */
 
-/* Adds to RGB_Q15 what of LIT gets in at SURFACE. */
+/* Adds to RGB_Q15 the light of LIT that enters at SURFACE. */
 static void add_light(const struct glint_scene *s,
                       const struct glint_stone_skin *skin,
                       const struct glint_met_surface *surface,
@@ -417,7 +423,7 @@ static void add_light(const struct glint_scene *s,
     }
 }
 
-/* Sets SURFACE to texel (X, Y); returns 0 if it is none of the object. */
+/* Sets SURFACE to texel (X, Y); returns 0 if the texel is not on the object. */
 static int find_surface(const struct glint_scene *s,
                         const struct glint_stone_skin *skin, int x, int y,
                         struct glint_met_surface *surface)
@@ -474,9 +480,8 @@ static const void *table_at(const struct glint_scene *s, uint32_t at)
     return (const unsigned char *)s->model.header + at;
 }
 
-/* The header of the translucent medium of skin I, whose sides were checked with
- * the scene.
- */
+/* Returns the header of the translucent medium of skin I; its sides were
+ * checked with the scene. */
 static const struct glint_translucent_header *
 header_of(const struct glint_scene *s, uint32_t i)
 {
@@ -512,8 +517,7 @@ static void carve_skin(const struct glint_scene *s, struct glint_arena *a,
         *skin = k;
 }
 
-/* Takes scratch for the largest of all translucent media, whatever their
- * models. */
+/* Allocates scratch for the largest of all translucent media. */
 static struct glint_spread_scratch carve_scratch(const struct glint_scene *s,
                                                  struct glint_arena *a)
 {
@@ -530,7 +534,7 @@ static struct glint_spread_scratch carve_scratch(const struct glint_scene *s,
         if (h->kernel > largest.kernel)
             largest.kernel = h->kernel;
     }
-    /* What is damaged is found when it is opened. */
+    /* Clamped, as damaged files are only detected when they are opened. */
     if (largest.rank > GLINT_TRANSLUCENT_MOST_RANK)
         largest.rank = GLINT_TRANSLUCENT_MOST_RANK;
     if (largest.kernel > GLINT_TRANSLUCENT_MOST_KERNEL)
@@ -603,7 +607,8 @@ static enum glint_status open_stones(struct glint_scene *scene)
 /* ------------------------------------------------------------------ updating
  */
 
-/* Restarts where objects have moved since the map was lit. */
+/* Clears the state of all blocks if objects have moved since the map was
+ * lit. */
 static void forget(const struct glint_scene *s, struct glint_stone_skin *skin)
 {
     if (skin->is_lit && skin->moved == s->moved)
@@ -615,7 +620,7 @@ static void forget(const struct glint_scene *s, struct glint_stone_skin *skin)
     expose(s, skin);
 }
 
-/* Wants block (X, Y), which may lie outside the map, lit. */
+/* Requests light for block (X, Y), which may lie outside the map. */
 static void want_light(struct glint_stone_skin *skin, int x, int y)
 {
     int i;
@@ -636,8 +641,8 @@ static void want_light(struct glint_stone_skin *skin, int x, int y)
     skin->list[skin->n_list++] = (uint16_t)i;
 }
 
-/* Lists the blocks whose light is wanted: those to be spread, and what lies
- * within a kernel. Returns how many are to be spread. */
+/* Lists the blocks whose light is needed: blocks to be spread, and blocks
+ * within a kernel of them. Returns the number of blocks to be spread. */
 static int list_blocks(struct glint_stone_skin *skin)
 {
     const int radius = (int)skin->stone.header->kernel / 2;
@@ -697,7 +702,7 @@ static void spread_job(void *ctx, int job, int worker)
     }
 }
 
-/* Marks what was lit and spread. */
+/* Marks the blocks that were lit and spread. */
 static void note(struct glint_stone_skin *skin)
 {
     for (int i = 0; i < skin->n_list; i++) {
@@ -710,8 +715,8 @@ static void note(struct glint_stone_skin *skin)
             skin->block[i] |= GLINT_BLOCK_READY;
 }
 
-/* Returns how many times what it does straight ahead the coat of SKIN mirrors
- * where it mirrors all, q15; 0: it has none. */
+/* Returns the max reflectance of the coat of SKIN / its reflectance at normal
+ * incidence, q15; 0 if there is no coat. */
 static int32_t max_coat_q15(const struct glint_scene *scene,
                             const struct glint_stone_skin *skin)
 {
@@ -754,10 +759,10 @@ static int update(struct glint_scene *scene)
 /* ------------------------------------------------------------------- showing
  */
 
-/* A place between two texels of an axis. */
+/* A position between two texels of an axis. */
 struct between {
     int first, second;
-    int32_t part_q16; /* of the second */
+    int32_t part_q16; /* weight of the second */
 };
 
 static struct between find_texels(int32_t uv_q16, int side_log2, int goes_round)
@@ -775,13 +780,14 @@ static struct between find_texels(int32_t uv_q16, int side_log2, int goes_round)
                             (int32_t)(at_q16 & 0xffff)};
 }
 
-/* Returns the light of MAP between four texels, _q15 of the map's. */
+/* Returns the light of MAP interpolated between four texels, in units of the
+ * map. */
 static int32_t sample(const int16_t *map, int width, const struct between *x,
                       const struct between *y)
 {
     const int16_t *upper = map + (ptrdiff_t)y->first * width;
     const int16_t *lower = map + (ptrdiff_t)y->second * width;
-    /* 7 bits more: below 2^22, and 2^38 in products */
+    /* 7 additional bits: below 2^22, and products below 2^38 */
     const int64_t a =
         (upper[x->first] << 7) +
         ((int64_t)(upper[x->second] - upper[x->first]) * x->part_q16 >> 9);
@@ -792,9 +798,9 @@ static int32_t sample(const int16_t *map, int width, const struct between *x,
     return (int32_t)(a + ((b - a) * y->part_q16 >> 16));
 }
 
-/* Returns how many times what it does straight ahead a coat mirrors where
- * PASSES_Q15 gets through, q15: what does not get through is mirrored, and
- * never more than all. */
+/* Returns the reflectance of the coat where it transmits PASSES_Q15 / its
+ * reflectance at normal incidence, q15. Light that is not transmitted is
+ * reflected. */
 static int32_t coat_q15(const struct glint_stone_skin *skin, int32_t passes_q15)
 {
     const uint16_t *at_q15 = skin->stone.transmit_q15;

@@ -29,7 +29,7 @@ glint_spread_carve(struct glint_arena *arena,
 
 /* ------------------------------------------------------------------- taps */
 
-/* Returns tap I of TAP[N], counted from the last. */
+/* Returns tap I of TAP[N], counted from the last; 0 if out of range. */
 static int32_t tap_at(const int16_t *tap, int n, int i)
 {
     return i < 0 || i >= n ? 0 : tap[n - 1 - i];
@@ -56,7 +56,7 @@ static void set_taps(const struct glint_translucent *t, uint32_t i,
 
 /* ------------------------------------------------------------------- codes */
 
-/* Codes of a table, from a texel on. */
+/* A row of a table's codes, from a texel on. */
 struct codes {
     const uint8_t *at;
     int is_signed;
@@ -83,9 +83,9 @@ static inline int32_t code_of(const struct codes *f, int i)
 
 /* ------------------------------------------------------------------- light */
 
-/* Sets VALUE to the light that gets in at columns X .. X + N - 1 of row Y, all
- * in the map, none beyond a repeat of the translucent medium. It is below 2^15,
- * and so are its products with codes over 2^bits. */
+/* Sets VALUE to the light that enters at columns X .. X + N - 1 of row Y. The
+ * columns must be in the map and within one tile of the translucent medium.
+ * Light is below 2^15, and so is light * code / 2^bits. */
 static void set_piece(const struct glint_spread *s, int c, int x, int y, int n,
                       int16_t *value)
 {
@@ -104,8 +104,8 @@ static void set_piece(const struct glint_spread *s, int c, int x, int y, int n,
                       in.bits);
 }
 
-/* Sets VALUE[N] to the light at columns from X on of row Y, which may both lie
- * outside the map. Returns 0 if there is none. */
+/* Sets VALUE[N] to the light at columns from X on of row Y. Both may lie
+ * outside the map. Returns 0 if all light is 0. */
 static int set_row(const struct glint_spread *s, int c, int x, int y, int n,
                    int16_t *value)
 {
@@ -135,7 +135,7 @@ static int set_row(const struct glint_spread *s, int c, int x, int y, int n,
     return any;
 }
 
-/* Sets pairs of N rows from Y on, around the strip from X0 on. */
+/* Sets the pairs of N rows from Y on, for the strip that begins at X0. */
 static void pair_rows(const struct glint_spread *s, int c, int x0, int y,
                       int n_rows, struct glint_spread_scratch *scratch)
 {
@@ -157,7 +157,7 @@ static void pair_rows(const struct glint_spread *s, int c, int x0, int y,
 
 /* ------------------------------------------------------------ convolutions */
 
-/* Sets SUM to row I convolved. */
+/* Sets SUM to the convolution of row I. */
 static void convolve_row(const struct glint_spread *s,
                          const struct glint_spread_scratch *scratch, int i,
                          const struct glint_spread_taps *taps,
@@ -172,7 +172,7 @@ static void convolve_row(const struct glint_spread *s,
                     taps->n, GLINT_STRIP);
 }
 
-/* Sets the values of TAPS to N pairs of rows, convolved. */
+/* Sets the values of N pairs of rows to their convolution with TAPS. */
 static void set_values(const struct glint_spread *s,
                        const struct glint_spread_scratch *scratch,
                        const struct glint_spread_taps *taps, int n,
@@ -192,7 +192,7 @@ static void set_values(const struct glint_spread *s,
     }
 }
 
-/* Adds columns of values, convolved, to SUM[ROWS]. */
+/* Adds the convolved columns of VALUE to SUM[ROWS]. */
 static void add_columns(const struct glint_spread *s,
                         const struct glint_spread_taps *taps,
                         const int32_t *value, int rows, int32_t *sum)
@@ -205,7 +205,7 @@ static void add_columns(const struct glint_spread *s,
 
 /* ------------------------------------------------------------------ planes */
 
-/* Returns whether a texel of the strip is in plane P. */
+/* Returns whether any texel of the strip uses plane P. */
 static int has_plane(const struct glint_spread *s, uint32_t p, int x0, int y0,
                      int y1)
 {
@@ -220,8 +220,8 @@ static int has_plane(const struct glint_spread *s, uint32_t p, int x0, int y0,
     return 0;
 }
 
-/* Adds SUM, of plane P in row Y, times its f, to TOTAL. Sums of all planes are
- * below 2^31 together in magnitude, so that is TOTAL. */
+/* Adds SUM, of plane P in row Y, times the plane's f, to TOTAL. The magnitudes
+ * of all planes' sums add up to less than 2^31, so TOTAL does not overflow. */
 static void add_plane(const struct glint_spread *s, int c, uint32_t p, int x0,
                       int y, const int32_t *sum, int32_t *total)
 {
@@ -275,7 +275,7 @@ static void spread_plane(const struct glint_spread *s, int c, uint32_t p,
 
 /* ------------------------------------------------------------------ strips */
 
-/* Sets a row of the map to TOTAL times the gain; what is below 0 is 0. */
+/* Sets a row of the map to TOTAL times the gain, clamped to 0 or more. */
 static void finish(const struct glint_spread *s, int c, int x0, int y,
                    const int32_t *total)
 {

@@ -9,10 +9,10 @@
 #include "base/compiler.h"
 #include "base/q.h"
 
-/* The file is used in place: its layout is what this struct is. */
+/* The file is used in place: its layout is the layout of this struct. */
 STATIC_ASSERT(sizeof(struct glint_translucent_header) == 172);
 
-/* The header begins as that of every baked file does. */
+/* The header begins like the header of every baked file. */
 GLINT_BLOB_HEADER(struct glint_translucent_header, variant);
 
 enum { CHANNELS = 3, MOST_SHIFT = 16, LEAST_GAIN = -200 };
@@ -58,7 +58,8 @@ static const char *check_header(const struct glint_translucent_header *h)
     return NULL;
 }
 
-/* Returns whether magnitudes of N taps are below LIMIT; adds them to SUM. */
+/* Returns whether the magnitudes of N taps are below LIMIT; adds them to
+ * SUM. */
 static int add_taps(const int16_t *tap, uint32_t n, int32_t limit,
                     uint32_t *sum)
 {
@@ -73,7 +74,8 @@ static int add_taps(const int16_t *tap, uint32_t n, int32_t limit,
     return fits;
 }
 
-/* Adds up all taps: what they make of values within +-32767 fits. */
+/* Checks by sums of taps that convolutions of values within +-32767 do not
+ * overflow. */
 static const char *check_taps(const struct glint_translucent *t)
 {
     const struct glint_translucent_header *h = t->header;
@@ -111,7 +113,7 @@ static uint32_t codes_of(const struct glint_translucent_header *h)
                                                         : 1);
 }
 
-/* Returns N items of BYTES each as words. */
+/* Returns the number of 4-byte words of N items of BYTES bytes. */
 static uint64_t words(uint64_t n, uint64_t bytes)
 {
     return (n * bytes + 3) / 4;

@@ -7,14 +7,14 @@
 #include "base/compiler.h"
 #include "scene/valid.h"
 
-/* The file is used in place: its layout is what these structs are. */
+/* The file is used in place: its layout is the layout of these structs. */
 STATIC_ASSERT(sizeof(struct glint_environment_level) == 16);
 STATIC_ASSERT(sizeof(struct glint_environment_light) == 40);
 STATIC_ASSERT(sizeof(struct glint_environment_header) == 124);
 STATIC_ASSERT(sizeof(struct glint_real) == 8);
 STATIC_ASSERT((int)GLINT_TEXELS_LEVELS == (int)GLINT_ENVIRONMENT_MAX_LEVELS);
 
-/* The header begins as that of every baked file does. */
+/* The header begins like the header of every baked file. */
 GLINT_BLOB_HEADER(struct glint_environment_header, variant);
 
 static const char outside[] = "a table lies outside the environment";
@@ -63,7 +63,7 @@ static const char *check_level(struct glint_environment *e,
     return e->texel[k] ? NULL : outside;
 }
 
-/* Tells lookups where level K lies. */
+/* Sets the address of level K. */
 static void place_level(struct glint_environment *e, uint32_t k)
 {
     const struct glint_environment_level *l = &e->level[k];

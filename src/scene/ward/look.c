@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Looks up the light of an environment: bilinear in a level, blended between
- * two. */
+ * Looks up the light of an environment: bilinear within a level, blended
+ * between two levels. */
 #include "base/divide.h"
 #include "base/log2.h"
 #include "glint/scene/ward.h"
 #include "kernels/ward/texels.h"
 
-/* Sets U and V to the place of TOWARD in the square. */
+/* Sets U and V to the position of direction TOWARD in the square map. */
 static void place(const int32_t toward[3], int32_t *u_q17, int32_t *v_q17)
 {
     const uint32_t x = (uint32_t)q_magnitude(toward[0]);
@@ -48,8 +48,8 @@ void glint_environment_irradiance(const struct glint_environment *environment,
     set_light(&found, rgb);
 }
 
-/* Returns what the next level, of four times the variance, counts so that both
- * have the variance of a level OVER_Q8 above the first. */
+/* Returns the weight of the next level, which has four times the variance, so
+ * that the blend has the variance of a level OVER_Q8 above the first. */
 static uint32_t share_of(int32_t over_q8)
 {
     return (uint32_t)(q_exp2_q16(over_q8 * 512) - 65536) * 85 >> 16;

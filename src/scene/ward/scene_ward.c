@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Environment light on the surfaces of a scene: what the irradiance map
- * shows of diffuse colour, and Ward's lobe of brushed metal. */
+ * Environment light on the surfaces of a scene: diffuse reflection by the
+ * irradiance map, and Ward's lobe of brushed metal. */
 #include "base/log2.h"
 #include "base/real.h"
 #include "glint/scene/ward.h"
@@ -14,15 +14,15 @@ struct glint_ward_state {
     struct glint_environment *opened; /* [n_environments] */
     struct glint_scene_light *sun;    /* [n_environment_lights] */
     int has_environment;
-    struct glint_environment environment; /* that is shown */
+    struct glint_environment environment; /* the current environment */
     int32_t turn_q30[2];                  /* cosine and sine, to the right */
-    struct glint_real scale;              /* of all its light */
-    struct glint_real unit;               /* of its texels, with that scale */
-    struct glint_ward_material *material; /* [n_wards], ratios held */
+    struct glint_real scale;              /* factor of all its light */
+    struct glint_real unit;               /* unit of its texels, times scale */
+    struct glint_ward_material *material; /* [n_wards], with clamped ratios */
     struct glint_ward_lobe *lobe;         /* [n_wards] */
 };
 
-/* Sets TO to direction V, _q30, in the directions of the environment. */
+/* Sets TO to direction V, _q30, rotated to the environment's coordinates. */
 static inline void glint_ward_turn(const struct glint_ward_state *w,
                                    const int32_t v[3], int32_t to[3])
 {
@@ -36,13 +36,14 @@ static inline void glint_ward_turn(const struct glint_ward_state *w,
 /* ------------------------------------------------------------------- behind */
 
 /* An environment as background, behind objects and in mirrors: its levels and
- * the discs of its bright lights, blurred as far as a pixel sees. */
+ * the discs of its bright lights, blurred to the extent of a pixel. */
 enum {
     LOG2_PI_Q16 = 108232,
-    LEAST_SPREAD_Q40 = 1 << 14 /* the lights that are points have a disc */
+    LEAST_SPREAD_Q40 = 1 << 14 /* so that point lights have a disc */
 };
 
-/* Level l has a variance of 4^l pi / side^2. */
+/* Returns the level of variance SPREAD: level l has the variance 4^l pi /
+ * side^2. */
 static int32_t level_q8(const struct glint_environment *e, int64_t spread_q40)
 {
     const int32_t octaves_q16 = q_log2_q16((uint64_t)spread_q40) - (40 << 16) +
@@ -52,8 +53,8 @@ static int32_t level_q8(const struct glint_environment *e, int64_t spread_q40)
     return (int32_t)q_shift(octaves_q16, 9);
 }
 
-/* Adds a disc of R, at least as large as the spot that is seen: within half of
- * that of its rim it fades. */
+/* Adds the disc of LIGHT, enlarged to at least the pixel's spot; it fades
+ * within half of the spot's size around its rim. */
 static void add_disc(const struct glint_ward_state *w,
                      const struct glint_environment_light *light,
                      const int32_t toward_q30[3], int64_t spread_q40,
@@ -110,29 +111,32 @@ static void behind(const struct glint_scene *scene, const int32_t toward_q30[3],
 
 /* ------------------------------------------------------------------ shining */
 
-/* Highlight of one light on brushed metal: Ward's lobe, as wide as the metal is
- * rough, the light's disc large and the surface bent within a pixel. Without
- * the last the highlight of a small ball would come and go between its pixels.
+/* Highlight of one light on brushed metal: Ward's lobe, widened by the metal's
+ * roughness, the light's disc and the curvature of the surface within a pixel.
+ * Without the last term the highlight of a small ball would flicker as it moves
+ * between pixels.
  *
  * Variances of slopes add up: alpha^2 / 2 of the metal, r^2 / 16 of the half
- * vector to a disc of angular radius r, and that of the normal within a pixel.
- * With h the half vector and o to the eye the light is
+ * vector to a disc of angular radius r, and the variance of the normal within a
+ * pixel. With h the half vector and o to the eye the light is
  *
  *     level weight exp(-slope) / (4 ax ay (h.o) (h.n)^3)
  *
  * with the weight of ward.c, clamped to 8. */
 enum { MOST_SLOPE = 16, LOG2_E_Q16 = 94548 };
 
-/* The half vector and what it is to the surface; all q30 but slopes. */
+/* The half vector relative to the surface; all q30 except slopes. */
 struct half {
     int32_t ho_q30, hn_q30, ni_q30, no_q30;
-    uint64_t slope_q52[2]; /* squares of slopes along the two axes, to 2^60 */
+    uint64_t slope_q52[2]; /* squares of slopes along the two axes, up to
+                              2^60 */
 };
 
-/* Returns whether ALONG_Q30 over HN_Q30 is surely so much that the lobe of the
- * square of alpha ALPHA_Q40, below 2^42, is nothing there: before there is a
- * root or a ratio. The left side is rounded down, to 2^56, the right one up, to
- * 2^63, and has 1/512 more, which is more than what ratios are off. */
+/* Returns whether the slope ALONG_Q30 / HN_Q30 is certainly so large that the
+ * lobe with squared alpha ALPHA_Q40 is 0; a quick test without root or
+ * division. ALPHA_Q40 must be below 2^42. The left side is rounded down, to
+ * 2^56, the right side up, to 2^63, and enlarged by 1/512, more than the error
+ * of ratios. */
 static int is_beyond(uint32_t along_q30, int32_t hn_q30, int64_t alpha_q40)
 {
     const uint64_t along_q28 = along_q30 >> 2;
@@ -143,8 +147,8 @@ static int is_beyond(uint32_t along_q30, int32_t hn_q30, int64_t alpha_q40)
     return along_q28 * along_q28 > max_q56 + (max_q56 >> 9);
 }
 
-/* Returns 0 if the light or the eye is behind the surface, or the lobe of
- * ALPHA_Q40, squares, is nothing there. */
+/* Finds the half vector. Returns 0 if the light or the eye is behind the
+ * surface, or if the lobe with squared alphas ALPHA_Q40 is 0. */
 static int find_half(const struct glint_scene_ray *ray,
                      const struct glint_brushed *brushed,
                      const int32_t toward_q30[3], const int64_t alpha_q40[2],
@@ -183,7 +187,7 @@ static int find_half(const struct glint_scene_ray *ray,
     return 1;
 }
 
-/* Returns what the lobe counts by the norm, 0 .. 8, before its density. */
+/* Returns the weight of the lobe by NORM, 0 .. 8, before its density. */
 static struct glint_real weight_of(enum glint_ward_norm norm,
                                    const struct half *h)
 {
@@ -213,7 +217,8 @@ static int shine(const struct glint_scene *scene,
         &scene->wards->material[surface->material->ward];
     const int64_t wider_q40 =
         ((int64_t)radius_q30 * radius_q30 >> 23) +
-        (int64_t)brushed->spread_q30 * 1024; /* r^2 / 8, and the normal's */
+        (int64_t)brushed->spread_q30 * 1024; /* r^2 / 8, and the term of the
+                                                normal */
     struct glint_real area = real_of(4, 0), gain;
     int64_t alpha_q40[2];
     int32_t slope_q16 = 0;
@@ -252,7 +257,7 @@ static int shine(const struct glint_scene *scene,
 enum {
     ONE_Q30 = 1 << 30,
     LEAST_COSINE_Q30 = 1 << 26,
-    LEAST_SUN_Q30 = 187404 /* sine of .01 degrees: lights that are points */
+    LEAST_SUN_Q30 = 187404 /* sine of 0.01 degrees, for point lights */
 };
 
 /* ------------------------------------------------------------------- memory */
@@ -274,8 +279,8 @@ static struct glint_ward_state *carve(const struct glint_scene *scene,
     return placed;
 }
 
-/* Makes lobe I again. A scale is 1 .. 2, a factor of colours, times a power of
- * two. */
+/* Recomputes lobe I. The scale is split into a factor 1 .. 2 of colours and a
+ * power of two. */
 static void set_lobe(const struct glint_scene *s, uint32_t i)
 {
     struct glint_ward_state *w = s->wards;
@@ -310,7 +315,8 @@ static void set_lobes(const struct glint_scene *scene)
 
 /* ------------------------------------------------------------- environment */
 
-/* Its lights are the last of those of the scene that shine. */
+/* Sets the rotation. The environment's lights are the last shining lights of
+ * the scene. */
 static void turn(struct glint_scene *scene, const int32_t turn_q30[2])
 {
     struct glint_ward_state *w = scene->wards;
@@ -399,7 +405,7 @@ static enum glint_status open_wards(struct glint_scene *scene)
 
 /* -------------------------------------------------------------------- lying */
 
-/* Returns how far the pixels of RAY are apart where it meets SURFACE, steps q8,
+/* Returns the distance between neighbouring pixels' rays at SURFACE, steps q8,
  * below 2^32. */
 static int64_t pixel_of_q8(const struct glint_scene *s,
                            const struct glint_scene_ray *ray,
@@ -416,8 +422,8 @@ static int64_t pixel_of_q8(const struct glint_scene *s,
     return t < UINT32_MAX ? t : (int64_t)UINT32_MAX;
 }
 
-/* Returns by how much the normals of two vertices, A and B, differ over
- * PIXEL_Q8 of the way between them. */
+/* Returns the difference of the normals of vertices A and B over a distance of
+ * PIXEL_Q8 between them. */
 static int32_t bend_between(const int32_t a[3], const int32_t b[3],
                             const int32_t na_q30[3], const int32_t nb_q30[3],
                             int64_t pixel_q8)
@@ -433,7 +439,7 @@ static int32_t bend_between(const int32_t a[3], const int32_t b[3],
         (uint64_t)glint_root((uint64_t)v3_dot(way, way)) << 7);
 }
 
-/* The most of the three edges of the triangle. */
+/* Returns the max of bend_between() over the three edges of the triangle. */
 static int32_t mesh_bend_q30(const struct glint_scene *s,
                              const struct glint_met_surface *surface,
                              int64_t pixel)
@@ -459,7 +465,8 @@ static int32_t mesh_bend_q30(const struct glint_scene *s,
     return most;
 }
 
-/* Returns by how much the normal turns from pixel to pixel, seen from ahead. */
+/* Returns the change of the normal from pixel to pixel if the surface faces the
+ * eye. */
 static int32_t bend_q30(const struct glint_scene *s,
                         const struct glint_scene_ray *ray,
                         const struct glint_met_surface *surface)
@@ -474,11 +481,11 @@ static int32_t bend_q30(const struct glint_scene *s,
                        (uint64_t)p->radius);
 }
 
-/* From pixel to pixel a surface that leans by n.o is 1 / n.o as far, the way
- * that it leans, and rays turn by a pixel, half vectors by about half of that.
- * Half of the square makes a highlight, where all else is sharp, a Gaussian of
- * half a pixel at least: samples a pixel apart then sum to the same light
- * wherever it lies, to 1.5 % each way. */
+/* On a surface of cosine n.o neighbouring pixels are 1 / n.o as far apart along
+ * its tilt; rays turn by a pixel and half vectors by about half of that. Half
+ * of the square makes a highlight, even if all else is sharp, a Gaussian of at
+ * least half a pixel: samples a pixel apart then sum to the same light at any
+ * position, to within +-1.5 %. */
 static int32_t spread_q30(const struct glint_scene *s,
                           const struct glint_scene_ray *ray,
                           const struct glint_met_surface *surface)
@@ -495,8 +502,8 @@ static int32_t spread_q30(const struct glint_scene *s,
     return (int32_t)(turn_q30 * turn_q30 >> 31);
 }
 
-/* Metal is brushed around the y axis of balls and meshes; where that is the
- * normal, as everywhere on planes, along the x axis. */
+/* Metal is brushed around the y axis of balls and meshes. Where the y axis is
+ * the normal, as everywhere on planes, it is brushed along the x axis. */
 static void lie(const struct glint_scene *scene,
                 const struct glint_met_surface *surface,
                 struct glint_brushed *brushed)
@@ -541,7 +548,7 @@ static void add_weighted(int32_t *to_q15, int64_t light_q15, int32_t weight_q15)
     *to_q15 = q_clamp_sat(sum_q15, 0, GLINT_SCENE_MOST_LIGHT);
 }
 
-/* Sets TO_Q14 to direction V, _q30, as the environment has it. */
+/* Sets TO_Q14 to direction V, _q30, in the environment's coordinates. */
 static void turn_q14(const struct glint_ward_state *w, const int32_t v_q30[3],
                      int32_t to_q14[3])
 {
@@ -552,7 +559,7 @@ static void turn_q14(const struct glint_ward_state *w, const int32_t v_q30[3],
         to_q14[k] = (int32_t)q_shift(to_q30[k], 16);
 }
 
-/* Adds what the irradiance map shows of diffuse colour. */
+/* Adds the diffuse reflection of the irradiance map. */
 static void add_diffuse(const struct glint_ward_state *w,
                         const struct glint_met_surface *surface,
                         const int32_t colour_q15[3], int32_t weight_q15,

@@ -4,7 +4,7 @@
 
 #include "glint/scene/ward.h"
 
-/* Does as glint_ward_light() of PLACE, the root of which it sets. */
+/* Like glint_ward_light() for PLACE; also sets the root of PLACE. */
 void glint_ward_send(const struct glint_ward_lobe *lobe,
                      const struct glint_environment *environment,
                      struct glint_ward_place *place, int32_t rgb_q15[3]);

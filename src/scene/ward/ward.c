@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Ward's lobe over an environment: the sum of what its half vectors read, as
- * the light of a place. */
+ * Ward's lobe over an environment: the light of a point as the sum of lookups
+ * by half vectors. */
 #include "glint/scene/ward.h"
 #include "scene/vector.h"
 #include "scene/ward/send.h"
 
 enum { MOST_LIGHT = 1 << 30 };
 
-/* Returns X 2^LOG2, 0 .. 2^30; X is 0 .. 2^61. */
+/* Returns X * 2^LOG2, clamped to 2^30. X must be 0 .. 2^61. */
 static int32_t scaled(uint64_t x, int log2)
 {
     if (log2 <= 0)
@@ -21,7 +21,7 @@ static int32_t scaled(uint64_t x, int log2)
                                              : (int32_t)(x << log2);
 }
 
-/* Sets 1 / sqrt(n.o). */
+/* Sets the root of PLACE to 1 / sqrt(n.o). */
 static void set_root(struct glint_ward_place *place)
 {
     const uint32_t root_q21 =

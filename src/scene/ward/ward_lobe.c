@@ -4,13 +4,14 @@
  *
  * Sample k of n has u = (k + 1/2) / n and v the bits of k in reverse: slopes
  * sqrt(-ln u) (ax cos 2 pi v, ay sin 2 pi v) [Ward92]. With constant footprints
- * the level read has a part of the lobe, sigma^2 = 2 b (h.o) of the reflected
- * direction, b = f ax ay, f = kappa / n, and slopes lose their mean and have
- * the rest. A level is round: with a variance of (alpha^2 - b) / 2 slopes would
- * add up to the lobe along each axis, but lie along a line where one alpha is
- * small; with (1 - f) alpha^2 / 2 they keep the lobe's shape, blurred. They
- * have the mean of both, which is nearer than either where alphas differ. As
- * published a sample has the solid angle 4 ax ay (h.o) (h.n)^3 pi / (n u). */
+ * the level read blurs by a part of the lobe, sigma^2 = 2 b (h.o) of the
+ * reflected direction, b = f ax ay, f = kappa / n; slopes are centred and have
+ * the rest of the variance. The blur of a level is isotropic: with a variance
+ * of (alpha^2 - b) / 2 slopes would add up to the lobe along each axis, but
+ * would lie on a line if one alpha is small; with (1 - f) alpha^2 / 2 they keep
+ * the lobe's shape, blurred. The mean of both variances is used, which is more
+ * accurate than either if alphas differ. As published a sample has the solid
+ * angle 4 ax ay (h.o) (h.n)^3 pi / (n u). */
 #include "base/divide.h"
 #include "base/log2.h"
 #include "glint/scene/ward.h"
@@ -38,7 +39,7 @@ static unsigned reversed(unsigned k)
     return (k & 1) << 4 | (k & 2) << 2 | (k & 4) | (k & 8) >> 2 | k >> 4;
 }
 
-/* Sets SLOPE_Q16 to the slopes for alphas of 1. */
+/* Sets SLOPE_Q16 to the slopes of N samples for alphas of 1. */
 static void draw(int n, int32_t slope_q16[GLINT_WARD_SAMPLES][2])
 {
     for (int k = 0; k < n; k++) {
@@ -53,8 +54,8 @@ static void draw(int n, int32_t slope_q16[GLINT_WARD_SAMPLES][2])
     }
 }
 
-/* Returns f of N samples, q16: kappa is 1, 1.4, 2, 2 and 3 of 1, 4, 8, 16 and
- * 32 samples, and straight between. */
+/* Returns f of N samples, q16: kappa is 1, 1.4, 2, 2 and 3 for 1, 4, 8, 16 and
+ * 32 samples, interpolated linearly between. */
 static int32_t footprint_q16(int n)
 {
     static const int32_t at[5] = {1, 4, 8, 16, 32};
@@ -68,9 +69,10 @@ static int32_t footprint_q16(int n)
            n;
 }
 
-/* Gives the slopes along AXIS mean 0 and the mean square WANT, q32. */
-static void settle(int n, int axis, uint32_t want_q32,
-                   int32_t slope_q16[GLINT_WARD_SAMPLES][2])
+/* Shifts and scales the slopes along AXIS to mean 0 and mean square WANT,
+ * q32. */
+static void normalise_slopes(int n, int axis, uint32_t want_q32,
+                             int32_t slope_q16[GLINT_WARD_SAMPLES][2])
 {
     int64_t sum_q16 = 0;
     uint64_t square_q32 = 0;
@@ -84,7 +86,7 @@ static void settle(int n, int axis, uint32_t want_q32,
             (uint64_t)((int64_t)slope_q16[k][axis] * slope_q16[k][axis]);
     }
     square_q32 /= (uint64_t)n;
-    /* Too few samples may all lie on the other axis. */
+    /* A few samples may all lie on the other axis. */
     by_q16 =
         square_q32 >> 24
             ? glint_root((uint64_t)want_q32 * (UINT64_C(1) << 32) / square_q32)
@@ -105,7 +107,7 @@ static uint64_t blur_q48(const int32_t alpha_q24[2], int32_t f_q16)
     return b_q48 < max_q48 ? b_q48 : max_q48;
 }
 
-/* Returns twice the variance of slopes of alpha 1. */
+/* Returns twice the variance of slopes, relative to alpha^2. */
 static int32_t spread_q16(int32_t alpha_q24, uint64_t b_q48, int32_t f_q16)
 {
     const uint64_t square_q48 = (uint64_t)alpha_q24 * (uint64_t)alpha_q24;
@@ -116,7 +118,8 @@ static int32_t spread_q16(int32_t alpha_q24, uint64_t b_q48, int32_t f_q16)
     return (ONE_Q16 - f_q16 + matched_q16) / 2;
 }
 
-/* Sets the span of sample K to X 2^LOG2, X from 1 on, BIAS_Q8 levels wider. */
+/* Sets the span of sample K to X * 2^LOG2, widened by BIAS_Q8 levels. X must be
+ * at least 1. */
 static void set_span(struct glint_ward_lobe *lobe, int k, uint64_t x, int log2,
                      int32_t bias_q8)
 {
@@ -147,8 +150,8 @@ static void set_half(struct glint_ward_lobe *lobe, int k,
               lobe->half_q14[2][k], 14);
 }
 
-/* A texel of level 0 has a solid angle of 4 pi / side^2, and the light of that
- * level a variance of a quarter of that. */
+/* Sets all spans. A texel of level 0 has a solid angle of 4 pi / side^2; light
+ * of that level has a quarter of it as variance. */
 static void set_spans(struct glint_ward_lobe *lobe, int n,
                       const int32_t alpha_q24[2], uint64_t b_q48,
                       const struct glint_ward_options *options, int side_log2)
@@ -209,8 +212,9 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
                                      .share_q16 = ((1 << 16) + n / 2) / n};
     draw(n, slope_q16);
     for (int j = 0; j < 2 && options->rule == GLINT_WARD_CONSTANT; j++)
-        settle(n, j, (uint32_t)spread_q16(alpha_q24[j], b_q48, f_q16) << 15,
-               slope_q16);
+        normalise_slopes(n, j,
+                         (uint32_t)spread_q16(alpha_q24[j], b_q48, f_q16) << 15,
+                         slope_q16);
     for (int k = 0; k < 3; k++)
         lobe->specular_q15[k] = material->specular_q15[k];
     for (int k = 0; k < n; k++)
