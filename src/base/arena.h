@@ -3,8 +3,9 @@
  * Bump allocation from one block that the caller owns; nothing is freed.
  *
  * With base == NULL the arena only counts. Each object has one function that
- * carves its buffers, and it runs twice: first to measure, then to place. So
- * the reported size cannot differ from what init takes. */
+ * carves its buffers, and it runs twice: first to measure the size, then to
+ * place the buffers. So the reported size is always the size that init
+ * needs. */
 #ifndef GLINT_BASE_ARENA_H
 #define GLINT_BASE_ARENA_H
 
@@ -16,7 +17,8 @@
 struct glint_arena {
     uint8_t *base; /* GLINT_ALIGN-aligned, or NULL to measure */
     size_t size;   /* bytes at base; SIZE_MAX while measuring */
-    size_t used;   /* bytes taken; more than size: something did not fit */
+    size_t used;   /* bytes allocated; if this exceeds size, an allocation
+                      failed */
 };
 
 /* Returns an arena that measures. */

@@ -21,9 +21,10 @@
 struct glint_blob_header {
     uint32_t magic, version;
     uint32_t bytes;   /* bytes of the whole file */
-    uint32_t crc32;   /* checksum of all after this word: polynomial 0xedb88320,
-                         reflected, begun and ended with all ones */
-    uint32_t variant; /* variant of the kind; each kind gives it a meaning */
+    uint32_t crc32;   /* CRC-32 of all bytes after this word: polynomial
+                         0xedb88320, reflected, initial value and final XOR all
+                         ones */
+    uint32_t variant; /* variant of the kind; its meaning depends on the kind */
     uint32_t key[2];  /* key of the source and the options that it was baked
                          from, low word first */
     char name[64];    /* name of the object baked, terminated */
@@ -53,8 +54,8 @@ enum glint_blob_fault {
     GLINT_BLOB_FAULTS
 };
 
-/* Texts of the faults: THING is the type of file, such THINGS its plural, DONE
- * what was done to it. GLINT_BLOB_OK has NULL. */
+/* Texts of the faults. THING names the type of file, THINGS is its plural, DONE
+ * is the participle of the operation. The text of GLINT_BLOB_OK is NULL. */
 #define GLINT_BLOB_FAULT_TEXT(thing, things, done)                          \
     {                                                                       \
         [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes", \
@@ -74,8 +75,8 @@ enum glint_blob_fault {
         [GLINT_BLOB_NAME_EMPTY] = "the name is empty"                       \
     }
 
-/* Checks that HEADER, a struct, begins as that of every baked file does; its
- * variant is the field VARIANT. */
+/* Checks that the struct HEADER begins with the fields of struct
+ * glint_blob_header. VARIANT_FIELD is its field for the variant. */
 #define GLINT_BLOB_HEADER(header, variant_field)           \
     GLINT_BLOB_SAME_PLACE(header, magic, magic);           \
     GLINT_BLOB_SAME_PLACE(header, version, version);       \
@@ -91,7 +92,8 @@ enum glint_blob_fault {
 struct glint_blob {
     const struct glint_blob_header *header;
     size_t bytes, header_bytes;
-    /* Bytes of all sections requested, once for each request. */
+    /* Sum of the bytes of all requested sections; a section counts once per
+     * request. */
     uint64_t referred;
 };
 
@@ -111,8 +113,8 @@ enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob);
 const void *glint_blob_section(struct glint_blob *blob, uint32_t at,
                                uint64_t count, size_t item_bytes);
 
-/* Sets size and checksum in the header of the finished file DATA[BYTES]; BYTES
- * is at least a header. */
+/* Sets size and checksum in the header of the finished file DATA[BYTES]. BYTES
+ * must be at least the size of a header. */
 void glint_blob_seal(void *data, size_t bytes);
 
 uint32_t glint_blob_crc32(const void *data, size_t bytes);

@@ -10,7 +10,7 @@
 #define BYTES_LOW  (0x7f * BYTES_EACH)
 #define BYTES_HIGH (0x80 * BYTES_EACH)
 
-/* Returns eight bytes at P, in a form of which compilers make one load. */
+/* Returns the eight bytes at P; compilers turn this form into one load. */
 static WHOLLY_INLINE uint64_t bytes_load(const uint8_t *p)
 {
     return (uint64_t)p[0] | (uint64_t)p[1] << 8 | (uint64_t)p[2] << 16 |
@@ -18,9 +18,9 @@ static WHOLLY_INLINE uint64_t bytes_load(const uint8_t *p)
            (uint64_t)p[6] << 48 | (uint64_t)p[7] << 56;
 }
 
-/* Returns the high bits of those bytes of V that are at least CODE, which is 1
- * .. 128, or 129 .. 256 if IS_ABOVE_128. No byte carries into the next, as both
- * addends are below 128. */
+/* Returns a word with the high bit set in each byte where V is at least CODE.
+ * CODE must be 1 .. 128, or 129 .. 256 if IS_ABOVE_128. No byte carries into
+ * the next, as both addends are below 128. */
 static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
                                           int is_above_128)
 {
@@ -31,7 +31,8 @@ static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
     return (is_above_128 ? sum & v : sum | v) & BYTES_HIGH;
 }
 
-/* Returns the eight high bits of HIGH side by side, the first byte's lowest. */
+/* Packs the high bits of the eight bytes of HIGH into bits 0 .. 7; bit 0 is
+ * that of the first byte. */
 static WHOLLY_INLINE uint32_t bytes_high_bits(uint64_t high)
 {
     return (uint32_t)((high >> 7) * UINT64_C(0x0102040810204080) >> 56);

@@ -16,11 +16,11 @@
 /* Right shifts of negative numbers are arithmetic wherever glint runs. */
 STATIC_ASSERT((-3 >> 1) == -2);
 
-/* Makes the compiler forget where P points, so that it loads values there again
- * instead of keeping them in registers that it lacks. */
+/* Makes the compiler forget where P points, so that it loads values again from
+ * memory instead of spilling registers to preserve them. */
 #define FORGET(p) __asm__("" : "+r"(p))
 
-/* Begins to load what P points to, for later; changes nothing. */
+/* Prefetches the memory at P into the cache. */
 #if defined(__GNUC__)
 #define PREFETCH(p) __builtin_prefetch(p)
 #else
@@ -58,10 +58,10 @@ static inline uint32_t bits_set(uint32_t x)
 }
 
 /* Functions marked WIDE_VECTORS are compiled twice, once for wider vectors than
- * every CPU of the architecture has; one of both is chosen when the program is
- * loaded; their results are equal. WHOLLY_INLINE is for the functions they
- * call. Sanitizers do not work with it, and clang would export the choosers of
- * static functions. */
+ * every CPU of the architecture has; the loader chooses one of the two; their
+ * results are equal. WHOLLY_INLINE is for the functions they call. Sanitizers
+ * do not work with it, and clang would export the choosers of static
+ * functions. */
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && \
     !defined(GLINT_SANITIZED)
 #define WIDE_VECTORS __attribute__((target_clones("avx2", "default")))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Division of 64 bits, where it is done often: on CPUs of 32 bits the
- * compiler's own function works bit by bit and takes some 300 instructions. */
+ * 64-bit division for hot code: on 32-bit CPUs the compiler's own function
+ * works bit by bit and needs about 300 instructions. */
 #ifndef GLINT_BASE_DIVIDE_H
 #define GLINT_BASE_DIVIDE_H
 
@@ -9,11 +9,12 @@
 
 #include "base/q.h"
 
-/* Returns N / D, cut towards 0, in 32-bit steps. D is not 0; both are within
- * +-2^63, without INT64_MIN. */
+/* Returns N / D, truncated towards 0, computed in 32-bit steps. D must not be
+ * 0; neither N nor D may be INT64_MIN. */
 int64_t glint_divide(int64_t n, int64_t d);
 
-/* Returns N / D, cut towards 0, by the faster way on this CPU. */
+/* Returns N / D, truncated towards 0, by the method that is faster on this
+ * CPU. */
 static inline int64_t q_divide(int64_t n, int64_t d)
 {
 #if UINTPTR_MAX > UINT32_MAX
@@ -35,7 +36,8 @@ static inline uint32_t q_reciprocal(uint32_t x)
 #endif
 }
 
-/* Returns X times 2^UP, cut. The result is below 2^32, UP is -31 .. 31. */
+/* Returns X times 2^UP, truncated. The result must be below 2^32 and UP in -31
+ * .. 31. */
 static inline uint32_t q_upper(uint64_t x, int up)
 {
 #if UINTPTR_MAX > UINT32_MAX
@@ -51,8 +53,8 @@ static inline int q_up(uint64_t x)
     return 32 - bit_length(x | 1);
 }
 
-/* Returns N / D, 0 <= N <= D, D not 0. The error is at most 2^-30 upwards and
- * 2^-29 downwards, the result within 0 .. 1. */
+/* Returns N / D for 0 <= N <= D, D not 0. The result is at most 2^-30 too high
+ * or 2^-29 too low, and within 0 .. 1. */
 static inline int32_t q_part_q30(uint64_t n, uint64_t d)
 {
     const int up = q_up(d);

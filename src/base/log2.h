@@ -6,8 +6,8 @@
 
 #include "base/q.h"
 
-/* Returns log2(X), X from 1; the error is below 2^-14. Between powers of 2 it
- * is f + f (1 - f) times a polynomial that makes the greatest error least. */
+/* Returns log2(X) for X >= 1; the error is below 2^-14. Between powers of 2 it
+ * is f + f (1 - f) times a minimax polynomial. */
 static inline int32_t q_log2_q16(uint64_t x)
 {
     const int whole = bit_length(x) - 1;
@@ -23,7 +23,7 @@ static inline int32_t q_log2_q16(uint64_t x)
            q_mul(q_mul(f_q16, 65536 - f_q16, 16), bend_q16, 16);
 }
 
-/* Returns 2^X, X below 46; the relative error is below 2^-15. */
+/* Returns 2^X for X below 46; the relative error is below 2^-15. */
 static inline int64_t q_exp2_q16(int32_t x_q16)
 {
     const int whole = x_q16 >> 16;

@@ -51,8 +51,8 @@ static inline int32_t q_mul(int32_t a, int32_t b, int s)
     return q_narrow(q_shift((int64_t)a * b, s));
 }
 
-/* Returns X / 2^S, rounded, for any S, if that is below LIMIT (2^30 at most) in
- * magnitude; else returns 0 and sets all bits of *LOST. */
+/* Returns X / 2^S, rounded, for any S, if the quotient is below LIMIT (2^30 at
+ * most) in magnitude; otherwise returns 0 and sets all bits of *LOST. */
 static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
 {
     int64_t y = 0;
@@ -69,7 +69,8 @@ static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
     return fits ? (int32_t)y : 0;
 }
 
-/* Returns the root of X, rounded down; the root of a Q(2 n) is a Q(n). */
+/* Returns the square root of X, rounded down; the root of a Q(2 n) is a
+ * Q(n). */
 static inline uint32_t q_root(uint64_t x)
 {
     uint64_t root = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Arithmetic with struct glint_real of glint/real.h: a mantissa, 0 or 2^30 ..
- * 2^31 - 1 in magnitude, times a power of two. Products and quotients are cut,
- * so off by 2^-30 at most. */
+ * 2^31 - 1 in magnitude, times a power of two. Products and quotients are
+ * truncated, with a relative error of at most 2^-30. */
 #ifndef GLINT_BASE_REAL_H
 #define GLINT_BASE_REAL_H
 
@@ -59,7 +59,7 @@ static inline int real_less(struct glint_real a, struct glint_real b)
                                     : a.mantissa < b.mantissa;
 }
 
-/* Returns X * 2^FRAC as an integer, cut, clamped to +-LIMIT. */
+/* Returns X * 2^FRAC, truncated to an integer and clamped to +-LIMIT. */
 static inline int64_t real_integer(struct glint_real x, int frac, int64_t limit)
 {
     const int up = x.exponent + frac;

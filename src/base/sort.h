@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Heaps and heap sort: in place, without memory of its own, n log n at worst.
+ * Heaps and heap sort: in place, without further memory, O(n log n) at worst.
  *
  *     glint_sort(order, n, before, ctx);       indices of objects, or
  *     glint_heap_sort(&heap, n);               objects that swap places */
@@ -10,28 +10,27 @@
 #include <stdint.h>
 
 /* Returns whether item A comes before item B. With a total order the result
- * does not depend on the order that the objects begin in. */
+ * does not depend on the initial order. */
 typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
 
-/* Objects at places 0, 1 and so on. In a heap the object at place i does not
- * come after the object at place (i - 1) / 2, so that the last of all is at
- * place 0.
- */
+/* Objects at indices 0, 1 and so on. In a heap the object at index i does not
+ * come after the object at index (i - 1) / 2, so that the last object is at
+ * index 0. */
 struct glint_heap {
     int (*before)(const void *things, int a,
-                  int b); /* returns whether the object at place A comes before
-                             the one at place B */
+                  int b); /* returns whether the object at index A comes before
+                             the object at index B */
     void (*swap)(void *things, int a, int b);
     void *things;
 };
 
-/* Makes a heap of places 0 .. N - 1. */
+/* Reorders the objects 0 .. N - 1 into a heap. */
 void glint_heap_make(const struct glint_heap *heap, int n);
 
-/* Restores the heap of places 0 .. N - 1 after the object at place AT was
- * replaced by one that comes earlier. */
+/* Restores the heap of objects 0 .. N - 1 after object AT was replaced by an
+ * object that comes earlier. */
 void glint_heap_sift(const struct glint_heap *heap, int at, int n);
 
 void glint_heap_sort(const struct glint_heap *heap, int n);

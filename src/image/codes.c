@@ -31,7 +31,7 @@ static inline void split(uint8_t (*sample)[2][WIDTH], int row,
             sample[c][row][i] = from[c][(ptrdiff_t)i * step];
 }
 
-/* And back. */
+/* Copies rows of samples back to N pixels of three samples each. */
 static inline void join(const struct glint_codes *codes, int row,
                         uint8_t *const to[3], int step, int n)
 {
@@ -63,8 +63,8 @@ static void read_565(struct glint_codes *c, const uint8_t *px, int n, int row)
         pad(c->sample[k][row], n, 1);
 }
 
-/* Returns CODE, 0 .. 255, as a code 0 .. MOST, rounded. Codes that read_565()
- * widened come back unchanged. */
+/* Returns CODE, 0 .. 255, scaled to 0 .. MOST and rounded. Inverts the widening
+ * by read_565() exactly. */
 static int fewer(int code, int most)
 {
     return (code * most + 127) / 255;

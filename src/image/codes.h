@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A stretch of one or two rows of a picture, with one byte per sample as the
- * kernels require, for every format. */
+ * A run of pixels of one or two rows of a picture of any format, with one byte
+ * per sample as the kernels require. */
 #ifndef GLINT_IMAGE_CODES_H
 #define GLINT_IMAGE_CODES_H
 
@@ -9,21 +9,21 @@
 
 #include "image/layout.h"
 
-/* Pixels of a stretch, a multiple of GLINT_LANES. */
+/* Max pixels per run, a multiple of GLINT_LANES. */
 enum { GLINT_CODES_WIDTH = 64 };
 
 struct glint_codes {
-    /* [channel][row]: R, G, B, or Y, Cb, Cr, one for each pixel; Cb and Cr are
-     * 128 for pictures of luma alone */
+    /* [channel][row]: R, G, B, or Y, Cb, Cr of each pixel; Cb and Cr are 128 in
+     * grey pictures */
     uint8_t sample[3][2][GLINT_CODES_WIDTH];
-    /* Chroma that pairs of pixels share, Cb and Cr in turn; in 4:2:0 the first
-     * row serves both rows. */
+    /* Chroma of pairs of pixels, Cb and Cr interleaved; in 4:2:0 both rows use
+     * the first row. */
     uint8_t chroma[2][GLINT_CODES_WIDTH];
 };
 
-/* Read and write pixels X .. X + N_X - 1 of the N_Y rows from Y on. X is even,
- * and so is Y if there are two rows. Reading repeats the last pixel past the
- * end. */
+/* Read and write pixels X .. X + N_X - 1 of the N_Y rows from Y on. X must be
+ * even, and Y too if N_Y is 2. Reading repeats the last pixel past the end of
+ * the row. */
 void glint_codes_read(struct glint_codes *codes,
                       const struct glint_image *image, int x, int y, int n_x,
                       int n_y);

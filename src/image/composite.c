@@ -4,7 +4,7 @@
 #include "base/arena.h"
 #include "image/resolve.h"
 
-enum { WIDTH = GLINT_CODES_WIDTH }; /* pixels of a stretch */
+enum { WIDTH = GLINT_CODES_WIDTH }; /* max pixels per run */
 
 struct glint_composite {
     struct glint_resolve *resolve;
@@ -12,7 +12,8 @@ struct glint_composite {
     struct glint_resolve_rows *rows;
 };
 
-/* Runs twice: once to measure, which gives NULL, and once to place. */
+/* Allocates a composite from A. Called twice: to measure (returns NULL) and to
+ * place. */
 static struct glint_composite *carve(struct glint_arena *a)
 {
     struct glint_composite measured = {0}, *placed;

@@ -5,13 +5,13 @@
 
 enum { WIDTH = GLINT_CODES_WIDTH };
 
-/* A stretch of one or two rows. */
+/* A run of pixels of one or two rows. */
 struct stretch {
     const struct glint_layout *layout;
     int n_x, n_y, black;
     const struct glint_cover_rows *cover;
     struct glint_codes *codes;
-    /* Sums of chroma over the pixels of each pair: Cb, Cr in turn. */
+    /* Sums of chroma over the pixels of each pair: Cb, Cr interleaved. */
     int32_t sum_q7[WIDTH];
 };
 
@@ -73,7 +73,8 @@ static void add_pairs(struct stretch *s, int16_t *const ycc_q7[3])
     }
 }
 
-/* Writes the mean chroma of pairs, over both rows if they share it. */
+/* Writes the mean chroma of each pair; over both rows if the rows share
+ * chroma. */
 static void put_pairs(struct stretch *s, int row)
 {
     const int log2 = s->layout->log2_y && row ? 2 : 1;
@@ -116,7 +117,7 @@ static void cover_ycc(struct stretch *s, const struct glint_mix *mix,
     }
 }
 
-/* Returns whether all pixels of the stretch are wholly hidden. */
+/* Returns whether all pixels of the run are fully hidden. */
 static int hides_all(const struct stretch *s)
 {
     unsigned shown = 0;
@@ -127,7 +128,7 @@ static int hides_all(const struct stretch *s)
     return !shown;
 }
 
-/* Sets the codes of a stretch to black, whatever they were. */
+/* Sets the codes of all pixels of the run to black. */
 static void blacken(const struct stretch *s, int is_rgb)
 {
     const uint8_t luma = (uint8_t)(is_rgb ? 0 : s->black);

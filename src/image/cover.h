@@ -7,10 +7,10 @@
  *
  *   code = encode(decode(code) (1 - cover) + light)
  *
- * A pixel that is wholly hidden is set to the light, whatever it was. A pixel
- * of which nothing is hidden keeps its code until light is added, as resolve.h
- * says. Chroma that pixels share is the mean of what it would be for each of
- * them. What a pixel still shows is rounded to codes before light is added. */
+ * A fully hidden pixel becomes the light alone. A pixel that is not hidden
+ * preserves its code until light is added (resolve.h). Shared chroma is the
+ * mean of the chroma of its pixels. The visible background is rounded to codes
+ * before light is added. */
 #ifndef GLINT_IMAGE_COVER_H
 #define GLINT_IMAGE_COVER_H
 
@@ -20,12 +20,12 @@ enum { GLINT_COVER_ALL = 256 };
 
 /* The cover of two rows. */
 struct glint_cover_rows {
-    /* 0: nothing is hidden .. 256: all is. */
+    /* hidden fraction of the pixel, 0 .. 256 */
     ALIGNED(32) uint16_t cover_q8[2][GLINT_CODES_WIDTH];
 };
 
-/* Hides COVER of a stretch, then adds LIGHT to it unless that is NULL. X, Y,
- * N_X and N_Y are as for glint_resolve_stretch(). */
+/* Hides COVER of a run of pixels, then adds LIGHT to it unless LIGHT is NULL.
+ * X, Y, N_X and N_Y are as for glint_resolve_stretch(). */
 void glint_cover_stretch(const struct glint_resolve *resolve,
                          const struct glint_image *image, int x, int y, int n_x,
                          int n_y, const struct glint_cover_rows *cover,

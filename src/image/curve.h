@@ -6,8 +6,9 @@
  *   ycc    Y, Cb, Cr codes of 8 bits <-> full-range R', G', B'
  *
  * Full-range codes have 7 fraction bits (_q7: 255 << 7 is white), linear light
- * has 20 (1 << 20 is white). A curve is within 2^-21 of the true one at the 256
- * codes, and straight between them. kernels/tone.h goes from light to codes.
+ * has 20 (1 << 20 is white). A curve is within 2^-21 of the standard's curve at
+ * the 256 codes, and linear between them. kernels/tone.h goes from light to
+ * codes.
  *
  * Integers only, the same on every CPU; only init divides. */
 #ifndef GLINT_IMAGE_CURVE_H
@@ -21,14 +22,14 @@
 #define LINEAR_WHITE_Q20 (1 << 20)
 
 struct glint_curve {
-    int32_t decode_q20[257]; /* light of whole codes; [256] ends the last
-                                interval */
+    int32_t decode_q20[257]; /* light of integer codes; [256] is the end of the
+                                last interval */
 };
 
 /* Fills CURVE for TRANSFER: 256 roots by bit search. */
 void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer);
 
-/* Returns the light of CODE_Q7, 0 .. CODE_WHITE_Q7. */
+/* Returns the linear light of CODE_Q7, which must be in 0 .. CODE_WHITE_Q7. */
 static inline int32_t curve_decode(const struct glint_curve *curve,
                                    int32_t code_q7)
 {
@@ -46,12 +47,12 @@ struct glint_ycc {
     int32_t to_ycc_q15[3][3]; /* Y, Cb, Cr per code of R', G', B' */
 };
 
-/* Fills YCC for MATRIX and RANGE; the first columns serve grey pictures. */
+/* Fills YCC for MATRIX and RANGE. Grey pictures use its first columns alone. */
 void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
                     enum glint_range range);
 
-/* Sets RGB to R'G'B' of 8-bit codes. They are not clamped: -290 .. 550 codes
- * may come out. */
+/* Sets RGB to R'G'B' of 8-bit codes. They are not clamped: their range is -290
+ * .. 550 codes. */
 static inline void ycc_to_rgb(const struct glint_ycc *ycc, int y, int cb,
                               int cr, int32_t rgb_q7[3])
 {

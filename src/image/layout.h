@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * States where the samples of a picture lie, for each format. */
+ * Memory layout of the samples of a picture, for each format. */
 #ifndef GLINT_IMAGE_LAYOUT_H
 #define GLINT_IMAGE_LAYOUT_H
 
@@ -17,8 +17,8 @@ enum glint_layout_kind {
 struct glint_layout {
     enum glint_layout_kind kind;
     int planes;
-    int log2_x, log2_y; /* chroma has half as many samples across and down if 1;
-                           0: as many as luma */
+    int log2_x, log2_y; /* 1: chroma has half as many samples as luma across or
+                           down; 0: as many */
     /* For Y, Cb, Cr or R, G, B: plane, bytes from the row's start to the first
      * sample, and bytes from one sample to the next. */
     struct glint_layout_sample {
@@ -29,7 +29,7 @@ struct glint_layout {
 const struct glint_layout *glint_layout_of(enum glint_pixel_format format);
 
 /* Returns whether luma and chroma share a plane, as in YUYV: every other byte
- * is luma, the bytes between are Cb and Cr in turn. */
+ * is luma, the bytes between alternate Cb and Cr. */
 static inline int glint_layout_is_packed(const struct glint_layout *layout)
 {
     return layout->planes == 1 && layout->log2_x;

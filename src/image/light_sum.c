@@ -39,7 +39,7 @@ void glint_light_sum_read(struct glint_light_sum *sum,
         glint_codes_read(codes, sum->image, x, y, n_x, n_y);
 }
 
-/* Returns the light of a code, as curve_decode() has it of the clamped code. */
+/* Clamps CODE and returns its light, as curve_decode() does. */
 static inline int32_t light_of(const struct glint_light_code *code,
                                int32_t code_q7)
 {
@@ -49,7 +49,7 @@ static inline int32_t light_of(const struct glint_light_code *code,
     return at->light_q20 + ((at->rise_q20 * (code_q7 & 127) + 64) >> 7);
 }
 
-/* What Cb and Cr give to each channel. */
+/* The contribution of Cb and Cr to each channel. */
 struct chroma {
     int32_t r_q16, g_q16, b_q16;
 };
@@ -65,8 +65,8 @@ static inline struct chroma chroma_of(const struct glint_ycc *ycc, int cb,
                            u * by_q16[2][1] + v * by_q16[2][2] + half};
 }
 
-/* Sums stay below 2^27, as no more than a stretch is added at once. What Cb and
- * Cr give is taken once for all the pixels that share them. */
+/* Sums stay below 2^27, as a call adds at most GLINT_CODES_WIDTH pixels. The
+ * contribution of Cb and Cr is computed once for all pixels that share them. */
 static void add_ycc(const struct glint_light_sum *s,
                     const struct glint_codes *codes, int row, int from, int to,
                     int64_t rgb_q20[3])
@@ -109,7 +109,7 @@ static void add_565(const struct glint_light_sum *s,
             rgb_q20[c] += s->curve->curve.decode_q20[codes->sample[c][row][x]];
 }
 
-/* As many pixels as are read at once stay below 2^27. */
+/* Sums stay below 2^27, as a call adds at most GLINT_CODES_WIDTH pixels. */
 static void add_rgb(const struct glint_light_sum *s, int y, int from, int to,
                     int64_t rgb_q20[3])
 {

@@ -73,7 +73,8 @@ static int64_t ratio(int64_t n, int64_t d)
 
 /* Sets the factors from Y'CbCr in _q7 to base and tints, which are half of
  * R'G'B' in _q15. A code of 8 bits is 128.5 units of R'G'B', so the factors are
- * 257 / 512 of to_rgb; that of blue is halved once more, to fit 16 bits. */
+ * 257 / 512 of to_rgb; the factor of blue is halved once more, to fit 16
+ * bits. */
 static void from_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
 {
     static const uint8_t at[][2] = {[GLINT_MIX_BASE] = {0, 0},
@@ -92,8 +93,8 @@ static void from_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
     set(mix->black, -q_mul(ycc->black * 128, f->one[GLINT_MIX_BASE], 15));
 }
 
-/* Sets the factors from changes of R'G'B' to those of Y'CbCr in _q7: 256 / 257
- * of to_ycc. */
+/* Sets the factors from changes of R'G'B' to changes of Y'CbCr in _q7: 256 /
+ * 257 of to_ycc. */
 static void to_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
 {
     const int32_t(*m_q15)[3] = ycc->to_ycc_q15;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "image/quads.h"
 
-enum { STEP = 2 * GLINT_LANES }; /* pixels that kernels take at a time */
+enum { STEP = 2 * GLINT_LANES }; /* pixels that kernels process at a time */
 
-/* A stretch of two rows of a picture, or of its last row alone. */
+/* A run of pixels of two rows of a picture, or of its last row alone. */
 struct stretch {
     const struct glint_image *image;
     const struct glint_layout *layout;

@@ -57,7 +57,8 @@ static void luminance(const struct glint_light_rows *light, int row, int n,
 }
 
 /* Adds light to one row of chroma that has a sample for each pixel. OWN is the
- * change of B' or R', LUMA that of Y', FACTOR the two factors on these. */
+ * change of B' or R', LUMA the change of Y', FACTOR the factors of OWN and
+ * LUMA. */
 static void add_chroma(uint8_t *code, const int16_t *own, const int16_t *luma,
                        const int16_t *factor_q15, int n, const int16_t *round)
 {
@@ -70,7 +71,8 @@ static void add_chroma(uint8_t *code, const int16_t *own, const int16_t *luma,
     }
 }
 
-/* Adds light to a row whose pixels have chroma of their own, or none. */
+/* Adds light to a row without shared chroma: each pixel has its own chroma, or
+ * the picture is grey. */
 static void resolve_whole(const struct glint_resolve *r,
                           const struct glint_image *image, int y, int n,
                           int row, const struct glint_light_rows *light,
@@ -98,7 +100,7 @@ static void resolve_whole(const struct glint_resolve *r,
                    n, round);
 }
 
-/* Completes the last pair of a stretch of odd width: the missing pixel gets the
+/* Completes the last pair of a run of odd width: the missing pixel gets the
  * light of its neighbour. */
 static void mirror_last(struct glint_light_rows *light, int n_x, int n_y)
 {

@@ -4,16 +4,18 @@
  *
  *   in   linear light to add, _q16, 65535 = display white, which saturates
  *   out  the picture's own codes, changed in place: decode to linear, add,
- *        encode. A pixel without light keeps its code exactly, whatever the
- *        format, and none gets darker.
+ *        encode. In every format a pixel without light preserves its code
+ *        exactly, and no pixel gets darker.
  *
  * Y'CbCr pictures: the change of R'G'B' is carried over to Y' per pixel, and to
  * Cb and Cr as the mean change over the pixels that share the sample; samples
- * that change by less than half a code stay. Codes outside the R'G'B' cube are
- * clamped to it only for the sum, so that nothing jumps as light rises from 0.
+ * that change by less than half a code stay unchanged. Codes outside the R'G'B'
+ * cube are clamped to it only for the sum, so that pixels change continuously
+ * as light rises from 0.
  *
  * Grey pictures: the luminance of the light is added, with the weights of
- * BT.709, whose primaries linear light has; the picture's matrix is not used.
+ * BT.709, as linear light has the primaries of BT.709; the picture's matrix is
+ * not used.
  *
  * Before rounding to codes, the error of R', G', B' is below 0.11 code
  * (kernels/tone.h); light is quantised to steps of 0.1 code at most. */
@@ -32,12 +34,13 @@ struct glint_resolve {
     const struct glint_kernels *kernels;
     unsigned sets;
     /* Codes to add before rounding down: 1/2 everywhere, or an 8 x 8 pattern
-     * with that mean and all values below 1, so that whole codes stay as they
-     * are. */
+     * with that mean and all values below 1, so that integer codes stay
+     * unchanged. */
     int16_t round_q7[8][8];
 };
 
-/* Light of two rows of a stretch; resolve may write past its last pixel. */
+/* Light of two rows of a run of pixels; resolve may write past the last
+ * pixel. */
 struct glint_light_rows {
     ALIGNED(32) uint16_t rgb_q16[3][2][GLINT_CODES_WIDTH];
 };
@@ -51,23 +54,24 @@ struct glint_resolve_rows {
     ALIGNED(32) uint16_t grey_q16[GLINT_CODES_WIDTH];
 };
 
-/* Makes the tables for pictures that are coded as IMAGE is. DITHER: 1 adds an
- * ordered pattern of less than a code before rounding, equal in every run. */
+/* Makes the tables for pictures with the format and coding of IMAGE. If DITHER
+ * is 1, a fixed ordered pattern of less than a code is added before
+ * rounding. */
 void glint_resolve_init(struct glint_resolve *resolve,
                         const struct glint_image *image, int dither,
                         unsigned sets);
 
 /* Adds LIGHT to pixels X .. X + N_X - 1 of the N_Y (1 or 2) rows from Y on of
- * IMAGE, which is not LINEAR_Q20. X is a multiple of 8 and Y even; N_X is even
- * except at the picture's right side, N_Y is 2 except at its lower side. So
- * stretches share no sample and may be resolved in any order, or at once. */
+ * IMAGE, which is not LINEAR_Q20. X must be a multiple of 8 and Y even; N_X
+ * must be even except at the picture's right side, N_Y 2 except at its lower
+ * side. So calls share no sample and may run in any order, or concurrently. */
 void glint_resolve_stretch(const struct glint_resolve *resolve,
                            const struct glint_image *image, int x, int y,
                            int n_x, int n_y, struct glint_light_rows *light,
                            struct glint_resolve_rows *rows);
 
-/* Adds LIGHT to a stretch that has been read to rows->codes, and leaves it
- * there. */
+/* Adds LIGHT to pixels that have been read to rows->codes; the result stays in
+ * rows->codes. */
 void glint_resolve_codes(const struct glint_resolve *resolve,
                          const struct glint_image *image, int y, int n_x,
                          int n_y, struct glint_light_rows *light,
@@ -75,7 +79,7 @@ void glint_resolve_codes(const struct glint_resolve *resolve,
 
 /* Adds N values of LIGHT, separate R, G, B, to a row of a LINEAR_Q20 picture
  * (4-byte aligned) from (X, Y) on, clamped to int32. Returns how many samples
- * are then at an end of the range. */
+ * end at a limit of the range. */
 int glint_resolve_linear(const struct glint_image *image, int x, int y, int n,
                          const int32_t *const light_q20[3]);
 

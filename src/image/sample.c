@@ -18,7 +18,8 @@ static void read_ycc(const struct glint_ycc *ycc, int y, int cb, int cr,
         rgb[c] = code_of(rgb_q7[c]);
 }
 
-/* Five or six bits are spread over eight, so that white stays white. */
+/* Widens five or six bits to eight by repeating the upper bits, so that white
+ * stays white. */
 static void read_565(const uint8_t *p, uint8_t rgb[3])
 {
     const int code = p[0] | p[1] << 8;

@@ -12,8 +12,8 @@
 
 #include "glint/kernels.h"
 
-/* NEON kernels are built for every ARM that may have NEON. Whether a CPU has
- * it, the compiler or the system says. */
+/* NEON kernels are built for every ARM that may have NEON. The compiler or the
+ * system reports whether the CPU has it. */
 #if defined(__aarch64__) || defined(__ARM_NEON) ||               \
     (defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'A' && \
      __ARM_ARCH >= 7)

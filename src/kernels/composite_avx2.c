@@ -39,7 +39,8 @@ static inline void v_store_codes(uint8_t *p, V x)
                                 _mm256_extracti128_si256(x, 1)));
 }
 
-/* Loads sixteen values: even ones to the lower half, odd ones to the upper. */
+/* Loads sixteen values: even values to the lower half, odd values to the upper
+ * half. */
 static inline void v_load_pairs(const uint16_t *p, V x[1])
 {
     x[0] = _mm256_permute4x64_epi64(
@@ -48,7 +49,8 @@ static inline void v_load_pairs(const uint16_t *p, V x[1])
         0xd8);
 }
 
-/* Returns, as _q7, the bytes of CODES that PLACES names for each half. */
+/* Returns, as _q7, the bytes of CODES that the shuffle control PLACES selects
+ * for each half. */
 static inline V spread(__m128i codes, V places)
 {
     return v_right(v_shuffle(_mm256_broadcastsi128_si256(codes), places), 1);
@@ -70,7 +72,7 @@ static inline void v_chroma_of(__m128i codes, V c[2])
     c[1] = spread(codes, _mm256_set_epi64x(ODDS, ODDS));
 }
 
-/* Returns codes from the lower halves of X and Y in turn. */
+/* Interleaves the codes in the lower halves of X and Y. */
 static inline __m128i woven(V x, V y)
 {
     const __m128i both =
@@ -98,7 +100,7 @@ static inline __m128i b_of_chroma(const V c[2])
 }
 
 /* Load eight thresholds for sixteen pixels, and for their chroma, Cb and Cr
- * apart. */
+ * separately. */
 static inline void v_round_pairs(const int16_t *p, V x[1])
 {
     x[0] = v_shuffle(v_repeat(p),
@@ -121,8 +123,8 @@ static inline void v_store_mean(int16_t *p, V x)
     b_store(p, _mm256_castsi256_si128(x));
 }
 
-/* Returns the means of pairs, of an even pixel and an odd one, in both halves.
- */
+/* Returns, in both halves, the means of pairs of an even pixel and the next odd
+ * pixel. */
 static inline V v_pair_mean(const V x[1])
 {
     return v_mean(x[0], turned(x[0]));
@@ -157,7 +159,7 @@ static inline uint32_t w_first(V x)
     return (uint32_t)_mm256_cvtsi256_si32(x);
 }
 
-/* Returns for each lane the sum of it and all lanes before it. */
+/* Returns the prefix sums of the lanes of X. */
 static inline V w_sums(V x)
 {
     V low;

@@ -15,7 +15,7 @@ static int16_t sum_sat(int a, int b)
     return held(a + b, INT16_MIN, INT16_MAX);
 }
 
-/* Returns a * b / 2^15, rounded; not both INT16_MIN. */
+/* Returns a * b / 2^15, rounded. A and B must not both be INT16_MIN. */
 static int16_t times(int a, int b)
 {
     return (int16_t)((a * b + (1 << 14)) >> 15);
@@ -55,8 +55,8 @@ static int16_t change_of(const struct glint_tone16 *t, int16_t code,
     return lit > code ? (int16_t)(lit - code) : 0;
 }
 
-/* Indices, among the changes of R', G', B', Y', of those that chroma depends
- * on. */
+/* Indices of the changes that chroma depends on, among the changes of R', G',
+ * B', Y'. */
 static const int kept[3] = {0, 2, 3};
 
 /* Sets RGB to R', G', B' of a pixel whose Y', Cb and Cr are _q7. */
@@ -130,8 +130,9 @@ static int16_t mean_of(int a, int b)
     return (int16_t)((a + b + 1) >> 1);
 }
 
-/* Returns a code of chroma after its pixels' own colour, B' or R', changed by
- * OWN and Y' by LUMA. K is the index of the first of its two factors. */
+/* Returns the new code of chroma after B' (for Cb) or R' (for Cr) of its pixels
+ * changed by OWN, and Y' by LUMA. K is the index of the first of its two
+ * factors. */
 static uint8_t add_chroma(int code, int own, int luma, int k,
                           const struct glint_mix *mix, int16_t round_q7)
 {
@@ -337,7 +338,7 @@ void glint_run_sum_c(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
     *carry = sum;
 }
 
-/* Returns CODE, full-range, after COVER hides a part of its light. */
+/* Returns the full-range CODE after COVER hides a fraction of its light. */
 static int16_t left_of(const struct glint_tone16 *t, int16_t code, int cover_q8)
 {
     const uint32_t light = decode(t, code) * (uint32_t)(256 - cover_q8);
@@ -361,7 +362,7 @@ void glint_cover_code_c(uint8_t *code, const uint16_t *cover_q8, int n,
     }
 }
 
-/* Hides a part of one pixel, given as Y', Cb, Cr in _q7. */
+/* Hides the fraction COVER_Q8 of one pixel, given as Y', Cb, Cr in _q7. */
 static void cover_pixel(int16_t ycc_q7[3], int cover_q8,
                         const struct glint_mix *mix)
 {

@@ -53,8 +53,8 @@ static inline int v_is_zero(V x)
 /* --------------------------------------------------------------- constants */
 
 /* Constants stay in registers, eight factors in each. Compilers keep a table in
- * two consecutive registers only if it is a variable of its own, not a member
- * of one. */
+ * two consecutive registers only if it is a variable, not a member of a
+ * struct. */
 struct v_tone {
     int16x8_t factor, toe_end, rise[2], turn;
     const uint8x16x2_t *level, *slope, *curve;
@@ -76,8 +76,8 @@ struct v_mix {
     vqrdmulhq_lane_s16(x, (i)&4 ? vget_high_s16(f) : vget_low_s16(f), (i)&3)
 #endif
 
-/* Tables are loaded once where there are registers for them, else at each use.
- */
+/* Tables are loaded once if there are enough registers, otherwise at each
+ * use. */
 #if defined(__aarch64__)
 #define TABLES(t, tone)                                     \
     const uint8x16x2_t t##_level = table_at((tone)->level), \
@@ -122,7 +122,7 @@ static inline uint8x16x2_t table_at(const int16_t *p)
 /* Number of leading zeros, 0 .. 16. */
 #define v_zeros vclzq_s16
 
-/* Byte places of a table's entries; places past its end give 0. */
+/* Byte offsets of a table's entries; offsets past its end give 0. */
 #define PLACES uint8x16_t
 
 static inline PLACES v_places_of(const TONE *t, V k)
@@ -238,8 +238,8 @@ static inline void v_store_packed(uint8_t *p, int luma_at, const V y[2],
     vst4_u8(p, quads);
 }
 
-/* Loads eight thresholds for sixteen pixels: even ones, then odd ones; as
- * chroma they are Cb's, then Cr's. */
+/* Loads eight thresholds for sixteen pixels: even thresholds, then odd; for
+ * chroma, those of Cb, then of Cr. */
 static inline void v_round_pairs(const int16_t *p, V x[2])
 {
     const int16x8x2_t pairs = vuzpq_s16(vld1q_s16(p), vld1q_s16(p));
@@ -250,7 +250,7 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
 
 #define v_round_chroma v_round_pairs
 
-/* Returns the means of pairs, of an even pixel and an odd one. */
+/* Returns the means of pairs of an even pixel and the next odd pixel. */
 static inline V v_pair_mean(const V x[2])
 {
     return v_mean(x[0], x[1]);
@@ -260,8 +260,8 @@ static inline V v_pair_mean(const V x[2])
 
 /* -------------------------------------------------------------------- sums */
 
-/* Returns sums rounded to _q16, clamped to 0 .. 65535. FEWER: minus the number
- * of fraction bits that they have beyond that. */
+/* Returns sums rounded to _q16, clamped to 0 .. 65535. FEWER is minus the
+ * number of their fraction bits beyond 16. */
 static inline uint16x4_t rounded(uint32x4_t sum, int32x4_t fewer)
 {
     return vqmovun_s32(vrshlq_s32(vreinterpretq_s32_u32(sum), fewer));

@@ -37,7 +37,7 @@ static inline void v_store_codes(uint8_t *p, V x)
     _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi16(x, x));
 }
 
-/* Returns the even lanes, then the odd ones. */
+/* Returns the even lanes, then the odd lanes. */
 static inline V parted(V x)
 {
     return v_shuffle(x, v_bytes(0x0f0e0b0a07060302, 0x0d0c090805040100));
@@ -64,8 +64,8 @@ static inline V b_of_pairs(const V x[2])
         v_bytes(0x0f070e060d050c04, 0x0b030a0209010800));
 }
 
-/* Loads eight thresholds for sixteen pixels: even ones, then odd ones; as
- * chroma they are Cb's, then Cr's. */
+/* Loads eight thresholds for sixteen pixels: even thresholds, then odd; for
+ * chroma, those of Cb, then of Cr. */
 static inline void v_round_pairs(const int16_t *p, V x[2])
 {
     const V both = parted(b_load(p));
@@ -78,7 +78,7 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
 #define v_load_mean    v_load
 #define v_store_mean   v_store
 
-/* Returns the means of pairs, of an even pixel and an odd one. */
+/* Returns the means of pairs of an even pixel and the next odd pixel. */
 static inline V v_pair_mean(const V x[2])
 {
     return v_mean(x[0], x[1]);
@@ -93,7 +93,7 @@ static inline uint32_t w_first(V x)
     return (uint32_t)_mm_cvtsi128_si32(x);
 }
 
-/* Returns for each lane the sum of it and all lanes before it. */
+/* Returns the prefix sums of the lanes of X. */
 static inline V w_sums(V x)
 {
     x = OP(add_epi32)(x, _mm_slli_si128(x, 4));

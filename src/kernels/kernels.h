@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loops for pixels. Those for rays are in kernels/rays/rays.h, so that
- * a program links only the kind that it uses. All code that differs between
- * CPUs is in this folder.
+ * The hot loops for pixels. The loops for rays are in kernels/rays/rays.h, so
+ * that a program links only the kernels that it uses. All code that differs
+ * between CPUs is in this folder.
  *
  * A kernel is a pure function over arrays: no allocation, errors or globals.
  * NAME_c.c defines it; NAME_sse41.c, NAME_avx2.c and NAME_neon.c give the same
@@ -10,7 +10,7 @@
  * rounded up to a multiple of GLINT_LANES, so that no variant has a tail.
  *
  * Products are rounded to nearest, ties up, as pmulhrsw and vqrdmulh do, unless
- * a comment states that they are cut. */
+ * a comment states that they are truncated. */
 #ifndef GLINT_KERNELS_KERNELS_H
 #define GLINT_KERNELS_KERNELS_H
 
@@ -30,7 +30,8 @@ glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
-/* How a row of pairs uses the mean changes of R', B' and Y' of its pairs. */
+/* How a row whose pixel pairs share chroma uses the mean changes of R', B' and
+ * Y' of its pairs. */
 enum glint_pair_step {
     GLINT_PAIRS_ALONE, /* the row's chroma is its own */
     GLINT_PAIRS_FIRST, /* the first of two rows stores them */
@@ -54,8 +55,8 @@ typedef void glint_add_pairs_fn(uint8_t *luma, uint8_t *chroma,
                                 const int16_t *round_chroma);
 
 /* Adds light to N pixels of two bytes each: luma, and Cb or Cr in turn; luma
- * comes first unless LUMA_AT is 1. PIXELS may begin anywhere; other arguments
- * are those of glint_add_pairs_fn. */
+ * comes first unless LUMA_AT is 1. PIXELS needs no alignment; the other
+ * arguments are as for glint_add_pairs_fn. */
 typedef void glint_add_packed_fn(uint8_t *pixels,
                                  const uint16_t *const light[3], int n,
                                  int luma_at, const struct glint_mix *mix,
@@ -63,11 +64,11 @@ typedef void glint_add_packed_fn(uint8_t *pixels,
                                  const int16_t *round_chroma);
 
 /* Adds light that 2 x 2 pixels share to two rows of N pixels, N a multiple of
- * twice GLINT_LANES. The change by light is worked out once, for the mean of
- * the four pixels. A pixel's own change is to that of the mean as its distance
- * to white is to the mean's, so light that makes the mean white makes each
- * pixel white. Chroma moves towards its mean by the same fraction. Y' never
- * falls. luma    codes of two rows; if the last row is alone, that row twice
+ * twice GLINT_LANES. The change by light is computed once, for the mean of the
+ * four pixels. Each pixel's change is scaled by its distance to white relative
+ * to the mean's distance, so light that makes the mean white makes each pixel
+ * white. Chroma moves towards its mean by the same fraction. Y' never falls.
+ * luma codes of two rows; if the last row is alone, that row twice
  *   chroma  codes Cb, Cr of each pair of both rows; the same row twice if they
  *           share it
  *   light   R, G, B: _q16, one for every two pixels of a row
@@ -79,8 +80,9 @@ typedef void glint_add_quads_fn(uint8_t *const luma[2],
                                 const int16_t *const round[2],
                                 const int16_t *const round_chroma[2]);
 
-/* Does as glint_add_quads_fn for pixels of two bytes, as of
- * glint_add_packed_fn. PIXELS may begin anywhere; ROUND serves chroma, too. */
+/* Does the same as glint_add_quads_fn for pixels of two bytes in the layout of
+ * glint_add_packed_fn. PIXELS needs no alignment; ROUND is used for chroma,
+ * too. */
 typedef void glint_add_quads_packed_fn(uint8_t *const pixels[2],
                                        const uint16_t *const light[3], int n,
                                        int luma_at, const struct glint_mix *mix,
@@ -92,8 +94,8 @@ typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
                                const struct glint_tone16 *tone,
                                const int16_t *round);
 
-/* Hide COVER (_q8, 0 .. 256: all) of N pixels: the light that is left is
- * rounded to the nearest codes. Codes stay where COVER is 0 and become black
+/* Hide COVER (_q8, 0 .. 256: all) of N pixels: the remaining light is rounded
+ * to the nearest codes. Codes are unchanged where COVER is 0 and become black
  * where it is 256.
  *   code  one channel of R'G'B'
  *   ycc   Y', Cb, Cr of each pixel, _q7; BLACK: code of Y' = 0 */
@@ -107,8 +109,8 @@ glint_cover_ycc_fn glint_cover_ycc_c;
 
 /* Turns changes into light along a row: light[i] is *CARRY plus changes 0 .. i,
  * which have MORE fraction bits than _q16, 2 .. 15, rounded to _q16 and clamped
- * to 0 .. 65535. Changes are cleared; sums may wrap, and wrap back. *CARRY
- * becomes the sum of the whole row. */
+ * to 0 .. 65535. The function clears the changes; intermediate sums may wrap
+ * around. *CARRY becomes the sum of the whole row. */
 typedef void glint_run_sum_fn(uint32_t *change, uint32_t *carry,
                               uint16_t *light_q16, int n, int more);
 
@@ -128,7 +130,7 @@ struct glint_quad_kernels {
 };
 
 /* Return the best kernels that the GLINT_SET_ bits SETS allow: kernels in C if
- * there is no bit, or NEON kernels where all CPUs have NEON (choose.h). */
+ * no bit is set, or NEON kernels where all CPUs have NEON (choose.h). */
 const struct glint_kernels *glint_kernels_of(unsigned sets);
 const struct glint_quad_kernels *glint_quad_kernels_of(unsigned sets);
 

@@ -3,7 +3,7 @@
  * Converts between codes and linear light in 16 bits, for the kernels.
  *
  * A full-range code v and light x are _q15: 32767 is white, so that a code of 8
- * bits is 128.5 units. x is unsigned and may pass white.
+ * bits is 128.5 units. x is unsigned and may exceed white.
  *
  *   decode: toe v + w^2 (r0 + w (r1 + w r2)). w is how far v lies above the
  *   toe's end, and 0 in the toe, so that no choice is needed.
@@ -14,11 +14,11 @@
  *   a power, the cubics of all octaves are alike, so that turn0 and turn1 serve
  *   all of them; in the toe curve is 0, and beyond white slope is 0, too.
  *
- * The factors make the greatest error against sRGB and BT.709 least. In codes
- * of 8 bits, over all 32768 codes and lights, it is 0.17 for decode (0.09
- * without the rounding of light, whose unit is 0.1 code in the toe) and 0.06
- * for encode. encode rises: within an octave as every rounded product of it
- * does, from one octave to the next by the choice of levels. */
+ * The factors minimise the max error against sRGB and BT.709. In codes of 8
+ * bits, over all 32768 codes and lights, it is 0.17 for decode (0.09 without
+ * the rounding of light, whose unit is 0.1 code in the toe) and 0.06 for
+ * encode. encode rises: within an octave as every rounded product of it does,
+ * from one octave to the next by the choice of levels. */
 #ifndef GLINT_KERNELS_TONE_H
 #define GLINT_KERNELS_TONE_H
 
@@ -30,12 +30,12 @@
 
 enum { GLINT_WHITE_Q15 = INT16_MAX };
 
-/* A constant in all lanes of the widest vector, or a table: an operand as it
- * lies in memory. */
+/* A constant in all lanes of the widest vector, or a table: an operand of a
+ * vector instruction in memory. */
 typedef ALIGNED(32) int16_t glint_lanes[GLINT_LANES];
 
-/* Factors, _q15: one in each lane, and each in all lanes. Which of the two is
- * faster depends on the CPU. */
+/* Factors, _q15, in two layouts: one factor in each lane, and each factor in
+ * all lanes. Which layout is faster depends on the CPU. */
 enum { GLINT_FACTORS = 8 };
 struct glint_factors {
     ALIGNED(16) int16_t one[GLINT_FACTORS];
@@ -47,8 +47,8 @@ enum {
     GLINT_TONE_RISE, /* r2 of decode */
     GLINT_TONE_TURN, /* turn1 of encode */
     GLINT_TONE_Q7,   /* factor from units of R'G'B', 1 / 128.5 code, to _q7 */
-    GLINT_TONE_ENTRY /* 2: from the index of a table's entry to the place of its
-                        bytes; a variable, or compilers would turn the product
+    GLINT_TONE_ENTRY /* 2: factor from the index of a table's entry to its byte
+                        offset; a variable, or compilers would turn the product
                         into additions */
 };
 
@@ -60,8 +60,9 @@ struct glint_tone16 {
 };
 
 /* R', G', B' are 2 (base + tint): base is Y' GLINT_MIX_BASE + black, tints come
- * from Cb and Cr. Changes of R', G', B' give those of Y', Cb, Cr in _q7: that
- * of Cb is B' GLINT_MIX_CB_BLUE - Y' GLINT_MIX_CB_LUMA, that of Cr likewise. */
+ * from Cb and Cr. Changes of R', G', B' give those of Y', Cb, Cr in _q7: the
+ * change of Cb is B' GLINT_MIX_CB_BLUE - Y' GLINT_MIX_CB_LUMA, and Cr
+ * likewise. */
 enum { /* Entries of from_ycc. */
        GLINT_MIX_BASE,
        GLINT_MIX_RED_CR,

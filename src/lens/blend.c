@@ -6,14 +6,15 @@
  *   out  one: every coefficient and the box in proportion
  *
  * In the coordinates of its box a ghost changes slowly with the zoom. Between
- * both, shares are 0 or more and sum to 1, so that sums of magnitudes stay
- * below the larger of both, which keeps the proof of the transfer; beyond, they
- * are up to 2 and -1, and sums up to three times that, for which there are two
- * bits of room. Each coefficient rounds once. The unit is the coarser one.
+ * both positions the weights are 0 or more and sum to 1, so that sums of
+ * magnitudes do not exceed the larger sum of both, and the bounds that the
+ * transfer relies on hold. In extrapolation the weights reach 2 and -1 and sums
+ * triple, for which two bits are reserved. Each coefficient rounds once. The
+ * unit is the coarser unit of both.
  *
- * Barrels are mixed with those that pair.c finds to be the same. One that is
- * like none stays where it is in the stop, as boxes may change faster than what
- * is seen, and becomes wider towards the position that lacks it, until it cuts
+ * Barrels are mixed with the partners that pair.c finds. A barrel without a
+ * partner keeps its position in the stop, as boxes may change faster than the
+ * visible rays, and widens towards the position that lacks it, until it cuts
  * nothing. */
 #include "lens/blend.h"
 
@@ -24,13 +25,16 @@
 enum {
     ROWS = GLINT_MAX_POWER + 1,
     BARREL = GLINT_OUT_BARREL_0,
-    OPEN_Q16 = 1 << 15, /* a barrel through whose middle all light goes */
+    OPEN_Q16 = 1 << 15, /* value of a barrel at its middle, where all light
+                           passes */
     LEAST_UP = 16,      /* of units of 2^-30 or more, in which that is 2^29 */
     MOST_HEAD = 28,
     NEAR_Q24 = 1 << 23, /* half widths */
-    LATE_Q30 = 3 << 28, /* fraction of the way after which a barrel opens */
-    MOST_MOVE = 8,      /* half widths that boxes may lie apart */
-    BEYOND = 2          /* bits that going on takes, to three times the size */
+    LATE_Q30 = 3 << 28, /* fraction of the way between both positions after
+                           which a barrel opens */
+    MOST_MOVE = 8,      /* max distance of boxes, half widths */
+    BEYOND = 2          /* bits reserved for extrapolation, which triples
+                           sums */
 };
 
 /* Returns X / 2^S, rounded, for any S of 0 or more. */
@@ -44,8 +48,8 @@ static uint8_t larger(uint8_t a, uint8_t b)
     return a > b ? a : b;
 }
 
-/* Returns A (1 - PART) + B PART in the unit 2^E; A is of 2^EA, B of 2^EB, both
- * at most E. */
+/* Returns A (1 - PART) + B PART in the unit 2^E. The unit of A is 2^EA, that of
+ * B 2^EB; EA and EB must be at most E. */
 static int32_t mix(int32_t a, int32_t ea, int32_t b, int32_t eb, int32_t e,
                    int32_t part_q30)
 {
@@ -54,8 +58,8 @@ static int32_t mix(int32_t a, int32_t ea, int32_t b, int32_t eb, int32_t e,
                  down((int64_t)b * part_q30, 30 + e - eb));
 }
 
-/* Returns (B - A) / SIZE, where B is of 2^EB, A of 2^EA and SIZE of 2^ES; or
- * sets *FAR if that is more than MOST_MOVE. */
+/* Returns (B - A) / SIZE, where the units of B, A and SIZE are 2^EB, 2^EA and
+ * 2^ES. Sets *FAR if the quotient exceeds MOST_MOVE. */
 static int32_t move_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
                         int64_t size, int32_t es, int *far)
 {
@@ -74,8 +78,8 @@ static int32_t move_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
     return *far ? 0 : (int32_t)q;
 }
 
-/* Sets how the boxes lie to each other: BOX of 2^EXPONENT and that of the
- * transfer, the other's. */
+/* Sets the moves between the two boxes: BOX, in units of 2^EXPONENT, and the
+ * box of the transfer. */
 static void set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
                       int32_t exponent)
 {
@@ -107,7 +111,7 @@ static int is_small(const struct glint_blend_move *m)
            q_magnitude(m->higher_q24) <= NEAR_Q24;
 }
 
-/* Notes where rays pass the stop, if O says so. */
+/* Records where rays pass the stop, if O is a stop output. */
 static void note_stop(struct glint_blend_stop *stop,
                       const struct glint_blend_output *o)
 {
@@ -152,8 +156,8 @@ int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
                                     t->box[1] > 0 && t->box[2] > 0);
 }
 
-/* Returns by how much the coefficient of u^A v^B changes where a place of the
- * box moves as M says, to first order. */
+/* Returns the first-order change of the coefficient of u^A v^B when points of
+ * the box move by M. */
 static int64_t moved(int32_t (*row)[GLINT_TABLE_WIDTH], int a, int b,
                      const struct glint_blend_move *m)
 {
@@ -165,10 +169,10 @@ static int64_t moved(int32_t (*row)[GLINT_TABLE_WIDTH], int a, int b,
     return q_shift(sum, 24);
 }
 
-/* Sets TO to what the coefficients of output KIND of the transfer, of
- * 2^EXPONENT, and of O change by if both are taken at the same place of the
- * pupil, in the unit 2^E. Returns whether sums of it are small enough for the
- * transfer. */
+/* Sets TO, in the unit 2^E, to the changes of the coefficients of output KIND
+ * of the transfer (unit 2^EXPONENT) and of O that make both refer to the same
+ * point of the pupil. Returns whether the sums of the changes are small enough
+ * for the transfer. */
 static int find_moved(const struct glint_zoom_mix *blend, int kind,
                       int32_t exponent, const struct glint_blend_output *o,
                       int32_t e, int32_t (*to)[GLINT_TABLE_WIDTH])
@@ -195,13 +199,13 @@ static int find_moved(const struct glint_zoom_mix *blend, int kind,
     return all < TRANSFER_ONE_Q30;
 }
 
-/* Mixes O into output KIND of the transfer, whose unit is 2^EXPONENT; returns
- * the exponent of what it becomes. */
+/* Mixes O into output KIND of the transfer, whose unit is 2^EXPONENT. Returns
+ * the exponent of the mixed output's unit. */
 static int32_t mix_output(const struct glint_zoom_mix *blend, int kind,
                           int32_t exponent, const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
-    /* a bit of room for what moves, or what going on takes */
+    /* one bit for the moves, or BEYOND bits for extrapolation */
     const int32_t e = (exponent > o->exponent ? exponent : o->exponent) +
                       (blend->part_q30 < 0 ? BEYOND : 1);
     int32_t more[ROWS][GLINT_TABLE_WIDTH];
@@ -268,9 +272,9 @@ void glint_blend_fade(struct glint_transfer *t, int32_t share_q30)
 
 /* ----------------------------------------------------------------- barrels */
 
-/* Opens barrel KIND as far as SHARE says: to a mean of it and of a barrel
- * through whose middle all goes. One whose unit is so fine that sums would not
- * stay below 2^30, which no barrel's is, is left as it is. */
+/* Opens barrel KIND by the fraction SHARE: mixes it with a barrel that cuts
+ * nothing. A barrel with a unit so fine that sums would reach 2^30 stays
+ * unchanged; no lens has one. */
 static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
 {
     const int up = 46 + t->exponent[kind];
@@ -282,7 +286,7 @@ static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
     t->table[kind][0][0] += (int32_t)down((int64_t)OPEN_Q16 * share_q30, up);
 }
 
-/* Returns (B - A) / SIZE as move_q24() does, of a SIZE of either sign. */
+/* Returns (B - A) / SIZE as move_q24() does; SIZE may be negative. */
 static int32_t turn_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
                         int64_t size, int32_t es, int *far)
 {
@@ -290,9 +294,9 @@ static int32_t turn_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
                     : move_q24(b, eb, a, ea, size, es, far);
 }
 
-/* Sets M to how places of the MIXED box lie in that OF a position if they are
- * the same in the stop. Returns whether they are near enough for terms of first
- * order. */
+/* Sets M to the move from the MIXED box to the box OF a position that preserves
+ * positions in the stop. Returns whether M is small enough for first-order
+ * terms. */
 static int find_in_stop(const struct glint_blend_stop *of,
                         const struct glint_blend_stop *mixed,
                         struct glint_blend_move *m)
@@ -308,8 +312,8 @@ static int find_in_stop(const struct glint_blend_stop *of,
     return !far && is_small(m);
 }
 
-/* Returns the largest value, _q16, of a barrel at the rim of the stop, or at
- * that of the box where that is nearer. */
+/* Returns the largest value of a barrel at the rim of the stop or the rim of
+ * the box, whichever is nearer. */
 static int32_t at_rim_q16(const struct glint_blend_output *barrel,
                           const struct glint_blend_stop *stop)
 {
@@ -333,7 +337,7 @@ static int32_t at_rim_q16(const struct glint_blend_output *barrel,
     return most;
 }
 
-/* Moves barrel KIND of SIDE to where it is in the stop, if it cuts less there
+/* Moves barrel KIND of SIDE to its position in the stop, if it cuts less there
  * and sums stay small enough for the transfer. */
 static void keep_in_stop(const struct glint_zoom_mix *blend, int side, int kind)
 {
@@ -363,7 +367,8 @@ static void keep_in_stop(const struct glint_zoom_mix *blend, int side, int kind)
             own.row[b][a] = kept.row[b][a];
 }
 
-/* Adds the barrel O, open as far as the zoom is where it is not. */
+/* Adds the barrel O, which exists at one position alone, opened by the zoom's
+ * distance from that position. */
 static void add_barrel(struct glint_zoom_mix *blend,
                        const struct glint_blend_output *o)
 {

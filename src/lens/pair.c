@@ -3,21 +3,23 @@
  * Finds which barrels of two positions of a zoom are the same.
  *
  *   in   the barrels of a bundle at both positions, as polynomials
- *   out  for each of the other position's those of this one it is mixed with
+ *   out  for each barrel of the other position, the barrels of this position
+ *        that it is mixed with
  *
- * Barrels have no names in a model. Two are alike if their polynomials have
- * nearly the same values: in each one's box, which follows what is seen, or at
- * the same places of the pupil, as boxes may change faster than barrels move.
- * The two that differ least go together first. One that is left over cuts
- * nothing at the position that lacks it which another one there, that is like
- * it, would not; so it comes out from behind that. */
+ * Barrels have no names in a model. Two barrels are alike if their polynomials
+ * have nearly the same values: relative to the box of each position, which
+ * follows the visible rays, or at equal points of the pupil, as boxes may
+ * change faster than barrels move. The pair that differs least is matched
+ * first. A barrel without a partner cuts no ray, at the position that lacks it,
+ * that the most similar barrel there does not cut; so it is paired with a copy
+ * of that barrel. */
 #include "base/q.h"
 #include "lens/blend.h"
 #include "lens/terms.h"
 
 enum {
     BARREL = GLINT_OUT_BARREL_0,
-    LIKE_Q16 = 1 << 15, /* most that values of the same barrel differ by */
+    LIKE_Q16 = 1 << 15, /* max difference between the values of one barrel */
     FAR_Q16 = 1 << 28,
     ACROSS = 3 /* of the places, in two rows */
 };
@@ -54,8 +56,9 @@ static int64_t smaller(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* Finds the part of the pupil that is in both boxes, FIRST to LAST along u and
- * 0 to HIGH along v of this position's. Returns whether there is any. */
+/* Finds the overlap of both boxes in the pupil: FIRST to LAST along u and 0 to
+ * HIGH along v, in the box of this position. Returns 0 if there is no
+ * overlap. */
 static int find_common(const struct glint_zoom_mix *blend, int64_t *first,
                        int64_t *last, int64_t *high)
 {
@@ -68,7 +71,8 @@ static int find_common(const struct glint_zoom_mix *blend, int64_t *first,
     return !blend->far && *first < *last;
 }
 
-/* Sets VALUES of a barrel: of this position for SIDE 0, else of the other. */
+/* Sets VALUES of a barrel: of this position if SIDE is 0, otherwise of the
+ * other position. */
 static void set_values(const struct glint_zoom_mix *blend, int side,
                        const struct glint_blend_output *o,
                        int32_t (*values)[GLINT_BLEND_PLACES])
@@ -95,8 +99,8 @@ static void set_values(const struct glint_zoom_mix *blend, int side,
     }
 }
 
-/* Returns the largest difference of two barrels, _q16: in their boxes or on the
- * pupil, whichever is less. */
+/* Returns the largest difference of two barrels, compared in their boxes or at
+ * points of the pupil, whichever gives less. */
 static int64_t apart_q16(const struct glint_zoom_mix *blend, int ours,
                          int theirs)
 {
@@ -124,8 +128,8 @@ void glint_blend_look(struct glint_zoom_mix *blend,
         set_values(blend, 1, o, blend->barrel_q16[1][blend->n_others++]);
 }
 
-/* Finds the two barrels that differ least among OURS and THEIRS, as bits.
- * Returns whether they are alike. */
+/* Finds the two barrels that differ least among OURS and THEIRS, which are bit
+ * masks. Returns whether the two are alike. */
 static int find_pair(const struct glint_zoom_mix *blend, uint32_t ours,
                      uint32_t theirs, int pair[2])
 {
@@ -151,8 +155,8 @@ static void mark(struct glint_zoom_mix *blend, const int pair[2])
     blend->taken |= UINT32_C(1) << pair[0];
 }
 
-/* Finds partners of OURS and THEIRS, which are left over, among all; OWN are
- * all of this position. */
+/* Finds partners for the unmatched barrels OURS and THEIRS among all barrels;
+ * OWN is the mask of all barrels of this position. */
 static void pair_left(struct glint_zoom_mix *blend, uint32_t own, uint32_t ours,
                       uint32_t theirs)
 {

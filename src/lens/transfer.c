@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Puts angle and wavelength into the polynomials of a bundle, which leaves
- * polynomials of the place in its box; transfer_rays.c continues.
+ * Substitutes angle and wavelength into the polynomials of a bundle. The
+ * results are polynomials of the position in its box, which transfer_rays.c
+ * evaluates.
  *
  *   in   a model, a ghost, the sine of the light's angle, a wavelength
  *   out  struct glint_transfer: tables of coefficients of u^a v^b, a box
@@ -25,7 +26,7 @@ static const void *at(const struct glint_lens *lens, uint32_t offset)
     return (const unsigned char *)lens->header + offset;
 }
 
-/* Returns the place of X in LO .. HI as -1 .. 1, clamped. */
+/* Maps X from LO .. HI to -1 .. 1, clamped. */
 static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
 {
     const int64_t span = (int64_t)hi - lo;
@@ -39,7 +40,7 @@ static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
 }
 
 /* Returns whether WAVE belongs to the band of system S. The upper end of a band
- * belongs to the next one. */
+ * belongs to the next band. */
 static int is_in_band(const struct glint_model_system *s,
                       const struct glint_model_header *h, int32_t wave_q24)
 {
@@ -48,15 +49,15 @@ static int is_in_band(const struct glint_model_system *s,
             (wave_q24 == s->wave_hi_q24 && wave_q24 == h->wave_hi_q24));
 }
 
-/* Returns whether Y, the y component of a light's direction, is in the range
- * of system S; without such a range it is. */
+/* Returns whether Y, the y component of a light's direction, is in the range of
+ * system S; true if S has no such range. */
 static int is_in_across(const struct glint_lens *lens,
                         const struct glint_model_system *s, int32_t y_q30)
 {
     const int32_t *range_q30;
 
     if (!glint_basis_is_lens(lens->header->basis))
-        return 1; /* across_at has not been checked then */
+        return 1; /* in this case across_at has not been validated */
     range_q30 = at(lens, s->across_at);
     return y_q30 >= range_q30[0] && y_q30 <= range_q30[1];
 }
@@ -134,8 +135,8 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
         t->box[k] = t->box[k] < 0 ? 0 : t->box[k];
 }
 
-/* Returns VALUE, the coefficient of a term with the powers POWER, multiplied by
- * its powers of angle and wavelength. */
+/* Returns the coefficient VALUE of a term, times the powers of angle and
+ * wavelength in POWER. */
 static WHOLLY_INLINE int32_t put_in(const struct setting *set, int32_t value,
                                     uint16_t power)
 {
@@ -251,8 +252,8 @@ static void clear(struct glint_transfer *t)
     }
 }
 
-/* A light's direction as systems know it. X is the sine of its angle, in the
- * lens basis the x component. */
+/* A light's direction as the systems use it. X is the sine of its angle; in the
+ * lens basis, its x component. */
 struct toward {
     int32_t x_q30, y_q30;
     int mirror_x, mirror_y; /* 1: the light lies on the other side of the plane
@@ -308,7 +309,7 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
     settle(&set, lens, system, d.x_q30, d.y_q30, wave_q24);
     transfer->whole = (uint8_t)set.lens;
     transfer->window = glint_box_whole(transfer);
-    /* The mirror image in x is that in y, turned by half a circle. */
+    /* Mirroring in x equals mirroring in y and a half turn. */
     transfer->sign = (int8_t)(d.mirror_x ? -1 : 1);
     transfer->side = (uint8_t)(d.mirror_x != d.mirror_y);
     set_box(transfer, lens, &set);
@@ -318,8 +319,8 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
     return 1;
 }
 
-/* Returns output O of a position that is mixed in, whose coefficients are put
- * into ROW. */
+/* Returns output O of the other position of a mix; puts its coefficients into
+ * ROW. */
 static struct glint_blend_output output_of(const struct glint_lens *lens,
                                            const struct glint_model_output *o,
                                            const struct setting *set,

@@ -26,11 +26,11 @@ struct block {
     int32_t barrel_q16[2][RAYS];
     int32_t energy_q16[RAYS];
     int32_t lost[2][RAYS]; /* [0] of the rays, [1] of the mirrored rays: all
-                              bits set if lost */
+                              bits set if the ray is invalid */
 };
 
 /* Sets SCALED to X / 2^SHIFT, rounded. A ray whose value reaches LIMIT in
- * magnitude is lost. */
+ * magnitude becomes invalid. */
 static void scale_rays(const int32_t *x, int shift, int32_t limit,
                        int32_t *scaled, int32_t *lost)
 {
@@ -95,9 +95,9 @@ static void set_energies(const int32_t *energy, int up, int32_t *energy_q16)
     }
 }
 
-/* How sensor and stop positions are turned: by the azimuth of the light, times
- * pixels per mm for the sensor, and with the shifts to the formats of a vertex.
- */
+/* Rotations of sensor and stop positions by the azimuth of the light, with the
+ * shifts to the formats of a vertex. The sensor's rotation includes the factor
+ * pixels per mm. */
 struct turns {
     struct glint_turn sensor, stop;
 };
@@ -164,7 +164,8 @@ static void put_block(const struct block *b, const struct glint_place *p,
 
 /* --------------------------------------------------------------------- rows */
 
-/* Returns the place of node K of N_CELLS over MIDDLE +- HALF. */
+/* Returns the coordinate of node K of a row of N_CELLS cells over MIDDLE +-
+ * HALF. */
 static int32_t node_q30(int32_t middle_q30, int32_t half_q30, int k,
                         int n_cells)
 {
@@ -191,14 +192,14 @@ int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
         (rim + 1) * n);
 }
 
-/* Returns whether row J is the one in the middle of an annular box, which has
- * no rays. */
+/* Returns whether row J is the middle row of an annular box; this row has no
+ * rays. */
 static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
 {
     return t->annulus && 2 * j == n_cells;
 }
 
-/* Returns v of row J. */
+/* Returns the coordinate v of row J. */
 static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
 {
     /* index of the last row below the middle */
@@ -212,9 +213,9 @@ static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
                      : glint_transfer_v(t, last - (n_cells - j), last);
 }
 
-/* Fills ROW with row J and MIRRORED with the mirror image of that row, which is
- * row N_CELLS - J; either may be NULL. MIRRORED is NULL where rows have no
- * mirror image. */
+/* Fills ROW with row J and MIRRORED with row N_CELLS - J, the mirror image of
+ * row J. Either may be NULL; MIRRORED must be NULL where rows have no mirror
+ * image. */
 static void set_row_pair(struct glint_transfer *t,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,

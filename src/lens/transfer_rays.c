@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sends rays through the polynomials of a bundle, into which transfer.c has put
- * angle and wavelength: along rows of a grid by Horner's rule (kernels/rays),
- * eight at once. Formats are those of transfer.c. */
+ * Evaluates the polynomials of a bundle, into which transfer.c has substituted
+ * angle and wavelength: along rows of a grid of rays by Horner's rule
+ * (kernels/rays), eight rays at once. Formats are those of transfer.c. */
 #include "glint/transfer.h"
 
 #include "base/q.h"
@@ -11,15 +11,15 @@
 
 enum { RAYS = GLINT_RAYS };
 
-/* Returns whether the powers of v of KIND are all odd; else they are all even,
- * but in the lens basis. */
+/* Returns whether the powers of v of KIND are all odd. Otherwise they are all
+ * even, except in the lens basis, where both occur. */
 static int is_odd(int kind)
 {
     return kind & 1 && kind < GLINT_OUT_ENERGY;
 }
 
-/* Sets OF_U to the polynomial in u of the terms of KIND whose powers of v are
- * odd, or even. */
+/* Sets OF_U to the polynomial in u of those terms of KIND whose powers of v are
+ * odd (if ODD), or even. */
 static void set_half(const struct glint_transfer *t,
                      const struct glint_horner *k, int kind, int odd,
                      int32_t v_q30, int32_t v2_q30, int32_t *of_u)
@@ -63,7 +63,7 @@ static void set_rows(const struct glint_transfer *t,
             set_row(t, k, kind, v_q30, v2_q30, of_u[kind]);
 }
 
-/* Turns N values of the polynomial of energy into energies. */
+/* Converts N values of the energy polynomial to energies. */
 static void raise_energies(const struct glint_transfer *t, int32_t *e, int n)
 {
     const int32_t most = (INT32_C(1) << 29) >> t->head;
@@ -75,7 +75,7 @@ static void raise_energies(const struct glint_transfer *t, int32_t *e, int n)
             e[i] = q_mul(e[i], e[i], 29);
 }
 
-/* Gives the outputs of the rays at U, by kind. */
+/* Computes the outputs of the rays at U, per kind. */
 static void rays_of_rows(const struct glint_transfer *t,
                          const struct glint_horner *k, const int32_t *u_q30,
                          int32_t (*out)[RAYS])

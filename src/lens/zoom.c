@@ -3,14 +3,14 @@
  * Models of a zoom's positions as one lens.
  *
  *   in   models of one lens: the same surfaces, film and band
- *   out  a header between those of two positions, a list of ghosts that has all
- *        that any of them has, and bundles between theirs
+ *   out  a header interpolated between the headers of two positions, a list of
+ *        the ghosts of all models, and interpolated bundles
  *
  * Ghosts of all models are the same pairs of surfaces in the same order; of
- * further parts of the pupil the list has as many as any model has. Where both
- * neighbours divide the pupil of a ghost alike at an angle, they are mixed;
- * where they do not, the nearer one is drawn; where one is dark, the other
- * continues as from a model beyond it, or fades. */
+ * further parts of the pupil the list has the largest number in any model.
+ * Where both neighbouring models divide the pupil of a ghost alike at an angle,
+ * they are mixed; otherwise the nearer model is drawn. Where one model is dark,
+ * the other is extrapolated with the help of a model farther off, or fades. */
 #include "glint/model.h"
 
 #include "base/blob.h"
@@ -32,8 +32,8 @@ static int n_whole(const struct glint_lens *lens)
     return (int)(lens->header->n_ghosts - lens->header->n_parts);
 }
 
-/* Returns how many further parts of ghost G, LENS has; *NEXT, the place of the
- * first of its parts that has not been counted, moves on. */
+/* Returns how many further parts of ghost G the model LENS has. *NEXT is the
+ * index of the first part that has not been counted; it is advanced. */
 static int parts_of(const struct glint_lens *lens, int g, uint32_t *next)
 {
     const struct glint_model_ghost *const of = &lens->ghost[g];
@@ -92,8 +92,8 @@ static int has(const struct glint_zoom_lens *z, int k, int g)
     return !z->has[k] || (z->has[k][g / 32] >> g % 32 & 1);
 }
 
-/* Finds the models on both sides of where the zoom is that have each ghost, and
- * the first and the last of them, END. */
+/* Finds, for each ghost, the models with this ghost on both sides of the zoom
+ * position. END gets the first and the last model in use. */
 static void find_sides(struct glint_zoom_lens *z, int end[2])
 {
     end[0] = z->below;
@@ -112,8 +112,8 @@ static void find_sides(struct glint_zoom_lens *z, int end[2])
     }
 }
 
-/* Finds the places of the parts of ghost G, which begin at AT and are PARTS in
- * number, as those of SIDE. */
+/* Sets the indices in the model of SIDE of the parts of ghost G: PARTS parts
+ * from AT on. */
 static void set_places(struct glint_zoom_lens *z, int side, int g, uint32_t at,
                        int parts)
 {
@@ -122,8 +122,7 @@ static void set_places(struct glint_zoom_lens *z, int side, int g, uint32_t at,
         z->place[side][e] = (int16_t)(z->number[e] <= parts ? (int)at++ : -1);
 }
 
-/* Finds the places of all ghosts and parts in model K, for those that it is a
- * side of. */
+/* Sets the indices in model K of all ghosts and parts that have K as a side. */
 static void find_places(struct glint_zoom_lens *z, int k)
 {
     const struct glint_lens *const m = &z->model[k];
@@ -160,8 +159,8 @@ static struct glint_real between(struct glint_real a, struct glint_real b,
     return real_of(x + y, e - 30);
 }
 
-/* Returns how far the zoom is on the way from model FROM to model TO; below 0
- * if it is beyond FROM. */
+/* Returns the position of the zoom between model FROM (0) and model TO (1);
+ * below 0 if the zoom is on the far side of FROM. */
 static int32_t way_q30(const struct glint_zoom_lens *z, int from, int to)
 {
     const int64_t at_q30 = z->along_q30[from];
@@ -196,7 +195,7 @@ static int same(struct glint_real a, struct glint_real b)
     return a.mantissa == b.mantissa && a.exponent == b.exponent;
 }
 
-/* Returns why B is not another position of A, or NULL. */
+/* Returns why B is not another position of the zoom A, or NULL if it is. */
 static const char *check_pair(const struct glint_lens *a,
                               const struct glint_lens *b)
 {
@@ -226,7 +225,7 @@ static const struct glint_lens *model_of(const struct glint_zoom_lens *z, int e,
     return &z->model[z->side[side][z->whole[e]]];
 }
 
-/* Returns how far the zoom is between both models of GHOST. */
+/* Returns the position of the zoom between both models of GHOST, 0 .. 1. */
 static int32_t part_of(const struct glint_zoom_lens *z, int ghost)
 {
     const int g = z->whole[ghost];
@@ -234,8 +233,8 @@ static int32_t part_of(const struct glint_zoom_lens *z, int ghost)
     return way_q30(z, z->side[0][g], z->side[1][g]);
 }
 
-/* Returns the polynomials' annulus of entry E on SIDE at this angle and
- * wavelength, -1 if it is dark there. */
+/* Returns the annulus of the polynomials of entry E on SIDE at this angle and
+ * wavelength, or -1 if the entry is dark there. */
 static int annulus_of(const struct glint_zoom_lens *z, int e, int side,
                       int32_t sine_q30, int32_t wave_q24)
 {
@@ -248,8 +247,9 @@ static int annulus_of(const struct glint_zoom_lens *z, int e, int side,
     return s ? s->annulus : -1;
 }
 
-/* Compares how both sides divide the pupil of ghost G: sets LIT to whether any
- * of it lets light through on each side; returns whether they are alike. */
+/* Compares how both sides divide the pupil of ghost G: sets LIT[side] to
+ * whether any part lets light through there. Returns whether the sides are
+ * alike. */
 static int is_alike(const struct glint_zoom_lens *z, int g, int32_t sine_q30,
                     int32_t wave_q24, int lit[2])
 {
@@ -278,9 +278,9 @@ static int of_side(struct glint_transfer *transfer,
                                z->place[side][e], sine_q30, wave_q24);
 }
 
-/* Finds the nearest model beyond SIDE of ghost G that has it and is as far from
- * there as where the zoom continues that side, so that nothing is extrapolated
- * to more than twice its length; -1: there is none. */
+/* Finds the nearest model beyond SIDE that has ghost G and is at least as far
+ * from SIDE as the two sides are apart, so that extrapolation at most doubles a
+ * distance. Returns -1 if there is no such model. */
 static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
 {
     const int from = z->side[side][g], step = side ? 1 : -1;
@@ -294,9 +294,9 @@ static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
     return -1;
 }
 
-/* Sets TRANSFER to ghost G, which has light on SIDE alone and no further parts
- * there, as what it does between that and a model beyond it continues. Returns
- * whether it can. */
+/* Sets TRANSFER to ghost G, which must have light on SIDE alone and no further
+ * parts there, extrapolated from SIDE and a model beyond it. Returns whether
+ * this is possible. */
 static int draw_out(struct glint_transfer *transfer,
                     const struct glint_zoom_lens *z, int g, int side,
                     int32_t sine_q30, int32_t wave_q24)
@@ -410,7 +410,7 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
     return GLINT_OK;
 }
 
-/* Notes which ghosts each of the models M of the file has. */
+/* Records which ghosts each of the models M of the file lacks. */
 static enum glint_status set_lacks(struct glint_zoom_lens *zoom,
                                    struct glint_blob *blob,
                                    const struct glint_zoom_model *m,

@@ -1,24 +1,25 @@
 /* SPDX-License-Identifier: MIT
  *
- * Detects frames with the same inputs as the previous one, whose bundles, edges
- * and lists of tiles are drawn again without a ray. Lights and dials are
- * compared one by one; waves and tints, of which there can be thousands, by a
- * digest of 64 bits. */
+ * Detects frames with the same inputs as the previous frame. Their bundles,
+ * edges and tile lists are drawn again without tracing a ray. Lights and
+ * parameters are compared one by one; waves and tints, of which there can be
+ * thousands, by a 64-bit digest. */
 #include "base/q.h"
 #include "flare/state.h"
 
 struct reuse {
-    int n_lights; /* -1: there were more than fit */
+    int n_lights; /* -1: there were more lights than fit */
     struct glint_flare_frame frame;
-    uint64_t digest; /* of what FRAME points to */
+    uint64_t digest; /* of the data that FRAME points to */
     struct glint_light *light;
     /* [max_bundles], with reuse_gains: colours of the bundles without factors,
-     * from the first frame that has some. */
+     * set in the first frame with factors. */
     int32_t (*rgb_q14)[3];
     int has_rgb;
 };
 
-/* Runs twice: once to measure, which gives NULL, and once to place. */
+/* Allocates the state from A. Called twice: to measure (returns NULL) and to
+ * place. */
 static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
 {
     struct reuse measured, *placed, *own;

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * Static lights: the lights of a frame are matched with those that were
- * planned, and changes of their light become factors on the colours of their
- * bundles. */
+ * Static lights: matches the lights of a frame with the planned lights; changes
+ * of brightness become factors on the colours of their bundles. */
 #include "flare/dim.h"
 #include "flare/state.h"
 
 enum {
     ONE_Q14 = 1 << 14,
     MOST_GAIN_Q14 = ONE_Q14 + ONE_Q14 / 2,
-    LEAST_PART = 64 /* a channel may be off by this part of the largest */
+    LEAST_PART = 64 /* 1 / max error of a channel, relative to the largest
+                       channel */
 };
 
-/* Returns the light that was planned nearest to LIGHT, or -1 if none is within
- * NEAR_Q30. */
+/* Returns the index of the planned light nearest to LIGHT, or -1 if no planned
+ * light is within NEAR_Q30. */
 static int nearest(const struct glint_still *s, const struct glint_light *light,
                    int32_t near_q30)
 {
@@ -33,7 +33,7 @@ static int nearest(const struct glint_still *s, const struct glint_light *light,
     return at;
 }
 
-/* Returns channel C of B over the power UNIT, 2^4 at most. */
+/* Returns channel C of B divided by the power UNIT, 2^4 at most. */
 static int64_t channel_q20(const struct glint_light *b, int c,
                            struct glint_real unit)
 {
@@ -43,8 +43,8 @@ static int64_t channel_q20(const struct glint_light *b, int c,
     return real_integer(real_over(x, unit), 20, INT64_C(1) << 24);
 }
 
-/* Turns the sum of light I into its factors. Returns 0 if it is too bright for
- * them, or of another colour. */
+/* Converts the sum for light I to its factors. Returns 0 if the light is too
+ * bright for factors, or has another colour. */
 static int set_gain(struct glint_still *s, int i)
 {
     const int64_t *sum_q20 = s->sum_q20[i];
@@ -68,8 +68,8 @@ static int set_gain(struct glint_still *s, int i)
     return serves;
 }
 
-/* Returns whether the lights planned serve for LIGHTS, with the factors that
- * this sets. */
+/* Matches LIGHTS with the planned lights and sets the factors. Returns whether
+ * the planned lights can stand for LIGHTS. */
 static int serves(struct glint_still *s, const struct glint_light *lights,
                   int n, int32_t near_q30)
 {

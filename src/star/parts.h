@@ -8,7 +8,7 @@
 #include "tile/blend.h"
 
 enum {
-    /* zones of distance, each four times as far as the one before */
+    /* zones of distance; each reaches four times as far as the previous zone */
     GLINT_STAR_ZONES = 8,
     GLINT_STAR_INVERSES = 128 /* steps of the table of 1 / x over x = 1 .. 2 */
 };
@@ -16,7 +16,8 @@ enum {
 /* A light with its power multiplied by the units of the tables. */
 struct glint_star_lamp {
     int32_t x_q8, y_q8;
-    uint64_t inner_q16; /* least value that r^2 is taken for, pixels^2 */
+    uint64_t inner_q16; /* min of r^2; smaller values are raised to it,
+                           pixels^2 */
     int is_bare;        /* 1: the lamp's core is drawn as well */
     /* line: light of one step of a profile, core: power of the lamp, both by
      * channel, 15 bits times 2^exponent. halo: log2 of the power by channel. */
@@ -25,21 +26,22 @@ struct glint_star_lamp {
      * per step. */
     int32_t per_pixel_q16, pixels_q16;
     /* [GLINT_STAR_HALO_ROWS] each: halos of the next smaller and the next
-     * larger extent, and how far the lamp's is between them. The same: there is
-     * one. */
+     * larger extent, and the position of the lamp's extent between the two.
+     * Both pointers are equal if there is a single halo. */
     const glint_star_halo_row *halo, *next_halo;
     int halo_part_q15;
     int reach, halo_reach; /* distances in pixels at which lines, and the halo,
                               become invisible */
     int smear_reach;       /* the same for dirt in the stop */
     int n_zones;
-    /* Zone i is from start[i] to start[i + 1], pixels along x or y, whichever
-     * is more. Within it, steps of a profile below seen[i] can be seen. */
+    /* Zone i reaches from start[i] to start[i + 1] pixels along x or y,
+     * whichever is more. In zone i the steps of a profile below seen[i] are
+     * visible. */
     int start[GLINT_STAR_ZONES + 1];
     int seen[GLINT_STAR_ZONES];
 };
 
-/* Light of a stretch of a row. */
+/* Light of a run of pixels of a row. */
 struct glint_star_stretch {
     int y, x0, x1; /* row; pixels x0 .. x1 - 1 of it */
     int lo, hi;    /* columns lo .. hi - 1 have light; all others are 0 */
@@ -83,7 +85,7 @@ static inline int glint_star_core_reach(const struct glint_star *star)
     return GLINT_STAR_CORE >> (steps == 4 ? 2 : steps == 2 ? 1 : 0);
 }
 
-/* Notes that pixels X0 .. X1 - 1 of ROW get light. */
+/* Extends the lit columns of ROW by X0 .. X1 - 1. */
 static inline void glint_star_note(struct glint_star_stretch *row, int x0,
                                    int x1)
 {

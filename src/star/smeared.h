@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * The light that dust, scratches, smudges and masks in the stop diffract around
- * a lamp: a table in squares around it, each twice as wide as the one before,
- * with the same number of steps. Its drawing code is linked only by programs
- * that name glint_star_smear_part. */
+ * a lamp: a table in nested squares around it, each twice as wide as the
+ * previous square, with the same number of steps. Its drawing code is linked
+ * only by programs that name glint_star_smear_part. */
 #ifndef GLINT_STAR_SMEARED_H
 #define GLINT_STAR_SMEARED_H
 
@@ -14,7 +14,8 @@
 enum {
     GLINT_STAR_SMEAR_RINGS = 9,
     GLINT_STAR_SMEAR_HALF = 32, /* steps from the middle to a side */
-    GLINT_STAR_SMEAR_PX = 8     /* pixels of that of the first square: 2^n */
+    GLINT_STAR_SMEAR_PX = 8     /* pixels from the middle to a side of the first
+                                   square */
 };
 
 struct glint_star;

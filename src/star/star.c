@@ -16,8 +16,8 @@ static int config_ok(const struct glint_star_config *c)
            c->max_lights <= GLINT_STAR_MAX_LIGHTS;
 }
 
-/* Takes a star and its tables from A, once to measure, which returns NULL, and
- * once to place them. */
+/* Allocates a star and its tables from A. Called twice: to measure (returns
+ * NULL) and to place. */
 static struct glint_star *carve(struct glint_arena *a,
                                 const struct glint_star_config *c)
 {
@@ -81,8 +81,8 @@ enum glint_status glint_star_init(struct glint_star **star,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Sets PART to the products of each channel of RGB and X, 15 bits each; returns
- * their exponent. */
+/* Sets PART to the product of each channel of RGB and X, 15 bits each. Returns
+ * the exponent of PART. */
 static int share(const int32_t rgb_q14[3], struct glint_real x, int32_t part[3])
 {
     for (int c = 0; c < 3; c++)
@@ -99,8 +99,7 @@ static int32_t log2_q16(struct glint_real x)
                : INT32_MIN / 2;
 }
 
-/* Returns 2^LOG2_OF as a distance, in whole pixels above it, 2^20 + 1 at most.
- */
+/* Returns the distance 2^LOG2_OF pixels, rounded up; 2^20 + 1 at most. */
 static int distance(int32_t log2_of_q16)
 {
     const int64_t far_q16 = q_exp2_q16(q_smaller(log2_of_q16, 20 * 65536));
@@ -108,8 +107,8 @@ static int distance(int32_t log2_of_q16)
     return (int)(far_q16 >> 16) + 1;
 }
 
-/* Returns the number of steps of profiles up to the last that exceeds 2^LEAST.
- */
+/* Returns the number of steps of profiles up to the last step whose light
+ * exceeds 2^MIN_LOG2. */
 static int seen_to(const struct glint_star_tables *t, int32_t min_log2_q16)
 {
     const int64_t least =
@@ -123,8 +122,8 @@ static int seen_to(const struct glint_star_tables *t, int32_t min_log2_q16)
 }
 
 /* Sets zones of distance up to the lamp's reach, and how much of a profile is
- * seen in each. OVER: log2 of the light of one step of a profile, at 1 pixel,
- * over the least light that is seen. */
+ * seen in each. OVER is the log2 of the light of one step of a profile, at 1
+ * pixel, divided by the min visible light. */
 static void set_zones(struct glint_star_lamp *lamp,
                       const struct glint_star_tables *t, int32_t over_log2_q16)
 {
@@ -145,8 +144,8 @@ static void set_zones(struct glint_star_lamp *lamp,
     }
 }
 
-/* Returns up to how many pixels from a light of POWER its halo is above LEAST,
- * both as log2; 0 if nowhere. */
+/* Returns the distance in pixels up to which the halo of a light of POWER
+ * exceeds MIN, both as log2; 0 if it never does. */
 static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
                       int32_t min_log2_q16)
 {
@@ -167,8 +166,8 @@ static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
     return 0;
 }
 
-/* Returns up to how many pixels from a light of POWER its smear is above LEAST,
- * both as log2. */
+/* Returns the distance in pixels up to which the smear of a light of POWER
+ * exceeds MIN, both as log2. */
 static int smear_reach(const struct glint_star_smear *s, int32_t power_log2_q16,
                        int32_t min_log2_q16)
 {
@@ -187,8 +186,9 @@ static struct glint_real held(struct glint_real power)
     return real_less(most, power) ? most : power;
 }
 
-/* Returns by how much a lamp of RADIUS makes lines wider, and fainter: the
- * light of a disc is 1.73 radii wide at half its brightness. At most 2^10. */
+/* Returns the factor by which a lamp of RADIUS makes lines wider and fainter,
+ * at most 2^10. The light of a disc is 1.73 radii wide at half its
+ * brightness. */
 static int64_t wider_q8(const struct glint_star_tables *t, int32_t radius_q8)
 {
     const int64_t disc_q8 = q_divide(
@@ -204,7 +204,7 @@ static void set_halos(struct glint_star_lamp *lamp,
 {
     const int32_t radius = q_clamp_sat(radius_q8, 0, 1 << 22);
     const int32_t last_q16 = (GLINT_STAR_WIDE - 1) << 16;
-    /* place among the wide halos, from -1 on: the halo of a point */
+    /* index among the wide halos; -1 is the halo of a point */
     const int32_t at_q16 =
         radius < 128
             ? (radius - 128) * 512
@@ -223,7 +223,7 @@ static void set_halos(struct glint_star_lamp *lamp,
     }
 }
 
-/* Sets LAMP for light L; returns 0 if nothing of it can be seen. */
+/* Sets LAMP for light L. Returns 0 if no light of it is visible. */
 static int set_lamp(struct glint_star_lamp *lamp,
                     const struct glint_star_tables *t,
                     const struct glint_star_light *l,

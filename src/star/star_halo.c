@@ -13,12 +13,12 @@ struct span {
     struct glint_star_stretch *row;
 };
 
-/* A place between two entries of a table. */
+/* A fractional index into a table. */
 struct place {
     int at, part_q15;
 };
 
-/* Returns the place X entries from the first of a table, clamped to LAST. */
+/* Converts X to a fractional index, clamped to LAST. */
 static struct place place_of(int32_t x_q16, int last)
 {
     const int32_t held_q16 = q_clamp_sat(x_q16, 0, (last << 16) - 1);
@@ -31,7 +31,7 @@ static int32_t between(int32_t a, int32_t b, int part_q15)
     return a + ((b - a) * part_q15 >> 15);
 }
 
-/* A pixel, its place as seen from the lamp, and its light. */
+/* A pixel, its position relative to the lamp, and its light. */
 struct node {
     int x;
     int64_t dx_q8, v_q8;
@@ -111,8 +111,9 @@ static int64_t min_size(int64_t a, int64_t b)
 }
 
 /* Returns whether light may be interpolated linearly between A and B, n pixels
- * apart. It falls with r^-3 and v^-2, so that it is too high by at most 1.5 n^2
- * / r^2 and 0.75 n^2 / v^2 of it, here 0.01 and 0.02. */
+ * apart. The light falls with r^-3 and v^-2, so the interpolated light is too
+ * high by at most the fractions 1.5 n^2 / r^2 and 0.75 n^2 / v^2, here 0.01 and
+ * 0.02. */
 static int is_straight(const struct span *s, const struct node *a,
                        const struct node *b)
 {

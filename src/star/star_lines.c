@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * The lines of a star: light that edges of the stop throw at right angles to
- * themselves, in strips through each lamp.
+ * The lines of a star: light that each edge of the stop diffracts at right
+ * angles to the edge, in strips through each lamp.
  *
- * A strip is as long and as wide as it can be seen. Light falls with the square
- * of the distance, so that less of the profile counts in each zone than in the
- * zone before, which is four times nearer. */
+ * A strip covers the pixels where it is visible. Light falls with the square of
+ * the distance, so that a narrower range of the profile is visible in each zone
+ * than in the previous zone, which is four times nearer. */
 #include "base/q.h"
 #include "star/parts.h"
 
-/* Returns X 2^-SHIFT, or 2^50 if that is more. X is below 2^48; SHIFT may be
+/* Returns X 2^-SHIFT, at most 2^50. X must be below 2^48; SHIFT may be
  * negative. */
 static int64_t scaled(uint64_t x, int shift)
 {
@@ -39,7 +39,8 @@ struct strip {
     struct glint_star_stretch *row;
 };
 
-/* Returns the inverse for which 1 / r^2 = inverse 2^(1 - bits), px^-2. */
+/* Returns INVERSE and sets BITS such that 1 / r^2 = INVERSE 2^(1 - BITS),
+ * px^-2. */
 static uint32_t inverse_of(const struct glint_star *star, uint64_t r2_q16,
                            int *bits)
 {
@@ -80,13 +81,13 @@ static void add_pixel(const struct strip *s, int x, int64_t v_q16)
     }
 }
 
-/* Adds light to pixels of HERE that are less than SEEN steps off the strip's
- * middle. */
+/* Adds light to pixels of HERE that are less than SEEN steps from the strip's
+ * middle line. */
 static void add_stretch(const struct strip *s, struct stretch here, int seen)
 {
     const int64_t step_q16 = s->lamp->per_pixel_q16;
     const int64_t dx_q8 = (int64_t)here.x0 * 256 + 128 - s->lamp->x_q8;
-    /* exact, so that it does not matter where a tile begins */
+    /* exact, so that the result does not depend on tile borders */
     int64_t v_q38 =
         s->dy_q8 * (int64_t)s->line->cos_q30 - dx_q8 * s->line->sin_q30;
     const int64_t end_q16 = (int64_t)seen << 16;
@@ -104,8 +105,8 @@ static void add_stretch(const struct strip *s, struct stretch here, int seen)
     }
 }
 
-/* Returns the pixels of the row that are at most SEEN steps off the strip's
- * middle. */
+/* Returns the pixels of the row that are at most SEEN steps from the strip's
+ * middle line. */
 static struct stretch across(const struct strip *s, int seen)
 {
     const int64_t middle_q8 = (int64_t)s->dy_q8 * s->line->cot_q16 >> 16;

@@ -7,8 +7,8 @@
 #include "flare/state.h"
 #include "star/parts.h"
 
-/* Returns a distance from the light, in pixels, beyond which neither halo nor
- * core reaches. */
+/* Returns the distance in pixels from the light within which halo and core
+ * lie. */
 static int round_reach(const struct glint_star *star,
                        const struct glint_star_lamp *lamp)
 {
@@ -74,7 +74,7 @@ static void light_row(const struct glint_star_row *r,
 }
 
 /* Moves the light of channel C in ROW to LIGHT, clamped to 16 bits, and clears
- * it; returns whether there was any. */
+ * it in ROW. Returns whether there was any light. */
 static int give_codes(const struct glint_star_stretch *row, int c,
                       uint16_t *light_q16)
 {
@@ -149,8 +149,8 @@ static void row_job(void *ctx, int job, int worker)
                     &d->flare->worker[worker].tile);
 }
 
-/* Draws the star to all pixels, also where the flare is drawn at half the size.
- */
+/* Draws the star to all pixels, even if the flare is drawn at half
+ * resolution. */
 static void draw_alone(struct glint_star *star, struct glint_flare *flare,
                        const struct glint_image *image)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Draws the light that dirt in the stop diffracts around a lamp, from a table
- * of squares; see smeared.h. A lamp's disc blurs it: no finer square than one
- * of steps half as wide as the disc's radius is taken. */
+ * of squares; see smeared.h. The lamp's disc blurs the light: squares with
+ * steps finer than half of the disc's radius are not used. */
 #include "base/compiler.h"
 #include "base/q.h"
 #include "star/parts.h"
@@ -10,7 +10,8 @@
 enum {
     HALF = GLINT_STAR_SMEAR_HALF,
     RINGS = GLINT_STAR_SMEAR_RINGS,
-    /* log2 of the steps of the first square per pixel, of its size in _q8 */
+    /* log2 of the steps per pixel of the first square, and of its size in
+     * _q8 */
     STEPS_LOG2 = 2,
     FIRST_LOG2 = 11
 };
@@ -22,7 +23,7 @@ struct span {
     int64_t (*light_q20)[GLINT_CODES_WIDTH];
     int ring;
     int32_t share[3]; /* light of value 1 by channel */
-    int shift;        /* it is share 2^-shift, _q20 */
+    int shift;        /* light of value 1 is share 2^-shift, _q20 */
 };
 
 static void set_ring(struct span *s, int ring)
@@ -30,7 +31,7 @@ static void set_ring(struct span *s, int ring)
     const struct glint_real step = s->table->step[ring];
 
     s->ring = ring;
-    for (int c = 0; c < 3; c++) /* 15 bits and 15 bits */
+    for (int c = 0; c < 3; c++) /* both factors have 15 bits */
         s->share[c] =
             (int32_t)((int64_t)s->lamp->core[c] * (step.mantissa >> 16));
     s->shift = -(s->lamp->core_exponent + step.exponent + 16 + 20);
@@ -65,8 +66,8 @@ static void add_pixel(const struct span *s, int at, int64_t dx_q8,
     }
 }
 
-/* Returns the ring of pixels FAR from the lamp, along x or y, whichever is
- * more; RINGS if there is none. */
+/* Returns the ring of pixels at distance FAR from the lamp, along x or y,
+ * whichever is more; RINGS if they are outside all rings. */
 static int ring_of(int64_t far_q8, int least)
 {
     const int bits = bit_length((uint64_t)far_q8) - FIRST_LOG2;
@@ -81,7 +82,7 @@ void glint_star_smear_part(const struct glint_star *star,
     struct span s = {.table = star->tables->smear,
                      .lamp = lamp,
                      .light_q20 = row->light_q20,
-                     .ring = RINGS}; /* none yet */
+                     .ring = RINGS}; /* no ring yet */
     const int64_t dy_q8 = (int64_t)row->y * 256 + 128 - lamp->y_q8;
     const int64_t high_q8 = dy_q8 < 0 ? -dy_q8 : dy_q8;
     const int middle = lamp->x_q8 >> 8;

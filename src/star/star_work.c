@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Predicts the work of a star: the pixels that its parts give light to. */
+ * Predicts the work of a star: how many pixels its lines, halos, smears and
+ * cores light. */
 #include "base/divide.h"
 #include "base/q.h"
 #include "star/parts.h"
@@ -13,8 +14,8 @@ static int64_t common(int a, int b, int x, int half)
     return to > from ? to - from : 0;
 }
 
-/* Returns how many pixels of the picture are no farther than HALF from LAMP,
- * along x and y. */
+/* Returns how many pixels of the picture are at most HALF from LAMP along x and
+ * along y. */
 static int64_t square(const struct glint_star *star,
                       const struct glint_star_lamp *lamp, int half)
 {
@@ -22,9 +23,9 @@ static int64_t square(const struct glint_star *star,
            common(0, star->cfg.height, lamp->y_q8 >> 8, half);
 }
 
-/* Returns the pixels of all lines of LAMP. In a zone a line is twice as long as
- * the zone is wide, and as wide as is seen; the same fraction of it as of the
- * zone's area is in the picture. */
+/* Returns how many pixels all lines of LAMP light. In a zone a line has twice
+ * the zone's width as length, and its visible width; the fraction of it in the
+ * picture is taken to be that of the zone's area. */
 static int64_t lines(const struct glint_star *star,
                      const struct glint_star_lamp *lamp)
 {

@@ -39,10 +39,10 @@
 enum {
     GLINT_STAR_PROFILE = 128, /* steps of a profile */
     GLINT_STAR_CORE = 48,     /* steps from the core's middle to its rim */
-    /* Two for each octave of r^2, from 2^4 px^2 on. */
+    /* Two rows for each octave of r^2, from 2^4 px^2 on. */
     GLINT_STAR_HALO_ROWS = 45,
-    GLINT_STAR_HALO_COLUMNS = 49, /* four for each octave of
-                                     1 + 4 v / reach */
+    GLINT_STAR_HALO_COLUMNS = 49, /* four columns for each octave of 1 + 4 v /
+                                     reach */
     GLINT_STAR_WIDE = 9, /* halos of fans for lamps of radius 2^(i - 1) px */
     GLINT_STAR_MAX_LIGHTS = 4096
 };
@@ -56,8 +56,8 @@ struct glint_star_line {
     int32_t cot_q16;    /* cos / sin of that angle, clamped to +-2^12 */
     int32_t across_q16; /* 1 / sin of that angle, at most 2^12 */
     int32_t border_q16; /* cot of the angle half-way to the next line */
-    /* [i]: light at v = reach i / 128, times r^2 / (1 - (v / r)^2), in the
-     * tables' steps. From 128 on 0. */
+    /* [i]: light at v = reach i / 128, times r^2 / (1 - (v / r)^2), in units of
+     * the tables' step. Entries from 128 on are 0. */
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
 };
 
@@ -86,11 +86,11 @@ struct glint_star_tables {
     int32_t halo_log2_q16;
     uint16_t halo[GLINT_STAR_HALO_ROWS][GLINT_STAR_HALO_COLUMNS][3];
     uint16_t halo_max[GLINT_STAR_HALO_ROWS];
-    /* [GLINT_STAR_WIDE][GLINT_STAR_HALO_ROWS]: the halo as lamps of radius
-     * 2^(i - 1) pixels blur it; NULL: the stop throws no fans, and lamps do not
+    /* [GLINT_STAR_WIDE][GLINT_STAR_HALO_ROWS]: the halo as lamps of radius 2^(i
+     * - 1) pixels blur it; NULL if the stop throws no fans; lamps then do not
      * blur its halo. */
     const glint_star_halo_row *wide;
-    /* NULL: nothing lies in the stop. */
+    /* Diffraction by dirt in the stop, or NULL. */
     const struct glint_star_smear *smear;
     /* The half of the core with y from 0 on; the other half is its mirror image
      * about the middle. Each is a number of 16 bits, _q40: a sign, five bits e,
@@ -101,16 +101,17 @@ struct glint_star_tables {
 /* A lamp as the picture shows it. */
 struct glint_star_light {
     int32_t x_q8, y_q8; /* pixels from the top left corner */
-    int32_t radius_q8;  /* radius of the lamp's disc, 0 .. 2^14 pixels, by which
-                           lines are wider; below 0: no picture shows the lamp,
-                           and its core is drawn as well */
+    int32_t radius_q8;  /* radius of the lamp's disc, 0 .. 2^14 pixels; it
+                           widens lines. Negative if the picture does not show
+                           the lamp: then its core is drawn as well */
     /* light, in white times pixels; more than 2^30 counts as 2^30 */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, 0 .. 2^14 */
 };
 
 struct glint_star_config {
-    int n_workers;     /* number of workers of the flares to come, 1 .. 64 */
+    int n_workers;     /* max number of workers of the flares it is drawn with,
+                          1 .. 64 */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     int max_lights;    /* 1 .. GLINT_STAR_MAX_LIGHTS */
 };
@@ -122,35 +123,37 @@ struct glint_flare;
  * if CFG is out of range. */
 size_t glint_star_bytes(const struct glint_star_config *cfg);
 
-/* Places a star in MEM[BYTES], aligned to 64, which needs no finish.
- * GLINT_E_MEMORY: BYTES is too small. */
+/* Places a star in MEM[BYTES], which must be aligned to 64 bytes. A star needs
+ * no cleanup. Returns GLINT_E_MEMORY if BYTES is too small. */
 enum glint_status glint_star_init(struct glint_star **star,
                                   const struct glint_star_config *cfg,
                                   void *mem, size_t bytes);
 
 /* Sets the N lights to draw. TABLES must stay valid while they are drawn,
- * LIGHTS need not. Lights beyond max_lights are left out, and so is light below
- * FAINTEST, in display white: 0, or 2^-21 and more. */
+ * LIGHTS need not. Lights beyond max_lights are skipped, and so is light below
+ * FAINTEST, in display white, which must be 0 or at least 2^-21. */
 void glint_star_set(struct glint_star *star,
                     const struct glint_star_tables *tables,
                     const struct glint_star_light *lights, int n,
                     struct glint_real faintest);
 
-/* Returns about how many pixels the parts of the star that was set give light
- * to, counted once for each part: the time to draw it goes with that. */
+/* Estimates how many pixels the lines, halos, smears and cores of the star
+ * light, counted once for each of these. The drawing time is proportional to
+ * it. */
 int64_t glint_star_pixels(const struct glint_star *star);
 
-/* Adds the star and, over it, the flare that FLARE has binned, as
- * glint_flare_draw() does; if that is drawn at half the size, the star is still
- * drawn to all pixels. */
+/* Adds the star and, over it, the binned ghosts of FLARE, as glint_flare_draw()
+ * does; if the flare is drawn at half resolution, the star is still drawn to
+ * all pixels. */
 void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
                      const struct glint_image *image);
 
-/* Returns the star as a pass onto IMAGE, to be drawn with others. */
+/* Returns the star as a pass onto IMAGE, to be drawn together with other
+ * passes. */
 struct glint_pass glint_star_pass_on(struct glint_star *star,
                                      const struct glint_image *image);
 
-/* Adds the star without the flare that FLARE has binned. */
+/* Adds the star without the binned ghosts of FLARE. */
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
                            const struct glint_image *image);
 

@@ -14,8 +14,8 @@ void glint_bins_init(struct glint_bins *bins, struct glint_box region,
     bins->ref = ref;
 }
 
-/* Returns the tiles that BOX touches, as columns and rows; empty if there are
- * none. */
+/* Returns the columns and rows of the tiles that BOX touches; an empty box if
+ * it touches no tile. */
 static struct glint_box tile_range(const struct glint_bins *bins,
                                    struct glint_box box)
 {

@@ -4,8 +4,8 @@
  *
  * Three steps, so that every list has exactly the length it needs and is
  * ordered by item, never by arrival: count, prefix sum, scatter. The same code
- * serves both levels: a frame in large tiles, and a large tile in small ones.
- */
+ * bins on both levels: a frame into large tiles, and a large tile into small
+ * tiles. */
 #ifndef GLINT_TILE_BINS_H
 #define GLINT_TILE_BINS_H
 
@@ -27,21 +27,22 @@ struct glint_bins {
 void glint_bins_init(struct glint_bins *bins, struct glint_box region,
                      int tile_log2, int32_t *start, int32_t *ref);
 
-/* Returns how many tiles of BINS the pixels of BOX touch: the entries it takes.
- */
+/* Returns how many tiles of BINS the pixels of BOX touch: the list entries that
+ * BOX needs. */
 int glint_bins_span(const struct glint_bins *bins, struct glint_box box);
 
 /* Open sets all counts to 0; count adds the tiles of BOX, once for each item.
  */
 void glint_bins_open(struct glint_bins *bins);
 void glint_bins_count(struct glint_bins *bins, struct glint_box box);
-/* Turns the counts into places where lists start. */
+/* Converts the counts to start indices of the lists. */
 void glint_bins_sum(struct glint_bins *bins);
-/* Writes ITEM into the lists of the tiles of BOX; items come in the order that
+/* Appends ITEM to the lists of the tiles of BOX. Call it in the order that the
  * lists shall have. */
 void glint_bins_put(struct glint_bins *bins, struct glint_box box,
                     int32_t item);
-/* Sets the starts back to the beginnings of the lists, which put moved on. */
+/* Resets the start indices, which glint_bins_put() advanced, to the beginnings
+ * of the lists. */
 void glint_bins_close(struct glint_bins *bins);
 
 /* Returns the pixels of tile TILE. */

@@ -3,7 +3,7 @@
 
 #include "base/q.h"
 
-/* Returns the part of LIGHT that is seen through COVER_Q8. */
+/* Returns LIGHT times (1 - COVER). */
 static int64_t behind(int64_t light, int cover_q8)
 {
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
@@ -42,8 +42,8 @@ static void add_linear(const struct glint_pass_rows *rows, int n_x,
                             INT32_MIN, INT32_MAX);
 }
 
-/* Adds the cover of a pass to the cover so far. COVERED is 0 if there is none
- * yet. */
+/* Combines the cover of a pass with the cover so far. COVERED is 0 if no pass
+ * before gave cover. */
 static void add_cover(struct glint_blend_rows *s, int row, int n_x, int covered)
 {
     uint16_t *to_q8 = s->cover.cover_q8[row];
@@ -84,7 +84,7 @@ static enum glint_given add_pass(const struct glint_pass *pass, void *state,
 
 /* ------------------------------------------------------------------- cover */
 
-/* Writes PART values of cover, each twice across and in two rows. */
+/* Writes each of PART values of cover to 2 x 2 pixels. */
 static void double_cover(const uint16_t *from_q8, int part,
                          struct glint_cover_rows *to)
 {

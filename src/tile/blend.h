@@ -9,7 +9,7 @@
 
 #include "tile/pass.h"
 
-/* Blends several passes, if a struct glint_tiles names it. */
+/* Set tiles->blend to it to draw several passes. */
 extern const struct glint_blend glint_blend;
 
 #endif

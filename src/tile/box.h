@@ -10,7 +10,7 @@ struct glint_box {
     int x0, y0, x1, y1;
 };
 
-/* Returns the pixels that A and B have in common. */
+/* Returns the intersection of A and B. */
 static inline struct glint_box glint_box_cut(struct glint_box a,
                                              struct glint_box b)
 {
@@ -24,7 +24,7 @@ static inline int glint_box_empty(struct glint_box b)
     return b.x0 >= b.x1 || b.y0 >= b.y1;
 }
 
-/* Returns the least box that holds A and B. */
+/* Returns the smallest box that contains A and B. */
 static inline struct glint_box glint_box_join(struct glint_box a,
                                               struct glint_box b)
 {

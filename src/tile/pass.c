@@ -14,7 +14,7 @@ struct visit {
     struct glint_tile_scratch *scratch;
 };
 
-/* Has all passes of this tile draw ROWS; returns what they give together. */
+/* Lets all passes of this tile draw ROWS. Returns their combined output. */
 static enum glint_given gather(const struct visit *v,
                                struct glint_pass_rows *rows)
 {
@@ -34,7 +34,7 @@ static enum glint_given gather(const struct visit *v,
 }
 
 /* Covers row Y of the picture if a pass gave cover. For linear pictures and
- * half resolution, whose rows do not take cover and light at once. */
+ * half resolution, where cover and light are applied in separate steps. */
 static void hide(const struct visit *v, enum glint_given given, int y)
 {
     if (given == GLINT_GIVES_COVER)
@@ -109,7 +109,7 @@ static void draw_codes(const struct visit *v)
     }
 }
 
-/* Blocks of four pixels that are resolved at once. */
+/* Number of 2 x 2 pixel blocks that are resolved at once. */
 enum { QUADS = GLINT_CODES_WIDTH / 2 };
 
 /* Adds one row at half resolution to two rows of the picture, of twice as many

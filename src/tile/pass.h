@@ -6,15 +6,16 @@
  *   out  its pixels, changed in place
  *
  * The driver goes along a row of tiles from left to right, so that a pass may
- * carry state from tile to tile. It takes two rows of pixels at a time, which
- * share their chroma in 4:2:0; one row of linear pictures and at half
- * resolution. Rows of tiles share nothing: they may be drawn in any order, or
- * at once, each by another worker.
+ * carry state from tile to tile. It draws two rows of pixels at a time, as they
+ * share chroma in 4:2:0; for linear pictures and at half resolution, one row.
+ * Rows of tiles share no state: they may be drawn in any order, or
+ * concurrently, each by another worker.
  *
  * Passes give light, which is added, and may give cover, the fraction of each
  * pixel in which they hide the picture and the light of the passes before them:
- * a pixel that is covered wholly is set. More than one pass, or one that
- * covers, takes glint_blend (blend.h), which a flare alone does not link. */
+ * a fully covered pixel is overwritten. Several passes, or one pass that gives
+ * cover, need glint_blend (blend.h); a program that draws only flares does not
+ * link it. */
 #ifndef GLINT_TILE_PASS_H
 #define GLINT_TILE_PASS_H
 
@@ -31,8 +32,8 @@ enum { GLINT_MAX_PASSES = 4 };
 struct glint_pass_rows {
     int y, n;
     struct glint_light_rows *light; /* _q16, padded to GLINT_LANES */
-    int32_t *light_q20[3];          /* R, G, B: one value a pixel */
-    struct glint_cover_rows *cover; /* NULL: passes must not give cover */
+    int32_t *light_q20[3];          /* R, G, B: one value per pixel */
+    struct glint_cover_rows *cover; /* if NULL, passes must not give cover */
 };
 
 /* The output of a pass for its rows. */
@@ -44,14 +45,14 @@ enum glint_given {
 
 struct glint_pass {
     const void *self;
-    /* Begins the row of tiles ROW on worker WORKER; its return value is the
-     * STATE of the calls below. */
+    /* Begins the row of tiles ROW on worker WORKER. Returns the STATE for the
+     * calls below. */
     void *(*begin)(const void *self, struct glint_box row, int worker);
-    /* Moves to tile TILE; returns 0 if the pass draws nothing in it: rows is
+    /* Moves to tile TILE. Returns 0 if the pass draws nothing in it; rows is
      * then not called. */
     int (*tile)(void *state, struct glint_box tile);
-    /* Draws rows of that tile. Rows come from top to bottom, each once, even if
-     * there is no picture. */
+    /* Draws rows of the current tile. It is called once for each row, from top
+     * to bottom, even if there is no picture. */
     enum glint_given (*rows)(void *state, const struct glint_pass_rows *rows);
 };
 
@@ -62,11 +63,11 @@ struct glint_tiles {
     int tile_log2; /* 3 .. 6 */
     int half; /* 1: each pixel that passes see is 2 x 2 pixels of the picture */
     int width, height;               /* size of the picture */
-    const struct glint_image *image; /* NULL: light is dropped */
+    const struct glint_image *image; /* if NULL, light is discarded */
     const struct glint_resolve *resolve;
     /* set at half resolution, unless the picture is linear */
     const struct glint_half *quads;
-    /* NULL: there is one pass, which gives no cover. */
+    /* May be NULL if there is a single pass that gives no cover. */
     const struct glint_blend *blend;
 };
 
@@ -75,14 +76,14 @@ struct glint_tile_scratch {
     struct glint_light_rows *light;
     int32_t *light_q20; /* [3][2 sides of a tile]; for linear pictures */
     struct glint_quads_rows *codes;
-    int n_tiles; /* number of tiles in which something was drawn so far */
+    int n_tiles; /* number of tiles drawn so far in which a pass was active */
     int n_held;  /* samples of a linear picture that were clamped to an end of
                     their range */
     struct glint_blend_rows *blend; /* set if the tiles blend passes */
 };
 
-/* Scratch of a worker: what the next pass gives, and the cover of all passes so
- * far. */
+/* Scratch of a worker: the output of the next pass, and the combined cover of
+ * the passes so far. */
 struct glint_blend_rows {
     struct glint_light_rows light;
     int32_t light_q20[3][GLINT_CODES_WIDTH];
@@ -93,13 +94,13 @@ struct glint_blend_rows {
  * functions, so that only a program that names it (blend.h) links them. */
 struct glint_blend {
     /* Draws ROWS of N_X pixels of PASS in front of GIVEN, the result of the
-     * passes before; returns the result of all. */
+     * passes before. Returns the combined result. */
     enum glint_given (*add)(const struct glint_pass *pass, void *state,
                             const struct glint_pass_rows *rows,
                             enum glint_given given, int n_x,
                             struct glint_blend_rows *scratch);
-    /* Adds light as glint_resolve_stretch() does, to a picture that COVER hides
-     * in part. */
+    /* Hides COVER of the picture, then adds light as glint_resolve_stretch()
+     * does. */
     void (*stretch)(const struct glint_resolve *resolve,
                     const struct glint_image *image, int x, int y, int n_x,
                     int n_y, const struct glint_cover_rows *cover,

@@ -42,24 +42,25 @@
 #include "tile/pass.h"
 
 enum {
-    GLINT_VEIL_CELLS = 64,  /* cells along the picture's longer side, at most */
-    GLINT_VEIL_SPREADS = 8, /* Gaussians that may be added */
-    GLINT_VEIL_LEAST_PX = 4 /* least side of a cell, pixels */
+    GLINT_VEIL_CELLS = 64,  /* max cells along the picture's longer side */
+    GLINT_VEIL_SPREADS = 8, /* max number of Gaussians */
+    GLINT_VEIL_LEAST_PX = 4 /* min side of a cell, pixels */
 };
 
 /* A Gaussian over cells along both axes. */
 struct glint_veil_spread {
-    /* [D]: the fraction that goes D cells far, of a row of n cells that its
-     * mirror images repeat every 2 n cells; D = 0 .. n. [0] + [n] + 2 times the
-     * others is 2^30. */
+    /* [D]: the fraction of light that is spread by D cells, D = 0 .. n, in a
+     * row of n cells that mirror images continue with period 2 n. [0] + [n] + 2
+     * times the other entries is 2^30. */
     int32_t across_q30[GLINT_VEIL_CELLS + 1], down_q30[GLINT_VEIL_CELLS + 1];
-    struct glint_real share; /* of all light, above 0 */
+    struct glint_real share; /* fraction of all light, above 0 */
 };
 
 struct glint_veil_config {
     int n_workers;     /* number of workers of the flares to come, 1 .. 64 */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
-    int has_front;     /* 1: there is room for what a front element spreads */
+    int has_front;     /* 1: reserve memory for light that dirt on the front
+                          element spreads */
 };
 
 /* Pixels from node to node, and how many nodes there are along a side. */
@@ -73,9 +74,9 @@ typedef void glint_veil_front_fn(const struct glint_veil_row *row,
                                  const struct glint_pass_rows *rows, int k);
 glint_veil_front_fn glint_veil_front_row;
 
-/* How much of the front element is covered where a pixel looks through. A
- * program that does not name glint_veil_front_row does not link what draws
- * it. */
+/* The covered fraction of the front element, per pixel that looks through it. A
+ * program that does not name glint_veil_front_row does not link its drawing
+ * code. */
 struct glint_veil_front {
     glint_veil_front_fn *row; /* glint_veil_front_row */
     int n_x, n_y;             /* GLINT_VEIL_FRONT_NODES() of both sides */
@@ -87,50 +88,50 @@ struct glint_veil_front {
 struct glint_veil; /* opaque, in the caller's memory */
 struct glint_flare;
 
-/* Sets CELLS to the numbers of cells across and down of pictures of that
- * size. */
+/* Sets CELLS to the numbers of cells across and down of pictures of WIDTH x
+ * HEIGHT pixels. */
 void glint_veil_cells(int width, int height, int cells[2]);
 
 /* Returns the exact number of bytes that glint_veil_init() needs for CFG, or 0
  * if CFG is out of range. */
 size_t glint_veil_bytes(const struct glint_veil_config *cfg);
 
-/* Places a veil in MEM[BYTES], aligned to 64, which needs no finish.
- * GLINT_E_MEMORY: BYTES is too small. */
+/* Places a veil in MEM[BYTES], which must be aligned to 64 bytes. A veil needs
+ * no cleanup. Returns GLINT_E_MEMORY if BYTES is too small. */
 enum glint_status glint_veil_init(struct glint_veil **veil,
                                   const struct glint_veil_config *cfg,
                                   void *mem, size_t bytes);
 
-/* Takes the light of IMAGE, whose white is WHITE; NULL: black. Forgets lamps.
- * WORKERS may be NULL. */
+/* Sums the light of IMAGE, whose white is WHITE, in cells, and removes all
+ * lamps. If IMAGE is NULL, the picture is black. WORKERS may be NULL. */
 void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
                      struct glint_real white, struct glint_workers *workers);
 
 /* Adds POWER, white times pixels, of colour RGB, 0 .. 2^14, at (X, Y), pixels
- * from the top left corner. Lamps outside the picture are left out. */
+ * from the top left corner. Lamps outside the picture are skipped. */
 void glint_veil_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
                      struct glint_real power, const int32_t rgb_q14[3]);
 
-/* Makes the veil of N spreads, 0 .. GLINT_VEIL_SPREADS. */
+/* Computes the veil from N spreads, 0 .. GLINT_VEIL_SPREADS. */
 void glint_veil_spread(struct glint_veil *veil,
                        const struct glint_veil_spread *spreads, int n);
 
-/* Makes, besides, what a front element spreads: N spreads, whose shares are
- * those where it is covered most. FRONT must stay valid while the veil is
- * drawn; NULL: the front spreads nothing, as before the first call. The
- * configuration of the veil must have has_front set. */
+/* Also computes the light that dirt on the front element spreads, from N
+ * spreads whose shares hold at the max cover. FRONT must stay valid while the
+ * veil is drawn. If it is NULL, the front spreads nothing, as before the first
+ * call. The configuration of the veil must have has_front set. */
 void glint_veil_front(struct glint_veil *veil,
                       const struct glint_veil_front *front,
                       const struct glint_veil_spread *spreads, int n);
 
-/* Adds the veil, in front of it OVER unless that is NULL, and over both the
- * flare that FLARE has binned. If that is drawn at half the size, the others
- * are still drawn to all pixels. */
+/* Adds the veil, then the pass OVER unless it is NULL, then the binned ghosts
+ * of FLARE. If the flare is drawn at half resolution, veil and OVER are still
+ * drawn to all pixels. */
 void glint_veil_draw(struct glint_veil *veil, const struct glint_pass *over,
                      struct glint_flare *flare,
                      const struct glint_image *image);
 
-/* Adds the veil alone. */
+/* Adds the veil without the binned ghosts of FLARE. */
 void glint_veil_draw_alone(struct glint_veil *veil, struct glint_flare *flare,
                            const struct glint_image *image);
 

@@ -45,8 +45,8 @@ static void take_axis(struct glint_arena *a, struct glint_veil_axis *axis,
     axis->fill_q16 = glint_arena_take(a, N, sizeof *axis->fill_q16);
 }
 
-/* Takes a veil and its tables from A, once to measure, which returns NULL, and
- * once to place them. */
+/* Allocates a veil and its tables from A. Called twice: to measure (returns
+ * NULL) and to place. */
 static struct glint_veil *carve(struct glint_arena *a,
                                 const struct glint_veil_config *c)
 {
@@ -87,8 +87,8 @@ size_t glint_veil_bytes(const struct glint_veil_config *cfg)
     return arena.used;
 }
 
-/* Finds how many pixels of SIDE cells have, and how many are looked at in them,
- * STEP at a time. */
+/* Sets fill_q16: the width of N cells over SIDE pixels, divided by the number
+ * of pixels that are summed in each, if these are read STEP at a time. */
 static void set_fill(struct glint_veil_axis *axis, int side, int n, int step)
 {
     for (int k = 0; k < n; k++)
@@ -103,7 +103,7 @@ static void set_fill(struct glint_veil_axis *axis, int side, int n, int step)
     }
 }
 
-/* Finds the place of each of SIDE pixels among N cells. */
+/* Finds the cell and the weights of each of SIDE pixels among N cells. */
 static void set_axis(struct glint_veil_axis *axis, int side, int n)
 {
     const uint32_t twice = 2 * (uint32_t)side;
@@ -161,11 +161,12 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
 
 /* ---------------------------------------------------------------- spreading */
 
-/* Most light of a cell, 2^8 white: so that what lies between cells has 63
+/* Max light of a cell, 2^8 white, so that interpolation between cells fits 63
  * bits. */
 enum { MOST_Q20 = 1 << 28 };
 
-/* Returns the most that bits of the largest of N sums have over 31. */
+/* Returns by how many bits the largest of N sums exceeds 30 bits; 0 if it does
+ * not. */
 static int bits_over(const int64_t *light_q16, int n)
 {
     uint64_t all = 0;
@@ -178,8 +179,8 @@ static int bits_over(const int64_t *light_q16, int n)
     return over;
 }
 
-/* Sets SHARE to what each of N cells gives to cell TO, mirror images
- * included. */
+/* Sets SHARE to the fraction of each of N cells' light that reaches cell TO,
+ * mirror images included. */
 static void shares_of(const int32_t *table_q30, int n, int to,
                       int32_t share_q30[GLINT_VEIL_CELLS])
 {
@@ -192,7 +193,7 @@ static void shares_of(const int32_t *table_q30, int n, int to,
     }
 }
 
-/* Returns what N cells, STEP apart, give together. */
+/* Returns the sum of N cells, STEP apart, weighted by SHARE. */
 static int32_t gather(const int32_t *from, int step,
                       const int32_t share_q30[GLINT_VEIL_CELLS], int n)
 {
@@ -227,7 +228,7 @@ static int64_t share_of(int32_t light, struct glint_real factor)
         return 0;
     if (down >= 0)
         return q_shift(product, down);
-    /* beyond any light that is drawn, 2^50 */
+    /* clamped to 2^50, more than any light that is drawn */
     return product > INT64_C(1) << 50 >> q_smaller(-down, 50)
                ? INT64_C(1) << 50
                : (int64_t)((uint64_t)product << -down);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light that dirt on the front element spreads: cells of its own, times the
- * fraction of the front that is covered where a pixel looks through. */
+ * Light that dirt on the front element spreads: its cells, times the covered
+ * fraction of the front as each pixel sees it. */
 #include "base/q.h"
 #include "veil/parts.h"
 
@@ -24,9 +24,9 @@ void glint_veil_front(struct glint_veil *veil,
         veil->front_down++;
 }
 
-/* Sets PART to the covered fraction of the pixels X0 .. X1 - 1 of row Y, X0
- * being a multiple of PX, and a few more: straight between nodes, which lie on
- * the borders of every PX-th pixel. */
+/* Sets PART to the covered fraction of the pixels X0 .. X1 - 1 of row Y, and a
+ * few more; X0 must be a multiple of PX. Linear between nodes, which lie on the
+ * borders of every PX-th pixel. */
 static void part_row(const struct glint_veil_front *front, int y, int x0,
                      int x1, uint16_t *part_q16)
 {

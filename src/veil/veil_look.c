@@ -17,8 +17,8 @@ static void give(const struct look *l, int x, int y, const int64_t sum_q20[3])
     const struct glint_veil *v = l->veil;
 
     for (int c = 0; c < 3; c++) {
-        /* 2^5 units of light have less than 31 bits for each 2^16 pixels of
-         * white; beyond that they are clamped */
+        /* in units of 2^-11, 2^16 pixels of white have 28 bits; sums over 31
+         * bits are clamped */
         const int64_t seen = q_clamp_sat(q_shift(sum_q20[c], 9), 0, INT32_MAX);
         const int64_t part =
             q_clamp_sat(q_shift(q_shift(seen * v->across.fill_q16[x], 16) *
@@ -56,7 +56,7 @@ static void look_at_rows(const struct look *l, struct glint_codes *codes, int y,
     }
 }
 
-/* Looks at the pairs of rows whose first lies in the row of cells JOB. */
+/* Reads the pairs of rows whose first row lies in the row of cells JOB. */
 static void look_job(void *ctx, int job, int worker)
 {
     const struct look *l = ctx;
@@ -92,7 +92,7 @@ void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
 
 /* ------------------------------------------------------------------- lamps */
 
-/* The cell of a place and the fractions of it and its neighbours. */
+/* The cell of a position, and the weights of this cell and its neighbours. */
 struct place {
     int cell;
     int32_t weight_q15[3];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a veil as a pass: the cells' light between their middles. */
+ * Draws a veil as a pass: interpolates the cells' light between their
+ * middles. */
 #include "base/q.h"
 #include "flare/draw_over.h"
 #include "flare/state.h"
@@ -22,8 +23,8 @@ static int go_on(void *state, struct glint_box tile)
     return r->veil->any || r->veil->any_front;
 }
 
-/* Sets LIGHT to that of the N cells from FIRST on in row Y of pixels, white
- * times 2^20 >> DOWN, at most MOST. */
+/* Sets LIGHT to the light of N cells from FIRST on, interpolated to row Y of
+ * pixels, white times 2^20 >> DOWN, at most MOST. */
 static void between_rows(const struct glint_veil *v, const int32_t *cell_q20,
                          int c, int y, int first, int n, int down, int32_t most,
                          int32_t light[GLINT_VEIL_CELLS])
@@ -54,9 +55,10 @@ static inline uint16_t high(uint16_t a, uint16_t b)
     return (uint16_t)((uint32_t)a * b >> 16);
 }
 
-/* Sets TO to the light of N pixels from X on, and as many more as make whole
- * lanes, between cells of LIGHT, 0 .. 65534. Each product is cut and loses a
- * half of 2^-16 in the mean, so that one of these is added. */
+/* Sets TO to the light of N pixels from X on, rounded up to whole vectors,
+ * interpolated between cells of LIGHT, 0 .. 65534. Each product is truncated
+ * and loses 2^-17 on average, which the addition of 2^-16 where there is light
+ * compensates in part. */
 static void stretch_codes(const struct glint_veil_axis *axis, int x, int n,
                           const int32_t light_q16[3], uint16_t *restrict to_q16)
 {
@@ -159,8 +161,8 @@ static void row_job(void *ctx, int job, int worker)
                     &d->flare->worker[worker].tile);
 }
 
-/* Draws N passes to all pixels, also where the flare is drawn at half the
- * size. */
+/* Draws N passes to all pixels, even if the flare is drawn at half
+ * resolution. */
 static void draw_passes(struct glint_veil *veil, struct glint_flare *flare,
                         const struct glint_image *image,
                         const struct glint_pass *pass, int n)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loop for maps of translucent objects. The rules of kernels.h hold for
- * it, too, but for alignment: vectors may begin anywhere. */
+ * The hot loop for maps of translucent objects. The rules of kernels.h apply,
+ * except that arrays need no alignment. */
 #ifndef GLINT_KERNELS_MAPS_MAPS_H
 #define GLINT_KERNELS_MAPS_MAPS_H
 
@@ -23,8 +23,8 @@ typedef void glint_convolve_fn(int32_t *sum, const int32_t *value,
                                ptrdiff_t stride, const int32_t *tap, int n_taps,
                                int n);
 
-/* Returns the best kernel that the GLINT_SET_ bits SETS allow; the one in C if
- * there is no bit. */
+/* Returns the best kernel that the GLINT_SET_ bits SETS allow; the kernel in C
+ * if no bit is set. */
 glint_convolve_fn *glint_convolve_of(unsigned sets);
 
 glint_convolve_fn glint_convolve_c, glint_convolve_sse41, glint_convolve_avx2,

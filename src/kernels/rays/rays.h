@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loops for rays. The rules of kernels.h hold for them, too. */
+ * The hot loops for rays. The rules of kernels.h apply. */
 #ifndef GLINT_KERNELS_RAYS_RAYS_H
 #define GLINT_KERNELS_RAYS_RAYS_H
 
@@ -25,7 +25,7 @@ typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
  *   lost    [0] of points, [1] of images: all bits are set if a coordinate
  *           reaches LIMIT; else left unchanged
  * X and Y are below 2^30 in magnitude, cosine and sine below 2^31, LIMIT is
- * 2^30 at most. Shifts are 1 .. 62; the C definition takes any. */
+ * 2^30 at most. Shifts are 1 .. 62; the C variant accepts any shift. */
 enum { GLINT_TURNED = 8 }; /* rays that are turned at once */
 
 struct glint_turn {
@@ -43,8 +43,8 @@ struct glint_horner {
     glint_horner_across_fn *across;
 };
 
-/* Return the best kernels that the GLINT_SET_ bits SETS allow; those in C if
- * there is no bit. */
+/* Return the best kernels that the GLINT_SET_ bits SETS allow; the kernels in C
+ * if no bit is set. */
 const struct glint_horner *glint_horner_of(unsigned sets);
 glint_turn_fn *glint_turn_of(unsigned sets);
 

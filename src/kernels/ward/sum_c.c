@@ -4,8 +4,9 @@
 
 enum { ONE_Q14 = 1 << 14, ONE_Q16 = 1 << 16 };
 
-/* Returns 2^31 / X, off by 2^-14 of itself at most, of X 2^15 .. 2^16: a line
- * that is off by 1/17, then Newton's method twice. */
+/* Returns 2^31 / X for X in 2^15 .. 2^16, with a relative error of at most
+ * 2^-14: a linear estimate with an error of 1/17, then two steps of Newton's
+ * method. */
 static uint32_t reciprocal(uint32_t x)
 {
     uint32_t r_q15 = 92521 - (x * 61681 >> 16); /* 48/17 - 32/17 x */
@@ -15,8 +16,9 @@ static uint32_t reciprocal(uint32_t x)
     return r_q15;
 }
 
-/* Returns the root of X_Q14, 1 .. 2^14. One over the root of what is brought to
- * 1/4 .. 1 is a line, off by 1/11, then Newton's method three times. */
+/* Returns the square root of X_Q14, 1 .. 2^14. X is scaled to 1/4 .. 1; 1 /
+ * root begins with a linear estimate with an error of 1/11, then follow three
+ * steps of Newton's method. */
 static uint32_t root_q15(uint32_t x_q14)
 {
     const int up = (16 - bit_length(x_q14)) & ~1;
@@ -31,8 +33,8 @@ static uint32_t root_q15(uint32_t x_q14)
     return (y_q14 * part_q14 >> 14 << 2) >> (up / 2);
 }
 
-/* A sample: the way to the light along the frame, h.o, and whether it counts.
- */
+/* A sample: the direction to the light in the surface's frame, h.o, and whether
+ * it counts. */
 struct sample {
     int32_t in_q14[3], ho_q14;
     int counts;
@@ -84,7 +86,8 @@ static int32_t weight_q12(const struct glint_ward_lobe *lobe, int k,
                      8 << 12);
 }
 
-/* Sets U and V to the place in the square of the sample's light. */
+/* Sets U and V to the position of the sample's light in the square of the
+ * octahedron. */
 static void place_of(const struct sample *s,
                      const struct glint_ward_place *place, int32_t *u_q17,
                      int32_t *v_q17)
@@ -112,9 +115,9 @@ static void place_of(const struct sample *s,
     *v_q17 = ONE_Q16 + (toward_q14[2] < 0 ? -q_q16 : q_q16);
 }
 
-/* Returns the level whose light is as wide as sample K's or sharper; SHARE_Q8
- * is what the next one, of four times its variance, counts so that both
- * together have that of the sample. */
+/* Returns the level that is as blurred as sample K or sharper. SHARE_Q8 is the
+ * weight of the next level, with four times the variance, so that both levels
+ * together have the variance of the sample. */
 static int32_t level_of(const struct glint_ward_lobe *lobe, int k,
                         int32_t ho_q14, int32_t last, uint32_t *share_q8)
 {

@@ -59,7 +59,8 @@ static inline W w_gather(const uint32_t *code, W at)
     return S(c);
 }
 
-/* Levels are two words each: four words are a level and the next. */
+/* Levels are two words each: a load of four words gives a level and the next
+ * level. */
 static inline void w_gather_levels(const struct glint_texels_level *level, W k,
                                    W side_log2[2], W first[2])
 {

@@ -10,8 +10,8 @@
 #define WHOLE(name)  _mm_##name##_si128
 #define REPEAT(x)    x
 
-/* There is no shift by lanes: returns X times 2^BY, BY 0 .. 15, whose two bytes
- * are looked up. */
+/* Returns X times 2^BY per lane, BY 0 .. 15. SSE4.1 has no shift per lane, so
+ * the two bytes of 2^BY are looked up. */
 static inline W w_shl_each(W x, W by)
 {
     const W low =

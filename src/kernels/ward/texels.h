@@ -7,8 +7,8 @@
 #include "base/q.h"
 #include "glint/scene/lobe.h"
 
-/* Codes of four texels, or of four of each of two levels, and their weights,
- * which sum to 2^22. */
+/* Codes of four texels, or of four texels in each of two levels, and their
+ * weights, which sum to 2^22. */
 struct glint_reads {
     uint32_t at[8], weight_q22[8];
 };
@@ -19,16 +19,17 @@ struct glint_found {
     int32_t log2;
 };
 
-/* Sets four of AT and WEIGHT_Q22 to the texels of LEVEL about (U, V), 0 .. 1
- * across and down the square, which count SHARE_Q8 in all. A place beyond an
- * edge lies across the middle of that edge, as octahedra fold. */
+/* Sets four entries of AT and WEIGHT_Q22 to the texels of LEVEL around (U, V),
+ * 0 .. 1 across and down the square, with the total weight SHARE_Q8. A point
+ * beyond an edge is mirrored about the middle of that edge, as octahedra
+ * fold. */
 static inline void glint_reads_of(const struct glint_texels_level *level,
                                   int32_t u_q17, int32_t v_q17,
                                   uint32_t share_q8, uint32_t at[4],
                                   uint32_t weight_q22[4])
 {
     const int32_t last = (1 << level->side_log2) - 1;
-    /* From the middle of the first texel, -128 .. 2^18. */
+    /* Distance from the middle of the first texel, -128 .. 2^18. */
     const int32_t x_q8 = (u_q17 << level->side_log2 >> 9) - 128;
     const int32_t y_q8 = (v_q17 << level->side_log2 >> 9) - 128;
     const int32_t x = x_q8 >> 8, y = y_q8 >> 8;
@@ -71,7 +72,7 @@ static inline void glint_find_light(const uint32_t *code,
     }
 }
 
-/* Adds FOUND, which counts WEIGHT_Q12, 0 .. 2^15. */
+/* Adds FOUND times WEIGHT_Q12, 0 .. 2^15, to SUM. */
 static inline void glint_count_light(const struct glint_found *found,
                                      uint32_t weight_q12, uint64_t sum_q12[3])
 {
