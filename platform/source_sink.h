@@ -2,13 +2,13 @@
  *
  * source_sink.h - interfaces of sources and sinks of live frames.
  *
- * A source or sink is a struct of functions, the first member of the struct
- * that implements it (linux/v4l2.h, linux/fbdev.h ...). All memory is allocated
- * when it is opened or its format changes; frames allocate nothing.
+ * A source or sink is a struct of function pointers, the first member of the
+ * struct that implements it (linux/v4l2.h, linux/fbdev.h ...). All memory is
+ * allocated when it is opened or its format changes; frames allocate nothing.
  *
- * Errors are GLINT_E_DEVICE for a device that failed or went away and
- * GLINT_E_OUTPUT for a file that cannot be written, with one line that names
- * the device or file.
+ * Functions return GLINT_E_DEVICE if a device failed or was removed and
+ * GLINT_E_OUTPUT if a file cannot be written, with a line that names the device
+ * or file.
  */
 #ifndef GLINT_PLATFORM_SOURCE_SINK_H
 #define GLINT_PLATFORM_SOURCE_SINK_H
@@ -19,61 +19,64 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
-/* Most pixels on a side of a camera's or panel's picture; pictures of files may
- * have more. */
+/* Max width and height of a camera's or panel's picture, pixels; pictures of
+ * files may be larger. */
 #define GLINT_PANEL_SIDE 8192
 
-/* One frame of a source, its memory lent until done. */
+/* A frame of a source. Its memory may be used until done() is called. */
 struct glint_source_frame {
     struct glint_image image; /* plane[0] NULL: there is no frame yet */
-    uint32_t sequence; /* number that the device gave the frame; it wraps */
-    int64_t time_us;   /* CLOCK_MONOTONIC, when it was captured */
-    /* The frame may be drawn on in place: its memory is fast, and nobody else
-     * writes to it. */
+    uint32_t sequence;        /* frame number from the device; wraps around */
+    int64_t time_us;          /* CLOCK_MONOTONIC, when it was captured */
+    /* true: the frame may be drawn on in place, as its memory is cached and
+     * nobody else writes to it */
     bool is_drawable;
-    int n_late;    /* older frames given back unseen before this one */
-    int n_dropped; /* frames missing in the sequence before this one */
-    int n_corrupt; /* damaged frames thrown away */
+    int n_late;    /* older frames returned to the device unused before this
+                      frame */
+    int n_dropped; /* frames missing in the sequence before this frame */
+    int n_corrupt; /* damaged frames discarded before this frame */
     void *buffer;  /* private to the source */
 };
 
 /* The format of the frames that a source delivers. */
 struct glint_source_format {
     struct glint_image image; /* format of a frame, without its memory */
-    int fps_num, fps_den;     /* frames a second; 0: not known */
-    char text[512];           /* one line about the source for a person */
-    const char *detail;       /* a second line; NULL: none */
+    int fps_num, fps_den;     /* frames per second; 0: not known */
+    char text[512];           /* one line for users that describes the source */
+    const char *detail;       /* a second line, or NULL */
 };
 
 struct glint_source {
-    int fd;          /* readable when there may be a frame, once SOURCE was
-                        started; start and next may change it */
-    int n_restarts;  /* restarts of the stream since it was opened; its format
-                        may change with each */
-    bool has_signal; /* false: frames show what the device makes of no signal */
+    int fd;          /* descriptor to poll; readable when there may be a frame.
+                        Valid after start(); start() and next() may change
+                        it. */
+    int n_restarts;  /* restarts of the stream since it was opened; each may
+                        change the format */
+    bool has_signal; /* false: the device has no signal, and frames show its
+                        substitute */
 
     /* Begins to deliver frames, after SOURCE was opened and after each restart.
-     * The caller first sets up for the format, as frames that come meanwhile
-     * would be lost. GLINT_E_DEVICE: close SOURCE. */
+     * The caller should prepare for the format before, as frames that come
+     * meanwhile would be lost. If it returns GLINT_E_DEVICE, close SOURCE. */
     enum glint_status (*start)(struct glint_source *source,
                                struct glint_error *error);
-    /* Sets FRAME to the newest frame and returns older ones to the device;
-     * never waits. GLINT_E_DEVICE: the device is lost; close SOURCE.
-     * GLINT_E_CLOSED: there are no more frames. */
+    /* Sets FRAME to the latest frame and returns older frames to the device;
+     * never waits. Returns GLINT_E_DEVICE if the device is lost (close SOURCE),
+     * GLINT_E_CLOSED if there are no more frames. */
     enum glint_status (*next)(struct glint_source *source,
                               struct glint_source_frame *frame,
                               struct glint_error *error);
-    /* Gives FRAME back to SOURCE. */
+    /* Returns FRAME to SOURCE. */
     void (*done)(struct glint_source *source, struct glint_source_frame *frame);
-    /* Sets FORMAT to what SOURCE delivers now. */
+    /* Sets FORMAT to the current format of SOURCE's frames. */
     void (*describe)(const struct glint_source *source,
                      struct glint_source_format *format);
     void (*close)(struct glint_source *source); /* idempotent */
 };
 
 struct glint_sink {
-    /* Shows IMAGE, whose memory stays the caller's. Waits for slow readers no
-     * longer than a frame, where the system allows that. */
+    /* Shows IMAGE; does not use its memory after the call. Waits for slow
+     * readers at most one frame time, if the system allows that. */
     enum glint_status (*put)(struct glint_sink *sink,
                              const struct glint_image *image,
                              struct glint_error *error);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The plug-in behind assimp/assimp.h, through the library's C interface. */
+ * The plug-in behind assimp/assimp.h, through the library's C interface.
+ */
 #include "assimp/assimp.h"
 
 #include <math.h>
@@ -13,11 +14,14 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-/* The text while it is written. */
+/* The OBJ text that is being written. */
 struct writer {
     FILE *to;
-    int is_flat;                /* Normals are those of triangles. */
-    unsigned place, uv, normal; /* where the next mesh's begin, from 1 */
+    int is_flat;                /* Normals are not written: each triangle has
+                                   its own. */
+    unsigned place, uv, normal; /* indices, from 1, at which the next mesh's
+                                   vertices, texture coordinates and normals
+                                   begin */
 };
 
 static int is_finite(const struct aiVector3D *v)
@@ -25,7 +29,8 @@ static int is_finite(const struct aiVector3D *v)
     return isfinite(v->x) && isfinite(v->y) && isfinite(v->z);
 }
 
-/* The name of material INDEX of SCENE, fit for a line; "" if it has none. */
+/* Writes a usemtl line with the name of material INDEX of SCENE, or with an
+ * empty name. Characters that OBJ would misread become '_'. */
 static void write_name(FILE *to, const struct aiScene *scene, unsigned index)
 {
     struct aiString name = {0, ""};
@@ -40,14 +45,14 @@ static void write_name(FILE *to, const struct aiScene *scene, unsigned index)
     fprintf(to, "usemtl %s\n", name.data);
 }
 
-/* Points and lines are left out. */
+/* Returns whether FACE is a triangle; points and lines are not written. */
 static int is_triangle(const struct aiFace *face)
 {
     return face->mNumIndices == 3;
 }
 
-/* Returns whether FACE has normals N that its corners do not say by
- * themselves. */
+/* Returns whether the normals N of FACE's corners differ, so that they cannot
+ * be computed from its corners. */
 static int is_smooth(const struct aiVector3D *n, const struct aiFace *face)
 {
     for (int k = 1; n && is_triangle(face) && k < 3; k++)
@@ -143,7 +148,8 @@ static const char *check_mesh(const struct aiMesh *mesh, size_t *n)
     return NULL;
 }
 
-/* Returns why SCENE is not a mesh for us, or NULL. */
+/* Returns the reason to refuse SCENE, or NULL if it is a mesh that glint
+ * accepts. */
 static const char *check(const struct aiScene *scene, unsigned max_triangles)
 {
     const char *refusal = NULL;
@@ -156,9 +162,9 @@ static const char *check(const struct aiScene *scene, unsigned max_triangles)
     return refusal || n ? refusal : "has no triangles";
 }
 
-/* Reads PATH: polygons are cut, parts put where they belong, corners that are
- * alike made one. Returns NULL with the cause in REFUSAL if it is not a mesh
- * for us. */
+/* Reads PATH, cuts polygons into triangles, applies the transforms of the
+ * file's nodes and merges identical corners. Returns NULL, with the cause in
+ * REFUSAL, if glint does not accept the mesh. */
 static const struct aiScene *import(const char *path, unsigned max_triangles,
                                     const char **refusal)
 {

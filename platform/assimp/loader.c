@@ -20,13 +20,13 @@
 #include "posix/plugin.h"
 
 enum {
-    SECONDS = 60, /* of the processor that a mesh may take */
-    SIGNALS = 64, /* that a system has, at most */
-    /* of memory, beyond what glint has mapped. An .stl of 2^20 triangles, the
-     * most that a scene takes, needs 2.1 GB. */
+    SECONDS = 60, /* max CPU time that reading a mesh may cost */
+    SIGNALS = 64, /* signal numbers are 1 .. SIGNALS */
+    /* max address space of the child beyond glint's own. An .stl of 2^20
+     * triangles, the max of a scene, needs 2.1 GB. */
     MIB = 3072,
-    GLB_HEAD = 20,      /* bytes before the text of a binary glTF */
-    MAX_TEXT = 1 << 26, /* bytes of a glTF that are checked */
+    GLB_HEAD = 20,      /* bytes before the JSON text of a binary glTF */
+    MAX_TEXT = 1 << 26, /* bytes of a glTF's beginning that are checked */
     MAX_NODES = 1 << 22
 };
 
@@ -53,7 +53,8 @@ static const struct glint_assimp *load(struct glint_error *error)
     return face;
 }
 
-/* Returns the bytes of addresses that this process has; 0 if unknown. */
+/* Returns the bytes of address space that this process has mapped; 0 if
+ * unknown. */
 static rlim_t mapped_bytes(void)
 {
     char text[32] = "";
@@ -67,9 +68,9 @@ static rlim_t mapped_bytes(void)
                  : 0;
 }
 
-/* The other process, until it exits. Signals, which are all blocked, are taken
- * as a process takes them by itself: glint's handlers would clean up after a
- * glint that lives on. */
+/* Runs the child process until it exits. Restores the default actions of
+ * signals and unblocks them: glint's handlers would remove the temporary files
+ * of the parent, which lives on. */
 static void be_the_child(const struct glint_assimp *face, int fd,
                          const char *path, unsigned max_triangles)
 {
@@ -81,20 +82,20 @@ static void be_the_child(const struct glint_assimp *face, int fd,
 
     for (int i = 1; i <= SIGNALS; i++)
         signal(i, SIG_DFL);
-    prctl(PR_SET_PDEATHSIG, SIGKILL); /* not longer than glint lives */
+    prctl(PR_SET_PDEATHSIG, SIGKILL); /* The child must not outlive glint. */
     sigfillset(&all);
     sigprocmask(SIG_UNBLOCK, &all, NULL);
     setrlimit(RLIMIT_CPU, &time);
     setrlimit(RLIMIT_CORE, &core);
     setrlimit(RLIMIT_AS, &memory);
     if (null >= 0)
-        dup2(null, 2); /* what is reported of an exception that nobody takes */
+        dup2(null, 2); /* hides the report of an uncaught C++ exception */
     face->write(fd, path, max_triangles);
     _exit(0);
 }
 
-/* Starts the other process; TO is what it writes to. Returns -1 with errno set
- * on failure. */
+/* Starts the child process, which writes to pipe_fd[1]. Returns its id, or -1
+ * with errno set on failure. */
 static pid_t start(const struct glint_assimp *face, const int pipe_fd[2],
                    const char *path, unsigned max_triangles)
 {
@@ -112,7 +113,8 @@ static pid_t start(const struct glint_assimp *face, const int pipe_fd[2],
     return child;
 }
 
-/* Ends CHILD, if need be. Returns why it failed, or NULL. */
+/* Kills CHILD unless its result IS_WANTED, and waits for it. Returns why it
+ * failed, or NULL. */
 static const char *end(pid_t child, int is_wanted)
 {
     int status = 0;
@@ -129,7 +131,8 @@ static const char *end(pid_t child, int is_wanted)
     return WEXITSTATUS(status) ? "cannot be read" : NULL;
 }
 
-/* Removes the status letter from DATA[BYTES] and translates it. */
+/* Removes the status letter (m or x) from DATA[BYTES]. Returns GLINT_OK, or the
+ * error that the letter, the text after it or FAILURE states. */
 static enum glint_status judge(uint8_t *data, size_t *bytes, const char *path,
                                const char *failure, struct glint_error *error)
 {
@@ -154,9 +157,9 @@ static size_t length_at(const uint8_t *b)
     return b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
 }
 
-/* Returns whether a node of the glTF in TEXT[BYTES] is the child of two, which
- * the format forbids: ten such levels of ten are 10^10 nodes for Assimp, which
- * copies each. */
+/* Returns whether a node of the glTF in TEXT[BYTES] is the child of two nodes.
+ * The format forbids that, and Assimp copies shared nodes: ten levels of ten
+ * shared children would become 10^10 nodes. */
 static int has_shared_node(const char *text, size_t bytes)
 {
     static const char word[] = "\"children\"";
@@ -187,9 +190,9 @@ static int has_shared_node(const char *text, size_t bytes)
     return is_shared;
 }
 
-/* Returns what is wrong with the glTF TEXT[BYTES], the beginning of a file of
- * ALL bytes, or NULL. A binary one begins with a magic number, a version, the
- * length of all, and length and type of the part that is the text. */
+/* Returns the error of the glTF TEXT[BYTES], the beginning of a file of ALL
+ * bytes, or NULL. A binary glTF begins with a magic number, a version, the
+ * file's length, and length and type of the JSON chunk. */
 static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
 {
     if (bytes >= 4 && memcmp(text, "glTF", 4) == 0) {
@@ -207,8 +210,8 @@ static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
                : NULL;
 }
 
-/* Checks, before a library trusts it, that PATH is a file, and of a glTF what
- * would cost most. */
+/* Checks, before Assimp reads PATH, that it is a regular file and, if it is a
+ * glTF, that it is not cut off and has no shared nodes. */
 static enum glint_status check_file(const char *path, struct glint_error *error)
 {
     const char *const dot = strrchr(path, '.'), *cause = NULL;

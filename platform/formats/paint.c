@@ -61,7 +61,8 @@ static void put_chroma(const struct paint *p, int x, int y)
     }
 }
 
-/* Sets a pixel of YUYV or UYVY, whose chroma its neighbour shares. */
+/* Sets a pixel of YUYV or UYVY and the chroma that it shares with its
+ * neighbour. */
 static void put_packed(const struct paint *p, int x, int y)
 {
     const int luma = p->image->format == GLINT_YUYV ? 0 : 1;
@@ -185,7 +186,7 @@ void paint_text(const struct paint *p, int x, int y, const char *text)
         draw_glyph(p, x + 4 * i * p->line, y, glyph_of(text[i]));
 }
 
-/* Sets CODE to the codes of black that even and odd bytes of PLANE have. */
+/* Sets CODE to the values that even and odd bytes of PLANE have in black. */
 static void black_of(const struct glint_image *image, int plane,
                      uint8_t code[2])
 {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Boxes, lines and small letters, over pictures of 8 bits in any format.
+ * Draws boxes, lines and small letters onto 8-bit pictures of any format.
  *
  *     struct paint p = {.image = image, .line = 2};
  *     paint_colour(&p, 255, 255, 0);
  *     paint_text(&p, x, y, "tile 7");
  *
- * Parts outside the picture are left out.
+ * Drawing is clipped to the picture.
  */
 #ifndef GLINT_FORMATS_PAINT_H
 #define GLINT_FORMATS_PAINT_H
@@ -27,12 +27,13 @@ void paint_colour(struct paint *p, uint8_t r, uint8_t g, uint8_t b);
 /* Fills the pixels X0 .. X1 - 1 of the rows Y0 .. Y1 - 1. */
 void paint_fill(const struct paint *p, int x0, int y0, int x1, int y1);
 
-/* Draws a square of lines around (X, Y), 2 HALF pixels and a line wide. */
+/* Draws the outline of a square around (X, Y), 2 HALF pixels plus a line
+ * wide. */
 void paint_box(const struct paint *p, int x, int y, int half);
 
-/* Draws TEXT, five lines high, with its top left corner at (X, Y). Letters are
- * capitals; of signs there are % . , - + : and /, others are blank.
- * paint_text_width() returns its width in pixels. */
+/* Draws TEXT, five line widths high, with its top left corner at (X, Y).
+ * Letters become capitals; signs other than % . , - + : and / are left blank.
+ * paint_text_width() returns the width of TEXT in pixels. */
 void paint_text(const struct paint *p, int x, int y, const char *text);
 int paint_text_width(const struct paint *p, const char *text);
 

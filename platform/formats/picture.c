@@ -12,7 +12,8 @@
 #include "posix/error.h"
 #include "posix/input.h"
 
-/* Returns where the sub-blocks that begin at AT end, or the end of the data. */
+/* Returns the offset at which the GIF sub-blocks that begin at AT end, or N if
+ * the data end before. */
 static size_t skip_blocks(const uint8_t *d, size_t n, size_t at)
 {
     while (at < n && d[at] != 0)
@@ -66,7 +67,7 @@ int glint_gif_frames(const char *name)
     (SIZE_MAX / 4 < UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE \
          ? SIZE_MAX / 4                                            \
          : (size_t)(UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE + 4096))
-#define HEAD_BYTES 12 /* first bytes, which tell file types apart */
+#define HEAD_BYTES 12 /* first bytes of a file, which identify its type */
 
 /* ------------------------------------------------------------------- types */
 
@@ -74,8 +75,8 @@ enum type_alpha { ALPHA_NONE, ALPHA_STRAIGHT, ALPHA_PREMULTIPLIED };
 
 struct file_type {
     const char *extension;
-    bool is_native; /* written by glint itself */
-    bool is_grey;   /* holds no colours */
+    bool is_native; /* glint writes the type itself, without the plug-in */
+    bool is_grey;   /* The type holds grey only. */
     enum type_alpha alpha;
     bool takes_u8, takes_u16, takes_half, takes_float;
 };
@@ -106,8 +107,8 @@ static const struct file_type types[] = {
 
 /* ----------------------------------------------------------------- loading */
 
-/* A picture that was loaded, of 8 bits or of floats; the other member is
- * zeros. */
+/* A loaded picture: image if it has 8 bits, floats if it has floats; the other
+ * member is zero. */
 struct loaded {
     struct glint_image image; /* GLINT_RGB24 or GLINT_GREY */
     struct glint_float_image floats;
@@ -129,9 +130,8 @@ static const struct magic {
     {"RIFF", 4, "WebP"},
 };
 
-/* Returns the name of the file type that HEAD, the first
- * BYTES of a file, shows; reports in ERROR that a file of TYPE needs the
- * plug-in, with the reason that ERROR gives for its absence. */
+/* Returns the name of the file type by HEAD, the first BYTES of a file, for
+ * messages. */
 static const char *type_name(const uint8_t *head, size_t bytes)
 {
     for (size_t i = 0; i < sizeof magics / sizeof *magics; i++)
@@ -177,10 +177,10 @@ static enum glint_status load_by_plugin(struct loaded *loaded, const char *path,
     return GLINT_OK;
 }
 
-/* Reads of IN a PNM or PFM whole, of other files the first
- * 12 bytes, into *DATA, which the caller frees also on failure. NAME is for
- * errors. GLINT_E_FORMAT: it is empty. GLINT_E_UNSUPPORTED: a video, or too
- * large. GLINT_E_IO, GLINT_E_MEMORY. */
+/* Reads all of IN if it is a PNM or PFM, else its first 12 bytes, into *DATA,
+ * which the caller frees also on failure. NAME is for errors. Returns
+ * GLINT_E_FORMAT if IN is empty, GLINT_E_UNSUPPORTED if it is a video or too
+ * large, GLINT_E_IO or GLINT_E_MEMORY. */
 static enum glint_status read_file(struct glint_input *in, const char *name,
                                    uint8_t **data, size_t *bytes,
                                    struct glint_error *error)
@@ -250,8 +250,8 @@ static enum glint_status load(struct loaded *loaded, const char *path,
     return status;
 }
 
-/* Encodes LINEAR light, 1 = white, to a code by the curve of IEC 61966-2-1.
- * Not-a-number becomes 0. */
+/* Encodes LINEAR light, 1 = white, to an sRGB code [IEC 61966-2-1]. NaN becomes
+ * 0. */
 static uint8_t encode_srgb(float linear)
 {
     if (!(linear > 0))
@@ -277,7 +277,7 @@ static enum glint_status report_memory(struct glint_error *error,
                               "no memory for a %d x %d picture", width, height);
 }
 
-/* Makes an RGB24 image of FROM, which is grey or floats. */
+/* Makes an RGB24 image of FROM, a grey or float picture. */
 static enum glint_status to_rgb24(struct glint_image *image,
                                   const struct loaded *from, const char *path,
                                   struct glint_error *error)
@@ -301,7 +301,7 @@ static enum glint_status to_rgb24(struct glint_image *image,
     return GLINT_OK;
 }
 
-/* Makes floats of FROM, which is RGB24 or grey. */
+/* Makes a float picture of FROM, an RGB24 or grey image. */
 static enum glint_status to_floats(struct glint_float_image *floats,
                                    const struct glint_image *from,
                                    const char *path, struct glint_error *error)
@@ -366,8 +366,7 @@ enum glint_status glint_picture_load_float(const char *path,
 
 /* ------------------------------------------------------------------ saving */
 
-/* Returns the type that PATH's extension stands for, or NULL if it is
- * unknown. */
+/* Returns the file type of PATH's extension, or NULL if it is unknown. */
 static const struct file_type *type_of(const char *path)
 {
     const char *const slash = strrchr(path, '/');
@@ -379,8 +378,8 @@ static const struct file_type *type_of(const char *path)
     return NULL;
 }
 
-/* Returns the type that PATH's extension names, or NULL if it is unknown. The
- * pipe "-" has the type that glint itself writes for KIND. */
+/* Returns the file type of PATH's extension, or NULL if it is unknown. For "-",
+ * a pipe, returns PPM or PFM by KIND. */
 static const struct file_type *find_type(const char *path,
                                          enum glint_picture_kind kind)
 {
@@ -443,7 +442,7 @@ static enum glint_status write_by_plugin(struct glint_output *out,
     return status;
 }
 
-/* Saves PIXELS, whose rows are STRIDE_BYTES apart, of floats without gaps. */
+/* Saves PIXELS; rows are STRIDE_BYTES apart, float rows have no gaps. */
 static enum glint_status save(const char *path,
                               const struct glint_oiio_pixels *pixels,
                               ptrdiff_t stride_bytes, struct glint_error *error)
@@ -494,8 +493,8 @@ glint_picture_save_float(const char *path,
                 3 * (ptrdiff_t)sizeof *floats->rgb * floats->width, error);
 }
 
-/* Sets S up for WIDTH x HEIGHT pixels of CHANNELS samples, 1 .. 4, one after
- * the other; of 2 or 4 the last is alpha. Leaves its memory NULL. */
+/* Sets S up for WIDTH x HEIGHT pixels of CHANNELS interleaved samples, 1 .. 4;
+ * the last of 2 or 4 is alpha. Leaves s->mem NULL. */
 static void lay_out(struct glint_samples *s, int width, int height,
                     enum glint_sample sample, int channels)
 {
@@ -544,8 +543,8 @@ static void swap_shorts(uint8_t *to, const uint8_t *from, size_t bytes)
     }
 }
 
-/* Copies the rows of S, which are floats, in reversed order, between
- * little-endian (LITTLE) or big-endian order and this machine's. */
+/* Copies the float rows of S, last row first, and converts bytes between
+ * little-endian (LITTLE) or big-endian order and this machine's order. */
 static void swap_rows(uint8_t *to, const uint8_t *from,
                       const struct glint_samples *s, bool little)
 {
@@ -595,7 +594,7 @@ static enum glint_status open_native(struct glint_kept *k,
 }
 
 /* Copies the samples of K back into its PNM or PFM file, in the file's order.
- * Where K has no copy of its own they are there already. */
+ * If k->own is NULL, samples lie in the file already. */
 static void refill_native(struct glint_kept *k)
 {
     uint8_t *const at = k->native + k->header_bytes;
@@ -617,8 +616,8 @@ static void add_note(char notes[GLINT_KEPT_NOTES], const char *text)
              text);
 }
 
-/* Sets C by CICP, the numbers of primaries and transfer in ITU-T H.273. Returns
- * false if it does not know the transfer. */
+/* Sets C by CICP, the codes of primaries and transfer in ITU-T H.273. Returns
+ * false if the transfer is unknown. */
 static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
 {
     static const double p3[4][2] = {
@@ -642,8 +641,8 @@ static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
     return cicp[0] != 12 || glint_colours_primaries(c, p3);
 }
 
-/* Sets C by NAME, OpenImageIO's name of a colour space. Returns false if it
- * does not know NAME. */
+/* Sets C by NAME, OpenImageIO's name of a colour space. Returns false if NAME
+ * is unknown. */
 static bool set_by_name(struct glint_colours *c, const char *name)
 {
     static const double adobe[4][2] = {
@@ -668,8 +667,8 @@ static bool set_by_name(struct glint_colours *c, const char *name)
     return true;
 }
 
-/* Sets the colours of K's samples as FACTS say. Colours that glint does not
- * know are taken as linear or sRGB, and K's note says so. */
+/* Sets the colours of K's samples by FACTS. A colour space that glint does not
+ * know is treated as linear or sRGB, and k->note reports it. */
 static void set_colours(struct glint_kept *k,
                         const struct glint_oiio_facts *facts)
 {
@@ -857,8 +856,7 @@ static void say_losses(struct glint_kept_options *options,
         add_note(options->said, "8 bits are left");
 }
 
-/* Returns the kind of sample, among those that TYPE takes, closest to
- * SAMPLE. */
+/* Returns the type of sample nearest to SAMPLE that files of TYPE hold. */
 static enum glint_sample sample_for(const struct file_type *type,
                                     enum glint_sample sample)
 {
@@ -877,8 +875,8 @@ static enum glint_sample sample_for(const struct file_type *type,
     return type->takes_u8 ? GLINT_SAMPLE_U8 : GLINT_SAMPLE_FLOAT;
 }
 
-/* Converts FROM to samples that TYPE takes, in TO, whose memory the caller
- * frees. */
+/* Converts FROM to samples that files of TYPE hold, in TO; the caller frees
+ * to->mem. */
 static enum glint_status convert(struct glint_samples *to,
                                  const struct glint_samples *from,
                                  const struct file_type *type)
@@ -958,8 +956,8 @@ static enum glint_status write_kept(struct glint_kept *k,
     return status;
 }
 
-/* Writes FROM to OUT, converted to the type that OUT's name stands for, and
- * notes in OPTIONS what that loses. K has the metadata. */
+/* Writes FROM to OUT, converted to the file type of OUT's name, with the
+ * metadata of K. Lists in options->said what the conversion loses. */
 static enum glint_status save_converted(struct glint_kept *k,
                                         struct glint_output *out,
                                         const struct glint_samples *from,

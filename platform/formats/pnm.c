@@ -8,7 +8,8 @@
 
 #include "posix/error.h"
 
-#define TOKEN_CHARS 32  /* bytes of a word of the header, with its 0 */
+/* max bytes of a word of the header, with the final 0 */
+#define TOKEN_CHARS 32
 #define CHUNK       256 /* floats encoded at a time */
 
 static bool is_space(int c)
@@ -24,9 +25,9 @@ bool glint_pfm_matches(const void *data, size_t bytes)
            is_space(d[2]);
 }
 
-/* Copies the next word of DATA[BYTES] from *AT on to TOKEN, and moves *AT past
- * the one white space that ends it. Returns false if there is no such word, or
- * it is longer than TOKEN. */
+/* Copies the first word of DATA[BYTES] from *AT on to TOKEN, and moves *AT past
+ * the single white space that ends the word. Returns false if there is no such
+ * word, or it is longer than TOKEN. */
 static bool take_token(char token[TOKEN_CHARS], const uint8_t *data,
                        size_t bytes, size_t *at)
 {
@@ -43,8 +44,8 @@ static bool take_token(char token[TOKEN_CHARS], const uint8_t *data,
     return len > 0 && *at < bytes && is_space(data[(*at)++]);
 }
 
-/* Returns TOKEN as a number, at most 99999, or 0 if it has other characters
- * than digits. */
+/* Returns TOKEN as a number, at most 99999, or 0 if any character is not a
+ * digit. */
 static int side_of(const char *token)
 {
     int value = 0;
@@ -73,7 +74,7 @@ static bool read_pfm_header(struct glint_pnm_header *h, const uint8_t *data,
            (scale < 0 || scale > 0);
 }
 
-#define MAX_NUMBER 99999 /* Larger numbers are read as this one. */
+#define MAX_NUMBER 99999 /* Larger numbers are read as MAX_NUMBER. */
 
 struct cursor {
     const uint8_t *at, *end;
@@ -96,7 +97,7 @@ static void skip_space(struct cursor *c)
 }
 
 /* Skips white space and comments and returns the number that follows, at most
- * MAX_NUMBER, or -1 if none does. */
+ * MAX_NUMBER, or -1 if no number follows. */
 static int take_number(struct cursor *c)
 {
     int value = -1;
@@ -110,8 +111,8 @@ static int take_number(struct cursor *c)
     return value;
 }
 
-/* Skips the one white space that ends the header, and a comment before it.
- * Returns false if there is none. */
+/* Skips the single white space that ends the header, and a comment before it.
+ * Returns false if there is no white space. */
 static bool take_header_end(struct cursor *c)
 {
     if (c->at < c->end && *c->at == '#')
@@ -178,7 +179,7 @@ enum glint_status glint_pnm_header_read(struct glint_pnm_header *header,
     return GLINT_OK;
 }
 
-/* Scales N samples of SRC, 0 .. MAXIMUM, to 8 bits. They have 2 bytes if
+/* Scales N samples of SRC, 0 .. MAXIMUM, to 8 bits. A sample has 2 bytes if
  * MAXIMUM is above 255, else 1. */
 static void scale_samples(uint8_t *dst, const uint8_t *src, size_t n,
                           int maximum)

@@ -40,11 +40,11 @@ uint16_t glint_half_encode(float value)
     sign = bits >> 16 & 0x8000;
     size = bits & 0x7fffffff;
     exponent = (int)(size >> 23) - 127;
-    if (size > 0x7f800000) /* not-a-number stays one */
+    if (size > 0x7f800000) /* NaN stays NaN */
         return (uint16_t)(sign | 0x7e00 | (size >> 13 & 0x1ff));
     if (exponent > 15)
         return (uint16_t)(sign | 0x7c00);
-    /* Rounding may carry into the exponent, as far as infinity. */
+    /* Rounding may carry into the exponent, up to infinity. */
     if (exponent >= -14)
         return (uint16_t)(sign | (drop(size, 13) - (UINT32_C(112) << 10)));
     if (exponent < -25)
@@ -81,8 +81,8 @@ int glint_samples_height(const struct glint_samples *samples)
     return is_turned(samples) ? samples->window_width : samples->window_height;
 }
 
-/* Returns the pixel that is seen at X, Y, or NULL if the file has none
- * there. */
+/* Returns the pixel that is seen at X, Y of the upright display window, or NULL
+ * if the file has no pixel there. */
 static uint8_t *find(const struct glint_samples *s, int x, int y)
 {
     const int right = s->window_width - 1, bottom = s->window_height - 1;
@@ -199,7 +199,8 @@ static uint32_t most_of(enum glint_sample sample)
                                         : UINT32_MAX;
 }
 
-/* Returns a sample of PIXEL over MAXIMUM, or a float as it is. */
+/* Returns sample C of PIXEL, an integer divided by MAXIMUM, a float
+ * unchanged. */
 static double take(const struct glint_sample_place *c, uint32_t maximum,
                    const uint8_t *pixel)
 {
@@ -231,7 +232,7 @@ static double alpha_of(const struct glint_samples *s, const uint8_t *pixel)
 /* ------------------------------------------------------------ linear light */
 
 /* Decodes samples to linear light: entries[c] has the light of each code of
- * colour c, or is NULL where samples are floats, MAXIMUM is above 65535 or
+ * colour c. It is NULL if samples are floats, their maximum is above 65535 or
  * memory is short; then the curve is evaluated for each sample. */
 struct decoder {
     const struct glint_samples *samples;
@@ -278,15 +279,15 @@ static void turn(const double m[3][3], const double from[3], double to[3])
         to[i] = m[i][0] * from[0] + m[i][1] * from[1] + m[i][2] * from[2];
 }
 
-/* Returns VALUE, but 65504, the largest half, for infinity, and 0 for minus
- * infinity and not-a-number. */
+/* Returns VALUE; 65504, the largest half, if it is infinity; 0 if it is minus
+ * infinity or NaN. */
 static double finite(double value)
 {
     return isnan(value) ? 0 : isinf(value) ? (value > 0 ? 65504 : 0) : value;
 }
 
-/* Sets RGB to the linear light of PIXEL, BT.709 primaries: of its colours alone
- * if STRAIGHT, else as it is seen over black. */
+/* Sets RGB to the linear light of PIXEL, BT.709 primaries: without alpha if
+ * STRAIGHT, else multiplied by alpha. */
 static void light_of(const struct decoder *d, const uint8_t *pixel,
                      bool straight, double rgb[3])
 {
@@ -320,8 +321,8 @@ void glint_samples_light(const struct glint_samples *samples, int x, int y,
 
 #define BINS 256 /* bins of light, eight an octave, from 2^-8 to 2^24 */
 
-/* Returns the least light, to an eighth of an octave and at least 1, that no
- * more than a hundredth of the pixels exceed; 1 if samples are not floats. */
+/* Returns the 99th percentile of the pixels' largest channel, rounded up to an
+ * eighth of an octave, at least 1; 1 if samples are not floats. */
 static double white_of(const struct decoder *d)
 {
     const struct glint_samples *const s = d->samples;
@@ -471,7 +472,7 @@ void glint_samples_add(struct glint_samples *samples, const float *layer)
     decoder_close(&d);
 }
 
-/* Sets PIXEL to RGB over SHARE. */
+/* Sets the colours of PIXEL to RGB / SHARE. */
 static void put_pixel(const struct glint_samples *s, uint8_t *pixel,
                       const double rgb[3], double share)
 {

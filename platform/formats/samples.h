@@ -36,15 +36,16 @@ struct glint_sample_place {
 
 struct glint_samples {
     int width, height; /* size of the file's pixels */
-    int x, y;          /* place of the first pixel in the window */
-    /* size of the display window, not turned */
+    int x, y;          /* position of the first pixel in the display window */
+    /* size of the display window, before orientation is applied */
     int window_width, window_height;
-    int orientation;    /* 1 .. 8, as of EXIF */
-    size_t pixel_bytes; /* bytes of all channels of a pixel */
+    int orientation;    /* EXIF orientation, 1 .. 8 */
+    size_t pixel_bytes; /* bytes of a pixel, all channels */
     int n_colours;      /* 3, or 1: grey */
-    /* is_premultiplied has no effect without alpha. */
+    /* is_premultiplied has no effect unless has_alpha is set */
     bool has_alpha, is_premultiplied;
-    struct glint_sample_place colour[3], alpha; /* grey: all colours alike */
+    struct glint_sample_place colour[3], alpha; /* of grey all three are the
+                                                   same */
     uint32_t maximum; /* code of white, unless floats */
     struct glint_colours colours;
     uint8_t *mem; /* [height][width] pixels, in the machine's byte order */
@@ -53,7 +54,7 @@ struct glint_samples {
 /* Decodes HALF without rounding. */
 float glint_half_decode(uint16_t half);
 
-/* Encodes VALUE to the nearest half, ties to even; from 65520 on to
+/* Encodes VALUE as the nearest half, ties to even; 65520 and more become
  * infinity. */
 uint16_t glint_half_encode(float value);
 
@@ -67,38 +68,39 @@ int glint_samples_width(const struct glint_samples *samples);
 
 int glint_samples_height(const struct glint_samples *samples);
 
-/* Checks whether the pixels are those of a GLINT_RGB24: opaque sRGB of 8 bits,
- * upright, with no more than three channels. If so, points IMAGE to them. */
+/* Returns whether the pixels have the layout of GLINT_RGB24: opaque 8-bit sRGB,
+ * upright, with three channels. If so, points IMAGE to them. */
 bool glint_samples_image(const struct glint_samples *samples,
                          struct glint_image *image);
 
 /* Sets RGB to the linear light of the upright pixel X, Y, BT.709 primaries,
- * weighted by alpha; black where the file has no pixel. Not-a-number counts as
- * black, infinity as 65504. */
+ * multiplied by alpha; to black if the file has no pixel there. NaN becomes
+ * black, infinity 65504. */
 void glint_samples_light(const struct glint_samples *samples, int x, int y,
                          float rgb[3]);
 
-/* Makes PROXY, the picture as it is seen, GLINT_RGB24 in sRGB; the caller frees
- * plane[0]. Sets WHITE to the light of code 255: 1, or for floats the light
- * that a hundredth of the picture exceeds if that is more. GLINT_E_MEMORY. */
+/* Makes PROXY, an upright sRGB copy of the picture, GLINT_RGB24; the caller
+ * frees plane[0]. Sets WHITE to the light of code 255: 1, or for floats the
+ * light that 1 % of the pixels exceed, at least 1. Returns GLINT_E_MEMORY on
+ * failure. */
 enum glint_status glint_samples_proxy(const struct glint_samples *samples,
                                       struct glint_image *proxy, double *white);
 
 /* Adds LAYER, upright R G B, linear light with BT.709 primaries, to the
- * colours. Straight colours get it unweighted, so that alpha weights it when it
- * is seen. Codes are clipped at the maximum. */
+ * colours. Straight colours get the light undivided by alpha, so compositing
+ * multiplies it by alpha. Integer codes are clipped at the maximum. */
 void glint_samples_add(struct glint_samples *samples, const float *layer);
 
-/* Sets the upright pixel X, Y to its appearance over black, RGB, linear light
- * of BT.709 primaries, once the fraction COVER, 0 .. 1, of what is behind it is
- * hidden: alpha becomes 1 - (1 - alpha)(1 - COVER), and straight colours RGB
- * over that. Nothing where the file has no pixel. */
+/* Sets the upright pixel X, Y to RGB, its linear light over black, BT.709
+ * primaries, after an object covers the fraction COVER, 0 .. 1, of it: alpha
+ * becomes 1 - (1 - alpha)(1 - COVER), and straight colours become RGB divided
+ * by the new alpha. Does nothing if the file has no pixel there. */
 void glint_samples_set(struct glint_samples *samples, int x, int y,
                        const double rgb[3], double cover);
 
-/* Sets the pixels of TO to those of FROM, upright and converted. The caller has
- * set size, channels, samples, colours, alpha and memory of TO. Without alpha
- * TO gets what is seen over black. */
+/* Copies the pixels of FROM to TO, upright and converted. The caller must have
+ * set size, channels, samples, colours, alpha and memory of TO. If TO has no
+ * alpha, FROM is composited over black. */
 void glint_samples_convert(struct glint_samples *to,
                            const struct glint_samples *from);
 

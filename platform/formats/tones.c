@@ -30,7 +30,7 @@ void glint_tone_curve_set(struct glint_tone_curve *transfer,
 static double look_up(const struct glint_tone_curve *t, double code)
 {
     const double at = code * (t->n_entries - 1);
-    /* Not-a-number, too, is looked up at the end. */
+    /* NaN, too, uses the last interval. */
     const int i = code < 1 ? (int)at : t->n_entries - 2;
 
     return (t->entry[i] + (at - i) * (t->entry[i + 1] - t->entry[i])) / 65535;
@@ -52,7 +52,8 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
            t->e;
 }
 
-/* Returns the code, 0 .. 1, that the rising table of T decodes to LIGHT. */
+/* Returns the code, 0 .. 1, that T's table decodes to LIGHT; the table must
+ * rise. */
 static double find(const struct glint_tone_curve *t, double light)
 {
     const double level = light * 65535;
@@ -121,8 +122,8 @@ static void multiply(double to[3][3], const double a[3][3],
 }
 
 /* Sets M to the matrix from R, G, B to X, Y, Z for the chromaticities XY of
- * red, green, blue and white, whose luminance is 1. Returns false if there is
- * none. */
+ * red, green, blue and white; white has luminance 1. Returns false if there is
+ * no such matrix. */
 static bool to_xyz(double m[3][3], const double xy[4][2])
 {
     double columns[3][3], back[3][3], white[3];
@@ -150,8 +151,8 @@ static bool to_xyz(double m[3][3], const double xy[4][2])
     return true;
 }
 
-/* Sets the matrices of COLOURS by the matrices FILE and BT709 to X, Y, Z, which
- * have the same white point. Returns false if one of the two has no inverse. */
+/* Sets the matrices of COLOURS from FILE and BT709, the matrices from R, G, B
+ * to X, Y, Z under one white point. Returns false if either has no inverse. */
 static bool set_matrices(struct glint_colours *colours, const double file[3][3],
                          const double bt709[3][3])
 {
@@ -182,7 +183,7 @@ bool glint_colours_primaries(struct glint_colours *colours,
         {0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3127, 0.329}};
     double file[3][3], bt709[3][3], own[4][2];
 
-    /* White stays white: BT.709 takes the white point of the file. */
+    /* White stays white: the file's white point replaces D65. */
     memcpy(own, bt709_xy, sizeof own);
     memcpy(own[3], xy[3], sizeof own[3]);
     return to_xyz(file, xy) && to_xyz(bt709, (const double(*)[2])own) &&
@@ -220,8 +221,8 @@ static double s15f16(const uint8_t *at)
     return (int32_t)u32(at) / 65536.0;
 }
 
-/* Returns the data of tag NAME, and their length in *BYTES, at least LEAST; or
- * NULL if P has no such tag. */
+/* Returns the data of tag NAME and sets *BYTES to their length; NULL if P has
+ * no such tag or it is shorter than LEAST. */
 static const uint8_t *find_tag(const struct profile *p, const char *name,
                                size_t least, size_t *bytes)
 {
@@ -304,7 +305,7 @@ static bool take_curve(struct glint_tone_curve *t, const struct profile *p,
     return n <= 1 ? t->gamma > 0.1 : take_table(t, at + 12, n);
 }
 
-/* Checks whether T is within a quarter of an 8-bit code of the sRGB curve. */
+/* Returns whether T is within a quarter of an 8-bit code of the sRGB curve. */
 static bool is_srgb(const struct glint_tone_curve *t)
 {
     struct glint_tone_curve srgb;
@@ -321,7 +322,7 @@ static bool is_srgb(const struct glint_tone_curve *t)
 
 static bool take_matrix(struct glint_colours *colours, const struct profile *p)
 {
-    /* The primaries of BT.709 in X, Y, Z under D50, as profiles have them. */
+    /* BT.709 primaries in X, Y, Z under D50, the white point of ICC profiles */
     static const double bt709[3][3] = {{0.43607, 0.38515, 0.14307},
                                        {0.22249, 0.71687, 0.06061},
                                        {0.01392, 0.09708, 0.71410}};

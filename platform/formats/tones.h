@@ -27,16 +27,16 @@ enum glint_tone_kind {
 
 #define GLINT_TONE_ENTRIES 1024
 
-/* light = (a code + b)^gamma + e from code = d on, c code + f below d. With a
- * table: straight lines between its entries, which lie at even distances of
- * code; 65535 is light 1. */
+/* light = (a code + b)^gamma + e from code = d on, c code + f below d. A table
+ * replaces the formula: it is interpolated linearly between entries at equal
+ * steps of code; an entry of 65535 is light 1. */
 struct glint_tone_curve {
     double gamma, a, b, c, d, e, f;
     int n_entries; /* 0: no table */
     uint16_t entry[GLINT_TONE_ENTRIES];
 };
 
-/* States what the codes of a file's three colours mean. */
+/* Transfer curves and primaries of a file's three colours. */
 struct glint_colours {
     struct glint_tone_curve transfer[3];
     double to_bt709[3][3]; /* from light of the file's primaries to BT.709's */
@@ -46,8 +46,8 @@ struct glint_colours {
     char name[48];
 };
 
-/* Sets TRANSFER to the curve KIND; GAMMA is for GLINT_TONE_IS_GAMMA alone. The
- * two functions after it convert a code to linear light and back. */
+/* Sets TRANSFER to the curve KIND; GAMMA is used only by GLINT_TONE_IS_GAMMA.
+ * The next two functions convert a code to linear light and back. */
 void glint_tone_curve_set(struct glint_tone_curve *transfer,
                           enum glint_tone_kind kind, double gamma);
 double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
@@ -60,12 +60,14 @@ void glint_colours_set(struct glint_colours *colours, enum glint_tone_kind kind,
                        double gamma, const char *name);
 
 /* Sets the primaries of COLOURS by the chromaticities x, y of red, green, blue
- * and white. Returns false and changes nothing if they have no matrix. */
+ * and white. Returns false and changes nothing if no matrix has these
+ * chromaticities. */
 bool glint_colours_primaries(struct glint_colours *colours,
                              const double xy[4][2]);
 
 /* Sets COLOURS by an ICC profile of a grey or RGB picture that consists of
- * curves and a matrix. Returns false if it is malformed or of another kind. */
+ * curves and a matrix. Returns false if the profile is malformed or of another
+ * kind. */
 bool glint_icc_read(struct glint_colours *colours, const uint8_t *profile,
                     size_t bytes);
 

@@ -21,7 +21,7 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
                               "MJPEG: glint was built without libjpeg");
 }
 
-/* Is never called: there is no decoder to call it with. */
+/* Never called: glint_mjpeg_open() makes no decoder. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
                                      struct glint_image *image,

@@ -12,8 +12,8 @@
 
 #include "posix/error.h"
 
-#define ALIGN     64 /* bytes, alignment of planes and their rows */
-#define MAX_ROWS  32 /* most rows of a plane in a row of MCUs: 4 blocks of 8 */
+#define ALIGN     64 /* alignment of planes and their rows, bytes */
+#define MAX_ROWS  32 /* max rows of a plane in a row of MCUs: 4 blocks of 8 */
 #define N_PLANES  3
 #define MARKER    0xff
 #define SOI       0xd8
@@ -36,7 +36,7 @@ struct glint_mjpeg {
     bool in_scan; /* The header has been read. */
     bool ended;   /* libjpeg requested more bytes than the frame has. */
     jmp_buf escape;
-    enum glint_status status; /* failure that a jump to escape reports */
+    enum glint_status status; /* error to return after a jump to escape */
     struct glint_error *error;
 };
 
@@ -67,7 +67,7 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
     d->name = name;
     d->max_width = max_width;
     d->max_height = max_height;
-    /* libjpeg writes whole blocks and takes pointers to whole rows of MCUs. */
+    /* libjpeg writes whole blocks and needs pointers to whole rows of MCUs. */
     d->stride_bytes = (max_width + ALIGN - 1) / ALIGN * ALIGN;
     d->plane_bytes = (size_t)d->stride_bytes * (size_t)(max_height + MAX_ROWS);
     if (posix_memalign(&mem, ALIGN, N_PLANES * d->plane_bytes)) {
@@ -89,8 +89,8 @@ void glint_mjpeg_close(struct glint_mjpeg *decoder)
 
 /* ----------------------------------------------- what libjpeg complains of */
 
-/* Leaves libjpeg with STATUS, by a jump to d->escape. d->error has been
- * filled. */
+/* Leaves libjpeg with STATUS, by a jump to d->escape. The caller must have set
+ * d->error. */
 static void leave(struct glint_mjpeg *d, enum glint_status status)
 {
     d->status = status;
@@ -121,7 +121,7 @@ static void on_error(j_common_ptr jpeg)
 }
 
 /* Leaves libjpeg at the three warnings that mean wrong samples. After other
- * warnings samples are still right; messages of LEVEL 0 and above are not
+ * warnings samples are still right; messages with LEVEL >= 0 are not
  * warnings. */
 static void on_message(j_common_ptr jpeg, int level)
 {
@@ -156,9 +156,9 @@ static void on_source(j_decompress_ptr jpeg)
     (void)jpeg;
 }
 
-/* Ends the data that libjpeg reads: in the scan by an end of image, since
- * libjpeg reads ahead and may have all samples already; in the header by
- * leaving. */
+/* Called when libjpeg has read all data. In the scan supplies an end-of-image
+ * marker, since libjpeg reads ahead and may have all samples already; in the
+ * header leaves libjpeg with an error. */
 static boolean on_end(j_decompress_ptr jpeg)
 {
     static const JOCTET end[] = {MARKER, EOI};
@@ -184,14 +184,14 @@ static void on_skip(j_decompress_ptr jpeg, long bytes)
     d->source.bytes_in_buffer -= n;
 }
 
-/* Checks whether MARKER stands alone, without a length. */
+/* Returns whether MARKER has no length and data after it. */
 static bool is_bare(int marker)
 {
     return marker == TEM || (marker >= RST_FIRST && marker <= EOI);
 }
 
-/* Returns the offset of the last start of image in the header. Cameras may send
- * several, and libjpeg accepts one. */
+/* Returns the offset of the last start-of-image marker in the header. Cameras
+ * may send several, and libjpeg accepts only one. */
 static size_t find_start(const uint8_t *data, size_t bytes)
 {
     size_t start = 0, at = 0;
@@ -235,8 +235,9 @@ static void refuse(struct glint_mjpeg *d, const char *cause)
                                 "MJPEG: %s", cause));
 }
 
-/* Returns the pixel format of the frame's subsampling, and refuses frames of
- * any other. Only the ratios of Y's factors to those of Cb and Cr count. */
+/* Returns the pixel format of the frame's subsampling, and refuses other
+ * subsamplings. Only the ratios of Y's sampling factors to Cb's and Cr's
+ * matter. */
 static enum glint_pixel_format format_of(struct glint_mjpeg *d)
 {
     const jpeg_component_info *const c = d->jpeg.comp_info;
@@ -261,7 +262,7 @@ static enum glint_pixel_format format_of(struct glint_mjpeg *d)
     return GLINT_GREY;
 }
 
-/* Refuses frames of a size or kind that would take too much memory or time, or
+/* Refuses frames that are too large, would cost too much memory or time, or
  * that glint cannot draw on. */
 static void check_header(struct glint_mjpeg *d)
 {
@@ -308,7 +309,7 @@ static void start(struct glint_mjpeg *d, struct glint_image *image)
 }
 
 /* Decodes to the planes of IMAGE, one row of MCUs at a time. The last rows may
- * reach below the picture, where planes have MAX_ROWS to spare. */
+ * reach below the picture; planes have MAX_ROWS spare rows there. */
 static void read_planes(struct glint_mjpeg *d, const struct glint_image *image)
 {
     struct jpeg_decompress_struct *const j = &d->jpeg;
@@ -328,8 +329,8 @@ static void read_planes(struct glint_mjpeg *d, const struct glint_image *image)
     }
 }
 
-/* Makes a libjpeg object for each frame: a used one would lend the last frame's
- * tables to the next. */
+/* Makes a libjpeg object per frame: a reused object would apply the last
+ * frame's tables to the next frame. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
                                      struct glint_image *image,

@@ -8,18 +8,18 @@
  *         n_corrupt++;                    ... and on to the next frame
  *     glint_mjpeg_close(decoder);
  *
- * A frame is one baseline JPEG in one scan, as cameras send it. Its samples
- * are taken as they were coded: no conversion to RGB and no enlarging of
- * chroma. They are exact to the bit on every machine (integer transform).
+ * A frame is one baseline JPEG in one scan, as cameras send it. Its samples are
+ * returned as coded, without conversion to RGB and without upsampling of
+ * chroma. They are the same bits on every machine (integer transform).
  *
- * Faults of cameras that are put up with: no Huffman tables (the standard ones
- * are meant), an AVI1 header, two starts of image, bytes where none belong
- * between markers, no end of image, anything after it. Nothing of a frame is
- * remembered for the next: pixels depend on the bytes of their frame alone.
+ * Faults of cameras that are tolerated: no Huffman tables (the standard tables
+ * are used), an AVI1 header, two start-of-image markers, stray bytes between
+ * markers, no end-of-image marker, bytes after it. No state passes from frame
+ * to frame: pixels depend only on the bytes of their frame.
  *
- * libjpeg decodes, and takes and returns some 30 KiB of heap for each frame,
- * in blocks so small that they need no system call once the heap is warm.
- * Built without libjpeg, open fails with GLINT_E_UNSUPPORTED.
+ * libjpeg decodes. It allocates and frees some 30 KiB of heap per frame, in
+ * blocks so small that they need no system call after the first frames. In
+ * builds without libjpeg, open returns GLINT_E_UNSUPPORTED.
  */
 #ifndef GLINT_PLATFORM_JPEG_MJPEG_H
 #define GLINT_PLATFORM_JPEG_MJPEG_H
@@ -37,23 +37,22 @@ struct glint_mjpeg; /* opaque */
 bool glint_mjpeg_available(void);
 
 /* Makes a decoder for frames up to MAX_WIDTH x MAX_HEIGHT, 1 ..
- * GLINT_PANEL_SIDE, with room for any subsampling. NAME is for errors and must
- * outlive DECODER.
- * GLINT_E_UNSUPPORTED: built without libjpeg. GLINT_E_MEMORY. */
+ * GLINT_PANEL_SIDE, of any subsampling. NAME is for errors and must outlive
+ * DECODER. Returns GLINT_E_UNSUPPORTED if glint is built without libjpeg, or
+ * GLINT_E_MEMORY. */
 enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
                                    const char *name, int max_width,
                                    int max_height, struct glint_error *error);
 
 /* Decodes DATA[BYTES] and points IMAGE at the result: GLINT_GREY, _I420, _I422
- * or _I444, full range, BT.601, sRGB curve. Its size is the frame's own and may
- * differ from the last one's. Its samples belong to DECODER and may be changed;
- * the next call overwrites them.
- * GLINT_E_FORMAT: the frame is empty, garbage, damaged where that can be seen,
- * or ends before its last sample; drop it and continue.
- * GLINT_E_UNSUPPORTED: it is larger than the maximum, progressive, RGB or CMYK,
- * of another subsampling, or has more than 8 bits. The next frame will be, too,
- * unless this one is damaged.
- * GLINT_E_MEMORY: libjpeg got no memory; the next frame may work. */
+ * or _I444, full range, BT.601, sRGB curve. The size may differ from frame to
+ * frame. The samples belong to DECODER and may be changed; the next call
+ * overwrites them. Returns GLINT_E_FORMAT if the frame is empty, visibly
+ * damaged, or ends before its last sample: drop it and continue. Returns
+ * GLINT_E_UNSUPPORTED if it is larger than the maximum, progressive, RGB or
+ * CMYK, of another subsampling, or has more than 8 bits: the next frame
+ * probably is, too. Returns GLINT_E_MEMORY if libjpeg got no memory; the next
+ * frame may work. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
                                      struct glint_image *image,

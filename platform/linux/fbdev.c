@@ -16,14 +16,15 @@
 #include "posix/at_death.h"
 #include "posix/error.h"
 
-/* put_back() reads these when the process dies, so that all are atomic. */
+/* put_back() reads these variables when the process dies, so they are
+ * atomic. */
 static int held_fd = -1;
-static int held_mode; /* mode of the console before */
-/* process that took the console; its children leave it alone */
+static int held_mode; /* mode of the console before glint set graphics mode */
+/* process that set graphics mode; its children must not restore it */
 static pid_t holder;
 
-/* Puts the console back into its mode. Async-signal-safe, as ioctl() is only a
- * system call in Linux. */
+/* Restores the console's mode. Async-signal-safe, as ioctl() is a plain system
+ * call in Linux. */
 static void put_back(void)
 {
     const int saved = errno;
@@ -34,16 +35,16 @@ static void put_back(void)
     errno = saved;
 }
 
-/* Adds the return of the console's mode to the functions of
- * posix/at_death.h, as take_console() does. They run from the newest
- * to the oldest: a function that must run before the console returns is
- * added after this call. */
+/* Registers put_back() with glint_at_death(); a second call does nothing.
+ * Registered functions run from the latest to the earliest, so a function that
+ * must run before the console is restored must be registered after this
+ * call. */
 static void watch_console(void)
 {
     glint_at_death(put_back);
 }
 
-/* Opens PATH as *FD. Returns the mode to put it back into later, or -1 with
+/* Opens the console PATH as *FD. Returns the mode to restore later, or -1 with
  * errno set. */
 static int open_console(const char *path, int *fd)
 {
@@ -60,8 +61,9 @@ static int open_console(const char *path, int *fd)
         errno = saved;
         return -1;
     }
-    /* A program that draws has the kernel ask it before it switches. Graphics
-     * mode without that (VT_AUTO) was left by a program that was killed. */
+    /* A program that draws on the console has set VT_PROCESS, so that the
+     * kernel asks it before it switches consoles. Graphics mode with VT_AUTO
+     * was left behind by a program that was killed. */
     if (mode == KD_GRAPHICS && ioctl(*fd, VT_GETMODE, &switching) == 0 &&
         switching.mode == VT_AUTO)
         mode = KD_TEXT;
@@ -78,9 +80,9 @@ static bool refuse_console(int *fd, struct glint_error *note, const char *cause)
     return false;
 }
 
-/* Sets the console to graphics mode; one console at a time in a process.
- * Returns false, with the reason in NOTE, if there is none, permission is
- * missing or another program draws on it. */
+/* Sets the console to graphics mode; a process may do so with one console at a
+ * time. Returns false, with the reason in NOTE, if there is no console,
+ * permission is missing or another program draws on it. */
 static bool take_console(int *fd, struct glint_error *note)
 {
     int mode = open_console("/dev/tty", fd);
@@ -106,7 +108,8 @@ static bool take_console(int *fd, struct glint_error *note)
     return true;
 }
 
-/* Puts the console back into its mode, if it was taken. */
+/* Restores the console's mode and closes *FD, if take_console() had
+ * succeeded. */
 static void release_console(int *fd)
 {
     if (*fd < 0)
@@ -121,7 +124,7 @@ static void release_console(int *fd)
 #define FBIO_WAITFORVSYNC _IOW('F', 0x20, uint32_t)
 #endif
 
-/* Reports that the request WHAT failed, by errno. */
+/* Reports that the ioctl request WHAT failed, with the cause in errno. */
 static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
                               struct glint_error *error)
 {
@@ -135,9 +138,9 @@ static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
 /* -------------------------------------------------------------- when dying */
 
 /* The console continues drawing at the offset that the panel had before glint
- * panned it, so the panel is panned back when glint ends. That happens before
- * the console returns: it takes over the offset that it finds, and with another
- * one Linux 6.1 draws in a wrong place. */
+ * panned it, so the panel is panned back when glint ends. That must happen
+ * before the console's mode is restored: the console then adopts the current
+ * offset, and with another offset Linux 6.1 draws in a wrong position. */
 static int panned_fd = -1; /* framebuffer to pan back, or -1; atomic */
 static struct fb_var_screeninfo panned_home;
 static pid_t panner; /* process that panned it; atomic */
@@ -177,8 +180,8 @@ static struct glint_pixel_field field_of(const struct fb_bitfield *bits)
     return (struct glint_pixel_field){(int)bits->offset, (int)bits->length};
 }
 
-/* Returns the layout of V's pixels: RGB565 or XRGB8888 if the driver states no
- * bits. */
+/* Returns the layout of V's pixels; if the driver states no bit fields, RGB565
+ * or XRGB8888. */
 static struct glint_pixel_layout layout_of(const struct fb_var_screeninfo *v)
 {
     const int bytes =
@@ -205,8 +208,8 @@ static bool is_true_colour(const struct fb_fix_screeninfo *fix,
             fix->visual == FB_VISUAL_DIRECTCOLOR);
 }
 
-/* Sets size, layout and memory of FB as the driver says, or reports why glint
- * cannot draw on that. */
+/* Sets size, layout and memory size of FB from the driver's data, or reports
+ * why glint cannot draw on such a framebuffer. */
 static enum glint_status adopt(struct glint_fbdev *fb,
                                const struct fb_fix_screeninfo *fix,
                                struct glint_error *error)
@@ -278,8 +281,8 @@ static bool pan(struct glint_fbdev *fb, int page)
     return glint_ioctl(fb->fd, FBIOPAN_DISPLAY, &to) == 0;
 }
 
-/* Checks whether the panel can pan between two screens of memory. Clears both
- * first, so that old contents of the second are not seen. */
+/* Returns whether the panel can pan between two screens of memory. Clears both
+ * first, so that old contents of the second screen are not seen. */
 static bool try_pages(struct glint_fbdev *fb,
                       const struct fb_fix_screeninfo *fix)
 {
@@ -294,7 +297,8 @@ static bool try_pages(struct glint_fbdev *fb,
     return pan(fb, 1) && pan(fb, 0);
 }
 
-/* Sets FB up for the mode in fb->var: layout, mapping, number of screens. */
+/* Sets up layout, mapping and number of screens of FB for the mode in
+ * fb->var. */
 static enum glint_status enter_mode(struct glint_fbdev *fb,
                                     struct glint_error *error)
 {
@@ -385,7 +389,7 @@ static void draw(struct glint_fbdev *fb, const struct glint_image *image,
     glint_panel_draw(&fb->panel, image, mem, stride);
 }
 
-/* Draws IMAGE to the screen that is shown, where memory has only one. */
+/* Draws IMAGE to the screen that is shown, as memory holds only one screen. */
 static enum glint_status draw_seen(struct glint_fbdev *fb,
                                    const struct glint_image *image,
                                    struct glint_error *error)
@@ -406,7 +410,7 @@ static enum glint_status draw_seen(struct glint_fbdev *fb,
     return GLINT_OK;
 }
 
-/* Draws IMAGE to the one of two screens that is not shown, then shows it. */
+/* Draws IMAGE to the hidden one of two screens, then shows that screen. */
 static enum glint_status draw_unseen(struct glint_fbdev *fb,
                                      const struct glint_image *image,
                                      struct glint_error *error)
@@ -510,7 +514,7 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
     status = open_device(fb, error);
     if (!status && options->console) {
         fb->has_note = !take_console(&fb->console_fd, &fb->note);
-        /* Taking the console may have changed the offset of the screen
+        /* Setting graphics mode may have changed the offset of the screen
          * shown. */
         if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
             status = lost(fb, "FBIOGET_VSCREENINFO", error);
@@ -520,6 +524,7 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
     if (status)
         close_fb(&fb->sink);
     else
-        ioctl(fb->fd, FBIOBLANK, FB_BLANK_UNBLANK); /* few drivers know it */
+        ioctl(fb->fd, FBIOBLANK, FB_BLANK_UNBLANK); /* few drivers support it,
+                                                       so errors are ignored */
     return status;
 }

@@ -7,8 +7,8 @@
 
 #include <linux/videodev2.h>
 
-/* glint_fourcc_of() returns the first entry of a format with one block of
- * memory. */
+/* glint_fourcc_of() returns the first entry of a format whose planes lie in one
+ * block of memory. */
 static const struct {
     uint32_t fourcc;
     enum glint_pixel_format format;

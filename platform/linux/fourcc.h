@@ -2,9 +2,9 @@
  *
  * linux/fourcc.h - V4L2's codes for the formats and colours of glint.
  *
- * A FOURCC is four characters in a word, the first lowest. Formats of several
- * planes exist twice in V4L2: NV12 in one block of memory, NM12 in one block
- * for each plane; both are GLINT_NV12 here.
+ * A FOURCC is four characters in a word, the first in the lowest byte. V4L2 has
+ * two codes for a format of several planes: NV12 has all planes in one block of
+ * memory, NM12 each plane in its own block; both are GLINT_NV12 here.
  */
 #ifndef GLINT_PLATFORM_LINUX_FOURCC_H
 #define GLINT_PLATFORM_LINUX_FOURCC_H
@@ -14,9 +14,9 @@
 
 #include "glint/image.h"
 
-/* Sets FORMAT to glint's format for FOURCC. Returns false if glint has none,
- * as for MJPG. AR24 and BGR4 count as GLINT_XRGB8888, whose fourth byte is
- * unused. */
+/* Sets FORMAT to glint's format for FOURCC. Returns false if glint has no such
+ * format, as for MJPG. AR24 and BGR4 count as GLINT_XRGB8888, whose fourth byte
+ * is unused. */
 bool glint_fourcc_to_format(uint32_t fourcc, enum glint_pixel_format *format);
 
 /* Returns the FOURCC of FORMAT in one block of memory, or 0 if V4L2 has none,
@@ -27,25 +27,25 @@ uint32_t glint_fourcc_of(enum glint_pixel_format format);
  * print. */
 void glint_fourcc_text(uint32_t fourcc, char text[5]);
 
-/* Sets FOURCC by TEXT: a FOURCC or a name of ffmpeg's, in any case ("YUYV",
- * "yuyv422", "nv12", "mjpeg"), or any other 4 printable characters as they are.
- * Returns false for other texts. */
+/* Parses TEXT, a FOURCC or ffmpeg's name of a pixel format, in any case
+ * ("YUYV", "yuyv422", "nv12", "mjpeg"). Any other 4 printable characters become
+ * the FOURCC unchanged. Returns false for other texts. */
 bool glint_fourcc_parse(const char *text, uint32_t *fourcc);
 
-/* Colours of a format as V4L2 states them, by values of enum v4l2_colorspace
- * and so on. */
+/* Colours of a format: values of enum v4l2_colorspace, v4l2_ycbcr_encoding and
+ * so on. */
 struct glint_v4l2_colour {
     uint32_t colorspace, ycbcr_enc, quantization, xfer_func;
 };
 
 /* Sets range, matrix and transfer of IMAGE, whose format is set, from COLOUR. A
  * value of "default" follows the rules of videodev2.h, except that grey is full
- * range. Returns false if COLOUR states what glint does not have (BT.2020,
- * linear, RGB of limited range ...); then IMAGE gets the nearest. */
+ * range. If glint does not support COLOUR (BT.2020, linear, RGB of limited
+ * range ...), sets IMAGE to the nearest colours and returns false. */
 bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,
                             struct glint_image *image);
 
-/* Sets COLOUR from range, matrix and transfer of IMAGE, without any
+/* Sets COLOUR from range, matrix and transfer of IMAGE; no member is left at
  * "default". */
 void glint_v4l2_colour_write(struct glint_v4l2_colour *colour,
                              const struct glint_image *image);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/instructions.h - instructions of the calling thread, in user space.
+ * linux/instructions.h - counts instructions of the calling thread, in user
+ * space.
  *
  *     int counter = glint_instructions_open();       -1: not available
  *     before = glint_instructions_read(counter);
@@ -10,12 +11,12 @@
 
 #include <stdint.h>
 
-/* Begins to count and returns the counter, or -1 if the processor has none or
- * the system does not allow it (/proc/sys/kernel/perf_event_paranoid above
- * 2). */
+/* Begins to count instructions and returns the counter's descriptor, or -1 if
+ * the processor has no such counter or the system does not allow it
+ * (/proc/sys/kernel/perf_event_paranoid above 2). */
 int glint_instructions_open(void);
 
-/* Returns the instructions counted so far, or 0 where they cannot be read. */
+/* Returns the instructions counted so far, or 0 if they cannot be read. */
 uint64_t glint_instructions_read(int counter);
 
 void glint_instructions_close(int counter);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/request.h - requests to devices, and messages for their failures.
+ * linux/request.h - ioctl requests to devices, and their error messages.
  */
 #ifndef GLINT_PLATFORM_LINUX_REQUEST_H
 #define GLINT_PLATFORM_LINUX_REQUEST_H
@@ -10,8 +10,8 @@
 /* Calls ioctl(2), again whenever a signal interrupts it. */
 int glint_ioctl(int fd, unsigned long request, void *arg);
 
-/* Sets ERROR to "PATH: REQUEST: cause" by errno, with advice for the causes
- * that have any. Returns GLINT_E_DEVICE. */
+/* Sets ERROR to "PATH: REQUEST: cause" by errno, with advice for some causes.
+ * Returns GLINT_E_DEVICE. */
 enum glint_status glint_ioctl_failed(struct glint_error *error,
                                      const char *path, const char *request);
 

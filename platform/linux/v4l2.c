@@ -24,7 +24,7 @@ enum glint_v4l2_outcome {
 
 struct glint_v4l2_taken {
     int index;
-    /* Bytes of each block, and the place where its data begin. */
+    /* length of each block, and offset of its data, bytes */
     size_t bytes[3], start[3];
     uint32_t sequence;
     int64_t time_us;
@@ -32,7 +32,7 @@ struct glint_v4l2_taken {
 };
 
 #define PAGE 4096
-/* us; stamps of an unknown clock that are older are not trusted */
+/* us; older time stamps of an unknown clock are ignored */
 #define MAX_AGE_US 5000000
 
 static bool is_multiplanar(const struct glint_v4l2 *v)
@@ -42,7 +42,7 @@ static bool is_multiplanar(const struct glint_v4l2 *v)
 
 /* ----------------------------------------------------------------- requests */
 
-/* Returns a struct v4l2_buffer for buffer INDEX; it uses PLANES. */
+/* Returns a struct v4l2_buffer for buffer INDEX, which may point to PLANES. */
 static struct v4l2_buffer describe_buffer(const struct glint_v4l2 *v, int index,
                                           struct v4l2_plane planes[3])
 {
@@ -83,10 +83,10 @@ static int queue_buffer(struct glint_v4l2 *v, int index)
     return 0;
 }
 
-/* Returns the time of B's frame by the monotonic clock: its stamp, if the
- * driver states that it is of that clock, or does not say, as v4l2loopback, and
- * the stamp is at most MAX_AGE_US old. Otherwise, or if the stamp lies ahead,
- * the time now. */
+/* Returns the time of B's frame by the monotonic clock: its time stamp, if the
+ * driver states that clock, or states no clock, as v4l2loopback, and the stamp
+ * is at most MAX_AGE_US old. Otherwise, or if the stamp is in the future,
+ * returns the time now. */
 static int64_t capture_time_us(const struct v4l2_buffer *b)
 {
     const uint32_t clock = b->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK;
@@ -154,7 +154,7 @@ static enum glint_v4l2_outcome read_frame(struct glint_v4l2 *v,
     return GLINT_V4L2_TAKEN;
 }
 
-/* Takes a filled buffer from the driver and describes it in T. */
+/* Dequeues a filled buffer from the driver and describes it in T. */
 static enum glint_v4l2_outcome take_buffer(struct glint_v4l2 *v,
                                            struct glint_v4l2_taken *t)
 {
@@ -163,8 +163,8 @@ static enum glint_v4l2_outcome take_buffer(struct glint_v4l2 *v,
 
 /* ------------------------------------------------------------------ buffers */
 
-/* Asks the driver for N buffers in MEMORY; 0 frees them all. Returns the number
- * granted, or 0 with errno set. */
+/* Requests N buffers of type MEMORY from the driver; N = 0 frees all buffers.
+ * Returns the number granted, or 0 with errno set. */
 static uint32_t request_buffers(struct glint_v4l2 *v, enum v4l2_memory memory,
                                 int n)
 {
@@ -189,8 +189,8 @@ static void release_buffers(struct glint_v4l2 *v)
                 free(mem);
         }
     memset(v->buffer, 0, sizeof v->buffer);
-    /* Buffers are freed in the driver even if there are none here: freeing may
-     * have failed before, and until it succeeds no format can be set. */
+    /* The driver's buffers are freed even if n_buffers is 0: freeing may have
+     * failed before, and until it succeeds no format can be set. */
     if (v->io == GLINT_V4L2_MMAP || v->io == GLINT_V4L2_USERPTR)
         request_buffers(v,
                         v->io == GLINT_V4L2_MMAP ? V4L2_MEMORY_MMAP
@@ -231,7 +231,8 @@ static const char *map_buffer(struct glint_v4l2 *v, int index)
     return failed;
 }
 
-/* Allocates all blocks of buffer INDEX. Returns NULL, or what failed. */
+/* Allocates all blocks of buffer INDEX. Returns NULL, or the call that
+ * failed. */
 static const char *own_buffer(struct glint_v4l2 *v, int index)
 {
     struct glint_v4l2_buffer *b = &v->buffer[index];
@@ -248,8 +249,8 @@ static const char *own_buffer(struct glint_v4l2 *v, int index)
     return NULL;
 }
 
-/* Returns whether buffers could be handed on without a copy; for reports
- * only. */
+/* Returns whether the driver can export buffers as DMABUF, without a copy; for
+ * reports only. */
 static bool can_export(const struct glint_v4l2 *v)
 {
     struct v4l2_exportbuffer e = {.type = v->device.type};
@@ -261,7 +262,7 @@ static bool can_export(const struct glint_v4l2 *v)
     return true;
 }
 
-/* Returns the us that reading every other word of MEM[BYTES] twice takes;
+/* Returns the time, in us, of reading every other word of MEM[BYTES] twice;
  * uncached memory is slow both times. */
 static int64_t read_time_us(const void *mem, size_t bytes)
 {
@@ -274,8 +275,8 @@ static int64_t read_time_us(const void *mem, size_t bytes)
     return glint_now_us() - start;
 }
 
-/* Measures whether buffers are read about as fast as other memory, as no driver
- * says it. */
+/* Returns whether buffers can be read about as fast as other memory. Measures
+ * it, as no driver reports it. */
 static bool is_cached(const struct glint_v4l2 *v)
 {
     static uint64_t own[8192];
@@ -306,7 +307,8 @@ static const char *fill_buffers(struct glint_v4l2 *v, uint32_t n)
 }
 
 /* Gets buffers by IO. Returns NULL, or the call that failed, with errno set.
- * Asks twice, as drivers that were just stopped refuse once. */
+ * Requests them twice, as a driver that was just stopped refuses the first
+ * request. */
 static const char *try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
 {
     const enum v4l2_memory memory =
@@ -332,15 +334,15 @@ static const char *try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
     return failed;
 }
 
-/* Checks whether there are no buffers because the driver lacks their kind of
- * memory, which it says by EINVAL. */
+/* Returns whether the request for buffers failed because the driver does not
+ * support their type of memory (EINVAL). */
 static bool is_lacking(const struct glint_v4l2 *v)
 {
     return v->n_buffers == 0 && errno == EINVAL;
 }
 
-/* Gets buffers of the first kind that wish and device allow. Returns NULL, or
- * the call that failed, as text. */
+/* Gets buffers of the first type that both the configuration and the device
+ * allow. Returns NULL, or the call that failed, as text. */
 static const char *get_buffers(struct glint_v4l2 *v)
 {
     const uint32_t caps = v->device.caps;
@@ -364,12 +366,14 @@ static const char *get_buffers(struct glint_v4l2 *v)
     return "streaming or reading, as --io allows";
 }
 
-/* us in which a broken stream may come back */
+/* us; time limit for restarting a broken stream */
 #define PATIENCE_US 900000
-/* us of silence, beyond STALL_FRAMES frames, that are a stall and no pause */
+/* us; a stream without a frame for this time and for STALL_FRAMES frame times
+ * has stalled */
 #define STALL_US     2000000
 #define STALL_FRAMES 4
-#define MAX_GAP      4096 /* max frames dropped at a time */
+/* largest gap of sequence numbers that counts as dropped frames */
+#define MAX_GAP 4096
 /* damaged frames in a row after which the stream restarts */
 #define USELESS 30
 
@@ -408,7 +412,7 @@ static enum glint_status make_decoder(struct glint_v4l2 *v,
                       : GLINT_OK;
 }
 
-/* Gets buffers and a decoder for the format. */
+/* Gets buffers, and for MJPEG a decoder, for the format. */
 static enum glint_status prepare(struct glint_v4l2 *v,
                                  struct glint_error *error)
 {
@@ -444,7 +448,7 @@ static bool is_patient(const struct glint_v4l2 *v)
     return v->broken_us && glint_now_us() - v->broken_us <= PATIENCE_US;
 }
 
-/* The first start fails at once; after a restart next tries again for
+/* The first start fails at once; after a restart next() tries again for
  * PATIENCE_US. */
 static enum glint_status start(struct glint_source *source,
                                struct glint_error *error)
@@ -473,8 +477,9 @@ static bool is_there(const struct glint_v4l2 *v)
     return glint_ioctl(v->device.fd, VIDIOC_QUERYCAP, &cap) == 0;
 }
 
-/* Agrees on a format again. A device that is read by read(2) is opened again
- * for that, as it streams, and takes no other format, until it is closed. */
+/* Negotiates the format again. A device that is read by read(2) is closed and
+ * opened for that, as it streams until it is closed and then accepts no other
+ * format. */
 static enum glint_status agree_anew(struct glint_v4l2 *v,
                                     struct glint_error *error)
 {
@@ -490,9 +495,9 @@ static enum glint_status agree_anew(struct glint_v4l2 *v,
 }
 
 /* Stops the stream and prepares it for the format that the device has now. Only
- * a frame shows whether that helped: until one comes, failures are ignored for
- * PATIENCE_US. After that the error is that of the request that fails, or WHY
- * where the stream had started. */
+ * the next frame shows whether that helped: until it comes, failures are
+ * ignored for PATIENCE_US. After that returns the error of the failed request,
+ * or reports WHY if the stream had started. */
 static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
                                     struct glint_error *error)
 {
@@ -526,8 +531,8 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
 
 /* ------------------------------------------------------------------- frames */
 
-/* Begins to wait for a source that changed or has no signal: silence and
- * patience count from now. */
+/* Restarts the time limits of STALL_US and PATIENCE_US, as the source changed
+ * or has no signal. */
 static void begin_waiting(struct glint_v4l2 *v)
 {
     v->heard_us = glint_now_us();
@@ -535,7 +540,7 @@ static void begin_waiting(struct glint_v4l2 *v)
         v->broken_us = v->heard_us;
 }
 
-/* Takes all events. Returns whether the source has changed. */
+/* Dequeues all events. Returns whether the source has changed. */
 static bool take_events(struct glint_v4l2 *v)
 {
     struct v4l2_event event;
@@ -573,7 +578,7 @@ static bool is_whole(const struct glint_v4l2 *v,
 static void give_back(struct glint_v4l2 *v, int index)
 {
     v->buffer[index].lent = false;
-    queue_buffer(v, index); /* A failure shows in the next call. */
+    queue_buffer(v, index); /* If this fails, a later call reports it. */
 }
 
 static void queue_idle(struct glint_v4l2 *v)
@@ -583,10 +588,10 @@ static void queue_idle(struct glint_v4l2 *v)
             queue_buffer(v, i);
 }
 
-/* Returns the number of frames lost before frame SEQUENCE. It is 0 where
- * numbers do not tell: for the first two frames after a start, as v4l2loopback
- * begins with an old number; for drivers that repeat one number; beyond
- * MAX_GAP, as such a gap would have been a stall. */
+/* Returns the number of frames lost before frame SEQUENCE. Returns 0 where the
+ * numbers are unreliable: for the first two frames after a start, as
+ * v4l2loopback begins with an old number; for drivers that repeat a number; for
+ * gaps above MAX_GAP, which would have been a stall. */
 static int gap(struct glint_v4l2 *v, uint32_t sequence)
 {
     const uint32_t missing = sequence - v->sequence - 1;
@@ -597,8 +602,8 @@ static int gap(struct glint_v4l2 *v, uint32_t sequence)
     return counts ? (int)missing : 0;
 }
 
-/* Dequeues the newest complete frame; requeues the others and counts them in
- * FRAME as late or corrupt, and missing ones as dropped. */
+/* Dequeues all frames, returns the latest complete one in NEWEST and requeues
+ * the others. Counts late, corrupt and dropped frames in FRAME. */
 static enum glint_v4l2_outcome take_newest(struct glint_v4l2 *v,
                                            struct glint_v4l2_taken *newest,
                                            struct glint_source_frame *frame)
@@ -648,8 +653,8 @@ static void place(const struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     }
 }
 
-/* Decodes a JPEG to the decoder's planes and gives its buffer back. Without
- * success IMAGE has no planes. */
+/* Decodes the JPEG in T to the decoder's planes and returns its buffer to the
+ * driver. On failure returns false, and IMAGE has no planes. */
 static bool decode(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
                    struct glint_image *image)
 {
@@ -690,8 +695,8 @@ static void show(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     v->broken_us = 0;
 }
 
-/* Checks whether no frame has come for too long; an HDMI input without a signal
- * may be silent for any time. */
+/* Returns whether no frame has come for too long. An HDMI input without a
+ * signal never stalls. */
 static bool is_stalled(struct glint_v4l2 *v)
 {
     const struct glint_v4l2_format *f = &v->device.format;
@@ -760,7 +765,8 @@ static void done(struct glint_source *source, struct glint_source_frame *frame)
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     struct glint_v4l2_buffer *b = frame->buffer;
 
-    if (b && b->lent) /* else the stream has begun again since */
+    if (b && b->lent) /* else the stream was restarted since, which freed the
+                         buffer */
         give_back(v, (int)(b - v->buffer));
     frame->buffer = NULL;
     frame->image.plane[0] = NULL;

@@ -8,16 +8,17 @@
  *     camera.source.done(&camera.source, &frame);
  *     camera.source.close(&camera.source);
  *
- * The newest frame wins: what waited behind it goes back to the driver unseen,
- * so latency never grows. Frames that the driver marks as damaged or that are
- * shorter than a picture are counted and not shown. Buffers are mapped; else
- * the application's (USERPTR), else read(2), as the device allows.
+ * Only the latest frame is used: older frames that wait are returned to the
+ * driver, so latency never grows. Frames that the driver marks as damaged or
+ * that are too short are counted and not shown. Frames come in mapped buffers;
+ * if the device does not support that, in the application's (USERPTR), else by
+ * read(2).
  *
- * next stops a stream that breaks and agrees on whatever format the device has
- * then: after failed requests, a fatal error of the driver, another source, 30
- * damaged frames in a row, or silence for two seconds and four frames. The
- * caller starts it again; a call of next does so, too. When that does not help
- * within a second, or the device is gone, start and next fail with
+ * next() stops a broken stream and negotiates the format again: after failed
+ * requests, a fatal error of the driver, a change of the source, 30 damaged
+ * frames in a row, or no frame for two seconds plus four frame times. The
+ * caller starts the stream again; a call of next() does so, too. If that does
+ * not help within a second, or the device is gone, start() and next() return
  * GLINT_E_DEVICE.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_H
@@ -38,19 +39,20 @@ enum glint_v4l2_io {
 struct glint_v4l2_buffer {
     void *mem[3];
     size_t bytes[3]; /* size of each block in mem */
-    bool queued;     /* The driver has the buffer. */
-    bool lent;       /* The application has the buffer. */
+    bool queued;     /* The buffer is queued in the driver. */
+    bool lent;       /* The application uses the buffer. */
 };
 
 struct glint_v4l2 {
     struct glint_source source;
     struct glint_v4l2_device device;
 
-    /* Set when the buffers are there; for reports. */
+    /* Set when buffers have been allocated; for reports. */
     enum glint_v4l2_io io;
     int n_buffers;
-    bool is_cached;      /* Buffers are read at the speed of memory. */
-    bool exports_dmabuf; /* Buffers could be handed on without a copy. */
+    bool is_cached;      /* buffers lie in cached memory, so reading them is
+                            fast */
+    bool exports_dmabuf; /* the driver can export buffers as DMABUF */
 
     /* Private. */
     enum glint_v4l2_io wish_io;
@@ -60,15 +62,16 @@ struct glint_v4l2 {
     bool streams;
     int n_numbered;    /* frames since the start, counted up to 2 */
     uint32_t sequence; /* number of the last frame taken */
-    uint32_t n_read;   /* frames read by read(2), which numbers none */
+    uint32_t n_read;   /* frames read by read(2), which gives no sequence
+                          number */
     int64_t heard_us;  /* time of the last frame */
-    int64_t broken_us; /* time since which the stream has failed; 0: it works */
+    int64_t broken_us; /* time at which the stream failed; 0: it works */
     int n_useless;     /* damaged frames in a row */
 };
 
-/* Opens the camera that WISH names, agrees on a format and gets N_BUFFERS
- * buffers for streaming by IO, 2 .. GLINT_V4L2_MAX_BUFFERS, or as many as the
- * driver gives; from then on no other program changes the format. On failure
+/* Opens the camera that WISH names, negotiates a format and allocates N_BUFFERS
+ * buffers, 2 .. GLINT_V4L2_MAX_BUFFERS, for streaming by IO, or as many as the
+ * driver grants. After that no other program can change the format. On failure
  * CAMERA is closed. */
 enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
                                   const struct glint_v4l2_config *wish,

@@ -16,9 +16,9 @@
 #include "linux/request.h"
 #include "posix/error.h"
 
-/* Formats in order of preference: two bytes a pixel that are drawn into where
- * they lie, planes, RGB, JPEG, which has to be decoded, and grey, which has no
- * colours. */
+/* Formats in order of preference: two bytes per pixel, in which flares are
+ * drawn in place; planes; RGB; JPEG, which has to be decoded; and grey, which
+ * has no colours. */
 static const uint32_t preferred[] = {
     V4L2_PIX_FMT_YUYV,   V4L2_PIX_FMT_UYVY,    V4L2_PIX_FMT_NV12,
     V4L2_PIX_FMT_NV21,   V4L2_PIX_FMT_YUV420,  V4L2_PIX_FMT_NV12M,
@@ -56,7 +56,8 @@ static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc,
     struct v4l2_frmsizeenum size = {.pixel_format = fourcc};
 
     if (glint_ioctl(d->fd, VIDIOC_ENUM_FRAMESIZES, &size) < 0)
-        return true; /* The device does not say; it may have the size. */
+        return true; /* The device does not list sizes; it may have this
+                        size. */
     if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE)
         return w >= size.stepwise.min_width && w <= size.stepwise.max_width &&
                h >= size.stepwise.min_height && h <= size.stepwise.max_height;
@@ -68,9 +69,9 @@ static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc,
     return false;
 }
 
-/* Checks whether the interval A is no longer than that of the rate wished for,
- * but for one part in 200: USB has units of 100 ns, and 29.97 is also called
- * 30. */
+/* Returns whether the frame interval A is at most 0.5 % longer than the
+ * interval of the requested rate: USB has units of 100 ns, and 29.97 is also
+ * called 30. */
 static bool is_fast(const struct glint_v4l2_device *d, struct v4l2_fract a)
 {
     return 200.0 * a.numerator * d->wish.fps_num <=
@@ -110,9 +111,9 @@ static uint32_t offered(const struct glint_v4l2_device *d)
     return have;
 }
 
-/* Returns the first of preferred[] that the device has in W x H at the rate
- * wished for; if none, the first that it has; 0 if glint reads none of its
- * formats. */
+/* Returns the first format of preferred[] that the device has in W x H at the
+ * requested rate; if there is no such format, the first that the device has in
+ * any size; 0 if glint reads none of its formats. */
 static uint32_t cheapest(const struct glint_v4l2_device *d, uint32_t w,
                          uint32_t h)
 {
@@ -131,7 +132,8 @@ static uint32_t cheapest(const struct glint_v4l2_device *d, uint32_t w,
 
 /* ------------------------------------------------------------------- format */
 
-struct pix { /* the members that both kinds of struct v4l2_format have */
+struct pix { /* members that the single-planar and multi-planar struct
+                v4l2_format share */
     uint32_t width, height, fourcc, n_blocks, stride_bytes[3], bytes[3];
     struct glint_v4l2_colour colour;
 };
@@ -180,9 +182,9 @@ static void write_pix(struct v4l2_format *f, bool multiplanar, uint32_t fourcc,
     }
 }
 
-/* Sets the planes of F from PIX, or returns false if they do not fit its
- * blocks. A single block holds the planes one after the other, and strides of
- * chroma follow from that of luma. */
+/* Sets the planes of F from PIX. Returns false if the planes do not fit the
+ * blocks of F. A single block holds the planes one after the other, and chroma
+ * strides follow from the luma stride. */
 static bool lay_out(struct glint_v4l2_format *f, const struct pix *pix)
 {
     const int n = glint_image_planes(f->pixels);
@@ -199,7 +201,7 @@ static bool lay_out(struct glint_v4l2_format *f, const struct pix *pix)
 
         if (f->n_blocks == 1 && p > 0 && n == 3)
             stride /= 2;
-        if (stride < row) /* some drivers leave it 0 */
+        if (stride < row) /* some drivers leave the stride 0 */
             stride = row;
         bytes = (rows - 1) * stride + row;
         if (offset + bytes > f->block_bytes[block])
@@ -220,7 +222,7 @@ static void take_colour(struct glint_v4l2_device *d,
     struct glint_image image = {.format = f->is_jpeg ? GLINT_I420 : f->pixels};
 
     glint_v4l2_colour_read(colour, &image);
-    if (f->is_jpeg) { /* as JFIF has it, whatever the driver says */
+    if (f->is_jpeg) { /* JFIF, whatever the driver reports */
         image.range = GLINT_RANGE_FULL;
         image.matrix = GLINT_MATRIX_BT601;
     }
@@ -265,8 +267,8 @@ static enum glint_status take_format(struct glint_v4l2_device *d,
     return GLINT_OK;
 }
 
-/* Requests a format and adopts the one that the device answers with. Errors are
- * those of glint_v4l2_device_open(). */
+/* Requests a format and adopts the format that the device answers with. Returns
+ * the errors of glint_v4l2_device_open(). */
 static enum glint_status set_format(struct glint_v4l2_device *d,
                                     struct glint_error *error)
 {
@@ -307,8 +309,8 @@ static bool is_count(uint32_t n)
     return n >= 1 && n <= INT32_MAX;
 }
 
-/* Requests the rate wished for, if any, and notes the rate that the device has;
- * some inputs have one of their own. */
+/* Requests d->wish's rate, if any, and stores the rate that the device reports;
+ * some inputs have a fixed rate. */
 static void set_rate(struct glint_v4l2_device *d)
 {
     struct v4l2_streamparm parm = {.type = d->type};
@@ -360,8 +362,8 @@ static enum glint_status open_node(struct glint_v4l2_device *d,
                      : GLINT_OK;
 }
 
-/* Opens NAME and reads its capabilities and name, without any settings. On
- * failure D is closed. GLINT_E_DEVICE. */
+/* Opens NAME and reads its capabilities and name, without changing settings.
+ * Returns GLINT_E_DEVICE on failure; D is closed then. */
 static enum glint_status attach(struct glint_v4l2_device *d, const char *name,
                                 struct glint_error *error)
 {
@@ -465,8 +467,8 @@ bool glint_v4l2_device_retimed(struct glint_v4l2_device *d)
            !same_timings(&now.bt, &set.bt);
 }
 
-/* Sets an HDMI input to the timings it receives, as the driver keeps the old
- * timings until they are set. Notes whether it has a signal. */
+/* Sets an HDMI input to the timings it receives, as drivers do not adopt new
+ * timings on their own. Sets d->has_signal. */
 static enum glint_status follow_timings(struct glint_v4l2_device *d,
                                         struct glint_error *error)
 {

@@ -15,15 +15,15 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
-#define GLINT_V4L2_PATH 256 /* bytes; names by udev have 80 and more */
+#define GLINT_V4L2_PATH 256 /* bytes; udev's names have 80 and more */
 
 struct glint_v4l2_config {
     const char *device;   /* "/dev/video0", or "0" for short */
-    int width, height;    /* 0, both: as the device is set */
-    int fps_num, fps_den; /* frames a second; 0: as the device is set */
-    uint32_t fourcc;      /* 0: the cheapest format that gives size and rate */
-    int input;            /* -1: the input that is selected */
-    /* Range and matrix to use in place of the device's; -1: the device's. */
+    int width, height;    /* 0, 0: the device's current size */
+    int fps_num, fps_den; /* frames per second; 0: the device's current rate */
+    uint32_t fourcc;      /* 0: the cheapest format with this size and rate */
+    int input;            /* -1: the currently selected input */
+    /* Range and matrix that override the device's; -1: the device's. */
     int range, matrix;
 };
 
@@ -33,10 +33,10 @@ struct glint_v4l2_format {
     bool is_jpeg;
     enum glint_pixel_format pixels; /* unused if is_jpeg */
     int width, height;
-    int n_blocks; /* blocks of memory a frame lies in, 1 .. 3 */
+    int n_blocks; /* blocks of memory per frame, 1 .. 3 */
     size_t block_bytes[3];
     struct {
-        int block; /* number of the block that the plane lies in */
+        int block; /* index of the block that holds the plane */
         size_t offset;
         ptrdiff_t stride_bytes;
         size_t bytes; /* bytes of the plane, from its offset on */
@@ -44,7 +44,7 @@ struct glint_v4l2_format {
     enum glint_range range;
     enum glint_matrix matrix;
     enum glint_tone transfer;
-    int fps_num, fps_den; /* 0: the device does not say */
+    int fps_num, fps_den; /* frames per second; 0: not known */
 };
 
 struct glint_v4l2_device {
@@ -52,34 +52,36 @@ struct glint_v4l2_device {
     int fd; /* -1: closed */
     uint32_t caps;
     uint32_t type; /* type of the device's buffers */
-    bool is_dv;    /* the input has timings of its own: HDMI */
+    bool is_dv;    /* an HDMI input, whose source sets the timings */
     bool has_signal;
     uint32_t input;
-    bool is_loopback; /* v4l2loopback: its writer continues writing into frames
-                         that were handed out */
+    bool is_loopback; /* v4l2loopback: the writer may overwrite a frame that is
+                         being read */
     char card[33];
     struct glint_v4l2_config wish;
     struct glint_v4l2_format format;
 };
 
-/* Opens the camera and agrees on a format. On failure DEVICE is closed.
- * GLINT_E_DEVICE: there is no such device, no permission, it is not a camera,
- * or in use. GLINT_E_UNSUPPORTED: it has no format that glint reads. */
+/* Opens the camera and negotiates a format. On failure DEVICE is closed.
+ * Returns GLINT_E_DEVICE if there is no such device, permission is missing, it
+ * is not a camera, or it is in use; GLINT_E_UNSUPPORTED if it has no format
+ * that glint reads. */
 enum glint_status glint_v4l2_device_open(struct glint_v4l2_device *device,
                                          const struct glint_v4l2_config *wish,
                                          struct glint_error *error);
 
-/* Agrees on a format again, after the source changed or the stream broke. */
+/* Negotiates the format again, after the source changed or the stream broke. */
 enum glint_status glint_v4l2_device_negotiate(struct glint_v4l2_device *device,
                                               struct glint_error *error);
 
-/* Returns whether an HDMI input receives other timings than it is set to; false
- * for other inputs. Sets has_signal. */
+/* Returns whether the timings that an HDMI input receives differ from its
+ * settings; false for other inputs. Sets has_signal. */
 bool glint_v4l2_device_retimed(struct glint_v4l2_device *device);
 
 void glint_v4l2_device_close(struct glint_v4l2_device *device);
 
-/* Writes FORMAT as "YUYV 640x480 at 30 fps, BT.601 limited, sRGB". */
+/* Writes FORMAT as text, such as "YUYV 640x480 at 30 fps, BT.601 limited,
+ * sRGB". */
 void glint_v4l2_format_text(const struct glint_v4l2_format *format,
                             char text[96]);
 

@@ -79,7 +79,8 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
     px->ycbcr_enc = colour.ycbcr_enc;
     px->quantization = colour.quantization;
     px->xfer_func = colour.xfer_func;
-    px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* makes the last three count */
+    px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* makes drivers read the last three
+                                           members */
     if (glint_ioctl(out->fd, VIDIOC_S_FMT, f) < 0)
         return failed(out, "VIDIOC_S_FMT", error);
     if (glint_fourcc_to_format(px->pixelformat, &format) &&
@@ -95,9 +96,9 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
         got, px->width, px->height, want, like->width, like->height);
 }
 
-/* Begins to stream: v4l2loopback 0.12 with exclusive_caps=1 is an output again
- * after glint only if glint streamed. It still takes write(). Other drivers
- * refuse, as no buffers were requested. */
+/* Starts streaming, though frames are sent by write(): v4l2loopback 0.12 with
+ * exclusive_caps=1 is an output again after glint only if glint has streamed.
+ * Other drivers refuse, as no buffers were requested, which is ignored. */
 static void claim(const struct glint_v4l2_sink *out)
 {
     int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
@@ -105,7 +106,7 @@ static void claim(const struct glint_v4l2_sink *out)
     glint_ioctl(out->fd, VIDIOC_STREAMON, &type);
 }
 
-/* States the rate to readers of the device. Drivers may ignore it. */
+/* Sets the rate that readers of the device see. Drivers may ignore it. */
 static void set_rate(const struct glint_v4l2_sink *out, int num, int den)
 {
     struct v4l2_streamparm parm = {.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
@@ -117,9 +118,8 @@ static void set_rate(const struct glint_v4l2_sink *out, int num, int den)
     glint_ioctl(out->fd, VIDIOC_S_PARM, &parm);
 }
 
-/* Lays the frame out as the driver says and takes its memory: all planes in one
- * block of SIZE bytes, rows of the first plane STRIDE bytes apart, of chroma in
- * proportion. */
+/* Sets the frame's layout and allocates its memory: all planes in one block of
+ * SIZE bytes, luma rows STRIDE bytes apart, chroma rows in proportion. */
 static enum glint_status lay_out(struct glint_v4l2_sink *out, size_t stride,
                                  size_t size, struct glint_error *error)
 {
@@ -165,7 +165,7 @@ static uintptr_t distance(const struct glint_image *image, int plane)
     return (uintptr_t)image->plane[plane] - (uintptr_t)image->plane[0];
 }
 
-/* Returns whether IMAGE lies in memory as the device wants it. */
+/* Returns whether IMAGE has the memory layout that the device requires. */
 static bool is_laid_out(const struct glint_v4l2_sink *out,
                         const struct glint_image *image)
 {

@@ -20,8 +20,8 @@
 struct glint_v4l2_sink {
     struct glint_sink sink;
     char card[33];  /* name that the device gives itself */
-    long n_frames;  /* frames taken by the device */
-    long n_dropped; /* frames that the device did not take */
+    long n_frames;  /* frames that the device accepted */
+    long n_dropped; /* frames that the device did not accept */
 
     /* Private. */
     const char *name;         /* not owned */
@@ -33,9 +33,10 @@ struct glint_v4l2_sink {
 
 /* Opens the output PATH; the string must outlive OUT. LIKE has format, size and
  * colours of all frames to come; its planes are not read. A rate of 0, 0 is not
- * stated. On failure OUT is closed. GLINT_E_DEVICE: no such node, not an
- * output, busy, or it does not take this format. GLINT_E_UNSUPPORTED: V4L2 has
- * no FOURCC for the format. GLINT_E_MEMORY. */
+ * passed to the device. On failure OUT is closed. Returns GLINT_E_DEVICE if
+ * PATH does not exist, is not an output, is busy, or does not accept this
+ * format; GLINT_E_UNSUPPORTED if V4L2 has no FOURCC for the format; or
+ * GLINT_E_MEMORY. */
 enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
                                        const char *path,
                                        const struct glint_image *like,

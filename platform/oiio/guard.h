@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/guard.h - turns exceptions into statuses, for the plug-in's files.
+ * oiio/guard.h - converts exceptions to status codes, for the plug-in's
+ * files.
  */
 #ifndef GLINT_PLATFORM_OIIO_GUARD_H
 #define GLINT_PLATFORM_OIIO_GUARD_H
@@ -24,9 +25,9 @@
 namespace glint
 {
 
-/* Returns the bytes of the UTF-8 character at AT, or 0 if it is malformed or
- * a control character, U+0080 to U+009F among them. LEFT bytes of text are
- * left. */
+/* Returns the bytes of the UTF-8 character at AT, or 0 if it is malformed or a
+ * control character (U+0080 to U+009F, too). The text has LEFT bytes from AT
+ * on. */
 inline size_t shown_bytes(const unsigned char *at, size_t left)
 {
     const size_t n = at[0] < 0x80    ? 1
@@ -62,8 +63,8 @@ inline std::string printable(const std::string &text)
     return line;
 }
 
-/* Returns CAUSE, which OpenImageIO gives for the file NAME, without that name:
- * the message begins with it. UNLESS: the cause if it gives none. */
+/* Returns CAUSE, OpenImageIO's message, with "the file" in place of the file's
+ * NAME, which glint prints first. Returns UNLESS if CAUSE is empty. */
 inline std::string without_name(std::string cause, const std::string &name,
                                 const char *unless)
 {
@@ -81,20 +82,20 @@ struct failure {
     std::string cause;
 };
 
-/* Calls of the plug-in that are under way, in all threads. */
+/* Running calls of the plug-in, in all threads. */
 struct calls {
     std::mutex lock;
     std::atomic<int> n{0};
-    std::atomic<int> err{-1}; /* glint's standard error while N > 0 */
+    std::atomic<int> err{-1}; /* duplicate of standard error while N > 0 */
     char text[256] = "";      /* message to print on an abort; names the file of
                                  the latest call */
 };
 
 inline calls under_way;
 
-/* A call that is under way, for the file NAME. Meanwhile standard error is
- * /dev/null, as the libraries behind OpenImageIO print there what they also
- * return as errors. */
+/* A running call, for the file NAME. While it exists, standard error is
+ * /dev/null, as the libraries that OpenImageIO uses print there the errors that
+ * they also return. */
 class call
 {
   public:
@@ -148,8 +149,8 @@ class call
     }
 };
 
-/* If a call is under way, writes to glint's standard error that OpenImageIO has
- * aborted, and returns 1. Async-signal-safe. */
+/* If a call is running, prints to glint's standard error that OpenImageIO has
+ * aborted, and returns 1; else returns 0. Async-signal-safe. */
 inline int report_abort()
 {
     const int err = under_way.err;
@@ -161,9 +162,9 @@ inline int report_abort()
     return 1;
 }
 
-/* Runs BODY, which reads or writes the file NAME. If it throws, returns a
- * status, UNKNOWN for exceptions that say none, with NAME and the cause in
- * ERROR. */
+/* Runs BODY, which reads or writes the file NAME. If it throws, sets ERROR to
+ * NAME and the cause and returns the exception's status, or UNKNOWN if it has
+ * no status. */
 template <class Body>
 enum glint_status guarded(const char *name, enum glint_status unknown,
                           struct glint_error *error, Body body) noexcept
@@ -199,8 +200,8 @@ try {
     return GLINT_E_MEMORY;
 }
 
-/* Throws failure, before any memory is taken, if glint cannot read pictures
- * like SPEC. */
+/* Throws failure if glint cannot read a picture of SPEC. Called before any
+ * memory is allocated. */
 inline void check_spec(const OIIO::ImageSpec &spec)
 {
     if (spec.deep || spec.nchannels < 1 || spec.depth > 1)

@@ -22,33 +22,34 @@ namespace glint
 
 using bytes = std::vector<unsigned char>;
 
-/* Return MADE with the metadata of FROM, a file of the same type, in place of
- * its own, but without FROM's profile if DROP_ICC. They return MADE as it is if
- * they cannot read one of the two. */
+/* The carry functions return the file MADE with its metadata replaced by the
+ * metadata of FROM, a file of the same type; without FROM's ICC profile if
+ * DROP_ICC. They return MADE unchanged if they cannot read either file. */
 bytes carry_png(const bytes &made, const bytes &from, bool drop_icc);
 bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc);
 bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc);
-bool is_classic_tiff(const bytes &file); /* BigTIFF is not. */
+bool is_classic_tiff(const bytes &file); /* false for BigTIFF */
 bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc);
 
-/* Return in words what FILE lacks; "" if it is complete. */
+/* Return as text what is missing in FILE, "" if it is complete. */
 std::string missing_of_jpeg(const bytes &file);
 std::string missing_of_tiff(const bytes &file);
 
-/* Returns the quality, 1 .. 100 on libjpeg's scale, whose tables are nearest to
- * FILE's; 0 if FILE has none. */
+/* Returns the quality, 1 .. 100 on libjpeg's scale, whose quantisation tables
+ * are nearest to the tables of FILE; 0 if FILE has no tables. */
 int quality_of_jpeg(const bytes &file);
 
 bool is_progressive(const bytes &jpeg);
 
-/* Returns whether the pixels of JPEG are C M Y K, which become R G B. */
+/* Returns whether the pixels of JPEG are CMYK, which glint converts to RGB. */
 bool is_of_inks(const bytes &jpeg);
 
-/* Returns in words what JPEG has after the first picture, which is lost; "" if
- * nothing. */
+/* Returns as text the data after the first picture of JPEG, which glint loses;
+ * "" if there are no such data. */
 std::string more_of_jpeg(const bytes &jpeg);
 
-/* Returns the data of the first chunk NAME of a PNG; empty if it has none. */
+/* Returns the data of the first chunk NAME of a PNG; empty if there is no such
+ * chunk. */
 bytes chunk_of_png(const bytes &file, const char *name);
 
 /* Returns whether WEBP has several frames. */
@@ -62,7 +63,7 @@ bool is_lossless(const bytes &webp);
 /* Sets DATA[N_BYTES] to a malloc'ed copy of ENCODED. */
 void give(void **data, size_t *n_bytes, const bytes &encoded);
 
-/* A file in memory, for writers that take no other. */
+/* A file in memory, for writers that need a file name. */
 class memory_file
 {
   public:
@@ -78,7 +79,7 @@ class memory_file
     int fd;
 };
 
-/* The functions of formats/oiio.h that keep a file as it is. */
+/* The functions of formats/oiio.h that preserve a file's content. */
 enum glint_status open_file(struct glint_oiio_file **file,
                             struct glint_samples *samples,
                             struct glint_oiio_facts *facts, const char *path,

@@ -42,7 +42,8 @@ void glint_split_packed(enum glint_pixel_format format, uint8_t *luma,
         split_packed(luma, cb, cr, from, n, 1);
 }
 
-/* Splits N groups of BYTES, the first three of which are taken. */
+/* Splits N groups of BYTES bytes: the first three of a group go to A, B and
+ * C. */
 static inline void split_groups(uint8_t *restrict a, uint8_t *restrict b,
                                 uint8_t *restrict c,
                                 const uint8_t *restrict from, int n, int bytes)
@@ -93,8 +94,8 @@ static const struct mix mixes[2][2] = {
 };
 /* clang-format on */
 
-/* Terms to add to the products of raw codes: the constants times minus the
- * codes of zero, and a half for rounding. */
+/* Terms to add to the products of codes and constants: minus the products of
+ * the codes of zero (black, Cb = Cr = 0), plus a half for rounding. */
 struct bias {
     int32_t red, green, blue, grey;
 };
@@ -111,9 +112,9 @@ static struct bias bias_of(const struct mix *m)
     };
 }
 
-/* Returns SUM as a code, clamped to 0 .. 255. |SUM| < 2^23, so that the code
- * fits 16 bits even before it is clamped: in vectors half the work of 32
- * bits. */
+/* Returns SUM as a code, clamped to 0 .. 255. |SUM| must be below 2^23, so that
+ * the code fits 16 bits before it is clamped: twice as many fit a vector as
+ * with 32 bits. */
 static inline uint8_t code_of(int32_t sum_q13)
 {
     const int16_t code = (int16_t)(sum_q13 >> 13);
@@ -121,7 +122,7 @@ static inline uint8_t code_of(int32_t sum_q13)
     return (uint8_t)(code < 0 ? 0 : code > 255 ? 255 : code);
 }
 
-/* Mixes R', G', B' of N pixels, each with Y', Cb and Cr of its own. */
+/* Computes R', G', B' of N pixels that each have Y', Cb and Cr. */
 static void mix_pixels(const struct mix *m, uint8_t *restrict r,
                        uint8_t *restrict g, uint8_t *restrict b,
                        const uint8_t *restrict luma, const uint8_t *restrict cb,
@@ -141,7 +142,7 @@ static void mix_pixels(const struct mix *m, uint8_t *restrict r,
     }
 }
 
-/* Mixes R', G', B' of N pairs of pixels that fraction Cb and Cr. */
+/* Computes R', G', B' of N pairs of pixels that share Cb and Cr. */
 static void mix_pairs(const struct mix *m, uint8_t *restrict r,
                       uint8_t *restrict g, uint8_t *restrict b,
                       const uint8_t *restrict luma, const uint8_t *restrict cb,
@@ -188,8 +189,8 @@ static const uint8_t *row_at(const struct glint_image *image, int plane, int y)
     return image->plane[plane] + y * image->stride_bytes[plane];
 }
 
-/* Returns Y', Cb, Cr of N pixels of row Y from X on: in the picture itself, or
- * moved apart into ROW if they are interleaved. */
+/* Returns Y', Cb, Cr of N pixels of row Y from X on: pointers into the picture,
+ * or into ROW, to which interleaved samples are split. */
 static struct ycc find_samples(struct glint_row_rgb *row,
                                const struct glint_image *image, int x, int y,
                                int n)
@@ -232,7 +233,7 @@ static void read_ycc(struct glint_row_rgb *row, const struct glint_image *image,
         return;
     }
     mix_pairs(m, r, g, b, s.luma, s.cb, s.cr, n / 2);
-    if (n > even) /* The second pixel of the last pair may have no luma. */
+    if (n > even) /* The second pixel of the last pair may be missing. */
         mix_pixels(m, r + even, g + even, b + even, s.luma + even,
                    s.cb + even / 2, s.cr + even / 2, 1);
 }
@@ -279,7 +280,8 @@ size_t glint_row_rgb_bytes(int width)
 
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 {
-    const ptrdiff_t each = (ptrdiff_t)width + 1; /* capacity for whole pairs */
+    const ptrdiff_t each = (ptrdiff_t)width + 1; /* an even number of samples
+                                                    fits */
     uint8_t *const at = mem;
 
     for (int i = 0; i < 3; i++)
@@ -291,8 +293,8 @@ void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 
 /* ------------------------------------------------------------------- layout */
 
-/* Returns the mask of FIELD in a word of N_BITS, or 0 if it does not fit
- * there. */
+/* Returns the mask of FIELD in a word of N_BITS, or 0 if FIELD does not fit
+ * into the word. */
 static uint64_t bits_of(const struct glint_pixel_field *field, int n_bits)
 {
     if (field->length < 1 || field->offset < 0 || field->length > 16 ||
@@ -384,7 +386,7 @@ static void pack_bytes(const struct glint_row_pack *p, uint8_t *dst,
 }
 
 /* Returns (CODE * MOST + THRESHOLD) / 255 without a division: exact for sums
- * below 65535, and none is above 255 * 255 + 254. */
+ * below 65535; the largest sum is 255 * 255 + 254. */
 static inline uint16_t fewer(uint8_t code, uint16_t most, uint8_t threshold)
 {
     const uint16_t sum = (uint16_t)(code * most + threshold);
@@ -451,7 +453,8 @@ void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
 
 /* ------------------------------------------------------------------- tables */
 
-/* Notes which channel each byte of a pixel holds, in the order of memory. */
+/* Sets p->channel to the channel that each byte of a pixel holds, in memory
+ * order. */
 static void place_bytes(struct glint_row_pack *p, uint8_t *mem, int width)
 {
     const struct glint_pixel_layout *const l = &p->layout;
@@ -471,8 +474,8 @@ static void place_bytes(struct glint_row_pack *p, uint8_t *mem, int width)
     memset(p->rest, (int)(p->opaque >> 8 * free_byte & 255), (size_t)width);
 }
 
-/* Returns the threshold of pixel X, Y (0 .. 7): one of (2 i + 1) * 255 / 128, i
- * = 0 .. 63, whose mean is 127. */
+/* Returns the threshold of pixel X, Y (0 .. 7): (2 i + 1) * 255 / 128 for an i
+ * of 0 .. 63; the mean over all pixels is 127. */
 static int threshold_of(int x, int y)
 {
     int bits = 0;
@@ -545,7 +548,7 @@ static int at_least_1(int side)
     return side < 1 ? 1 : side;
 }
 
-/* Has all of the picture shown, as large as fits the panel in its shape. */
+/* Shows all of the picture, scaled to fit the panel at its aspect ratio. */
 static void fit(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
@@ -562,7 +565,7 @@ static void fit(struct glint_panel *p)
             (c->width * c->image_height + c->image_width / 2) / c->image_width);
 }
 
-/* Has the middle of the picture shown, pixel by pixel. */
+/* Shows the middle of the picture, unscaled. */
 static void centre(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
@@ -587,8 +590,8 @@ static void place(struct glint_panel *p)
     p->shown.y = (p->cfg.height - p->shown.height) / 2;
 }
 
-/* Returns the pixel of FROM pixels whose centre is nearest to that of pixel I
- * of TO pixels along the same side. */
+/* Returns which of FROM pixels has its centre nearest to the centre of pixel I
+ * when TO pixels span the same length. */
 static int nearest(int i, int from, int to)
 {
     return (2 * i + 1) * from / (2 * to);
@@ -596,8 +599,8 @@ static int nearest(int i, int from, int to)
 
 /* ------------------------------------------------------------------- memory */
 
-/* Rounds BYTES up to a multiple of 64, so that arrays one after the other are
- * aligned as by malloc. */
+/* Rounds BYTES up to a multiple of 64, so that consecutive arrays are aligned
+ * as malloc aligns. */
 static size_t round_up(size_t bytes)
 {
     return (bytes + 63) & ~(size_t)63;
@@ -708,8 +711,8 @@ static void spread_4(uint32_t *restrict to, const uint32_t *restrict from,
         to[i] = from[from_x[i]];
 }
 
-/* Returns row Y of the picture as the panel shows it, packed. TO_Y, its row
- * among those shown, is for dithering. */
+/* Returns row Y of the picture scaled and packed for the panel. TO_Y is the
+ * row's number on the panel, for dithering. */
 static const uint8_t *make_row(struct glint_panel *p,
                                const struct glint_image *image, int y, int to_y)
 {

@@ -7,14 +7,13 @@
  *     glint_panel_draw(&panel, &image, mem, stride);  each frame
  *     glint_panel_close(&panel);
  *
- * A picture of another size than the panel is scaled to fit, in its shape, by
- * taking for each pixel of the panel the nearest one of the picture; or it is
- * centred as it is, and its sides are cut off where they do not fit. Draw does
- * not touch the parts of the panel off-screen.
+ * A picture of another size than the panel is scaled to fit at its aspect
+ * ratio, by nearest-neighbour sampling; or it is centred unscaled and cropped.
+ * Draw does not touch the panel around the picture.
  *
  * Each row is made in cached memory and then copied, so the panel's own memory
- * is only written, and in order: it may be write-combining. Rows that show the
- * same row of the picture are made once.
+ * is only written, and in order: it may be write-combining. Panel rows that
+ * show the same row of the picture are computed once.
  *
  * Packed pixels of any true-colour layout (glint_row_pack):
  *
@@ -22,19 +21,20 @@
  *     out  words of 16, 24 or 32 bits, in the order of the machine's bytes,
  *          as Linux describes framebuffers: offset and length of each channel
  *
- * A channel of n bits gets code c as (c (2^n - 1) + 127) / 255: the nearest,
- * and for 16 bits the inverse of what glint_row_rgb reads. Transparency is
- * written opaque; unused bits are zero. With dithering the 127 becomes one of
- * 64 thresholds by the place of the pixel (8 x 8, the same in all channels):
- * bands of smooth gradients turn to grain.
+ * A channel of n bits gets code c as (c (2^n - 1) + 127) / 255: the nearest
+ * value, and for 16-bit pixels the inverse of glint_row_rgb_read().
+ * Transparency is written as opaque; unused bits are zero. With dithering one
+ * of 64 thresholds, by the position of the pixel modulo 8 x 8, the same in all
+ * channels, replaces the 127, so that smooth gradients show grain in place of
+ * bands.
  *
- * A stretch of a row as R', G', B' bytes (glint_row_rgb), of a picture of 8-bit
- * codes, any format but GLINT_LINEAR_Q20: R' = Y' ky + Cr k and so on, in
- * integers. Constants have 13 fraction bits (_q13), one rounding to the nearest
- * code, ties up, then a clamp to 0 .. 255. Over all codes that is within 1 of
- * the same sum in exact arithmetic, equal to it for 99.6 % of them and for all
- * greys. Chroma of subsampled formats is repeated, as where flares are drawn
- * (src/image/codes.c). Channels may point into the picture itself where nothing
+ * glint_row_rgb reads part of a row as R', G', B' bytes from a picture of any
+ * format but GLINT_LINEAR_Q20: R' = Y' ky + Cr k and so on, in integers.
+ * Constants have 13 fraction bits (_q13); a sum is rounded once to the nearest
+ * code, ties up, then clamped to 0 .. 255. Over all codes the result is within
+ * 1 of exact arithmetic, and equal for 99.6 % of codes and for all greys.
+ * Chroma of subsampled formats is repeated, as it is when flares are drawn
+ * (src/image/codes.c). Channels may point into the picture itself if nothing
  * has to be computed.
  */
 #ifndef GLINT_PLATFORM_PANEL_PANEL_H
@@ -49,7 +49,8 @@ struct glint_row_rgb {
     uint8_t *rgb[3], *luma, *cb, *cr; /* rows in the caller's memory */
 };
 
-/* Bits of a pixel's word that hold a channel; length 0: it has none. */
+/* Bits of a pixel's word that hold a channel; length 0: there is no such
+ * channel. */
 struct glint_pixel_field {
     int offset, length;
 };
@@ -67,12 +68,13 @@ struct glint_row_pack {
     /* Private. */
     enum glint_pack_way way;
     bool dither;
-    int channel[4]; /* BYTES: number of the channel in each byte of a pixel; 3:
-                       none */
-    uint8_t *rest;  /* BYTES: a row of the byte that holds no channel */
+    int channel[4]; /* BYTES: index of the channel in each byte of a pixel; 3:
+                       no colour */
+    uint8_t *rest;  /* BYTES: a row of values for the byte that holds no
+                       colour */
     uint8_t *threshold[8]; /* HALVES: thresholds of a row of pixels, for each
                               row modulo 8 */
-    uint32_t *table[3];    /* TABLES: bits of each colour, by code */
+    uint32_t *table[3];    /* TABLES: word with the bits of a colour, by code */
     uint32_t opaque;
 };
 
@@ -84,13 +86,13 @@ struct glint_panel_config {
     struct glint_pixel_layout layout;
     int image_width, image_height;
     enum glint_panel_fit fit;
-    bool dither; /* pixels of 16 bits are dithered */
+    bool dither; /* true: pixels of 16 bits are dithered */
 };
 
 struct glint_panel {
     struct glint_panel_config cfg;
-    /* Shown: the area of the panel that the picture covers. Seen: the part of
-     * the picture that is shown there. */
+    /* shown: area of the panel that the picture covers; seen: area of the
+     * picture that is shown there */
     struct glint_panel_area {
         int x, y, width, height;
     } shown, seen;
@@ -98,10 +100,10 @@ struct glint_panel {
     /* Private. */
     struct glint_row_rgb rgb;
     struct glint_row_pack pack;
-    uint16_t *from_x; /* pixel of the seen part for each pixel shown; NULL: the
-                         same */
-    uint8_t *line;    /* a row of the seen part, packed */
-    uint8_t *scaled;  /* a row as it is shown, packed */
+    uint16_t *from_x; /* column in the seen area of each column shown; NULL: not
+                         scaled */
+    uint8_t *line;    /* a row of the seen area, packed */
+    uint8_t *scaled;  /* the same row, scaled */
     void *mem;        /* memory of all private arrays; NULL: closed */
 };
 
@@ -114,28 +116,28 @@ void glint_split_pairs(uint8_t *restrict a, uint8_t *restrict b,
 void glint_split_packed(enum glint_pixel_format format, uint8_t *luma,
                         uint8_t *cb, uint8_t *cr, const uint8_t *from, int n);
 
-/* Returns the bytes of memory that rows of up to WIDTH pixels take. */
+/* Returns the bytes of memory that glint_row_rgb_init() needs for WIDTH. */
 size_t glint_row_rgb_bytes(int width);
 
-/* Prepares ROW for up to WIDTH pixels. It keeps using
- * MEM[glint_row_rgb_bytes(width)]. */
+/* Prepares ROW for up to WIDTH pixels. MEM has glint_row_rgb_bytes(width) bytes
+ * and must outlive ROW. */
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width);
 
-/* Sets row->channel to the pixels X .. X + N - 1 of row Y of IMAGE. X is
+/* Sets row->channel to the pixels X .. X + N - 1 of row Y of IMAGE. X must be
  * even. */
 void glint_row_rgb_read(struct glint_row_rgb *row,
                         const struct glint_image *image, int x, int y, int n);
 
-/* Returns whether LAYOUT can be written: whole bytes, fields that fit and do
- * not overlap, and all three colours. */
+/* Returns whether LAYOUT is supported: 2 to 4 bytes, fields that fit and do not
+ * overlap, and all three colours. */
 bool glint_pixel_layout_is_valid(const struct glint_pixel_layout *layout);
 
-/* Returns the bytes of memory that rows of up to WIDTH pixels take. */
+/* Returns the bytes of memory that glint_row_pack_init() needs for WIDTH. */
 size_t glint_row_pack_bytes(int width);
 
-/* Prepares PACK for rows of up to WIDTH pixels in LAYOUT, which is valid. PACK
- * keeps using MEM[glint_row_pack_bytes(width)], aligned as by malloc. DITHER
- * has an effect with pixels of 16 bits only. */
+/* Prepares PACK for rows of up to WIDTH pixels in LAYOUT, which must be valid.
+ * MEM has glint_row_pack_bytes(width) bytes, must be aligned as by malloc and
+ * outlive PACK. DITHER affects 16-bit pixels only. */
 void glint_row_pack_init(struct glint_row_pack *pack,
                          const struct glint_pixel_layout *layout, bool dither,
                          void *mem, int width);
@@ -145,9 +147,9 @@ void glint_row_pack_init(struct glint_row_pack *pack,
 void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
                           const uint8_t *const channel[3], int y, int n);
 
-/* Prepares PANEL for CFG and takes all memory. GLINT_E_UNSUPPORTED: a layout
- * that is not valid, or a size out of range. GLINT_E_MEMORY. On failure PANEL
- * is closed. */
+/* Prepares PANEL for CFG and allocates all memory. Returns GLINT_E_UNSUPPORTED
+ * if the layout is not valid or a size is out of range, or GLINT_E_MEMORY. On
+ * failure PANEL is closed. */
 enum glint_status glint_panel_open(struct glint_panel *panel,
                                    const struct glint_panel_config *cfg,
                                    struct glint_error *error);

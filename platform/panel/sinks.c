@@ -60,7 +60,7 @@ static void copy_plane(const struct glint_image *to,
 }
 
 /* Splits row Y of FROM, YUYV or UYVY, into the planes of TO. If the width is
- * odd, the second pixel of the last pair is left out. */
+ * odd, the second pixel of the last pair is dropped. */
 static void split_row(const struct glint_image *to,
                       const struct glint_image *from, struct glint_row_rgb *row,
                       int y)
@@ -87,8 +87,8 @@ static void split_chroma(const struct glint_image *to,
 
 enum { ONE_Q16 = 1 << 16, HALF_Q16 = 1 << 15 };
 
-/* by_q16: rows for Y', Cb, Cr, columns for R', G', B'. zero_q16: the code of
- * black, and a half for rounding. */
+/* by_q16: matrix from R', G', B' (columns) to Y', Cb, Cr (rows); zero_q16: code
+ * of zero plus a half for rounding. */
 struct mix {
     int32_t by_q16[3][3], zero_q16[3];
 };
@@ -114,8 +114,8 @@ static const struct mix mixes[2][2] = {
 };
 /* clang-format on */
 
-/* Cuts SUM to a code. Chroma of pure red and blue in full range is half a code
- * above 255. */
+/* Returns SUM as a code, clamped to 255: chroma of pure red and blue in full
+ * range is half a code above it. */
 static uint8_t code_of(int32_t sum_q16)
 {
     return (uint8_t)(sum_q16 >= 256 * ONE_Q16 ? 255 : sum_q16 >> 16);
@@ -166,8 +166,8 @@ void glint_planar_write(const struct glint_image *to,
     }
 }
 
-/* Prepares the frames to write, with memory for them where Y4M does not know
- * the format of the images. */
+/* Prepares the frame to write: allocates planes if Y4M does not support the
+ * images' format. */
 static enum glint_status take_planes(struct glint_y4m_sink *y,
                                      const struct glint_y4m_header *header,
                                      struct glint_error *error)
@@ -220,7 +220,8 @@ static bool is_ready(const struct glint_y4m_sink *y)
 {
     struct pollfd writable = {.fd = y->writer.out.fd, .events = POLLOUT};
 
-    return poll(&writable, 1, 0) != 0; /* Errors show when writing. */
+    return poll(&writable, 1, 0) != 0; /* Errors of the descriptor are reported
+                                          by the next write. */
 }
 
 static enum glint_status put(struct glint_sink *sink,

@@ -9,12 +9,14 @@
  * as Y4M has no tag for it: readers take BT.601 below 720 lines, else BT.709,
  * and RGB is written so.
  *
- * While the reader of a pipe has not taken the last frame, new ones are dropped
- * and counted: live frames do not queue. A frame that is begun is finished.
+ * While the reader of a pipe has not read the last frame, new frames are
+ * dropped and counted: live frames do not queue. A frame is never written
+ * partly.
  *
- * Planes are any 8-bit picture as Y', Cb, Cr, for files. Samples of packed and
- * half-packed formats are moved, not computed. RGB becomes GLINT_I444 by the
- * matrix and range of the result, rounded to the nearest code.
+ * glint_planar_write() converts any 8-bit picture to planes of Y', Cb, Cr.
+ * Samples of packed and half-packed formats are copied, not computed. RGB
+ * becomes GLINT_I444 by the matrix and range of the result, rounded to the
+ * nearest code.
  */
 #ifndef GLINT_PLATFORM_PANEL_SINKS_H
 #define GLINT_PLATFORM_PANEL_SINKS_H
@@ -24,13 +26,13 @@
 
 struct glint_null_sink {
     struct glint_sink sink;
-    long n_frames; /* frames put so far */
+    long n_frames; /* frames received so far */
 };
 
 struct glint_y4m_sink {
-    struct glint_sink sink; /* Closing it puts a file in place. */
+    struct glint_sink sink; /* closing it commits the file */
     long n_frames;          /* frames written */
-    long n_dropped;         /* frames that the reader was too slow for */
+    long n_dropped;         /* frames dropped because the reader was too slow */
 
     /* Private. */
     const char *path; /* not owned */
@@ -45,12 +47,12 @@ struct glint_y4m_sink {
 
 void glint_null_sink_open(struct glint_null_sink *null);
 
-/* Returns the format of planes that keeps all samples of FORMAT, which is not
- * GLINT_LINEAR_Q20: GLINT_GREY, _I420, _I422 or _I444. */
+/* Returns the planar format that preserves all samples of FORMAT: GLINT_GREY,
+ * _I420, _I422 or _I444. FORMAT must not be GLINT_LINEAR_Q20. */
 enum glint_pixel_format glint_planar_format(enum glint_pixel_format format);
 
-/* Fills the planes of TO, which has FROM's size and glint_planar_format(), from
- * FROM. ROW is work memory for that width. */
+/* Converts FROM to the planes of TO. TO must have the size of FROM and
+ * glint_planar_format() of its format. ROW is work memory for that width. */
 void glint_planar_write(const struct glint_image *to,
                         const struct glint_image *from,
                         struct glint_row_rgb *row);
@@ -61,7 +63,8 @@ void glint_planar_write(const struct glint_image *to,
 void glint_y4m_sink_open(struct glint_y4m_sink *y4m, const char *path,
                          int fps_num, int fps_den);
 
-/* Closes Y4M. GLINT_E_OUTPUT, GLINT_E_CLOSED: not all was written. */
+/* Closes Y4M. Returns GLINT_E_OUTPUT or GLINT_E_CLOSED if not all data were
+ * written. */
 enum glint_status glint_y4m_sink_finish(struct glint_y4m_sink *y4m,
                                         struct glint_error *error);
 

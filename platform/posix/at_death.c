@@ -16,7 +16,7 @@ static const int deadly[] = {
     SIGSEGV, SIGBUS,    SIGILL,  SIGFPE,  SIGTRAP,
 };
 
-/* atomic; NULL after the last one added */
+/* registered functions, NULL after the last; atomic */
 static glint_at_death_fn *fns[MAX_FN];
 
 static void run_all(void)
@@ -30,9 +30,10 @@ static void run_all(void)
     }
 }
 
-static int (*library_report)(void); /* atomic; NULL: none */
+static int (*library_report)(void); /* reports an abort in a library, or NULL;
+                                       atomic */
 
-/* Returns whether a library has ended the process, which it reports then. */
+/* If a library has ended the process, reports that and returns true. */
 static bool report_library(void)
 {
     int (*const report)(void) =
@@ -47,10 +48,10 @@ static void at_exit(void)
     report_library();
 }
 
-/* Runs all functions and dies of the signal, or exits with 1 if it is an abort
- * in a library. SA_RESETHAND has restored the default action, so the second
- * signal, delivered on return, kills the process with the status that its
- * parent expects. */
+/* Signal handler. Runs all functions, then lets the signal kill the process, or
+ * exits with 1 after an abort in a library. SA_RESETHAND has restored the
+ * default action, so the second signal, delivered on return, kills the process
+ * with the status that its parent expects. */
 static void die(int signal_number)
 {
     run_all();

@@ -1,42 +1,44 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/at_death.h - functions that put objects right whatever ends the
- * process.
+ * posix/at_death.h - functions that clean up, whatever ends the process.
  *
  *     glint_at_death(remove_files);       once
  *
- * Functions given here run, the newest first, at exit() and when a signal kills
- * the process: those that ask it to end (SIGHUP, SIGINT, SIGTERM, SIGQUIT ...)
- * and those of its own faults (SIGSEGV, SIGABRT ...). The signal then does what
- * it does by default, so that a parent sees the status it expects. After
- * SIGKILL, _exit() and a fault for want of stack no function runs.
+ * Registered functions run, the latest first, at exit() and when a signal kills
+ * the process: a request to end (SIGHUP, SIGINT, SIGTERM, SIGQUIT ...) or a
+ * fault of its own (SIGSEGV, SIGABRT ...). The signal's default action then
+ * follows, so that a parent sees the status it expects. No function runs after
+ * SIGKILL, _exit() and a stack overflow.
  *
- * The first call changes how the process takes signals that the application
- * has left at their default: SIGPIPE and SIGXFSZ are ignored, so that writing
- * fails instead, and deadly ones get a handler. An application with handlers of
- * its own must end by exit() or glint_at_death_by().
+ * The first call changes the actions of signals that the application has left
+ * at their default: SIGPIPE and SIGXFSZ are ignored, so that writing fails
+ * instead, and signals that kill the process get a handler. An application with
+ * handlers of its own must end by exit() or glint_at_death_by().
  */
 #ifndef GLINT_PLATFORM_POSIX_AT_DEATH_H
 #define GLINT_PLATFORM_POSIX_AT_DEATH_H
 
 #include <stdbool.h>
 
-/* A function to run at death. It must be async-signal-safe and keep errno, and
- * may run more than once and while other threads continue. */
+/* A function to run at death. It must be async-signal-safe and preserve errno.
+ * It may run more than once, and while other threads run. */
 typedef void glint_at_death_fn(void);
 
-/* Adds FN for the rest of the process; does nothing if it was added before.
- * Returns false if there are 8 others already, which is a mistake in glint. */
+/* Registers FN for the rest of the process; does nothing if FN is registered
+ * already. Returns false if 8 other functions are registered, which is a bug in
+ * glint. */
 bool glint_at_death(glint_at_death_fn *fn);
 
-/* Has a library that ends the process reported: by exit(), as libjpeg does, or
- * by an abort (SIGABRT, an assertion, std::terminate), which becomes exit code
- * 1. REPORT, which must be async-signal-safe, returns 0 if the library is not
- * at work, else prints a message. A later REPORT replaces it. */
+/* Sets REPORT, which is called when a library may have ended the process: by
+ * exit(), as libjpeg does, or by an abort (SIGABRT, an assertion,
+ * std::terminate), which then becomes exit code 1. REPORT must be
+ * async-signal-safe; if the library is running, it prints a message and returns
+ * 1, else it returns 0. A later REPORT replaces it. */
 void glint_at_death_in_library(int (*report)(void));
 
-/* Runs all functions and dies of SIGNAL_NUMBER by its default action; for
- * signal handlers that have waited long enough. Async-signal-safe. */
+/* Runs all functions, then ends the process by the default action of
+ * SIGNAL_NUMBER; for an application's own signal handlers.
+ * Async-signal-safe. */
 void glint_at_death_by(int signal_number);
 
 #endif

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/ending.h - the type of a file by the ending of its name.
+ * posix/ending.h - file name extensions.
  */
 #ifndef GLINT_PLATFORM_POSIX_ENDING_H
 #define GLINT_PLATFORM_POSIX_ENDING_H
 
 #include <stdbool.h>
 
-/* Returns whether NAME ends in ENDING, as ".y4m", in any case of letters, and
- * has something before it. */
+/* Returns whether NAME ends in ENDING, such as ".y4m", in upper or lower case,
+ * and is longer than ENDING. */
 bool glint_ends_in(const char *name, const char *ending);
 
-/* Returns the ending of the last part of the path NAME, from its dot on, or ""
- * if it has none, as "-", "/dev/stdout", ".hidden" or "f1.4", whose dot belongs
+/* Returns the extension of the path NAME, from its dot on, or "" if there is no
+ * extension, as in "-", "/dev/stdout", ".hidden" or "f1.4", whose dot belongs
  * to a number. */
 const char *glint_ending_of(const char *name);
 

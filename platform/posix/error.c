@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Returns the length of a character by its FIRST byte, or 0 if no character
- * that prints begins so. */
+/* Returns the length of a UTF-8 character by its FIRST byte, or 0 if no
+ * printable character begins with it. */
 static size_t stated_length(unsigned char first)
 {
     if (first < 0x80)
@@ -30,7 +30,7 @@ size_t glint_utf8_length(const char *text)
         return length;
     code = byte[0] & (0x7fu >> length);
     for (size_t i = 1; i < length; i++) {
-        if ((byte[i] & 0xc0) != 0x80) /* also at the end of TEXT */
+        if ((byte[i] & 0xc0) != 0x80) /* true also at the end of TEXT */
             return 0;
         code = code << 6 | (byte[i] & 0x3fu);
     }

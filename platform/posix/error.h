@@ -16,7 +16,7 @@
 #endif
 
 /* Returns the bytes of the character that TEXT begins with, 1 .. 4, or 0 for a
- * control character (C1, too: U+009B begins a command to a terminal), malformed
+ * control character (C1, too, as U+009B begins a terminal command), malformed
  * UTF-8 or the end of TEXT. */
 size_t glint_utf8_length(const char *text);
 
@@ -24,18 +24,18 @@ size_t glint_utf8_length(const char *text);
  * '?'. */
 void glint_utf8_clean(char *text);
 
-/* Sets ERROR to "FILE: cause" and returns STATUS, so that a refusal is one
- * statement. A long FILE loses its beginning, to leave room for the cause.
- * Control characters, which hostile files and names may hold, become '?', so
- * that the text is one line. */
+/* Sets ERROR to "FILE: cause" and returns STATUS, so that callers report and
+ * return in one statement. The beginning of a long FILE is cut off, to leave
+ * room for the cause. Control characters, which hostile files and names may
+ * hold, become '?', so that the text is one line. */
 enum glint_status glint_error_report(struct glint_error *error,
                                      enum glint_status status, const char *file,
                                      const char *format, ...)
     GLINT_PRINTF(4, 5);
 
 /* Sets ERROR to "FILE: cause" of errno value NUMBER. Returns STATUS, or
- * GLINT_E_MEMORY if the system is short of descriptors, processes or memory:
- * then FILE is not to blame. */
+ * GLINT_E_MEMORY if the cause is not FILE but that the system is short of
+ * descriptors, processes or memory. */
 enum glint_status glint_error_errno(struct glint_error *error,
                                     enum glint_status status, const char *file,
                                     int number);

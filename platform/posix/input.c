@@ -11,7 +11,8 @@
 
 #include "posix/error.h"
 
-#define FIRST_BYTES 65536 /* bytes of room where the size is unknown */
+/* bytes to allocate at first if the size is unknown */
+#define FIRST_BYTES 65536
 
 static enum glint_status open_by(struct glint_input *in, const char *path,
                                  int flags, struct glint_error *error)
@@ -39,7 +40,8 @@ enum glint_status glint_input_open(struct glint_input *in, const char *path,
     return open_by(in, path, 0, error);
 }
 
-/* Returns what keeps PATH, of status ST, from being a file, or NULL. */
+/* Returns why PATH, of status ST, is not accepted as a file, or NULL if it
+ * is. */
 static const char *not_a_file(const char *path, const struct stat *st)
 {
     struct stat null;
@@ -64,7 +66,7 @@ enum glint_status glint_input_open_file(struct glint_input *in,
 {
     struct stat st;
     const char *cause;
-    /* so that a FIFO is opened at once */
+    /* so that opening a FIFO does not wait for a writer */
     enum glint_status status = open_by(in, path, O_NONBLOCK, error);
 
     if (status != GLINT_OK || !strcmp(path, "-"))
@@ -97,8 +99,8 @@ ptrdiff_t glint_input_some(struct glint_input *in, void *dst, size_t bytes)
     return n;
 }
 
-/* Returns the bytes to make room for at first: the size of a regular file and
- * one byte more, so that the end is seen without growing. */
+/* Returns the bytes to allocate at first: the size of a regular file plus one,
+ * so that the end is found without a larger block. */
 static size_t expected_bytes(const struct glint_input *in, size_t max)
 {
     struct stat st;

@@ -18,15 +18,15 @@
 #include "posix/at_death.h"
 #include "posix/error.h"
 
-/* most characters of an extension that temporary names keep */
+/* max characters of an extension in temporary names */
 #define EXT_CHARS  16
-#define MAX_LINKS  40 /* most links that Linux follows */
+#define MAX_LINKS  40 /* max links that Linux follows in a path */
 #define PATH_BYTES 4096
 
 /* -------------------------------------------------------------------- links */
 
-/* Returns the length of PATH's folder with its slash, or 0 if it states
- * none. */
+/* Returns the length of PATH's folder with its slash, or 0 if PATH has no
+ * slash. */
 static size_t folder_length(const char *path)
 {
     const char *const slash = strrchr(path, '/');
@@ -34,8 +34,8 @@ static size_t folder_length(const char *path)
     return slash ? (size_t)(slash + 1 - path) : 0;
 }
 
-/* Sets FOLDER, PATH_BYTES long, to the folder of PATH, or "." if it states
- * none. */
+/* Sets FOLDER, PATH_BYTES long, to the folder of PATH, or "." if PATH has no
+ * slash. */
 static void set_folder(char *folder, const char *path)
 {
     const size_t n = folder_length(path);
@@ -46,10 +46,10 @@ static void set_folder(char *folder, const char *path)
         snprintf(folder, PATH_BYTES, "%.*s", (int)n, path);
 }
 
-/* Checks whether the kernel would follow_link the link at PATH, whose status is
- * LINK. In a folder that everybody may write to it follows only links of the
- * user and of the folder's owner, but it reports that only if the link leads to
- * a file. */
+/* Returns whether the kernel would follow the symbolic link at PATH, whose
+ * status is LINK. In a folder that everybody may write to, the kernel follows
+ * only links of the user and of the folder's owner, but it reports that only if
+ * the link leads to an existing file. */
 static bool may_follow(const char *path, const struct stat *link)
 {
     char folder[PATH_BYTES];
@@ -61,8 +61,8 @@ static bool may_follow(const char *path, const struct stat *link)
             (!(st.st_mode & S_IWOTH) || st.st_uid == link->st_uid));
 }
 
-/* Replaces PATH, PATH_BYTES long, by the text of the link there. Returns false
- * with errno set. */
+/* Replaces PATH, PATH_BYTES long, by the path that the link there points to.
+ * Returns false with errno set on failure. */
 static bool follow_link(char *path)
 {
     char text[PATH_BYTES];
@@ -80,8 +80,8 @@ static bool follow_link(char *path)
     return true;
 }
 
-/* Follows the links at PATH to a file that is not there yet. Returns its path,
- * malloc'ed, or NULL with errno set. */
+/* Follows the dangling links at PATH. Returns the malloc'ed path of the missing
+ * file, or NULL with errno set. */
 static char *new_target(const char *path)
 {
     char at[PATH_BYTES];
@@ -106,11 +106,11 @@ static char *new_target(const char *path)
     return NULL;
 }
 
-/* Returns the file that PATH leads to, all links followed, malloc'ed. ST is the
- * status of PATH, or NULL if there is no file yet, as at the end of a dangling
- * link. Returns NULL with errno set: EACCES for a dangling link that the kernel
- * would not follow, ESTALE if PATH leads to another file than ST now, or an
- * error of the system. */
+/* Returns the malloc'ed path of the file that PATH leads to after all links. ST
+ * is the status of PATH, or NULL if there is no file yet, as at the end of a
+ * dangling link. On failure returns NULL with errno set: EACCES for a dangling
+ * link that the kernel would not follow, ESTALE if PATH now leads to another
+ * file than ST, or a system error. */
 static char *target_of(const char *path, const struct stat *st)
 {
     struct stat now;
@@ -122,7 +122,7 @@ static char *target_of(const char *path, const struct stat *st)
     if (!target)
         return NULL;
     /* If TARGET is another file than ST, somebody has changed a link since, and
-     * the kernel might not have followed the new one. */
+     * the kernel might refuse to follow the new link. */
     if (lstat(target, &now) == 0 && now.st_dev == st->st_dev &&
         now.st_ino == st->st_ino)
         return target;
@@ -164,7 +164,7 @@ bool glint_target_is_same(const char *a, const char *b)
 /* ---------------------------------------------------------- temporary names */
 
 /* Returns the temporary name DIR/.glint-PID-N.EXT for the target DIR/NAME.EXT,
- * malloc'ed, or NULL without memory. */
+ * malloc'ed, or NULL if there is no memory. */
 static char *name_beside(const char *target, unsigned n)
 {
     const char *const base = target + folder_length(target);
@@ -180,8 +180,8 @@ static char *name_beside(const char *target, unsigned n)
     return name;
 }
 
-/* Returns the process that made the temporary file NAME, or 0 if NAME is not
- * one. */
+/* Returns the id of the process that made the temporary file NAME, or 0 if NAME
+ * is not the name of a temporary file. */
 static pid_t maker_of(const char *name)
 {
     static const char begin[] = ".glint-";
@@ -199,7 +199,7 @@ static pid_t maker_of(const char *name)
     return end > name && (*end == '.' || !*end) ? (pid_t)pid : 0;
 }
 
-/* Checks whether FD is a regular file of this user's that nobody has locked. */
+/* Returns whether FD is a regular file of this user that nobody has locked. */
 static bool is_abandoned(int fd)
 {
     struct stat st;
@@ -224,13 +224,12 @@ static void clean_one(int folder, const char *name)
     close(fd);
 }
 
-/* Removes temporary files beside TARGET that killed runs have left: files of
- * this user's, whose process is gone, and locked by nobody on any machine. Does
- * nothing in the folder that it has cleaned last. */
+/* Removes temporary files that killed runs have left in TARGET's folder: files
+ * of this user whose process has ended and that nobody on any machine has
+ * locked. Does nothing if the last call cleaned the same folder. */
 static void clean_folder(const char *target)
 {
-    /* Hash of inode and device of the folder cleaned last, which is not
-     * cleaned again. */
+    /* hash of inode and device of the folder cleaned last */
     static unsigned long cleaned;
     unsigned long here;
     char folder[PATH_BYTES];
@@ -253,12 +252,12 @@ static void clean_folder(const char *target)
 }
 
 #define BUFFER_BYTES 65536
-#define MAX_TMP      16   /* most temporary files at a time */
-#define MAX_TRIES    1000 /* names to try, as others may have taken some */
+#define MAX_TMP      16   /* max open temporary files */
+#define MAX_TRIES    1000 /* names to try, as some may exist already */
 
 /* ---------------------------------------------- files to remove when dying */
 
-static char *doomed[MAX_TMP]; /* atomic: names of temporary files, or NULL */
+static char *doomed[MAX_TMP]; /* names of temporary files, or NULL; atomic */
 static int dying;             /* atomic */
 
 /* Removes all temporary files when the process dies. Async-signal-safe. */
@@ -288,9 +287,8 @@ static bool doom(char *name)
     return false;
 }
 
-/* Takes NAME off the list and frees it. Another thread may be in
- * remove_doomed() with NAME in use: then DYING is set, and NAME is not
- * freed. */
+/* Removes NAME from the list and frees it. If another thread is in
+ * remove_doomed(), which may use NAME, DYING is set, and NAME is not freed. */
 static void spare(char *name)
 {
     for (int i = 0; i < MAX_TMP; i++) {
@@ -312,9 +310,9 @@ static enum glint_status refuse(const struct glint_output *out,
                               strerror(number));
 }
 
-/* Creates the file NAME and puts it on the list. Signals are blocked meanwhile,
- * as death in between would leave the file. Returns its descriptor, or -1 with
- * errno set. */
+/* Creates the file NAME and adds it to the list. Signals are blocked meanwhile,
+ * as a signal between the two steps would leave the file behind. Returns its
+ * descriptor, or -1 with errno set. */
 static int create_doomed(char *name, mode_t mode)
 {
     sigset_t held, old;
@@ -335,8 +333,8 @@ static int create_doomed(char *name, mode_t mode)
     return fd;
 }
 
-/* Opens a temporary file beside out->target. MODE: permission bits to give it,
- * or (mode_t)-1 for those that the umask leaves. */
+/* Opens a temporary file in the folder of out->target. MODE: its permission
+ * bits, or (mode_t)-1 for the default by umask. */
 static enum glint_status open_beside(struct glint_output *out, mode_t mode,
                                      struct glint_error *error)
 {
@@ -364,17 +362,17 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
         return glint_error_report(error, GLINT_E_OUTPUT, out->name,
                                   "cannot create a file beside it: %s",
                                   strerror(number));
-    /* The lock tells clean_folder() that this process lives. */
+    /* The lock shows clean_folder() that the file is in use. */
     flock(out->fd, LOCK_EX | LOCK_NB);
     if (keep && fchmod(out->fd, mode) < 0)
         return refuse(out, error, errno);
     return GLINT_OK;
 }
 
-/* Finds where OUT's name leads: sets ST to the status of the file there, or
- * IS_THERE to false, and OUT's target unless that is not a regular file. Looks
- * again if somebody puts another file there meanwhile, as shards do that end
- * together. Returns 0 or an errno. */
+/* Resolves OUT's name. If the file exists, sets ST to its status, else IS_THERE
+ * to false. Sets OUT's target unless the file is not regular. Tries again if
+ * another process replaces the file meanwhile, as shards that end together do.
+ * Returns 0 or an errno. */
 static int find_target(struct glint_output *out, struct stat *st,
                        bool *is_there)
 {
@@ -629,7 +627,7 @@ FILE *glint_memory_file_open(char **text, size_t *bytes)
     struct text_stream *const t = malloc(sizeof *t);
     FILE *file;
 
-    *text = calloc(1, 1); /* an empty text, if nothing is written */
+    *text = calloc(1, 1); /* an empty text, in case nothing is written */
     *bytes = 0;
     if (!t || !*text) {
         free(t);

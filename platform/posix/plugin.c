@@ -13,9 +13,9 @@
 
 #define PATH_BYTES 4096
 #define FILE_BYTES 64
-#define INSTALLED                                                              \
-    "../lib/glint/" /* place of plug-ins as seen from bin/, wherever both were \
-                       moved */
+#define INSTALLED                                                             \
+    "../lib/glint/" /* folder of plug-ins relative to bin/, wherever both are \
+                       installed */
 
 /* Sets DIR to the folder of glint's own file, with its last slash. Returns
  * false if that is unknown. */
@@ -30,8 +30,8 @@ static bool find_own_directory(char dir[PATH_BYTES])
     return true;
 }
 
-/* Returns whether DIR is not in build/ or a folder of it, beside which the
- * sources are. */
+/* Returns whether DIR is outside a source tree: neither build/ nor a folder in
+ * it, which have lenses/ beside or above them. */
 static bool is_installed(const char *dir)
 {
     char up[PATH_BYTES + FILE_BYTES], up_twice[PATH_BYTES + FILE_BYTES];
@@ -80,7 +80,7 @@ static const void *load_from(const struct glint_plugin *plugin,
     return NULL;
 }
 
-/* Loads the plug-in from DIR if it is there. Returns NULL also if everybody may
+/* Loads the plug-in from DIR. Returns NULL if it is not there or everybody may
  * write to DIR. */
 static const void *load_from_directory(const struct glint_plugin *plugin,
                                        const char *dir,

@@ -18,7 +18,7 @@ void glint_process_hold_streams(void)
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
         if (fcntl(fd, F_GETFD) < 0 && errno == EBADF &&
             open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
-            _exit(1); /* There is no stream to say why. */
+            _exit(1); /* No stream is open to report the cause. */
 }
 
 const char *glint_process_setting(const char *name)
@@ -26,8 +26,8 @@ const char *glint_process_setting(const char *name)
     return secure_getenv(name);
 }
 
-/* dladdr() gives the path that the host passed to dlopen(), which is relative
- * to a folder of then, and argv[0] for a program. */
+/* Not dladdr(): it returns the path passed to dlopen(), which may be relative
+ * to an earlier working directory, and argv[0] for a program. */
 bool glint_process_own_file(char *path, size_t bytes)
 {
     static const char own = 0;
@@ -37,7 +37,8 @@ bool glint_process_own_file(char *path, size_t bytes)
     size_t n = 0;
 
     while (maps && !file && fgets(line, sizeof line, maps)) {
-        char *rest; /* a line begins with "BEGIN-END " in hexadecimal */
+        char *rest; /* A line begins with "BEGIN-END ", two hexadecimal
+                       addresses. */
         const uintmax_t begin = strtoumax(line, &rest, 16);
         const uintmax_t end = *rest == '-' ? strtoumax(rest + 1, &rest, 16) : 0;
 
@@ -73,7 +74,7 @@ static void *do_call(void *arg)
 }
 
 /* Runs C in a thread with a stack of BYTES; signals go to that thread
- * meanwhile. Returns false if there can be no such thread. */
+ * meanwhile. Returns false if the thread cannot be created. */
 static bool call_apart(size_t bytes, struct call *c)
 {
     pthread_attr_t attr;

@@ -21,18 +21,19 @@ struct pool {
     pthread_mutex_t lock;      /* guards round, open, quit and busy */
     pthread_cond_t wake; /* signals that a round was opened, or quit set */
     pthread_cond_t idle; /* signals that busy became 0 */
-    unsigned round;      /* number of rounds so far */
-    bool open;           /* the round still takes helpers in */
+    unsigned round;      /* rounds opened so far; a round runs one set of
+                            jobs */
+    bool open;           /* helpers may still join the round */
     bool quit;
-    int busy; /* helpers inside the round */
+    int busy; /* helpers that work in the round */
 
     /* These are constant while a round is open or a helper is busy. */
     glint_job_fn *fn;
     void *ctx;
     unsigned n_jobs;
 
-    unsigned next; /* next job; atomic. Unsigned, as each worker counts one too
-                      far */
+    unsigned next; /* index of the next job; atomic. Unsigned, as every worker
+                      increments it once past the end */
     int n_helpers;
     struct helper helper[GLINT_MAX_WORKERS - 1];
 };
@@ -93,14 +94,15 @@ static void run(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
     do_jobs(p, 0);
 
     pthread_mutex_lock(&p->lock);
-    p->open = false; /* A worker that still sleeps would find no job. */
+    p->open = false; /* A helper that still sleeps would find no job. */
     while (p->busy > 0)
         pthread_cond_wait(&p->idle, &p->lock);
     pthread_mutex_unlock(&p->lock);
 }
 
-/* Blocks all signals but those of a thread's own faults. If blocked, these
- * would kill the process at once, without the functions of posix/at_death.h. */
+/* Blocks all signals but the signals of a thread's own faults (SIGSEGV ...):
+ * blocked, these would kill the process at once, without the functions of
+ * posix/at_death.h. */
 static void hold_signals(sigset_t *old)
 {
     static const int faults[] = {SIGSEGV, SIGBUS,  SIGILL, SIGFPE,
@@ -113,7 +115,7 @@ static void hold_signals(sigset_t *old)
     pthread_sigmask(SIG_SETMASK, &held, old);
 }
 
-/* Starts N helpers, or as many as the system gives. */
+/* Starts N helpers, or as many as the system permits. */
 static void start_helpers(struct pool *p, int n)
 {
     pthread_attr_t attr;

@@ -27,8 +27,8 @@ static void close_view(void *window)
     free(v);
 }
 
-/* Opens a window for pictures of WIDTH x HEIGHT, of that size or halved until
- * it fits the desktop. */
+/* Opens a window for pictures of WIDTH x HEIGHT. Its size is halved until it
+ * fits the desktop. On failure v->texture stays NULL. */
 static void make(struct view *v, const char *title, int width, int height)
 {
     SDL_Rect room = {0, 0, width, height};

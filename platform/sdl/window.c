@@ -22,7 +22,8 @@ static void give_up(struct glint_window *w)
     w->pixels = NULL;
 }
 
-/* Opens a window for pictures of IMAGE's size and closes the one before. */
+/* Closes the window, if there is one, and opens a window for pictures of
+ * IMAGE's size. */
 static enum glint_status begin(struct glint_window *w,
                                const struct glint_image *image,
                                struct glint_error *error)

@@ -7,13 +7,13 @@
 #define WHITE_Q24 (INT32_C(1) << 24)
 #define ONE_Q31   (UINT64_C(1) << 31)
 
-/* Curves of the form light = u^(power / 45), u = (v + a) / (1 + a), from v =
- * toe on, and v / divisor below. */
+/* A curve light(v): ((v + a) / (1 + a))^(power / 45) from v = toe on, and v /
+ * divisor below. */
 struct power {
     int power;       /* 45 times the exponent */
     int a_10000;     /* 10000 times a */
-    int toe_10000;   /* 10000 times the toe's end */
-    int divisor_100; /* 100 times the divisor of the toe */
+    int toe_10000;   /* 10000 times the toe */
+    int divisor_100; /* 100 times the divisor */
 };
 
 static const struct power powers[] = {
@@ -137,8 +137,8 @@ static int32_t bt709_light_q24(int step, int steps)
 
 /* ------------------------------------------------------------------ powers */
 
-/* Returns log2(N / D) of N, D from 1 to 2^32. The 32 fraction bits come by
- * squaring; their error is below 2^-29. */
+/* Returns log2(N / D) of N, D from 1 to 2^32. The 32 fraction bits are computed
+ * by repeated squaring; the error is below 2^-29. */
 static int64_t log2_q32(uint64_t n, uint64_t d)
 {
     int64_t whole = 31, bits = 0;
@@ -152,7 +152,7 @@ static int64_t log2_q32(uint64_t n, uint64_t d)
         n *= 2;
         whole--;
     }
-    while (d >> 31) { /* so that n 2^31 fits, n < 2 d */
+    while (d >> 31) { /* so that n 2^31 fits into 64 bits, as n < 2 d */
         n >>= 1;
         d >>= 1;
     }
@@ -167,8 +167,8 @@ static int64_t log2_q32(uint64_t n, uint64_t d)
     return (whole - 31) * (INT64_C(1) << 32) + bits;
 }
 
-/* Returns 2^X with FRAC fraction bits, 2^X below 2^(31 - FRAC): the series of
- * e^(x ln 2) for the fraction. */
+/* Returns 2^X with FRAC fraction bits, by the series of e^(x ln 2) for the
+ * fraction of X. 2^X must be below 2^(31 - FRAC). */
 static int64_t exp2_of(int64_t x_q32, int frac)
 {
     const int64_t whole = x_q32 >> 32; /* floor */
@@ -222,11 +222,12 @@ static int32_t pq_light_q24(int step, int steps)
     return (int32_t)exp2_q24(log_q32 * 8192 / 1305 + white_q32);
 }
 
-/* Returns the light of the scene by HLG [ITU-R BT.2100]: v^2 / 3 up to 1/2,
- * else (e^((v - c) / a) + b) / 12; 3.774118 is the peak if v = 0.75 is 1. */
+/* Returns the scene light by HLG [ITU-R BT.2100]: v^2 / 3 up to v = 1/2, else
+ * (e^((v - c) / a) + b) / 12; scaled so that v = 0.75 is light 1 and the peak
+ * 3.774118. */
 static int32_t hlg_light_q24(int64_t step, int64_t steps)
 {
-    /* log2(e) / a, c, b, and the light of the peak */
+    /* log2(e) / a, c, b and the peak light */
     const int64_t slope_q24 = 135346594, c_q32 = 2404798274;
     const int64_t b_q24 = 4775952, peak_q24 = 63319195;
     int64_t v_q32, light_q24;
@@ -240,7 +241,7 @@ static int32_t hlg_light_q24(int64_t step, int64_t steps)
     return (int32_t)((light_q24 * peak_q24 / 12 + WHITE_Q24 / 2) / WHITE_Q24);
 }
 
-/* Returns 10^(DECADES / 2 (v - 1)), and 0 at v = 0. */
+/* Returns 10^(DECADES_2 / 2 (v - 1)), and 0 at v = 0. */
 static int32_t log_light_q24(int64_t step, int64_t steps, int decades_2)
 {
     const int64_t log2_10_q32 = INT64_C(14267572527);

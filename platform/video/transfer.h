@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * video/transfer.h - the transfer curves and primaries that a video's tags name
- * [ITU-T H.273], as tables of integers, which are the same on every CPU.
+ * video/transfer.h - transfer curves and primaries of a video's tags [ITU-T
+ * H.273], in integers, so that results are the same on every CPU.
  *
  * Light 1 is diffuse white: code 1, but 203 cd/m2 by PQ and 0.265 of the peak
- * of the scene light by HLG [ITU-R BT.2408], so that these have room for light
- * up to 49.3 and 3.77.
+ * of the scene light by HLG [ITU-R BT.2408], so that PQ holds light up to 49.3
+ * and HLG up to 3.77.
  */
 #ifndef GLINT_PLATFORM_VIDEO_TRANSFER_H
 #define GLINT_PLATFORM_VIDEO_TRANSFER_H
@@ -33,22 +33,22 @@ enum glint_primaries {
     GLINT_PRIMARIES
 };
 
-/* Each word of these lists, which end with NULL, is that of an option. */
+/* Option values of the curves, in the order of the enum; ends with NULL. */
 extern const char *const glint_transfer_words[];
 
-/* Return the curve and the primaries of TAG, ffmpeg's name of them; -1 if there
- * are none such. */
+/* Return the curve, or the primaries, that ffmpeg calls TAG; -1 if TAG is
+ * unknown. */
 int glint_transfer_of_tag(const char *tag);
 int glint_primaries_of_tag(const char *tag);
 
 /* Returns the light of code V = STEP / STEPS, 0 <= STEP <= STEPS <= 2^16; 2^24
- * is white. It rises with STEP; light below 2^-24 is 0. The relative error is
- * below 1e-5 plus rounding. */
+ * is white. Light rises with STEP; light below 2^-24 is 0. The relative error
+ * is below 1e-5 plus rounding. */
 int32_t glint_transfer_light_q24(enum glint_transfer_curve curve, int step,
                                  int steps);
 
-/* from linear light of BT.709's primaries to that of others, and back; 65536 is
- * 1. The rows sum up to that, so white stays white. */
+/* from linear light of BT.709's primaries to other primaries, and back; 65536
+ * is 1. Rows sum up to 65536, so white stays white. */
 extern const int32_t glint_primaries_from_bt709_q16[GLINT_PRIMARIES][3][3];
 extern const int32_t glint_primaries_to_bt709_q16[GLINT_PRIMARIES][3][3];
 

@@ -24,7 +24,7 @@ static const struct colour {
     enum glint_pixel_format format;
     bool has_alpha, is_411, may_be_deep;
 } colours[] = {
-    /* glint_y4m_layout_tag() returns the first tag of a format. */
+    /* glint_y4m_layout_tag() returns the first tag of each format. */
     {"420jpeg", GLINT_I420, false, false, false},
     {"420mpeg2", GLINT_I420, false, false, false},
     {"420paldv", GLINT_I420, false, false, false},
@@ -38,8 +38,8 @@ static const struct colour {
 
 #define N_COLOURS (sizeof colours / sizeof *colours)
 
-/* Returns the bits a sample that TEXT, the end of a tag, states: 9 .. 16, 8 if
- * it is empty, 0 if malformed. */
+/* Returns the bits per sample by TEXT, the end of a tag: 9 .. 16; 8 if TEXT is
+ * empty, 0 if it is malformed. */
 static int bits_of(const char *text, bool is_grey)
 {
     static const char *const names[] = {"9", "10", "12", "14", "16"};
@@ -159,7 +159,7 @@ static void put_code(const struct plane *p, int x, int y, int32_t code)
     }
 }
 
-/* Fills IMAGE, of LAYOUT's format, with PLANES cut to 8 bits. */
+/* Fills IMAGE, of LAYOUT's format, with PLANES reduced to 8 bits. */
 static void fill_proxy(const struct glint_y4m_layout *layout,
                        const struct glint_image *image, const uint8_t *planes)
 {
@@ -191,8 +191,8 @@ static enum glint_matrix matrix_of(int height)
     return height < 720 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
 }
 
-/* Checks whether codes are those of JPEG, which are BT.601 in any size [JFIF]:
- * full range, and C420jpeg or no tag C. */
+/* Returns whether the matrix is BT.601 in any size, as in JPEG [JFIF]: the
+ * range is full, and the tag C is C420jpeg or missing. */
 static bool is_jpeg(const struct glint_y4m_header *h)
 {
     return h->range == GLINT_RANGE_FULL &&
@@ -224,7 +224,7 @@ void glint_y4m_header_init(struct glint_y4m_header *header, int width,
 }
 
 /* Returns the number at *AT, at most INT_MAX, and moves *AT past it. Returns -1
- * if there is none. */
+ * if there is no number. */
 static int take_number(const char **at)
 {
     int value = -1;
@@ -238,8 +238,8 @@ static int take_number(const char **at)
     return value;
 }
 
-/* Reads TEXT as "N:D" in plain digits. Returns false if it is malformed, or D
- * is 0 and N is not. */
+/* Parses TEXT as "N:D" in plain digits. Returns false if TEXT is malformed, or
+ * D is 0 and N is not. */
 static bool take_ratio(const char *text, int *num, int *den)
 {
     *num = take_number(&text);
@@ -249,7 +249,7 @@ static bool take_ratio(const char *text, int *num, int *den)
     return *den >= 0 && !*text && (*den > 0 || *num == 0);
 }
 
-/* Returns TEXT as a number, or 0 if it has other characters than digits. */
+/* Returns TEXT as a number, or 0 if any character is not a digit. */
 static int take_side(const char *text)
 {
     const int value = take_number(&text);
@@ -277,7 +277,7 @@ static bool take_range(struct glint_y4m_header *h, const char *tag)
     return true;
 }
 
-/* Sets H by a tag of the header. Returns false if TAG is malformed. */
+/* Sets H by TAG of the header. Returns false if TAG is malformed. */
 static bool take_tag(struct glint_y4m_header *h, const char *tag)
 {
     int num, den;
@@ -358,7 +358,7 @@ enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
     if (status)
         return status;
     h.matrix = is_jpeg(&h) ? GLINT_MATRIX_BT601 : matrix_of(h.height);
-    strcpy(h.line, line); /* LINE fitted into COPY. */
+    strcpy(h.line, line); /* fits, as LINE fitted into COPY */
     h.line_range = h.range;
     *header = h;
     return GLINT_OK;
@@ -387,8 +387,7 @@ size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
 
 /* ----------------------------------------------------------------- reading */
 
-/* The light of a stream that is not BT.709, and of the copy of its frames,
- * which is. */
+/* Converts frames of a stream that is not BT.709 to the 8-bit BT.709 copy. */
 struct glint_y4m_seen {
     struct glint_y4m_light from, to;
 };
@@ -410,7 +409,7 @@ static enum glint_status report_io(const struct glint_y4m_reader *r,
 
 enum line_end { LINE_FEED, LINE_EOF, LINE_TOO_LONG, LINE_FAILED };
 
-/* Reads a line up to its line feed, which is dropped, or to the end of the
+/* Reads a line up to its line feed, which is not stored, or to the end of the
  * stream. Sets *LEN to the number of characters. */
 static enum line_end read_line(struct glint_y4m_reader *r, char *line,
                                size_t size, size_t *len)
@@ -435,8 +434,8 @@ static enum line_end read_line(struct glint_y4m_reader *r, char *line,
     }
 }
 
-/* Reads BYTES, or fewer at the end of the stream. Returns how many, or -1 on
- * failure. */
+/* Reads BYTES, or fewer at the end of the stream. Returns the number of bytes
+ * read, or -1 on failure. */
 static ptrdiff_t read_block(struct glint_y4m_reader *r, uint8_t *dst,
                             size_t bytes)
 {
@@ -527,7 +526,7 @@ glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
     return status;
 }
 
-/* Sets *MORE if the stream of frames without lines continues. */
+/* Sets *MORE to whether a stream without FRAME lines continues. */
 static enum glint_status look_ahead(struct glint_y4m_reader *r, bool *more,
                                     struct glint_error *error)
 {
@@ -544,7 +543,7 @@ static enum glint_status look_ahead(struct glint_y4m_reader *r, bool *more,
 }
 
 /* Reads a frame whose rows are padded to r->stride. Returns the bytes of pixels
- * read, fewer than the frame has at the end of the stream, or -1. */
+ * read, fewer than a frame at the end of the stream, or -1 on failure. */
 static ptrdiff_t read_rows(struct glint_y4m_reader *r)
 {
     uint8_t *to = r->planes;
@@ -578,7 +577,7 @@ static ptrdiff_t read_rows(struct glint_y4m_reader *r)
     return to - r->planes;
 }
 
-/* Returns whether the codes of H do not mean what those of BT.709 do. */
+/* Returns whether transfer or primaries of H differ from BT.709. */
 static bool is_graded(const struct glint_y4m_header *h)
 {
     return h->transfer != GLINT_TRANSFER_BT709 ||
@@ -600,8 +599,8 @@ static struct glint_y4m_seen *make_seen(const struct glint_y4m_header *h)
     return seen;
 }
 
-/* Prepares r->frame. Its memory is taken with the first frame, so that a header
- * alone costs none. */
+/* Prepares r->frame. Its memory is allocated with the first frame, so that
+ * reading only the header needs none. */
 static enum glint_status place_frame(struct glint_y4m_reader *r,
                                      struct glint_error *error)
 {
@@ -799,8 +798,8 @@ void glint_y4m_writer_abort(struct glint_y4m_writer *writer)
 #define WHITE_Q24 (INT32_C(1) << 24)
 #define WHITE_Q20 (INT32_C(1) << 20)
 
-/* Returns the R'G'B' code, _q20, at which the straight lines between the
- * entries of DECODE reach LIGHT, _q24. */
+/* Returns the R'G'B' code, _q20, at which DECODE, interpolated linearly,
+ * reaches LIGHT, _q24. */
 static int32_t place_q20(const int32_t *decode_q24, int32_t light)
 {
     int low = 0, high = GLINT_Y4M_STEPS;
@@ -879,7 +878,7 @@ static int32_t decode(const struct glint_y4m_light *l, int32_t v_q20)
 static int32_t encode(const struct glint_y4m_light *l, int64_t light)
 {
     int octave = 0;
-    int64_t place; /* place in the octave, with 16 fraction bits of an entry */
+    int64_t place; /* position in the octave, entries with 16 fraction bits */
     const int32_t *at;
 
     if (light >= l->decode_q24[GLINT_Y4M_STEPS])
@@ -917,7 +916,7 @@ static int32_t held(int64_t v, int32_t most)
 }
 
 /* Sets RGB to R', G', B', clamped to 0 .. 1, of YCC: the code of Y', and the
- * codes of Cb and Cr less their middle. */
+ * codes of Cb and Cr minus the code of zero. */
 static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
                    int32_t rgb_q20[3])
 {
@@ -933,7 +932,7 @@ static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
     rgb_q20[2] = held(b, WHITE_Q20);
 }
 
-/* Multiplies LIGHT by M, whose rows sum up to 65536. */
+/* Multiplies LIGHT by the matrix M; each row of M sums up to 65536. */
 static void multiply(const int32_t m_q16[3][3], int64_t light[3])
 {
     const int64_t r = light[0], g = light[1], b = light[2];
@@ -957,8 +956,8 @@ static void to_ycc(const struct glint_y4m_light *l, const int64_t rgb_q20[3],
     ycc_q20[2] = y4m_share((int32_t)(rgb_q20[0] - y), l->cr_factor);
 }
 
-/* Sets the changes of Y', Cb and Cr, _q20, that the light of LAYER makes on a
- * pixel of YCC of which COVER_Q8 is hidden. */
+/* Sets the changes of Y', Cb and Cr, _q20, of a pixel with codes YCC when the
+ * fraction COVER_Q8 of it is hidden and the light of LAYER is added. */
 static void change_of(const struct glint_y4m_light *l, const int32_t ycc[3],
                       const float *layer, int cover_q8, int64_t change_q20[3])
 {
@@ -991,8 +990,8 @@ static bool is_lit(const float *layer)
     return layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
 }
 
-/* Returns SUM_Q20 / COUNT as a whole number. COUNT is 1 .. 4; 3 occurs only at
- * the right edge of 4:1:1. */
+/* Returns SUM_Q20 / COUNT, rounded to an integer. COUNT is 1 .. 4; 3 occurs
+ * only at the right edge of 4:1:1. */
 static int64_t mean_of(int64_t sum_q20, int count)
 {
     const int64_t whole = 3 * (int64_t)WHITE_Q20;
@@ -1005,11 +1004,13 @@ static int64_t mean_of(int64_t sum_q20, int count)
 
 /* the pixels X0 .. X1 - 1, Y0 .. Y1 - 1 that share a chroma sample */
 struct block {
-    int x, y; /* place of the chroma sample */
+    int x, y; /* position of the chroma sample in its plane */
     int x0, y0, x1, y1;
 };
 
-/* COVER_Q8: as LAYER, one of a pixel; NULL: nothing is hidden. */
+/* Adds LAYER to the pixels of B after hiding the fraction COVER_Q8 of each.
+ * LAYER and COVER_Q8 are arrays of the whole frame; if COVER_Q8 is NULL,
+ * nothing is hidden. */
 static void add_to_block(const struct glint_y4m_light *l, struct plane plane[4],
                          const struct block *b, const float *layer,
                          const uint16_t *cover_q8)
@@ -1050,7 +1051,8 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-/* Sets ACROSS and DOWN to the pixels that share a chroma sample. */
+/* Sets ACROSS and DOWN to the width and height, in pixels, of the block that
+ * shares a chroma sample. */
 static void block_size(const struct glint_y4m_layout *layout, int *across,
                        int *down)
 {
@@ -1062,8 +1064,8 @@ static void block_size(const struct glint_y4m_layout *layout, int *across,
     *down = layout->format == GLINT_I420 ? 2 : 1;
 }
 
-/* Sets YCC_Q20 to the codes of TO for YCC, codes of FROM; light above white is
- * cut off. */
+/* Converts YCC, codes by FROM, to YCC_Q20, values by TO; light above white is
+ * clipped. */
 static void regrade(const struct glint_y4m_light *from,
                     const struct glint_y4m_light *to, const int32_t ycc[3],
                     int64_t ycc_q20[3])
@@ -1110,7 +1112,7 @@ static void regrade_block(const struct glint_y4m_seen *seen,
                      held(128 + mean_of(sum[c - 1] * t->c_span, count), 255));
 }
 
-/* Fills the copy of the last frame of R as BT.709 has it. */
+/* Converts the last frame of R to its BT.709 copy, r->frame. */
 static void fill_seen(const struct glint_y4m_reader *r)
 {
     const struct glint_y4m_light *const f = &r->seen->from, *const t =

@@ -14,31 +14,31 @@
  * ffmpeg -f yuv4mpegpipe writes and reads such streams: one header line and
  * then, for each frame, a line FRAME and the planes Y, Cb, Cr without padding.
  * Chroma of subsampled formats has (side + 1) / 2 samples, as everywhere in
- * glint. The layouts that are handled are listed below; the siting of
- * the chroma samples of 4:2:0 makes no difference here. Of frames of more than
- * 8 bits, of 4:1:1, and of a transfer or primaries other than BT.709, the
- * reader gives a copy of 8 bits in BT.709 to look at; the frames themselves are
- * planes that glint_y4m_light adds light to and glint_y4m_writer_put_planes()
- * writes, with the alpha plane if they have one. Interlaced frames are taken as
- * they come, both fields in one.
+ * glint. The layouts that are handled are listed below; the siting of the
+ * chroma samples of 4:2:0 makes no difference here. Frames of more than 8 bits,
+ * of 4:1:1, or of a transfer or primaries other than BT.709 are returned as an
+ * 8-bit BT.709 copy, for analysis. The stored planes, with the alpha plane if
+ * there is one, are in reader->planes: glint_y4m_light adds light to them, and
+ * glint_y4m_writer_put_planes() writes them. Both fields of an interlaced frame
+ * are treated as one picture.
  *
- * Meaning of the codes, unless the caller changes it in the header after open:
- *   range     limited; full only by the tag XCOLORRANGE=FULL. C420jpeg by
- *             itself states chroma siting only, and is limited, too
+ * Colours of a stream, unless the caller changes them in the header after open:
+ *   range     limited; full only by the tag XCOLORRANGE=FULL. C420jpeg
+ *             alone states chroma siting only, and is limited, too
  *   matrix    BT.601 below 720 lines, BT.709 from there on; there is no tag.
  *             Full range as C420jpeg or without a C tag is BT.601 in any size,
  *             as JPEG pictures are
  *   transfer, primaries  BT.709; there are no tags
  *
- * Tags that glint does not use, of the stream and of each frame, are carried
- * over as they are. Frames are counted from 0.
+ * Tags that glint does not use, of the stream and of each frame, are copied
+ * unchanged. Frames are counted from 0.
  *
  * Layouts of a frame by the tag C:
  *
  *     C420 420jpeg 420mpeg2 420paldv 411 422 444 444alpha mono
  *     and 420 422 444 with p9 p10 p12 p14 p16, mono with 9 10 12 14 16
  *
- * A sample of more than 8 bits takes two bytes, the low one first.
+ * A sample of more than 8 bits has two bytes, little-endian.
  */
 #ifndef GLINT_PLATFORM_VIDEO_Y4M_H
 #define GLINT_PLATFORM_VIDEO_Y4M_H
@@ -53,16 +53,16 @@
 struct glint_y4m_seen;
 
 struct glint_y4m_layout {
-    enum glint_pixel_format format; /* _GREY, _I420, _I422 or _I444; of 411 that
-                                       of its copy, _I422 */
-    int bits;                       /* bits a sample, 8 .. 16 */
-    bool has_alpha; /* a fourth plane of full size, which is passed on */
-    bool is_411;    /* chroma is a quarter as wide */
+    enum glint_pixel_format format; /* _GREY, _I420, _I422 or _I444; _I422 for
+                                       4:1:1, the format of its copy */
+    int bits;                       /* bits per sample, 8 .. 16 */
+    bool has_alpha; /* a fourth plane of full size, which is copied unchanged */
+    bool is_411;    /* 4:1:1: chroma has a quarter of the width */
 };
 
-#define GLINT_Y4M_LINE 512 /* bytes of the longest line that is read */
+#define GLINT_Y4M_LINE 512 /* max bytes of a line that is read */
 
-#define GLINT_Y4M_PRINTED 1024 /* bytes of the longest line printed */
+#define GLINT_Y4M_PRINTED 1024 /* max bytes of a line that is printed */
 
 #define GLINT_Y4M_FRAME_TAGS 128
 
@@ -75,46 +75,47 @@ struct glint_y4m_header {
     enum glint_matrix matrix;
     enum glint_transfer_curve transfer;
     enum glint_primaries primaries;
-    int fps_num, fps_den;       /* frames a second; 0, 0: not known */
+    int fps_num, fps_den;       /* frames per second; 0, 0: not known */
     char interlace;             /* the tag I: p progressive, t or b
                                    top or bottom field first, m mixed,
                                    ? unknown; 0: not stated */
     char aspect[24];            /* shape of a pixel, "1:1"; "": not stated */
     char colour[16];            /* the tag C, "420mpeg2"; "": not stated */
-    bool range_stated;          /* XCOLORRANGE states it */
+    bool range_stated;          /* the stream has the tag XCOLORRANGE */
     char extra[GLINT_Y4M_LINE]; /* the other tags, each after a space */
-    char line[GLINT_Y4M_LINE];  /* the line that was read, or ""; it is printed
-                                   again while range is line_range */
+    char line[GLINT_Y4M_LINE];  /* the header line that was read, or ""; printed
+                                   again unchanged if range equals line_range */
     enum glint_range line_range;
 };
 
 /* ----------------------------------------------------------------- reading */
 
-/* Delivers 1 .. BYTES bytes at DST and returns how many; 0: the end; -1: failed
- * with errno set. */
+/* Writes 1 .. BYTES bytes to DST and returns their number; returns 0 at the
+ * end, or -1 with errno set on failure. */
 typedef ptrdiff_t glint_y4m_source_fn(void *ctx, void *dst, size_t bytes);
 
 struct glint_y4m_reader {
-    /* Range, matrix, transfer and primaries may be overruled before the first
-     * frame. */
+    /* The caller may change range, matrix, transfer and primaries before the
+     * first frame. */
     struct glint_y4m_header header;
-    char frame_tags[GLINT_Y4M_FRAME_TAGS]; /* tags of the last frame: "", or all
-                                              that follows FRAME */
+    char frame_tags[GLINT_Y4M_FRAME_TAGS]; /* tags of the last frame: the text
+                                              after FRAME, or "" */
     long n_frames;                         /* frames delivered so far */
 
     /* Private. */
     const char *name;
-    bool is_raw;   /* There are no lines between the frames. */
+    bool is_raw;   /* The stream has no header and FRAME lines. */
     size_t stride; /* bytes from row to row of luma; 0: rows without padding */
     struct glint_input in; /* input, if source is NULL */
     glint_y4m_source_fn *source;
     void *ctx;
     struct glint_image frame;
     uint8_t *planes; /* planes of the last frame, as they were stored */
-    uint8_t *mem;    /* memory of the frame and, before it, of its planes */
-    struct glint_y4m_seen *seen; /* NULL: codes mean what BT.709 says */
+    uint8_t *mem;    /* memory of planes, followed by the memory of frame */
+    struct glint_y4m_seen *seen; /* converts to the copy; NULL: frames are
+                                    BT.709 */
     uint8_t ahead[4096];
-    /* bytes ahead_at .. ahead_end - 1 are not used yet */
+    /* bytes ahead_at .. ahead_end - 1 of ahead are still unread */
     size_t ahead_at, ahead_end;
 };
 
@@ -125,16 +126,16 @@ struct glint_y4m_writer {
     long n_frames; /* frames written so far */
 };
 
-/* Sets LAYOUT by TAG, "" being 420jpeg. Returns false if there is no such
- * tag. */
+/* Sets LAYOUT by TAG; "" stands for 420jpeg. Returns false if TAG is
+ * unknown. */
 bool glint_y4m_layout_parse(struct glint_y4m_layout *layout, const char *tag);
 
 /* Returns the tag that glint writes for FORMAT: _GREY, _I420, _I422 or
  * _I444. */
 const char *glint_y4m_layout_tag(enum glint_pixel_format format);
 
-/* Returns whether a stored frame is in the form of a struct glint_image: 8
- * bits, BT.709, not 4:1:1. An alpha plane may follow. */
+/* Returns whether stored frames have the layout of struct glint_image and need
+ * no conversion: 8 bits, BT.709, not 4:1:1. An alpha plane may follow. */
 bool glint_y4m_is_plain(const struct glint_y4m_header *header);
 
 /* Sets SIZE to the samples across and down PLANE, 0 .. 3, or to 0 and 0 if
@@ -146,7 +147,7 @@ void glint_y4m_layout_size(const struct glint_y4m_layout *layout, int plane,
 size_t glint_y4m_layout_bytes(const struct glint_y4m_layout *layout, int width,
                               int height);
 
-/* Returns whether NAME is that of such a file: it ends in .y4m. */
+/* Returns whether NAME ends in .y4m. */
 bool glint_y4m_is_name(const char *name);
 
 /* Sets HEADER for a new stream: progressive, square pixels, limited range.
@@ -156,23 +157,23 @@ void glint_y4m_header_init(struct glint_y4m_header *header, int width,
                            int height, enum glint_pixel_format format,
                            int fps_num, int fps_den);
 
-/* Sets HEADER by LINE, which has no line feed and is shorter than
- * GLINT_Y4M_LINE. NAME is for errors. GLINT_E_FORMAT: malformed.
- * GLINT_E_UNSUPPORTED: a layout that is not handled, or a side above
- * GLINT_MAX_SIDE. */
+/* Parses LINE into HEADER. LINE must have no line feed and be shorter than
+ * GLINT_Y4M_LINE. NAME is for errors. Returns GLINT_E_FORMAT if LINE is
+ * malformed, GLINT_E_UNSUPPORTED if the layout is not supported or a side is
+ * above GLINT_MAX_SIDE. */
 enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
                                          const char *line, const char *name,
                                          struct glint_error *error);
 
-/* Writes HEADER to LINE, with a line feed: as it was read, or in the order W H
- * F I A C, extra tags, XCOLORRANGE, which is stated if it was stated or is
- * FULL. Returns the length. */
+/* Writes HEADER to LINE, with a line feed: unchanged if it was read, else in
+ * the order W H F I A C, extra tags, XCOLORRANGE. XCOLORRANGE is written if
+ * range_stated is set or the range is full. Returns the length. */
 size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
                               const struct glint_y4m_header *header);
 
 /* Opens PATH ("-": standard input), which must outlive READER, and reads the
- * header. On failure READER is closed. Errors are those of
- * glint_y4m_header_parse() and GLINT_E_IO. */
+ * header. On failure READER is closed. Returns the errors of
+ * glint_y4m_header_parse(), or GLINT_E_IO. */
 enum glint_status glint_y4m_reader_open(struct glint_y4m_reader *reader,
                                         const char *path,
                                         struct glint_error *error);
@@ -187,7 +188,7 @@ glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
                           struct glint_error *error);
 
 /* Begins to read the stream that SOURCE delivers. NAME, SOURCE and CTX must
- * outlive READER. Errors are those of glint_y4m_reader_open(). */
+ * outlive READER. Returns the errors of glint_y4m_reader_open(). */
 enum glint_status glint_y4m_reader_start(struct glint_y4m_reader *reader,
                                          glint_y4m_source_fn *source, void *ctx,
                                          const char *name,
@@ -195,8 +196,8 @@ enum glint_status glint_y4m_reader_start(struct glint_y4m_reader *reader,
 
 /* Points *FRAME at the next frame, or at NULL after the last. The frame belongs
  * to READER; its samples may be changed, and the next call overwrites them.
- * GLINT_E_FORMAT: no FRAME line where one must be, or the stream ends inside a
- * frame; ERROR states in which. GLINT_E_IO, GLINT_E_MEMORY. */
+ * Returns GLINT_E_FORMAT if a FRAME line is missing or the stream ends inside a
+ * frame (ERROR has the frame's number), GLINT_E_IO or GLINT_E_MEMORY. */
 enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
                                         const struct glint_image **frame,
                                         struct glint_error *error);
@@ -213,21 +214,22 @@ enum glint_status glint_y4m_writer_open(struct glint_y4m_writer *writer,
                                         struct glint_error *error);
 
 /* Writes FRAME, of the format and size of the header, with any strides, and
- * passes it on at once. TAGS: "", or as in glint_y4m_reader.frame_tags.
- * GLINT_E_OUTPUT, GLINT_E_CLOSED. */
+ * flushes the output. TAGS: "", or as in glint_y4m_reader.frame_tags. Returns
+ * GLINT_E_OUTPUT or GLINT_E_CLOSED on failure. */
 enum glint_status glint_y4m_writer_put(struct glint_y4m_writer *writer,
                                        const struct glint_image *frame,
                                        const char *tags,
                                        struct glint_error *error);
 
-/* Writes a frame as it is stored: PLANES has all of its planes, and BYTES is
+/* Writes a frame in the stored layout: PLANES has all planes, BYTES must be
  * glint_y4m_layout_bytes(). */
 enum glint_status glint_y4m_writer_put_planes(struct glint_y4m_writer *writer,
                                               const uint8_t *planes,
                                               size_t bytes, const char *tags,
                                               struct glint_error *error);
 
-/* Ends the stream and puts the file in place. On failure aborts it. */
+/* Ends the stream and renames the file over its target. On failure aborts
+ * WRITER. */
 enum glint_status glint_y4m_writer_commit(struct glint_y4m_writer *writer,
                                           struct glint_error *error);
 
@@ -237,27 +239,30 @@ void glint_y4m_writer_abort(struct glint_y4m_writer *writer);
 
 /* -------------------------------------------------------------------- light
  *
- * Light on frames of any depth, layout and transfer. Codes become R', G', B'
- * and these linear light (video/transfer.h). Light is added, and codes are
- * changed by the difference that it makes, chroma by the mean over its pixels.
- * All is integers and tables of integers, so that results are the same on every
- * machine; codes that no light falls on stay as they are. */
+ * Light on frames of any depth, layout and transfer. Codes are converted to R',
+ * G', B' and then to linear light (video/transfer.h). Light is added there, and
+ * the codes are changed by the resulting difference, chroma by its mean over
+ * the pixels of a chroma sample. All arithmetic is in integers, so that results
+ * are the same on every machine; codes of pixels without added light do not
+ * change. */
 
 enum {
     GLINT_Y4M_STEPS = 4096,   /* steps of R'G'B' from black to white */
     GLINT_Y4M_OCTAVES = 30,   /* octaves of light, from 2^-24 to 64 */
-    GLINT_Y4M_IN_OCTAVE = 128 /* entries of an octave */
+    GLINT_Y4M_IN_OCTAVE = 128 /* entries per octave */
 };
 
 struct glint_y4m_light {
     struct glint_y4m_layout layout;
     int width, height;
-    int32_t black, most;    /* codes of Y' = 0, and the largest there is */
-    int32_t y_span, c_span; /* codes of Y' = 1, and from Cb = -1/2 to 1/2 */
-    int32_t kr_q16, kg_q16, kb_q16; /* fractions of R', G', B' in Y' */
-    int64_t y_factor, c_factor;     /* factors of the spans, y4m_divide.h */
+    int32_t black, most;    /* code of Y' = 0, and the largest code */
+    int32_t y_span, c_span; /* codes from Y' = 0 to 1, and from Cb = -1/2 to
+                               1/2 */
+    int32_t kr_q16, kg_q16, kb_q16; /* weights of R', G', B' in Y' */
+    int64_t y_factor, c_factor;     /* factors that replace divisions by the
+                                       spans (y4m_divide.h) */
     int64_t cb_factor, cr_factor,
-        /* factors of 1 - kb, 1 - kr and kg */
+        /* factors that replace divisions by 1 - kb, 1 - kr and kg */
         g_factor;
     enum glint_primaries primaries;
     int32_t decode_q24[GLINT_Y4M_STEPS + 1]; /* light of each step */
@@ -277,8 +282,8 @@ void glint_y4m_light_blacken(const struct glint_y4m_light *light,
 void glint_y4m_light_add(const struct glint_y4m_light *light, uint8_t *planes,
                          const float *layer);
 
-/* Does as glint_y4m_light_add() after hiding of each pixel the fraction
- * COVER_Q8, [height][width], 0 .. 256. */
+/* Hides the fraction COVER_Q8, [height][width], 0 .. 256, of each pixel, then
+ * does the same as glint_y4m_light_add(). */
 void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
                            const float *layer, const uint16_t *cover_q8);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * video/y4m_divide.h - the divisions that light on a pixel takes, done by
- * multiplications, as CPUs of 32 bits need a function call to divide 64 bits.
- * The results are those of the division, rounded to nearest, ties away from 0.
+ * video/y4m_divide.h - the divisions that adding light to a pixel needs, done
+ * by multiplications, as 32-bit CPUs need a function call to divide 64 bits.
+ * Results equal the division rounded to nearest, ties away from 0.
  */
 #ifndef GLINT_PLATFORM_VIDEO_Y4M_DIVIDE_H
 #define GLINT_PLATFORM_VIDEO_Y4M_DIVIDE_H
@@ -11,8 +11,8 @@
 
 enum { Y4M_SHARE_BITS = 40, Y4M_PART_BITS = 48, Y4M_PART_SKIP = 14 };
 
-/* Returns the factor of y4m_share for K 2^UP / D: UP up to 20, D from 219 to
- * 65535. */
+/* Returns the factor with which y4m_share() computes K 2^UP / D; UP must be at
+ * most 20, D 219 .. 65535. */
 static inline int64_t y4m_share_factor(int up, int32_t d)
 {
     return ((INT64_C(1) << (up + Y4M_SHARE_BITS)) + d - 1) / d;
@@ -20,8 +20,8 @@ static inline int64_t y4m_share_factor(int up, int32_t d)
 
 /* Returns K 2^UP / D; |K| is at most 2^20, and the result at most 2^22. FACTOR
  * is too large by less than 1, so the quotient before the shift is too large by
- * less than 2^-20. A quotient below a whole number is at least 1 / 2D below it,
- * so that it never reaches the next one. */
+ * less than 2^-20. A quotient that is not an integer is at least 1 / 2D below
+ * the next integer, so the error never reaches it. */
 static inline int32_t y4m_share(int32_t k, int64_t factor)
 {
     const int64_t size = k < 0 ? -(int64_t)k : k;
@@ -32,14 +32,14 @@ static inline int32_t y4m_share(int32_t k, int64_t factor)
     return (int32_t)(k < 0 ? -share : share);
 }
 
-/* Returns the factor of y4m_part for D from 2^15 to 2^16. */
+/* Returns the factor with which y4m_part() divides by D, 2^15 .. 2^16. */
 static inline int64_t y4m_part_factor(int32_t d)
 {
     return (INT64_C(1) << Y4M_PART_BITS) / d;
 }
 
-/* Returns N / D, clamped to 0 .. 2^20. The bits that Y4M_PART_SKIP and the
- * factor leave out are less than 1, so Q is the quotient or one less. */
+/* Returns N / D, clamped to 0 .. 2^20. The bits lost by Y4M_PART_SKIP and by
+ * rounding FACTOR amount to less than 1, so Q is the quotient or one less. */
 static inline int32_t y4m_part(int64_t n, int32_t d, int64_t factor)
 {
     const int64_t m = n + d / 2;
