@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * add_glow IN.ppm X Y RADIUS >OUT.ppm - a warm glow about a point, added in
- * linear light. It links only the compositor of glint.
+ * add_glow IN.ppm X Y RADIUS >OUT.ppm - adds a warm glow around a point in
+ * linear light. Links only glint's compositor.
  */
 #include "glint/composite.h"
 #include "glint/kernels.h"
@@ -13,8 +13,8 @@ static uint16_t squared_q16(uint16_t x_q16)
     return (uint16_t)((uint32_t)x_q16 * x_q16 >> 16);
 }
 
-/* Sets RGB to a glow about X0, Y0: white in the middle and redder farther out.
- * Red falls to a quarter at RADIUS pixels. */
+/* Sets RGB to a glow around (X0, Y0), white at the centre and redder farther
+ * out. Red falls to a quarter at RADIUS pixels. */
 static void glow(uint16_t *const rgb[3], int width, int height, int x0, int y0,
                  int radius)
 {

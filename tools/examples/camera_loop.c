@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_loop MODEL DEVICE FRAMES >FRAMES.yuyv - the flare of the lamps that a
- * camera sees, frame by frame in 640x480, read by read() as the simplest of
- * cameras give them; DEVICE may be a file of such frames.
+ * camera_loop MODEL DEVICE FRAMES >FRAMES.yuyv - draws the flare of the lamps
+ * in each frame of a camera: 640x480, read by read(), as the simplest cameras
+ * deliver frames. DEVICE may be a file of such frames.
  */
 #include <fcntl.h>
 #include <stdio.h>
@@ -19,7 +19,8 @@ enum { WIDTH = 640, HEIGHT = 480, BYTES = 2 * WIDTH * HEIGHT, US = 33333 };
 
 static unsigned char frame[BYTES], model[8 << 20];
 
-/* Requests YUYV from CAMERA; other sources keep their format. */
+/* Requests 640x480 YUYV from CAMERA. Returns true also if CAMERA is not a
+ * device, as a file has a fixed format. */
 static int is_ready(int camera)
 {
     struct v4l2_capability can;

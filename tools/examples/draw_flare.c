@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * draw_flare MODEL IN.ppm X Y STOPS >OUT.ppm - the ghosts of a white lamp at a
- * pixel, STOPS stops brighter than white. Written as for a board: no malloc
- * and no floating point (make lint checks that), all memory is static, and it
- * links only the part of glint that draws flares by edges into 8-bit pictures.
+ * draw_flare MODEL IN.ppm X Y STOPS >OUT.ppm - draws the ghosts of a white lamp
+ * at a pixel, STOPS stops brighter than white. Written for an embedded board:
+ * no malloc and no floating point (make lint checks that), all memory is
+ * static, and it links only the edge renderer for 8-bit pictures.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,8 +13,8 @@
 
 enum { MAX_MODEL = 2 << 20, MAX_PICTURE = 12 << 20, MAX_FLARE = 16 << 20 };
 
-/* On a board the model lies in ROM, and the picture where the camera puts it.
- */
+/* On a board the model would lie in ROM, and the picture in the camera's
+ * buffer. */
 static uint32_t model[MAX_MODEL / sizeof(uint32_t)];
 static uint8_t picture[MAX_PICTURE];
 #ifdef __GNUC__
@@ -22,8 +22,8 @@ __attribute__((aligned(64)))
 #endif
 static uint8_t flare_memory[MAX_FLARE];
 
-/* Reads the file PATH into BLOCK. Returns its bytes, or 0 if it cannot be read
- * or has ROOM bytes or more. */
+/* Reads the file PATH into BLOCK. Returns the number of bytes, or 0 if the file
+ * cannot be read or has ROOM bytes or more. */
 static size_t load(const char *path, void *block, size_t room)
 {
     FILE *file = fopen(path, "rb");
@@ -38,7 +38,7 @@ static size_t load(const char *path, void *block, size_t room)
     return bytes;
 }
 
-/* Reads the number at *AT, after one blank, and moves *AT past it. */
+/* Parses the number at *AT, after one white space, and moves *AT past it. */
 static int number(const uint8_t **at)
 {
     int n = 0;
@@ -48,8 +48,8 @@ static int number(const uint8_t **at)
     return n;
 }
 
-/* Sets IMAGE to the pixels of the binary PPM of BYTES in picture. Returns 0 if
- * that is not one of 8 bits without comments. */
+/* Sets IMAGE to the pixels of the PPM file in picture, BYTES long. Returns 0 if
+ * it is not a binary 8-bit PPM without comments. */
 static int find_image(struct glint_image *image, size_t bytes)
 {
     const uint8_t *at = picture + 2;
@@ -68,8 +68,8 @@ static int find_image(struct glint_image *image, size_t bytes)
                         3 * (size_t)image->width * (size_t)image->height;
 }
 
-/* Adds the flare of LIGHT to IMAGE. Returns 1, or 0 if that takes more than
- * flare_memory. */
+/* Adds the flare of LIGHT to IMAGE. Returns 1, or 0 if flare_memory is too
+ * small. */
 static int draw(const struct glint_lens *lens, const struct glint_image *image,
                 const struct glint_light *light)
 {
@@ -97,9 +97,8 @@ static int draw(const struct glint_lens *lens, const struct glint_image *image,
     return 1;
 }
 
-/* Returns the middle of the pixel whose number is TEXT. A pixel more than
- * GLINT_MAX_SIDE outside the largest picture counts as number 2 *
- * GLINT_MAX_SIDE. */
+/* Returns the centre of the pixel with the number TEXT. The number is clamped
+ * to 2 * GLINT_MAX_SIDE, far outside the largest picture. */
 static int32_t middle_q8(const char *text)
 {
     const int pixel = atoi(text);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * draw_scene SCENE IN.ppm >OUT.ppm - balls and planes of a baked scene on a
- * picture. It names no part of the scene's, so that it links no meshes,
- * textures, reflections, lens or flare, and says so of scenes that have them.
+ * draw_scene SCENE IN.ppm >OUT.ppm - draws balls and planes of a baked scene
+ * onto a picture. It does not refer to other scene modules, so it links no
+ * meshes, textures, reflections, lens or flare; scenes that have these are
+ * rejected.
  */
 #include "glint/kernels.h"
 #include "glint/scene/scene.h"
@@ -10,7 +11,7 @@
 
 enum { LIMIT = 1 << 24 };
 
-/* Reads PATH, BYTES at most; returns how many there are, 0 if none. */
+/* Reads at most BYTES bytes of PATH. Returns the number read, 0 on failure. */
 static size_t read_file(const char *path, void *data, size_t bytes)
 {
     FILE *file = fopen(path, "rb");

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * embed_scene LENS SCENE IN.ppm >OUT.ppm - the objects of a scene over a
- * picture, and the flare of the lamps that they leave and of the scene's own,
- * as glint overlay --scene --stop polygon:8 draws them; both are baked.
+ * embed_scene LENS SCENE IN.ppm >OUT.ppm - draws the objects of a scene over a
+ * picture, then the flare of the scene's lamps and of the picture's lamps that
+ * stay visible, the same as glint overlay --scene --stop polygon:8. LENS and
+ * SCENE are baked files.
  */
 #include "glint/engine.h"
 #include "glint/kernels.h"

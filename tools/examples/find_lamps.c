@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * find_lamps PICTURE.ppm - prints where the lamps of a picture are. It links
- * only the finder of glint.
+ * find_lamps PICTURE.ppm - prints the positions of the lamps in a picture.
+ * Links only glint's lamp finder.
  */
 #include "glint/lamps.h"
 #include "ppm.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ghost_rays MODEL GHOST SINE - prints where a fan of rays of a ghost lands,
- * for a light whose angle off the axis has that sine. It links only the
- * transfer of glint.
+ * ghost_rays MODEL GHOST SINE - prints where a fan of a ghost's rays meets the
+ * sensor, for a light at the angle off the axis with sine SINE. Links only
+ * glint's transfer polynomials.
  */
 #include <math.h>
 
@@ -11,11 +11,12 @@
 
 enum { FAN = 9 };
 
-/* Prints a fan of rays of GHOST in the plane of the light, at the middle of the
- * band of wavelengths. */
+/* Prints a fan of rays of GHOST in the meridional plane, at the middle
+ * wavelength. */
 static int print_fan(const struct glint_lens *lens, int ghost, double sine)
 {
-    static struct glint_transfer transfer; /* too large for small stacks */
+    static struct glint_transfer transfer; /* static, as it is too large for
+                                              small stacks */
     const struct glint_model_header *h = lens->header;
     const int32_t wave_q24 = h->wave_lo_q24 / 2 + h->wave_hi_q24 / 2;
 

@@ -10,8 +10,8 @@
 
 #include "glint/model.h"
 
-/* Returns the whole file PATH, which the caller frees, and its *BYTES; NULL if
- * it cannot be read. */
+/* Returns the content of the file PATH, which the caller frees, and sets
+ * *BYTES; NULL if it cannot be read. */
 static inline void *read_all(const char *path, size_t *bytes)
 {
     FILE *file = fopen(path, "rb");

@@ -10,8 +10,8 @@
 
 #include "glint/image.h"
 
-/* Reads PATH into an image of sRGB codes whose plane is to be freed. Returns 0,
- * or 3 after saying what is wrong. */
+/* Reads PATH into an sRGB image; the caller frees plane[0]. Returns 0, or 3
+ * after printing the error. */
 static inline int ppm_read(const char *path, struct glint_image *image)
 {
     FILE *file = fopen(path, "rb");

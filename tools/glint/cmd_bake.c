@@ -190,7 +190,7 @@ static int bake_into(struct glint_output *out, struct tool *tool,
     return code;
 }
 
-/* States what was baked, unless that went to the standard output. */
+/* Prints what was baked, unless the model was written to standard output. */
 static void tell_zoom(const struct tool *tool, const struct bake *b,
                       const struct zoom_baked *baked, double seconds)
 {
@@ -222,7 +222,7 @@ static void tell_zoom(const struct tool *tool, const struct bake *b,
                b->halfway_db);
 }
 
-/* Bakes LENS, which is as read, at all positions into OUT. */
+/* Bakes LENS, unchanged since it was read, at all positions into OUT. */
 static int bake_positions(struct glint_output *out, struct tool *tool,
                           struct bake *b, const struct glint_prescription *lens)
 {
@@ -301,7 +301,7 @@ static int bake_lens(struct tool *tool, int argc, char **argv)
     return code;
 }
 
-/* Bakes as the first input requests whose name is of no lens. */
+/* Runs the bake command for the type of the first input that is not a lens. */
 static int bake_any(struct tool *tool, int argc, char **argv)
 {
     static const struct {

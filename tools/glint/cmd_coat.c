@@ -46,7 +46,7 @@ enum { MAX_ANGLES = 8, STEPS = 40, MAX_TEXT = 160 };
 
 struct coat {
     const char *output;
-    int surface; /* -1: a coating by itself */
+    int surface; /* -1: a coating alone, without a lens */
     struct coating on_lens;
     double glass[2]; /* nd and Vd */
     int n_angles;
@@ -56,7 +56,7 @@ struct coat {
     char name[MAX_TEXT]; /* for titles */
 };
 
-/* Shares reflected. */
+/* Fractions of light reflected. */
 struct reflected {
     double s, p, both;
 };
@@ -120,7 +120,7 @@ static void print_json(const struct coat *c)
 
 /* ------------------------------------------------------------------- plots */
 
-/* A curve of a panel: percent of X. */
+/* A curve of a panel: percent reflected as a function of X. */
 struct curve {
     const struct coat *c;
     double fixed; /* angle or wavelength */

@@ -265,7 +265,7 @@ static int save_ghosts(struct tool *tool, const struct explain_command *c,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Tells of the scene, before the FLARE if there is one. */
+/* Prints the explanation of the scene, before that of FLARE, if any. */
 static int tell_scene(struct tool *tool, const struct explain_command *c,
                       struct glint_explain *flare)
 {

@@ -81,7 +81,7 @@ static void print_json(const struct info *info)
     json_write(&json, "]}\n");
 }
 
-/* Prints where L zooms and how it is focused. */
+/* Prints the zoom position and focus of L. */
 static void print_moves(const struct glint_prescription *l,
                         const struct glint_optics *o)
 {
@@ -218,7 +218,7 @@ static int info_of_motion(const struct tool *tool, const char *path,
     return code;
 }
 
-/* What the line requests. */
+/* Options of the command line. */
 struct asked {
     double f_number; /* 0: the table's */
     struct coating coating;

@@ -350,7 +350,7 @@ static bool stop_looking(void *ctx, const char *name)
     return false;
 }
 
-/* States that no lens is wanted. Returns an exit code. */
+/* Prints that no lens matches. Returns an exit code. */
 static int tell_none(const struct lenses *l)
 {
     if (l->n_words)

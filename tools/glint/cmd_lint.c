@@ -66,8 +66,8 @@ static bool is_known_glass(double nd, double vd, bool moulded)
            vd <= ends[k].most + part * (ends[k + 1].most - ends[k].most);
 }
 
-/* Returns whether the glass behind surface K of LENS is another surface's, too,
- * or in the catalogue. */
+/* Returns whether the glass behind surface K of LENS is also behind another
+ * surface, or in the catalogue. */
 static bool glass_is_listed(const struct glint_prescription *lens, int k)
 {
     const struct glint_surface *s = &lens->surface[k];
@@ -146,8 +146,8 @@ struct search {
     char edited[LENS_TEXT + 32];
 };
 
-/* Returns whether TEXT[BYTES] is a table without fault, which it reads into
- * LENS; else ERROR states what is wrong. */
+/* Parses TEXT[BYTES] into LENS. Returns whether it is a table without errors;
+ * if not, ERROR states the first error. */
 static bool table_is_right(const char *text, size_t bytes, const char *file,
                            struct glint_prescription *lens,
                            struct glint_error *error)
@@ -192,7 +192,7 @@ static void keep(struct search *s, const struct mend *found)
         s->mend[k] = *found;
 }
 
-/* Tries NUMBER in place of the number. */
+/* Tests the table with NUMBER in place of the current number. */
 static void try(struct search *s, const char *number, enum slip slip)
 {
     static struct glint_prescription lens;
@@ -285,7 +285,7 @@ static void try_number(struct search *s)
     try_point(s, number);
 }
 
-/* Tries the numbers of the line at START. */
+/* Tries all slips of the numbers in the line START .. END. */
 static void try_line(struct search *s, size_t start, size_t end)
 {
     size_t at = start;

@@ -128,7 +128,7 @@ static void set_defaults(struct live_options *o)
     o->drawing.line.is_live = true;
 }
 
-/* Reads TEXT, "30" or "30000/1001", as a rate. */
+/* Parses TEXT, "30" or "30000/1001", as a frame rate. */
 static bool take_rate(const char *text, int *num, int *den)
 {
     char top[16];
@@ -144,7 +144,7 @@ static bool take_rate(const char *text, int *num, int *den)
            (!slash || tool_integer(slash + 1, 1, 1000000, den));
 }
 
-/* Checks whether TEXT has exactly one conversion, that of an int. */
+/* Returns whether TEXT has exactly one conversion, and it is for an int. */
 static bool is_pattern(const char *text)
 {
     const char *at = strchr(text, '%');
@@ -153,8 +153,8 @@ static bool is_pattern(const char *text)
     return at && digits < 3 && at[1 + digits] == 'd' && !strchr(at + 1, '%');
 }
 
-/* Takes an option of the camera. Returns -1, or -2 if it is none of these, or
- * -3 if VALUE is bad. */
+/* Applies an option of the camera. Returns -1, -2 if OPTION is not of the
+ * camera, or -3 if VALUE is invalid. */
 static int take_camera(struct live_wish *wish, int option, const char *value)
 {
     static const char *const ranges[] = {"auto", "full", "limited", NULL};
@@ -199,7 +199,7 @@ static int take_camera(struct live_wish *wish, int option, const char *value)
     return good && word >= 0 ? -1 : -3;
 }
 
-/* Takes any option of live alone, as take_camera(). */
+/* Applies any option that only glint live has; returns as take_camera(). */
 static int take(struct live_options *o, int option, const char *value)
 {
     static const char *const stats[] = {"auto", "line", "json", "none", NULL};

@@ -213,8 +213,8 @@ static bool take_sizes(const char *text, struct asked *a)
     return a->n_sizes > 0;
 }
 
-/* Takes up to MAX_LIST numbers of LOW to HIGH. Returns how many; 0: it is not
- * that. */
+/* Parses up to MAX_LIST numbers within LOW .. HIGH. Returns their number, or 0
+ * if TEXT is malformed. */
 static int take_numbers(const char *text, double low, double high, double *to)
 {
     const int n = tool_numbers(text, to, MAX_LIST);

@@ -93,7 +93,7 @@ static const struct synth_layout *layout_named(const char *name)
     return NULL;
 }
 
-/* Sets PATH to FILE of item NUMBER in FOLDER. Returns false if that is too
+/* Sets PATH to FILE of item NUMBER in FOLDER. Returns false if PATH is too
  * long. */
 static bool file_path(char path[SYNTH_PATH_BYTES], const char *folder,
                       const struct synth_file *file, int number,
@@ -247,7 +247,7 @@ static int keep_settings(const struct tool *tool, const struct synth_set *set,
 
 /* -------------------------------------------------------------------- items */
 
-/* Returns whether item NUMBER is there, whole. */
+/* Returns whether item NUMBER exists and is complete. */
 static bool has_item(const struct synth_set *set, int number)
 {
     const struct synth_file *const file = set->layout->file;
@@ -260,7 +260,7 @@ static bool has_item(const struct synth_set *set, int number)
     return is_there;
 }
 
-/* Writes FILE of ITEM; RGB is room for its light. */
+/* Writes FILE of ITEM; RGB is scratch memory for its light. */
 static enum glint_status put_file(const struct synth_set *set,
                                   const struct synth_file *file,
                                   const struct synth_item *item,
@@ -368,7 +368,7 @@ static int write_lines(const struct tool *tool, const struct synth_set *set,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Removes the manifests of shards. */
+/* Removes the manifests of all shards. */
 static void remove_parts(const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
@@ -491,7 +491,7 @@ struct synth {
 
 /* ------------------------------------------------------------------ options */
 
-/* Takes TEXT, "I/N". */
+/* Parses TEXT, "I/N". */
 static bool take_shard(struct synth_set *set, const char *text)
 {
     char first[16];
@@ -515,7 +515,7 @@ static bool add_lens(void *ctx, const char *name)
     return true;
 }
 
-/* Takes TEXT, names with commas, or "all". */
+/* Parses TEXT, names separated by commas, or "all". */
 static bool take_lenses(struct synth *s, const char *text)
 {
     char name[64];
@@ -782,7 +782,7 @@ static int open_lenses(const struct tool *tool, struct synth *s)
     return code;
 }
 
-/* Draws the items of the shard that are not there yet. */
+/* Draws the missing items of the shard. */
 static int run_items(const struct tool *tool, struct synth *s)
 {
     const struct synth_set *const set = &s->set;

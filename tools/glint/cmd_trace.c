@@ -101,8 +101,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
 
 /* ----------------------------------------------------------------- by rays */
 
-/* Takes rays from (PX, PY) on the front's vertex plane to the sensor, exactly
- * or by a model. */
+/* Traces rays from (PX, PY) on the vertex plane of the front element to the
+ * sensor, exactly or by a model. */
 struct tracer {
     enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
                                    double py_mm, struct glint_ray *ray);
@@ -194,7 +194,8 @@ static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
     return GLINT_RAY_OK;
 }
 
-/* Checks whether A, a number of a model with 31 bits, equals B to 1e-8 of B. */
+/* Returns whether A, a 31-bit number of a model, equals B with a relative error
+ * of at most 1e-8. */
 static bool agrees(struct glint_real a, double b)
 {
     return fabs(model_real_of(a) - b) <= 1e-8 * fabs(b);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which format a file has, and its bytes as text.
+ * Finds the format of a lens file and decodes its bytes to text.
  */
 #include <string.h>
 #include <strings.h>
@@ -37,8 +37,8 @@ const struct import_format *import_format_of(const char *name)
     return NULL;
 }
 
-/* Keeps every other byte of DATA from AT on, those that HIGH bytes stand beside
- * being '?' if these are not 0. */
+/* Converts the UTF-16 units of DATA from AT on to one byte each, '?' for
+ * characters other than ASCII. HIGH: index of a unit's high byte, 0 or 1. */
 static void narrow(uint8_t *data, size_t *bytes, size_t at, int high)
 {
     size_t n = 0;
@@ -51,7 +51,7 @@ static void narrow(uint8_t *data, size_t *bytes, size_t at, int high)
     *bytes = n;
 }
 
-/* Ends lines by '\n' where a text has them end by '\r' alone. */
+/* Replaces '\r' by '\n' if the text has no '\n'. */
 static void end_lines(uint8_t *data, size_t bytes)
 {
     if (bytes == 0 || memchr(data, '\n', bytes))
@@ -61,8 +61,8 @@ static void end_lines(uint8_t *data, size_t bytes)
             data[i] = '\n';
 }
 
-/* Makes text of DATA[*BYTES] in place: UTF-16 of either order becomes ASCII,
- * letters beyond it '?', and a byte order mark goes. */
+/* Decodes DATA[*BYTES] in place: converts UTF-16 of either byte order to ASCII,
+ * other characters to '?', and removes a byte order mark. */
 static void decode_text(uint8_t *data, size_t *bytes)
 {
     if (*bytes >= 2 && data[0] == 0xff && data[1] == 0xfe)

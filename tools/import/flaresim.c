@@ -2,7 +2,7 @@
  *
  * FlareSim's .lens files: "name:", "focal_length:", then "surfaces:" and rows
  * of radius or "stop", thickness, index, Abbe number, semi-diameter, coating,
- * and cyl_x or cyl_y of a cylinder that is straight along that axis.
+ * and cyl_x or cyl_y for a cylinder whose axis is x or y.
  */
 #include <math.h>
 #include <stdio.h>
@@ -44,7 +44,8 @@ static bool take_row(struct imported *lens, const struct lines *l)
     return take_kind(lens, l, s);
 }
 
-/* Returns whether the glass ends before the semi-diameter of surface K does. */
+/* Returns whether the semi-diameter of surface K is larger than its sphere, or
+ * than the radius at which it crosses the next surface. */
 static bool reaches_too_far(const struct imported *lens, int k)
 {
     const struct imported_surface *s = &lens->surface[k];
@@ -55,8 +56,8 @@ static bool reaches_too_far(const struct imported *lens, int k)
            imported_gap(s, IMPORT_FREE * fmin(s[0].semi, s[1].semi)) < 0;
 }
 
-/* Halves semi-diameters if they are whole ones, as files have them that were
- * made from tables of diameters. */
+/* Halves all semi-diameters if they appear to be diameters, as in files that
+ * were made from tables of diameters. */
 static bool settle_diameters(struct imported *lens)
 {
     int at = -1, whole = 0, halved = 0;

@@ -21,7 +21,7 @@ void imported_begin(struct imported *lens, const char *file, bool strict)
     lens->unit_mm = 1;
 }
 
-/* Sets the error, but for one that there is. */
+/* Sets the error, unless there is one already. */
 static void say(struct imported *lens, int line, const char *format,
                 va_list values)
 {
@@ -118,7 +118,7 @@ bool imported_unit(struct imported *lens, int line, double mm)
 void imported_image(struct imported *lens, int line, double radius,
                     double defocus)
 {
-    /* Planes of some have a radius that no table takes. */
+    /* Some programs write planes with a radius that is too large for tables. */
     if (radius != 0 && fabs(radius) * lens->unit_mm < 1e9)
         imported_note(lens, line,
                       "the image is bent, by a radius of %.6g mm: a flat "
@@ -182,8 +182,8 @@ struct imported_surface *imported_add(struct imported *lens, int line)
 
 /* -------------------------------------------------------------------- glass */
 
-/* Sets NAME to the glass of S in capitals. Returns the maker behind '_', or "":
- * what else is there belongs to the name. */
+/* Sets NAME to the glass of S in capitals. If a maker known to the catalogue
+ * follows the last '_', cuts it off and returns it; else returns "". */
 static const char *plain_name(const struct imported_surface *s, char name[32])
 {
     const struct glint_glass *glass;
@@ -199,7 +199,7 @@ static const char *plain_name(const struct imported_surface *s, char name[32])
     return known ? maker + 1 : "";
 }
 
-/* Returns whether A and B are the same but for hyphens. */
+/* Returns whether A and B are equal if hyphens are ignored. */
 static bool same_letters(const char *a, const char *b)
 {
     while (*a || *b) {
@@ -213,9 +213,9 @@ static bool same_letters(const char *a, const char *b)
     return true;
 }
 
-/* Returns the glass of the catalogue that NAME is but for hyphens, or with N-
- * before it the lead-free successor, SUCCEEDS being set; NULL if there is
- * none. One of another than MAKER is none, if that is reported. */
+/* Returns the glass NAME of the catalogue, hyphens ignored; else the glass
+ * N-NAME, its lead-free successor, with SUCCEEDS set; else NULL. Considers only
+ * glasses of MAKER, unless that is "". */
 static const struct glint_glass *
 catalogue_glass(const char *name, const char *maker, bool *succeeds)
 {
@@ -250,8 +250,9 @@ static double abbe_of(const struct glint_glass *glass)
            (index_at(glass, LINE_F_NM) - index_at(glass, LINE_C_NM));
 }
 
-/* Guesses the Abbe number of the index of S: that of the glass of the catalogue
- * that has it to the fifth decimal, if there is one. */
+/* Guesses the Abbe number of S from its index: from the glass of the catalogue
+ * whose index agrees to the fifth decimal, else from the line of normal
+ * glasses. */
 static double guess_abbe(struct imported *lens,
                          const struct imported_surface *s)
 {
@@ -296,7 +297,8 @@ static bool by_numbers(struct imported *lens, struct imported_surface *s)
     return true;
 }
 
-/* Notes numbers of the file that are not those of its GLASS. */
+/* Adds a note if index or Abbe number of the file differ from the catalogue's
+ * values of GLASS. */
 static void check_numbers(struct imported *lens,
                           const struct imported_surface *s,
                           const struct glint_glass *glass)
@@ -348,7 +350,7 @@ static bool settle_medium(struct imported *lens, struct imported_surface *s)
     return true;
 }
 
-/* Sets the medium behind all surfaces and its index, by names and numbers. */
+/* Sets medium and index behind each surface from glass names and numbers. */
 static bool settle_media(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++)
@@ -359,13 +361,14 @@ static bool settle_media(struct imported *lens)
 
 /* --------------------------------------------------------------- completing
  *
- * What a table needs and files of other programs leave out: one stop in the
- * air, semi-diameters, a film, an f-number, a focus. */
+ * Adds the values that a lens table needs and files of other programs omit: one
+ * stop in the air, semi-diameters, a film, an f-number, a focus. */
 
-/* A paraxial ray, and what it meets. */
+/* A paraxial ray and its heights. */
 struct thin_ray {
-    double y, u;                    /* height and slope before the first */
-    double height[IMPORT_SURFACES]; /* at each surface */
+    double y, u;                    /* height and slope before the first
+                                       surface; after run(), behind the last */
+    double height[IMPORT_SURFACES]; /* height at each surface */
 };
 
 static double curvature(const struct imported_surface *s)
@@ -373,14 +376,14 @@ static double curvature(const struct imported_surface *s)
     return s->radius == 0 ? 0 : 1 / s->radius;
 }
 
-/* Returns that in the y-z plane, whose first-order values a lens has. */
+/* Returns the curvature in the y-z plane, in which first-order values are
+ * computed. */
 static double power_of(const struct imported_surface *s)
 {
     return s->shape.bend == GLINT_BEND_X ? 0 : curvature(s);
 }
 
-/* Takes RAY through all surfaces; its y and u are then those behind the
- * last. */
+/* Traces RAY through all surfaces. */
 static void run(const struct imported *lens, struct thin_ray *ray)
 {
     double n = 1;
@@ -407,7 +410,7 @@ static bool does_nothing(const struct imported *lens, int k)
     return strcmp(s->medium, k > 0 ? s[-1].medium : "air") == 0;
 }
 
-/* Leaves out surfaces with the same medium on both sides. */
+/* Removes surfaces with the same medium on both sides, except the stop. */
 static bool drop_dummies(struct imported *lens)
 {
     int n = 0, line = 0;
@@ -435,7 +438,8 @@ static bool drop_dummies(struct imported *lens)
 
 /* ------------------------------------------------------------------ stop */
 
-/* Returns the sag of S at the height H, or at its equator. */
+/* Returns the sag of S at the height H, in the file's unit; beyond the equator
+ * the sphere's sag at the equator. */
 static double sag_at(const struct imported_surface *s, double h)
 {
     const double c = curvature(s);
@@ -457,8 +461,9 @@ static bool insert_stop(struct imported *lens, int k)
     return true;
 }
 
-/* Puts the stop beside surface K, which is one: in the air there, at the rim of
- * its opening or at the vertex, whichever is farther from the glass. */
+/* Moves the stop from surface K of glass into the air next to it, to the axial
+ * position of the surface's rim or vertex, whichever is farther from the
+ * glass. */
 static bool stop_beside(struct imported *lens, int k)
 {
     struct imported_surface *s = &lens->surface[k], stop = *s;
@@ -486,7 +491,7 @@ static bool stop_beside(struct imported *lens, int k)
     if (!insert_stop(lens, behind ? k + 1 : k))
         return false;
     lens->surface[behind ? k + 1 : k] = stop;
-    /* One that is a guess itself has been told. */
+    /* If the stop was guessed, a note was added then. */
     return lens->stop_guessed ||
            imported_note(lens, stop.line,
                          "the stop is a surface of glass: put %.3g %s it, at "
@@ -504,7 +509,7 @@ static int stop_of(const struct imported *lens)
     return k;
 }
 
-/* Puts a stop that is a surface of glass into the air. */
+/* Moves the stop into the air if it is a surface of glass. */
 static bool free_stop(struct imported *lens)
 {
     const int at = stop_of(lens);
@@ -512,8 +517,8 @@ static bool free_stop(struct imported *lens)
     return does_nothing(lens, at) || stop_beside(lens, at);
 }
 
-/* Finds the stop and separates it from its surface. If its opening is not
- * stated, that is deferred, as the rim of the surface must be known. */
+/* Finds the stop and separates it from a surface of glass. If its semi-diameter
+ * is not stated, that is deferred, as it needs the surface's rim. */
 static bool settle_stop(struct imported *lens)
 {
     int at = -1;
@@ -545,7 +550,8 @@ static double focal(const struct imported *lens)
     return ray.u != 0 ? -1 / ray.u : 0;
 }
 
-/* Sets the film to 3 : 2 within the circle that the lens is for. */
+/* Sets the film to a 3 : 2 rectangle within the lens's image circle, unless the
+ * file states it. */
 static void settle_film(struct imported *lens, double focal_units)
 {
     double half = lens->height;
@@ -572,8 +578,8 @@ static void settle_film(struct imported *lens, double focal_units)
 
 /* ------------------------------------------------------------- openings */
 
-/* Completes f-number and pupil, from the stop's semi-diameter if the file does
- * not state them. */
+/* Computes f-number and pupil diameter from each other, or from the stop's
+ * semi-diameter if the file states neither. */
 static bool settle_pupil(struct imported *lens, double focal_units)
 {
     const int stop = stop_of(lens);
@@ -589,7 +595,8 @@ static bool settle_pupil(struct imported *lens, double focal_units)
     else if (lens->surface[stop].semi > 0 && fabs(ray.height[stop]) > 1e-9) {
         lens->pupil = 2 * lens->surface[stop].semi / fabs(ray.height[stop]);
         lens->f_number = focal_units / lens->pupil;
-        /* The table's own rounding must not make it wider than the stop. */
+        /* Round up, so that the table's f-number does not open wider than the
+         * stop. */
         lens->f_number = ceil(lens->f_number * 1000) / 1000;
         lens->pupil = focal_units / lens->f_number;
         return imported_note(lens, lens->surface[stop].line,
@@ -602,8 +609,8 @@ static bool settle_pupil(struct imported *lens, double focal_units)
     return true;
 }
 
-/* Sets semi-diameters that are missing to where paraxial rays of the pupil's
- * rim and of the field's end go. */
+/* Sets missing semi-diameters to the heights of paraxial rays from the pupil's
+ * rim and from the edge of the field. */
 static void settle_semis(struct imported *lens)
 {
     const int stop = stop_of(lens);
@@ -614,7 +621,7 @@ static void settle_semis(struct imported *lens)
 
     run(lens, &rim);
     run(lens, &slant);
-    /* The chief ray is that with the height 0 at the stop. */
+    /* The chief ray has the height 0 at the stop. */
     start = rim.height[stop] != 0
                 ? -slant.height[stop] / rim.height[stop] * lens->pupil / 2
                 : 0;
@@ -646,7 +653,7 @@ static void settle_semis(struct imported *lens)
                       n, n == 1 ? " has" : "s have");
 }
 
-/* Cuts semi-diameters that reach beyond a sphere or the end of a conic. */
+/* Reduces semi-diameters that exceed the extent of a sphere or conic. */
 static void cut_semis(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++) {
@@ -670,8 +677,8 @@ double imported_gap(const struct imported_surface *s, double h)
     return s->thickness + sag_at(s + 1, h) - sag_at(s, h);
 }
 
-/* Cuts semi-diameters where neighbours' rims cross, as thin lenses of estimated
- * ones do. */
+/* Reduces semi-diameters where neighbouring surfaces cross within them, as
+ * surfaces of thin lenses do if semi-diameters are estimated. */
 static bool part_rims(struct imported *lens)
 {
     for (int k = 0; k + 1 < lens->n; k++) {
@@ -727,8 +734,8 @@ static bool settle_focus(struct imported *lens)
                          behind * lens->unit_mm);
 }
 
-/* Tells that the light comes from afar where the file has an object that is
- * near, and, where it has a sensor, that this is not moved for it. */
+/* Adds a note that light comes from infinity if the file has a near object, and
+ * that the sensor is not refocused if the file has one. */
 static void tell_object(struct imported *lens)
 {
     if (lens->object_near)
@@ -740,8 +747,8 @@ static void tell_object(struct imported *lens)
                           : "");
 }
 
-/* Refuses what runs backwards but for a stop at the front, which may lie behind
- * the vertex, as in phones. */
+/* Refuses negative thicknesses, except behind a stop at the front, which may
+ * lie behind the next vertex, as in phones. */
 static bool check_thicknesses(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++)
@@ -764,9 +771,9 @@ static bool check_end(struct imported *lens)
                          "missing, as sensors stand in the air");
 }
 
-/* Refuses an f-number of the user's whose light does not fit through the front.
- * A file's own is taken as it is, as stops of published lenses open a little
- * wider than their fronts. */
+/* Refuses an f-number of the user if its light does not fit through the front
+ * surface. The file's f-number is not checked, as stops of published lenses
+ * open a little wider than their fronts. */
 static bool check_front(struct imported *lens, double focal_units)
 {
     const double slack = 1.01; /* semi-diameters are rounded */
@@ -785,7 +792,7 @@ static bool check_front(struct imported *lens, double focal_units)
                          ceil(500 * focal_units / front->semi) / 1000);
 }
 
-/* Does what there is to do to LENS before it can be written down. */
+/* Checks LENS and sets all values that the table needs. */
 static bool complete(struct imported *lens)
 {
     double f;
@@ -821,8 +828,8 @@ static bool complete(struct imported *lens)
     return part_rims(lens) && settle_focus(lens);
 }
 
-/* Writes what the last surface is other than a sphere, four values to a line,
- * as a table's lines are short. */
+/* Writes conic, aspheric terms and bend of SHAPE, four values to a line, as
+ * lines of tables are short. */
 static void write_shape(FILE *file, const struct glint_shape *shape,
                         double unit_mm)
 {
@@ -868,8 +875,8 @@ static void write_surface(FILE *file, const struct imported_surface *s,
     write_shape(file, &s->shape, unit);
 }
 
-/* Writes TEXT as a comment may have it, other letters than those of ASCII as
- * question marks. */
+/* Writes at most MOST characters of TEXT for a comment, with '?' for characters
+ * other than ASCII. */
 static void write_words(FILE *file, const char *text, int most)
 {
     for (; *text && most > 0; text++, most--)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lenses in JSON, which jansson reads.
+ * Lenses in JSON, parsed by jansson.
  *
  * realflare: "lens_elements" of "radius", "distance", "refractive_index",
  * "abbe_nr" and "height", "aperture_index" the stop among them, "fstop".
@@ -20,11 +20,12 @@
 
 struct json_lens {
     struct imported *lens;
-    const char *text, *end; /* where its elements are */
-    int line;               /* of TEXT */
+    const char *text, *end; /* the file from the last element found to its
+                               end */
+    int line;               /* line number of text */
 };
 
-/* Goes behind the next WORD; returns false if there is none. */
+/* Moves j->text past the next WORD. Returns false if there is no more. */
 static bool go_behind(struct json_lens *j, const char *word)
 {
     const size_t bytes = strlen(word);
@@ -39,8 +40,8 @@ static bool go_behind(struct json_lens *j, const char *word)
     return false;
 }
 
-/* Goes to the next element, whose line is that of its radius, by which people
- * find it; jansson does not keep places. */
+/* Returns the line of the next element's radius, as jansson stores no line
+ * numbers. */
 static int next_line(struct json_lens *j)
 {
     return go_behind(j, "\"radius\"") ? j->line : 0;
@@ -58,7 +59,8 @@ static bool number(struct json_lens *j, const json_t *element, int line,
     return true;
 }
 
-/* Notes keys of ELEMENT that are none of KNOWN, words with blanks around. */
+/* Adds notes for keys of ELEMENT that are not in KNOWN, a list of words with
+ * blanks around each. */
 static void note_others(struct json_lens *j, json_t *element, int line,
                         const char *known)
 {
@@ -75,7 +77,7 @@ static void note_others(struct json_lens *j, json_t *element, int line,
     }
 }
 
-/* Parses TEXT as JSON and fills LENS from the root by TAKE. */
+/* Parses TEXT as JSON and calls TAKE with its root, to fill LENS. */
 static bool read_text(struct imported *lens, const char *text, size_t bytes,
                       bool (*take)(struct json_lens *j, json_t *root))
 {
@@ -154,7 +156,8 @@ bool import_realflare(struct imported *lens, const char *text, size_t bytes)
 
 /* ------------------------------------------------------------------- lentil */
 
-/* Sets the shape of S by "lens-geometry": "cyl-y" is straight along y. */
+/* Sets the shape of S by "lens-geometry"; "cyl-y" is a cylinder with its axis
+ * along y. */
 static bool take_geometry(struct json_lens *j, const json_t *element,
                           struct imported_surface *s)
 {
@@ -203,7 +206,8 @@ static bool take_lentil_element(struct json_lens *j, json_t *element)
     return take_geometry(j, element, s);
 }
 
-/* Returns the lens that is requested, or the only one; NULL after an error. */
+/* Returns the lens with the requested key, or the only lens; NULL with the
+ * error set. */
 static const json_t *find_lens(struct imported *lens, json_t *root)
 {
     const char *key = lens->key ? lens->key : "";

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stands in for json.c where there is no jansson.
+ * Replaces json.c in builds without jansson: its formats are refused.
  */
 #include "import/imported.h"
 

@@ -12,7 +12,8 @@ void lines_begin(struct lines *l, struct imported *lens, const char *text,
     *l = (struct lines){.lens = lens, .at = text, .end = text + bytes};
 }
 
-/* Returns the quote that ends what begins with one at AT, or NULL. */
+/* Returns the quote that closes the quote at AT, or NULL if there is no quote
+ * at AT or it is not closed on its line. */
 static const char *closing(const char *at, const char *end)
 {
     const char quote = *at;
@@ -25,10 +26,11 @@ static const char *closing(const char *at, const char *end)
     return NULL;
 }
 
-/* Copies one line to TEXT. Returns false if it is too long. */
+/* Copies a line to l->text, without its comment. Returns false if it is too
+ * long. */
 static bool copy_line(struct lines *l, char comment)
 {
-    const char *quoted = NULL; /* what is before it is within quotes */
+    const char *quoted = NULL; /* closing quote; text before it is quoted */
     size_t n = 0;
     bool said = false, fits = true;
     char before = ' ';
@@ -58,7 +60,7 @@ static bool copy_line(struct lines *l, char comment)
     return fits;
 }
 
-/* Divides at each tab; words may be empty, but not all of them. */
+/* Splits the line at each tab. Words may be empty, but not all of them. */
 static void divide_at_tabs(struct lines *l)
 {
     const bool said = *l->text != '\0';

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * The XML of OpenLensFlare and LensFlareFramework: an <opticalSystem> of
- * <element>s, read by expat.
+ * XML files of OpenLensFlare and LensFlareFramework: an <opticalSystem> of
+ * <element>s, parsed by expat.
  *
- * A <height> is a semi-diameter; where there is a <heightMultiplier> it is
- * times that, and that of the stop is a diameter whatever the multiplier.
+ * A <height> is a semi-diameter, multiplied by <heightMultiplier> if the file
+ * has one; the stop's <height> is a diameter, whatever the multiplier.
  */
 #include <expat.h>
 #include <math.h>
@@ -25,12 +25,12 @@ static const char *const system_words[SYSTEM_VALUES] = {
 struct reader {
     struct imported *lens;
     XML_Parser parser;
-    int depth;          /* of elements that are open */
+    int depth;          /* number of open XML elements */
     bool in_element;    /* within <element> */
-    bool coated, ended; /* a coating was met; the sensor was */
-    int line;           /* of <element> */
+    bool coated, ended; /* a coating, or the sensor, has been read */
+    int line;           /* line number of <element> */
     char kind[24], text[IMPORT_TEXT];
-    size_t bytes; /* of TEXT */
+    size_t bytes; /* bytes in text */
     double value[ELEMENT_VALUES], system[SYSTEM_VALUES];
     bool has[ELEMENT_VALUES], system_has[SYSTEM_VALUES];
 };
@@ -40,7 +40,7 @@ static int line_of(const struct reader *r)
     return (int)XML_GetCurrentLineNumber(r->parser);
 }
 
-/* Ends the reading if what was done is not GOOD. */
+/* Stops the parser if GOOD is false. */
 static void go_on(struct reader *r, bool good)
 {
     if (!good)
@@ -86,7 +86,7 @@ static void XMLCALL refuse_doctype(void *data, const char *name,
                            "a <!DOCTYPE>: lens files have none"));
 }
 
-/* Takes the element that ends: a surface, the stop or the sensor. */
+/* Stores the <element> that ends: a surface, the stop or the sensor. */
 static bool take_element(struct reader *r)
 {
     const bool stop = strcmp(r->kind, "apertureStop") == 0;
@@ -117,8 +117,8 @@ static bool take_element(struct reader *r)
     return true;
 }
 
-/* Sets the one of N VALUES whose word NAME is to the text; DONE is whether
- * there is one. */
+/* Sets the value whose name in WORDS[N] is NAME to the number in r->text. Sets
+ * DONE to whether NAME is in WORDS. */
 static bool take_value(struct reader *r, const char *name, int n,
                        const char *const *words, double *values, bool *has,
                        bool *done)
@@ -208,8 +208,8 @@ bool import_openlensflare(struct imported *lens, const char *text, size_t bytes)
     struct reader r = {.lens = lens};
     enum XML_Status status;
 
-    /* Whatever it says of itself: the numbers are ASCII, and letters that are
-     * not become question marks. */
+    /* Overrides the encoding that the file declares: numbers are ASCII, and
+     * other characters become question marks. */
     r.parser = XML_ParserCreate("ISO-8859-1");
     if (!r.parser)
         return imported_fail(lens, 0, "out of memory");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stands in for openlensflare.c where there is no expat.
+ * Replaces openlensflare.c in builds without expat: its format is refused.
  */
 #include "import/imported.h"
 

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * The tables of PhotonsToPhotos' Optical Bench: sections of values divided by
- * tabs.
+ * Tables of PhotonsToPhotos' Optical Bench: sections of tab-separated values.
  *
  * A row of [lens data] is a number, radius, thickness, index, diameter and Abbe
  * number; radius "AS" is the stop, "CG" a cover glass, "FS" another diaphragm.
  * A thickness may be the name of a row of [variable distances], which has a
- * column for each position of a zoom; the angle of view is a whole one, the
- * image height a diameter. [aspherical data] has number, radius, conic and the
- * terms from h^4 on. Glasses are those of the numbers; names of glasses that
- * are like them are skipped.
+ * column per zoom position. The angle of view is the full angle, the image
+ * height a diameter. [aspherical data] has number, radius, conic and the terms
+ * from h^4 on. Index and Abbe number define a glass; names of similar glasses
+ * are skipped.
  */
 #include <math.h>
 #include <string.h>
@@ -25,18 +24,19 @@ enum section { NO_SECTION, TITLE, CONSTANTS, DISTANCES, ROWS, ASPHERES, OTHER };
 struct variable {
     char name[24];
     int n;
-    double value[POSITIONS]; /* NAN: not said */
+    double value[POSITIONS]; /* value per zoom position; NAN: not stated */
 };
 
 struct optical_bench {
     struct imported *lens;
     struct lines lines;
     enum section section;
-    int at; /* position that is taken; -1: not known yet */
+    int at; /* selected zoom position; -1: not known yet */
     int n_variables;
     struct variable variable[VARIABLES];
     char id[IMPORT_SURFACES][ID_BYTES];
-    double odd, a2; /* kinds of aspheric terms before that of h^4 */
+    double odd, a2; /* values of the columns for odd aspheric terms and for
+                       h^2 */
 };
 
 static const char *word(const struct optical_bench *b, int k)
@@ -88,8 +88,8 @@ static bool take_variable(struct optical_bench *b)
     return true;
 }
 
-/* Returns the variable NAME at the position that is taken, NAN if it is not
- * said. */
+/* Returns the variable NAME at the selected zoom position, NAN if it is not
+ * stated. */
 static double variable(const struct optical_bench *b, const char *name)
 {
     for (int i = 0; i < b->n_variables; i++)
@@ -99,7 +99,7 @@ static double variable(const struct optical_bench *b, const char *name)
     return (double)NAN;
 }
 
-/* Sets which position is taken: there are as many as focal lengths. */
+/* Selects the zoom position; the file has one position per focal length. */
 static bool settle_position(struct optical_bench *b)
 {
     int n = 0;
@@ -114,7 +114,7 @@ static bool settle_position(struct optical_bench *b)
     return imported_choose(b->lens, 0, n > 0 ? n : 1, &b->at);
 }
 
-/* Sets VALUE to half of the diameter in word K, 0 if that is not said. */
+/* Sets VALUE to half of the diameter in word K, or to 0 if it is not stated. */
 static bool take_diameter(struct optical_bench *b, int k, double *value)
 {
     const char *text = word(b, k);
@@ -179,7 +179,7 @@ static bool take_constant(struct optical_bench *b)
     return true;
 }
 
-/* Takes the term in word K, the Ith from that of h^4 on. */
+/* Sets aspheric term I of S, 0 being h^4, from word K. */
 static bool take_term(struct optical_bench *b, struct imported_surface *s,
                       int k, int i)
 {
@@ -260,7 +260,7 @@ static bool take(struct optical_bench *b)
     return true;
 }
 
-/* Sets VALUE to SHARE of the variable NAME, if that is reported. */
+/* Sets VALUE to SHARE times the variable NAME, if the file states it. */
 static void settle(const struct optical_bench *b, const char *name,
                    double share, double *value)
 {
@@ -272,7 +272,7 @@ static void settle(const struct optical_bench *b, const char *name,
 
 bool import_opticalbench(struct imported *lens, const char *text, size_t bytes)
 {
-    static struct optical_bench b; /* large */
+    static struct optical_bench b; /* static, as it is large */
     double object = (double)INFINITY;
 
     b = (struct optical_bench){.lens = lens, .at = -1};

@@ -2,8 +2,9 @@
  *
  * OSLO .len files: spheres, conics and even aspheres.
  *
- * "LEN NEW" begins, "NXT" moves to the next surface, the object being the
- * first; "RD", "TH", "AP", "GLA", "AST", "CC" and "AD" to "AH" are of it.
+ * "LEN NEW" begins a lens, at the object surface; "NXT" begins the next
+ * surface, and "RD", "TH", "AP", "GLA", "AST", "CC" and "AD" to "AH" set its
+ * values.
  */
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +29,7 @@ static bool take_glass(struct oslo *o)
         return lines_mirror(l);
     if (strcmp(l->word[1], "AIR") != 0)
         snprintf(o->s->glass, sizeof o->s->glass, "%s", l->word[1]);
-    /* A glass of one's own has its indices behind its name. */
+    /* A glass that the file defines has three indices after its name. */
     if (l->n > 4) {
         double n[3];
 

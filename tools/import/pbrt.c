@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Lens tables of pbrt: radius, distance, index and diameter of each surface, in
- * millimetres. Radius 0 and index 0 are the stop. Distances are those to the
- * next surface, or in the older tables of 100 mm those from the last: the first
- * is then 0 and the last is not.
+ * millimetres. A surface with radius 0 and index 0 is the stop. Distances lead
+ * to the next surface; in the older tables, of 100 mm lenses, they lead to the
+ * previous surface, so that the first is 0 and the last is not.
  */
 #include "import/lines.h"
 

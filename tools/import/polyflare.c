@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * The tables of polyflare and of polynomial optics, .fx: radius, thickness,
- * medium, and behind a glass its index and Abbe number, then the
- * semi-diameter.
+ * Tables of polyflare and of polynomial optics, .fx: radius, thickness, medium,
+ * for a glass its index and Abbe number, then the semi-diameter.
  *
- * The medium is "air", "iris" or a glass, which its numbers say; "cx_" before
- * it makes a cylinder that is bent in x. A thickness "a/b/c" has a value for
- * each position of a zoom, and so have "#EFL" and "#FOV", the diagonal of the
- * field in degrees. "#!scale" multiplies all lengths, "#!aspheric=" behind a
- * row has the conic and the terms of h^4 to h^10. "//" begins a comment, and so
- * does
- * '#' at the start of a line.
+ * The medium is "air", "iris" or a glass, which its numbers define; the prefix
+ * "cx_" makes a cylinder that is curved in x. A thickness "a/b/c" has a value
+ * per zoom position, as do "#EFL" and "#FOV", the diagonal field in degrees.
+ * "#!scale" multiplies all lengths; "#!aspheric=" after a row has the conic and
+ * the terms of h^4 to h^10. "//" begins a comment, and so does '#' at the start
+ * of a line.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -20,20 +18,20 @@
 #include "import/lines.h"
 #include "options/tool.h"
 
-#define PLANE 1e4 /* what files say for a plane's radius, at least */
+#define PLANE 1e4 /* files write planes with this radius or a larger one */
 
 enum { POSITIONS = 8 };
 
 struct polyflare {
     struct imported *lens;
     struct lines lines;
-    int at;        /* position that is taken */
-    int positions; /* most that a thickness has; 0: none met */
-    int line;      /* of the first with several */
+    int at;        /* selected zoom position */
+    int positions; /* max values of a thickness; 0: none read yet */
+    int line;      /* line of the first thickness with several values */
     double focal[POSITIONS], field[POSITIONS];
 };
 
-/* Takes away words from the first on that a comment begins in. */
+/* Removes the comment and all words in it from L. */
 static void cut_comment(struct lines *l)
 {
     for (int k = 0; k < l->n; k++) {
@@ -54,7 +52,8 @@ static bool too_many(struct polyflare *p)
                          POSITIONS);
 }
 
-/* Takes "#EFL" and its like; other lines that '#' begins are comments. */
+/* Parses "#EFL" and similar lines; other lines that begin with '#' are
+ * comments. */
 static bool take_head(struct polyflare *p)
 {
     const struct lines *l = &p->lines;
@@ -86,7 +85,8 @@ static bool take_thickness(struct polyflare *p, struct imported_surface *s)
     const char *at = l->n > 1 ? l->word[1] : "";
     int n = 0;
 
-    if (strcmp(at, "BFL") == 0) /* where the light meets, as where none is */
+    if (strcmp(at, "BFL") == 0) /* the back focal distance, computed like a
+                                   missing one */
         return true;
     for (bool more = true; more; n++) {
         const size_t bytes = strcspn(at, "/");
@@ -118,7 +118,7 @@ static bool take_thickness(struct polyflare *p, struct imported_surface *s)
     return true;
 }
 
-/* Takes "#!aspheric=0,1e-5,0,0,0", word K. */
+/* Parses word K, such as "#!aspheric=0,1e-5,0,0,0". */
 static bool take_terms(struct polyflare *p, int k, struct imported_surface *s)
 {
     const char *at = p->lines.word[k] + strlen("#!aspheric=");
@@ -138,7 +138,7 @@ static bool take_terms(struct polyflare *p, int k, struct imported_surface *s)
     return true;
 }
 
-/* Takes the medium, word 2, and what follows it. */
+/* Parses the medium, word 2, and the words after it. */
 static bool take_medium(struct polyflare *p, struct imported_surface *s)
 {
     const struct lines *l = &p->lines;
@@ -153,7 +153,8 @@ static bool take_medium(struct polyflare *p, struct imported_surface *s)
         medium += 3;
     }
     s->stop = strcasecmp(medium, "iris") == 0;
-    /* A plane iris within a medium is within it; one that is bent ends it. */
+    /* A plane iris lies within the medium before it; a curved iris ends that
+     * medium. */
     if (s->stop && before && fabs(s->radius) >= PLANE) {
         s->nd = before->nd;
         s->vd = before->vd;
@@ -180,7 +181,7 @@ static bool take_row(struct polyflare *p)
            take_thickness(p, s) && take_medium(p, s);
 }
 
-/* Takes a plane in the air as the stop if no iris is reported. */
+/* If the file has no iris, uses a plane in the air as the stop. */
 static bool find_stop(struct imported *lens)
 {
     int at = -1;

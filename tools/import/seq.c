@@ -2,11 +2,11 @@
  *
  * CODE V .seq files: spheres, conics and even aspheres.
  *
- * Commands are divided by ';' or ends of lines. "S r t glass", "SO" and "SI"
- * begin the next surface, the object and the image; what follows is of that
- * surface, or of K where "SK" is its second word. Words may be in small
- * letters. Radii are curvatures but after "RDM". Glasses of six digits or
- * nnn.vvv are (nd - 1) and Vd.
+ * Commands are separated by ';' or line ends. "S r t glass", "SO" and "SI"
+ * begin the next surface, the object and the image; later commands apply to
+ * that surface, or to surface K if their second word is "SK". Case is ignored.
+ * Radii are given as curvatures unless "RDM" precedes. A glass of six digits or
+ * nnn.vvv states (nd - 1) and Vd.
  */
 #include <math.h>
 #include <stdio.h>
@@ -21,12 +21,11 @@ struct seq {
     struct lines lines;
     struct imported_surface *s;
     bool curvatures;
-    bool image; /* has been met */
+    bool image; /* the image has been read */
 };
 
-/* Sets S to a glass of digits, those of nd behind "1." and those of Vd / 100
- * behind "0.", as "517642", "517.642" or "516800.641672"; returns whether WORD
- * is one. */
+/* Sets nd and Vd of S if WORD is a glass code, such as "517642", "517.642" or
+ * "516800.641672" (nd 1.5168, Vd 64.1672). Returns whether it is. */
 static bool numbered_glass(struct imported_surface *s, const char *word)
 {
     static const char digits[] = "0123456789";
@@ -59,14 +58,14 @@ static bool take_glass(struct seq *q, const char *word)
     return true;
 }
 
-/* Sets the radius of the surface to word K, a curvature if that is reported. */
+/* Sets the surface's radius from word K, which is a curvature if CURVATURE. */
 static bool take_radius(struct seq *q, int k, bool curvature)
 {
     return curvature ? lines_curvature(&q->lines, k, &q->s->radius)
                      : lines_number(&q->lines, k, "radius", &q->s->radius);
 }
 
-/* The thickness behind the image says by how much it is out of focus. */
+/* Stores the image surface; its thickness is the defocus. */
 static bool take_image(struct seq *q)
 {
     const struct lines *l = &q->lines;
@@ -124,10 +123,11 @@ static bool take_aperture(struct seq *q)
     return true;
 }
 
-/* Takes a word for one number of the surface; DONE is whether it is one. */
+/* Handles a command that sets a single number or the glass of the surface. Sets
+ * DONE to whether the command is known. */
 static bool take_number(struct seq *q, bool *done)
 {
-    static const char terms[] = "ABCDEFGHJ"; /* of h^4 to h^20 */
+    static const char terms[] = "ABCDEFGHJ"; /* terms of h^4 to h^20 */
     const struct lines *l = &q->lines;
     const char *word = l->word[0];
 
@@ -149,8 +149,8 @@ static bool take_number(struct seq *q, bool *done)
     return true;
 }
 
-/* Takes what is reported of the surface: shapes of "K", and "A" to "J" for h^4
- * to h^20. */
+/* Handles a command about the surface, including its shape: "K" for the conic
+ * and "A" to "J" for h^4 to h^20. */
 static bool take_surface(struct seq *q)
 {
     static const char *const ignored[] = {
@@ -185,7 +185,7 @@ static bool take_surface(struct seq *q)
 static bool take_dimension(struct seq *q)
 {
     const char *word = q->lines.n > 1 ? q->lines.word[1] : "";
-    const char unit = (char)(*word & ~0x20); /* a capital */
+    const char unit = (char)(*word & ~0x20); /* in upper case */
 
     if (unit != 'I' && unit != 'C' && unit != 'M')
         return imported_fail(q->lens, q->lines.number,
@@ -228,7 +228,7 @@ static bool take_head(struct seq *q)
                          "zoom positions but the first are not read");
 }
 
-/* Puts the first word into capitals. */
+/* Converts the first word to upper case. */
 static void capitalise(struct lines *l)
 {
     for (char *c = l->text + (l->word[0] - l->text); *c; c++)
@@ -236,7 +236,8 @@ static void capitalise(struct lines *l)
             *c = (char)(*c - 'a' + 'A');
 }
 
-/* Goes to the surface of a second word "S3", and takes that away. */
+/* If the second word is a surface, such as "S3", goes to that surface and
+ * removes the word. */
 static bool go_to_surface(struct seq *q)
 {
     struct lines *l = &q->lines;

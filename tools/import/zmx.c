@@ -2,9 +2,9 @@
  *
  * Zemax .zmx files, sequential: STANDARD and EVENASPH surfaces.
  *
- * A line is a word and values. Lines behind "SURF n" are of that surface, the
- * first being the object and the last the image. Aspheric PARM 1 .. 8 are the
- * terms of h^2 .. h^16.
+ * A line is a word and values. Lines after "SURF n" describe that surface; the
+ * first surface is the object, the last the image. PARM 1 .. 8 of an EVENASPH
+ * are the terms of h^2 .. h^16.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,13 +15,13 @@
 struct zmx {
     struct imported *lens;
     struct lines lines;
-    struct imported_surface *s; /* NULL: before the first */
-    bool even;                  /* PARM of S are aspheric terms */
-    bool indented;              /* what is of surfaces is */
+    struct imported_surface *s; /* current surface; NULL: before the first */
+    bool even;                  /* PARM lines of s are aspheric terms */
+    bool indented;              /* lines about a surface are indented */
     int field_type;
     double field, object;
-    double number;   /* of surface S, as the file counts */
-    int object_line; /* 0: not met yet */
+    double number;   /* number of surface s in the file */
+    int object_line; /* 0: object not read yet */
 };
 
 static bool take_type(struct zmx *z)
@@ -50,7 +50,7 @@ static bool take_glass(struct zmx *z)
         return false;
     if (strncmp(l->word[1], "___", 3) != 0) {
         snprintf(z->s->glass, sizeof z->s->glass, "%s", l->word[1]);
-        /* What older versions write whatever the glass. */
+        /* Older versions write these values for any glass. */
         if (nd == 1.5 && vd == 40)
             nd = vd = 0;
     }
@@ -80,7 +80,7 @@ static bool take_parameter(struct zmx *z)
 
 static bool take_surface(struct zmx *z)
 {
-    /* how it is drawn, made and solved for */
+    /* how the surface is drawn, manufactured and optimised */
     static const char *const ignored[] = {"HIDE", "MIRR", "SLAB", "POPS",
                                           "FIMP", "MEMA", "FLAP", "COMM"};
     const struct lines *l = &z->lines;
@@ -157,8 +157,9 @@ static bool take_head(struct zmx *z)
            lines_fields(l, &z->field);
 }
 
-/* Starts a surface; the object is not one. Numbers that do not count up are of
- * a file that is damaged: a surface is missing, or twice there. */
+/* Begins a surface; the first, the object, is not added to the lens. Refuses
+ * numbers that do not count up, as the file is then damaged: a surface is
+ * missing or duplicate. */
 static bool start_surface(struct zmx *z)
 {
     double number;
@@ -179,12 +180,12 @@ static bool start_surface(struct zmx *z)
     }
     z->s = imported_add(z->lens, z->lines.number);
     if (z->s)
-        z->s->thickness = (double)NAN; /* not said yet */
+        z->s->thickness = (double)NAN; /* not stated yet */
     return z->s != NULL;
 }
 
-/* Takes off the last surface, the image, which ends the lens: what continues is
- * a file that has been cut off. */
+/* Removes the last surface, the image. Refuses an image with glass behind it,
+ * as the file is then cut off. */
 static bool take_image(struct imported *lens)
 {
     const struct imported_surface *image = &lens->surface[--lens->n];

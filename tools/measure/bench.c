@@ -65,7 +65,7 @@ static int run_rounds(struct bench *b)
     enum glint_status status = GLINT_OK;
 
     tool_progress_start(&progress, b->tool, "bench");
-    /* The first rounds only warm up: one, or one for each place of a moving
+    /* The first rounds only warm up: one, or one per position of a moving
      * light. */
     for (int round = -warm; round < b->rounds && status == GLINT_OK; round++) {
         const int at = round < 0 ? round + warm : round;
@@ -95,7 +95,7 @@ double bench_floor_ms(const struct bench *b, const struct bench_case *c)
     return canvas_median(c->canvas->floor_ms, b->rounds);
 }
 
-/* Returns the width of the column of STAGE in characters. */
+/* Returns the width of STAGE's column, characters. */
 static int column(const char *stage)
 {
     const int n = (int)strlen(stage);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bench of flares: lenses, pictures and options that are timed.
+ * glint bench of flares: the lenses, pictures and options to time.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -39,7 +39,7 @@ static const char help[] =
     "  --format F      yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 | "
     "rgb565\n";
 
-/* These bake in 30 s of processor time together; canon-zoom-mid alone takes
+/* Baking all of these costs 30 s of CPU time; canon-zoom-mid alone costs
  * minutes. */
 static const char *const default_lenses[] = {
     "heliar-tronnier", "double-gauss-angenieux", "itoh-zoom-short"};
@@ -56,7 +56,7 @@ struct flare_case {
     struct glint_engine *engine;
     struct glint_lamp *lamp;
     int n_lamps;
-    bool is_star; /* stars alone */
+    bool is_star; /* only starbursts are drawn */
     double scale;
     struct glint_engine_report report;
 };
@@ -81,11 +81,11 @@ static const struct bench_variation all[] = {
     {.lights = 0},
     {.lights = 1, .star_stops = 12},
     {.lights = 10, .star_stops = 2},
-    {.lights = 1, .angle = 75}, /* beyond the angles of models */
+    {.lights = 1, .angle = 75}, /* outside the field of baked models */
 };
 
-/* Sets the exposure of T. A light far outside is exposed as if it were in the
- * picture. */
+/* Sets the exposure of T. For a light far off-screen uses the exposure of a
+ * light in the picture. */
 static enum glint_status expose(struct flare_case *t,
                                 const struct bench_variation *v)
 {
@@ -104,7 +104,7 @@ static enum glint_status expose(struct flare_case *t,
     return status;
 }
 
-/* Adds the case V of LENS. Returns an exit code. */
+/* Adds the case of LENS with variation V. Returns an exit code. */
 static int add(struct bench *b, const struct opened_lens *lens,
                const struct bench_variation *v)
 {
@@ -134,7 +134,7 @@ static int add(struct bench *b, const struct opened_lens *lens,
                               : tool_fail(b->tool, status, error.text);
 }
 
-/* Adds those of V[N] that are possible here. */
+/* Adds the variations of V[N] that this CPU supports. */
 static int add_list(struct bench *b, const struct opened_lens *lens,
                     const struct bench_variation *v, size_t n)
 {
@@ -148,7 +148,7 @@ static int add_list(struct bench *b, const struct opened_lens *lens,
 
 /* ------------------------------------------------------------------ rounds */
 
-/* By its name tools/measure/budget tells frames that are timed. */
+/* tools/measure/budget recognises timed frames by this name. */
 enum glint_status bench_run(struct bench *b, struct bench_case *c, int round);
 enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bench --scene: frames onto which a scene is drawn, by stage.
+ * glint bench --scene: times drawing a scene onto frames, by stage.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -33,21 +33,24 @@ static const char help[] =
     "  --format F          yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 |\n"
     "                      rgb565\n";
 
-/* SHADOWS is included in DRAW: the additional time of a scene with shadows.
- * WHOLE is the sum of the others. */
+/* SHADOWS, the additional time of a scene with shadows, is included in DRAW.
+ * WHOLE is the sum of all stages. */
 enum { PREPARE, AROUND, DRAW, SHADOWS, LIGHTS, WHOLE };
 
 struct opened {
     const char *file;
-    struct baked_scene scene, bare; /* bare: without shadows, if it has any */
-    int counter;                    /* of instructions, or -1 */
+    struct baked_scene scene, bare; /* bare: the scene without shadows, if it
+                                       has shadows */
+    int counter;                    /* descriptor that counts instructions, or
+                                       -1 */
 };
 
 struct scene_case {
     struct bench_case base;
-    struct tool tool; /* the command's, with other threads and sets */
+    struct tool tool; /* copy of the command's tool, with other threads and
+                         sets */
     struct scene_frame frame, bare;
-    double instructions; /* of the last frame; NAN: they are not counted */
+    double instructions; /* instructions of the last frame; NAN: not counted */
     int covered_px;
 };
 
@@ -68,8 +71,8 @@ static const struct bench_variation all[] = {
     {.width = 3840, .height = 2160},
 };
 
-/* Puts the first object where it is, so that lists of shadows are made as if it
- * had moved. */
+/* Sets the first object's position to its current value, so that lists of
+ * shadows are rebuilt as if it had moved. */
 static void stir(void *ctx, struct glint_scene *scene)
 {
     const struct scene_frame *const frame = ctx;
@@ -80,7 +83,7 @@ static void stir(void *ctx, struct glint_scene *scene)
                              model->object[0].turn_q30);
 }
 
-/* Opens FRAME of MODEL and draws it once, so that it has its memory. */
+/* Opens FRAME of MODEL and draws it once, so that all memory is allocated. */
 static int open_frame(struct scene_case *t, struct scene_frame *frame,
                       const struct glint_scene_model *model,
                       const struct scene_dials *dials)
@@ -94,8 +97,8 @@ static int open_frame(struct scene_case *t, struct scene_frame *frame,
                            : code;
 }
 
-/* Sets DIALS to those of the line, with the option of V. Returns false if V
- * says the same as the line. */
+/* Sets DIALS to the quality parameters of the command line plus the option of
+ * V. Returns false if V changes nothing. */
 static bool choose(const struct bench *b, const struct bench_variation *v,
                    struct scene_dials *dials)
 {
@@ -165,7 +168,8 @@ static int add_cases(struct bench *b)
 
 /* ------------------------------------------------------------------ rounds */
 
-/* Draws a frame. Notes the times at which stages begin, and the end. */
+/* Draws a frame. Sets AT_S to the times at which stages begin and the last
+ * ends. */
 static void time_stages(struct scene_frame *frame,
                         const struct glint_image *image, double at_s[5])
 {
@@ -218,7 +222,7 @@ static int open_bare(struct bench *b, struct opened *o)
 {
     const int code = baked_scene_open(b->tool, o->file, &o->bare);
 
-    if (code == EXIT_OK) /* its checksum has been requested */
+    if (code == EXIT_OK) /* its checksum has been verified */
         ((struct glint_scene_header *)o->bare.data)->shadow = 0;
     return code;
 }

@@ -54,8 +54,8 @@ void canvas_finish(struct canvas *c)
     c->fresh = c->mem = NULL;
 }
 
-/* Adds LAYER[256], which stays in the cache, to every 256 bytes of PX,
- * saturating, in a loop that compilers vectorise. */
+/* Adds LAYER[256], which stays in the cache, to each 256 bytes of PX with
+ * saturation, in a loop that compilers vectorise. */
 static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
                       size_t bytes)
 {
@@ -183,8 +183,8 @@ static uint64_t mix(uint64_t hash, const void *data, size_t bytes)
     return hash;
 }
 
-/* Returns a key of all that the picture depends on, but for the tracer
- * itself. */
+/* Returns a hash of all inputs of the picture; the tracer's code is not
+ * included. */
 static uint64_t key_of(const struct opened_lens *lens, const struct settings *s,
                        const struct glint_lamp *lamp, int n_lamps, int grid,
                        const struct glint_float_image *to)

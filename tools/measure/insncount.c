@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * insncount.so - counts the instructions that frames of a program execute, by
- * stage, in QEMU's emulators of other machines: the same counts on every run.
+ * insncount.so - a QEMU plug-in that counts the instructions of a program's
+ * frames, by stage, on emulated machines. Counts are the same on every run.
  *
  *     qemu-aarch64 -plugin \
  *         ./insncount.so,frame=F,idle=G,skip=N,at=H:NAME,at=... -d plugin
@@ -10,9 +10,9 @@
  * A frame begins when function F is entered after G has run. Within it, each
  * function H begins the stage NAME, and F begins stage 0, "rest". Functions not
  * listed belong to the stage that calls them; so a function that continues
- * after calling a stage must be listed, too. The first N frames are left out,
- * and the mean of the others is printed. Only one thread may run. A block of
- * instructions counts for the function that it begins in.
+ * after calling a stage must be listed, too. The mean over all frames but the
+ * first N is printed. The program must have one thread. A block of instructions
+ * counts for the function in which it begins.
  *
  * QEMU ships no header for plug-ins; the part of its interface that is used is
  * declared here.
@@ -49,14 +49,14 @@ EXPORTED int qemu_plugin_version = 1;
 enum { MAX_MARKS = 32, ASLEEP = -2, IDLE = -1, REST = 0, INHERIT = -3 };
 
 struct block {
-    int n, stage; /* n: instructions; stage: ASLEEP in the idle function, else a
-                     stage, or INHERIT: the caller's */
+    int n, stage; /* n: instructions; stage: ASLEEP in the idle function,
+                     INHERIT for the caller's stage, else a stage */
 };
 
 static struct {
     const char *function, *name;
 } mark[MAX_MARKS];
-static int n_marks = 1; /* mark[0] is that of the frame. */
+static int n_marks = 1; /* mark[0] is the frame function */
 static const char *idle = "";
 static int stage = ASLEEP, n_frames, n_skipped;
 static uint64_t spent[MAX_MARKS];
@@ -129,7 +129,8 @@ static void take_mark(char *text)
 static void count(uint64_t id, struct qemu_plugin_tb *tb)
 {
     const char *name = qemu_plugin_insn_symbol(qemu_plugin_tb_get_insn(tb, 0));
-    struct block *b = malloc(sizeof *b); /* never freed, as code is not */
+    struct block *b = malloc(sizeof *b); /* never freed, as QEMU may run the
+                                            code at any time */
 
     (void)id;
     if (!b)

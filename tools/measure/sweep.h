@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint sweep: frames with each quality parameter set alone, with some of them
- * set together, and along --quality, in cases of a lens, a size and some
- * lights; and the metrics of each.
+ * glint sweep: measures frames with each quality parameter set alone, with
+ * several set together, and along --quality. A case is a lens, a size and some
+ * lights.
  */
 #ifndef GLINT_TOOLS_LAB_SWEEP_H
 #define GLINT_TOOLS_LAB_SWEEP_H
@@ -12,32 +12,34 @@
 enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };
 enum { MAX_PARAMETERS = 12, MAX_VALUES = 10, MAX_TOGETHER = 5 };
 
-/* largest flux error on a front: brightness must not depend on parameters */
+/* max flux error of settings on a Pareto front: brightness must not depend on
+ * parameters */
 #define MAX_FLUX_ERROR 0.02
 
 /* A parameter that trades accuracy for time. */
 struct sweep_parameter {
-    const char *name;   /* for tables and plots */
-    const char *option; /* of the engine; NULL: the tolerance of a bake */
-    double standard;    /* value by default */
-    bool opens;         /* Settings have to be opened again for it. */
+    const char *name;   /* name in tables and plots */
+    const char *option; /* option of the engine; NULL: the tolerance of a
+                           bake */
+    double standard;    /* default value */
+    bool opens;         /* a change needs the lens to be opened again */
     bool many_lights;   /* has no effect on a single light */
     int n_values, n_together;
-    double value[MAX_VALUES]; /* from the finest on */
+    double value[MAX_VALUES]; /* values, the finest first */
     double together[MAX_TOGETHER];
-    const char *words[MAX_VALUES]; /* VALUE as texts; NULL: numbers */
+    const char *words[MAX_VALUES]; /* values as texts; NULL: they are numbers */
 };
 extern const struct sweep_parameter sweep_parameter[];
 extern const int n_sweep_parameters;
 
-/* kind of setting that a point measures */
+/* how a point's parameters are set */
 enum sweep_kind { SWEEP_STANDARD, SWEEP_ALONE, SWEEP_TOGETHER, SWEEP_QUALITY };
 
 struct sweep_setting {
     enum sweep_kind kind;
     int alone;      /* index of the only parameter that is set; -1: no
                        parameter */
-    double quality; /* --quality, 0 .. 1; -1: not set by it */
+    double quality; /* --quality, 0 .. 1; -1: --quality is not set */
     double value[MAX_PARAMETERS];
 };
 
@@ -59,20 +61,21 @@ enum sweep_metric {
     SWEEP_METRICS
 };
 
-/* One setting in one case. */
+/* A setting measured in a case. */
 struct sweep_point {
     struct sweep_setting set;
     int of;                       /* index of the point's case */
     double metric[SWEEP_METRICS]; /* NAN: not measured */
-    bool front; /* no other of its case is both cheaper and better */
+    bool front; /* on the Pareto front of its case: no other point is both
+                   cheaper and better */
 };
 
 struct sweep_case {
     int lens; /* index of the lens */
     int width, height, n_lamps;
     double angle;
-    bool together; /* parameters are combined here */
-    int first, n;  /* The case has points first .. first + n - 1. */
+    bool together; /* combinations of parameters are measured in this case */
+    int first, n;  /* indices of the case's points: first .. first + n - 1 */
 };
 
 /* A picture for the page: small, sRGB codes, [height][width][3]. */
@@ -93,38 +96,37 @@ struct sweep {
     int n_points;
     struct sweep_picture *picture;
     int n_pictures;
-    /* Rounds of timing, 1 .. SWEEP_ROUNDS; cells per side of the grid of rays
-     * that draws the exact picture, 4 .. 1024, even. */
+    /* rounds of timing, 1 .. SWEEP_ROUNDS; cells per side of the exact
+     * picture's grid of rays, 4 .. 1024, even */
     int rounds, grid;
     bool small;
     int counter; /* descriptor that counts instructions, or -1 */
     struct glint_workers *one;
 };
 
-/* Sets in SETTINGS what SET says; OPENING: only what opens them. */
+/* Applies SET to SETTINGS; if OPENING, only parameters that are needed to open
+ * the lens. */
 void sweep_set(struct settings *settings, const struct sweep_setting *set,
                bool opening);
 
-/* Makes the points of all cases. GLINT_E_MEMORY. */
+/* Makes the points of all cases. Returns GLINT_E_MEMORY on failure. */
 enum glint_status sweep_plan(struct sweep *s);
 
-/* Measures case C. Returns an exit code. */
+/* Measures all points of case C. Returns an exit code. */
 int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
 
 /* ------------------------------------------------------------------- fronts */
 
-/* Marks the front of each case. */
+/* Marks the points on the Pareto front of each case. */
 void sweep_mark_fronts(struct sweep *s);
 
-/* Sets FRONT[N] to the indices of the points that no other is both cheaper and
- * better than, the cheapest first. Returns how many. Points with NAN are left
- * out. */
+/* Sets FRONT[N] to the indices of the points on the Pareto front, the cheapest
+ * first, and returns their number. Points with NAN are left out. */
 int sweep_front(const double *cost, const double *quality, int n, int *front);
 
-/* Means of one setting over all cases in which parameters are combined:
- * geometric mean of its cost over that of the standard setting of the same
- * case; mean and least PSNR, dB; largest error of the flux, without its
- * sign. */
+/* Means of a setting over all cases with combined parameters: geometric mean of
+ * its cost divided by the default setting's cost in the same case; mean and min
+ * PSNR, dB; max absolute flux error. */
 struct sweep_mean {
     const struct sweep_setting *set;
     double cost, psnr_db, least_db, flux_error;
@@ -132,26 +134,28 @@ struct sweep_mean {
 };
 
 /* Returns the means of all settings, malloc'ed, the cheapest first, and marks
- * the front, on which are none with a flux error above 2 percent. Sets *N to
- * how many; 0 and NULL without memory. */
+ * the Pareto front, without settings whose flux error is above MAX_FLUX_ERROR.
+ * Sets *N to their number. Returns NULL and sets *N to 0 if there is no
+ * memory. */
 struct sweep_mean *sweep_means(const struct sweep *s, int *n);
 
 /* Sorts MEAN[N] by cost, the cheapest first. */
 void sweep_sort(struct sweep_mean *mean, int n);
 
 /* Returns by how many dB MEAN[I] lies above the best PSNR that --quality
- * reaches for at most 1.02 times its cost; 2 percent are noise. MEAN[N] is
- * sorted by cost. Between two neighbouring settings of --quality that draw as
- * many pixels the PSNR is interpolated. */
+ * reaches at up to 1.02 times its cost; 2 percent are noise. MEAN[N] must be
+ * sorted by cost. PSNR is interpolated between neighbouring settings of
+ * --quality that draw the same number of pixels. */
 double sweep_above(const struct sweep_mean *mean, int n, int i);
 
 /* ------------------------------------------------------------------- output */
 
-/* Writes SET as words: --quality and the parameters that differ from the
- * standard, as "grid 32, quantum 2", or "default". */
+/* Writes SET as text: --quality and the parameters that differ from the
+ * default, such as "grid 32, quantum 2", or "default". */
 void sweep_words(const struct sweep_setting *set, char text[160]);
 
-/* Returns the index of the name of P's quality, or -1. */
+/* Returns the index of the named quality of P, or -1 if its quality has no
+ * name. */
 int sweep_named(const struct sweep_point *p);
 
 void sweep_write_csv(const struct sweep *s, FILE *file);
@@ -160,8 +164,8 @@ void sweep_write_front_svg(const struct sweep *s, FILE *file);
 void sweep_write_dials_svg(const struct sweep *s, FILE *file);
 void sweep_write_page(const struct sweep *s, FILE *file);
 
-/* Prints the table of named qualities, as Markdown, and which settings of one
- * parameter lie above --quality. */
+/* Prints a Markdown table of named qualities, and the settings of a single
+ * parameter that lie above --quality. */
 void sweep_names(const struct sweep *s, FILE *file);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * All points as CSV and JSON, and the named qualities as Markdown.
+ * Writes all points as CSV and JSON, and the named qualities as Markdown.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static const char *const metrics[SWEEP_METRICS] = {
     "model_bytes", "psnr_db",  "ssim",  "p99",          "flux_error",
     "ghosts",      "bundles",  "edges", "tiles"};
 
-/* Prints a comma and X, or nothing behind it if X is not finite. */
+/* Prints a comma, and X after it if X is finite. */
 static void print_number(FILE *file, double x)
 {
     fputc(',', file);
@@ -76,7 +76,7 @@ void sweep_write_json(const struct sweep *s, FILE *file)
     json_write(&json, "\n]}\n");
 }
 
-/* Prints the settings of one parameter that lie at least 0.1 dB above
+/* Prints the settings of a single parameter that lie at least 0.1 dB above
  * --quality. */
 static void print_above(const struct sweep *s, FILE *file)
 {

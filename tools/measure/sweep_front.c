@@ -17,8 +17,7 @@ struct entry {
     int number;
 };
 
-/* Orders entries by cost, the cheapest first, and equal ones by quality, the
- * best first. */
+/* Orders entries by rising cost, at equal cost by falling quality. */
 static int by_cost(const void *a, const void *b)
 {
     const struct entry *x = a, *y = b;
@@ -75,9 +74,9 @@ void sweep_mark_fronts(struct sweep *s)
 
 /* ------------------------------------------------------------------- means */
 
-/* Sets M to the means of setting I over all cases in which parameters are
- * combined, which have the same settings. Returns false if one of these has not
- * measured it. */
+/* Sets M to the means of setting I over all cases with combined parameters,
+ * which all have the same settings. Returns false if a case has not measured
+ * it. */
 static bool mean_of(const struct sweep *s, int i, struct sweep_mean *m)
 {
     int n = 0;
@@ -106,8 +105,7 @@ static bool mean_of(const struct sweep *s, int i, struct sweep_mean *m)
     return n > 0 && isfinite(m->cost);
 }
 
-/* Orders means by cost, the cheapest first, and equal ones by PSNR, the best
- * first. */
+/* Orders means by rising cost, at equal cost by falling PSNR. */
 static int by_mean_cost(const void *a, const void *b)
 {
     const struct sweep_mean *x = a, *y = b;
@@ -123,7 +121,7 @@ void sweep_sort(struct sweep_mean *mean, int n)
         qsort(mean, (size_t)n, sizeof *mean, by_mean_cost);
 }
 
-/* The cheapest comes first, so the front rises along MEAN[N]. */
+/* Marks the Pareto front of MEAN[N], which must be sorted by cost. */
 static void mark_means(struct sweep_mean *mean, int n)
 {
     double best = -HUGE_VAL;
@@ -160,7 +158,7 @@ static bool same_pixels(const struct sweep_mean *a, const struct sweep_mean *b)
     return true;
 }
 
-/* Returns the PSNR at COST, between those of A and B, on a line over
+/* Returns the PSNR at COST, interpolated between A and B linearly in
  * log(cost). */
 static double between(const struct sweep_mean *a, const struct sweep_mean *b,
                       double cost)

@@ -8,12 +8,12 @@
 #include "measure/sweep.h"
 #include "options/timed_text.h"
 
-/* Milliseconds spent on a point, after which it gets no further rounds. */
+/* time limit, ms, after which a point gets no further rounds */
 #define MAX_POINT_MS 4000.0
 
 enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
 
-/* A lens that is opened for settings. */
+/* A lens opened for settings. */
 struct sweep_lens {
     struct settings settings;
     struct opened_lens lens;
@@ -30,7 +30,7 @@ struct run {
     double spent_ms;
 };
 
-/* All that one case is measured with. */
+/* State of measuring a case. */
 struct bay {
     struct sweep *s;
     const struct sweep_case *c;
@@ -40,7 +40,7 @@ struct bay {
     struct canvas canvas;
     struct glint_lamp *lamp;
     double exposure;
-    struct glint_float_image exact; /* rgb is NULL before it is drawn. */
+    struct glint_float_image exact; /* rgb is NULL until it is drawn */
 };
 
 /* ------------------------------------------------------------------ making */
@@ -50,9 +50,9 @@ static bool is_same(const struct settings *a, const struct settings *b)
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
 
-/* Returns the lens opened for SET, shared by all sets that need the same to be
- * opened. Returns NULL after reporting a failure, with its exit code in
- * *CODE. */
+/* Returns the lens opened for SET, shared by all settings that open it alike.
+ * On failure reports the error, sets *CODE to the exit code and returns
+ * NULL. */
 static const struct sweep_lens *
 opened_for(struct bay *b, const struct sweep_setting *set, int *code)
 {
@@ -133,8 +133,8 @@ static void free_bay(struct bay *b)
 
 /* ------------------------------------------------------------------ timing */
 
-/* Draws R's frame and notes time and instructions. In ROUND -1 it is only
- * drawn, so that its memory is taken. */
+/* Draws R's frame and records time and instructions. In ROUND -1 only draws it,
+ * so that its memory is touched. */
 static enum glint_status draw(struct bay *b, struct run *r, int round)
 {
     const int counter = b->s->counter;
@@ -157,8 +157,8 @@ static enum glint_status draw(struct bay *b, struct run *r, int round)
     return status;
 }
 
-/* Times all points, in turns with the memory floor. Progress goes from FROM to
- * TO meanwhile. */
+/* Times all points and the memory floor in turns. Progress rises from FROM to
+ * TO. */
 static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
                                   double from, double to)
 {
@@ -201,8 +201,8 @@ static double sum_of(const struct glint_float_image *image)
     return sum;
 }
 
-/* Sets flux_error of R: its light, planned as for codes but drawn linear, over
- * that of the exact picture, less 1. */
+/* Sets flux_error of R: the light of its flare, planned as for codes but drawn
+ * linearly, divided by the exact picture's light, minus 1. */
 static enum glint_status measure_flux(struct bay *b, struct run *r)
 {
     const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
@@ -222,8 +222,8 @@ static enum glint_status measure_flux(struct bay *b, struct run *r)
     return status;
 }
 
-/* Sets TO, WIDTH x HEIGHT pixels, to the means of BY x BY pixels of CODES,
- * whose rows are STRIDE bytes apart. */
+/* Sets TO, WIDTH x HEIGHT pixels, to means of BY x BY pixels of CODES; rows of
+ * CODES are STRIDE bytes apart. */
 static void shrink(const uint8_t *codes, int stride, int by, uint8_t *to,
                    int width, int height)
 {
@@ -238,8 +238,8 @@ static void shrink(const uint8_t *codes, int stride, int by, uint8_t *to,
         }
 }
 
-/* Keeps CODES, the picture of point POINT of the case, shrunk, for the page; of
- * point -1 it is the exact picture. Returns false without memory. */
+/* Stores a reduced copy of CODES, the picture of POINT (-1: the exact picture),
+ * for the page. Returns false if there is no memory. */
 static bool keep_picture(struct bay *b, int point, const uint8_t *codes)
 {
     struct sweep *const s = b->s;
@@ -265,7 +265,7 @@ static bool keep_picture(struct bay *b, int point, const uint8_t *codes)
     return true;
 }
 
-/* Measures R against EXACT_CODES. CODES is room for its own codes. */
+/* Measures R against EXACT_CODES. CODES is work memory for R's codes. */
 static enum glint_status measure_point(struct bay *b, struct run *r,
                                        const uint8_t *exact_codes,
                                        double exposure, uint8_t *codes)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The page of a sweep: tables, plots and pictures in one file.
+ * The HTML page of a sweep: tables, plots and pictures in one file.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -47,7 +47,7 @@ static void table_of_names(const struct sweep *s, FILE *file)
     fputs("</table>\n", file);
 }
 
-/* Prints the front of the means, which --quality should follow. */
+/* Prints the Pareto front of the means, which --quality should follow. */
 static void table_of_front(const struct sweep *s, FILE *file)
 {
     int n;
@@ -90,7 +90,7 @@ static void figure(const struct sweep *s, FILE *file,
     fputs("</figcaption></figure>\n", file);
 }
 
-/* Writes 16 times the difference of Q from EXACT, about grey. */
+/* Writes a picture of grey plus 16 times the difference of Q and EXACT. */
 static void difference(const struct sweep *s, FILE *file,
                        const struct sweep_picture *q,
                        const struct sweep_picture *exact)
@@ -126,7 +126,7 @@ static void strips(const struct sweep *s, FILE *file)
                     s->lens[c->lens], c->width, c->height, c->n_lamps,
                     c->n_lamps > 1 ? "s" : "", c->angle);
         }
-        fputs("<div>", file); /* two side by side */
+        fputs("<div>", file); /* two pictures side by side */
         figure(s, file, q, q->rgb, "");
         if (q != exact)
             difference(s, file, q, exact);

@@ -13,10 +13,11 @@ static const double between_steps[] = {0.0625, 0.505};
 
 enum { GRID, QUANTUM, CULL, DIM, WHOLE, HALF, TOLERANCE };
 
-/* The last list of each parameter has the values that are combined with those
- * of others. Some are not combined: apart and max_lights lose more than they
- * save, wavelengths loses colour, each tolerance costs a bake, and tile changes
- * no picture. A single wavelength is the middle one, in grey. */
+/* The last list of each parameter has the values that are combined with other
+ * parameters. Not combined are apart and max_lights, which lose more than they
+ * save, wavelengths, which loses colour, the tolerance, as each value costs a
+ * bake, and tile, which changes no picture. A single wavelength is the middle
+ * one, drawn in grey. */
 /* clang-format off */
 const struct sweep_parameter sweep_parameter[] = {
     [GRID] = {"grid", "grid", 64, false, false, 9, 5,
@@ -62,7 +63,7 @@ static void set_parameter(struct settings *s, const struct sweep_parameter *p,
 void sweep_set(struct settings *s, const struct sweep_setting *set,
                bool opening)
 {
-    /* A limit of work would make grids coarser. */
+    /* Disabled, as a limit of work would make grids coarser. */
     settings_set_number(s, "work", 0);
     if (!opening && set->quality >= 0)
         settings_set_quality(s, set->quality);
@@ -76,7 +77,7 @@ void sweep_set(struct settings *s, const struct sweep_setting *set,
     s->tolerance = set->value[TOLERANCE];
 }
 
-/* Sets in VALUE the parameters that follow from the quality of S. */
+/* Sets the parameters in VALUE that --quality in S determines. */
 static void read_quality(const struct settings *s, double *value)
 {
     value[GRID] = s->dials.fineness;
@@ -116,8 +117,8 @@ static enum glint_status add(struct sweep *s, int c,
     return GLINT_OK;
 }
 
-/* Adds the values of each parameter set alone. A small sweep has no time for
- * those that need a bake, nor for more than the first and last value. */
+/* Adds points with a single parameter set. A small sweep skips parameters that
+ * need a bake, and all values but the first and last. */
 static enum glint_status add_alone(struct sweep *s, int c)
 {
     enum glint_status status = GLINT_OK;
@@ -142,7 +143,7 @@ static enum glint_status add_alone(struct sweep *s, int c)
 }
 
 /* Adds every combination of values in which at least two parameters differ from
- * the standard. */
+ * the default. */
 static enum glint_status add_together(struct sweep *s, int c)
 {
     enum glint_status status = GLINT_OK;

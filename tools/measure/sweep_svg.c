@@ -30,7 +30,7 @@ static void draw_dots(const struct plot *p, const struct sweep_mean *dot, int n)
 {
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < n; i++) {
-            static const char mark[] = "so.D"; /* by kind */
+            static const char mark[] = "so.D"; /* marks by kind of setting */
             const struct sweep_setting *set = dot[i].set;
             char words[160], tip[240];
 
@@ -47,8 +47,8 @@ static void draw_dots(const struct plot *p, const struct sweep_mean *dot, int n)
         }
 }
 
-/* Plots DOT[N], sorted by cost, but for those with a large flux error, and a
- * line along its front. */
+/* Plots DOT[N], sorted by cost, without settings with a large flux error, and a
+ * line along their Pareto front. */
 static void draw_panel(struct plot *p, const struct sweep_mean *dot, int n)
 {
     const struct sweep_mean *last = NULL;
@@ -76,8 +76,8 @@ static void draw_panel(struct plot *p, const struct sweep_mean *dot, int n)
     draw_dots(p, dot, n);
 }
 
-/* Plots the means over all cases in which parameters are combined, and each of
- * these cases. */
+/* Plots the means over all cases with combined parameters, and each of these
+ * cases. */
 void sweep_write_front_svg(const struct sweep *s, FILE *file)
 {
     int n_panels = 1, n, n_dots = 0;

@@ -153,8 +153,8 @@ enum glint_status synth_background_key(char key[20], const char *path,
     return status;
 }
 
-/* Sets TO to the light of FROM at (X, Y), pixels, between the four centres
- * around it. */
+/* Sets TO to the light of FROM at (X, Y), in pixels, interpolated bilinearly
+ * between pixel centres. */
 static void light_between(const struct glint_float_image *from, double x,
                           double y, double to[3])
 {
@@ -175,8 +175,8 @@ static void light_between(const struct glint_float_image *from, double x,
     }
 }
 
-/* Takes the part of FROM that ITEM requests: means of as many points a side of
- * each pixel as it covers pixels of FROM. */
+/* Resamples the part of FROM that ITEM requests to RGB. A pixel is the mean of
+ * N x N points, N being the pixels of FROM that it covers per side. */
 static void take_part(const struct glint_float_image *from,
                       const struct synth_item *item, float *rgb)
 {
@@ -206,8 +206,8 @@ static void take_part(const struct glint_float_image *from,
         }
 }
 
-/* Brings the mean light of RGB to LEVEL, by no more stops than there may be;
- * returns these. */
+/* Scales RGB so that its mean light is LEVEL, by SYNTH_LEAST_EV to
+ * SYNTH_MOST_EV stops. Returns the stops. */
 static double bring(float *rgb, size_t n, double level)
 {
     double sum = 0, ev;
@@ -231,10 +231,11 @@ static const char *find(const struct synth_backgrounds *list,
     return NULL;
 }
 
-/* Sets RGB, [height][width][3], linear light, to the part of its background
- * that ITEM takes, and EV to the stops by which that was brought to ITEM's
- * level. GLINT_E_IO with ERROR: there is no such background, or its bytes are
- * not those of ITEM's key. Errors of glint_picture_load_float(). */
+/* Sets RGB, [height][width][3], linear light, to the part of the background
+ * that ITEM requests, and EV to the stops by which it was scaled to ITEM's
+ * level. Returns GLINT_E_IO with ERROR if there is no such background or the
+ * file's key differs from ITEM's, or the errors of
+ * glint_picture_load_float(). */
 static enum glint_status load_background(const struct synth_backgrounds *list,
                                          const struct synth_item *item,
                                          float *rgb, double *ev,
@@ -331,7 +332,8 @@ int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
     *lens = calloc(1, sizeof **lens);
     if (!*lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    lenses->lens[lenses->n++] = *lens; /* closed also if it does not open */
+    lenses->lens[lenses->n++] = *lens; /* added also if it fails to open, so
+                                          that it is closed later */
     return open_lens(tool, *lens, item);
 }
 
@@ -343,7 +345,7 @@ void synth_lenses_close(struct synth_lenses *lenses)
     }
 }
 
-/* Stops LENS as ITEM says, and lays dirt on its front. */
+/* Sets the stop of LENS and the dirt on its front by ITEM. */
 static int set_lens(const struct tool *tool, struct synth_lens *lens,
                     const struct synth_item *item, struct synth_result *result)
 {
@@ -359,8 +361,8 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
     s->stop.iris.dust = item->dust;
     s->stop.iris.dust_seed = (int)item->dust_seed;
     result->f_number = lens->widest * exp2(item->stops_down / 2);
-    /* The model's own stop is not requested by a number that rounding may have
-     * made wider. */
+    /* At 0 stops down requests no f-number: rounding might make it wider than
+     * the model's stop. */
     s->options.f_number = item->stops_down > 0 ? result->f_number : 0;
     status = opened_lens_stop(&lens->opened, s, &error);
     if (status != GLINT_OK)
@@ -374,8 +376,8 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
 
 /* ------------------------------------------------------------------- lights */
 
-/* Sets RGB to the colour of a black body of KELVIN [Planck01], its largest
- * channel 1. */
+/* Sets RGB to the colour of a black body of KELVIN [Planck01], scaled so that
+ * the largest channel is 1. */
 static void black_body(double kelvin, double rgb[3])
 {
     enum { WAVES = 16 };
@@ -397,7 +399,7 @@ static void black_body(double kelvin, double rgb[3])
         rgb[c] /= most;
 }
 
-/* Sets LAMP to the lights of ITEM, of their relative powers. */
+/* Sets LAMP to the lights of ITEM, with their relative powers. */
 static void set_lamps(const struct synth_item *item,
                       const struct synth_lens *lens, struct glint_lamp *lamp,
                       struct synth_result *result)
@@ -414,7 +416,7 @@ static void set_lamps(const struct synth_item *item,
         glint_view_to_angles(&view, focal, light->x * item->width,
                              light->y * item->height, &lamp[i]);
         black_body(light->kelvin, lamp[i].rgb);
-        /* A disc's RMS extent along an axis is half of its radius. */
+        /* The RMS extent of a disc along an axis is half of its radius. */
         glint_area_set_round(&lamp[i],
                              0.5 * light->radius * item->height *
                                  glint_view_pixel_tangent(&view, focal));
@@ -440,7 +442,7 @@ static void draw_sources(const struct synth_item *item,
         const double y = item->light[i].y * item->height;
 
         result->power[i] = lamp[i].power;
-        /* A light that flares is brighter than white. */
+        /* Lights that cause flare are at least twice as bright as white. */
         result->white[i] =
             fmax(result->power[i] / (GLINT_PI * radius * radius), 2);
         for (int row = 0; row < d->height; row++)
@@ -463,7 +465,7 @@ static void draw_sources(const struct synth_item *item,
 
 /* ------------------------------------------------------------------- flares */
 
-/* Draws a part of the flare, of enum glint_engine_part. */
+/* Draws PART of the flare, of enum glint_engine_part, to RGB. */
 static int draw_part(const struct tool *tool, const struct synth_lens *lens,
                      const struct synth_item *item,
                      const struct glint_lamp *lamp, unsigned part, float *rgb)
@@ -490,10 +492,10 @@ static int draw_part(const struct tool *tool, const struct synth_lens *lens,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Returns how bright the lights are whose ghosts IMAGE shows for a power of 1:
- * their brightest thousandth comes to LEVEL, or the mean of all to
- * SYNTH_MOST_MEAN of LEVEL if that is less, as where broad ghosts fill the
- * picture nothing else would be seen. */
+/* Returns the power of the lights, given IMAGE, their ghosts at power 1: the
+ * brightest thousandth of the pixels gets the light LEVEL, but the mean at most
+ * SYNTH_MOST_MEAN times LEVEL, as broad ghosts that fill the picture would hide
+ * everything else. */
 static double power_of(const struct glint_float_image *image, double level)
 {
     const size_t n = 3 * (size_t)image->width * (size_t)image->height;
@@ -519,7 +521,8 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
     const size_t n = 3 * (size_t)d->width * (size_t)d->height;
     float *const ghosts = d->layer[SYNTH_GHOSTS];
     float *const glare = d->layer[SYNTH_GLARE];
-    float *const spare = d->layer[SYNTH_SOURCE]; /* drawn last */
+    float *const spare = d->layer[SYNTH_SOURCE]; /* free until the sources are
+                                                    drawn, last */
     struct glint_float_image image = image_of(d, ghosts);
     struct glint_lamp lamp[SYNTH_MAX_LIGHTS] = {{.power = 0}};
     double power;
@@ -531,8 +534,8 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
         return code;
     power = power_of(&image, item->ghost_level);
     times(ghosts, n, power);
-    /* Haze is drawn in steps of a millionth of white, so lights must be as
-     * bright as they are. */
+    /* Haze is quantised to a millionth of white, so lamps must have their final
+     * power. */
     for (int i = 0; i < (int)item->n_lights; i++)
         lamp[i].power *= power;
     memset(glare, 0, n * sizeof *glare);
@@ -585,8 +588,8 @@ void synth_sum(const struct synth_drawing *d, unsigned layers, float *rgb)
             rgb[i] += d->layer[k][i];
 }
 
-/* Returns a number of mean 0 and variance 1, nearly normal: twelve even ones
- * summed, exactly the same on every machine. */
+/* Returns a nearly normal random number of mean 0 and variance 1: a sum of
+ * twelve uniform numbers, the same on every machine. */
 static double normal(uint64_t *state)
 {
     int64_t sum = 0;

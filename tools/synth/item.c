@@ -176,7 +176,8 @@ uint64_t synth_item_stream(const struct synth_item *item, const char *what)
     return state;
 }
 
-/* Returns a number from 0 to less than 1 for WHAT. */
+/* Returns a random number from 0 to below 1 that depends on ITEM's seed and
+ * number and on WHAT. */
 static double unit(const struct synth_item *item, const char *what)
 {
     uint64_t state = synth_item_stream(item, what);
@@ -189,7 +190,8 @@ int synth_item_choose(const struct synth_item *item, const char *what, int n)
     return (int)(unit(item, what) * n);
 }
 
-/* Returns the number NAME by LAW, rounded to a millionth. */
+/* Returns a random value of the member NAME, distributed by LAW between LOW and
+ * HIGH, rounded to a millionth. */
 static double drawn(const struct synth_item *item, const char *name,
                     enum synth_law law, double low, double high)
 {
@@ -208,7 +210,7 @@ static double drawn(const struct synth_item *item, const char *name,
     return nearbyint(value * 1e6) / 1e6;
 }
 
-/* Returns the place of FIELD in FROM. */
+/* Returns the address of the number FIELD in the struct FROM. */
 static double *number_at(void *from, const struct synth_field *field)
 {
     return (double *)(void *)((char *)from + field->at);
@@ -238,7 +240,7 @@ void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
 
 /* ----------------------------------------------------------------- printing */
 
-/* Writes X, a number of millionths or whole, with the digits that it takes. */
+/* Writes X, an integer or a multiple of a millionth, without trailing zeros. */
 static void write_exact(struct json_writer *json, const char *name, double x)
 {
     char text[40], format[16];

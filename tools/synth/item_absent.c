@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Items from lines, where glint is built without jansson. */
+ * Reading items from lines, for builds without jansson.
+ */
 #include "posix/error.h"
 #include "synth/item.h"
 

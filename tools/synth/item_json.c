@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Items from lines of JSON, by jansson. */
+ * Reads items from lines of JSON, by jansson.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +17,7 @@ static enum glint_status refuse(struct glint_error *error, const char *name,
                               cause);
 }
 
-/* Takes the text or number VALUE into TO, which has FIELD. */
+/* Stores VALUE, a text or number, in FIELD of the struct TO. */
 static enum glint_status take(const struct synth_field *field,
                               const json_t *value, void *to,
                               struct glint_error *error)

@@ -111,7 +111,7 @@ static bool next_word(struct reader *r)
     return n > 0;
 }
 
-/* Looks at the word that follows, without taking it. */
+/* Returns a reader after the next word; R itself does not move. */
 static struct reader peek(const struct reader *r)
 {
     struct reader ahead = *r;
@@ -122,7 +122,7 @@ static struct reader peek(const struct reader *r)
 
 /* ---------------------------------------------------------------- the form */
 
-/* States what may stand in place of the word. */
+/* Reports which words are valid instead of this word. */
 static enum glint_status fail_word(const struct reader *r, const char *before)
 {
     struct suggest suggest;
@@ -144,7 +144,7 @@ static enum glint_status fail_word(const struct reader *r, const char *before)
                         before ? before : "", suggest_words(&suggest));
 }
 
-/* Returns the first form that begins with WORD, from I on; NULL: none does. */
+/* Returns the first form from index I on that begins with WORD, or NULL. */
 static const struct control_form *form_of(const char *word, int i)
 {
     for (; i < control_n_forms; i++)
@@ -361,7 +361,7 @@ static const struct {
 
 enum { N_KEYS = (int)(sizeof keys / sizeof *keys) };
 
-/* The terminal as it was, while keys are taken. */
+/* Settings of the terminal before keys were read, for restoring them. */
 static struct termios before;
 static volatile sig_atomic_t terminal = -1;
 
@@ -419,7 +419,7 @@ int keyboard_take(const char *text, int n, struct control_line *line)
     return length;
 }
 
-/* Reads what was pressed; returns false if that is nothing. */
+/* Reads pressed keys into K. Returns false if there are none. */
 static bool fill(struct keyboard *k)
 {
     struct pollfd there = {.fd = k->fd, .events = POLLIN};
@@ -463,7 +463,7 @@ static void print_where(const struct controls *in, int number, char *where)
              number);
 }
 
-/* Takes TEXT, which was read last, into LINE. */
+/* Parses TEXT, the line read last, into LINE. */
 static enum glint_status take(const struct controls *in, const char *text,
                               struct control_line *line,
                               struct glint_error *error)
@@ -477,7 +477,7 @@ static enum glint_status take(const struct controls *in, const char *text,
     return status;
 }
 
-/* Reads all of the file. */
+/* Parses all lines of the file. */
 static enum glint_status read_all(struct controls *in,
                                   struct glint_error *error)
 {

@@ -1,31 +1,31 @@
 /* SPDX-License-Identifier: MIT
  *
- * controls.h - where lines of control come from: a file, a pipe, or the
- * keys of a terminal.
+ * controls.h - reads control lines, commands that change a running scene or
+ * flare, from a file, a pipe, or the keys of a terminal.
  *
  *     controls_open(&input, path, is_live, &error);
  *     while ((line = controls_next(&input, picture)))    each picture
  *         ...
  *     controls_close(&input);
  *
- * Lines are obeyed in their order; one that begins with a frame waits for the
- * picture of that number, and those behind it with it.
+ * Lines are executed in order. A line that begins with a frame number, and all
+ * lines after it, wait for that frame.
  *
- * The terminal gives keys at once and shows none of them; however the process
- * ends it is as it was. While the process is in the background no key is read.
+ * The terminal is set to return keys at once, without echo; its settings are
+ * restored however the process ends. While the process is in the background, no
+ * key is read.
  *
- * One line changes a running scene:
+ * Examples of lines:
  *
  *     [FRAME] orbit 30 10
  *     [FRAME] set steel alpha .05 .2
  *     [FRAME] play 25
  *
- * Words, then numbers, divided by blanks; a # begins a comment. Every command
- * that changes a scene is a row of one table, control_forms, which states what
- * it accepts: another command is another row and another case where commands
- * are obeyed. Those that change a flare are the rows of glint/options.inc that
- * take effect with the next frame and have a number: strength 0.4.
- */
+ * A line has words, then numbers, separated by blanks; # begins a comment.
+ * Every command that changes a scene is a row of the table control_forms, which
+ * states its arguments: a new command needs a row there and a case in steer.c.
+ * Commands that change a flare are the options in glint/options.inc that are
+ * numbers and take effect with the next frame: strength 0.4. */
 #ifndef GLINT_TOOLS_CONTROL_CONTROLS_H
 #define GLINT_TOOLS_CONTROL_CONTROLS_H
 
@@ -33,8 +33,8 @@
 #include "options/timed_text.h"
 
 enum {
-    CONTROL_LINE = 256, /* bytes of a line with its end, at most */
-    CONTROL_NAME = 32,  /* bytes of a name with its end */
+    CONTROL_LINE = 256, /* max bytes of a line with its end */
+    CONTROL_NAME = 32,  /* max bytes of a name with its end */
     CONTROL_VALUES = 3,
     CONTROL_MOST_FRAME = TEXT_MAX_FRAME
 };
@@ -42,34 +42,37 @@ enum {
 enum control_verb {
     CONTROL_NONE, /* an empty line */
     /* The camera. */
-    CONTROL_ORBIT,    /* yaw to the right and pitch up about its middle, deg */
-    CONTROL_DISTANCE, /* from that, units */
-    CONTROL_SENSOR,   /* into a sensor of the motion, from 1 */
-    CONTROL_SCENE,    /* back to where the scene has it */
-    CONTROL_WALK,     /* units to the right, up and ahead of it */
-    CONTROL_LOOK,     /* yaw to the right, pitch up, roll clockwise, deg */
-    /* Materials: name. */
-    CONTROL_ALPHA,    /* of brushed metal; one value: both */
-    CONTROL_COLOUR,   /* of Phong, or specular of brushed metal */
+    CONTROL_ORBIT,    /* about the point ahead: yaw to the right, pitch up,
+                         degrees */
+    CONTROL_DISTANCE, /* from the middle of the orbit, units */
+    CONTROL_SENSOR,   /* to the position of a sensor of the motion, number from
+                         1 */
+    CONTROL_SCENE,    /* back to its position in the scene */
+    CONTROL_WALK,     /* moves by units to the right, up and ahead */
+    CONTROL_LOOK,     /* yaw to the right, pitch up, roll clockwise, degrees */
+    /* Materials, by name. */
+    CONTROL_ALPHA,    /* of brushed metal; one value sets both axes */
+    CONTROL_COLOUR,   /* of Phong materials; specular of brushed metal */
     CONTROL_DIFFUSE,  /* of brushed metal */
     CONTROL_MATERIAL, /* name of an object, name of its material */
-    /* Objects, or kinds of objects of a motion: name. */
+    /* Objects, or kinds of objects of a motion, by name. */
     CONTROL_SHOW,
     CONTROL_HIDE,
     CONTROL_SIZE, /* radius of a ball, units */
     /* Environment light. */
-    CONTROL_TURN,     /* to the right, degrees */
-    CONTROL_SCALE,    /* factor of all its light */
-    CONTROL_MAP,      /* another environment of the scene: name */
-    CONTROL_NEXT_MAP, /* the one after that */
+    CONTROL_TURN,     /* rotation to the right, degrees */
+    CONTROL_SCALE,    /* factor on all its light */
+    CONTROL_MAP,      /* selects an environment of the scene by name */
+    CONTROL_NEXT_MAP, /* selects the next environment */
     /* Time of poses and recorded motions. */
-    CONTROL_STEP, /* frames, 1 if not given; may be negative */
+    CONTROL_STEP, /* by frames, default 1; may be negative */
     CONTROL_JUMP, /* to a frame */
-    CONTROL_PLAY, /* frames a second; none given: one a picture */
+    CONTROL_PLAY, /* frames per second; without a number one frame per
+                     picture */
     CONTROL_PAUSE,
     CONTROL_STOP, /* pauses at frame 0 */
-    /* The flare: name[0] is an option of the engine that changes with the next
-     * frame, the value its new one. */
+    /* The flare: name[0] is an engine option that takes effect with the next
+     * frame, v[0] its new value. */
     CONTROL_OPTION,
     CONTROL_VERBS
 };
@@ -77,13 +80,13 @@ enum control_verb {
 /* Arguments of a command. */
 struct control_form {
     enum control_verb verb;
-    const char *word;   /* with which it begins */
-    const char *clause; /* which follows the names, or NULL */
-    int names;          /* 0 .. 2, the same of all forms of a word */
-    int behind;         /* names behind the clause, instead */
-    int least, most;    /* numbers */
+    const char *word;   /* first word of the line */
+    const char *clause; /* word after the names, or NULL */
+    int names;          /* 0 .. 2 names, the same for all forms of a word */
+    int behind;         /* names after the clause instead */
+    int least, most;    /* min and max count of numbers */
     double lowest, highest;
-    bool is_whole; /* numbers are whole ones */
+    bool is_whole; /* numbers must be integers */
     const char *usage;
 };
 
@@ -91,18 +94,18 @@ extern const struct control_form control_forms[];
 
 extern const int control_n_forms;
 
-/* Returns whether OPTION can be changed by lines of control and by key frames.
- */
+/* Returns whether control lines and key frames can change OPTION. */
 bool control_changes(const struct glint_option *option);
 
 struct control_line {
-    int number; /* of the line in its file, from 1 */
-    int frame;  /* -1: none is given */
+    int number; /* line number in the file, from 1 */
+    int frame;  /* -1: no frame given */
     enum control_verb verb;
-    bool is_change; /* of a key: degrees are added to what there is, other
-                       values are factors of it */
+    bool is_change; /* from a key: degrees are added to the current value, other
+                       values multiply it */
     char name[2][CONTROL_NAME];
-    int name_column[2], column; /* bytes from 1; of the first value */
+    int name_column[2], column; /* byte positions in the line, from 1, of the
+                                   names and of the first value */
     int n;                      /* values */
     double v[CONTROL_VALUES];
 };
@@ -115,68 +118,75 @@ struct keyboard {
     int at, n;
 };
 
-/* What the keys do, lines for people. */
+/* Help text: the keys and what they do. */
 extern const char keyboard_help[];
 
-enum { CONTROL_WHERE = 200 }; /* bytes of a place with its end */
+enum {
+    CONTROL_WHERE = 200
+}; /* max bytes of a position in a text, "FILE:LINE",
+      with its end */
 
 struct controls {
-    long n_bad;             /* lines that were skipped */
-    struct glint_error bad; /* the last of them */
+    long n_bad;             /* number of lines that were skipped */
+    struct glint_error bad; /* error of the last skipped line */
 
     /* Private. */
     bool is_open, is_keys, has_ahead;
-    struct text_lines lines;  /* closed at the end of a file */
-    struct control_line *row; /* of a file */
+    struct text_lines lines;  /* closed once a file is read */
+    struct control_line *row; /* lines of a file */
     int n, next;
-    int read_at; /* picture at which a pipe was read last */
+    int read_at; /* picture at which the pipe was last read */
     struct control_line ahead;
     struct keyboard keys;
 };
 
-/* Sets LINE to what TEXT says. GLINT_E_FORMAT: ERROR states WHERE:COLUMN:
- * cause, and LINE is to be left alone. */
+/* Parses TEXT into LINE. On GLINT_E_FORMAT, ERROR is "WHERE:COLUMN: cause", and
+ * LINE is undefined. */
 enum glint_status control_parse(const char *text, const char *where,
                                 struct control_line *line,
                                 struct glint_error *error);
 
-/* Sets ERROR to WHERE:COLUMN: and a cause as of printf(). Returns
+/* Sets ERROR to "WHERE:COLUMN: cause", the cause by printf() format. Returns
  * GLINT_E_FORMAT. */
 enum glint_status control_fail(struct glint_error *error, const char *where,
                                int column, const char *format, ...)
     GLINT_PRINTF(4, 5);
 
-/* Takes the keys of terminal FD. GLINT_E_IO: it is none. */
+/* Starts to read keys from terminal FD. Returns GLINT_E_IO if FD is not a
+ * terminal. */
 enum glint_status keyboard_open(struct keyboard *k, int fd);
 
-/* Sets LINE to what the next key that was pressed does; returns false if there
- * is none. Other keys are skipped; q asks the process to end. */
+/* Sets LINE to the command of the next key that was pressed. Returns false if
+ * there is no key. Keys without a command are skipped; q requests the end of
+ * the process. */
 bool keyboard_next(struct keyboard *k, struct control_line *line);
 
 void keyboard_close(struct keyboard *k);
 
-/* Sets LINE to what the first key of TEXT[N] does, and returns how many bytes
- * that has; its verb is CONTROL_NONE if it does nothing. */
+/* Sets LINE to the command of the first key of TEXT[N], with verb CONTROL_NONE
+ * if the key has no command. Returns the bytes of the key. */
 int keyboard_take(const char *text, int n, struct control_line *line);
 
-/* Opens PATH, which must outlive INPUT; - is standard input. IS_LIVE: of a FIFO
- * and of standard input lines are taken as they come, and keys if that is a
- * terminal; else all is read at once. GLINT_E_IO; GLINT_E_FORMAT, ERROR then
- * says FILE:LINE:COLUMN: cause; GLINT_E_MEMORY. */
+/* Opens PATH, which must outlive INPUT; "-" is standard input. If IS_LIVE, a
+ * FIFO and standard input are read line by line as data arrives, and a terminal
+ * on standard input key by key; else all is read at once. Errors: GLINT_E_IO,
+ * GLINT_E_MEMORY, and GLINT_E_FORMAT with "FILE:LINE:COLUMN: cause" in
+ * ERROR. */
 enum glint_status controls_open(struct controls *input, const char *path,
                                 bool is_live, struct glint_error *error);
 
-/* Returns the next line that PICTURE, which rises, has or had, or NULL. */
+/* Returns the next line for PICTURE or an earlier one, or NULL if there are no
+ * more. PICTURE must not fall from call to call. */
 const struct control_line *controls_next(struct controls *input, int picture);
 
-/* Returns line I of a file; NULL: it has no so many. */
+/* Returns line I of a file, or NULL if I is past its last line. */
 const struct control_line *controls_row(const struct controls *input, int i);
 
-/* Writes to WHERE[CONTROL_WHERE] where line I of a file stands, or the line
- * returned last if I is below 0: FILE:LINE. */
+/* Writes "FILE:LINE" of line I of a file, or, if I is below 0, of the line
+ * returned last, to WHERE[CONTROL_WHERE]. */
 void controls_where(const struct controls *input, int i, char *where);
 
-/* Notes that the line returned last was not obeyed, as ERROR states. */
+/* Counts the line returned last as skipped, for the reason ERROR. */
 void controls_refuse(struct controls *input, const struct glint_error *error);
 
 void controls_close(struct controls *input);

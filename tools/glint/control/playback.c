@@ -8,7 +8,7 @@ void playback_init(struct playback *playback)
     *playback = (struct playback){.fps = -1, .last = CONTROL_MOST_FRAME};
 }
 
-/* Goes to frame AT, which the next picture shows. */
+/* Jumps to frame AT, clamped to the valid frames; the next picture shows it. */
 static void go(struct playback *p, double at)
 {
     p->at = fmax(0, fmin(at, p->last));

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * playback.h - which frame of poses or a recorded motion a picture shows.
+ * playback.h - selects the frame of poses or of a recorded motion that a
+ * picture shows.
  *
  *     playback_init(&playback);
  *     playback_take(&playback, &line);              step, jump, play ...
  *     frame = playback_next(&playback, elapsed_s);  each picture
  *
- * At a rate, playback follows seconds, not pictures: frame k looks the same
- * whatever was shown before.
- */
+ * If a rate is set, playback follows the time, not the number of pictures:
+ * frame k looks the same whatever was shown before. */
 #ifndef GLINT_TOOLS_CONTROL_PLAYBACK_H
 #define GLINT_TOOLS_CONTROL_PLAYBACK_H
 
@@ -16,21 +16,22 @@
 
 struct playback {
     bool is_paused;
-    double fps; /* frames a second; below 0: one a picture */
-    int last;   /* no frame is behind it */
+    double fps; /* frames per second; below 0: one per picture */
+    int last;   /* last frame */
 
     /* Private. */
-    double at;      /* the frame shown, with its fraction */
-    bool has_shown; /* the next picture is no longer the first after a jump */
+    double at;      /* position, frames, with its fraction */
+    bool has_shown; /* a picture was shown since the last jump */
 };
 
-/* Sets PLAYBACK to play from frame 0, one frame a picture. */
+/* Sets PLAYBACK to play from frame 0, one frame per picture. */
 void playback_init(struct playback *playback);
 
-/* Obeys LINE; returns whether it is a command of time. */
+/* Executes LINE if it is a command of time; returns whether it is. */
 bool playback_take(struct playback *playback, const struct control_line *line);
 
-/* Returns the frame of the next picture, ELAPSED_S after the one before. */
+/* Returns the frame of the next picture, ELAPSED_S after the previous
+ * picture. */
 int playback_next(struct playback *playback, double elapsed_s);
 
 #endif

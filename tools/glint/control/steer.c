@@ -10,7 +10,7 @@
 
 #define RADIAN 0.017453292519943295
 
-/* Factors of light that keys can reach, as of scene texts. */
+/* Min and max factor on light that keys can reach, as in scene texts. */
 #define LEAST_SCALE 1e-6
 #define MOST_SCALE  1e6
 
@@ -56,7 +56,7 @@ static enum glint_status check_environment(const struct steer *steer,
                         suggest_words(&suggest));
 }
 
-/* Shows environment I as lines have left it. */
+/* Shows the current environment with its rotation and scale. */
 static enum glint_status show_environment(const struct steer *s,
                                           struct glint_scene *scene)
 {
@@ -145,7 +145,7 @@ static enum glint_status set_camera(const struct steer *s,
                                   (const int32_t(*)[3])s->camera.axis_q30);
 }
 
-/* Turns axis A of C towards axis B by DEG. */
+/* Rotates axis A towards axis B by DEG degrees. */
 static void turn(double axis[3][3], int a, int b, double deg)
 {
     const double c = cos(deg * RADIAN), sine = sin(deg * RADIAN);
@@ -158,7 +158,7 @@ static void turn(double axis[3][3], int a, int b, double deg)
     }
 }
 
-/* Sets FROM to where the camera is from the middle, a unit. */
+/* Sets FROM to the unit vector from the middle of the orbit to the camera. */
 static void set_from(const struct steer_orbit *o, double from[3])
 {
     const double yaw = o->yaw_deg * RADIAN, pitch = o->pitch_deg * RADIAN;
@@ -297,10 +297,10 @@ static void apply_motion(const struct steer *steer, struct glint_scene *scene)
         set_camera(steer, scene);
 }
 
-/* A camera straight above would have no right. */
+/* Below 90 degrees: a camera straight above would have no right axis. */
 #define MOST_PITCH 89.0
 
-/* Slopes that keys can reach. */
+/* Min and max alpha of brushed metal that keys can reach. */
 #define LEAST_ALPHA 0.001
 #define MOST_ALPHA  1.0
 
@@ -482,8 +482,9 @@ static enum glint_status apply_orbit(const struct steer *s,
                : status;
 }
 
-/* Has the camera go about the point ahead of it that is as far as the mean of
- * the objects that have a middle; one unit if there is none ahead. */
+/* Starts an orbit about a point ahead of the camera, at the depth of the
+ * objects' mean position (without planes and hidden objects), or one unit ahead
+ * if that is behind the camera. */
 static void begin_orbit(struct steer *s)
 {
     const struct glint_scene_camera *const c = &s->camera;
@@ -559,7 +560,7 @@ static enum glint_status take_camera(struct steer *s, struct glint_scene *scene,
 /* --------------------------------------------------------------------- looks
  */
 
-/* Sets LOOK, of material I, to what LINE makes of it. */
+/* Changes LOOK, of material I, as LINE requests. */
 static void change_look(const struct steer *s, const struct control_line *line,
                         int i, struct glint_scene_look *look)
 {
@@ -592,8 +593,8 @@ static bool is_darker(const struct steer *s, int i,
     return is;
 }
 
-/* Changes the look of material INDEX, or of all metals; none if one cannot be
- * as LINE has it. */
+/* Changes the look of material INDEX, or of all metals. Changes nothing if any
+ * of them cannot be set as LINE requests. */
 static enum glint_status take_look(struct steer *s, struct glint_scene *scene,
                                    const struct control_line *line, int index)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * keys.h - options that change over a video, by key frames in a CSV.
+ * keys.h - options that change during a video, by key frames in a CSV file.
  *
  *     frame,strength,f-number,x,y,ev
  *     0,0.5,4,100,80,14
@@ -8,12 +8,11 @@
  *     75,0,,,,
  *
  * The heading names the columns, in any order: frame; exposure, strength, gain,
- * starburst, f-number and zoom as the options of these names accept them; turn
- * and round: the rotation in degrees and the curvature of --stop's blades, and
- * x, y, ev: a lamp as of --light-at. An empty field is no key. Between two keys
- * of a column values change evenly; before the first and after the last they
- * stay.
- */
+ * starburst, f-number and zoom, with values of the options of these names; turn
+ * and round, the rotation in degrees and the roundness of --stop's blades; and
+ * x, y, ev, a lamp as by --light-at. An empty field sets no key. Between two
+ * keys of a column values are interpolated linearly; before the first key and
+ * after the last they are constant. */
 #ifndef GLINT_TOOLS_DESK_KEYS_H
 #define GLINT_TOOLS_DESK_KEYS_H
 
@@ -34,12 +33,12 @@ enum key_column {
     KEYS_X,
     KEYS_Y,
     KEYS_EV,
-    KEYS_ZOOM, /* as model_file_zoom() */
+    KEYS_ZOOM, /* value as of model_file_zoom() */
     KEYS_COLUMNS
 };
 
 struct key_value {
-    int frame, line; /* line of the file, from 1 */
+    int frame, line; /* line: in the file, from 1 */
     double value;
 };
 
@@ -49,23 +48,23 @@ struct keys {
     int n[KEYS_COLUMNS];
 };
 
-/* Reads PATH. ERROR names file, line and cause. GLINT_E_IO, GLINT_E_FORMAT,
- * GLINT_E_MEMORY: KEYS is empty. */
+/* Reads PATH. On GLINT_E_IO, GLINT_E_FORMAT or GLINT_E_MEMORY, ERROR names
+ * file, line and cause, and KEYS is empty. */
 enum glint_status keys_read(struct keys *keys, const char *path,
                             struct glint_error *error);
 
-/* Does as keys_read() with TEXT[BYTES]; NAME is for errors. */
+/* Parses TEXT[BYTES] as keys_read() parses a file; NAME is used in errors. */
 enum glint_status keys_parse(struct keys *keys, const char *name,
                              const char *text, size_t bytes,
                              struct glint_error *error);
 
-/* Returns the column NAME; -1: there is none. */
+/* Returns the index of the column NAME, or -1. */
 int keys_column(const char *name);
 
 /* Returns whether COLUMN has keys. */
 bool keys_has(const struct keys *keys, enum key_column column);
 
-/* Returns COLUMN at FRAME, or OTHER if it has no keys. */
+/* Returns the value of COLUMN at FRAME, or OTHER if COLUMN has no keys. */
 double keys_at(const struct keys *keys, enum key_column column, int frame,
                double other);
 

@@ -109,8 +109,8 @@ void occlusion_close(struct occlusion *o)
     o->is_video = false;
 }
 
-/* Moves to the mask of FRAME; one that cannot be read ends it, with a word.
- */
+/* Moves to the mask of FRAME. On a read error prints a warning and uses the
+ * last mask from then on. */
 static void go_to(struct occlusion *o, int frame)
 {
     struct glint_error error = {""};
@@ -165,7 +165,7 @@ static double mask_between(const struct occlusion *o,
     return above * (j + 1 - v) + below * (v - j);
 }
 
-/* Returns the mean of the mask over LAMP. */
+/* Returns the mean of the mask over the disc of LAMP. */
 static double share_of(const struct occlusion *o, const struct glint_view *view,
                        double focal_mm, const struct glint_lamp *lamp)
 {

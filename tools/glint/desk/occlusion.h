@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * occlusion.h - what hides lamps: a mask that lets light through where it is
- * white, and the distance from the picture.
+ * occlusion.h - hides lamps: by a mask, which is white where light passes, and
+ * by the distance of off-screen lamps from the picture.
  *
  *     occlusion_open(&o, &error);                          once
  *     occlusion_apply(&o, frame, &view, focal_mm, lamps, n);
  *     occlusion_close(&o);
  *
- * A mask is a picture, a pattern of numbered pictures or a video in y4m. It is
- * as large as the picture, whatever its own size. Grey lets a fraction of the
- * light through, evenly from code 0 to the white of the codes;
- * off-screen it hides nothing. What a lamp gives is scaled by the mean of the
- * mask over its disc, 2 pixels of radius at least.
- */
+ * A mask is a picture, a pattern of numbered pictures or a y4m video. It is
+ * stretched to the size of the picture. The fraction of light that passes grows
+ * linearly from 0 at code 0 to 1 at white. Off-screen the mask hides nothing. A
+ * lamp is scaled by the mean of the mask over its disc, whose radius is at
+ * least 2 pixels. */
 #ifndef GLINT_TOOLS_DESK_OCCLUSION_H
 #define GLINT_TOOLS_DESK_OCCLUSION_H
 
@@ -21,28 +20,28 @@
 #include "video/y4m.h"
 
 struct occlusion {
-    const char *file; /* of the mask; NULL: none */
-    /* Pixels off-screen at which a lamp has faded; 0: lamps do not
-     * fade.
-     */
+    const char *file; /* mask, or NULL */
+    /* Distance from the picture, pixels, at which a lamp has faded out; 0:
+     * lamps do not fade. */
     double fade_px;
 
     /* Private. */
-    struct glint_image image; /* mask of the frame; no plane: none */
-    double black, white;      /* codes */
+    struct glint_image image; /* mask of the frame; its planes are NULL without
+                                 a mask */
+    double black, white;      /* codes of no light and all light */
     bool is_video, is_numbered, is_over;
     struct glint_y4m_reader video;
-    long frame; /* number of the mask's frame, or -1 */
+    long frame; /* frame number of IMAGE, or -1 */
 };
 
-/* Opens the mask of O, whose file and fade_px are set. Errors are those of
+/* Opens the mask of O, whose file and fade_px must be set. Errors are as of
  * glint_picture_load() and glint_y4m_reader_open(). */
 enum glint_status occlusion_open(struct occlusion *o,
                                  struct glint_error *error);
 
-/* Scales powers and levels of N LAMPS by the fraction of each that is in view
- * in frame FRAME. Frames rise; a mask that ends earlier stays as it was last,
- * and one that cannot be read is reported once. */
+/* Scales powers and levels of N LAMPS by the visible fraction of each lamp in
+ * FRAME. FRAME must rise from call to call. After the end of the mask its last
+ * frame is used. A read error is reported once. */
 void occlusion_apply(struct occlusion *o, int frame,
                      const struct glint_view *view, double focal_mm,
                      struct glint_engine_lamp *lamps, int n);

@@ -8,7 +8,7 @@
 
 enum { SMALL = 320, MOST = 24 };
 
-/* Labels that are on the picture, as boxes x0, y0, x1, y1. */
+/* Labels drawn so far, as boxes x0, y0, x1, y1. */
 struct labels {
     struct paint paint;
     int n, box[MOST][4];

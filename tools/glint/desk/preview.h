@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * preview.h - the numbers of ghosts, on the picture that shows them.
- */
+ * preview.h - writes the numbers of ghosts on a picture. */
 #ifndef GLINT_TOOLS_DESK_PREVIEW_H
 #define GLINT_TOOLS_DESK_PREVIEW_H
 
 #include "glint/engine.h"
 
-/* Writes onto IMAGE the numbers of the brightest ghosts that ENGINE draws of N
- * LAMPS times SCALE, each where the ghost is brightest. The ghosts are drawn
- * small, one by one, to find these places. GLINT_E_MEMORY. */
+/* Writes on IMAGE the numbers of the brightest ghosts of N LAMPS, times SCALE,
+ * each at the brightest point of its ghost. To find these points, ENGINE draws
+ * each ghost at a small size. Returns GLINT_E_MEMORY on failure. */
 enum glint_status preview_number(struct glint_engine *engine,
                                  const struct glint_engine_lamp *lamps, int n,
                                  double scale, const struct glint_image *image);

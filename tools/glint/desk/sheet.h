@@ -16,31 +16,31 @@
 
 struct sheet {
     struct glint_image image; /* GLINT_RGB24, dark grey between pictures */
-    int width, height;        /* of a picture */
-    int columns, line;        /* line: thickness of strokes of letters */
-    int rows;                 /* of letters, of a caption */
+    int width, height;        /* pixels of each picture */
+    int columns, line;        /* line: stroke width of letters, pixels */
+    int rows;                 /* lines of text in a caption */
 };
 
-/* Returns how many rows TEXT takes below a picture of that WIDTH. */
+/* Returns how many lines of text TEXT needs below a picture of WIDTH pixels. */
 int sheet_caption_lines(int width, const char *text);
 
-/* Makes a sheet of N pictures of WIDTH x HEIGHT, black, with captions of ROWS
- * rows of letters. GLINT_E_MEMORY. */
+/* Makes a sheet of N black pictures of WIDTH x HEIGHT, with captions of ROWS
+ * lines of text. Returns GLINT_E_MEMORY on failure. */
 enum glint_status sheet_open(struct sheet *sheet, int n, int width, int height,
                              int rows);
 
-/* Returns the picture K, within the sheet's memory. */
+/* Returns picture K, which points into the memory of the sheet. */
 struct glint_image sheet_picture(const struct sheet *sheet, int k);
 
-/* Writes TEXT below the picture K, broken between words; what the rows do not
- * hold is left out. */
+/* Writes TEXT below picture K, with line breaks between words; text that does
+ * not fit is cut off. */
 void sheet_caption(const struct sheet *sheet, int k, const char *text);
 
 void sheet_close(struct sheet *sheet);
 
-/* Makes SMALL, GLINT_RGB24 of BIG's shape and at most WIDTH wide, of means of
- * the light of BIG, sRGB GLINT_RGB24; the caller frees its plane[0].
- * GLINT_E_MEMORY. */
+/* Makes SMALL, a copy of BIG scaled down to at most WIDTH pixels wide by
+ * averaging linear light. Both are sRGB, GLINT_RGB24. The caller frees the
+ * plane[0] of SMALL. Returns GLINT_E_MEMORY on failure. */
 enum glint_status sheet_reduce(struct glint_image *small,
                                const struct glint_image *big, int width);
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * styles.h - looks by name: options that go together.
- */
+ * styles.h - named presets of options for typical looks of flares. */
 #ifndef GLINT_TOOLS_DESK_STYLES_H
 #define GLINT_TOOLS_DESK_STYLES_H
 
@@ -13,8 +12,8 @@ struct style_setting {
 };
 
 struct style {
-    const char *name, *about;                 /* NULL: the end of the table */
-    struct style_setting set[STYLE_SETTINGS]; /* ends with an option NULL */
+    const char *name, *about;                 /* NULL ends the table */
+    struct style_setting set[STYLE_SETTINGS]; /* an option NULL ends it */
 };
 
 extern const struct style styles[];

@@ -1,26 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * The findings of engine/explain.h as tables, JSON and a picture.
- */
+ * Prints the results of engine/explain.h as tables, JSON and a picture. */
 #ifndef GLINT_TOOLS_COMMAND_EXPLAIN_H
 #define GLINT_TOOLS_COMMAND_EXPLAIN_H
 
 #include "glint/explain.h"
 
-/* Returns the meaning of OUTCOME as a phrase for tables. */
+/* Returns OUTCOME as a phrase for tables. */
 const char *explain_reason(enum glint_outcome outcome);
 
-/* The inputs of the frame: lens, lights as they were given, and kind of
- * picture. */
+/* The inputs of the frame: lens, lights as given, and kind of picture. */
 struct explain_title {
     const char *lens;
     const struct glint_engine_lamp *lamp;
     int n_lamps;
     bool linear;
-    int top; /* most ghosts and lights to list, and ghosts to mark */
+    int top; /* max ghosts and lights to list, and ghosts to mark */
     const struct glint_engine_report *report;
     const struct glint_engine
-        *engine; /* searched the picture; NULL: none did */
+        *engine; /* engine that searched the picture, or NULL */
 };
 
 void explain_print(const struct glint_explain *explain,
@@ -29,15 +27,15 @@ void explain_json(const struct glint_explain *explain,
                   const struct explain_title *title);
 
 /* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE
- * dimmed, its touched tiles shaded, the first ghosts outlined and numbered, and
- * a legend below. GLINT_E_MEMORY. */
+ * dimmed, with tiles that have flare shaded and the first ghosts outlined and
+ * numbered, above a legend. Returns GLINT_E_MEMORY on failure. */
 enum glint_status explain_mark(struct glint_explain *explain,
                                const struct explain_title *title,
                                const struct glint_image *picture,
                                struct glint_image *marked);
 
 /* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE above
- * LEGEND black rows. GLINT_E_MEMORY. */
+ * LEGEND black rows. Returns GLINT_E_MEMORY on failure. */
 enum glint_status explain_copy(const struct glint_image *picture, int legend,
                                struct glint_image *marked);
 

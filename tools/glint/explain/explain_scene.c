@@ -46,12 +46,12 @@ void explained_scene_close(struct explained_scene *scene)
 
 /* ------------------------------------------------------------------- lights */
 
-/* What becomes of a light of the scene. */
+/* The outcome of a light of the scene. */
 struct light {
     const char *word;  /* drawn, hidden, behind, outside ... */
     const char *extra; /* what hides it, or NULL */
     double x, y;       /* pixels; of what is not behind */
-    double share;      /* that is not hidden */
+    double share;      /* visible fraction of the light */
     bool is_ahead;
 };
 
@@ -184,15 +184,15 @@ static const char *light_name(const struct explained_scene *s, int i,
 
 /* --------------------------------------------------------------- highlights */
 
-/* What becomes of a highlight. */
+/* The outcome of a highlight. */
 struct highlight {
     const char *word; /* drawn, merged, too faint ... */
     double x, y, power;
     int object, bundles; /* of ghosts, that it makes */
 };
 
-/* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS]; returns how many there are. They are
- * the last lamps of the drawing, in this order. */
+/* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights, which are the last
+ * lamps of the drawing, in order. Returns their number. */
 static int highlights_of(const struct explained_scene *s,
                          struct highlight *found)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene of a frame explained: what became of its objects and lights. */
+ * Explains the scene of a frame: costs and visibility of objects and lights. */
 #ifndef GLINT_TOOLS_COMMAND_EXPLAIN_SCENE_H
 #define GLINT_TOOLS_COMMAND_EXPLAIN_SCENE_H
 
@@ -10,25 +10,26 @@
 #include "scenes/account.h"
 
 struct explained_scene {
-    const struct drawing *drawing;     /* drew the frame last */
-    const struct glint_explain *flare; /* NULL: there is no lens */
+    const struct drawing *drawing;     /* has drawn the frame */
+    const struct glint_explain *flare; /* NULL without a lens */
     struct scene_account account;
 };
 
-/* Sets SCENE; explained_scene_close() ends it. GLINT_E_MEMORY. */
+/* Fills SCENE; explained_scene_close() frees it. Returns GLINT_E_MEMORY on
+ * failure. */
 enum glint_status explained_scene_open(struct explained_scene *scene,
                                        const struct drawing *drawing,
                                        const struct glint_explain *flare);
 void explained_scene_close(struct explained_scene *scene);
 
-/* Print tables; _json an object. */
+/* Print tables, or a JSON object. */
 void explain_scene_print(const struct explained_scene *scene);
 void explain_scene_json(struct json_writer *json,
                         const struct explained_scene *scene);
 
 /* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE with
- * objects outlined, in colours by what a pixel of each costs, and a legend
- * below. GLINT_E_MEMORY. */
+ * objects outlined in the colour of their cost per pixel, above a legend.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status explain_scene_mark(const struct explained_scene *scene,
                                      const struct glint_image *picture,
                                      struct glint_image *marked);

@@ -24,7 +24,7 @@ static int n_objects(const struct heat *h)
     return (int)h->scene->drawing->files.scene.baked.model.header->n_objects;
 }
 
-/* Returns the steps of a pixel of OBJECT: places shaded, shadows, texels,
+/* Returns the mean steps per pixel of OBJECT: points shaded, shadows, texels,
  * lookups and rays that continue. */
 static double steps_of(const struct heat *h, int object)
 {
@@ -86,7 +86,8 @@ static void shade(const struct heat *h)
     }
 }
 
-/* Sets X and Y to the pixel nearest to AT that sees OBJECT; there is one. */
+/* Sets X and Y to the pixel nearest to AT that shows OBJECT; at least one pixel
+ * must show it. */
 static void nearest(const struct heat *h, int object, const double at[2],
                     int *x, int *y)
 {
@@ -104,7 +105,7 @@ static void nearest(const struct heat *h, int object, const double at[2],
         }
 }
 
-/* Writes the number of each object at the middle of the pixels that see it. */
+/* Writes the number of each object at the middle of the pixels that show it. */
 static void number(const struct heat *h)
 {
     struct paint p = {.image = h->image, .line = h->scale};

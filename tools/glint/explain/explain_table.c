@@ -39,7 +39,7 @@ static double degrees(double y, double x)
     return atan2(y, x) * 180 / GLINT_PI;
 }
 
-/* Returns the number of ghosts of which something is drawn. */
+/* Returns the number of ghosts that are drawn at least in part. */
 static int ghosts_drawn(const struct glint_explain *e)
 {
     int n = 0;
@@ -76,7 +76,7 @@ static void print_head(const char *what)
            "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
 }
 
-/* Prints the cost of a kind that few frames have. */
+/* Prints a kind of cost that few frames have. */
 static void print_price(const struct glint_explain *e,
                         enum glint_cost_kind kind)
 {
@@ -85,7 +85,7 @@ static void print_price(const struct glint_explain *e,
                100 * e->stage[kind] / e->all.work, 1e-6 * e->stage[kind]);
 }
 
-/* States which bundles are not drawn by themselves, as they are dim. */
+/* Prints how many bundles are not drawn separately because they are dim. */
 static void print_dim(const struct glint_explain *e)
 {
     const double dim = e->dim_codes;

@@ -266,8 +266,8 @@ static enum glint_status start_child(struct child *child,
     return start(child, argv, kind, error);
 }
 
-/* Like start_child(), of a child that WORDS, which end with NULL, are listened
- * for in what it says; child_hear() passes that on. */
+/* As start_child(), but the child's messages go to a file. child_hear() copies
+ * them to standard error and searches them for WORDS, which end with NULL. */
 static enum glint_status
 start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
             const char *const *words, struct glint_error *error)
@@ -288,7 +288,8 @@ start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
 
 /* ------------------------------------------------------------------ hearing */
 
-/* Passes on whole lines, or if ALL what is left. */
+/* Copies the child's messages to standard error: whole lines, or, if ALL,
+ * everything left. */
 static void pass_on(struct child *child, bool all)
 {
     char text[4096];
@@ -307,7 +308,8 @@ static void pass_on(struct child *child, bool all)
             child->heard |= strstr(text, child->listening[i]) != NULL;
         fwrite(text, 1, (size_t)n, stderr);
         child->told += n;
-        /* Its memory is given back; where that cannot be, it stays. */
+        /* Frees the memory of the copied text; a failure only keeps that
+         * memory. */
         (void)fallocate(child->said, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
                         0, child->told);
     }
@@ -539,7 +541,7 @@ static void take_other(struct ffmpeg_video *v, char *line,
         snprintf(v->tags + n, sizeof v->tags - n, " %s", line + 4);
 }
 
-/* Reads what CHILD prints into TEXT, as a string, up to PROBE_BYTES. */
+/* Reads the output of CHILD into TEXT as a string, up to PROBE_BYTES. */
 static void read_all(struct child *child, char text[PROBE_BYTES])
 {
     size_t used = 0;
@@ -552,9 +554,9 @@ static void read_all(struct child *child, char text[PROBE_BYTES])
     text[used] = '\0';
 }
 
-/* Sets TEXT to the lines that ffprobe prints on ENTRIES of URL, with OPTIONS,
- * up to five words that end with NULL. Returns false if it fails; TEXT is "" if
- * it cannot be run. */
+/* Sets TEXT to the lines that ffprobe prints about ENTRIES of URL. OPTIONS are
+ * up to five words, ended by NULL. Returns false if ffprobe fails; TEXT is ""
+ * if it cannot be run. */
 static bool ask(const char *url, const char *const *options,
                 const char *entries, char text[PROBE_BYTES])
 {
@@ -705,7 +707,7 @@ static void begin(struct words *w)
         add(w, first[i]);
 }
 
-/* Ends the words of a line. */
+/* Ends the words with NULL, or reports that there are too many. */
 static enum glint_status end(struct words *w, struct glint_error *error)
 {
     if (w->n > MAX_WORDS)
@@ -780,8 +782,8 @@ static void read_times(FILE *from, struct ffmpeg_times *times)
         qsort(times->at, (size_t)times->n, sizeof *times->at, by_time);
 }
 
-/* Returns whether TIMES are not even steps of RATE a second: a step differs by
- * more than a quarter and 2 ms, or all of them by half a step. */
+/* Returns whether TIMES deviate from RATE frames per second: one step by more
+ * than a quarter and 2 ms, or all steps together by half a step. */
 static bool is_variable(const struct ffmpeg_times *times, double rate)
 {
     const double *const at = times->at;
@@ -905,7 +907,8 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
 
 /* ---------------------------------------------------------------- encoding */
 
-/* Returns whether a file of this extension takes sound of CODEC as it is. */
+/* Returns whether files with extension EXT can hold sound of CODEC without
+ * encoding it again. */
 static bool takes_sound(const char *ext, const char *codec)
 {
     static const char *const webm[] = {"opus", "vorbis", NULL};
@@ -999,7 +1002,7 @@ static void add_tags(struct words *w, const struct ffmpeg_target *t,
         add_two(w, "-color_primaries", v->primaries);
 }
 
-/* Returns the filter that makes odd sides even where pixels share their chroma,
+/* Returns the filter that pads odd sides to even sides if chroma is subsampled,
  * or NULL. */
 static const char *pad_of(const struct ffmpeg_target *t,
                           const struct ffmpeg_video *v)
@@ -1134,7 +1137,7 @@ static void add_fields(struct words *w, const struct ffmpeg_video *v)
         add_two(w, "-flags", "+ildct+ilme");
 }
 
-/* Adds the words of OPTIONS, which it cuts at its blanks. */
+/* Adds the words of OPTIONS, and replaces the blanks between them by zeros. */
 static void add_options(struct words *w, char *options)
 {
     char *word, *rest = options;
@@ -1417,15 +1420,15 @@ __attribute__((format(printf, 2, 3))) static void note(struct report *report,
         report->n += (size_t)n;
 }
 
-/* Notes that of FROM streams of KIND MADE are left. */
+/* Adds to the report that only MADE of FROM streams of KIND are left. */
 static void note_streams(struct report *r, const char *kind, int from, int made)
 {
     if (made < from)
         note(r, ", %d of %d %s", made, from, kind);
 }
 
-/* Notes tags that are in FROM and not in MADE, whatever their case, except
- * those of the type of file. */
+/* Adds to the report the tags of FROM that are not in MADE, ignoring case,
+ * except tags that belong to the file type. */
 static void note_names(struct report *r, const char *from, const char *made)
 {
     static const char *const own[] = {"major_brand",

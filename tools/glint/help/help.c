@@ -9,7 +9,8 @@
 
 enum { NAME_CHARS = 48, ABOUT = 22 /* column of what it does */ };
 
-/* What is shown on a screen of commands whose help is longer. */
+/* Most common options, shown for commands whose help is longer than a
+ * screen. */
 static const struct {
     const char *command, *options; /* names with a blank before and behind */
 } usual[] = {

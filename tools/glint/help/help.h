@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * help.h - the help of a command, complete or as much as fits on a screen, and
- * its options as lines for shells and manual pages.
- */
+ * help.h - prints the help of a command, complete or shortened to a screen, and
+ * its options as lines for shells and manual pages. */
 #ifndef GLINT_TOOLS_HELP_HELP_H
 #define GLINT_TOOLS_HELP_HELP_H
 
@@ -10,26 +9,26 @@
 #include <stdbool.h>
 
 enum {
-    HELP_SCREEN = 42, /* lines of a help that is shown whole */
+    HELP_SCREEN = 42, /* max lines of a help text that is not shortened */
     HELP_PARTS = 3
 };
 
-/* The help of COMMAND: strings one after the other; NULL ones are left out. */
+/* The help of COMMAND: the concatenation of PART; NULL parts are skipped. */
 struct help {
     const char *command;
     const char *part[HELP_PARTS];
 };
 
-/* Print HELP: all of it, or if it is longer than a screen the synopsis and the
- * most common options. */
+/* Print HELP. help_all() prints all of it; help_screen() prints only the
+ * synopsis and the most common options if it is longer than HELP_SCREEN. */
 void help_all(const struct help *help);
 void help_screen(const struct help *help);
 
-/* Prints a line for each of OPTIONS, as getopt_long() takes them: its name, "="
- * if it has a value, a tab, and the first line of what HELP says of it. */
+/* Prints a line for each of OPTIONS, an array for getopt_long(): the name, "="
+ * if the option has a value, a tab, and the first line of its text in HELP. */
 void help_options(const struct help *help, const struct option *options);
 
-/* Prints the version and the kernels that this machine runs. */
+/* Prints the version and the kernels used on this machine. */
 void help_version(bool is_json);
 
 #endif

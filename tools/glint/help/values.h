@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * values.h - the values that options take, in words, for error messages and for
- * shells, which complete the fixed words among them.
+ * values.h - describes the values that options accept, for error messages and
+ * for completion in shells.
  *
- * One table for all commands, in values.c: a new option with a value gets a
- * line there, or tests/cli/doors states that it has none.
- */
+ * One table in values.c serves all commands. A new option with a value needs a
+ * line there, or an exception in tests/cli/doors. */
 #ifndef GLINT_TOOLS_HELP_VALUES_H
 #define GLINT_TOOLS_HELP_VALUES_H
 
-/* Returns in words what OPTION, without dashes, of COMMAND accepts, or NULL;
- * until the next call. Options of the engine are those of glint/options.h. */
+/* Returns a description of the values that OPTION (without dashes) of COMMAND
+ * accepts, or NULL. It is valid until the next call. Engine options are
+ * described by glint/options.h. */
 const char *values_of(const char *command, const char *option);
 
 /* Prints the fixed words among the values of OPTION, one per line; nothing if

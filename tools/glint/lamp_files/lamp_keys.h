@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * lamp_keys.h - lists of lamps with names, and lamps between key frames.
+ * lamp_keys.h - lists of lamps with ids, and interpolation of lamps between key
+ * frames.
  *
  * A heading that has "id" among its names gives the columns of a CSV in any
  * order: frame,id,x,y,power. An id is any text without commas. Without ids,
@@ -21,25 +22,25 @@
 
 #include "lamp_files/lamp_list.h"
 
-/* Returns a number for the id TEXT, not 0: a number of 32 bits stays as it is,
- * so that a list that was saved has the ids of its source; any other text
- * becomes a hash from LAMP_ID_TEXT on. */
+/* Returns a number other than 0 for the id TEXT. A 32-bit number is returned as
+ * it is, so that a saved list has the ids of its source; any other text becomes
+ * a hash of at least LAMP_ID_TEXT. */
 #define LAMP_ID_TEXT (UINT32_C(1) << 31)
 uint32_t lamp_id_of(const char *text);
 
-/* Links the rows of each lamp, by their member next, in order of frames.
- * GLINT_E_MEMORY. */
+/* Links the rows of each lamp in order of frames, by member next. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status lamp_keys_link(struct lamp_list *list);
 
-/* Sets ROW to the lamp of row I as it is at FRAME. Returns whether row I counts
- * there: it is of that frame or of every frame, or FRAME lies between it and
- * the next row of its lamp. */
+/* Sets ROW to the lamp of row I at FRAME. Returns false if row I does not
+ * apply: it is neither for FRAME nor for every frame, and FRAME is not between
+ * it and the next row of its lamp. */
 bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
                   struct lamp_row *row);
 
-/* Returns whether FRAME and the frame before it both have lamps with ids and
- * share none, as after a cut. It compares GLINT_ENGINE_MAX_LAMPS of each at
- * most. */
+/* Returns whether FRAME and the frame before both have lamps with ids, but no
+ * id in common, as after a cut. Compares at most GLINT_ENGINE_MAX_LAMPS lamps
+ * of each. */
 bool lamp_keys_is_cut(const struct lamp_list *list, int frame);
 
 #endif

@@ -141,7 +141,7 @@ static const char *take_object(struct text_lines *lines, char *line, double *v)
     return take_fields(field, true, "a value is not a number", v);
 }
 
-/* Takes the names of LINE as columns if there is an id among them. */
+/* Sets the columns by the names in LINE if "id" is among them. */
 static const char *take_heading(struct reading *r, char *line)
 {
     char *name[COLUMNS];
@@ -223,7 +223,7 @@ void lamp_list_free(struct lamp_list *list)
 }
 
 /* Sets the extent of LAMP by R: a disc if its shape is 1, else an ellipse.
- * TANGENT is that of a pixel. */
+ * TANGENT is the tangent of a pixel's angle. */
 static void set_shape(struct glint_lamp *lamp, const struct lamp_row *r,
                       double tangent)
 {

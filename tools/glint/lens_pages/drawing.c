@@ -43,13 +43,13 @@ enum { DRAWING_FIELDS = 3 };
 struct figure {
     const struct lens_drawing *drawing;
     FILE *file;
-    double z0, z1, x1;   /* what the section shows: z0 .. z1, -x1 .. x1 */
-    double scale;        /* pixels of a millimetre */
-    double left, middle; /* pixels of z = 0 and x = 0 */
+    double z0, z1, x1;   /* range of the section: z0 .. z1, -x1 .. x1, mm */
+    double scale;        /* pixels per millimetre */
+    double left, middle; /* position of z = 0 and of x = 0, pixels */
     double height_px;    /* of the section */
     double vertex[GLINT_MAX_SURFACES], stop_z, sensor_z;
     double film_mm; /* half of the picture as it is shown, in the plane */
-    double widen;   /* how much wider that is than on the sensor */
+    double widen;   /* its width / its width on the sensor */
     int shown;
 };
 
@@ -94,8 +94,8 @@ static bool fan_ray(const struct fan *fan, double u, double v,
                fan->stop_radius_mm * (1 + 1e-9);
 }
 
-/* Sets U to the lowest and the highest U of a ray (U, 0) that passes. Returns
- * false if none does. */
+/* Sets U to the min and max U of rays (U, 0) that pass. Returns false if no ray
+ * passes. */
 static bool fan_edges(const struct fan *fan, double u[2])
 {
     enum { STEPS = 100, HALVINGS = 12 };
@@ -210,8 +210,8 @@ static double round_up(double value)
     return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
 }
 
-/* Returns how far from the centre the picture has the light of THETA_DEG, below
- * 0 if it gets none. */
+/* Returns the distance from the centre at which light of THETA_DEG is imaged,
+ * or below 0 if no light arrives. */
 static double image_height_mm(const struct figure *f, double theta_deg)
 {
     double hits[GLINT_MAX_EVENTS + 1][2];
@@ -226,8 +226,8 @@ static double image_height_mm(const struct figure *f, double theta_deg)
 }
 
 /* Returns the angle, in degrees, of the light that the lens images at HEIGHT_MM
- * from the picture's centre, by rays through the middle of the pupil; the
- * widest that still gets through the lens if none goes so far. */
+ * from the picture's centre, by rays through the middle of the pupil, or the
+ * widest angle that passes the lens if no light reaches that height. */
 static double angle_of(const struct figure *f, double height_mm)
 {
     double low = 0, high = 89;
@@ -244,7 +244,7 @@ static double angle_of(const struct figure *f, double height_mm)
     return low;
 }
 
-/* Returns that of FIELD, 0 .. DRAWING_FIELDS - 1. */
+/* Returns the angle of FIELD, 0 .. DRAWING_FIELDS - 1, in degrees. */
 static double field_deg(const struct figure *f, int field)
 {
     static const double share[DRAWING_FIELDS] = {0, 0.7, 1};
@@ -254,7 +254,7 @@ static double field_deg(const struct figure *f, int field)
 
 enum { PROFILE = 24 };
 #define TITLE_PX  52.0
-#define HEIGHT_PX 400.0 /* most that the section takes */
+#define HEIGHT_PX 400.0 /* max height of the section */
 
 /* ------------------------------------------------------------------ places */
 
@@ -391,7 +391,7 @@ static void write_edge(const struct figure *f, int k, int side)
                 px(f, a[2]), py(f, out));
 }
 
-/* Draws the glass behind surface K: the denser, the darker. */
+/* Draws the glass behind surface K, darker for a higher index. */
 static void draw_glass(const struct figure *f, int k)
 {
     const struct glint_surface *s = &f->drawing->lens->surface[k];
@@ -495,7 +495,7 @@ enum { SPOT_PX = 170 };
 static const char *const spot_colour[SPOT_COLOURS] = {"#2a52d0", "#2f9a3c",
                                                       "#d0342a"};
 
-/* Pixels that they take. */
+/* Height of the boxes with legend and gap, pixels. */
 static double spots_px(const struct figure *f)
 {
     return f->drawing->spots ? BELOW_PX + SPOT_PX + LEGEND_PX : 0;
@@ -558,7 +558,7 @@ static void draw_one(const struct figure *f, const struct spots *s, int field,
             unit(half_mm));
 }
 
-/* States what the colours are, to the right below the boxes. */
+/* Draws the legend of colours, to the right below the boxes. */
 static void draw_legend(const struct figure *f)
 {
     const double y = top_px(f) + SPOT_PX + 34;
@@ -754,7 +754,8 @@ static void open_svg(const struct figure *f)
             f->height_px);
 }
 
-/* Draws the rays, or those of the ghost, whose path PATH receives. */
+/* Draws the rays to the sensor, or of the ghost; PATH receives its path as
+ * text. */
 static void draw_light(struct figure *f, char *path, size_t bytes)
 {
     const struct lens_drawing *d = f->drawing;

@@ -223,7 +223,7 @@ void page_begin(FILE *file)
     fputs(head, file);
 }
 
-/* Writes what a photographer chooses a lens by. */
+/* Writes the data by which a photographer chooses a lens. */
 static void print_numbers(FILE *file, const struct page_card *card)
 {
     const struct glint_prescription *lens = card->lens;

@@ -84,7 +84,7 @@ static bool look(void *ctx, const char *name)
     return !s->found;
 }
 
-/* Returns the word that may have been meant, or NULL. */
+/* Returns the most similar known word, or NULL. */
 static const char *meant(const struct search *s)
 {
     const struct suggest *best = &s->near[0];

@@ -1,23 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * search.h - lenses by words of their name, source and character.
- */
+ * search.h - finds lenses by words of their name, source and character. */
 #ifndef GLINT_TOOLS_LENS_FIGURES_SEARCH_H
 #define GLINT_TOOLS_LENS_FIGURES_SEARCH_H
 
 #include "options/tool.h"
 
-/* Returns whether the lens NAME has all N WORDS, in any case of letters. */
+/* Returns whether the lens NAME has all N WORDS, ignoring case. */
 bool lens_has_words(const char *name, const struct glint_prescription *lens,
                     char **words, int n);
 
-/* States which of N WORDS, 1 or more, no lens of the library has, and which it
- * may have meant, or that lenses have them, but none has all. Returns an exit
+/* Prints which of N WORDS, 1 or more, no lens of the library has, with a
+ * similar word, or that no single lens has all of them. Returns an exit
  * code. */
 int lens_words_missed(const struct tool *tool, char **words, int n);
 
-/* Refuses the first of N NAMES that no lens of the library has, with the one
- * that it may have meant. Returns an exit code. */
+/* Rejects the first of N NAMES that is not a lens of the library, and prints a
+ * similar name. Returns an exit code. */
 int lens_names_check(const char *const *names, int n);
 
 #endif

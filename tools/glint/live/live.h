@@ -2,9 +2,8 @@
  *
  * glint live: camera in, flares on the panel.
  *
- * cmd_live.c takes the options, live_input.c opens the source of frames and
- * live_output.c their sink, and live_loop.c runs.
- */
+ * cmd_live.c parses the options, live_input.c opens the source of frames,
+ * live_output.c opens their sink, and live_loop.c runs the loop. */
 #ifndef GLINT_TOOLS_LIVE_LIVE_H
 #define GLINT_TOOLS_LIVE_LIVE_H
 
@@ -19,7 +18,7 @@
 
 /* ------------------------------------------------------------------- output
  *
- * Where live frames go to, by name:
+ * The outputs of live frames, by name:
  *   fb[:/dev/fb0]     the panel of a framebuffer
  *   y4m:FILE | y4m:-  a video file or pipe; also FILE.y4m
  *   v4l2:/dev/videoN  an output node, as of v4l2loopback
@@ -38,8 +37,8 @@ struct live_output {
     enum live_output_kind kind;
     const char *path; /* NULL: the default path */
     enum glint_panel_fit fit;
-    bool dither;             /* dither on panels with 16 bits a pixel */
-    struct glint_sink *sink; /* NULL: closed */
+    bool dither;             /* dither on panels with 16 bits per pixel */
+    struct glint_sink *sink; /* NULL if closed */
     union {
         struct glint_sink sink; /* the first member of all of these */
         struct glint_fbdev fb;
@@ -50,61 +49,63 @@ struct live_output {
     } as;
 };
 
-/* Sets kind and path of OUTPUT by NAME, which must outlive it. Returns false if
- * NAME is none of the above. */
+/* Sets kind and path of OUTPUT by NAME, which must outlive OUTPUT. Returns
+ * false if NAME is not one of the names above. */
 bool live_output_parse(struct live_output *output, const char *name);
 
-/* Returns whether the output can be opened before there is a picture. */
+/* Returns whether the output can be opened before the size of pictures is
+ * known. */
 bool live_output_is_flexible(const struct live_output *output);
 
-/* Opens OUTPUT for frames of IMAGE's format and size; a flexible output ignores
- * IMAGE. */
+/* Opens OUTPUT for frames of IMAGE's format and size; IMAGE is ignored if
+ * live_output_is_flexible(). */
 enum glint_status live_output_open(struct live_output *output,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error);
 
-/* Describe an open output. The first writes to TEXT what it is, "" if its name
- * says all, and returns TEXT; the second returns a problem with it, or NULL. */
+/* Describe an open output. live_output_text() writes a description to TEXT, ""
+ * if the output's name suffices, and returns TEXT. live_output_note() returns a
+ * problem of the output, or NULL. */
 const char *live_output_text(const struct live_output *output, char *text,
                              size_t size);
 const char *live_output_note(const struct live_output *output);
 
-/* Returns the number of frames that OUTPUT could not take because it was
- * busy. */
+/* Returns the number of frames that OUTPUT dropped because it was busy. */
 long live_output_dropped(const struct live_output *output);
 
-/* Closes OUTPUT, unless it is closed already, and puts its file in place. */
+/* Closes OUTPUT, unless it is closed already, and renames its file, if any, to
+ * its path. */
 enum glint_status live_output_close(struct live_output *output,
                                     struct glint_error *error);
 
 /* ---------------------------------------------------------------------- run */
 
-enum { LIVE_NAME_BYTES = 1024 }; /* bytes of the name of a snapshot */
+enum { LIVE_NAME_BYTES = 1024 }; /* max bytes of the name of a snapshot */
 
 enum live_adaptive {
-    /* Adapts for a camera without a budget, as its frames do not wait. Results
-     * of a file must not depend on a clock. */
+    /* Adapts only for a camera without --budget, as its frames do not wait.
+     * Results for a file must not depend on the clock. */
     LIVE_ADAPTIVE_CAMERA,
     LIVE_ADAPTIVE,
     LIVE_FIXED
 };
 
 struct live_options {
-    /* Only its options are set before it is opened. */
+    /* Only its line is set before live_run(). */
     struct drawing drawing;
     struct live_wish input;
     const char *output, *snapshot;
     enum glint_panel_fit fit;
-    /* frames to show (0: no end), and frames to skip before them */
+    /* number of frames to show (0: no limit), and of frames to skip before */
     int count, skip;
-    /* whether quality is lowered to hold the rate */
+    /* whether quality is reduced to keep the frame rate */
     enum live_adaptive adaptive;
     bool reconnect, list_devices, list_formats;
     enum live_report report;
 };
 
-/* Reads OPTIONS again, as at the start; for SIGHUP. Returns -1, or an exit code
- * after reporting the failure. */
+/* Reads OPTIONS again as at the start, on SIGHUP. Returns -1, or an exit code
+ * after printing the error. */
 typedef int live_reread_fn(void *ctx, struct tool *tool,
                            struct live_options *options);
 

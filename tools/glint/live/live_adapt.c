@@ -7,7 +7,7 @@
 
 #define TIGHT      0.9 /* busy fraction of a period above which quality drops */
 #define SPARE      0.55 /* busy share below which it may rise, after a while */
-#define SETTLE_S   0.3  /* least seconds from a step to the next one down */
+#define SETTLE_S   0.3  /* min seconds from a step to the next step down */
 #define HOLD_S     2.0
 #define MAX_HOLD_S 60.0
 #define SMOOTHING  0.2
@@ -35,8 +35,8 @@ static bool go(struct live_adapt *a, int by)
     a->below_s = 0;
     if (step < 0 || step > LIVE_MAX_STEP)
         return false;
-    /* A step down soon after one up shows that it was too early: the next one
-     * up waits longer. */
+    /* A step down soon after a step up shows that the step up was too early:
+     * the next step up waits longer. */
     if (by > 0 && a->rose && a->since_s < 2 * HOLD_S)
         a->hold_s = fmin(MAX_HOLD_S, 2 * a->hold_s);
     /* The last step up lasted, so that the wait is short again. */

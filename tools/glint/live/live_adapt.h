@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Holds the frame rate by reducing quality, a step at a time.
+ * Keeps the frame rate by changing quality in steps.
  *
- * It goes a step down at once when frames are missed or hardly any time is
- * left, or several steps if a frame takes several periods. It goes a step up
- * only after a while with time to spare, and that while is doubled each time
- * that a step up proves to be too early. Steps go down the table of --quality;
- * below its end there are fewer lights.
- */
+ * Quality falls by one step at once if frames are missed or hardly any time is
+ * left, and by several steps if a frame takes several periods. It rises by one
+ * step only after some seconds with time to spare; these seconds are doubled
+ * each time that a step up was too early. Steps follow the table of --quality;
+ * steps after its end reduce the number of lights. */
 #ifndef GLINT_TOOLS_LIVE_LIVE_ADAPT_H
 #define GLINT_TOOLS_LIVE_LIVE_ADAPT_H
 
@@ -19,9 +18,10 @@
 
 struct live_adapt {
     int step;       /* 0 .. LIVE_MAX_STEP; 0: as requested */
-    double busy_ms; /* smoothed time of a frame; -1: none since the last step */
-    /* below_s: seconds for which there has been time to spare; hold_s: seconds
-     * of that which a step up needs. */
+    double busy_ms; /* smoothed time of a frame; -1: no frame since the last
+                       step */
+    /* below_s: seconds so far with time to spare; hold_s: seconds of these that
+     * a step up requires. */
     double below_s, hold_s;
     double since_s; /* seconds since the last step */
     /* true: the last change was a step up, to better quality (STEP fell) */
@@ -30,16 +30,16 @@ struct live_adapt {
 
 void live_adapt_init(struct live_adapt *adapt);
 
-/* Notes a frame that took BUSY_MS of its period PERIOD_MS, after N_MISSED lost
- * ones. Returns whether the step has changed. */
+/* Adds a frame that took BUSY_MS of its period PERIOD_MS, after N_MISSED lost
+ * frames. Returns whether the step has changed. */
 bool live_adapt_note(struct live_adapt *adapt, double busy_ms, double period_ms,
                      int n_missed);
 
-/* Returns the dials Requested, made as coarse as ADAPT's step. */
+/* Returns the quality parameters ASKED, coarsened to ADAPT's step. */
 struct glint_dials live_adapt_dials(const struct live_adapt *adapt,
                                     struct glint_dials asked);
 
-/* Returns the quality, as of --quality, that a scene is drawn no finer than. */
+/* Returns the max quality, as of --quality, for drawing a scene. */
 double live_adapt_quality(const struct live_adapt *adapt);
 
 #endif

@@ -186,8 +186,8 @@ static void expose(struct live_timed *s, int64_t n)
     }
 }
 
-/* Adds a disc of RADIUS at CX, CY, with a halo that falls with the square of
- * the distance. */
+/* Adds a disc of RADIUS pixels at (CX, CY), with a halo that falls with the
+ * square of the distance. */
 static void light(struct live_timed *s, double cx, double cy, double radius)
 {
     const int reach = (int)(12 * radius) + 1;
@@ -316,8 +316,8 @@ static enum glint_status open_test(struct live_timed *test,
     return GLINT_OK;
 }
 
-/* Of the frames that are due the last that there is is shown, also where the
- * video ends before; those before it are late. */
+/* Shows the last frame that is due, or the last frame of the video if it ends
+ * before; the frames skipped count as late. */
 static enum glint_status next_video(struct glint_source *source,
                                     struct glint_source_frame *frame,
                                     struct glint_error *error)

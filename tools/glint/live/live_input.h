@@ -1,60 +1,60 @@
 /* SPDX-License-Identifier: MIT
  *
- * live_input.h - where live frames come from, by name:
+ * live_input.h - the sources of live frames, by name:
  *   /dev/videoN, N   a camera (linux/v4l2.h)
  *   FILE.y4m, -      a video, or a pipe of one
  *   test             a lamp over a night street
  *
- * A video is shown at its own rate, with late frames left out as from a camera;
- * of a pipe each frame is shown as it comes. After the last frame next fails
- * with GLINT_E_CLOSED. The test picture has a night street, a lamp with a halo
- * that goes round in eight seconds, and sensor noise; frame N of a seed and
- * size is the same picture anywhere. "none" is black, for scenes that are drawn
- * over it.
- */
+ * A video is shown at its own rate, and late frames are dropped as from a
+ * camera; from a pipe every frame is shown as it arrives. After the last frame,
+ * the source's next() returns GLINT_E_CLOSED. The test picture has a night
+ * street, a lamp with a halo that circles in eight seconds, and sensor noise;
+ * frame N depends only on seed and size. "none" is black, as a background for
+ * scenes. */
 #ifndef GLINT_TOOLS_LIVE_LIVE_INPUT_H
 #define GLINT_TOOLS_LIVE_LIVE_INPUT_H
 
 #include "linux/v4l2.h"
 #include "live/live_log.h"
 
-/* A source without a device: frames that are due by a clock, of a format that
- * is known when it is opened. */
+/* A source without a device: its frames are due by a clock, and their format is
+ * known when it is opened. */
 struct live_timed {
     struct glint_source source;
     struct glint_source_format format;
-    const char *name; /* of the source, in errors */
-    int timer;        /* -1: each frame is due when it comes */
+    const char *name; /* name of the source, for errors */
+    int timer;        /* timer descriptor; -1: each frame is due when it
+                         arrives */
     int64_t n;        /* number of the next frame */
 
     struct glint_y4m_reader reader; /* of a video */
-    /* Of the test picture: */
-    struct glint_image image; /* the last frame, I420 of limited range */
+    /* For the test picture: */
+    struct glint_image image; /* the last frame, I420, limited range */
     uint32_t seed;
     bool is_black;
-    uint8_t *still; /* luma without lamp and noise */
+    uint8_t *still; /* luma of the street without lamp and noise */
     void *mem;
 };
 
 struct live_wish {
-    struct glint_v4l2_config camera; /* device, size and rate of any source */
-    enum glint_v4l2_io io;           /* way to read a camera */
+    struct glint_v4l2_config camera; /* device, size and rate; of any source */
+    enum glint_v4l2_io io;           /* I/O method of a camera */
     int n_buffers;                   /* buffers of a camera */
 };
 
 struct live_input {
-    struct glint_source *source; /* NULL: closed */
+    struct glint_source *source; /* NULL if closed */
     union {
         struct glint_v4l2 camera;
         struct live_timed timed;
     } as;
 };
 
-/* Returns whether NAME stands for a camera. */
+/* Returns whether NAME is a camera. */
 bool live_input_is_camera(const char *name);
 
-/* Opens the source that WISH names, which live_input_start() starts; SEED is
- * for the noise of the test. */
+/* Opens the source that WISH names; live_input_start() starts it. SEED is for
+ * the noise of the test picture. */
 enum glint_status live_input_open(struct live_input *input,
                                   const struct live_wish *wish, uint32_t seed,
                                   struct glint_error *error);

@@ -40,8 +40,8 @@ void live_stats_next(struct live_stats *stats, int64_t now_us)
     start_sums(&stats->second, now_us);
 }
 
-/* Counts a latency of US. When a bin is full, all bins are halved: shares stay,
- * and none becomes 0. */
+/* Counts a latency of US microseconds. If a bin is full, all bins are halved,
+ * which preserves their fractions; no bin becomes 0. */
 static void count_latency(struct live_sums *s, int64_t us)
 {
     const int64_t at = us < 0 ? 0 : us / LIVE_BIN_US;
@@ -116,7 +116,7 @@ static double fps(const struct live_sums *s, int64_t now_us)
 
 /* ------------------------------------------------------------------ writing */
 
-/* Text that grows; what does not fit is left out. */
+/* Text that grows up to ROOM bytes; text that does not fit is cut off. */
 struct writer {
     char *text;
     size_t used, room;
@@ -138,8 +138,8 @@ put(struct writer *w, const char *format, ...)
     w->used = w->used < w->room ? w->used : w->room - 1;
 }
 
-/* Writes SUM over the number of frames, with DIGITS after the point, or null if
- * there are none. */
+/* Writes SUM / number of frames, with DIGITS after the point, or null if there
+ * are no frames. */
 static void put_mean(struct writer *w, const struct live_sums *s, double sum,
                      int digits)
 {
@@ -158,8 +158,8 @@ static void put_latency(struct writer *w, const struct live_sums *s,
         put(w, "null");
 }
 
-/* Returns whether there is anything to say of STAGE: a run without a scene has
- * none to draw. */
+/* Returns whether STAGE is reported: a run without a scene has no
+ * LIVE_SCENE. */
 static bool is_said(const struct live_stats *stats, int stage)
 {
     return stage != LIVE_SCENE || stats->total.stage_us[LIVE_SCENE] > 0;

@@ -12,7 +12,7 @@
 #include "posix/clock.h"
 
 #define RETRY_MS 500
-#define WAIT_MS  250 /* longest sleep, so that silence is noticed */
+#define WAIT_MS  250 /* max wait, ms, so that a silent input is noticed */
 
 struct live {
     struct tool *tool;
@@ -108,8 +108,8 @@ static int open_output(struct live *l, const struct glint_image *image)
                              : NULL);
 }
 
-/* Turns the dials of flare and scene to the step. Returns an exit code. */
-static int turn(struct live *l)
+/* Applies the current quality step to flare and scene. Returns an exit code. */
+static int apply_quality_step(struct live *l)
 {
     struct drawing *drawing = &l->o->drawing;
     const enum glint_status status = over_scene_coarsen(
@@ -136,7 +136,7 @@ static int take_size(struct live *l, const struct glint_image *image)
         return code;
     if (drawing->run.engine)
         l->asked = glint_engine_dials(drawing->run.engine);
-    return turn(l);
+    return apply_quality_step(l);
 }
 
 /* Sets up for the input's format: drawing and output. Returns an exit
@@ -192,7 +192,7 @@ static void adapt(struct live *l, int64_t busy_us, int n_missed)
         !live_adapt_note(&l->adapt, 1e-3 * (double)busy_us, period_ms(l),
                          n_missed))
         return;
-    turn(l);
+    apply_quality_step(l);
     snprintf(text, sizeof text, "quality %s: step %d of %d%s",
              l->adapt.step > before ? "lowered to hold the rate" : "raised",
              l->adapt.step, LIVE_MAX_STEP,
@@ -242,8 +242,8 @@ static void note(struct live *l, const struct glint_source_frame *frame,
 /* Reports the loss of a device. With --reconnect the run waits for it, and the
  * panel keeps the last picture meanwhile. Returns -1 to continue, or an exit
  * code. */
-static int lose(struct live *l, const char *what, enum glint_status status,
-                const char *why)
+static int handle_device_loss(struct live *l, const char *what,
+                              enum glint_status status, const char *why)
 {
     char text[320];
 
@@ -258,7 +258,7 @@ static int lose_camera(struct live *l, enum glint_status status,
                        const char *why)
 {
     live_input_close(&l->in);
-    return lose(l, "camera", status, why);
+    return handle_device_loss(l, "camera", status, why);
 }
 
 static int lose_output(struct live *l, enum glint_status status,
@@ -268,7 +268,7 @@ static int lose_output(struct live *l, enum glint_status status,
 
     live_output_close(&l->output, &unsaid);
     l->retry_us = glint_now_us() + 1000 * RETRY_MS;
-    return lose(l, "output", status, why);
+    return handle_device_loss(l, "output", status, why);
 }
 
 /* Returns -1 to continue, or an exit code. */
@@ -372,8 +372,8 @@ static int restart(struct live *l)
     return status == GLINT_OK ? -1 : lose_camera(l, status, error.text);
 }
 
-/* Takes and shows a frame, if there is one. Returns -1 to continue, or an exit
- * code. */
+/* Gets a frame from the input and shows it, if there is one. Returns -1 to
+ * continue, or an exit code. */
 static int step(struct live *l)
 {
     struct glint_source *const source = l->in.source;
@@ -398,8 +398,8 @@ static int step(struct live *l)
     return code;
 }
 
-/* Checks that FRESH names a lens where BEFORE does: a file that is being
- * written may end before it, and the lens by default is not what was meant. */
+/* Returns false if FRESH lost its lens option: the file may be still being
+ * written, and the default lens was not meant. */
 static bool names_lens(const struct live *l, const struct live_options *fresh)
 {
     if (GLINT_OPTION_GIVEN(&fresh->drawing.line.settings.options, lens) ||

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * live_picture.h - copies of live frames: in memory, to draw on where their own
- * memory is slow or shared, and as files.
- */
+ * live_picture.h - copies of live frames: in memory, for drawing if the frames'
+ * own memory is slow or shared, and in files. */
 #ifndef GLINT_TOOLS_LIVE_LIVE_PICTURE_H
 #define GLINT_TOOLS_LIVE_LIVE_PICTURE_H
 
@@ -15,13 +14,13 @@ struct live_copy {
     size_t bytes;
 };
 
-/* Returns a copy of FROM, reading each row once, or NULL without memory. Only a
- * picture larger than all before takes memory. */
+/* Copies FROM, reading each row once, and returns the copy, or NULL if there is
+ * no memory. Allocates only if FROM is larger than all pictures before. */
 const struct glint_image *live_copy(struct live_copy *copy,
                                     const struct glint_image *from);
 void live_copy_free(struct live_copy *copy);
 
-/* Saves FROM, of any 8-bit format, as formats/picture.h does. */
+/* Saves FROM, of any 8-bit format, by formats/picture.h. */
 enum glint_status live_save(const char *name, const struct glint_image *from,
                             struct glint_error *error);
 

@@ -22,7 +22,8 @@ enum { N_TAKEN = (int)(sizeof taken / sizeof *taken) };
 
 static volatile sig_atomic_t asked[LIVE_N_SIGNALS];
 
-/* Notes the signal NUMBER. Dies of the second one that asks to stop. */
+/* Stores that signal NUMBER arrived. The second signal to stop kills the
+ * process. */
 static void note(int number)
 {
     for (int i = 0; i < N_TAKEN; i++)

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * live_signals.h - signals to a live run. A signal that arrives while the run
- * waits wakes it; none is lost between checking and waiting.
- */
+ * live_signals.h - signals to a live run. A signal ends a wait, even if it
+ * arrives between the check and the wait. */
 #ifndef GLINT_TOOLS_LIVE_LIVE_SIGNALS_H
 #define GLINT_TOOLS_LIVE_LIVE_SIGNALS_H
 
@@ -19,12 +18,13 @@ enum live_signal {
 
 void live_signals_take(void);
 
-/* Returns whether WHICH was requested since the last call; a stop stays. */
+/* Returns whether signal WHICH arrived since the last call; LIVE_STOP stays
+ * true. */
 bool live_signal(enum live_signal which);
 
-/* Waits until FD (unless -1) is readable, has an event or an error, a signal
- * has arrived that live_signal() has not told yet (except for a snapshot, which
- * needs a frame), or MS have passed. */
+/* Waits until FD (unless -1) is readable, has an event or an error, until a
+ * signal arrives that live_signal() has not returned yet (except LIVE_SNAPSHOT,
+ * which needs a frame), or until MS milliseconds have passed. */
 void live_signals_wait(int fd, int ms);
 
 #endif

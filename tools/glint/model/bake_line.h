@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The commands "glint bake INPUT -o OUT" for files of scenes: their options,
- * and the file that they write.
+ * The command lines "glint bake INPUT -o OUT" for scenes, environments, motions
+ * and translucent media: their options and their output file.
  *
  *     code = bake_line_begin(&tool, argc, argv, options, take, &line, "one");
  *     if (code >= 0 || !tool.written)
@@ -17,20 +17,20 @@
 #include "model/settings.h"
 #include "options/command_line.h"
 
-/* Options that all of them have, at the begin of OPTIONS. */
+/* Options of all these commands, to begin their OPTIONS with. */
 #define BAKE_LINE_OPTIONS                      \
     {                                          \
         "output", required_argument, NULL, 'o' \
     }
 
-/* Takes option C, NAME, with the value optarg; returns -1, or an exit code
- * after saying what is wrong. */
+/* Applies option NAME, of code C, with the value optarg. Returns -1, or an exit
+ * code after printing the error. */
 typedef int bake_line_fn(struct tool *tool, void *line, int c,
                          const char *name);
 
-/* Reads the line; TAKE, unless NULL, takes options but -o and the common ones.
- * TEXT says of a line with other than one input what it takes. Sets
- * TOOL->written to what -o names, where a file can be. Returns -1, or an exit
+/* Parses the command line. TAKE, unless NULL, receives all options but -o.
+ * Prints TEXT as an error unless there is exactly one input. Sets TOOL->written
+ * to the output file and checks that it can be created. Returns -1, or an exit
  * code. */
 int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,

@@ -2,9 +2,8 @@
  *
  * Files of the cache, $XDG_CACHE_HOME/glint or ~/.cache/glint.
  *
- * Only regular files that nobody but this user and root could have written are
- * read. Nothing is written through links or into FIFOs.
- */
+ * Reads only regular files that nobody but this user and root could have
+ * written. Never writes through links or into FIFOs. */
 #ifndef GLINT_TOOLS_MODEL_CACHE_FILE_H
 #define GLINT_TOOLS_MODEL_CACHE_FILE_H
 
@@ -16,7 +15,7 @@
 
 enum { CACHE_PATH_BYTES = 1024 };
 
-/* Sets PATH to the folder of the cache. Returns false if there is none. */
+/* Sets PATH to the folder of the cache. Returns false if no folder is known. */
 bool cache_file_folder(char *path, size_t bytes);
 
 /* Appends "/NAME-KEY.SUFFIX" to the folder in PATH, with '_' for characters
@@ -25,22 +24,23 @@ bool cache_file_folder(char *path, size_t bytes);
 bool cache_file_name(char *path, size_t bytes, const char *name, uint64_t key,
                      const char *suffix);
 
-/* Makes the folders above PATH. A failure shows when a file is written
- * there. */
+/* Makes the folders above PATH. Reports no failure: writing the file fails
+ * later. */
 void cache_file_make_folders(char *path);
 
-/* Returns all of the file PATH, malloc'ed, or NULL if it is not there, larger
- * than MAX, or others could have written it. */
+/* Returns the contents of the file PATH, malloc'ed, or NULL if the file is
+ * missing, larger than MAX bytes, or could have been written by other users. */
 uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes);
 
-/* Makes the folders of PATH and writes DATA[BYTES] to it. GLINT_E_OUTPUT,
- * GLINT_E_MEMORY. */
+/* Makes the folders of PATH and writes DATA[BYTES] to it. Errors:
+ * GLINT_E_OUTPUT, GLINT_E_MEMORY. */
 enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                                    struct glint_error *error);
 
 /* Keeps other processes from making the file PATH until the lock is released.
- * Calls WAITS with CTX before it waits for one that holds it. Returns a
- * descriptor, or -1 if there can be no lock: the file is then made without. */
+ * Calls WAITS with CTX before it waits for a process that holds the lock.
+ * Returns a descriptor for cache_file_unlock(), or -1 if locking fails; the
+ * caller then makes the file without a lock. */
 int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx);
 void cache_file_unlock(const char *path, int lock);
 

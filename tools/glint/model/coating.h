@@ -32,20 +32,21 @@ struct coating {
     "                      100 to 5000 nm, index 1.01 to 4 (1.38), films\n"   \
     "                      from the air on (glint coat plots them)\n"
 
-/* Takes TEXT, the value of --coating. Returns -1, or an exit code after
- * printing what is wrong. */
+/* Parses TEXT, the value of --coating, into COATING. Returns -1, or an exit
+ * code after printing the error. */
 int coating_take(const struct tool *tool, struct coating *coating,
                  const char *text);
 
-/* Prints COATING: "none", "550 nm, index 1.38" or that and its layers. */
+/* Prints COATING: "none", or "550 nm, index 1.38" and further layers, if
+ * any. */
 void coating_print(FILE *file, const struct glint_coating *coating);
 
 /* Coats the surfaces of LENS with COATING. */
 void coating_apply(const struct coating *coating,
                    struct glint_prescription *lens);
 
-/* Checks that no coatings were requested with the model PATH, which has its
- * own. Returns EXIT_OK, or the code of a usage error. */
+/* Returns EXIT_OK if --coating was not given; else prints a usage error, as the
+ * model PATH has coatings of its own, and returns its code. */
 int coating_of_model(const struct tool *tool, const struct coating *coating,
                      const char *path);
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * --front-dust and --front-mask: what lies on the front element.
- */
+ * --front-dust and --front-mask: dirt on the front element. */
 #ifndef GLINT_TOOLS_MODEL_FRONT_OPTION_H
 #define GLINT_TOOLS_MODEL_FRONT_OPTION_H
 
@@ -21,8 +20,8 @@ static inline bool front_option_asked(const struct front_option *option)
     return option->front.dust > 0 || option->mask_file;
 }
 
-/* Sets *DIRT to what was requested, with the mask of its file; the caller frees
- * it. NULL: nothing was. Returns an exit code. */
+/* Sets *DIRT to the requested dirt, after reading the mask's file; the caller
+ * frees it. *DIRT is NULL if none was requested. Returns an exit code. */
 int front_option_open(const struct tool *tool,
                       const struct front_option *option,
                       struct glint_front_dirt **dirt);

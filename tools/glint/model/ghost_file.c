@@ -81,7 +81,7 @@ static const char *take_tint(struct glint_tint *tint, const char *text)
     return NULL;
 }
 
-/* Takes the words after a ghost. Returns NULL, or what is wrong with them. */
+/* Parses the words after a ghost. Returns NULL, or the error as text. */
 static const char *take_words(struct reading *r, int ghost, char *rest)
 {
     static const char *const words[] = {"mute", "solo", "gain", "tint", NULL};

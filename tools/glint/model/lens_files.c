@@ -19,8 +19,8 @@
 
 enum { ABOVE = 3, NAME_CHARS = 64, PATH_CHARS = 1024 };
 
-/* Sets PATH to the folder UP levels above glint's own file, 1 being that which
- * contains it. Returns false if everybody may write there. */
+/* Sets PATH to the folder UP levels above glint's own file; 1 is the folder
+ * that contains it. Returns false if all users may write there. */
 static bool folder_above(int up, char *path, size_t bytes)
 {
     struct stat st;
@@ -65,7 +65,8 @@ bool lens_folder(int i, const char *kind, char *path, size_t bytes)
     return true;
 }
 
-/* Folders within a folder of lenses, besides itself. */
+/* Folders that are searched within a folder of lenses; "" is the folder
+ * itself. */
 static const char *const rooms[] = {"",      "/anamorphic", "/normal", "/phone",
                                     "/tele", "/vision",     "/wide",   "/zoom"};
 

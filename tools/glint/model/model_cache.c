@@ -31,8 +31,8 @@ static uint8_t *read_ours(const char *path, size_t *bytes)
     return cache_file_read(path, MAX_BYTES, bytes);
 }
 
-/* Reads a model that was installed, which is trusted as the program itself is,
- * whoever installed it. */
+/* Reads an installed model. It is trusted like the program itself, whoever owns
+ * the file. */
 static uint8_t *read_installed(const char *path, size_t *bytes)
 {
     struct glint_error error;
@@ -43,8 +43,8 @@ static uint8_t *read_installed(const char *path, size_t *bytes)
                : NULL;
 }
 
-/* Opens the model in PATH, which READ reads. Returns false if it is damaged or
- * has another key. */
+/* Opens the model in PATH, reading it by READ. Returns false if it is damaged
+ * or has another key. */
 static bool load(const char *path, uint64_t key,
                  uint8_t *(*read)(const char *path, size_t *bytes),
                  struct model_file *model)
@@ -118,7 +118,8 @@ static void keep(const struct tool *tool, char *path,
                 error.text);
 }
 
-/* Bakes the model of LENS into MODEL, and keeps it in PATH if that is given. */
+/* Bakes the model of LENS into MODEL, and caches it in PATH, unless PATH is
+ * NULL. */
 static int bake(const struct tool *tool, const struct glint_prescription *lens,
                 struct glint_bake_options options, char *path,
                 struct model_file *model)

@@ -1,24 +1,26 @@
 /* SPDX-License-Identifier: MIT
  *
- * Cache of the models of lens tables, which are baked when first needed.
+ * Cache of the models of lens tables. A model is baked when it is first needed.
  *
- * They lie in share/glint/models, where glint was installed with them, or in
- * $XDG_CACHE_HOME/glint, or ~/.cache/glint, under the lens's name and a key of
- * its contents and the options, so that a change of either never finds an old
- * model. If no file can be written, nothing is cached.
- */
+ * Models are in share/glint/models, if glint was installed with them, or in
+ * $XDG_CACHE_HOME/glint, or ~/.cache/glint. Their names have the lens's name
+ * and a hash of the table and the options, so that a change of either never
+ * finds an old model. If no file can be written, the model is baked in every
+ * run. */
 #ifndef GLINT_TOOLS_MODEL_MODEL_CACHE_H
 #define GLINT_TOOLS_MODEL_MODEL_CACHE_H
 
 #include "model/model_file.h"
 
-/* Opens as MODEL the model of LENS by OPTIONS: the installed one, the cached
- * one, or a new one, which it bakes and caches. It sets workers and progress of
- * OPTIONS. Returns an exit code, after printing the reason on failure. */
+/* Opens as MODEL the model of LENS by OPTIONS: the installed model, the cached
+ * model, or a new model, which it bakes and caches. It sets workers and
+ * progress of OPTIONS itself. Returns an exit code, after printing the reason
+ * on failure. */
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  struct glint_bake_options options, struct model_file *model);
 
-/* Returns whether the model is installed or cached, and need not be baked. */
+/* Returns whether the model is installed or cached, so that it need not be
+ * baked. */
 bool model_is_cached(const struct glint_prescription *lens,
                      const struct glint_bake_options *options);
 

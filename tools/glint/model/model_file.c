@@ -35,7 +35,7 @@ bool tool_is_model(const char *path)
 
     if (!tool_is_file_name(path))
         return false;
-    /* A pipe can be read once only. */
+    /* A pipe can be read only once, so it is not opened for a check. */
     if (stat(path, &st) < 0 || !S_ISREG(st.st_mode))
         return false;
     file = fopen(path, "rb");
@@ -47,7 +47,7 @@ bool tool_is_model(const char *path)
     return magic_of(b) == GLINT_MODEL_MAGIC || magic_of(b) == GLINT_ZOOM_MAGIC;
 }
 
-/* Opens what MODEL->data holds. */
+/* Opens the model in MODEL->data. */
 static enum glint_status open_data(struct model_file *model,
                                    const char **reason)
 {

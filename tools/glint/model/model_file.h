@@ -18,16 +18,16 @@ struct model_file {
     struct glint_lens lens; /* points into data */
     void *data;
     size_t bytes;
-    struct glint_zoom_lens *zoom; /* of a zoom, of which lens is a position;
-                                     NULL: it has one position */
+    struct glint_zoom_lens *zoom; /* a zoom lens, of which LENS is one position;
+                                     NULL if it does not zoom */
 };
 
-/* Returns whether ARGUMENT is the name of a file: with a slash, or ending in
- * .lens, .glint, .env or .motion. Otherwise it is that of a lens that comes
- * with glint, whatever the current folder holds. */
+/* Returns whether ARGUMENT names a file: it has a slash or ends in .lens,
+ * .glint, .env or .motion. Any other name is of a lens that comes with glint,
+ * even if the current folder has a file of that name. */
 bool tool_is_file_name(const char *argument);
 
-/* Returns whether PATH is the name of a file that begins as models do. */
+/* Returns whether PATH names a file that begins as models do. */
 bool tool_is_model(const char *path);
 
 /* Reads and checks the model at PATH. Returns an exit code; on failure prints
@@ -35,9 +35,9 @@ bool tool_is_model(const char *path);
 int tool_model(const struct tool *tool, const char *path,
                struct model_file *model);
 
-/* Sets MODEL, of a zoom, to ZOOM: mm of focal length, or 0 to 1 along its way.
- * GLINT_E_ARGUMENT: it does not go there; ERROR states how far it does, and
- * MODEL stays as it was. */
+/* Sets MODEL, of a zoom lens, to ZOOM: its focal length in mm, or 0 to 1 from
+ * its first position to its last. Returns GLINT_E_ARGUMENT if ZOOM is out of
+ * range: ERROR states the range, and MODEL is unchanged. */
 enum glint_status model_file_zoom(struct model_file *model, double zoom,
                                   struct glint_error *error);
 

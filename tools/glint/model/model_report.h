@@ -8,11 +8,12 @@
 #include "model/model_file.h"
 #include "options/tool.h"
 
-/* Prints all that the file holds, with -v also each system. */
+/* Prints the contents of the model; with -v also each polynomial system. */
 void model_report_info(const struct tool *tool, const struct model_file *model);
 
-/* Prints the report of a model baked in SECONDS: the ghosts that miss a target
- * (with -v all), and sums; as text nothing with -q. */
+/* Prints the report of a model baked in SECONDS: the ghosts that miss an error
+ * target (with -v all ghosts), and sums. With -q it prints no text, only
+ * JSON. */
 void model_report_bake(const struct tool *tool, const struct glint_lens *lens,
                        double seconds, const struct glint_bake_report *report);
 

@@ -11,8 +11,9 @@
 extern const char *const model_output_names[GLINT_OUT_KINDS];
 extern const char *const model_output_units[GLINT_OUT_KINDS];
 
-/* Largest errors at the 99th percentile with which a ghost meets its target: a
- * quarter of a pixel of 1920, and errors of like effect in other outputs. */
+/* Error targets: a ghost meets them if its 99th percentiles are not larger.
+ * Positions: a quarter of a pixel at a width of 1920; other outputs: errors of
+ * similar visibility. */
 extern const double model_output_targets[GLINT_OUT_KINDS];
 
 const char *model_basis_name(const struct glint_lens *lens);
@@ -20,7 +21,7 @@ double model_degrees(int32_t sine_q30);
 double model_nanometres(
     int32_t wave_q24); /* converts 1 / square micrometres to nanometres */
 
-/* Systems first .. first + n - 1. */
+/* The polynomial systems first .. first + n - 1. */
 struct model_span {
     uint32_t first, n;
 };
@@ -33,11 +34,10 @@ const struct glint_model_output *
 model_outputs_of(const struct glint_lens *lens,
                  const struct glint_model_system *system);
 
-/* Returns the bytes that a span takes in the file, as if systems shared
- * none. */
+/* Returns the bytes of a span in the file, if its systems shared no data. */
 size_t model_span_bytes(const struct glint_lens *lens, struct model_span span);
 
-/* Sets RANGE_DEG to the least and largest angle that a span covers. */
+/* Sets RANGE_DEG to the min and max angle that a span covers. */
 void model_span_angles(const struct glint_lens *lens, struct model_span span,
                        double range_deg[2]);
 
@@ -45,7 +45,8 @@ void model_span_angles(const struct glint_lens *lens, struct model_span span,
 struct model_errors {
     uint32_t n;
     double terms, mean2, p50;         /* means */
-    double p99, max, bound, rounding; /* worst; all in the unit of errors */
+    double p99, max, bound, rounding; /* max over the systems; all in the
+                                         output's unit */
 };
 
 struct model_summary {
@@ -54,31 +55,33 @@ struct model_summary {
 
 struct model_summary model_summary_of(const struct glint_lens *lens,
                                       struct model_span span);
-double model_terms(const struct model_summary *sum); /* terms of all outputs */
+double model_terms(const struct model_summary *sum); /* sum over all outputs */
 double
-model_mean_terms(const struct model_summary *sum); /* mean terms of an output */
+model_mean_terms(const struct model_summary *sum); /* mean over the outputs */
 
-/* Returns whether some output misses its target. */
+/* Returns whether any output misses its target. */
 bool model_misses(const struct model_summary *sum);
 
-/* Returns the number of ghosts, without the further parts of their pupils. */
+/* Returns the number of ghosts; ghosts whose pupil has several parts count
+ * once. */
 uint32_t model_ghost_count(const struct glint_lens *lens);
 
-/* Returns the number of the ghost that ENTRY is, or is a part of. */
+/* Returns the number of the ghost to which ENTRY, a ghost or a part of its
+ * pupil, belongs. */
 uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry);
 
 /* Where a ghost misses its targets. */
 struct model_miss {
-    uint32_t zones;      /* number of zones and parts of them; 0: it does not */
-    double angle_deg[2]; /* least and largest angle of them */
-    int output;          /* the one that misses its target by most */
-    double p99, over;    /* its error, and that in targets */
+    uint32_t zones;      /* number of zones and parts that miss; 0: no miss */
+    double angle_deg[2]; /* min and max angle of these zones */
+    int output;          /* output with the largest error / target */
+    double p99, over;    /* its error, and error / target */
 };
 
-/* Returns where ghost GHOST, with the further parts of its pupil, misses. */
+/* Returns where GHOST, with all parts of its pupil, misses targets. */
 struct model_miss model_miss_of(const struct glint_lens *lens, uint32_t ghost);
 
-/* Returns the number of ghosts of which some part misses its target. */
+/* Returns the number of ghosts with any part that misses a target. */
 unsigned model_missed_count(const struct glint_lens *lens);
 
 #endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A lens that is opened from its table, which needs the offline half. Programs
- * that take baked models only have models_only.c instead.
- */
+ * Opens a lens from its table, which needs the offline half. Programs that
+ * accept only baked models link models_only.c instead. */
 #ifndef GLINT_TOOLS_MODEL_OPENED_TABLE_H
 #define GLINT_TOOLS_MODEL_OPENED_TABLE_H
 
@@ -18,7 +17,7 @@ struct glint_bake_options
 opened_table_bake(const struct glint_prescription *lens,
                   const struct settings *settings);
 
-/* Makes the setup of LENS, which has no model, for STOP. */
+/* Makes the setup of LENS, which must have no model, for STOP. */
 enum glint_status opened_table_setup(struct opened_lens *lens,
                                      const struct settings *settings,
                                      const struct stop_option *stop,

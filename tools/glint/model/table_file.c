@@ -78,8 +78,8 @@ static void print_no_lens(const struct tool *tool, const char *name)
                suggest_best(&s) ? s.best : "");
 }
 
-/* Returns whether NAME is of a file as glint import takes them, which there
- * is. */
+/* Returns whether NAME is an existing file of a format that glint import
+ * reads. */
 static bool is_foreign(const char *name)
 {
     static const char *const endings[] = {".zmx", ".seq", ".len", ".fx",
@@ -91,8 +91,8 @@ static bool is_foreign(const char *name)
     return is && access(name, F_OK) == 0;
 }
 
-/* Reads the table in FILE. Pictures and the like are refused as no tables, for
- * which a line and column would not help. */
+/* Reads the table in FILE. Rejects binary files such as pictures with a message
+ * without line and column. */
 static enum glint_status parse_table(const char *file,
                                      struct glint_prescription *lens,
                                      struct glint_error *error)

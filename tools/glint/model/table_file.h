@@ -8,8 +8,9 @@
 #include "glint/prescription.h"
 #include "options/tool.h"
 
-/* Returns the table of lens ARGUMENT: itself, if it is a file, or PATH, set to
- * that of the name. Returns NULL after printing what it may mean. */
+/* Returns the file of lens ARGUMENT: ARGUMENT if it is a file, or PATH, set to
+ * the table of the lens with this name. If there is none, prints similar names
+ * and returns NULL. */
 const char *tool_lens_file(const struct tool *tool, const char *argument,
                            char *path, size_t bytes);
 

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* Most metres of --focus; beyond them is infinity. */
+/* Max distance of --focus, metres; larger values mean infinity. */
 #define FARTHEST_M 1e6
 
 bool zoom_option_take(struct zoom_option *option, const char *text)

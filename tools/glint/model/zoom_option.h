@@ -7,9 +7,11 @@
 #include "options/tool.h"
 
 struct zoom_option {
-    double zoom;     /* mm of focal length, or how far along, 0 .. 1 */
+    double zoom;     /* focal length in mm, or 0 .. 1: position from the table's
+                        first to last */
     double focus_m;  /* 0: infinity */
-    bool is_zoomed;  /* --zoom was given; else a zoom is at its first column */
+    bool is_zoomed;  /* --zoom was given; else the first position of the
+                        table */
     bool is_focused; /* --focus was given */
 };
 
@@ -27,7 +29,8 @@ struct zoom_option {
     "  --focus M           metres from the sensor to what is sharp, or inf " \
     "(default)\n"
 
-/* Take TEXT, the value of --zoom or --focus. Return false for other texts. */
+/* Parse TEXT as the value of --zoom or --focus. Return false if it is
+ * malformed. */
 bool zoom_option_take(struct zoom_option *option, const char *text);
 bool zoom_option_focus(struct zoom_option *option, const char *text);
 
@@ -36,8 +39,8 @@ bool zoom_option_focus(struct zoom_option *option, const char *text);
 int zoom_option_apply(const struct tool *tool, const struct zoom_option *option,
                       struct glint_prescription *lens);
 
-/* Checks that neither was requested with the model PATH. Returns EXIT_OK, or
- * the code of a usage error. */
+/* Returns EXIT_OK if OPTION has neither --zoom nor --focus; else prints a usage
+ * error that names the model PATH and returns its code. */
 int zoom_option_of_model(const struct tool *tool,
                          const struct zoom_option *option, const char *path);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Baked motions: from recordings, and from files. */
+ * Opens motions: bakes a recording or reads a baked file. */
 #ifndef GLINT_TOOLS_MOTIONS_MOTION_FILE_H
 #define GLINT_TOOLS_MOTIONS_MOTION_FILE_H
 
@@ -11,18 +11,18 @@ struct motion_file {
     void *data; /* malloc'ed; MOTION points into it */
     size_t bytes;
     struct glint_motion motion;
-    struct glint_motion_report report; /* of what was baked now */
+    struct glint_motion_report report; /* of the bake, if is_baked_now */
     bool is_baked_now;
 };
 
-/* Returns whether ARGUMENT is a recording, NAME.json, or a baked motion by how
- * the file begins. */
+/* Return whether ARGUMENT is a recording, NAME.json, or a file that begins as
+ * baked motions do. */
 bool motion_file_is_source(const char *argument);
 bool motion_file_is_baked(const char *argument);
 
-/* Opens the recording, which it bakes, or the baked file PATH,
- * unless it is the file WRITTEN. _open returns an exit code, after printing the
- * reason on failure. */
+/* Open PATH: bake it if it is a recording, or read it if it is baked. They
+ * reject PATH if it is the output file WRITTEN. motion_file_open() prints the
+ * reason of a failure and returns an exit code. */
 enum glint_status motion_file_read(const char *path, const char *written,
                                    struct motion_file *file,
                                    struct glint_error *error);
@@ -30,7 +30,7 @@ int motion_file_open(const struct tool *tool, const char *path,
                      struct motion_file *file);
 void motion_file_close(struct motion_file *file);
 
-/* Prints what is in FILE; with --json, as one object. */
+/* Prints the contents of FILE; with --json, as one object. */
 void motion_file_print(const struct tool *tool, struct motion_file *file);
 
 /* Writes the pose of each frame, in the units of the recording:
@@ -38,7 +38,7 @@ void motion_file_print(const struct tool *tool, struct motion_file *file);
 int motion_file_poses(const struct tool *tool, struct motion_file *file,
                       const char *to);
 
-/* glint bake of motions, as the commands of options/tool.h. */
+/* The command glint bake for motions; see options/tool.h. */
 int cmd_bake_motion(struct tool *tool, int argc, char **argv);
 
 #endif

@@ -11,7 +11,7 @@ enum { MOST_EVENTS = 4096 };
 struct bar {
     struct paint paint;
     int x0, x1, y0, y1;
-    uint32_t last; /* the last frame, 1 at least */
+    uint32_t last; /* the last frame, at least 1 */
 };
 
 static int place(const struct bar *b, uint32_t frame)

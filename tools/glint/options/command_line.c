@@ -198,7 +198,8 @@ int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
 
     if (optind + n == argc)
         return -1;
-    /* Inputs go behind all options, so that this is the value of one. */
+    /* getopt_long() moves inputs after all options, so LAST is an option's
+     * value. */
     if (optind + n < argc || optind < 3 || last[0] == '-')
         return tool_usage(tool, "%s", text);
     return tool_usage(tool, "%s; '%s' is the value of %s", text, last,

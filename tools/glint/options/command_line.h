@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * command_line.h - reading a command line: the options that all commands have,
- * help, and what an unknown option may mean. */
+ * command_line.h - parses command lines: the options that all commands have,
+ * help, and suggestions for unknown options. */
 #ifndef GLINT_TOOLS_OPTIONS_COMMAND_LINE_H
 #define GLINT_TOOLS_OPTIONS_COMMAND_LINE_H
 
@@ -9,10 +9,10 @@
 
 #include "options/engine_options.h"
 
-/* Codes of options that no letter is for. */
+/* getopt codes of options without a letter. */
 enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
 
-/* Options that every command takes, for its struct option array. */
+/* Options of every command, to end its struct option array with. */
 #define TOOL_COMMON_SHORT "hVqvj:"
 #define TOOL_COMMON_OPTIONS                                                    \
     {"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'V'},     \
@@ -27,47 +27,48 @@ enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
         NULL, 0, NULL, 0                                                       \
     }
 
-/* Notes the command line, so that tool_option() can suggest what an unknown
- * option may mean. */
+/* Stores the command line, for suggestions of tool_option() on unknown
+ * options. */
 void tool_line(char **argv);
 
-/* Gives TOOL the GROUPS of options, of which DEFAULTS, copied, are the values
- * before any is set. Returns OWN, which a row without a name ends, these
- * options, and the common ones, in one array until the next call. Where a name
- * occurs twice, OWN counts. */
+/* Sets the GROUPS of engine options that TOOL has, and copies their DEFAULTS.
+ * Returns one array, valid until the next call, of OWN, which a row without a
+ * name must end, the options of GROUPS and the common options. If a name is in
+ * OWN and in GROUPS, OWN is used. */
 const struct option *engine_getopt(struct tool *tool, unsigned groups,
                                    const struct glint_options *defaults,
                                    const struct option *own);
 
-/* Does as getopt_long(), and notes OPTIONS for --options, by which shells
- * complete. */
+/* Calls getopt_long(), and stores OPTIONS for --options, which shells use for
+ * completion. */
 int tool_getopt(int argc, char *const *argv, const char *shorts,
                 const struct option *options, int *index);
 
-/* Takes a common option. Returns -1 to continue, else the exit code to leave
- * with (EXIT_OK after --help and its like). An unknown option is a usage error.
- */
+/* Applies a common option. Returns -1 to continue, else the exit code to end
+ * with (EXIT_OK after --help and similar options). An unknown option is a usage
+ * error. */
 int tool_option(struct tool *tool, int option, const char *value);
 
-/* Returns the value of the last option in ARGV that getopt_long() would
- * return as OPTION, or NULL. Takes no option: getopt_long() starts afresh
- * afterwards. */
+/* Returns the value of the last option in ARGV that getopt_long() would return
+ * as OPTION, or NULL. Applies no option, and resets getopt_long() to the first
+ * argument. */
 const char *tool_value_of(int argc, char **argv, const char *shorts,
                           const struct option *options, int option);
 
-/* Checks that getopt_long() has left N words of ARGV. Returns -1, or after
- * saying TEXT the code of tool_usage(); of a line with fewer words it states
- * which one the last option took for its value. */
+/* Checks that N arguments of ARGV are left after the options. Returns -1, or
+ * the code of tool_usage() after printing TEXT; if arguments are missing, the
+ * message also states which word the last option consumed as its value. */
 int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
                 const char *text);
 
-/* Takes option C of a command whose own CTX is. Returns -1 to continue, -2 if
- * VALUE is refused, or an exit code. */
+/* Applies option C of a command to its CTX. Returns -1 to continue, -2 if the
+ * option does not accept VALUE, or an exit code. */
 typedef int tool_take_fn(struct tool *tool, void *ctx, int c,
                          const char *value);
 
-/* Parses the options of a line, SHORTS besides the common ones. Returns -1, or
- * an exit code after printing why. */
+/* Parses the options of a command line. SHORTS are the option letters of the
+ * command, without the common ones. Returns -1, or an exit code after printing
+ * the reason. */
 int tool_take(struct tool *tool, int argc, char **argv, const char *shorts,
               const struct option *options, tool_take_fn *take, void *ctx);
 

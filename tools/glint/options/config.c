@@ -19,7 +19,8 @@
 #define MAX_OPTIONS 256       /* most options of a command */
 #define NAME_CHARS  100       /* bytes of a file's name in errors */
 
-/* One pass over a file: the first checks all of it, the second takes it. */
+/* One pass over a file: the first pass checks all lines, the second applies
+ * them. */
 struct pass {
     struct config *config;
     bool taking;
@@ -34,7 +35,7 @@ struct pass {
     struct glint_error *error;
 };
 
-/* Sets WHERE to the file's name and LINE; of a long name its end. */
+/* Sets WHERE to "FILE:LINE", with only the end of a long file name. */
 static void set_where(struct pass *p, int line)
 {
     const size_t len = strlen(p->name);
@@ -129,8 +130,8 @@ static void note_section(struct pass *p, const char *section)
             p->config->tool->name, p->where, section);
 }
 
-/* Returns the option NAME, or NULL if files cannot have it: help and version
- * are for the command line, and files do not nest. */
+/* Returns the option NAME, or NULL if a file must not have it: help and version
+ * are only for the command line, and files do not nest. */
 static const struct option *find_option(const struct config *config,
                                         const char *name)
 {

@@ -101,8 +101,8 @@ static const char *range_start(double low, char start[32])
     return start;
 }
 
-/* Writes "(LOW to HIGH, default VALUE)" of row I, as far as its help does not
- * have that, or "". */
+/* Writes "(LOW to HIGH, default VALUE)" of row I, without the parts that its
+ * help text already states. */
 static void put_limits(struct page *page, const struct glint_options *defaults,
                        int i)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * engine_options.h - the engine's options on a command line: for getopt_long(),
- * as help and as values, all from the table of glint/options.h.
+ * for the help, and their values, all from the table of glint/options.h.
  *
  *     static const struct option own[] = {{"output", ...}, {NULL, 0, NULL, 0}};
  *     options = engine_getopt(&tool, ENGINE_ALL, &values, own);
@@ -27,8 +27,9 @@ enum {
     (ENGINE_GROUP(LENS) | ENGINE_GROUP(BRIGHTNESS) | ENGINE_GROUP(SPEED))
 #define ENGINE_ALL (~0U)
 
-/* Sets in VALUES the option of CODE to VALUE, NULL of a flag. Returns -1; -2 if
- * CODE is not one of these; or an exit code after printing what it accepts. */
+/* Sets the option with getopt code CODE in VALUES to VALUE, which is NULL for a
+ * flag. Returns -1; -2 if CODE is not an engine option; or an exit code after
+ * printing which values the option accepts. */
 int engine_option(const struct tool *tool, struct glint_options *values,
                   int code, const char *value);
 

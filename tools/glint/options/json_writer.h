@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * json_writer.h - JSON by formats that look like it.
+ * json_writer.h - writes JSON by format strings that look like JSON.
  *
  *     struct json_writer json = {stdout};
  *     json_write(&json, "{name: %s, size: [%d, %d]", name, width, height);
  *     json_write(&json, "whole: %c}\n", is_whole);
  *
- * The format has the words and conversions of an object without quotes; the
- * writer adds quotes, escapes and the commas between members and elements.
- */
+ * Format strings have keys and conversions without quotes; the writer adds
+ * quotes, escapes and the commas between members and elements. */
 #ifndef GLINT_TOOLS_OPTIONS_JSON_WRITER_H
 #define GLINT_TOOLS_OPTIONS_JSON_WRITER_H
 

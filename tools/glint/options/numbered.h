@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * numbered.h - names of numbered files, by a pattern such as "in/%04d.png".
- */
+ * numbered.h - makes the names of numbered files by a pattern,
+ * "in/%04d.png". */
 #ifndef GLINT_TOOLS_OPTIONS_NUMBERED_H
 #define GLINT_TOOLS_OPTIONS_NUMBERED_H
 
@@ -9,16 +9,17 @@
 
 enum { NUMBERED_BYTES = 4096 };
 
-/* Checks whether TEXT has exactly one conversion, "%d" or "%0Nd". */
+/* Returns whether TEXT is a pattern: it has exactly one conversion, %d or
+ * %0Nd. */
 bool numbered_is(const char *text);
 
-/* Sets NAME, NUMBERED_BYTES long, to that of file NUMBER by PATTERN. Returns
- * false if it is too long or PATTERN is none. */
+/* Sets NAME, NUMBERED_BYTES long, to the name of file NUMBER by PATTERN.
+ * Returns false if NAME is too long or PATTERN is not a pattern. */
 bool numbered_name(char *name, const char *pattern, int number);
 
-/* Sets PATTERN, NUMBERED_BYTES long, to TEXT with "%0Nd" in place of its last
- * run of N '#', by which other programs name sequences. Returns false if TEXT
- * has no '#', or if PATTERN is too long or not a pattern. */
+/* Sets PATTERN, NUMBERED_BYTES long, to TEXT with its last run of N '#', as
+ * other programs name sequences, replaced by "%0Nd". Returns false if TEXT has
+ * no '#', or if PATTERN is too long or not a pattern. */
 bool numbered_from_hashes(char *pattern, const char *text);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * suggest.h - finds the word that a mistyped one may have meant.
+ * suggest.h - finds the known word that is most similar to a mistyped word.
  *
  *     struct suggest s;
  *     suggest_begin(&s, "ovrelay");
@@ -24,15 +24,15 @@ struct suggest {
 
 void suggest_begin(struct suggest *suggest, const char *word);
 
-/* Offers CANDIDATE[N]. If it contains the word, of 3 letters or more, it counts
- * as at most one letter off. */
+/* Compares CANDIDATE[N] with the word. A candidate that contains the word, if
+ * that has 3 letters or more, is at distance 1 at most. */
 void suggest_try(struct suggest *suggest, const char *candidate, size_t n);
 
-/* Returns the nearest candidate if no more of its letters are wrong than a
- * third of them, or than one if that is more; else NULL. */
+/* Returns the nearest candidate if its distance is at most a third of its
+ * letters, or 1; else NULL. */
 const char *suggest_best(const struct suggest *suggest);
 
-/* Returns "; did you mean 'BEST'?", or "" if there is none. */
+/* Returns "; did you mean 'BEST'?", or "" if suggest_best() is NULL. */
 const char *suggest_words(struct suggest *suggest);
 
 #endif

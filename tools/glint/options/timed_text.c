@@ -15,7 +15,7 @@
 #include "options/tool.h"
 #include "posix/input.h"
 
-enum { READINGS = 16 }; /* of a pipe, in a turn */
+enum { READINGS = 16 }; /* max calls of read() of a pipe per turn */
 
 const char text_no_memory[] = "no memory";
 
@@ -86,7 +86,7 @@ void text_lines_close(struct text_lines *lines)
 
 /* ------------------------------------------------------------------- lines */
 
-/* Reads more of a pipe; returns false if nothing came. */
+/* Reads more of a pipe. Returns false if no data was available. */
 static bool fill(struct text_lines *l)
 {
     struct pollfd there = {.fd = l->fd, .events = POLLIN};

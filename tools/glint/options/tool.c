@@ -261,7 +261,7 @@ void tool_progress_part(struct tool_progress *p, double from, double share)
     p->share = share;
 }
 
-/* Prints a line every ten seconds, where there is no terminal for a bar. */
+/* Prints a line every ten seconds, if there is no terminal for a bar. */
 static void show_line(struct tool_progress *p, double now, double done)
 {
     const double spent = now - p->started;
@@ -273,7 +273,8 @@ static void show_line(struct tool_progress *p, double now, double done)
             100 * p->most, spent, spent * (1 - done) / done);
 }
 
-/* Prints, once and after a second, how long it will take if that is long. */
+/* Prints once, after a second, an estimate of the time if it is 20 s or
+ * more. */
 static void tell_length(struct tool_progress *p, double spent, double done)
 {
     const double all = spent / done, left = all - spent;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The parts that all commands share: common options, exit codes, errors,
- * progress, and the reading of numbers.
- */
+ * Functions that all commands share: common options, exit codes, errors,
+ * progress, and parsing of numbers. */
 #ifndef GLINT_TOOLS_OPTIONS_TOOL_H
 #define GLINT_TOOLS_OPTIONS_TOOL_H
 
@@ -24,89 +23,94 @@ enum exit_code {
 
 struct tool {
     const char *name; /* name of the command */
-    const char *help; /* of its own options */
-    /* Groups of the engine's options that it has, a bit each by enum
-     * glint_option_group, and their defaults; NULL where there are none. */
+    const char *help; /* help text of the command's own options */
+    /* Groups of engine options that the command has, a bit each by enum
+     * glint_option_group, and their defaults; NULL if it has none. */
     unsigned groups;
     const struct glint_options *defaults;
-    const char *help_end; /* what comes behind the help of these, or NULL */
+    const char *help_end; /* help text after these options, or NULL */
     bool json, quiet;
-    bool
-        no_bake; /* A lens whose model is not kept is refused: for reloading. */
+    bool no_bake; /* reject a lens whose model is not cached: for reloading */
     int verbose;
     int n_threads;
-    int seed; /* seed of all that is random: the noise of live -d test */
+    int seed; /* random seed: of synth, and of the noise of live -d test */
     unsigned sets_off;             /* instruction sets not to use */
     const char *kernels;           /* argument of --kernels, or NULL */
-    struct glint_workers *workers; /* made by tool_start */
-    const char *written;           /* file that no scene may read, or NULL */
-    struct glint_error *cause;     /* last message of tool_error(), or NULL */
-    const char *where; /* "FILE:LINE" of the option being taken, or NULL for the
-                          command line */
+    struct glint_workers *workers; /* made by tool_start() */
+    const char *written;           /* output file, which no scene may read, or
+                                      NULL */
+    struct glint_error *cause;     /* receives messages of tool_error(); may be
+                                      NULL */
+    const char *where; /* "FILE:LINE" of the option being parsed, or NULL for
+                          the command line */
 };
 
-/* Makes the workers, which tool_finish() ends. Returns an exit code. */
+/* Starts the worker threads, which tool_finish() ends. Returns an exit code. */
 int tool_start(struct tool *tool);
 void tool_finish(struct tool *tool);
 
-/* Watch standard output: tool_watch_reader() at the start of a program,
- * tool_end() at its end. The latter returns CODE, or EXIT_OUTPUT if output was
- * lost, unless the reader of a pipe went away. */
+/* Detect failures of standard output. Call tool_watch_reader() at the start of
+ * a program and tool_end() at its end. tool_end() returns CODE, or EXIT_OUTPUT
+ * if writing failed; a reader that closed its pipe is no failure. */
 void tool_watch_reader(void);
 int tool_end(int code);
 
-/* Returns the instruction sets that kernels may use. */
+/* Returns the instruction sets that kernels may use, a bit each. */
 unsigned tool_sets(const struct tool *tool);
 
 /* Prints "glint COMMAND: ..." and copies the message to the tool's cause. */
 void tool_error(const struct tool *tool, const char *format, ...);
 
-/* Do so and return an exit code: tool_usage() EXIT_USAGE,
- * or EXIT_INPUT if the option comes from a file; tool_fail() that of STATUS,
- * but for GLINT_E_CLOSED, a reader that went away, it prints nothing. */
+/* Print as tool_error() and return an exit code. tool_usage() returns
+ * EXIT_USAGE, or EXIT_INPUT if the option comes from a file. tool_fail()
+ * returns the code of STATUS; for GLINT_E_CLOSED, a reader that closed its
+ * pipe, it prints nothing. */
 int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);
 
-/* Prints that OPTION does not accept VALUE, and what it accepts. Returns the
- * code of tool_usage(). */
+/* Prints that OPTION does not accept VALUE, and which values it accepts.
+ * Returns the code of tool_usage(). */
 int tool_refuse(const struct tool *tool, const char *option, const char *value);
 
 /* ------------------------------------------------------------------ numbers */
 
-/* Read all of TEXT as a finite number, or as up to MAX numbers with commas.
- * They return how many they have read, 0 on failure. */
+/* Parse all of TEXT as one finite number, or as up to MAX numbers separated by
+ * commas. Return how many numbers were parsed, 0 on failure. */
 bool tool_number(const char *text, double *value);
 int tool_numbers(const char *text, double *values, int max);
 
-/* Reads all of TEXT as an integer within LOW .. HIGH. Returns false on
+/* Parses all of TEXT as an integer within LOW .. HIGH. Returns false on
  * failure. */
 bool tool_integer(const char *text, int low, int high, int *value);
 
-/* Reads TEXT, "WxH", sides of 1 .. GLINT_MAX_SIDE. Returns false on failure. */
+/* Parses TEXT, "WxH", with W and H from 1 to GLINT_MAX_SIDE. Returns false on
+ * failure. */
 bool tool_size(const char *text, int *width, int *height);
 
 /* Returns the index of TEXT in the NULL-terminated WORDS, or -1. */
 int tool_word(const char *text, const char *const *words);
 
-/* Returns the seconds since some moment, by a clock that does not jump. */
+/* Returns the seconds of a monotonic clock. */
 double tool_seconds(void);
 
 /* ------------------------------------------------------------------- output */
 
 /* Checks, before a lens is baked, whether a file can be created at PATH.
  * Returns EXIT_OK, or EXIT_OUTPUT after printing the reason. PATH may be a
- * pattern; it is not checked if its folders have the number. */
+ * pattern of numbered files; it is not checked if the number is in the name of
+ * a folder. */
 int tool_check_output(const struct tool *tool, const char *path);
 
-/* Checks that PATH has the ENDING of WHAT is written there, or none, as "-" or
- * /dev/stdout. Returns EXIT_OK, or the code of tool_usage(). */
+/* Checks that PATH has the extension ENDING of WHAT, the kind of file written,
+ * or no extension, as "-" or /dev/stdout. Returns EXIT_OK, or the code of
+ * tool_usage(). */
 int tool_check_ending(struct tool *tool, const char *path, const char *ending,
                       const char *what);
 
-/* Write DATA, or the TEXT of a FILE of glint_memory_file_open(), NULL without
- * memory, to the file PATH. The latter closes FILE and frees TEXT. They return
- * an exit code. */
+/* Write the file PATH and return an exit code. tool_save() writes DATA.
+ * tool_save_text() closes FILE, opened by glint_memory_file_open() (NULL: no
+ * memory), writes its TEXT and frees it. */
 int tool_save(const struct tool *tool, const char *path,
               enum glint_output_kind kind, const void *data, size_t bytes);
 int tool_save_text(const struct tool *tool, const char *path, FILE *file,
@@ -114,32 +118,32 @@ int tool_save_text(const struct tool *tool, const char *path, FILE *file,
 
 /* ----------------------------------------------------------------- progress */
 
-/* Progress as a bar on a terminal's standard error, elsewhere as a line every
- * ten seconds; work of more than twenty says so as soon as any is done.
- * PROGRESS below is such a struct, and DONE is 0 .. 1. */
+/* Progress on standard error: a bar on a terminal, else a line every ten
+ * seconds. For work of more than 20 s an estimate is printed first. PROGRESS
+ * below is a struct tool_progress, and DONE is 0 .. 1. */
 struct tool_progress {
     const char *what;
-    const char *less;    /* how to make it faster, printed if it takes minutes;
-                            NULL: nothing */
-    const char *besides; /* what the estimate does not include, printed
-                            likewise; NULL: nothing */
+    const char *less;    /* option that shortens the work, printed if it takes
+                            minutes, or NULL */
+    const char *besides; /* work that the estimate does not include, printed
+                            with it, or NULL */
     double from, share;  /* see tool_progress_part() */
     bool shown, is_terminal;
-    bool told;             /* the estimate was printed, or the work is short */
-    double (*clock)(void); /* seconds; tool_seconds(), but in unit tests */
+    bool told;             /* the estimate was printed, or is below 20 s */
+    double (*clock)(void); /* seconds; tool_seconds() except in unit tests */
     double started, last;
-    double most; /* shown: more work than was thought takes nothing back */
+    double most; /* max progress so far: the bar never moves back */
 };
 
 void tool_progress_start(struct tool_progress *p, const struct tool *tool,
                          const char *what);
-/* DONE is from now on of the part of the work that begins at FROM and is
- * SHARE of it; at first of all: 0 and 1. */
+/* Maps DONE of later calls to FROM + SHARE * DONE of the whole work. The
+ * initial FROM and SHARE are 0 and 1. */
 void tool_progress_part(struct tool_progress *p, double from, double share);
 void tool_progress_show(void *progress, double done);
 void tool_progress_end(struct tool_progress *p);
 
-/* The commands. ARGV[0] is the command's name. They return exit codes. */
+/* The commands. ARGV[0] is the name of the command. They return exit codes. */
 int cmd_info(int argc, char **argv);
 int cmd_trace(int argc, char **argv);
 int cmd_render(int argc, char **argv);

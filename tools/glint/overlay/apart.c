@@ -39,15 +39,15 @@ void apart_line(struct apart *files, const struct drawing_line *line)
     apart_write(files, "--save-lights", o->save_lights);
 }
 
-/* Returns whether writing OUTPUT would lose INPUT. A pattern is not a file, so
- * that its text has to do. */
+/* Returns whether writing OUTPUT would overwrite INPUT. Patterns are not files
+ * and are compared as text. */
 static bool is_lost(const char *input, const char *output)
 {
     return glint_target_is_input(input, output) ||
            (strchr(input, '%') && glint_target_is_same(input, output));
 }
 
-/* Returns whether A and B are written to one place; "-" is standard output. */
+/* Returns whether A and B are the same output; "-" is standard output. */
 static bool is_shared(const char *a, const char *b)
 {
     if (strcmp(a, "-") == 0)

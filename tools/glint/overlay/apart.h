@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * apart.h - the files of a command line, of which none that is written may be
- * one that is read, or another that is written.
+ * apart.h - checks that no output file of a command line is also an input, or
+ * another output.
  *
  *     struct apart files = {.n_read = 0};
  *     apart_line(&files, &drawing.line);      what its options name
@@ -9,8 +9,7 @@
  *     apart_write(&files, "-o", "out.png");
  *     code = apart_check(&tool, &files);
  *
- * Patterns of sequences are compared as they are spelled.
- */
+ * Patterns of numbered files are compared as text. */
 #ifndef GLINT_TOOLS_OVERLAY_APART_H
 #define GLINT_TOOLS_OVERLAY_APART_H
 
@@ -20,22 +19,22 @@ enum { APART_FILES = 16 };
 
 struct apart {
     struct apart_file {
-        const char *option; /* with dashes; NULL: the input */
+        const char *option; /* name with dashes, or NULL for the input */
         const char *path;
     } read[APART_FILES], written[APART_FILES];
     int n_read, n_written;
 };
 
-/* Adds PATH, which OPTION names (NULL: the input), to the files that are read
- * or written, APART_FILES of each at most. Does nothing if it is NULL. */
+/* Add PATH, the value of OPTION (NULL: the input), to the files that are read
+ * or written, at most APART_FILES of each. Do nothing if PATH is NULL. */
 void apart_read(struct apart *files, const char *option, const char *path);
 void apart_write(struct apart *files, const char *option, const char *path);
 
-/* Adds the files that DRAWING's options name. */
+/* Adds the files that the options of LINE name. */
 void apart_line(struct apart *files, const struct drawing_line *line);
 
-/* Refuses a file that is written over one that is read, which would be lost, or
- * over another that is written. Returns an exit code. */
+/* Rejects an output that is also an input, which would be overwritten, or also
+ * another output. Returns an exit code. */
 int apart_check(const struct tool *tool, const struct apart *files);
 
 #endif

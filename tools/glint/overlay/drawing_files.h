@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is opened from a drawing_line: lens and scene, key frames, lists and
- * masks of lamps, and the file that lamps are saved to.
- */
+ * The files of a drawing_line, opened: lens, scene, key frames, list of lamps,
+ * mask that hides lamps, and the output file of lamps. */
 #ifndef GLINT_TOOLS_OVERLAY_DRAWING_FILES_H
 #define GLINT_TOOLS_OVERLAY_DRAWING_FILES_H
 
@@ -15,20 +14,21 @@
 #include "overlay/over_scene.h"
 
 struct drawing_files {
-    bool has_lens; /* false: there is only a scene */
+    bool has_lens; /* false: --lens none, only a scene is drawn */
     struct opened_lens lens;
-    bool is_listed;        /* no lamp is found: a list or none has all */
-    struct lamp_list list; /* lamps of --lights, by pixel and of key frames */
+    bool is_listed;        /* lamps are not searched for, because of --lights */
+    struct lamp_list list; /* lamps of --lights, --light-at and key frames */
     struct keys keys;
-    char keys_line[224];        /* "FILE:LINE" of the requested f-number */
-    struct occlusion occlusion; /* what hides lamps */
+    char keys_line[224];        /* "FILE:LINE" of the key that sets the
+                                   f-number */
+    struct occlusion occlusion; /* mask that hides lamps */
     struct over_scene scene;    /* objects over the picture */
     struct lamp_save save;
 };
 
-/* Opens what LINE names; bakes the lens if need be. FILES is zeros, but for
- * scene.set_option and its context, which serve lines of control.
- * Returns an exit code. */
+/* Opens the files of LINE, and bakes the lens if needed. FILES must be zeros
+ * except scene.set_option and its context, which control lines call. Returns an
+ * exit code. */
 int drawing_files_open(const struct tool *tool, struct drawing_line *line,
                        struct drawing_files *files);
 

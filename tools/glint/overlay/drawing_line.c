@@ -35,7 +35,7 @@ bool drawing_line_add_light(struct drawing_line *line, double x, double y,
            lamp_list_add(&line->at, &row) == GLINT_OK;
 }
 
-/* The same of --light-at. */
+/* Adds the lamp TEXT of --light-at as add_light() does. */
 static bool add_light_at(struct drawing_line *line, const char *text)
 {
     double v[3];
@@ -49,7 +49,7 @@ static bool is_text(const char *text, const char *word)
     return text && strcmp(text, word) == 0;
 }
 
-/* Sets what follows from the options. */
+/* Sets the members of LINE that are derived from options. */
 static void resolve(struct drawing_line *line)
 {
     struct glint_options *const o = &line->settings.options;

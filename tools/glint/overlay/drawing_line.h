@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a command line, a style or a host's parameters say of flares to draw.
- * Nothing here is opened: strings are those of the line and must outlive it.
+ * The options of the flare, from a command line, a style or the parameters of a
+ * host. No file is opened here. Strings are not copied and must outlive the
+ * line.
  *
  *     drawing_line_defaults(&line);
  *     drawing_line_option(&tool, &line, option, optarg);   each option
@@ -17,42 +18,44 @@
 struct drawing_line {
     struct settings settings;
     const char *style; /* name of the chosen style, or NULL */
-    /* Key frames in place of those of a file, whose name --keys is then in
-     * messages; NULL: none. */
+    /* Text of key frames to use instead of a file, or NULL. Messages then name
+     * it by the value of --keys. */
     const char *keys_text;
-    struct scene_dials scene_dials; /* by options; without size and camera */
-    struct lamp_list at;            /* lamps given by pixel */
+    struct scene_dials scene_dials; /* set by options, except size and camera */
+    struct lamp_list at;            /* lamps given by pixel position */
     int n_hand;                     /* lamps given by angle */
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
-    /* Bytes reserved for frames, which take no more; 0: as many as they
-     * need. */
+    /* max bytes of memory for frames, allocated at the start; 0: allocated as
+     * needed */
     size_t reserve_bytes;
     bool show_lights, show_time_line;
-    bool is_unsearched; /* no lamps are found: --lights none */
-    bool is_still; /* pictures are independent, and there is time for them */
+    bool is_unsearched; /* --lights none: lamps are not searched for */
+    bool is_still; /* pictures are independent, and quality matters more than
+                      time */
     bool is_live;  /* does not wait for a FIFO of poses or control */
     int dial;      /* code of the option that set the brightness, --strength or
-                      --exposure; 0: none */
+                      --exposure; 0: neither */
 };
 
 void drawing_line_defaults(struct drawing_line *line);
 
-/* Sets the engine's option of code OPTION. Returns -1, or -2 if it is none of
- * these, or an exit code after printing what is wrong. VALUE must outlive
- * LINE. */
+/* Sets the engine option with getopt code OPTION to VALUE, which must outlive
+ * LINE. Returns -1, or -2 if OPTION is not an engine option, or an exit code
+ * after printing the error. */
 int drawing_line_option(const struct tool *tool, struct drawing_line *line,
                         int option, const char *value);
 
-/* Set the engine's option NAME, which exists, to a text as
+/* Set the engine option NAME, which must exist, to a text as
  * drawing_line_option() does, or to a number as glint_options_set() does.
- * Return -1 or an exit code after printing what the option accepts. */
+ * Return -1, or an exit code after printing which values the option accepts. */
 int drawing_line_set_text(const struct tool *tool, struct drawing_line *line,
                           const char *name, const char *text);
 int drawing_line_set_number(const struct tool *tool, struct drawing_line *line,
                             const char *name, double value);
 
-/* Adds a lamp at a pixel of all frames, EV stops over white, as --light-at.
- * Returns false without memory, or if it is one too many. */
+/* Adds a lamp at pixel (X, Y) to all frames, EV stops above white, as
+ * --light-at does. Returns false if there is no memory or there are too many
+ * lamps. */
 bool drawing_line_add_light(struct drawing_line *line, double x, double y,
                             double ev);
 
@@ -60,15 +63,15 @@ bool drawing_line_add_light(struct drawing_line *line, double x, double y,
 int drawing_line_style(const struct tool *tool, struct drawing_line *line,
                        const char *name);
 
-/* Sets the style that a command line has, wherever it stands, so that all other
- * options replace what it sets. The arguments are those of tool_value_of().
+/* Applies the style of a command line before all other options, wherever it
+ * stands, so that they override it. The arguments are those of tool_value_of().
  * Returns -1 or an exit code. */
 int drawing_line_style_of(const struct tool *tool, struct drawing_line *line,
                           int argc, char **argv, const char *shorts,
                           const struct option *options);
 
-/* Ends the options of a file: those of the command line may choose again
- * between --strength and --exposure. */
+/* Ends the options of a file: the command line may again set either --strength
+ * or --exposure. */
 void drawing_line_end(struct drawing_line *line);
 
 #endif

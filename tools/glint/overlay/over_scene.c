@@ -218,7 +218,7 @@ static void set_axes(const int32_t q_q30[4], int32_t axis_q30[3][3])
     }
 }
 
-/* The camera stays where lines of control have put it. */
+/* Moves the camera to TO, unless control lines have moved it. */
 static enum glint_status move_camera(struct over_scene *over,
                                      struct glint_scene *scene,
                                      const struct scene_moved *to)
@@ -262,7 +262,7 @@ static void move_all(void *ctx, struct glint_scene *scene)
     steer_apply(&over->steer, scene);
 }
 
-/* Puts all objects where they were before the first pose. */
+/* Resets all objects to their poses before the first line of the pose file. */
 static void move_back(struct over_scene *over)
 {
     const struct glint_scene_model *const m = &over->baked.model;
@@ -282,7 +282,7 @@ static void move_back(struct over_scene *over)
         over->poses.moved[i].is_moved = false;
 }
 
-/* Takes the poses up to FRAME. */
+/* Applies the poses up to FRAME. */
 static void take_poses(struct over_scene *over, int frame)
 {
     const struct pose *pose;
@@ -340,7 +340,7 @@ int over_scene_size(struct over_scene *over, const struct scene_dials *dials)
 }
 
 /* Sets the dials to those of LEVEL. */
-static enum glint_status turn(struct over_scene *over, int level)
+static enum glint_status set_quality_level(struct over_scene *over, int level)
 {
     const struct scene_dials dials = scene_budget_dials(&over->budget, level);
 
@@ -354,7 +354,7 @@ enum glint_status over_scene_coarsen(struct over_scene *over, double quality)
 
     return over->is_sized && !(over->budget_ms > 0) &&
                    level != over->budget.level
-               ? turn(over, level)
+               ? set_quality_level(over, level)
                : GLINT_OK;
 }
 
@@ -373,7 +373,7 @@ enum glint_status over_scene_draw(struct over_scene *over,
         take_poses(over, over->shown);
     status = over->budget_ms > 0 && scene_budget_follow(&over->budget, over->ms,
                                                         over->budget_ms)
-                 ? turn(over, over->budget.level)
+                 ? set_quality_level(over, over->budget.level)
                  : GLINT_OK;
     if (status == GLINT_OK)
         status = scene_frame_try(&over->frame, image);

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * over_scene.h - a scene over the pictures of a camera, and what it does to the
- * lamps of the flare.
+ * over_scene.h - draws a scene over the pictures of a camera; its objects hide
+ * lamps, its lights and highlights add lamps to the flare.
  *
  *     over_scene_open(&over, tool);                   scene and poses
  *     over_scene_size(&over, &dials);                 when the size changes
  *     over_scene_draw(&over, &image, frame);          each picture
  *     over_scene_close(&over);
  *
- * Frames of a video rise. Moving objects bakes nothing.
- */
+ * Frame numbers of a video must rise. Moving objects needs no baking. */
 #ifndef GLINT_TOOLS_OVERLAY_OVER_SCENE_H
 #define GLINT_TOOLS_OVERLAY_OVER_SCENE_H
 
@@ -24,18 +23,18 @@
 #include "scenes/scene_frame.h"
 #include "control/steer.h"
 
-/* Where an object was moved to. */
+/* The pose that an object was moved to. */
 struct scene_moved {
     bool is_moved;
     int32_t at[3], turn_q30[4];
 };
 
-/* The poses of a file, and where they have moved objects. */
+/* The poses of a file, and the poses that objects have by them. */
 struct scene_poses {
     struct poses file;
-    struct scene_moved *moved; /* objects, lights, and the camera */
-    int frame;                 /* of the poses that are shown */
-    bool has_warned;           /* of lines that were skipped */
+    struct scene_moved *moved; /* [objects, then lights, then the camera] */
+    int frame;                 /* frame whose poses are shown */
+    bool has_warned;           /* a warning on skipped lines was printed */
 };
 
 struct over_scene {
@@ -43,17 +42,17 @@ struct over_scene {
     const char *file;         /* NULL: there is no scene */
     const char *pose_file;    /* or NULL */
     const char *control_file; /* or NULL; "-": standard input */
-    bool is_live;             /* a FIFO of poses or control is not waited for */
-    /* Sets the option NAME of the flare, for lines of control;
-     * GLINT_E_ARGUMENT: ERROR states why it stays as it was. NULL: there is no
-     * flare. */
+    bool is_live;             /* never wait for a FIFO of poses or control */
+    /* Sets the option NAME of the flare for control lines. Returns
+     * GLINT_E_ARGUMENT, with the reason in ERROR, if it cannot. NULL if there
+     * is no flare. */
     enum glint_status (*set_option)(void *ctx, const char *name, double value,
                                     struct glint_error *error);
     void *set_ctx;
 
-    double budget_ms;   /* what drawing may take; 0: as long as it does */
-    int32_t elapsed_us; /* from the last picture to the next; 0: it is one by
-                           itself */
+    double budget_ms;   /* time budget of a frame; 0: none */
+    int32_t elapsed_us; /* from the last picture to the next; 0: pictures are
+                           independent */
 
     /* Private. */
     const struct tool *tool;
@@ -61,8 +60,8 @@ struct over_scene {
     struct baked_scene baked;
     struct scene_poses poses;
     struct controls control;
-    struct playback playback;   /* of poses and recorded motion */
-    int shown;                  /* the frame of them that is drawn */
+    struct playback playback;   /* current frame of poses and recorded motion */
+    int shown;                  /* the frame of playback that is drawn */
     struct glint_motion motion; /* of the scene, if it has one */
     struct steer steer;
     struct glints glints;
@@ -71,31 +70,31 @@ struct over_scene {
 
     /* Of the last frame. */
     double ms;
-    int lights;       /* of the scene, that flare in the lens */
-    int lamps_hidden; /* lamps and lights of which nothing is seen */
+    int lights;       /* lights of the scene that flare in the lens */
+    int lamps_hidden; /* lamps and lights that are completely hidden */
 };
 
 /* Opens scene, poses and lines of control, if there are any. Returns an exit
  * code, after printing the reason on failure. */
 int over_scene_open(struct over_scene *over, const struct tool *tool);
 
-/* Returns whether the camera of the scene has the field of the lens. */
+/* Returns whether the scene's camera has the field of view of the lens. */
 bool over_scene_needs_lens(const struct over_scene *over);
 
-/* Returns whether the scene has lights, but shows none to lenses. */
+/* Returns whether the scene has lights, but they do not flare in lenses. */
 bool over_scene_keeps_lights(const struct over_scene *over);
 
-/* Prepares OVER for pictures of the size of DIALS, unless there is no scene.
- * Returns an exit code. */
+/* Prepares OVER for pictures of the size in DIALS. Does nothing if there is no
+ * scene. Returns an exit code. */
 int over_scene_size(struct over_scene *over, const struct scene_dials *dials);
 
-/* Draws the following pictures with the requested dials, but no finer than
- * QUALITY, as of --quality; 1: as requested. A budget changes them
- * automatically. GLINT_E_MEMORY. */
+/* Limits the quality of the following pictures to QUALITY, as of --quality; 1:
+ * as requested. A time budget sets it automatically. Returns GLINT_E_MEMORY on
+ * failure. */
 enum glint_status over_scene_coarsen(struct over_scene *over, double quality);
 
-/* Obeys the lines of control up to FRAME. Drawing it does so, but the lens has
- * to be zoomed before lamps are placed. */
+/* Applies the control lines up to FRAME. over_scene_draw() does so, too; call
+ * this earlier if lines may zoom the lens, before lamps are positioned. */
 void over_scene_obey(struct over_scene *over, int frame);
 
 /* Draws the scene of frame FRAME onto IMAGE. */
@@ -107,36 +106,36 @@ enum glint_status over_scene_draw(struct over_scene *over,
 void over_scene_mark(const struct over_scene *over,
                      const struct glint_image *image);
 
-/* The scene alone, for pictures that are not a struct glint_image. */
+/* The scene as a separate layer, for pictures that are not a struct
+ * glint_image. */
 struct over_scene_layer {
     float *rgb;         /* [height][width][3], linear light, 1 = white */
-    uint16_t *cover_q8; /* [height][width], what is hidden, 0 .. 256 */
+    uint16_t *cover_q8; /* [height][width], coverage, 0 .. 256 */
 };
 
 /* Makes LAYER of the scene drawn last; over_scene_layer_free() frees it.
- * GLINT_E_MEMORY. */
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status over_scene_layer(struct over_scene *over,
                                    struct over_scene_layer *layer);
 void over_scene_layer_free(struct over_scene_layer *layer);
 
-/* Most lamps that a scene gives. */
+/* Max lamps from a scene: lights and highlights. */
 enum { OVER_SCENE_LAMPS = GLINT_SCENE_MAX_LIGHTS + GLINTS_MAX };
 
-/* Sets LAMPS, [GLINTS_MAX], to the highlights of the scene drawn last, as a
- * lens of FOCAL_MM sees them; the picture shows them, as it does lamps.
- * FOLLOWS: they are tracked from picture to picture. Returns how many there
- * are. */
+/* Sets LAMPS, [GLINTS_MAX], to the highlights of the scene drawn last, as seen
+ * by a lens of FOCAL_MM. If FOLLOWS, they are tracked from picture to picture.
+ * Returns their number. */
 int over_scene_glints(struct over_scene *over, bool follows,
                       const struct glint_view *view, double focal_mm,
                       struct glint_engine_lamp *lamps);
 
-/* Returns the memory that drawing takes. */
+/* Returns the bytes of memory for drawing. */
 size_t over_scene_bytes(const struct over_scene *over);
 
-/* Writes a few words on the frame drawn last. */
+/* Writes a short text about the frame drawn last. */
 void over_scene_say(const struct over_scene *over, FILE *to);
 
-/* Writes "scene": an object on the frame drawn last. */
+/* Writes the JSON member "scene", about the frame drawn last. */
 void over_scene_json(struct json_writer *json, const struct over_scene *over);
 
 void over_scene_close(struct over_scene *over);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The parts of glint overlay: its options and result (cmd_overlay.c), and the
- * ways of pictures, numbered pictures and videos through it.
- */
+ * glint overlay: its options and result (cmd_overlay.c), and how it draws
+ * pictures, numbered pictures and videos. */
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_H
 
@@ -12,47 +11,49 @@
 
 struct overlay_y4m;
 
-/* Figures over all frames. */
-/* The range of N values. */
+/* Statistics over all frames. */
+/* The range of N values, one per frame. */
 struct overlay_span {
     double min, max;
     int n;
 };
 
 struct overlay_figures {
-    /* Of the frame of which most lights were merged, but with the most lights,
-     * lights out of the model's range, and dropped bundles and cells of all
-     * frames. */
+    /* Report of the frame in which most lights were merged, but with the maxima
+     * over all frames of lights, lights outside the model's range, dropped
+     * bundles and dropped cells. */
     struct glint_engine_report worst;
     int most_lights;
-    struct overlay_span strength, exposure, gain; /* by frame */
-    int n_reused;             /* frames drawn with the edges of the last */
+    struct overlay_span strength, exposure, gain; /* of the frames */
+    int n_reused;             /* frames drawn with the edges of the previous
+                                 frame */
     double find_ms, flare_ms; /* ms, sums */
-    double peak, mean_sum;    /* light of the flare, 1 = white: the brightest of
-                                 all frames; the sum of their means */
+    double peak, mean_sum;    /* light of the flare, 1 = white: max over all
+                                 frames; sum of the frames' means */
     size_t peak_bytes;
-    double started, reported; /* s, of the start and the last progress */
+    double started, reported; /* s: times of the start and of the last
+                                 progress */
 };
 
 struct overlay {
     struct drawing drawing;
-    /* Memory for a video that is not plain 8 bits; NULL: none. */
+    /* Memory for a video that is not plain 8 bits, or NULL. */
     struct overlay_y4m *y4m;
     const char *input, *output;
     int start_number;
     struct zoom_clip zoom;
-    /* Frames of a video that are drawn, from 0, and how many before these are
-     * looked at. */
+    /* Frames of a video to draw, from 0, and the number of frames before FIRST
+     * that are only searched for lamps. */
     int first, last, warm_up;
-    int32_t elapsed_us; /* microseconds from frame to frame; 0: still
+    int32_t elapsed_us; /* microseconds from frame to frame; 0: independent
                            pictures */
     int range, matrix;  /* 0: auto */
-    /* frames without headers; WIDTH 0: none */
+    /* format of frames without headers; WIDTH 0: the input has headers */
     struct {
         int format, width, height, stride;
     } raw;
     int transfer; /* enum glint_transfer_curve; -1: auto */
-    int quality;  /* quality of JPEG and WebP; 0: the input's */
+    int quality;  /* quality of JPEG and WebP; 0: as the input */
     bool is_video;
     bool lists_shots; /* Prints the frames from cut to cut, draws nothing. */
     bool is_cut;      /* Lamps and exposure restarted in the last frame. */
@@ -63,18 +64,18 @@ struct overlay {
     struct overlay_figures figures;
 };
 
-/* Puts the flare on IMAGE, the next frame, and adds up its figures. Returns an
- * exit code, as all functions here that return int. */
+/* Draws the flare on IMAGE, the next frame, and adds to the statistics. Returns
+ * an exit code, as all functions here that return int. */
 int overlay_draw(struct tool *tool, struct overlay *o,
                  const struct glint_image *image);
 
-/* Looks at IMAGE, a frame before the first that is drawn, so that lamps and the
- * exposure are followed. */
+/* Finds and tracks the lamps and exposure of IMAGE, a frame before the first
+ * frame that is drawn. */
 int overlay_look(struct tool *tool, struct overlay *o,
                  const struct glint_image *image);
 
-/* Does as overlay_draw() for frames that are not drawn in place: DRAW draws
- * them with CTX. */
+/* As overlay_draw(), for frames that are not drawn in place: calls DRAW with
+ * CTX to draw them. */
 typedef enum glint_status overlay_draw_fn(void *ctx, struct drawing *drawing,
                                           const struct glint_image *image,
                                           int32_t elapsed_us);
@@ -82,11 +83,12 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
                     const struct glint_image *image, overlay_draw_fn *draw,
                     void *ctx);
 
-/* Prints progress: over a line of a terminal, else a line every few seconds. */
+/* Prints progress: on a terminal it overwrites one line, else it prints a line
+ * every few seconds. */
 void overlay_progress(const struct tool *tool, struct overlay *o);
 
-/* Refuses a file that would be written over one that is read, or over another,
- * where the picture FROM becomes the picture TO. */
+/* Rejects outputs that would overwrite an input or another output, if picture
+ * FROM is drawn to TO. */
 int overlay_check_apart(const struct tool *tool, const struct overlay *o,
                         const char *from, const char *to);
 
@@ -104,13 +106,12 @@ int overlay_sequence(struct tool *tool, struct overlay *o);
 /* Returns whether NAME is a video, by its extension. */
 bool overlay_is_video(const char *name);
 
-/* Sets VIDEO to whether an animated GIF is to be read or written as frames.
- * Warns if one frame of many is taken, and refuses a GIF of one frame as a
- * video. */
+/* Sets VIDEO to whether an animated GIF is read or written as a video. Warns if
+ * only one of its frames is used, and rejects a GIF of one frame as a video. */
 int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video);
 
-/* Refuses, before there is work, a video that ffmpeg would have to read or
- * write and that is not installed. Returns an exit code. */
+/* Rejects early a video that needs ffmpeg if ffmpeg is not installed. Returns
+ * an exit code. */
 int overlay_video_check(const struct tool *tool, const struct overlay *o);
 
 /* Draws a video from o->input to o->output. */

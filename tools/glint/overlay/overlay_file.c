@@ -45,8 +45,8 @@ static int fail(const struct tool *tool, const struct overlay_file *f,
 
 /* ------------------------------------------------------------------ opening */
 
-/* Makes f->work, a copy of the input in floats to draw on, for an output that
- * has floats where the input has not. */
+/* Makes f->work, a float copy of the input to draw on, for an output with
+ * floats and an input without. */
 static enum glint_status deepen(struct overlay_file *f)
 {
     struct glint_samples *const from = &f->kept.samples;
@@ -188,8 +188,8 @@ static void add_grey(const struct glint_image *image,
     }
 }
 
-/* Draws on a picture without colour as on a grey one, which gets the luminance
- * of the flare. */
+/* Draws on a picture without colour as on a grey picture, to which the
+ * luminance of the flare is added. */
 static enum glint_status draw_grey(struct overlay_file *f,
                                    struct drawing *drawing, int32_t elapsed_us)
 {
@@ -212,7 +212,7 @@ static enum glint_status draw_grey(struct overlay_file *f,
     return status;
 }
 
-/* Leaves of the light RGB, N pixels, its luminance. */
+/* Replaces the light of the N pixels RGB by its luminance. */
 static void take_colour(float *rgb, size_t n)
 {
     for (; n > 0; n--, rgb += 3)

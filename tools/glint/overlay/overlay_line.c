@@ -8,10 +8,10 @@
 #include "overlay/drawing.h"
 
 /* Linear light, 1 = white, of code 2 of 255 in sRGB, whose slope near black is
- * 12.92. A darker flare cannot be seen. */
+ * 12.92. A darker flare is invisible. */
 static const double least_seen = 2 / 255.0 / 12.92;
-/* Linear light, 1 = white, at which a flare peaks with the option that is
- * suggested for one that cannot be seen. */
+/* Peak light of a flare, linear, 1 = white, with the option that is suggested
+ * if the flare is invisible. */
 static const double well_seen = 0.25;
 
 /* --------------------------------------------------------------- the light */
@@ -248,7 +248,7 @@ static void say_hidden(const struct drawing *drawing, int most, FILE *to)
             rest_of(drawing));
 }
 
-/* Prints the options that take the brightest candidates for lamps. */
+/* Prints the options that make the brightest candidates lamps. */
 static void say_candidates(const struct glint_engine *engine, FILE *to)
 {
     struct glint_spot next;

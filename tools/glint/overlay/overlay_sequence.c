@@ -35,8 +35,8 @@ static bool add(struct numbers *l, int number)
     return true;
 }
 
-/* Returns the number for which PATTERN gives FILE, a name in its folder, or -1
- * if none does. NAME is work memory. */
+/* Returns the number for which PATTERN yields the file name FILE, or -1 if
+ * there is none. NAME is scratch memory. */
 static int number_of(const char *file, const char *pattern, char *name)
 {
     const char *percent = strchr(pattern, '%');
@@ -136,8 +136,8 @@ static void say_missing(const struct tool *tool, const struct overlay *o,
 
 /* Draws picture number l->at[i]; the time since the one before follows from
  * their numbers. Returns an exit code. */
-static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
-               int i)
+static int draw_numbered(struct tool *tool, struct overlay *o,
+                         const struct numbers *l, int i)
 {
     const int64_t gap = i > 0 ? (int64_t)l->at[i] - l->at[i - 1] : 1;
     char from[NAME_BYTES], to[NAME_BYTES];
@@ -182,7 +182,7 @@ static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
     }
     say_missing(tool, o, l);
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
-        code = one(tool, o, l, i);
+        code = draw_numbered(tool, o, l, i);
     if (code == EXIT_OK)
         o->drawing.run.n_frames = l->n; /* without the missing ones */
     return code;

@@ -85,7 +85,8 @@ static ptrdiff_t read_child(void *ctx, void *dst, size_t bytes)
     return n;
 }
 
-/* Returns whether the output takes sound, tags and times of the whole input. */
+/* Returns whether the output can have the sound, tags and times of the whole
+ * input. */
 static bool takes_rest(const struct overlay *o)
 {
     return !glint_ends_in(o->output, ".gif") && o->last == INT_MAX;
@@ -296,7 +297,7 @@ static int frames(struct video *v)
 /* Prints the frames of each shot: from one in which lamps and exposure
  * restart to the next. In frames without lamps they do in each; those are one
  * shot, with what comes after them. */
-static int shots(struct video *v)
+static int print_shots(struct video *v)
 {
     const int *const at = &v->o->drawing.run.n_frames;
     const struct glint_image *image;
@@ -397,7 +398,7 @@ static int run(struct video *v)
 
     v->o->elapsed_us = frame_us(v);
     if (code == EXIT_OK && v->o->lists_shots) {
-        code = shots(v);
+        code = print_shots(v);
         return code == EXIT_OK && v->reads ? end_reader(v) : code;
     }
     if (code == EXIT_OK)
@@ -412,7 +413,7 @@ static int run(struct video *v)
     return code == EXIT_OK ? end_writer(v) : code;
 }
 
-/* Closes all that is still open and removes unfinished files. */
+/* Closes all open files and children and removes unfinished files. */
 static void close_all(struct video *v)
 {
     child_kill(&v->reader);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shows where lights are: a cross, a box that reaches twice their RMS radius
- * and four lines' thickness from the middle, and their number.
- */
+ * Marks lights on pictures: a cross, a box whose half-width is twice the RMS
+ * radius plus four line widths, and the light's number. */
 #ifndef GLINT_TOOLS_OVERLAY_SHOW_LIGHTS_H
 #define GLINT_TOOLS_OVERLAY_SHOW_LIGHTS_H
 
@@ -11,19 +10,18 @@
 #include "glint/image.h"
 #include "glint/lamp_tracker.h"
 
-/* Draws the mark of TRACK on IMAGE, of 8 bits and any format: green when
- * steady, yellow rising, red fading, blue after it left the picture. */
+/* Draws the mark of TRACK on IMAGE, of any 8-bit format: green if steady,
+ * yellow if rising, red if fading, blue after it left the picture. */
 void show_light(const struct glint_image *image,
                 const struct glint_lamp_track *track);
 
-/* Draws the mark of TRACK as show_light() does, and POWER under its number, in
- * stops over that of a white pixel. */
+/* Draws the mark of TRACK as show_light() does, and below its number POWER in
+ * stops above the power of a white pixel. */
 void show_light_of(const struct glint_image *image,
                    const struct glint_lamp_track *track, double power);
 
 /* Writes a legend into the lower left corner: the meaning of numbers and, if
- * lamps are FOLLOWED, of colours. Leaves it out where the picture has no
- * room. */
+ * lamps are FOLLOWED, of colours. Draws nothing if the picture is too small. */
 void show_legend(const struct glint_image *image, bool followed);
 
 #endif

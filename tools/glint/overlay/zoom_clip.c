@@ -12,7 +12,7 @@
 
 enum { ROW = 40, MOST_FRAMES = 10000000 };
 
-/* The longest focal length that key frames take. */
+/* Max focal length that key frames accept, mm. */
 #define MOST_MM 1e5
 
 static const char heading[] = "frame,zoom\n";

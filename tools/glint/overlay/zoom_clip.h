@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * zoom_clip.h - "--zoom A-B": a zoom over a whole video, evenly.
+ * zoom_clip.h - "--zoom A-B": a smooth zoom over a whole video.
  *
  *     zoom_clip_take(&clip, "60-140")               an option
  *     zoom_clip_open(tool, &clip, input, &line);
  *
- * Of focal lengths each frame's is the same number of times the one before's,
- * as by a zoom ring that turns evenly. They become key frames. */
+ * If A and B are focal lengths, their ratio from frame to frame is constant, as
+ * by a zoom ring that turns evenly. The zoom becomes key frames. */
 #ifndef GLINT_TOOLS_OVERLAY_ZOOM_CLIP_H
 #define GLINT_TOOLS_OVERLAY_ZOOM_CLIP_H
 
@@ -14,17 +14,17 @@
 
 struct zoom_clip {
     bool is_asked;
-    double from, to; /* mm, or 0 to 1 along the way, both */
+    double from, to; /* both in mm, or both 0 to 1, as --zoom */
     char label[80];  /* "--zoom A-B", for errors */
     char *keys;      /* text of the key frames */
 };
 
-/* Takes TEXT, "A-B"; returns false for other texts. */
+/* Parses TEXT, "A-B". Returns false if it is malformed. */
 bool zoom_clip_take(struct zoom_clip *clip, const char *text);
 
-/* Gives LINE, which is not open yet, key frames over all frames of the
- * video INPUT, if that was requested; NULL: it is no video. Returns an exit
- * code. */
+/* If --zoom A-B was given, sets key frames in LINE over all frames of the video
+ * INPUT; call it before the line is opened. INPUT is NULL if the input is not a
+ * video, which is then an error. Returns an exit code. */
 int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
                    struct drawing_line *line);
 

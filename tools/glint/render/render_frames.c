@@ -17,7 +17,7 @@
 #include "render/render_scene.h"
 #include "video/y4m.h"
 
-/* As arenas of the run time request. */
+/* Alignment of the run time's arenas, bytes. */
 #define ALIGNMENT 64
 
 struct frames {
@@ -58,7 +58,7 @@ static int check(const struct tool *tool, struct frames *f)
     return EXIT_OK;
 }
 
-/* The tables that put light onto frames of a video. */
+/* Opens the output video and the tables that convert light to its frames. */
 static enum glint_status open_video(struct frames *f, struct glint_error *error)
 {
     const struct render_scene *r = f->r;

@@ -58,7 +58,7 @@ enum {
     OPT_EXPOSURE_OF
 };
 
-/* Takes "A-B". */
+/* Parses "A-B", the first and last frame. */
 static bool take_frames(struct render_scene *r, const char *text)
 {
     const char *const dash = strchr(text, '-');
@@ -219,8 +219,8 @@ static void say_frame(const struct tool *tool, const struct scene_frame *frame,
                ms);
 }
 
-/* Says, of a scene that is drawn over black, that shadows on catchers are not
- * to be seen. */
+/* Prints a note that shadows on catchers are invisible, as the scene is drawn
+ * over black. */
 static void say_catchers(const struct tool *tool,
                          const struct glint_scene_model *model)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint render of scenes, which takes other options than that of lenses. */
+ * glint render for scenes. Its options differ from glint render for lenses. */
 #ifndef GLINT_TOOLS_COMMAND_RENDER_SCENE_H
 #define GLINT_TOOLS_COMMAND_RENDER_SCENE_H
 
@@ -14,10 +14,10 @@ struct render_scene {
     int width, height;
     int samples; /* 0: the default */
     double exposure_ev;
-    bool linear;     /* OUT takes floats */
-    bool is_frames;  /* true: poses, frames or a lens are given, so that
-                        render_frames() draws */
-    bool is_lit;     /* there is an option of the flare */
+    bool linear;     /* the format of OUTPUT has floats */
+    bool is_frames;  /* poses, frames or a lens are given: render_frames()
+                        draws */
+    bool is_lit;     /* an option of the flare was given */
     bool is_video;   /* --frames FIRST-LAST */
     int first, last; /* frames */
     double fps;
@@ -31,8 +31,8 @@ bool render_has_scene(int argc, char **argv);
 /* As the commands of options/tool.h. */
 int cmd_render_scene(int argc, char **argv);
 
-/* Draws the frames FIRST to LAST of the scene PATH, with the flare of the lens
- * if there is one, into r->output. Returns an exit code. */
+/* Draws frames r->first to r->last of the scene PATH to r->output, with the
+ * flare of the lens if there is one. Returns an exit code. */
 int render_frames(struct tool *tool, struct render_scene *r, const char *path);
 
 #endif

@@ -1,38 +1,39 @@
 /* SPDX-License-Identifier: MIT
  *
- * What there was to do for a scene. */
+ * Statistics of a scene's frame: cost per object, coverage, highlights. */
 #ifndef GLINT_TOOLS_SCENES_ACCOUNT_H
 #define GLINT_TOOLS_SCENES_ACCOUNT_H
 
 #include "options/json_writer.h"
 #include "scenes/scene_frame.h"
 
-/* The name of each item. */
+/* Name of each kind of work that is counted. */
 extern const char *const scene_item_name[GLINT_SCENE_ITEMS];
 
-/* What became of the frame that was drawn last. */
+/* Statistics of the frame drawn last. */
 struct scene_account {
     struct glint_scene_part *objects; /* [n_objects], malloc'ed */
     struct glint_scene_part all;
-    int16_t *seen; /* [height][width]: the object that is seen, or -1 */
+    int16_t *seen; /* [height][width]: index of the visible object, or -1 */
     struct glint_scene_layered layer[GLINT_KINDS];
 };
 
-/* Sets ACCOUNT; scene_account_free() frees it. GLINT_E_MEMORY. */
+/* Fills ACCOUNT; scene_account_free() frees it. Returns GLINT_E_MEMORY on
+ * failure. */
 enum glint_status scene_account_make(struct scene_account *account,
                                      const struct scene_frame *frame);
 void scene_account_free(struct scene_account *account);
 
-/* Returns how many pixels objects hide in the frame that was drawn last, in
- * all. */
+/* Returns the number of pixels that objects cover in the frame drawn last. */
 int scene_covered_px(const struct scene_frame *frame);
 
-/* Writes members of a JSON object on the frame that was drawn last, but on its
- * lights. BYTES are those of the baked scene. */
+/* Writes members of a JSON object about the frame drawn last, without its
+ * lights. BYTES is the size of the baked scene. */
 void scene_account_json(struct json_writer *json,
                         const struct scene_frame *frame, size_t bytes);
 
-/* Writes "highlights": a list of those of the frame that was drawn last. */
+/* Writes the JSON member "highlights": a list of the highlights of the frame
+ * drawn last. */
 void scene_highlights_json(struct json_writer *json,
                            const struct scene_frame *frame);
 

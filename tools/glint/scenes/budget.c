@@ -99,12 +99,12 @@ static int next_level(const struct scene_budget *budget, int by)
 bool scene_budget_follow(struct scene_budget *budget, double ms,
                          double limit_ms)
 {
-    /* One slow frame is that of another program. */
+    /* A single slow frame is ignored: another program may have caused it. */
     const double low_ms = fmin(ms, budget->last_ms);
     const int before = budget->level;
 
     budget->last_ms = ms;
-    /* The first frame of a level takes memory. */
+    /* The first frame of a level is not timed, as it allocates memory. */
     if (!(ms > 0) || ++budget->n_frames < 2)
         return false;
     if (low_ms > limit_ms) {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Baked environments: from pictures and texts, and from files.
- */
+ * Opens environments: bakes a picture or text, or reads a baked file. */
 #ifndef GLINT_TOOLS_SCENES_ENVIRONMENT_FILE_H
 #define GLINT_TOOLS_SCENES_ENVIRONMENT_FILE_H
 
@@ -12,19 +11,21 @@ struct environment_file {
     void *data; /* malloc'ed; ENVIRONMENT points into it */
     size_t bytes;
     struct glint_environment environment;
-    struct glint_environment_report report; /* of what was baked now */
+    struct glint_environment_report report; /* of the bake, if is_baked_now */
     bool is_baked_now;
 };
 
-/* Returns whether ARGUMENT is a picture of light (.exr, .hdr, .pfm, .dds), the
- * text of an environment, or a baked one by how the file begins. */
+/* Return whether ARGUMENT is a source, a picture of light (.exr, .hdr, .pfm,
+ * .dds) or the text of an environment, or a file that begins as baked
+ * environments do. */
 bool environment_file_is_source(const char *argument);
 bool environment_file_is_baked(const char *argument);
 
-/* Opens the picture, text or baked file PATH, unless it, or the picture of a
- * text, is the file WRITTEN. OVERRIDE, unless NULL, changes the options of what
- * is to be baked, after those of a text were read. _open returns an exit code,
- * after printing the reason on failure, and keeps what TOOL writes. */
+/* Open the picture, text or baked file PATH. They reject it if PATH, or the
+ * picture of a text, is the output file WRITTEN. OVERRIDE, unless NULL, is
+ * called to change the options of the bake after the options of a text were
+ * read. environment_file_open() prints the reason of a failure and returns an
+ * exit code. */
 enum glint_status environment_file_read(
     const char *path, const char *written,
     void (*override)(void *ctx, struct glint_environment_options *), void *ctx,
@@ -37,11 +38,11 @@ int environment_file_open(const struct tool *tool, const char *path,
 
 void environment_file_close(struct environment_file *file);
 
-/* Prints what is in FILE; with --json, as one object. */
+/* Prints the contents of FILE; with --json, as one object. */
 void environment_file_print(const struct tool *tool,
                             const struct environment_file *file);
 
-/* glint bake of environments, as the commands of options/tool.h. */
+/* The command glint bake for environments; see options/tool.h. */
 int cmd_bake_environment(struct tool *tool, int argc, char **argv);
 
 #endif

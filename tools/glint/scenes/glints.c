@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* As the tracker's arena requests. */
+/* Alignment of the tracker's arena, bytes. */
 #define ALIGNMENT 64
 
 enum glint_status glints_open(struct glints *glints, int width, int height)

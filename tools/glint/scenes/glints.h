@@ -7,9 +7,8 @@
  *     glints_lamp(&glints, i, &view, focal_mm, &lamp, &level);
  *     glints_close(&glints);
  *
- * They are followed as lamps of a picture are: none comes, goes or jumps at
- * once.
- */
+ * Highlights are tracked as lamps of a picture are: they fade in and out, and
+ * do not jump. */
 #ifndef GLINT_TOOLS_SCENES_GLINTS_H
 #define GLINT_TOOLS_SCENES_GLINTS_H
 
@@ -18,7 +17,7 @@
 #include "glint/setup.h"
 #include "glint/view.h"
 
-/* While some fade others rise. */
+/* twice the max found: others may fade out meanwhile */
 enum { GLINTS_MAX = 2 * GLINT_SCENE_MAX_HIGHLIGHTS };
 
 struct glints {
@@ -31,17 +30,17 @@ struct glints {
     void *mem;
 };
 
-/* GLINT_E_MEMORY. */
+/* Returns GLINT_E_MEMORY on failure. */
 enum glint_status glints_open(struct glints *glints, int width, int height);
 void glints_close(struct glints *glints);
 
-/* Takes the highlights of the picture of SCENE drawn last, ELAPSED_US after the
- * one before; 0: a still picture. Returns how many lamps there are. */
+/* Finds the highlights of the picture of SCENE drawn last, ELAPSED_US after the
+ * previous picture; 0: an independent picture. Returns the number of lamps. */
 int glints_frame(struct glints *glints, const struct glint_scene *scene,
                  int32_t elapsed_us);
 
-/* Sets LAMP to highlight I as a lens of FOCAL_MM sees it. Returns its level,
- * 0 .. 1. */
+/* Sets LAMP to highlight I as seen by a lens of FOCAL_MM. Returns its level, 0
+ * .. 1: the fraction of its power while it fades in or out. */
 double glints_lamp(const struct glints *glints, int i,
                    const struct glint_view *view, double focal_mm,
                    struct glint_lamp *lamp);

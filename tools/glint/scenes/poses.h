@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * poses.h - where the objects of a scene are, frame by frame.
+ * poses.h - positions and rotations of the objects of a scene, frame by frame.
  *
  *     poses_open(&poses, path, is_live, &model, &error);
  *     while ((pose = poses_next(&poses, frame)))           each frame
  *         ...
  *     poses_close(&poses);
  *
- * Lines of text, CSV "frame,object,x,y,z[,qw,qx,qy,qz]" or flat JSON objects
- * with these keys; the first may be that heading. object is the name of an
- * object or light of the scene, or camera; frames count from 0, * is every
- * frame until a later line says otherwise. x, y, z are scene units, of a sun
- * the direction to it, in the hand of the scene's text; the quaternion turns
- * from the object's own axes (of the camera: x right, y up, looking as one that
- * is not turned) to the scene's; without it the turn stays. A pose holds until
- * the next.
- */
+ * The text is CSV, "frame,object,x,y,z[,qw,qx,qy,qz]", of which the first line
+ * may be this heading, or flat JSON objects with these keys. object is the name
+ * of an object or light of the scene, or camera. Frames count from 0; * is
+ * every frame until a later line for the object. x, y, z are scene units, of a
+ * sun the direction to it, in the handedness of the scene's text. The
+ * quaternion rotates from the object's own axes (camera: x right, y up, looking
+ * in the direction of a camera that is not rotated) to those of the scene;
+ * without it the rotation stays. A pose is valid until the next pose of its
+ * object. */
 #ifndef GLINT_TOOLS_SCENES_POSES_H
 #define GLINT_TOOLS_SCENES_POSES_H
 
@@ -24,49 +24,50 @@
 
 enum {
     POSES_CAMERA = -1,
-    POSES_AHEAD = 1 << 16 /* poses of a pipe that wait for their frames */
+    POSES_AHEAD = 1 << 16 /* max poses from a pipe that wait for their frames */
 };
 
 struct pose {
-    int frame, order; /* order: of the lines of a file */
+    int frame, order; /* order: index of the line, for sorting */
     int thing;        /* index of an object, n_objects + index of a light, or
                          POSES_CAMERA */
     bool has_turn;
-    /* In steps; of a sun a unit vector, _q30. */
+    /* position in scene steps; of a sun a unit vector, q30 */
     int32_t at[3];
     int32_t turn_q30[4]; /* unit quaternion w, x, y, z */
 };
 
 struct poses {
-    long n_bad;             /* lines of a pipe that were skipped */
-    struct glint_error bad; /* the first of them */
+    long n_bad;             /* number of lines of a pipe that were skipped */
+    struct glint_error bad; /* error of the first skipped line */
 
     /* Private. */
     bool is_open;
     struct glint_scene_model model;
-    struct text_lines lines; /* closed at the end of a file */
-    struct pose *row;        /* by frames */
+    struct text_lines lines; /* closed once a file is read */
+    struct pose *row;        /* sorted by frame */
     int n, next;
     int read_at; /* frame at which a pipe was read last */
 };
 
-/* Opens PATH, which like what MODEL points to must outlive POSES. IS_LIVE: if
- * it is a FIFO its lines are taken as they come, and it is never waited for;
- * else it is read to its end. GLINT_E_IO; GLINT_E_FORMAT, ERROR then says
- * FILE:LINE: cause; GLINT_E_MEMORY. */
+/* Opens PATH. PATH and the data of MODEL must outlive POSES. If IS_LIVE, a FIFO
+ * is read line by line without ever waiting for data; else the file is read to
+ * its end. Errors: GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT with
+ * "FILE:LINE: cause" in ERROR. */
 enum glint_status poses_open(struct poses *poses, const char *path,
                              bool is_live,
                              const struct glint_scene_model *model,
                              struct glint_error *error);
 
-/* Returns the next pose that FRAME, which rises, has or had, or NULL. */
+/* Returns the next pose for FRAME or an earlier frame, or NULL if there are no
+ * more. FRAME must not fall from call to call. */
 const struct pose *poses_next(struct poses *poses, int frame);
 
-/* Goes back before the first frame; returns false of a pipe, which cannot. */
+/* Restarts before the first frame. Returns false for a pipe, which cannot
+ * restart. */
 bool poses_rewind(struct poses *poses);
 
-/* Notes that POSE, of which the scene would leave its range, was skipped.
- */
+/* Counts POSE as skipped, because the scene would exceed its range. */
 void poses_refuse(struct poses *poses, const struct pose *pose);
 
 void poses_close(struct poses *poses);

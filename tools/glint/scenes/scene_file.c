@@ -110,7 +110,7 @@ static enum glint_status read_environment(void *ctx, const char *name,
     return pass(reading, status, file.data, file.bytes, data, bytes);
 }
 
-/* The same of a translucent medium. */
+/* Reads or bakes a translucent medium as read_environment() does. */
 static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
                                     size_t *bytes, struct glint_error *error)
 {
@@ -125,7 +125,7 @@ static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
     return pass(reading, status, file.data, file.bytes, data, bytes);
 }
 
-/* The same of a motion. */
+/* Reads or bakes a motion as read_environment() does. */
 static enum glint_status read_motion(void *ctx, const char *name,
                                      uint8_t **data, size_t *bytes,
                                      struct glint_error *error)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Scene texts and the files that they name. */
+ * Reads scene texts and the files that they name. */
 #ifndef GLINT_TOOLS_SCENES_SCENE_FILE_H
 #define GLINT_TOOLS_SCENES_SCENE_FILE_H
 
@@ -10,11 +10,11 @@
 /* Returns whether ARGUMENT is the name of a scene text: NAME.scene. */
 bool tool_is_scene(const char *argument);
 
-/* Reads the scene text PATH; what it names is looked for in the folder of PATH.
- * Returns an exit code, after printing the reason on failure, which may be that
- * one of the files is the one that TOOL writes. On EXIT_OK SCENE
- * is to be freed. Prints what is odd about it, unless quiet. KEY, unless NULL,
- * becomes a key of the contents of all files. */
+/* Reads the scene text PATH and the files that it names, relative to its
+ * folder. Rejects files that are the output of TOOL. Returns an exit code,
+ * after printing the reason on failure; on EXIT_OK the caller frees SCENE.
+ * Prints warnings unless quiet. KEY, unless NULL, receives a hash of the
+ * contents of all files. */
 int tool_scene(const struct tool *tool, const char *path,
                struct glint_description *scene, uint64_t *key);
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* As the run time's arenas request. */
+/* Alignment of the run time's arenas, bytes. */
 #define ALIGNMENT 64
 
 /* ------------------------------------------------------------------- dials

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A baked scene ready to be drawn by the integer run time, and its memory.
+ * A baked scene prepared for drawing by the integer run time, with its memory.
  *
  *     scene_frame_open(&frame, tool, &baked.model, &dials);
  *     scene_frame_draw(&frame, &image);                     each picture
@@ -11,25 +11,26 @@
 
 #include "options/tool.h"
 
-/* What a picture is drawn with. 0 is as the run time likes it. */
+/* Parameters of a picture. 0 means the default of the run time. */
 struct scene_dials {
     int width, height; /* pixels */
-    double focal_px;   /* focal length of a camera that has the lens's field */
+    double focal_px;   /* focal length of a camera with the lens's field of
+                          view */
     int edge_samples;  /* 1, 4, 8 or 16 */
     int shadow_points; /* 1, 4 or 16 */
-    bool half_shading; /* two by two pixels at once, within one object */
-    int ward_samples;  /* 1 .. 32 lookups of a place on brushed metal */
+    bool half_shading; /* shade 2 x 2 pixels at once, within one object */
+    int ward_samples;  /* 1 .. 32 lookups per point of brushed metal */
     bool has_highlights;
-    int highlights; /* 0 .. 8, whatever the scene says, with has_highlights */
+    int highlights; /* with has_highlights: 0 .. 8, overrides the scene */
     int tile_log2;
     bool dither;
 };
 
-/* Sets the dials that options choose. */
+/* Sets the members of DIALS for which OPTIONS have a value. */
 void scene_dials_choose(struct scene_dials *dials,
                         const struct glint_options *options);
 
-/* Puts the objects of a scene where they are. */
+/* Sets the current poses of a scene's objects. */
 typedef void scene_frame_pose_fn(void *ctx, struct glint_scene *scene);
 
 struct scene_frame {
@@ -39,15 +40,16 @@ struct scene_frame {
     struct glint_scene *scene; /* in MEM */
     void *mem;
     size_t bytes;
-    /* NULL, or called with POSE_CTX before the next picture of a scene that was
-     * placed again: it begins with the poses and looks of its model. */
+    /* Unless NULL, called with POSE_CTX before the first picture after the
+     * scene was initialised, which resets poses and materials to those of the
+     * model. */
     scene_frame_pose_fn *pose;
     void *pose_ctx;
-    bool is_fresh; /* it was */
+    bool is_fresh; /* the scene was initialised and POSE not called yet */
 
     /* Of the picture drawn last. */
     struct glint_scene_stats stats;
-    int map_texels; /* of translucent objects, worked out for it */
+    int map_texels; /* texels of translucent objects computed for it */
     double project_ms, map_ms, draw_ms;
 };
 
@@ -58,11 +60,12 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
                      const struct scene_dials *dials);
 void scene_frame_close(struct scene_frame *frame);
 
-/* Puts objects where they are and prepares a frame. */
+/* Calls POSE if needed and prepares a frame. */
 void scene_frame_begin(struct scene_frame *frame);
 
-/* Draws the scene onto IMAGE, of the size of the dials. Takes more memory where
- * the lists of its triangles need it. _draw returns an exit code, _try says
+/* Draw the scene onto IMAGE, whose size must be that of the dials. They
+ * allocate more memory if the triangle lists need it. scene_frame_draw() prints
+ * the reason of a failure and returns an exit code; scene_frame_try() prints
  * nothing. */
 int scene_frame_draw(struct scene_frame *frame,
                      const struct glint_image *image);

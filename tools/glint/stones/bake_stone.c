@@ -25,7 +25,7 @@ static const char help[] =
     "                      factored: a sum of terms, 3 bytes each\n"
     "                      albedo: one kernel, 3 bytes\n";
 
-/* What the line says; -1: nothing. */
+/* Options of the command line; -1 if not given. */
 struct line {
     int model;
 };

@@ -12,7 +12,7 @@
 #include "model/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 26)
-/* Changes where the same text would give another translucent medium. */
+/* Version of the bake: increase it if the same text bakes to another result. */
 #define RECIPE UINT64_C(2)
 
 bool stone_file_is_text(const char *argument)
@@ -251,7 +251,7 @@ static enum glint_status bake(const struct tool *tool, struct source *s,
 
 /* -------------------------------------------------------------------- cache */
 
-/* Opens the kept translucent medium; returns false if there is none. */
+/* Opens the cached translucent medium. Returns false if there is none. */
 static bool load(const char *path, uint64_t key, struct stone_file *file)
 {
     struct glint_error error;

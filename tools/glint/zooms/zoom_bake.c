@@ -8,7 +8,7 @@
 #include "zooms/zoom_error.h"
 
 enum {
-    DEPTH = 4, /* most times that a step is halved */
+    DEPTH = 4, /* max times that a step is halved */
     LAST = 2,  /* the finest step, half-way of which is only measured */
     /* Places: positions, and what lies half-way between the finest. */
     PLACES = 2 * GLINT_MAX_ZOOM_MODELS - 1
@@ -49,7 +49,7 @@ struct run {
     struct glint_zoom_lens zoom;
 };
 
-/* Sets LENS to that of RUN at PLACE. */
+/* Sets LENS to the lens of RUN zoomed to PLACE. */
 static enum glint_status move_to(const struct run *run, int place,
                                  struct glint_prescription *lens)
 {
@@ -111,7 +111,7 @@ static enum glint_status bake_place(struct run *run, int place, bool whole)
     return status;
 }
 
-/* Puts all that has been baked into one model, in place of the one before. */
+/* Joins all baked ghosts into one model, which replaces the previous model. */
 static enum glint_status join(struct run *run)
 {
     struct glint_bake_model model[GLINT_MAX_ZOOM_MODELS];
@@ -136,7 +136,7 @@ static enum glint_status join(struct run *run)
                                     "%s", reason);
 }
 
-/* Returns the error that all ghosts together may leave. */
+/* Returns the max error of all ghosts together. */
 static double most_error(const struct run *run)
 {
     return pow(10, -0.1 * (run->bake->halfway_db + MARGIN_DB));

@@ -21,22 +21,23 @@ enum { WIDE = 480, MOST_HIGH = 480 };
 /* A degree about the axis at which light falls in no symmetry of the film. */
 #define AZIMUTH_DEG 33
 
-/* Wavelength of all pictures, nm; three would take twice as long. Near the
- * middle of the visible band coatings leave too little of ghosts to tell. */
+/* Wavelength of all pictures, nm; three wavelengths would take twice as long.
+ * Near the middle of the visible band coatings leave ghosts too faint to
+ * measure. */
 #define WAVE_NM 450
 
-/* Fraction of white from which on a ghost is seen: a third of the first code.
- */
+/* Min fraction of white at which a ghost is visible: a third of the first
+ * code. */
 #define FAINT 1e-4
 
 enum { EACH = 4 }; /* of the angles is measured at first */
 
-/* What is known of a ghost at an angle, as bits. */
+/* State of a ghost at an angle, as bits. */
 enum {
     MEASURED = 1,
-    IN_MODEL = 2, /* it is seen in the model's picture */
-    IN_EXACT = 4, /* and in that of exact rays */
-    IN_RANGE = 8, /* the model has rays of it, seen or not */
+    IN_MODEL = 2, /* visible in the model's picture */
+    IN_EXACT = 4, /* visible in the picture of exact rays */
+    IN_RANGE = 8, /* the model has rays of it, visible or not */
     WANTED = 16   /* is to be measured now */
 };
 enum { SEEN = IN_MODEL | IN_EXACT };
@@ -97,7 +98,7 @@ static int find_error(const struct pictures *p, double *error)
     return seen;
 }
 
-/* Draws GHOST, or all if it is below 0. */
+/* Draws GHOST, or all ghosts if GHOST is below 0. */
 static enum glint_status draw(struct glint_engine *engine,
                               const struct glint_lamp *lamp, int ghost,
                               struct glint_float_image *image)
@@ -263,8 +264,8 @@ static void fill(const unsigned char known[ZOOM_ANGLES],
     }
 }
 
-/* Returns the largest angle of a light, up to MAX_DEG, of which a picture of
- * LENS is asked. */
+/* Returns the max angle of the measured lights for LENS, at most MAX_DEG,
+ * degrees. */
 static double most_deg(const struct glint_prescription *lens, double max_deg)
 {
     const double corner_mm =
@@ -276,7 +277,7 @@ static double most_deg(const struct glint_prescription *lens, double max_deg)
                              atan(corner_mm / fabs(optics.focal_mm)));
 }
 
-/* Measures at angles that come ever closer. */
+/* Measures at angles whose spacing is halved from pass to pass. */
 static enum glint_status measure_all(struct measuring *m,
                                      struct glint_workers *workers)
 {

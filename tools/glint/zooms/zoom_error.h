@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * How far a zoom is off between positions, ghost by ghost, in pictures.
+ * Measures the error of a zoom lens's model between positions, per ghost, in
+ * pictures.
  *
  *   in   a zoom that is set somewhere, the table zoomed to the same place
  *   out  of each ghost and of lights at several angles, the mean squared error
  *        of the whole picture, as fractions of white in sRGB, if all but that
  *        ghost was exact
  *
- * Pictures are exposed as glint compare does. */
+ * Pictures are exposed as glint compare exposes them. */
 #ifndef GLINT_TOOLS_ZOOMS_ZOOM_ERROR_H
 #define GLINT_TOOLS_ZOOMS_ZOOM_ERROR_H
 
@@ -17,16 +18,17 @@
 
 enum { ZOOM_ANGLES = 96 };
 
-/* Errors of one ghost, by angle. */
+/* Errors of one ghost, per angle. */
 struct zoom_error {
     double of[ZOOM_ANGLES];
 };
 
-/* Sets those of the N entries of ERROR, one for each ghost, whose first error
- * is below 0. Lights go up to one and a half times the half diagonal of what
- * LENS sees, at most MAX_DEG; SHIFT, 0 to 1, is where each lies in its fraction
- * of that. Each fourth angle is measured, others only where a ghost begins or
- * ends near them, and else are in proportion. */
+/* Measures the ghosts whose first error is below 0 among the N entries of
+ * ERROR, one per ghost. Lights are at angles up to 1.5 times the half diagonal
+ * of the field of LENS, at most MAX_DEG. SHIFT, 0 to 1, is the position of each
+ * light within its interval of angle. Every fourth angle is measured, others
+ * only near angles where a ghost appears or vanishes; the rest are
+ * interpolated. */
 enum glint_status zoom_error_measure(const struct tool *tool,
                                      const struct glint_prescription *lens,
                                      const struct glint_zoom_lens *zoom,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * filter.h - a flare over the pictures of a host, as glint overlay draws it,
- * with parameters that may change from picture to picture.
+ * filter.h - draws a flare onto the pictures of a host application, as glint
+ * overlay does, with parameters that may change from picture to picture.
  *
  *     filter_values_init(&values);
  *     filter_set_text(&values, i, "heliar-tronnier");   0 <= i, in the order
@@ -17,26 +17,28 @@
 
 #include "glint/image.h"
 
-enum { FILTER_MAX = 16 }; /* parameters, at most */
+enum { FILTER_MAX = 16 }; /* max parameters */
 
 enum filter_type { FILTER_NUMBER, FILTER_SWITCH, FILTER_TEXT };
 
-/* A parameter of hosts: an option of the engine by its name, or auto, x and y,
- * which place one lamp. */
+/* A parameter that hosts show: an option of the engine by its name, or auto, x
+ * and y, which set a lamp by hand. */
 struct filter_parameter {
     const char *name, *label, *help;
     enum filter_type type;
     double low, high, initial; /* in the option's unit; a switch is 0 or 1 */
-    bool is_live;              /* takes effect with the next picture */
+    bool is_live;              /* true: a change takes effect with the next
+                                  picture, without opening the lens again */
 };
 
-/* Sets PARAMETER to that of INDEX, from 0. Returns false if there is none. */
+/* Sets PARAMETER to parameter INDEX, counted from 0. Returns false if there is
+ * no such parameter. */
 bool filter_parameter(int index, struct filter_parameter *parameter);
 
 /* The value of each parameter. */
 struct filter_values {
-    double number[FILTER_MAX]; /* of a switch 0 or 1 */
-    char *text[FILTER_MAX];    /* allocated, or NULL for "" */
+    double number[FILTER_MAX]; /* value of a number; 0 or 1 of a switch */
+    char *text[FILTER_MAX];    /* malloc'ed, or NULL for "" */
 };
 
 /* Sets VALUES to the defaults; frees its texts. */
@@ -44,41 +46,44 @@ void filter_values_init(struct filter_values *values);
 void filter_values_free(struct filter_values *values);
 
 /* Set the parameter INDEX. A number is clamped to its range; if it is not
- * finite, the default is set. A number at its default, or an empty text, leaves
- * the value of the style. NULL: "". */
+ * finite, the default is set. A number at its default, or an empty text, has no
+ * effect on the value that the style sets. A TEXT of NULL is "". */
 void filter_set_number(struct filter_values *values, int index, double number);
 void filter_set_text(struct filter_values *values, int index, const char *text);
 
 struct filter;
 
-/* Returns a filter of pictures of WIDTH x HEIGHT, or NULL without memory. It
- * opens its lens with the first picture. Messages begin with "glint HOST". */
+/* Returns a filter of pictures of WIDTH x HEIGHT, or NULL if there is no
+ * memory. The filter opens its lens with the first picture. Messages begin with
+ * "glint HOST". */
 struct filter *filter_create(const char *host, int width, int height);
 void filter_destroy(struct filter *filter);
 
-/* Sets all parameters of FILTER, which opens its lens again if any changes that
- * is not live; or those that are live alone. */
+/* filter_set() sets all parameters; the next picture opens the lens again if a
+ * parameter that is not live has changed. filter_set_live() sets only live
+ * parameters. */
 void filter_set(struct filter *filter, const struct filter_values *values);
 void filter_set_live(struct filter *filter, const struct filter_values *values);
 
-/* Return whether FILTER draws pictures of WIDTH x HEIGHT; and with VALUES,
- * without opening its lens again. */
+/* Return whether FILTER draws pictures of WIDTH x HEIGHT; filter_fits() also
+ * whether it can draw with VALUES without opening its lens again. */
 bool filter_has_size(const struct filter *filter, int width, int height);
 bool filter_fits(const struct filter *filter,
                  const struct filter_values *values, int width, int height);
 
-/* Opens the lens before the first picture: a bake, if it is needed, takes
- * seconds to hours. Returns false on failure, as filter_draw() does. */
+/* Opens the lens before the first picture; if its model is not cached, bakes
+ * it, which costs seconds to hours. Returns false on failure, as filter_draw()
+ * does. */
 bool filter_open(struct filter *filter);
 
-/* Returns why filter_draw() or filter_open() failed last; "" if only standard
- * error has the reason. */
+/* Returns the cause of the last failure of filter_draw() or filter_open(), or
+ * "" if it was only printed to standard error. */
 const char *filter_cause(const struct filter *filter);
 
-/* Draws the flare on IMAGE, which comes ELAPSED_US after the last one; 0: a
- * still picture. On failure, prints a line on standard error, once, leaves
- * pictures as they are until a parameter changes that is not live, and returns
- * false. */
+/* Draws the flare onto IMAGE, ELAPSED_US after the previous picture; 0: a
+ * static picture. On failure prints a line to standard error, once, returns
+ * false and does not change pictures until a parameter that is not live
+ * changes. */
 bool filter_draw(struct filter *filter, const struct glint_image *image,
                  int32_t elapsed_us);
 

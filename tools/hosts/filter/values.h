@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * values.h - what the filter does with the values of its parameters.
+ * values.h - comparing and copying the filter's parameter values.
  */
 #ifndef GLINT_TOOLS_FILTER_VALUES_H
 #define GLINT_TOOLS_FILTER_VALUES_H
@@ -13,7 +13,7 @@ enum { FILTER_AUTO = 5, FILTER_X, FILTER_Y };
 /* Returns whether NUMBER is the default of PARAMETER. */
 bool filter_is_default(const struct filter_parameter *parameter, double number);
 
-/* Copies FROM to TO, whose texts are not freed. */
+/* Copies FROM to TO, without freeing the old texts of TO. */
 void filter_values_copy(struct filter_values *to,
                         const struct filter_values *from);
 

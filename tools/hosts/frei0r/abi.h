@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * abi.h - the binary interface of frei0r 1, version 1.2, in words of our own:
- * what hosts call of a plug-in, with the structs and numbers that they pass.
+ * abi.h - the binary interface of frei0r 1, version 1.2, rewritten: the
+ * functions that hosts call in a plug-in, with their structs and constants.
  *
  * A host calls f0r_init() once, then makes instances. Different instances may
  * be called at the same time from different threads, one instance from one
- * thread at a time. Pictures have 4 bytes a pixel and rows without padding, the
- * top row first.
+ * thread at a time. Pictures have 4 bytes per pixel and rows without padding,
+ * the top row first.
  */
 #ifndef GLINT_TOOLS_FREI0R_ABI_H
 #define GLINT_TOOLS_FREI0R_ABI_H
@@ -26,7 +26,7 @@ struct f0r_plugin {
     const char *name, *author;
     int kind, colour_model;
     int frei0r_version;               /* F0R_MAJOR */
-    int major_version, minor_version; /* of the plug-in */
+    int major_version, minor_version; /* version of the plug-in */
     int n_params;
     const char *explanation;
 };
@@ -39,7 +39,7 @@ struct f0r_param {
 
 #define F0R_EXPORT __attribute__((visibility("default")))
 
-/* Return 1, and nothing, when the host loads and drops the plug-in. */
+/* Called when the host loads the plug-in (returns 1) and unloads it. */
 F0R_EXPORT int f0r_init(void);
 F0R_EXPORT void f0r_deinit(void);
 
@@ -50,12 +50,13 @@ F0R_EXPORT void f0r_get_param_info(struct f0r_param *info, int index);
 F0R_EXPORT void *f0r_construct(unsigned width, unsigned height);
 F0R_EXPORT void f0r_destruct(void *instance);
 
-/* VALUE points to a double or a char *; strings are copied when set, and when
- * got belong to the instance. */
+/* VALUE points to a double or a char *. Set copies strings; strings that get
+ * returns belong to the instance. */
 F0R_EXPORT void f0r_set_param_value(void *instance, void *value, int index);
 F0R_EXPORT void f0r_get_param_value(void *instance, void *value, int index);
 
-/* Writes to OUT what becomes of IN at SECONDS. */
+/* Draws the flare onto IN, the picture at the time SECONDS, and writes the
+ * result to OUT. */
 F0R_EXPORT void f0r_update(void *instance, double seconds, const uint32_t *in,
                            uint32_t *out);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint_web.h - what the page calls of the WebAssembly module.
+ * glint_web.h - functions of the WebAssembly module that the page calls.
  *
  *     web_set("lens", "heliar-tronnier");  options, by the names of the table
  *     name = web_open(0);                  the file name of the lens's model
@@ -9,10 +9,10 @@
  *     n = web_find(pixels);                rows of lamps in web_lamps()
  *     web_draw(pixels, WEB_FOUND, 0);
  *
- * One lens and one engine a module. Functions that return int return 0 on
- * failure, those that return pointers NULL; web_error() then has the reason.
- * Texts end with 0 and are UTF-8. Pictures are R G B A bytes, without padding,
- * as of ImageData; A stays. */
+ * A module has one lens and one engine. On failure functions return 0 or NULL,
+ * and web_error() returns the cause. Texts end with 0 and are UTF-8. Pictures
+ * are R G B A bytes, without padding, as of ImageData; A stays.
+ */
 #ifndef GLINT_TOOLS_HOSTS_WEB_GLINT_WEB_H
 #define GLINT_TOOLS_HOSTS_WEB_GLINT_WEB_H
 
@@ -46,11 +46,12 @@ enum {
     WEB_COLUMNS
 };
 
-/* Return memory for the caller to write to, and give it back. */
+/* web_take() allocates memory for the caller to write to; web_free() frees
+ * it. */
 WEB_EXPORT(web_take) void *web_take(size_t bytes);
 WEB_EXPORT(web_free) void web_free(void *mem);
 
-/* Returns why the last call failed. */
+/* Returns the cause of the last failed call. */
 WEB_EXPORT(web_error) const char *web_error(void);
 
 /* Return JSON: the table of options, the styles, and the lenses with their
@@ -62,40 +63,41 @@ WEB_EXPORT(web_lenses) const char *web_lenses(void);
 /* Sets all options to the defaults of glint overlay. */
 WEB_EXPORT(web_reset) void web_reset(void);
 
-/* Sets option NAME as on a command line. Files, scenes and --budget are
- * refused. */
+/* Sets option NAME to TEXT, as on a command line. Rejects files, scenes and
+ * --budget. */
 WEB_EXPORT(web_set) int web_set(const char *name, const char *text);
 
-/* Opens the lens of the options. WIDEST: its model is baked for that f-number,
- * as by glint bake --f-number WIDEST, and used as a model is; 0: for that of
- * the table or the options, as of glint overlay. Returns the name that glint
- * keeps the model under, NAME-KEY.glint; valid until the next call. */
+/* Opens the lens of the options. If WIDEST is not 0, its model is baked for
+ * that f-number, as by glint bake --f-number WIDEST; if it is 0, for the
+ * f-number of the table or the options, as by glint overlay. Returns the
+ * model's file name in glint's cache, NAME-KEY.glint; valid until the next
+ * call. */
 WEB_EXPORT(web_open) const char *web_open(double widest);
 
-/* Takes the model of the lens: DATA of web_take(), kept, or what a bake makes.
- * Without either, web_size() works with --rays exact alone. */
+/* Set the model of the lens: web_model() to DATA, which must come from
+ * web_take() and is not copied; web_bake() to a new bake. Without a model,
+ * web_size() succeeds only with --rays exact. */
 WEB_EXPORT(web_model) int web_model(void *data, size_t bytes);
 WEB_EXPORT(web_bake) int web_bake(void);
 WEB_EXPORT(web_model_data) const void *web_model_data(void);
 WEB_EXPORT(web_model_bytes) size_t web_model_bytes(void);
 
-/* Makes an engine for pictures of WIDTH x HEIGHT with the options as they are.
- */
+/* Makes an engine for pictures of WIDTH x HEIGHT with the current options. */
 WEB_EXPORT(web_size) int web_size(int width, int height);
 
-/* Finds the lamps of a picture; returns how many rows of web_lamps() it set. */
+/* Finds the lamps of a picture; returns the number of rows of web_lamps() that
+ * it set. */
 WEB_EXPORT(web_find) int web_find(uint8_t *pixels);
 WEB_EXPORT(web_lamps) double *web_lamps(void);
 
-/* Sets X, Y of the brightest spot that was not taken for a lamp; returns 0 if
- * there is none. */
+/* Sets XY to the brightest spot that was not accepted as a lamp; returns 0 if
+ * there is no such spot. */
 WEB_EXPORT(web_doubtful) int web_doubtful(double xy[2]);
 
-/* Draws into PIXELS the flare of N rows of web_lamps(), 0 .. 1024, or of the
- * lamps as web_find() found them. QUICK, not 0: as a frame of a video, whose
- * brightness is estimated and whose wide lamps have fewer points. Options that
- * take effect with each frame may have changed: strength, exposure, gain,
- * starburst. */
+/* Draws the flare of N rows of web_lamps(), 0 .. 1024, or of the lamps that
+ * web_find() found (WEB_FOUND), into PIXELS. If QUICK is not 0, draws as in a
+ * video: brightness is estimated and wide lamps have fewer points. Strength,
+ * exposure, gain and starburst may have changed since web_size(). */
 WEB_EXPORT(web_draw) int web_draw(uint8_t *pixels, int n, int quick);
 
 #endif

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
  * glint-measure FIGURE [PARAMETER=VALUE...] - measures the rows of a figure of
- * tools/measure/recipes, and prints its table: rows of its file in
- * tests/figures that were not measured now stay. A PARAMETER=VALUE that some
- * rows have selects these; another one is set in all rows.
+ * tools/measure/recipes, and prints its table; rows of its file in
+ * tests/figures that are not measured are copied. A PARAMETER=VALUE that some
+ * rows have selects these rows; any other is set in all rows.
  *
- * glint-measure --quick - measures the rows that recipes name for it, and fails
- * where a cell of the table is farther off than its tolerance.
+ * glint-measure --quick - measures the rows that recipes list for it, and fails
+ * if a number differs from the table's by more than its tolerance.
  *
  * glint-measure --row metrics=NAME,... lens=LENS PARAMETER=VALUE... - measures
  * one row and prints its metrics as JSON.
  *
- * All metrics are appended to build/measure.csv. Run it in the root of the
- * tree.
+ * All metrics are appended to build/measure.csv. Must run in the root of the
+ * source tree.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -55,9 +55,9 @@ static int measure_row(int n, char **assignments)
     return code;
 }
 
-/* Runs a row in a process of its own; COUNTED: under callgrind. Sets TEXT to
- * its JSON, or to what callgrind counted. Returns an exit code; -1: it reached
- * the limit of processor seconds. */
+/* Runs a row in a child process, under callgrind if COUNTED. Sets TEXT to the
+ * row's JSON, or to callgrind's count. Returns an exit code, or -1 if the row
+ * reached its limit of CPU seconds. */
 static int run_row(const struct recipe *r, const struct recipe_row *row,
                    const char *self, bool counted, char text[TEXT])
 {
@@ -77,7 +77,8 @@ static int run_row(const struct recipe *r, const struct recipe_row *row,
                                      row->set[i]);
     if (counted && used < sizeof line)
         snprintf(line + used, sizeof line - used, " 2>&1");
-    pipe = popen(line, "r"); /* NOLINT: of our own recipes */
+    pipe = popen(line, "r"); /* NOLINT: the command comes from our own
+                                recipes */
     if (!pipe)
         return EXIT_RUNTIME;
     bytes = fread(text, 1, TEXT - 1, pipe);
@@ -88,7 +89,7 @@ static int run_row(const struct recipe *r, const struct recipe_row *row,
     return WEXITSTATUS(status);
 }
 
-/* Returns the metric NAME of JSON; NAN: it is not there. */
+/* Returns the metric NAME of JSON, or NAN if it is missing. */
 static double metric_of(const char *json, const char *name, size_t length)
 {
     for (const char *at = strchr(json, '"'); at; at = strchr(at + 1, '"'))
@@ -99,7 +100,7 @@ static double metric_of(const char *json, const char *name, size_t length)
     return (double)NAN;
 }
 
-/* Measures ROW to JSON, with instructions where they are a metric. */
+/* Measures ROW to JSON; counts instructions if they are a metric. */
 static int measure(const struct recipe *r, const struct recipe_row *row,
                    const char *self, char json[TEXT])
 {
@@ -124,7 +125,7 @@ static int measure(const struct recipe *r, const struct recipe_row *row,
 
 static void first_line(const char *command, char text[128])
 {
-    FILE *const pipe = popen(command, "r"); /* NOLINT: of our own */
+    FILE *const pipe = popen(command, "r"); /* NOLINT: our own command */
 
     text[0] = '\0';
     if (pipe && fgets(text, 128, pipe))
@@ -133,7 +134,7 @@ static void first_line(const char *command, char text[128])
         pclose(pipe);
 }
 
-/* Appends the metrics of ROW. */
+/* Appends the metrics of ROW to build/measure.csv. */
 static void append_csv(const struct recipe *r, const struct recipe_row *row,
                        const char *json)
 {
@@ -207,7 +208,7 @@ static bool write_value(const char *at, const struct recipe_row *row,
     }
 }
 
-/* Writes the cell of COLUMN; nothing if it lacks a metric. */
+/* Writes the cell of COLUMN, or nothing if a metric is missing. */
 static void write_cell(const struct recipe_column *column,
                        const struct recipe_row *row, const char *json, char *to,
                        size_t bytes)
@@ -231,8 +232,9 @@ static void write_cell(const struct recipe_column *column,
     }
 }
 
-/* Returns ROW as a line, malloc'ed; NULL: it has no metric, as of a lens that
- * is not round its projection. OVER: it reached its limit. */
+/* Returns ROW as a malloc'ed table line, or NULL if it has no metric, such as
+ * the projection of a lens that is not round. OVER: the row reached its
+ * limit. */
 static char *line_of(const struct recipe *r, const struct recipe_row *row,
                      const char *json, bool over)
 {
@@ -254,7 +256,7 @@ static char *line_of(const struct recipe *r, const struct recipe_row *row,
     return is_empty ? NULL : strdup(line);
 }
 
-/* Sets CELL to cell NUMBER of LINE. */
+/* Copies cell NUMBER of LINE to CELL. */
 static void cell_of(const char *line, int number, char cell[256])
 {
     size_t length;
@@ -317,7 +319,8 @@ static void print_table(const struct recipe *r, const struct table *t)
         puts(t->line[i]);
 }
 
-/* Puts LINE in place of the row with its keys, or at the end; NULL: nowhere. */
+/* Replaces the table's row that has LINE's keys by LINE, or appends LINE; does
+ * nothing if LINE is NULL. */
 static void put_line(const struct recipe *r, struct table *t, char *line)
 {
     for (int i = 0; i < t->n && line; i++)
@@ -331,8 +334,8 @@ static void put_line(const struct recipe *r, struct table *t, char *line)
 
 /* ------------------------------------------------------------------- quick */
 
-/* Compares the numbers of CELL with those of the row, which have a tolerance.
- * Returns whether all are within. */
+/* Compares the numbers of CELL with the row's metrics that have a tolerance.
+ * Returns whether all are within it. */
 static bool compare_cell(const struct recipe *r,
                          const struct recipe_column *column, const char *cell,
                          const char *json)
@@ -362,7 +365,7 @@ static bool compare_cell(const struct recipe *r,
     return fine;
 }
 
-/* Compares the row of JSON with that of the table. */
+/* Compares the measured row JSON with the row of the table. */
 static bool compare_row(const struct recipe *r, const struct recipe_row *row,
                         const struct table *t, const char *json)
 {
@@ -396,8 +399,8 @@ static bool is_quick(const struct recipe *r, const struct recipe_row *row)
 
 /* ----------------------------------------------------------------- running */
 
-/* Sets ASSIGNMENT in all rows, or takes all rows away that have another
- * value, if some have it. */
+/* If some rows have ASSIGNMENT, removes the other rows; else sets it in all
+ * rows. */
 static void choose(struct recipe *r, const char *assignment)
 {
     int n = 0;
@@ -413,7 +416,7 @@ static void choose(struct recipe *r, const char *assignment)
     r->n_rows = n > 0 ? n : r->n_rows;
 }
 
-/* Measures all rows of R, or those of --quick. */
+/* Measures all rows of R, or only the rows of --quick. */
 static int run(struct recipe *r, const char *self, bool quick)
 {
     static char json[TEXT];

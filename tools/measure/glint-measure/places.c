@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * How far lights and ghosts move where a light at a pixel comes from the angle
- * that the lens images there, rather than from the arc tangent of its place.
- * Lights are at the corner of the film and half-way to it; a ghost is where the
- * mean of its rays lands.
+ * Measures how far lights and ghosts move if the direction of a light at a
+ * pixel is computed from the lens's real projection instead of the arc tangent
+ * of its position. Lights are at the corner of the film and half-way to it; the
+ * position of a ghost is the mean of its rays.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -11,11 +11,11 @@
 #include "measure/glint-measure/row.h"
 
 enum {
-    RAYS = 24, /* of a ghost, across and down */
+    RAYS = 24, /* rays of a ghost, across and down */
     TRACED_DEG = 85
 };
 
-/* One lens, and what is known of it. */
+/* A lens and its projection. */
 struct places {
     struct glint_setup setup;
     struct glint_projection projection;
@@ -23,12 +23,13 @@ struct places {
     double field_mm;
 };
 
-/* Where a ghost is. */
+/* Position of a ghost. */
 struct ghost {
     double x_mm, light;
 };
 
-/* Finds GHOST of light at THETA_DEG; without light it is nowhere. */
+/* Returns the position of GHOST for a light at THETA_DEG; it is not valid if no
+ * ray gets through. */
 static struct ghost find(const struct figure_row *row, const struct places *r,
                          int ghost, double theta_deg)
 {
@@ -63,8 +64,7 @@ static struct ghost find(const struct figure_row *row, const struct places *r,
     return sum;
 }
 
-/* Writes as WHERE_... what changes for a light whose image is MM from the
- * axis. */
+/* Writes the metrics WHERE_... for a light whose image is MM from the axis. */
 static void write_place(struct figure_row *row, const struct places *r,
                         const char *where, double mm)
 {

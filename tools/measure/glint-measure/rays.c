@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * How far a model is from exact rays.
+ * Measures the error of a model against exact rays.
  *
  * It compares every ghost at the angles of the accuracy table and every STEP
  * degrees up to the model's largest, at every wavelength. Rays start on a grid
- * over the box of those that get through stop and barrels to the field; rays
- * that land in the picture's circle count.
+ * over the bounding box of rays that pass stop and barrels; only rays that land
+ * in the picture's circle count.
  *
- * A ray that the model has no polynomials for counts as off by FAR pixels in
- * percentiles, and not at all in root mean squares.
+ * A ray that the model has no polynomials for counts as an error of FAR pixels
+ * in percentiles, and is left out of root mean squares.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@
 #include "measure/glint-measure/row.h"
 
 #define FAR       1e3
-#define SENSOR_PX 0.25 /* error in pixels that 99 of 100 rays may have */
+#define SENSOR_PX 0.25 /* target: 99th percentile of the error, pixels */
 #define STOP_RMS  8e-4
 
 enum {
@@ -30,13 +30,13 @@ enum {
     MOST_PARTS = 64
 };
 
-/* Errors by size: bin K begins at 1e-5 times 10^(K / BINS_A_DECADE). */
+/* Histogram of errors: bin K begins at 1e-5 times 10^(K / BINS_A_DECADE). */
 struct tally {
     double rays, lost;
     double light, light_lost; /* energy times mm^2 of pupil */
     double sensor[BINS], energy[BINS];
-    /* Sum of squared errors of each output; those of energy are weighted by the
-     * light of the ray. */
+    /* sum of squared errors of each output; errors of energy are weighted by
+     * the ray's light */
     double sum2[GLINT_OUT_ENERGY + 1];
 };
 
@@ -49,8 +49,8 @@ struct task {
     int n_ghosts;
     double angle[MOST_ANGLES];
     int n_angles;
-    double picture_mm; /* half the picture's diagonal, or the field if that is
-                          less */
+    double picture_mm; /* half the picture's diagonal, or the radius of the
+                          field if that is smaller */
 };
 
 /* ------------------------------------------------------------------ tallies */
@@ -100,7 +100,7 @@ static void tally_join(struct tally *t, const struct tally *from, double weight)
 }
 
 /* Returns the 99th percentile of the N errors counted in BIN, rounded up to the
- * end of a bin. */
+ * end of its bin. */
 static double p99_of(const double bin[BINS], double n)
 {
     double above = 0;
@@ -136,7 +136,7 @@ static bool misses(const struct tally *t)
 
 /* --------------------------------------------------------------------- rays */
 
-/* The parts of one ghost that a model has at one angle and wavelength. */
+/* The polynomials of one ghost that a model has at one angle and wavelength. */
 struct parts {
     int n;
     struct glint_transfer part[MOST_PARTS];
@@ -160,7 +160,7 @@ static void find_parts(const struct task *t, int ghost, double angle_deg,
 }
 
 /* Sets AT to the outputs of the model for the ray from (X, Y). Returns false if
- * the model has none. */
+ * no polynomial covers (X, Y). */
 static bool model_ray(const struct parts *parts, double x_mm, double y_mm,
                       double at[GLINT_OUT_KINDS])
 {
@@ -245,14 +245,15 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* light of all ghosts at one angle, and the part of it that is lost */
+/* light of all ghosts at one angle, and the light of rays that the model
+ * lacks */
 struct light {
     double all, lost;
 };
 
 /* Compares all rays of GHOST: adds their errors to SUM and their light to
- * LIGHT, and counts in ANGLES the angles at which the ghost is seen, and those
- * at which it misses the target. */
+ * LIGHT, and counts in ANGLES the angles at which the ghost is visible, and the
+ * angles at which it misses the target. */
 static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
                           int angles[2], struct light *light)
 {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a recipe says before its rows are made. */
+/* The lines of a recipe, from which its rows are made. */
 struct recipe_lines {
     const char *lens[RECIPE_LINES], *vary[RECIPE_LINES], *label[RECIPE_LINES];
     int n_lenses, n_vary, n_labels;
@@ -14,12 +14,12 @@ struct recipe_lines {
     int n_set;
 };
 
-/* Texts of the recipe that was read last. */
+/* texts of the latest recipe read */
 static char pool[1 << 18];
 static size_t pooled;
 
-/* Returns a copy of TEXT[LENGTH] behind PREFIX in the pool; an empty text if
- * that is full. */
+/* Returns a copy in the pool of PREFIX followed by TEXT[LENGTH], or an empty
+ * text if the pool is full. */
 static char *keep(const char *prefix, const char *text, size_t length)
 {
     char *const to = pool + pooled;
@@ -76,8 +76,8 @@ bool recipe_row_has(const struct recipe_row *row, const char *words)
 
 /* -------------------------------------------------------------------- rows */
 
-/* Makes a row of each of N rows from FIRST on for each value of VARY, "NAME
- * VALUE VALUE...", behind them, and takes the first ones away. */
+/* Replaces each of the N rows from FIRST on by one row per value of VARY, "NAME
+ * VALUE VALUE...". */
 static void multiply(struct recipe *r, const char *vary)
 {
     const int n = r->n_rows;
@@ -100,7 +100,7 @@ static void multiply(struct recipe *r, const char *vary)
     r->n_rows -= n;
 }
 
-/* Makes a row of each row for each label, "LABEL: NAME=VALUE ...". */
+/* Replaces each row by one row per label, "LABEL: NAME=VALUE ...". */
 static void label_rows(struct recipe *r, const struct recipe_lines *l)
 {
     const int n = r->n_rows;
@@ -123,8 +123,8 @@ static void label_rows(struct recipe *r, const struct recipe_lines *l)
     }
 }
 
-/* Adds the rows of the files that PATTERN, a name or a pattern, is of, with
- * what is set in all rows and in those of LINE. */
+/* Adds a row per file that PATTERN, a name or a glob pattern, matches, with the
+ * values for all rows and the values of LINE. */
 static void add_files(struct recipe *r, const struct recipe_lines *l,
                       const char *pattern, const char *line)
 {
@@ -145,7 +145,7 @@ static void add_files(struct recipe *r, const struct recipe_lines *l,
     globfree(&files);
 }
 
-/* Adds the rows of LINE: lenses, then PARAMETER=VALUE of theirs. */
+/* Adds the rows of LINE: lenses, then PARAMETER=VALUE for them. */
 static void add_lenses(struct recipe *r, const struct recipe_lines *l,
                        const char *line)
 {
@@ -170,7 +170,7 @@ static void make_rows(struct recipe *r, const struct recipe_lines *l)
 
 /* ------------------------------------------------------------------ reading */
 
-/* Notes the metrics of a column, and whether it has none. */
+/* Collects the metrics of column C; a column without metrics becomes a key. */
 static void note_column(struct recipe *r, struct recipe_column *c)
 {
     c->is_key = true;
@@ -186,7 +186,7 @@ static void note_column(struct recipe *r, struct recipe_column *c)
     }
 }
 
-/* Takes "TITLE = CELL | TITLE = CELL ...". */
+/* Parses "TITLE = CELL | TITLE = CELL ...". */
 static void take_columns(struct recipe *r, char *text)
 {
     for (char *next; text && r->n_columns < RECIPE_LINES; text = next) {
@@ -247,7 +247,8 @@ char *recipe_read(struct recipe *r, char *text, const char *name)
             continue;
         if (*line != ' ') {
             if (is_it && (l.n_lenses || name)) {
-                line[strlen(line)] = '\n'; /* it is read again */
+                line[strlen(line)] = '\n'; /* restores the text, as it is read
+                                              again */
                 break;
             }
             line[strcspn(line, " ")] = '\0';

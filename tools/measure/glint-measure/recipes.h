@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Recipes of figures: what tools/measure/recipes says of one, and its rows.
+ * Recipes of figures, read from tools/measure/recipes, and their rows.
  */
 #ifndef GLINT_TOOLS_MEASURE_RECIPES_H
 #define GLINT_TOOLS_MEASURE_RECIPES_H
@@ -10,17 +10,18 @@
 
 enum { RECIPE_LINES = 128, RECIPE_ROWS = 512, ROW_PARAMETERS = 32 };
 
-/* A row: PARAMETER=VALUE texts, of which the last one of a name counts. */
+/* A row: PARAMETER=VALUE texts; a later text overrides an earlier one of the
+ * same name. */
 struct recipe_row {
     const char *set[ROW_PARAMETERS];
     int n;
 };
 
-/* A column: its title, and its cells with {PARAMETER}, {METRIC%FORMAT} or
- * {METRIC%FORMAT~TOLERANCE}. */
+/* A column: its title and the template of its cells, with {PARAMETER},
+ * {METRIC%FORMAT} or {METRIC%FORMAT~TOLERANCE}. */
 struct recipe_column {
     const char *title, *cell;
-    bool is_key; /* no metric in it: it tells rows apart */
+    bool is_key; /* without a metric: the column identifies the row */
 };
 
 struct recipe {
@@ -29,18 +30,20 @@ struct recipe {
     int n_rows;
     struct recipe_column column[RECIPE_LINES];
     int n_columns;
-    const char *quick[RECIPE_LINES]; /* rows that --quick measures, by words
-                                        PARAMETER=VALUE */
+    const char *quick[RECIPE_LINES]; /* rows that --quick measures, selected by
+                                        PARAMETER=VALUE words */
     int n_quick;
-    int limit_s; /* processor seconds of a row; 0: no limit */
+    int limit_s; /* max CPU seconds of a row; 0: no limit */
     char metrics[1024];
 };
 
-/* Sets RECIPE to the one of NAME in TEXT, which is changed and kept. NAME NULL:
- * the first one with rows. Returns the text behind it; NULL: there is none. */
+/* Sets RECIPE to the recipe NAME in TEXT, or to the first with rows if NAME is
+ * NULL. Changes TEXT, which must outlive RECIPE. Returns the text after the
+ * recipe, or NULL if there is no such recipe. */
 char *recipe_read(struct recipe *recipe, char *text, const char *name);
 
-/* Returns the value of PARAMETER of ROW; of a lens its name; NULL: not set. */
+/* Returns the value of PARAMETER in ROW, for a lens its name, or NULL if it is
+ * not set. */
 const char *recipe_value(const struct recipe_row *row, const char *parameter);
 
 /* Returns whether ROW has all of WORDS. */

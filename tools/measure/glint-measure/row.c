@@ -20,8 +20,8 @@
     "edges,refs,bundles,ghosts,arena_kib,arena_mib,plan_ms,bin_ms,draw_ms," \
     "cpu_ms,minsn"
 
-/* A name with external linkage that is not inlined, by which callgrind counts
- * the instructions of the last frame alone. */
+/* Has external linkage and is not inlined, so that callgrind can count the
+ * instructions of the last frame only. */
 enum glint_status measured_frame(struct glint_engine *engine,
                                  const struct glint_lamp *lamps, int n,
                                  double scale, const struct glint_image *image,
@@ -164,7 +164,7 @@ int row_open(struct figure_row *row, struct tool *tool, int n,
 
 /* ------------------------------------------------------------------- lenses */
 
-/* Bakes the table as 'glint bake' does and opens the model; writes processor
+/* Bakes the table as 'glint bake' does and opens the model; writes the CPU
  * seconds. */
 static int bake(struct figure_row *r)
 {
@@ -239,7 +239,7 @@ static void write_model(struct figure_row *r)
 
 struct frame {
     struct glint_engine *engine;
-    struct glint_workers *one; /* a frame is drawn by one thread */
+    struct glint_workers *one; /* draws frames with one thread */
     struct glint_lamp *lamp;
     struct canvas canvas;
     struct glint_float_image exact, got; /* linear light */
@@ -300,7 +300,7 @@ static enum glint_status draw(struct figure_row *r, struct frame *f,
         f->engine, f->lamp, r->n_lights, f->exposure, to, &f->report);
 }
 
-/* Draws all rounds, and one before where there are several. */
+/* Draws all rounds, after a warm-up frame if there are several. */
 static enum glint_status draw_rounds(struct figure_row *r, struct frame *f)
 {
     enum glint_status status = GLINT_OK;
@@ -353,7 +353,7 @@ static void free_frame(struct frame *f)
     free(f->codes);
 }
 
-/* Draws the reference: the same row but for what it sets. */
+/* Draws the reference: the same row with the parameters of r->reference. */
 static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
 {
     struct figure_row *const other = malloc(sizeof *other);
@@ -388,8 +388,8 @@ static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
     return status;
 }
 
-/* Finds the exposure and draws what is compared with: the reference, or the
- * exact picture. */
+/* Finds the exposure and draws the picture to compare with: the reference, or
+ * the exact picture. */
 static enum glint_status expose(struct figure_row *r, struct frame *f)
 {
     enum glint_status status = GLINT_OK;

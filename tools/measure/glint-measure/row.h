@@ -13,45 +13,50 @@ struct figure_row {
     struct tool *tool;
     struct json_writer json;
     int n;
-    char **assignment;   /* [n], as row_open() was given */
-    const char *metrics; /* names with commas: what to measure */
-    const char *lens;    /* table or model */
+    char **assignment;   /* [n], as passed to row_open() */
+    const char *metrics; /* names of metrics, separated by commas */
+    const char *lens;    /* path of a lens table or model */
     struct settings settings;
     struct opened_lens opened;
-    struct glint_prescription table; /* of the lens; of a model only its name */
+    struct glint_prescription table; /* the lens; if it is a model, only its
+                                        name is set */
     int width, height, n_lights;
     double theta, phi; /* direction of the first light, degrees */
-    double stops;      /* powers of all lights over white, at an exposure of 1;
-                          NAN: the exposure makes the flare white */
+    double stops;      /* power of all lights in stops above white, at an
+                          exposure of 1; NAN: the exposure is set by the flare's
+                          brightness */
     int dust_log2;     /* cells per side of tables of dust; 0: by quality */
     int grid;          /* cells per side of the exact picture's rays */
-    int rounds;        /* frames drawn; times are the least of them */
+    int rounds;        /* frames drawn; times are their minimum */
     /* linear: the flare in linear light; codes: in sRGB codes on black; frame:
      * drawn in place onto a dim YUYV frame, as glint bench does. */
     const char *picture;
     /* "PARAMETER=VALUE;...": pictures in codes are compared with the same row
-     * with these; NULL: with exact rays. */
+     * with these parameters; NULL: with exact rays */
     const char *reference;
-    double bake_stop; /* f-number to bake a model for here; narrower tables keep
-                         theirs. Below 0: the model is the cached one. */
-    double nm[GLINT_MAX_WAVELENGTHS]; /* of metrics of rays */
+    double bake_stop; /* f-number to bake a model for; tables with a narrower
+                         stop use their own. Below 0: use the cached model. */
+    double nm[GLINT_MAX_WAVELENGTHS]; /* wavelengths of the ray metrics */
     int n_nm;
-    double step_deg; /* between angles of metrics of rays */
+    double step_deg; /* step between angles of the ray metrics */
 };
 
-/* Sets ROW to the defaults and to N texts PARAMETER=VALUE, which it keeps:
- * those above by name, or options of the engine. Returns an exit code. */
+/* Sets ROW to the defaults, then by N texts PARAMETER=VALUE: members above by
+ * name, or options of the engine. ASSIGNMENT must outlive ROW. Returns an exit
+ * code. */
 int row_open(struct figure_row *row, struct tool *tool, int n,
              char **assignment);
 
 /* Measures ROW and prints a JSON object. Returns an exit code. */
 int row_measure(struct figure_row *row);
 
-/* Returns whether one of NAMES, with commas, is among the metrics. */
+/* Returns whether one of NAMES, separated by commas, is among the row's
+ * metrics. */
 bool row_wants(const struct figure_row *row, const char *names);
 
-/* Write how far the model is from exact rays (rays.c), and where lights and
- * ghosts are by the lens's projection (places.c). Return an exit code. */
+/* Write the errors of the model against exact rays (rays.c), and the positions
+ * of lights and ghosts by the lens's projection (places.c). Return an exit
+ * code. */
 #define ROW_RAYS                                                             \
     "rays,sensor_p99,sensor_p99_ghosts,stop_rms,stop_rms_ghosts,energy_p99," \
     "energy_p99_ghosts,lost,lost_light,ghosts_seen,ghosts_miss,angles_seen," \

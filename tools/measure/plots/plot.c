@@ -56,7 +56,7 @@ void plot_stretch(struct plot *p, double x, double y)
     }
 }
 
-/* Returns how far along the axis V is, 0 to 1. */
+/* Returns the position of V along the axis, 0 to 1. */
 static double along(const struct plot_axis *a, double v)
 {
     return a->is_log ? log(v / a->lo) / log(a->hi / a->lo)
@@ -91,7 +91,7 @@ static void stroke(const struct plot *p, double x0, double y0, double x1,
             x0, y0, x1, y1, colour, width);
 }
 
-/* Widens the axis by a little room beside its outermost points. */
+/* Widens the axis a little beyond its outermost points. */
 static void widen(struct plot_axis *a)
 {
     if (a->lo > a->hi)
@@ -127,9 +127,10 @@ static void tick(const struct plot *p, bool is_x, double v)
     }
 }
 
-/* Draws the ticks of axis A: on a logarithmic one 1, 2 and 5 times powers of
- * ten, more if it spans less than a factor of 12, and if it spans four decades
- * or more some powers alone; else every 1, 2 or 5 times a power of ten. */
+/* Draws the ticks of axis A. Linear: every 1, 2 or 5 times a power of ten.
+ * Logarithmic: at 1, 2 and 5 times powers of ten, at more if the axis spans
+ * less than a factor of 12, only at some powers if it spans four decades or
+ * more. */
 static void ticks(const struct plot *p, const struct plot_axis *a, bool is_x)
 {
     static const double mantissa[] = {1, 2, 5, 0.7, 1.5, 3};

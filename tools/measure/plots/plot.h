@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Plots as SVG: panels with two axes, marks and lines. Pages of HTML, with
- * tables (html.c), and pictures (png.c).
+ * Plots as SVG: panels with two axes, marks and lines. HTML pages with tables
+ * (html.c) and pictures (png.c).
  */
 #ifndef GLINT_TOOLS_LAB_PLOTS_PLOT_H
 #define GLINT_TOOLS_LAB_PLOTS_PLOT_H
@@ -17,8 +17,8 @@ enum { PLOT_WIDTH = 380, PLOT_HEIGHT = 320 }; /* size of a panel, px */
 struct plot_axis {
     const char *words;
     bool is_log;
-    double lo, hi;     /* lo > hi: no points yet, see plot_stretch */
-    double least_span; /* least hi - lo; a logarithmic axis ignores it */
+    double lo, hi;     /* lo > hi: no points yet (plot_stretch) */
+    double least_span; /* min of hi - lo; ignored by a logarithmic axis */
 };
 
 struct plot {
@@ -29,22 +29,22 @@ struct plot {
     int n_keys;
 };
 
-/* Begins a file of N_PANELS panels in two columns, or of one panel. */
+/* Begins an SVG file of N_PANELS panels in two columns, or of one panel. */
 void plot_open(FILE *file, int n_panels);
 void plot_close(FILE *file);
 
-/* Prepares PLOT as panel NUMBER, from 0, with linear axes. */
+/* Prepares PLOT as panel NUMBER, counted from 0, with linear axes. */
 void plot_init(struct plot *plot, FILE *file, int number, const char *title);
 
-/* Stretches the axes to X, Y, unless one of them is not finite, or not above 0
- * on a logarithmic axis. */
+/* Extends the axes to (X, Y), unless a value is not finite, or not above 0 on a
+ * logarithmic axis. */
 void plot_stretch(struct plot *plot, double x, double y);
 
 /* Draws title, axes and grid, after stretching and before marks. */
 void plot_frame(struct plot *plot);
 
-/* Draws a mark of KIND 'o' circle, '.' small circle, 's' square or 'd' diamond;
- * capitals are hollow. Browsers show TIP, unless it is NULL. */
+/* Draws a mark of KIND 'o' circle, '.' small circle, 's' square or 'd' diamond,
+ * hollow if it is a capital. TIP is the tooltip, or NULL. */
 void plot_mark(const struct plot *plot, double x, double y, char kind,
                const char *colour, const char *tip);
 void plot_line(const struct plot *plot, double x0, double y0, double x1,
@@ -59,15 +59,16 @@ const char *plot_colour(int i);
 
 /* ------------------------------------------------------------------- pages */
 
-/* Begins a page with the heading TITLE. STYLE extends or replaces the rules
- * that all pages share. */
+/* Begins an HTML page with the heading TITLE. The CSS rules STYLE extend or
+ * replace the rules of all pages. */
 void html_begin(FILE *file, const char *title, const char *style);
 
-/* Writes TEXT, whose < > & and " are escaped. */
+/* Writes TEXT with < > & and " escaped. */
 void html_text(FILE *file, const char *text);
 
-/* Writes a row of cells of TAG, th or td, that | divides in the text of FORMAT,
- * up to 1023 bytes. A cell that begins with ! is of the class worse. */
+/* Writes a table row with cells of TAG, th or td: the text of FORMAT, up to
+ * 1023 bytes, split at each |. A cell that begins with ! gets the class
+ * worse. */
 void html_row(FILE *file, const char *tag, const char *format, ...)
     GLINT_PRINTF(3, 4);
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * PNG as a data: URI. Its pixels are stored, not compressed, so that no
- * library is needed; pages, which have many, take the image plug-in where it
- * is.
+ * PNG as a data: URI. Pixels are compressed if the image plug-in is available;
+ * else they are stored uncompressed, which needs no library.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +9,7 @@
 #include "measure/plots/plot.h"
 #include "formats/oiio.h"
 
-enum { BLOCK = 65535 }; /* most bytes of a stored block of deflate */
+enum { BLOCK = 65535 }; /* max bytes of a stored deflate block */
 
 struct bytes {
     uint8_t *at;
@@ -43,7 +42,8 @@ static uint32_t crc_of(const uint8_t *data, size_t n)
     return ~crc;
 }
 
-/* Begins a chunk and returns its place; contents follow, then end_chunk(). */
+/* Begins a chunk and returns its offset; append the content, then call
+ * end_chunk(). */
 static size_t begin_chunk(struct bytes *b, const char *type)
 {
     const size_t start = b->n;
@@ -63,8 +63,8 @@ static void end_chunk(struct bytes *b, size_t start)
     put_u32(b, crc_of(b->at + start + 4, length + 4));
 }
 
-/* Puts ROWS[N], each row after its filter byte 0, as zlib without
- * compression. */
+/* Appends ROWS[N], rows that begin with the filter byte 0, as uncompressed zlib
+ * data. */
 static void put_pixels(struct bytes *b, const uint8_t *rows, size_t n)
 {
     uint32_t a = 1, c = 0;
@@ -80,7 +80,7 @@ static void put_pixels(struct bytes *b, const uint8_t *rows, size_t n)
         put(b, rows + at, part);
     }
     for (size_t i = 0; i < n; i++) {
-        a = (a + rows[i]) % 65521; /* NOLINT: N of them are there */
+        a = (a + rows[i]) % 65521; /* NOLINT: ROWS has N bytes */
         c = (c + a) % 65521;
     }
     put_u32(b, c << 16 | a);
@@ -103,8 +103,8 @@ static void base64(FILE *file, const uint8_t *data, size_t n)
     }
 }
 
-/* Makes the file of a picture. Returns its bytes, to be freed, at NULL if
- * memory is short. */
+/* Returns an uncompressed PNG file, which the caller frees; its member at is
+ * NULL if there is no memory. */
 static struct bytes png_of(const uint8_t *rgb, int width, int height)
 {
     const size_t row = 3 * (size_t)width, n = (row + 1) * (size_t)height;
@@ -125,7 +125,8 @@ static struct bytes png_of(const uint8_t *rgb, int width, int height)
     start = begin_chunk(&b, "IHDR");
     put_u32(&b, (uint32_t)width);
     put_u32(&b, (uint32_t)height);
-    put(&b, "\x08\x02\0\0", 5); /* 8 bits, RGB, and the string's own end */
+    put(&b, "\x08\x02\0\0", 5); /* 8 bits, RGB, no filter and interlace; the
+                                   last 0 is the string's */
     end_chunk(&b, start);
     start = begin_chunk(&b, "IDAT");
     put_pixels(&b, rows, n);
