@@ -410,7 +410,7 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
     return GLINT_OK;
 }
 
-/* Records which ghosts each of the models M of the file lacks. */
+/* Records which ghosts each of the models M of the file has. */
 static enum glint_status set_lacks(struct glint_zoom_lens *zoom,
                                    struct glint_blob *blob,
                                    const struct glint_zoom_model *m,
