@@ -68,7 +68,7 @@ typedef void glint_add_packed_fn(uint8_t *pixels,
  * four pixels. Each pixel's change is scaled by its distance to white relative
  * to the mean's distance, so light that makes the mean white makes each pixel
  * white. Chroma moves towards its mean by the same fraction. Y' never falls.
- * luma codes of two rows; if the last row is alone, that row twice
+ *   luma    codes of two rows; if the last row is alone, that row twice
  *   chroma  codes Cb, Cr of each pair of both rows; the same row twice if they
  *           share it
  *   light   R, G, B: _q16, one for every two pixels of a row
