@@ -330,6 +330,15 @@ static void end_hearing(struct child *child)
 
 /* ------------------------------------------------------------------- ending */
 
+/* Closes the filter of a child that has ended: a running one may not have
+ * opened it yet. */
+static void close_script(struct child *child)
+{
+    if (child->script >= 0)
+        close(child->script);
+    child->script = -1;
+}
+
 int child_end(struct child *child)
 {
     int status = 0;
@@ -338,10 +347,8 @@ int child_end(struct child *child)
     if (child->fd >= 0)
         close(child->fd);
     child->fd = -1;
-    if (child->script >= 0)
-        close(child->script);
-    child->script = -1;
     if (child->pid <= 0) {
+        close_script(child);
         end_hearing(child);
         return 0;
     }
@@ -350,6 +357,7 @@ int child_end(struct child *child)
     while (pid < 0 && errno == EINTR);
     replace(child->pid, 0);
     child->pid = 0;
+    close_script(child);
     end_hearing(child);
     if (pid < 0)
         return NOT_FOUND;
