@@ -8,6 +8,7 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "fuzz/fuzz.h"
 #include "lamp_files/lamp_list.h"
@@ -42,11 +43,16 @@ static void check_lamps(const struct lamp_list *list, int frame)
 static int print_row(char *text, const struct lamp_row *r, int as_json)
 {
     const char *const format =
-        as_json ? "{\"frame\":%d,\"x\":%.17g,\"y\":%.17g,\"power\":%.17g,"
+        as_json ? "{\"frame\":%s,\"x\":%.17g,\"y\":%.17g,\"power\":%.17g,"
                   "\"r\":%.17g,\"g\":%.17g,\"b\":%.17g,\"size\":%.17g}\n"
-                : "%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n";
+                : "%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n";
+    char frame[16] = "*";
 
-    return snprintf(text, ROW_BYTES, format, r->frame, r->x, r->y, r->power,
+    if (r->frame >= 0)
+        snprintf(frame, sizeof frame, "%d", r->frame);
+    else if (as_json)
+        strcpy(frame, "\"*\"");
+    return snprintf(text, ROW_BYTES, format, frame, r->x, r->y, r->power,
                     r->rgb[0], r->rgb[1], r->rgb[2], r->size);
 }
 

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * embed_scene LENS SCENE IN.ppm >OUT.ppm - draws the objects of a scene over a
- * picture, then the flare of the scene's lamps and of the picture's lamps that
- * stay visible, the same as glint overlay --scene --stop polygon:8. LENS and
- * SCENE are baked files.
+ * embed_scene LENS SCENE IN.ppm >OUT.ppm - draws a baked scene over a picture,
+ * then the flare of its lamps and of the picture's lamps that stay visible, the
+ * same as glint overlay --scene --stop polygon:8. LENS is baked, too.
  */
 #include "glint/engine.h"
 #include "glint/kernels.h"
