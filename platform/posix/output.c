@@ -500,7 +500,7 @@ enum glint_status glint_output_write(struct glint_output *out, const void *data,
 {
     if (bytes > BUFFER_BYTES - out->used) {
         write_all(out, out->buffer, out->used);
-        out->used = 0;
+        out->used = 0; /* NOLINT: glint_output_end() frees the buffer. */
     }
     if (out->failed)
         return report_failed(out, error);

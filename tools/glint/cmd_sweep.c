@@ -343,7 +343,7 @@ int cmd_sweep(int argc, char **argv)
     code = parse(&tool, argc, argv, s, &asked);
     if (code < 0)
         code = tool_start(&tool);
-    if (code == EXIT_OK && tool.workers) {
+    if (code == EXIT_OK && tool.workers && asked.folder) {
         fill_in(s, &asked);
         code = run(s, &asked);
     }
