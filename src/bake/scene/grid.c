@@ -268,11 +268,12 @@ static uint64_t choose_cells(const struct mesher *m,
                              uint64_t *refs)
 {
     const uint64_t most = CELLS_EACH * (uint64_t)mesh->n_triangles + 1;
-    uint64_t most_refs = REFS_EACH * (uint64_t)mesh->n_triangles, n = 0;
+    uint64_t most_refs = REFS_EACH * (uint64_t)mesh->n_triangles;
 
     most_refs = most_refs < FEW_REFS ? FEW_REFS : most_refs;
     for (mesh->cell_log2 = 4;; mesh->cell_log2++) {
-        n = set_cells(mesh, low, high);
+        const uint64_t n = set_cells(mesh, low, high);
+
         *refs = n > 0 && n <= most ? count_refs(m, mesh) : UINT64_MAX;
         if (*refs <= most_refs || mesh->cell_log2 == 28)
             return n;
