@@ -324,7 +324,7 @@ TEST(rising_alone)
 
 /* After a cut, and after frames without a lamp, the exposure must fit at
  * once. */
-TEST(begins_anew)
+TEST(restarts_after_a_cut)
 {
     const struct glint_response r = response_of(0, 7);
     struct glint_engine_lamp faint = lamp_of(5, 10),

@@ -504,7 +504,7 @@ TEST(endless_changes)
 
 /* ------------------------------------------------ begun again, other memory */
 
-static void check_anew(enum glint_v4l2_io io)
+static void check_restart(enum glint_v4l2_io io)
 {
     assert_int_equal(try_open(NULL, io), GLINT_OK);
     fake_camera_deliver(0, 1);
@@ -523,11 +523,11 @@ static void check_anew(enum glint_v4l2_io io)
     must_close();
 }
 
-TEST(anew_otherwise)
+TEST(restarts_user_memory_and_reads)
 {
-    check_anew(GLINT_V4L2_USERPTR);
+    check_restart(GLINT_V4L2_USERPTR);
     camera.caps |= V4L2_CAP_READWRITE;
-    check_anew(GLINT_V4L2_READ);
+    check_restart(GLINT_V4L2_READ);
 }
 
 /* --------------------------------------------------- every call that fails */

@@ -120,7 +120,7 @@ TEST(largest)
     free(large);
     free(small);
     assert_true(corners > 1000);
-    assert_at_most("frames: 8192x8192 against its middle by itself", n, 0,
+    assert_at_most("frames: 8192x8192 against its middle drawn alone", n, 0,
                    "samples");
 }
 
