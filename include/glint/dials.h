@@ -12,6 +12,8 @@
 #ifndef GLINT_DIALS_H
 #define GLINT_DIALS_H
 
+#include <stdint.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -56,6 +58,7 @@ struct glint_dials {
     int dust_log2; /* log2 of the cells per side of the finest table of dust and
                       masks in use, 3 .. GLINT_SHADE_MOST_LOG2; lower values
                       blur the specks and preserve the light */
+    uint64_t reserved[4]; /* 0, as in struct glint_engine_config */
 };
 
 /* Returns the dials at QUALITY_Q15, 0 .. 2^15, along the measured Pareto

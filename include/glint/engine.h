@@ -96,6 +96,7 @@ struct glint_engine_camera {
     /* Dirt on the front element, from glint_front_make(), or NULL; must outlive
      * the engine. */
     const struct glint_front_dirt *front;
+    uint64_t reserved[16]; /* 0 */
 };
 
 /* Parameters of the search for lamps. */
@@ -113,6 +114,7 @@ struct glint_engine_search {
     int max_drawn;  /* max lamps that an arena has capacity for; lamps above it
                        are merged. 0: 2 * max_found + more_lamps, as fading
                        lamps are drawn in addition to rising lamps */
+    uint64_t reserved[16]; /* 0 */
 };
 
 /* Brightness of the flare. */
@@ -131,6 +133,7 @@ struct glint_engine_light {
      * scattered by the lens and by dirt on its front. 0, the default: no
      * scattered light; the sum is at most GLINT_MOST_VEIL. */
     double veil, haze;
+    uint64_t reserved[16]; /* 0 */
 };
 
 /* Bits that select the components of a flare, and two flags. CORES: stars
@@ -170,6 +173,7 @@ struct glint_engine_drawing {
     glint_progress_fn *progress; /* reports the progress of exact rays until the
                                     first picture is drawn; may be NULL */
     void *progress_ctx;
+    uint64_t reserved[16]; /* 0 */
 };
 
 /* Caches measurements of lenses between runs of a program. KEY identifies an
@@ -184,8 +188,10 @@ struct glint_engine_cache {
     void *ctx;
 };
 
-/* New members are added only at the end, so that a program that was built with
- * an older library gets the defaults of the newer members. */
+/* A program built with an older library keeps working, with the defaults of
+ * members that it does not know: a new member of a group, or of struct
+ * glint_dials, replaces one of its reserved members, and 0 is its default; a
+ * new member of this struct is added at its end. */
 struct glint_engine_config {
     size_t size;       /* sizeof this struct in the program, set by
                           glint_engine_defaults() */

@@ -93,18 +93,22 @@ enum glint_option_id {
     GLINT_N_OPTIONS
 };
 
+enum { GLINT_MAX_OPTIONS = 256 }; /* max rows of the table, for all versions */
+
 /* The value of each option, one member per row, and whether the option was set.
  * An option without a default is 0 or NULL until it is set. The struct grows
- * with the table: programs that must work with other versions of the library
- * set options by name. */
+ * with the table, at its end: in the smaller struct of an older program, the
+ * options that it does not have keep their defaults. */
 struct glint_options {
+    size_t size; /* sizeof this struct in the program, set by
+                    glint_options_defaults() */
+    bool given[GLINT_MAX_OPTIONS];
 #define GLINT_ROW_REAL(member, ...)    double member;
 #define GLINT_ROW_INTEGER(member, ...) int member;
 #define GLINT_ROW_FLAG(member, ...)    bool member;
 #define GLINT_ROW_WORD(member, ...)    int member;
 #define GLINT_ROW_TEXT(member, ...)    const char *member; /* not copied */
 #include "glint/options.inc"
-    bool given[GLINT_N_OPTIONS];
 };
 
 /* True if option MEMBER of OPTIONS was set. */
@@ -116,8 +120,15 @@ struct glint_options {
 const struct glint_option *glint_option(int index);
 const struct glint_option *glint_option_named(const char *name);
 
+/* Sets OPTIONS, a struct of SIZE bytes, to the defaults of the table; programs
+ * call glint_options_defaults(). */
+void glint_options_defaults_sized(struct glint_options *options, size_t size);
+
 /* Sets OPTIONS to the defaults of the table. */
-void glint_options_defaults(struct glint_options *options);
+static inline void glint_options_defaults(struct glint_options *options)
+{
+    glint_options_defaults_sized(options, sizeof *options);
+}
 
 /* Set option NAME. If both --quality and --error are set, the last one applies;
  * likewise --strength and --exposure. VALUE is a number, the index of a word,

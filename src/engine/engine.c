@@ -36,6 +36,19 @@ void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
     memcpy(cfg, &all, size < sizeof all ? size : sizeof all);
 }
 
+/* Returns whether no program of a newer library sets members of C that this one
+ * does not know. */
+static bool is_known(const struct glint_engine_config *c)
+{
+    static const struct glint_engine_config zero;
+#define UNSET(group)                                \
+    (memcmp(c->group.reserved, zero.group.reserved, \
+            sizeof zero.group.reserved) == 0)
+
+    return UNSET(camera) && UNSET(search) && UNSET(light) && UNSET(drawing) &&
+           UNSET(drawing.dials);
+}
+
 /* Returns a text that states what is out of range in C, or NULL. */
 static const char *check(const struct glint_engine_config *c)
 {
@@ -262,7 +275,7 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
     enum glint_status status;
 
     *engine = NULL;
-    if (cfg->size < FIRST_SIZE || cfg->size > sizeof whole) {
+    if (cfg->size < FIRST_SIZE || cfg->size > sizeof whole || !is_known(cfg)) {
         snprintf(error->text, sizeof error->text,
                  "the program needs another version of the library, or its "
                  "configuration is not of glint_engine_defaults()");

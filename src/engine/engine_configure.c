@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Configures an engine from the table of options. */
+#include "engine/options/texts.h"
 #include "glint/engine.h"
 #include "glint/options.h"
 
@@ -60,7 +61,8 @@ static struct glint_engine_drawing drawing_of(const struct glint_options *o)
 void glint_engine_configure(struct glint_engine_config *cfg,
                             const struct glint_options *options)
 {
-    const struct glint_options *const o = options;
+    const struct glint_options whole = glint_options_whole(options);
+    const struct glint_options *const o = &whole;
     const int found = o->max_lights ? o->max_lights : FOUND;
     double mm[2] = {0, 0};
 

@@ -41,12 +41,19 @@ static const struct glint_option table[] = {
 #include "glint/options.inc"
 };
 
-static const size_t offset[] = {
-#define GLINT_ROW_REAL(member, ...)    offsetof(struct glint_options, member),
-#define GLINT_ROW_INTEGER(member, ...) offsetof(struct glint_options, member),
-#define GLINT_ROW_FLAG(member, ...)    offsetof(struct glint_options, member),
-#define GLINT_ROW_WORD(member, ...)    offsetof(struct glint_options, member),
-#define GLINT_ROW_TEXT(member, ...)    offsetof(struct glint_options, member),
+/* Where the value of each row begins and ends in struct glint_options. */
+static const struct place {
+    size_t begin, end;
+} place[] = {
+#define PLACE(member)                         \
+    {offsetof(struct glint_options, member),  \
+     offsetof(struct glint_options, member) + \
+         sizeof((struct glint_options){0}.member)},
+#define GLINT_ROW_REAL(member, ...)    PLACE(member)
+#define GLINT_ROW_INTEGER(member, ...) PLACE(member)
+#define GLINT_ROW_FLAG(member, ...)    PLACE(member)
+#define GLINT_ROW_WORD(member, ...)    PLACE(member)
+#define GLINT_ROW_TEXT(member, ...)    PLACE(member)
 #include "glint/options.inc"
 };
 
@@ -68,7 +75,7 @@ const struct glint_option *glint_option_named(const char *name)
 
 static void store(struct glint_options *options, int i, double value)
 {
-    void *const at = (char *)options + offset[i];
+    void *const at = (char *)options + place[i].begin;
 
     switch (table[i].type) {
     case GLINT_OPTION_REAL:
@@ -84,17 +91,44 @@ static void store(struct glint_options *options, int i, double value)
 
 static void store_text(struct glint_options *options, int i, const char *text)
 {
-    *(const char **)((char *)options + offset[i]) = text;
+    *(const char **)((char *)options + place[i].begin) = text;
 }
 
-void glint_options_defaults(struct glint_options *options)
+/* Returns whether OPTIONS, perhaps of an older program, have row I. */
+static bool has_row(const struct glint_options *options, int i)
 {
-    memset(options, 0, sizeof *options);
-    for (int i = 0; i < GLINT_N_OPTIONS; i++)
+    return place[i].end <= options->size;
+}
+
+/* Returns the index of option NAME of OPTIONS, or -1. */
+static int find_row(const struct glint_options *options, const char *name)
+{
+    const struct glint_option *const option = glint_option_named(name);
+    const int i = option ? (int)(option - table) : -1;
+
+    return i >= 0 && has_row(options, i) ? i : -1;
+}
+
+void glint_options_defaults_sized(struct glint_options *options, size_t size)
+{
+    memset(options, 0, size);
+    options->size = size;
+    for (int i = 0; i < GLINT_N_OPTIONS && has_row(options, i); i++)
         if (table[i].type == GLINT_OPTION_TEXT)
             store_text(options, i, table[i].text[0] ? table[i].text : NULL);
         else if (!isnan(table[i].initial))
             store(options, i, table[i].initial);
+}
+
+struct glint_options glint_options_whole(const struct glint_options *options)
+{
+    struct glint_options whole;
+
+    glint_options_defaults(&whole);
+    memcpy(&whole, options,
+           options->size < sizeof whole ? options->size : sizeof whole);
+    whole.size = sizeof whole;
+    return whole;
 }
 
 /* Returns the number of words of OPTION, and the length of word INDEX. */
@@ -229,8 +263,8 @@ enum glint_status glint_options_set(struct glint_options *options,
                                     const char *name, double value,
                                     struct glint_error *error)
 {
-    const struct glint_option *const option = glint_option_named(name);
-    const int i = option ? (int)(option - table) : 0;
+    const int i = find_row(options, name);
+    const struct glint_option *const option = i < 0 ? NULL : &table[i];
     const char *word;
     double high;
     size_t n;
@@ -313,8 +347,8 @@ enum glint_status glint_options_set_text(struct glint_options *options,
                                          const char *name, const char *text,
                                          struct glint_error *error)
 {
-    const struct glint_option *const option = glint_option_named(name);
-    const int i = option ? (int)(option - table) : 0;
+    const int i = find_row(options, name);
+    const struct glint_option *const option = i < 0 ? NULL : &table[i];
     double value = 1;
 
     error->text[0] = '\0';
@@ -349,8 +383,10 @@ enum glint_status glint_options_set_text(struct glint_options *options,
 /* -------------------------------------------------------------- what follows
  */
 
-struct glint_quality glint_options_quality(const struct glint_options *o)
+struct glint_quality glint_options_quality(const struct glint_options *options)
 {
+    const struct glint_options whole = glint_options_whole(options);
+    const struct glint_options *const o = &whole;
     struct glint_quality q = glint_quality_at(o->quality);
 
     if (GLINT_OPTION_GIVEN(o, grid))

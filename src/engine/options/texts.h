@@ -11,4 +11,8 @@
  * half. */
 bool glint_text_is_valid(enum glint_option_id id, const char *text);
 
+/* Returns OPTIONS, perhaps the smaller struct of an older program, with the
+ * defaults of the rows that it does not have. */
+struct glint_options glint_options_whole(const struct glint_options *options);
+
 #endif

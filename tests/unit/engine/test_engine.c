@@ -296,7 +296,7 @@ TEST(refuses)
                      GLINT_E_ARGUMENT);
     glint_engine_destroy(engine);
     glint_engine_destroy(NULL);
-    for (int k = 0; k < 12; k++) {
+    for (int k = 0; k < 14; k++) {
         glint_engine_defaults(&cfg, k == 0 ? 0 : WIDTH, HEIGHT);
         cfg.model = k == 1 ? NULL : &opened.lens.model.lens;
         cfg.search.max_found = k == 2 ? 1025 : cfg.search.max_found;
@@ -308,6 +308,8 @@ TEST(refuses)
         cfg.drawing.only_ghost = k == 8 ? 1000 : -1;
         cfg.light.gain = k == 9 ? (double)INFINITY : 1;
         cfg.search.max_drawn = k == 10 ? -1 : 0;
+        cfg.light.reserved[15] = k == 12;
+        cfg.drawing.dials.reserved[0] = k == 13;
         *error.text = '\0';
         assert_int_equal(glint_engine_create(&engine, &cfg, &error),
                          GLINT_E_ARGUMENT);
@@ -331,6 +333,35 @@ TEST(older_program)
     cfg.model = &opened.lens.model.lens;
     assert_ok(glint_engine_create(&engine, &cfg, &error));
     glint_engine_destroy(engine);
+}
+
+/* The struct of an older program, without the last option, must not be written
+ * behind its end, must accept and configure all others, and the option that it
+ * lacks is unknown and has its default. */
+TEST(older_options)
+{
+    const size_t bytes = offsetof(struct glint_options, dither);
+    struct glint_engine_config cfg;
+    struct glint_options o, *const older = malloc(bytes);
+    struct glint_error error;
+
+    assert_non_null(older);
+    memset(&o, 0x55, sizeof o);
+    glint_options_defaults_sized(&o, bytes);
+    assert_int_equal(((unsigned char *)&o)[bytes], 0x55);
+    assert_ok(glint_options_set(&o, "strength", 0.25, &error));
+    assert_ok(glint_options_set_text(&o, "tile", "16", &error));
+    assert_int_equal(glint_options_set(&o, "dither", 1, &error),
+                     GLINT_E_ARGUMENT);
+    memcpy(older, &o, bytes);
+    assert_int_equal(glint_options_quality(older).dials.fineness,
+                     glint_dials_at(1 << 14).fineness);
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    glint_engine_configure(&cfg, older);
+    assert_true(cfg.light.strength == 0.25);
+    assert_int_equal(cfg.drawing.tile_log2, 4);
+    assert_int_equal(cfg.drawing.dither, 0);
+    free(older);
 }
 
 /* Options set by name must draw what the same configuration draws, and those

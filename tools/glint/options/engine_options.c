@@ -161,15 +161,14 @@ void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES])
         "Speed and accuracy\n"};
     struct page page = {text, text + ENGINE_HELP_BYTES - 1, 0};
     const struct glint_option *row;
-    int group = -1;
 
     text[0] = '\0';
-    for (int i = 0; (row = glint_option(i)) != NULL; i++) {
-        if (!has_group(tool, row->group))
+    for (int group = 0; group < GLINT_OPTION_GROUPS; group++) {
+        if (!has_group(tool, (enum glint_option_group)group))
             continue;
-        if ((int)row->group != group)
-            put(&page, headings[row->group], strlen(headings[row->group]));
-        group = (int)row->group;
-        put_row(&page, tool, i);
+        put(&page, headings[group], strlen(headings[group]));
+        for (int i = 0; (row = glint_option(i)) != NULL; i++)
+            if ((int)row->group == group)
+                put_row(&page, tool, i);
     }
 }
