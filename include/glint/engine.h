@@ -80,22 +80,28 @@ struct glint_engine_camera {
      * selects the f-number of the model, its widest opening. */
     int n_blades;
     double blade_rotation_deg, f_number;
+    struct glint_iris iris;   /* its mask must outlive the engine */
+    struct glint_waves waves; /* default: AUTO */
+    int balance;              /* not 0: glint_setup_balance() */
     double sensor_width_mm,
         sensor_height_mm; /* sensor size, mm; 0: size of the model's film */
     const struct glint_projection
         *projection; /* copied; NULL: pinhole projection */
-    /* A setup of the caller instead of the stop above; must outlive the engine.
-     * The caller calls glint_engine_update_stop() after changing the setup.
-     * NULL: the engine makes a setup from the model. */
+    /* A setup of the caller, for example of glint_engine_setup(), instead of the
+     * stop and colours above; must outlive the engine. The caller calls
+     * glint_engine_update_stop() after changing the setup. NULL: the engine
+     * makes a setup from the model. */
     const struct glint_setup *setup;
     /* &glint_frame_traces of libglint-bake.a traces exact rays through the lens
      * of SETUP if there is no model. NULL: a model is required. */
     const struct glint_frame_rays *rays;
     const struct glint_tint *tints; /* [ghosts of the setup], or NULL; must
                                        outlive the engine */
-    /* Dirt on the front element, from glint_front_make(), or NULL; must outlive
-     * the engine. */
+    /* Dirt on the front element: from glint_front_make(), which must outlive
+     * the engine, or NULL: the engine makes that of front_dirt, whose mask is
+     * copied. */
     const struct glint_front_dirt *front;
+    struct glint_front front_dirt;
     uint64_t reserved[16]; /* 0 */
 };
 
@@ -241,12 +247,24 @@ static inline void glint_engine_defaults(struct glint_engine_config *cfg,
     glint_engine_defaults_sized(cfg, sizeof *cfg, width, height);
 }
 
-/* Sets the members of CFG for light, drawing, search, f-number, sensor and
- * memory from OPTIONS (glint/options.h). Members of light and drawing
- * without a set option get the option's default. */
+/* Sets the members of CFG for light, drawing, search, camera and memory from
+ * OPTIONS (glint/options.h). Members without a set option get the option's
+ * default, except for the shape of the stop, its dust and front_dirt, which
+ * stay. */
 struct glint_options;
 void glint_engine_configure(struct glint_engine_config *cfg,
                             const struct glint_options *options);
+
+/* Makes SETUP of MODEL with the stop and the colours of CAMERA, as an engine
+ * does. MODEL NULL: SETUP was made from a lens table, by glint_setup_init()
+ * with the blades and wavelengths of CAMERA. *DIRT receives what SETUP then
+ * refers to, or NULL. GLINT_E_ARGUMENT, with ERROR; GLINT_E_LENS,
+ * GLINT_E_MEMORY. */
+enum glint_status glint_engine_setup(struct glint_setup *setup,
+                                     const struct glint_lens *model,
+                                     const struct glint_engine_camera *camera,
+                                     struct glint_dirt **dirt,
+                                     struct glint_error *error);
 
 /* ------------------------------------------------------------------ reports */
 
@@ -327,10 +345,11 @@ const struct glint_view *glint_engine_view(const struct glint_engine *engine);
 
 /* Set option NAME of glint/options.h for the following pictures, to a number or
  * to a text as on a command line. NAME is strength, exposure (the last set of
- * these two applies), gain, starburst, or f-number (as by glint_engine_stop()).
- * Returns GLINT_E_ARGUMENT and sets ERROR if there is no such option, it does
- * not accept the value, or it is fixed when an engine is made; the engine is
- * unchanged. May return GLINT_E_MEMORY. */
+ * these two applies), gain, starburst, f-number (as by glint_engine_stop()),
+ * stop or dust (as by glint_engine_iris()). Returns GLINT_E_ARGUMENT and sets
+ * ERROR if there is no such option, it does not accept the value, or it is
+ * fixed when an engine is made; the engine is unchanged. May return
+ * GLINT_E_MEMORY. */
 enum glint_status glint_engine_set(struct glint_engine *engine,
                                    const char *name, double value,
                                    struct glint_error *error);

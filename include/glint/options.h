@@ -179,15 +179,7 @@ bool glint_option_stop(const char *text, struct glint_stop_shape *stop);
  * (default 1) */
 bool glint_option_dust(const char *text, double *fraction, int *seed);
 
-/* --wavelengths. LIST: wavelengths; COUNT: their number, for glint_spectrum()
- * to choose; AUTO: each ghost uses as many as it needs */
-enum glint_waves_kind { GLINT_WAVES_LIST, GLINT_WAVES_COUNT, GLINT_WAVES_AUTO };
-struct glint_waves {
-    enum glint_waves_kind kind;
-    int n;                            /* number of wavelengths; undefined for
-                                         AUTO */
-    double nm[GLINT_MAX_WAVELENGTHS]; /* [n] for LIST, otherwise undefined */
-};
+/* --wavelengths */
 bool glint_option_waves(const char *text, struct glint_waves *waves);
 
 /* --sensor: width and height, mm */

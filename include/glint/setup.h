@@ -34,6 +34,21 @@ extern "C" {
 void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
                     double *share);
 
+/* Wavelengths of a setup: AUTO: each ghost has as many as it needs; COUNT: the
+ * N of glint_spectrum(); or a LIST. */
+enum glint_waves_kind { GLINT_WAVES_AUTO, GLINT_WAVES_COUNT, GLINT_WAVES_LIST };
+struct glint_waves {
+    enum glint_waves_kind kind;
+    int n;                            /* number of wavelengths; undefined for
+                                         AUTO */
+    double nm[GLINT_MAX_WAVELENGTHS]; /* [n] for LIST, otherwise undefined */
+};
+
+/* Sets NM to the wavelengths of WAVES, those of red, green and blue for AUTO.
+ * Returns their number. */
+int glint_waves_list(const struct glint_waves *waves,
+                     double nm[GLINT_MAX_WAVELENGTHS]);
+
 /* Returns the largest of three channels. */
 double glint_largest_channel(const double rgb[3]);
 

@@ -87,26 +87,57 @@ static const char *check(const struct glint_engine_config *c)
 
 /* ------------------------------------------------------------------- making */
 
-/* Makes a setup of MODEL for SHAPE. *DIRT receives what it refers to, or NULL.
- */
-static enum glint_status set_up(struct glint_setup *setup,
-                                const struct glint_lens *model,
-                                const struct glint_engine_shape *shape,
-                                struct glint_dirt **dirt,
-                                struct glint_error *error)
+/* Returns whether IRIS has more than straight, clean blades. */
+static bool has_iris(const struct glint_iris *iris)
 {
-    static const double wavelength_nm[] = {650, 532, 450};
-    enum glint_status status =
-        glint_setup_from_model(setup, model, shape->n_blades,
-                               shape->rotation_deg, wavelength_nm, 3, error);
+    return iris->roundness != 0 || iris->softness != 0 || iris->dust != 0 ||
+           iris->mask;
+}
+
+enum glint_status glint_engine_setup(struct glint_setup *setup,
+                                     const struct glint_lens *model,
+                                     const struct glint_engine_camera *camera,
+                                     struct glint_dirt **dirt,
+                                     struct glint_error *error)
+{
+    double nm[GLINT_MAX_WAVELENGTHS];
+    const int n = glint_waves_list(&camera->waves, nm);
+    enum glint_status status = GLINT_OK;
 
     *dirt = NULL;
-    if (status == GLINT_OK && shape->f_number != 0)
-        status = glint_setup_stop_down(setup, model, shape->f_number, error);
-    if (status == GLINT_OK && shape->set_iris)
-        status = shape->set_iris(setup, &shape->iris, dirt, error);
-    if (status == GLINT_OK)
+    if (model)
+        status =
+            glint_setup_from_model(setup, model, camera->n_blades,
+                                   camera->blade_rotation_deg, nm, n, error);
+    if (status == GLINT_OK && model && camera->f_number != 0)
+        status = glint_setup_stop_down(setup, model, camera->f_number, error);
+    if (status == GLINT_OK && has_iris(&camera->iris))
+        status = glint_setup_iris(setup, &camera->iris, dirt, error);
+    if (status != GLINT_OK) {
+        glint_dirt_free(*dirt);
+        *dirt = NULL;
+        return status;
+    }
+    if (camera->waves.kind == GLINT_WAVES_COUNT)
+        glint_setup_weigh(setup);
+    else if (camera->waves.kind == GLINT_WAVES_AUTO)
         glint_setup_spread(setup, model);
+    if (camera->balance)
+        glint_setup_balance(setup);
+    return GLINT_OK;
+}
+
+/* Makes the dirt on the front element, unless the caller of C has some. */
+static enum glint_status make_front(struct glint_engine_optics *o,
+                                    const struct glint_engine_config *c,
+                                    struct glint_error *error)
+{
+    const enum glint_status status =
+        c->camera.front
+            ? GLINT_OK
+            : glint_front_make(&o->own_front, &c->camera.front_dirt, error);
+
+    o->front = c->camera.front ? c->camera.front : o->own_front;
     return status;
 }
 
@@ -220,13 +251,13 @@ static enum glint_status make(struct glint_engine *e,
     struct glint_engine_optics *const o = &e->optics;
     enum glint_status status = GLINT_OK;
 
-    o->shape = (struct glint_engine_shape){.n_blades = c->camera.n_blades,
-                                           .rotation_deg =
-                                               c->camera.blade_rotation_deg,
-                                           .f_number = c->camera.f_number};
+    o->camera = c->camera;
     o->setup = c->camera.setup ? c->camera.setup : &o->own;
     if (!c->camera.setup)
-        status = set_up(&o->own, c->model, &o->shape, &o->dirt, error);
+        status =
+            glint_engine_setup(&o->own, c->model, &o->camera, &o->dirt, error);
+    if (status == GLINT_OK)
+        status = make_front(o, c, error);
     if (status == GLINT_OK &&
         c->drawing.only_ghost >= o->setup->n_ghosts - o->setup->n_parts) {
         snprintf(error->text, sizeof error->text, "the lens has %d ghosts",
@@ -235,7 +266,6 @@ static enum glint_status make(struct glint_engine *e,
     }
     if (status != GLINT_OK)
         return status;
-    o->front = c->camera.front;
     e->most_lamps = c->search.more_lamps +
                     (c->search.max_found ? GLINT_ENGINE_MAX_LAMPS : 0);
     e->paint.lamp = malloc(((size_t)e->most_lamps + 1) * sizeof *e->paint.lamp);
@@ -308,6 +338,7 @@ void glint_engine_destroy(struct glint_engine *engine)
     glint_lamp_detector_close(&engine->find.detector);
     glint_frame_finish(&engine->paint.frame);
     glint_dirt_free(engine->optics.dirt);
+    glint_front_free(engine->optics.own_front);
     free(engine->paint.lamp);
     free(engine->expose.before);
     free(engine);
@@ -367,7 +398,7 @@ void glint_engine_update_stop(struct glint_engine *engine)
 }
 
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
-                                       const struct glint_engine_shape *shape,
+                                       const struct glint_engine_camera *camera,
                                        bool measure, struct glint_error *error)
 {
     struct glint_engine_optics *const o = &engine->optics;
@@ -377,16 +408,14 @@ enum glint_status glint_engine_reshape(struct glint_engine *engine,
     enum glint_status status = GLINT_E_ARGUMENT;
 
     if (o->setup == &o->own)
-        status = set_up(&setup, f->lens, shape, &dirt, error);
+        status = glint_engine_setup(&setup, f->lens, camera, &dirt, error);
     else
         snprintf(error->text, sizeof error->text,
                  "the setup is not the engine's own");
-    if (status != GLINT_OK) {
-        glint_dirt_free(dirt);
+    if (status != GLINT_OK)
         return status;
-    }
     o->own = setup;
-    o->shape = *shape;
+    o->camera = *camera;
     glint_engine_update_stop(engine);
     glint_dirt_free(o->dirt);
     o->dirt = dirt;
@@ -406,8 +435,21 @@ enum glint_status glint_engine_reshape(struct glint_engine *engine,
 enum glint_status glint_engine_stop(struct glint_engine *engine,
                                     double f_number, struct glint_error *error)
 {
-    struct glint_engine_shape shape = engine->optics.shape;
+    struct glint_engine_camera camera = engine->optics.camera;
 
-    shape.f_number = f_number;
-    return glint_engine_reshape(engine, &shape, true, error);
+    camera.f_number = f_number;
+    return glint_engine_reshape(engine, &camera, true, error);
+}
+
+enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades,
+                                    double rotation_deg,
+                                    const struct glint_iris *iris,
+                                    struct glint_error *error)
+{
+    struct glint_engine_camera camera = engine->optics.camera;
+
+    camera.n_blades = n_blades;
+    camera.blade_rotation_deg = rotation_deg;
+    camera.iris = *iris;
+    return glint_engine_reshape(engine, &camera, false, error);
 }

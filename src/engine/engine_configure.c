@@ -2,7 +2,7 @@
  *
  * Configures an engine from the table of options. */
 #include "engine/options/texts.h"
-#include "glint/engine.h"
+#include "engine/engine_parts.h"
 #include "glint/options.h"
 
 /* Max lamps of a search: most pictures have many barely visible ones. */
@@ -58,13 +58,46 @@ static struct glint_engine_drawing drawing_of(const struct glint_options *o)
     return d;
 }
 
+void glint_engine_configure_stop(struct glint_engine_camera *camera,
+                                 const struct glint_options *o)
+{
+    struct glint_iris *const iris = &camera->iris;
+    struct glint_stop_shape shape;
+
+    if (o->stop && glint_option_stop(o->stop, &shape)) {
+        camera->n_blades = shape.n_blades;
+        camera->blade_rotation_deg = shape.rotation_deg;
+        iris->roundness = shape.roundness;
+        iris->softness = shape.softness;
+    }
+    if (o->dust)
+        glint_option_dust(o->dust, &iris->dust, &iris->dust_seed);
+}
+
+static void set_camera(struct glint_engine_camera *camera,
+                       const struct glint_options *o)
+{
+    struct glint_front *const front = &camera->front_dirt;
+    double mm[2] = {0, 0};
+
+    glint_engine_configure_stop(camera, o);
+    camera->f_number = o->f_number;
+    glint_option_waves(o->wavelengths, &camera->waves);
+    camera->balance = o->balance;
+    if (o->sensor)
+        glint_option_sensor(o->sensor, mm);
+    camera->sensor_width_mm = mm[0];
+    camera->sensor_height_mm = mm[1];
+    if (o->front_dust)
+        glint_option_dust(o->front_dust, &front->dust, &front->dust_seed);
+}
+
 void glint_engine_configure(struct glint_engine_config *cfg,
                             const struct glint_options *options)
 {
     const struct glint_options whole = glint_options_whole(options);
     const struct glint_options *const o = &whole;
     const int found = o->max_lights ? o->max_lights : FOUND;
-    double mm[2] = {0, 0};
 
     cfg->light =
         (struct glint_engine_light){.strength = o->strength,
@@ -80,11 +113,7 @@ void glint_engine_configure(struct glint_engine_config *cfg,
     cfg->search.max_found =
         found < GLINT_ENGINE_MAX_LAMPS ? found : GLINT_ENGINE_MAX_LAMPS;
     cfg->drawing = drawing_of(o);
-    cfg->camera.f_number = o->f_number;
-    if (o->sensor)
-        glint_option_sensor(o->sensor, mm);
-    cfg->camera.sensor_width_mm = mm[0];
-    cfg->camera.sensor_height_mm = mm[1];
+    set_camera(&cfg->camera, o);
     cfg->arena_bytes = (size_t)o->memory << 20;
     cfg->arena_has_all = 1;
 }

@@ -12,27 +12,13 @@
 #include "glint/engine.h"
 #include "glint/setup.h"
 
-typedef enum glint_status glint_setup_iris_fn(struct glint_setup *setup,
-                                              const struct glint_iris *iris,
-                                              struct glint_dirt **dirt,
-                                              struct glint_error *error);
-
-/* The stop that pictures are drawn through. */
-struct glint_engine_shape {
-    int n_blades;
-    double rotation_deg, f_number; /* 0: that of the model */
-    struct glint_iris iris;
-    /* glint_setup_iris(), once an iris was requested; a program that requests
-     * none does not link it. */
-    glint_setup_iris_fn *set_iris;
-};
-
 struct glint_engine_optics {
     const struct glint_setup *setup; /* OWN, or the caller's */
     struct glint_setup own;
-    struct glint_engine_shape shape;      /* what OWN was made for */
-    struct glint_dirt *dirt;              /* that of OWN, or NULL */
-    const struct glint_front_dirt *front; /* the caller's, or NULL */
+    struct glint_engine_camera camera; /* what OWN was made for */
+    struct glint_dirt *dirt;           /* that of OWN, or NULL */
+    struct glint_front_dirt *own_front;
+    const struct glint_front_dirt *front; /* OWN_FRONT, the caller's, or NULL */
 };
 
 struct glint_engine_finding {
@@ -77,11 +63,16 @@ struct glint_engine {
     int most_lamps; /* that a picture may have */
 };
 
+/* Sets the stop of CAMERA by the options stop and dust of O that are set. */
+struct glint_options;
+void glint_engine_configure_stop(struct glint_engine_camera *camera,
+                                 const struct glint_options *o);
+
 /* Sets another stop of ENGINE, which makes its own setup; with MEASURE,
  * measures the brightness of flares again. The stop stays as it is after an
  * error. */
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
-                                       const struct glint_engine_shape *shape,
+                                       const struct glint_engine_camera *camera,
                                        bool measure, struct glint_error *error);
 
 /* Enables PARTS of the flare, for the light that is set and with VEIL, and

@@ -13,6 +13,7 @@ static enum glint_status apply(struct glint_engine *engine,
                                struct glint_error *error)
 {
     struct glint_engine_light light = engine->expose.light;
+    struct glint_engine_camera camera = engine->optics.camera;
 
     switch ((int)(option - glint_option(0))) {
     case GLINT_OPTION_OF_strength:
@@ -31,6 +32,10 @@ static enum glint_status apply(struct glint_engine *engine,
         break;
     case GLINT_OPTION_OF_f_number:
         return glint_engine_stop(engine, o->f_number, error);
+    case GLINT_OPTION_OF_stop:
+    case GLINT_OPTION_OF_dust:
+        glint_engine_configure_stop(&camera, o);
+        return glint_engine_reshape(engine, &camera, false, error);
     default:
         snprintf(error->text, sizeof error->text,
                  "%s is fixed when the engine is made", option->name);

@@ -87,15 +87,16 @@ static void set(struct settings *to, const struct shape *s)
     settings_defaults(to);
     settings_set_quality(to, s->quality);
     to->dials.dispersion_q8 = (int)(256 * s->dispersion);
-    to->waves = s->dispersion > 0 ? GLINT_WAVES_AUTO : GLINT_WAVES_LIST;
+    to->camera.waves.kind =
+        s->dispersion > 0 ? GLINT_WAVES_AUTO : GLINT_WAVES_LIST;
     to->dials.dim_codes = s->dim;
     to->options.starburst = s->starburst;
     GLINT_OPTION_GIVEN(&to->options, starburst) = true;
     to->options.veil = s->veil;
     to->options.haze = s->haze;
-    to->stop.iris.dust = s->dust;
-    to->stop.iris.softness = s->soft;
-    to->stop.iris.roundness = s->round;
+    to->camera.iris.dust = s->dust;
+    to->camera.iris.softness = s->soft;
+    to->camera.iris.roundness = s->round;
     to->options.work = 0;
     GLINT_OPTION_GIVEN(&to->options, work) = true;
     to->tolerance = 1;

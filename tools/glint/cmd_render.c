@@ -295,7 +295,7 @@ static int check_apart(const struct tool *tool, const struct render *r,
     apart_read(&files, NULL, lens);
     apart_read(&files, "--lights", r->lights_file);
     apart_read(&files, "--ghosts", r->settings.options.ghosts);
-    apart_read(&files, "--stop-mask", r->settings.stop.mask_file);
+    apart_read(&files, "--stop-mask", r->settings.options.stop_mask);
     apart_write(&files, "-o", r->output);
     return apart_check(tool, &files);
 }

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "model/stop_option.h"
 #include "glint/measure.h"
 #include "formats/picture.h"
 #include "model/model_cache.h"
@@ -137,7 +136,7 @@ static enum glint_status draw_exact(const struct tool *tool,
 {
     const size_t n = 3 * (size_t)to->width * (size_t)to->height;
     struct glint_setup *setup = malloc(sizeof *setup);
-    const struct stop_option stop = opened_lens_shape(lens, s);
+    struct glint_engine_camera camera = opened_lens_camera(lens, s);
     struct glint_dirt *dirt = NULL;
     double *rgb = malloc(n * sizeof *rgb);
     struct tool_progress progress;
@@ -156,13 +155,12 @@ static enum glint_status draw_exact(const struct tool *tool,
 
     tool_progress_start(&progress, tool, "exact");
     if (setup && rgb)
-        status = glint_setup_init(setup, &lens->table, stop.n_blades,
-                                  stop.rotation_deg, s->wavelength_nm,
+        status = glint_setup_init(setup, &lens->table, camera.n_blades,
+                                  camera.blade_rotation_deg, s->wavelength_nm,
                                   s->n_wavelengths, &error);
+    camera.waves.kind = GLINT_WAVES_LIST; /* all ghosts have all of them */
     if (status == GLINT_OK)
-        status = stop_option_set(&stop, setup, &dirt, &error);
-    if (status == GLINT_OK && s->options.balance)
-        glint_setup_balance(setup);
+        status = glint_engine_setup(setup, NULL, &camera, &dirt, &error);
     if (status == GLINT_OK)
         status = glint_exact_render(&cfg, rgb);
     for (size_t i = 0; i < n && status == GLINT_OK; i++)
@@ -192,7 +190,8 @@ static uint64_t key_of(const struct opened_lens *lens, const struct settings *s,
     const int only_ghost = settings_only_ghost(s);
     const struct glint_view view =
         opened_lens_view(lens, s, to->width, to->height);
-    const struct stop_option stop = opened_lens_shape(lens, s);
+    const struct glint_engine_camera camera = opened_lens_camera(lens, s);
+    const struct glint_iris *const i = &camera.iris;
     struct glint_bake_options options;
     uint64_t hash;
 
@@ -201,10 +200,10 @@ static uint64_t key_of(const struct opened_lens *lens, const struct settings *s,
     hash = mix(hash, &to->width, sizeof to->width);
     hash = mix(hash, &to->height, sizeof to->height);
     hash = mix(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
-    hash = mix(hash, &stop.n_blades, sizeof stop.n_blades);
-    hash = mix(hash, &stop.rotation_deg, sizeof stop.rotation_deg);
-    if (stop.iris.roundness > 0 || stop_option_shades(&stop)) {
-        const struct glint_iris *i = &stop.iris;
+    hash = mix(hash, &camera.n_blades, sizeof camera.n_blades);
+    hash =
+        mix(hash, &camera.blade_rotation_deg, sizeof camera.blade_rotation_deg);
+    if (i->roundness > 0 || i->softness > 0 || i->dust > 0 || i->mask) {
         const double iris[] = {i->roundness, i->softness, i->dust,
                                i->dust_seed};
 

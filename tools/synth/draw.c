@@ -307,7 +307,7 @@ static int open_lens(const struct tool *tool, struct synth_lens *lens,
     settings_defaults(s);
     snprintf(quality, sizeof quality, "%.6f", item->quality);
     settings_set_quality(s, glint_option_number(quality, &end));
-    s->waves = GLINT_WAVES_AUTO;
+    s->camera.waves.kind = GLINT_WAVES_AUTO;
     code = coating_take(tool, &s->coating, item->coating);
     if (code < 0)
         code = opened_lens_open(tool, &lens->opened, s, item->lens);
@@ -350,16 +350,19 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
                     const struct synth_item *item, struct synth_result *result)
 {
     struct settings *const s = &lens->settings;
+    struct glint_engine_camera *const camera = &s->camera;
     struct glint_error error = {""};
     enum glint_status status;
 
-    s->stop.is_asked = true;
-    s->stop.n_blades = (int)item->blades;
-    s->stop.rotation_deg = item->rotation;
-    s->stop.iris.roundness = item->roundness;
-    s->stop.iris.softness = item->softness;
-    s->stop.iris.dust = item->dust;
-    s->stop.iris.dust_seed = (int)item->dust_seed;
+    s->has_stop = true;
+    camera->n_blades = (int)item->blades;
+    camera->blade_rotation_deg = item->rotation;
+    camera->iris.roundness = item->roundness;
+    camera->iris.softness = item->softness;
+    camera->iris.dust = item->dust;
+    camera->iris.dust_seed = (int)item->dust_seed;
+    camera->front_dirt.dust = item->front_dust;
+    camera->front_dirt.dust_seed = (int)item->front_dust_seed;
     result->f_number = lens->widest * exp2(item->stops_down / 2);
     /* At 0 stops down requests no f-number: rounding might make it wider than
      * the model's stop. */
@@ -368,10 +371,7 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     result->focal_mm = lens->opened.setup.optics.focal_mm;
-    s->front.front.dust = item->front_dust;
-    s->front.front.dust_seed = (int)item->front_dust_seed;
-    glint_front_free(lens->opened.front);
-    return front_option_open(tool, &s->front, &lens->opened.front);
+    return opened_lens_front(tool, &lens->opened, camera, NULL);
 }
 
 /* ------------------------------------------------------------------- lights */

@@ -15,6 +15,7 @@
 #include "engine/setup/spectrum.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "glint/setup.h"
 
@@ -168,4 +169,23 @@ void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
 double glint_largest_channel(const double rgb[3])
 {
     return fmax(rgb[0], fmax(rgb[1], rgb[2]));
+}
+
+int glint_waves_list(const struct glint_waves *waves,
+                     double nm[GLINT_MAX_WAVELENGTHS])
+{
+    static const double standard[] = {650, 532, 450};
+    double rgb[GLINT_MAX_WAVELENGTHS][3], share[GLINT_MAX_WAVELENGTHS];
+
+    switch (waves->kind) {
+    case GLINT_WAVES_LIST:
+        memcpy(nm, waves->nm, sizeof waves->nm);
+        return waves->n;
+    case GLINT_WAVES_COUNT:
+        glint_spectrum(waves->n, nm, rgb, share);
+        return waves->n;
+    default:
+        memcpy(nm, standard, sizeof standard);
+        return 3;
+    }
 }

@@ -395,6 +395,77 @@ TEST(set_by_name)
     assert_memory_equal(set, made, BYTES);
 }
 
+static bool accepts(struct glint_options *o, const char *name, const char *text)
+{
+    struct glint_error error = {""};
+    const bool is_set =
+        glint_options_set_text(o, name, text, &error) == GLINT_OK;
+
+    assert_true(is_set || *error.text);
+    return is_set;
+}
+
+/* Stop, dust and colours of options must be those of a setup made step by step,
+ * front-dust must be the engine's own dirt, and setting stop by name must be
+ * glint_engine_iris(). */
+TEST(configured_camera)
+{
+    static uint8_t want[BYTES], got[BYTES];
+    const double nm[] = {610, 470};
+    const struct glint_lens *const lens = &opened.lens.model.lens;
+    struct glint_iris iris = {
+        .roundness = 0.3, .softness = 0.1, .dust = 0.02, .dust_seed = 7};
+    const struct glint_front front = {.dust = 0.05, .dust_seed = 1};
+    struct glint_setup *const setup = malloc(sizeof *setup);
+    struct glint_dirt *dirt = NULL;
+    struct glint_front_dirt *on_front = NULL;
+    struct glint_engine_config cfg;
+    struct glint_engine_report report;
+    struct glint_engine *engine;
+    struct glint_options o;
+    struct glint_error error;
+
+    assert_non_null(setup);
+    assert_ok(glint_setup_from_model(setup, lens, 6, 10, nm, 2, &error));
+    assert_ok(glint_setup_iris(setup, &iris, &dirt, &error));
+    glint_setup_balance(setup);
+    assert_ok(glint_front_make(&on_front, &front, &error));
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.model = lens;
+    cfg.camera.setup = setup;
+    cfg.camera.front = on_front;
+    cfg.arena_has_all = 1;
+    assert_ok(glint_engine_create(&engine, &cfg, &error));
+    run(engine, 0, want, &report);
+    glint_engine_destroy(engine);
+
+    glint_options_defaults(&o);
+    assert_true(accepts(&o, "stop", "polygon:6,10,round:0.3,soft:0.1"));
+    assert_true(accepts(&o, "dust", "0.02,7"));
+    assert_true(accepts(&o, "front-dust", "0.05"));
+    assert_true(accepts(&o, "wavelengths", "610,470"));
+    assert_true(accepts(&o, "balance", NULL));
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    glint_engine_configure(&cfg, &o);
+    cfg.model = lens;
+    assert_ok(glint_engine_create(&engine, &cfg, &error));
+    run(engine, 0, got, &report);
+    assert_memory_equal(got, want, BYTES);
+
+    iris.roundness = iris.softness = 0;
+    assert_ok(glint_engine_iris(engine, 5, 0, &iris, &error));
+    run(engine, 0, want, &report);
+    assert_memory_not_equal(got, want, BYTES);
+    assert_ok(glint_engine_iris(engine, 0, 0, &iris, &error));
+    assert_ok(glint_engine_set_text(engine, "stop", "polygon:5", &error));
+    run(engine, 0, got, &report);
+    assert_memory_equal(got, want, BYTES);
+    glint_engine_destroy(engine);
+    glint_front_free(on_front);
+    glint_dirt_free(dirt);
+    free(setup);
+}
+
 /* Each number of the table accepts its limits alone, and counts as given only
  * once it was set. Of strength and exposure, and of quality and error, the one
  * that was set last counts. */
@@ -428,16 +499,6 @@ TEST(options)
     assert_false(GLINT_OPTION_GIVEN(&o, error));
     assert_ok(glint_options_set(&o, "error", 1, &error));
     assert_false(GLINT_OPTION_GIVEN(&o, quality));
-}
-
-static bool accepts(struct glint_options *o, const char *name, const char *text)
-{
-    struct glint_error error = {""};
-    const bool is_set =
-        glint_options_set_text(o, name, text, &error) == GLINT_OK;
-
-    assert_true(is_set || *error.text);
-    return is_set;
 }
 
 /* Every default can be set again; numbers are finite; an empty text restores

@@ -305,15 +305,17 @@ TEST(words)
     struct settings s;
 
     settings_defaults(&s);
-    assert_true(s.waves == GLINT_WAVES_LIST && s.n_wavelengths == 3);
+    assert_true(s.camera.waves.kind == GLINT_WAVES_LIST &&
+                s.n_wavelengths == 3);
     assert_true(settings_set(&s, "wavelengths", "auto") &&
-                s.waves == GLINT_WAVES_AUTO);
+                s.camera.waves.kind == GLINT_WAVES_AUTO);
     assert_true(settings_set(&s, "wavelengths", "9") &&
-                s.waves == GLINT_WAVES_COUNT && s.n_wavelengths == 9);
+                s.camera.waves.kind == GLINT_WAVES_COUNT &&
+                s.n_wavelengths == 9);
     assert_true(s.wavelength_nm[0] > 400 && s.wavelength_nm[8] < 700);
     assert_true(settings_set(&s, "wavelengths", "532") &&
-                s.waves == GLINT_WAVES_LIST && s.n_wavelengths == 1 &&
-                s.wavelength_nm[0] == 532);
+                s.camera.waves.kind == GLINT_WAVES_LIST &&
+                s.n_wavelengths == 1 && s.wavelength_nm[0] == 532);
     assert_true(settings_set(&s, "wavelengths", "300,1100") &&
                 s.n_wavelengths == 2);
     assert_false(settings_set(&s, "wavelengths", "0"));
@@ -322,9 +324,9 @@ TEST(words)
     assert_false(settings_set(&s, "wavelengths", "0.55"));
     assert_false(settings_set(&s, "wavelengths", "650,532,1101"));
     assert_false(settings_set(&s, "wavelengths", "9,17"));
-    s.waves = GLINT_WAVES_AUTO;
+    s.camera.waves.kind = GLINT_WAVES_AUTO;
     s.options.rays = GLINT_RAYS_EXACT; /* ghosts choose, as of a model */
-    assert_true(s.waves == GLINT_WAVES_AUTO);
+    assert_true(s.camera.waves.kind == GLINT_WAVES_AUTO);
 }
 
 /* All ghosts of a white lamp must be white together behind an uncoated lens. */
@@ -337,7 +339,7 @@ TEST(white)
     struct glint_frame frame;
 
     settings_defaults(&bare.settings);
-    bare.settings.waves = GLINT_WAVES_AUTO;
+    bare.settings.camera.waves.kind = GLINT_WAVES_AUTO;
     assert_int_equal(coating_take(&tool, &bare.settings.coating, "none"), -1);
     assert_ok(opened_lens_open(&tool, &bare.lens, &bare.settings,
                                "lenses/heliar-tronnier.lens"));

@@ -51,11 +51,10 @@ int stop_mask_read(const struct tool *tool, const char *file,
 /* Reports that there is no model. Never reached, as all opened lenses have a
  * model. */
 enum glint_status opened_table_setup(struct opened_lens *lens,
-                                     const struct settings *settings,
-                                     const struct stop_option *stop,
+                                     const struct glint_engine_camera *camera,
                                      struct glint_error *error)
 {
-    (void)lens, (void)settings, (void)stop;
+    (void)lens, (void)camera;
     snprintf(error->text, sizeof error->text,
              "the lens has no model; make one with glint bake");
     return GLINT_E_LENS;

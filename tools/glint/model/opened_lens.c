@@ -11,58 +11,39 @@
 
 /* ---------------------------------------------------------------- the setup */
 
-struct stop_option opened_lens_shape(const struct opened_lens *lens,
-                                     const struct settings *settings)
+struct glint_engine_camera opened_lens_camera(const struct opened_lens *lens,
+                                              const struct settings *settings)
 {
-    struct stop_option stop = settings->stop;
+    struct glint_engine_camera camera = settings->camera;
 
-    if (!stop.is_asked && lens->table.stop_is_circle) {
-        stop.n_blades = 0;
-        stop.iris.roundness = 0;
+    if (!settings->has_stop && lens->table.stop_is_circle) {
+        camera.n_blades = 0;
+        camera.iris.roundness = 0;
     }
-    stop.iris.mask = lens->mask.luma;
-    stop.iris.mask_width = lens->mask.width;
-    stop.iris.mask_height = lens->mask.height;
-    return stop;
-}
-
-/* Sets the colours of the setup, once it is made: weighs the wavelengths if
- * only their number was given; for "auto" makes the sets of wavelengths that
- * ghosts choose from. A list stays as it is. */
-static void weigh(struct opened_lens *lens, enum glint_waves_kind waves)
-{
-    if (waves == GLINT_WAVES_COUNT)
-        glint_setup_weigh(&lens->setup);
-    else if (waves == GLINT_WAVES_AUTO)
-        glint_setup_spread(&lens->setup,
-                           lens->model.data ? &lens->model.lens : NULL);
+    camera.iris.mask = lens->mask.luma;
+    camera.iris.mask_width = lens->mask.width;
+    camera.iris.mask_height = lens->mask.height;
+    camera.f_number = settings->options.f_number;
+    return camera;
 }
 
 enum glint_status opened_lens_stop(struct opened_lens *lens,
                                    const struct settings *s,
                                    struct glint_error *error)
 {
-    const struct stop_option stop = opened_lens_shape(lens, s);
-    struct glint_dirt *dirt = NULL;
+    const struct glint_engine_camera camera = opened_lens_camera(lens, s);
+    const struct glint_lens *const model =
+        lens->model.data ? &lens->model.lens : NULL;
+    struct glint_dirt *dirt;
     enum glint_status status =
-        lens->model.data
-            ? glint_setup_from_model(&lens->setup, &lens->model.lens,
-                                     stop.n_blades, stop.rotation_deg,
-                                     s->wavelength_nm, s->n_wavelengths, error)
-            : opened_table_setup(lens, s, &stop, error);
+        model ? GLINT_OK : opened_table_setup(lens, &camera, error);
 
-    if (status == GLINT_OK && lens->model.data && s->options.f_number > 0)
-        status = glint_setup_stop_down(&lens->setup, &lens->model.lens,
-                                       s->options.f_number, error);
     if (status == GLINT_OK)
-        status = stop_option_set(&stop, &lens->setup, &dirt, error);
+        status = glint_engine_setup(&lens->setup, model, &camera, &dirt, error);
     if (status != GLINT_OK)
         return status;
     glint_dirt_free(lens->dirt);
     lens->dirt = dirt;
-    weigh(lens, s->waves);
-    if (s->options.balance)
-        glint_setup_balance(&lens->setup);
     return GLINT_OK;
 }
 
@@ -110,11 +91,13 @@ static int check_band(const struct tool *tool, const struct opened_lens *lens,
 /* Warns if the picture is larger than the field that the model was baked
  * for. */
 static void warn_field(const struct tool *tool, const struct opened_lens *lens,
-                       const double mm[2])
+                       const struct glint_engine_camera *camera)
 {
+    const double diagonal =
+        hypot(camera->sensor_width_mm, camera->sensor_height_mm);
     const double field = model_real_of(lens->model.lens.header->field_mm);
 
-    if (!tool->quiet && 0.5 * hypot(mm[0], mm[1]) > field)
+    if (!tool->quiet && 0.5 * diagonal > field)
         fprintf(stderr,
                 "glint %s: the model was baked for a field of %.1f mm around "
                 "the middle; corners beyond are left to chance (bake --field)"
@@ -156,7 +139,7 @@ static int open_model(const struct tool *tool, struct opened_lens *lens,
     lens->table.film_width_mm = model_real_of(h->film_width_mm);
     lens->table.film_height_mm = model_real_of(h->film_height_mm);
     lens->table.stop_is_circle = false; /* models do not say */
-    warn_field(tool, lens, settings->sensor_mm);
+    warn_field(tool, lens, &settings->camera);
     return EXIT_OK;
 }
 
@@ -181,11 +164,24 @@ static int set_up(const struct tool *tool, struct opened_lens *lens,
 }
 
 int opened_lens_front(const struct tool *tool, struct opened_lens *lens,
-                      const struct settings *settings)
+                      const struct glint_engine_camera *camera,
+                      const char *file)
 {
-    return lens->front
-               ? EXIT_OK
-               : front_option_open(tool, &settings->front, &lens->front);
+    struct glint_front front = camera->front_dirt;
+    struct stop_mask mask = {NULL, 0, 0};
+    struct glint_error error = {""};
+    enum glint_status status;
+    const int code = file ? stop_mask_read(tool, file, &mask) : EXIT_OK;
+
+    if (code != EXIT_OK)
+        return code;
+    front.mask = mask.luma;
+    front.mask_width = mask.width;
+    front.mask_height = mask.height;
+    glint_front_free(lens->front);
+    status = glint_front_make(&lens->front, &front, &error);
+    free(mask.luma);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
 int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
@@ -200,10 +196,11 @@ int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
         !settings_has_veil(settings))
         code = tool_usage(tool, "--only veil needs a --veil, --haze or "
                                 "--front-dust to draw");
-    if (code == EXIT_OK && settings->stop.mask_file)
-        code = stop_mask_read(tool, settings->stop.mask_file, &lens->mask);
+    if (code == EXIT_OK && settings->options.stop_mask)
+        code = stop_mask_read(tool, settings->options.stop_mask, &lens->mask);
     if (code == EXIT_OK)
-        code = opened_lens_front(tool, lens, settings);
+        code = opened_lens_front(tool, lens, &settings->camera,
+                                 settings->options.front_mask);
     if (code != EXIT_OK)
         return code;
     if (settings->options.projection == GLINT_PROJECTION_LENS &&
@@ -214,7 +211,7 @@ int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
                                : opened_table(tool, lens, settings, name);
 
     if (code == EXIT_OK && lens->model.data &&
-        settings->waves == GLINT_WAVES_LIST)
+        settings->camera.waves.kind == GLINT_WAVES_LIST)
         code = check_band(tool, lens, settings);
     return code == EXIT_OK ? set_up(tool, lens, settings) : code;
 }
@@ -241,10 +238,12 @@ struct glint_view opened_lens_view(const struct opened_lens *lens,
                                    const struct settings *settings, int width,
                                    int height)
 {
-    const double *mm = settings->sensor_mm;
+    const struct glint_engine_camera *const c = &settings->camera;
+    const bool has_sensor = c->sensor_width_mm > 0;
     struct glint_view view = glint_view_fit(
-        width, height, mm[0] > 0 ? mm[0] : lens->table.film_width_mm,
-        mm[0] > 0 ? mm[1] : lens->table.film_height_mm);
+        width, height,
+        has_sensor ? c->sensor_width_mm : lens->table.film_width_mm,
+        has_sensor ? c->sensor_height_mm : lens->table.film_height_mm);
 
     view.projection = lens->projection;
     return view;

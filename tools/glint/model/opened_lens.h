@@ -12,6 +12,7 @@
 
 #include "model/model_file.h"
 #include "model/settings.h"
+#include "model/stop_mask.h"
 
 /* Closed if all is 0. SETUP points to TABLE: see opened_lens_moved(). */
 struct opened_lens {
@@ -48,14 +49,16 @@ enum glint_status opened_lens_zoom(struct opened_lens *lens,
                                    const struct settings *settings, double zoom,
                                    struct glint_error *error);
 
-/* Makes what SETTINGS lay on the front element, once. Returns an exit code. */
+/* Lays the dirt of CAMERA and the mask of the picture FILE, NULL for none, on
+ * the front element of LENS. Returns an exit code. */
 int opened_lens_front(const struct tool *tool, struct opened_lens *lens,
-                      const struct settings *settings);
+                      const struct glint_engine_camera *camera,
+                      const char *file);
 
-/* Returns the stop of SETTINGS: where the line requests no shape, a circle if
- * the table of LENS says so. */
-struct stop_option opened_lens_shape(const struct opened_lens *lens,
-                                     const struct settings *settings);
+/* Returns the camera of SETTINGS, with the mask of LENS: where the line
+ * requests no shape of the stop, a circle if the table of LENS says so. */
+struct glint_engine_camera opened_lens_camera(const struct opened_lens *lens,
+                                              const struct settings *settings);
 
 struct glint_view opened_lens_view(const struct opened_lens *lens,
                                    const struct settings *settings, int width,

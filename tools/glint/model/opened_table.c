@@ -13,7 +13,8 @@ struct glint_bake_options opened_table_bake(const struct glint_prescription *l,
                                             const struct settings *settings)
 {
     const double film = hypot(l->film_width_mm, l->film_height_mm);
-    const double sensor = hypot(settings->sensor_mm[0], settings->sensor_mm[1]);
+    const double sensor = hypot(settings->camera.sensor_width_mm,
+                                settings->camera.sensor_height_mm);
     struct glint_bake_options o;
 
     glint_bake_defaults(&o);
@@ -34,8 +35,8 @@ struct glint_bake_options opened_table_bake(const struct glint_prescription *l,
 /* Sets how the lens images angles, and *DEG to the largest angle of the
  * picture. */
 static enum glint_status set_projection(struct opened_lens *lens,
-                                        const double mm[2], double *deg,
-                                        struct glint_error *error)
+                                        const struct glint_engine_camera *c,
+                                        double *deg, struct glint_error *error)
 {
     const struct glint_prescription *l = &lens->table;
     struct glint_optics optics;
@@ -49,8 +50,9 @@ static enum glint_status set_projection(struct opened_lens *lens,
     *deg = glint_projection_deg(
         &lens->projection,
         0.5 *
-            (mm[0] > 0 ? hypot(mm[0], mm[1])
-                       : hypot(l->film_width_mm, l->film_height_mm)) /
+            (c->sensor_width_mm > 0
+                 ? hypot(c->sensor_width_mm, c->sensor_height_mm)
+                 : hypot(l->film_width_mm, l->film_height_mm)) /
             fabs(optics.focal_mm));
     return GLINT_OK;
 }
@@ -107,7 +109,7 @@ int opened_table(const struct tool *tool, struct opened_lens *lens,
     if (status != GLINT_OK)
         return settings_refuse_stop(tool, settings, error.text);
     if (o->projection == GLINT_PROJECTION_LENS)
-        status = set_projection(lens, settings->sensor_mm, &deg, &error);
+        status = set_projection(lens, &settings->camera, &deg, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     return o->rays == GLINT_RAYS_EXACT ? EXIT_OK
@@ -120,11 +122,12 @@ const struct glint_frame_rays *opened_table_rays(void)
 }
 
 enum glint_status opened_table_setup(struct opened_lens *lens,
-                                     const struct settings *s,
-                                     const struct stop_option *stop,
+                                     const struct glint_engine_camera *camera,
                                      struct glint_error *error)
 {
-    return glint_setup_init(&lens->setup, &lens->table, stop->n_blades,
-                            stop->rotation_deg, s->wavelength_nm,
-                            s->n_wavelengths, error);
+    double nm[GLINT_MAX_WAVELENGTHS];
+    const int n = glint_waves_list(&camera->waves, nm);
+
+    return glint_setup_init(&lens->setup, &lens->table, camera->n_blades,
+                            camera->blade_rotation_deg, nm, n, error);
 }

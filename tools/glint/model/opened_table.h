@@ -17,10 +17,10 @@ struct glint_bake_options
 opened_table_bake(const struct glint_prescription *lens,
                   const struct settings *settings);
 
-/* Makes the setup of LENS, which must have no model, for STOP. */
+/* Makes the setup of LENS, which must have no model, with the stop and colours
+ * of CAMERA, by glint_engine_setup(). */
 enum glint_status opened_table_setup(struct opened_lens *lens,
-                                     const struct settings *settings,
-                                     const struct stop_option *stop,
+                                     const struct glint_engine_camera *camera,
                                      struct glint_error *error);
 
 /* Returns the functions that trace the rays of a frame without a model. */

@@ -2,52 +2,15 @@
 #include "model/settings.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ------------------------------------------------------------------ options */
-
-static void resolve_waves(struct settings *s)
-{
-    struct glint_waves waves = {GLINT_WAVES_AUTO, 0, {0}};
-    double rgb[GLINT_MAX_WAVELENGTHS][3], share[GLINT_MAX_WAVELENGTHS];
-
-    glint_option_waves(s->options.wavelengths, &waves);
-    s->waves = waves.kind;
-    if (waves.kind == GLINT_WAVES_AUTO)
-        return;
-    s->n_wavelengths = waves.n;
-    if (waves.kind == GLINT_WAVES_LIST)
-        memcpy(s->wavelength_nm, waves.nm, sizeof waves.nm);
-    else
-        glint_spectrum(waves.n, s->wavelength_nm, rgb, share);
-}
-
-static void resolve_stop(struct settings *s)
-{
-    const struct glint_options *const o = &s->options;
-    struct stop_option *const stop = &s->stop;
-    struct glint_stop_shape shape = {8, 0, s->roundness, 0};
-
-    stop->is_asked = o->stop && glint_option_stop(o->stop, &shape);
-    stop->n_blades = shape.n_blades;
-    stop->rotation_deg = shape.rotation_deg;
-    stop->iris.roundness = shape.roundness;
-    stop->iris.softness = shape.softness;
-    stop->iris.dust = s->front.front.dust = 0;
-    stop->mask_file = o->stop_mask;
-    if (o->dust)
-        glint_option_dust(o->dust, &stop->iris.dust, &stop->iris.dust_seed);
-    s->front.mask_file = o->front_mask;
-    if (o->front_dust)
-        glint_option_dust(o->front_dust, &s->front.front.dust,
-                          &s->front.front.dust_seed);
-}
 
 /* Sets what follows from the options, all of which are valid. */
 static void resolve(struct settings *s)
 {
     const struct glint_options *const o = &s->options;
     const struct glint_quality quality = glint_options_quality(o);
+    struct glint_engine_config cfg;
 
     s->dials = quality.dials;
     s->quantum = quality.quantum;
@@ -55,21 +18,19 @@ static void resolve(struct settings *s)
     s->zoom =
         (struct zoom_option){o->zoom, o->focus, GLINT_OPTION_GIVEN(o, zoom),
                              GLINT_OPTION_GIVEN(o, focus)};
-    s->sensor_mm[0] = s->sensor_mm[1] = 0;
-    if (o->sensor)
-        glint_option_sensor(o->sensor, s->sensor_mm);
-    resolve_waves(s);
-    resolve_stop(s);
+    glint_engine_defaults(&cfg, 1, 1);
+    cfg.camera.iris.roundness = s->roundness;
+    glint_engine_configure(&cfg, o);
+    s->camera = cfg.camera;
+    s->has_stop = o->stop != NULL;
+    s->n_wavelengths = glint_waves_list(&s->camera.waves, s->wavelength_nm);
 }
 
 void settings_defaults(struct settings *settings)
 {
     struct glint_options *const o = &settings->options;
 
-    *settings = (struct settings){.stop.n_blades = 8,
-                                  .wavelength_nm = {650, 532, 450},
-                                  .n_wavelengths = 3,
-                                  .coating.kind = COATING_TABLE};
+    *settings = (struct settings){.coating.kind = COATING_TABLE};
     glint_options_defaults(o);
     o->starburst = 0;
     o->coating = "table";
@@ -147,7 +108,7 @@ int settings_refuse_stop(const struct tool *tool, const struct settings *s,
 bool settings_has_veil(const struct settings *settings)
 {
     return settings->options.veil > 0 || settings->options.haze > 0 ||
-           front_option_asked(&settings->front);
+           settings->camera.front_dirt.dust > 0 || settings->options.front_mask;
 }
 
 int settings_only_ghost(const struct settings *settings)

@@ -6,8 +6,6 @@
 #define GLINT_TOOLS_MODEL_SETTINGS_H
 
 #include "options/engine_options.h"
-#include "model/front_option.h"
-#include "model/stop_option.h"
 #include "model/coating.h"
 #include "glint/engine.h"
 #include "glint/quality.h"
@@ -25,12 +23,10 @@ struct settings {
     /* What follows from options. Setting one overwrites all of these. */
     struct coating coating;
     struct zoom_option zoom;
-    struct stop_option stop;
-    struct front_option front;
-    double wavelength_nm[GLINT_MAX_WAVELENGTHS];
+    struct glint_engine_camera camera;           /* without masks */
+    bool has_stop;                               /* the line names a shape */
+    double wavelength_nm[GLINT_MAX_WAVELENGTHS]; /* of the camera's waves */
     int n_wavelengths;
-    enum glint_waves_kind waves;
-    double sensor_mm[2];      /* 0: the table's film */
     struct glint_dials dials; /* but for max_lights and area_points by option */
     double quantum;           /* dials.irradiance_steps, in percent */
     double tolerance;         /* tolerance that a model is baked with */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "formats/picture.h"
-#include "model/stop_option.h"
+#include "model/stop_mask.h"
 
 /* Sets TO to the luma of the picture's codes. */
 static void to_luma(const struct glint_image *image, uint8_t *to)

@@ -293,18 +293,19 @@ static enum glint_status stop_by_keys(struct drawing *d, int frame)
 {
     const struct keys *const keys = &d->files.keys;
     struct settings *const s = &d->line.settings;
-    struct stop_option *const stop = &s->stop;
+    struct glint_engine_camera *const stop = &s->camera;
     const double f_number =
         keys_at(keys, KEYS_F_NUMBER, frame, s->options.f_number);
-    const double turn = keys_at(keys, KEYS_TURN, frame, stop->rotation_deg);
+    const double turn =
+        keys_at(keys, KEYS_TURN, frame, stop->blade_rotation_deg);
     const double round = keys_at(keys, KEYS_ROUND, frame, stop->iris.roundness);
     struct glint_error error;
     enum glint_status status;
 
-    if (f_number == s->options.f_number && turn == stop->rotation_deg &&
+    if (f_number == s->options.f_number && turn == stop->blade_rotation_deg &&
         round == stop->iris.roundness)
         return GLINT_OK;
-    stop->rotation_deg = turn;
+    stop->blade_rotation_deg = turn;
     stop->iris.roundness = round;
     s->options.f_number = f_number;
     status = opened_lens_stop(&d->files.lens, s, &error);

@@ -181,7 +181,7 @@ static void say_faint(const struct overlay *o,
             "%s: no flare was drawn: the lamp lies beyond the angles of the "
             "model; move it nearer, or bake with a larger --max-angle\n",
             o->output);
-    else if (light->peak <= 0 && drawing->line.settings.stop.mask_file)
+    else if (light->peak <= 0 && drawing->line.settings.options.stop_mask)
         fprintf(to,
                 "%s: no light gets through this lens and its --stop-mask into "
                 "the picture; white in a mask lets light through\n",

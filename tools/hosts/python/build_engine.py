@@ -68,13 +68,12 @@ void glint_view_to_pixel(const struct glint_view *view, double focal_mm, const s
 
 struct glint_option { const char *name; ...; };
 struct glint_options { double f_number; const char *coating; _Bool given[...]; ...; };
-struct glint_stop_shape { int n_blades; double rotation_deg, roundness, softness; };
 const struct glint_option *glint_option(int index);
 void glint_options_defaults(struct glint_options *options);
 enum glint_status glint_options_set(struct glint_options *options, const char *name, double value, struct glint_error *error);
 enum glint_status glint_options_set_text(struct glint_options *options, const char *name, const char *text, struct glint_error *error);
-_Bool glint_option_stop(const char *text, struct glint_stop_shape *stop);
-struct glint_engine_camera { int n_blades; double blade_rotation_deg, sensor_width_mm, sensor_height_mm; ...; };
+struct glint_iris { double roundness; ...; };
+struct glint_engine_camera { int n_blades; double blade_rotation_deg, sensor_width_mm, sensor_height_mm; struct glint_iris iris; ...; };
 struct glint_engine_config { int width, height; const struct glint_lens *model; struct glint_workers *workers; unsigned sets;
     struct glint_engine_camera camera; size_t arena_bytes; int arena_has_all; ...; };
 struct glint_engine_lamp { struct glint_lamp lamp; ...; };
@@ -82,16 +81,12 @@ struct glint_engine_lamp glint_engine_lamp_of(const struct glint_lamp *lamp, uin
 void glint_engine_configure(struct glint_engine_config *cfg, const struct glint_options *options);
 struct glint_engine_report { int drawn_lights, ghosts; size_t arena_bytes; double scale; ...; };
 struct glint_engine;
-struct glint_iris { double roundness, softness; ...; };
 void glint_engine_defaults(struct glint_engine_config *cfg, int width, int height);
 enum glint_status glint_engine_create(struct glint_engine **engine, const struct glint_engine_config *cfg, struct glint_error *error);
 void glint_engine_destroy(struct glint_engine *engine);
-enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades, double rotation_deg, const struct glint_iris *iris,
-    struct glint_error *error);
 int glint_engine_find(struct glint_engine *engine, const struct glint_image *image, int32_t elapsed_us, struct glint_engine_lamp *lamps,
     int max);
 enum glint_status glint_engine_set(struct glint_engine *engine, const char *name, double value, struct glint_error *error);
-enum glint_status glint_engine_stop(struct glint_engine *engine, double f_number, struct glint_error *error);
 void glint_engine_elapsed(struct glint_engine *engine, int32_t elapsed_us);
 enum glint_status glint_engine_draw(struct glint_engine *engine, struct glint_engine_lamp *lamps, int n, const struct glint_image *image,
     struct glint_engine_report *report);

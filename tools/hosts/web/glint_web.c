@@ -32,7 +32,6 @@ static struct {
     size_t bytes;
     struct glint_lens lens;
     struct glint_dirt *dirt;
-    struct glint_front_dirt *front;
     struct glint_setup setup;
     struct glint_projection projection;
 
@@ -135,8 +134,6 @@ static void close_engine(void)
     web.n_found = 0;
     glint_dirt_free(web.dirt);
     web.dirt = NULL;
-    glint_front_free(web.front);
-    web.front = NULL;
 }
 
 static void close_lens(void)
@@ -291,73 +288,26 @@ size_t web_model_bytes(void)
 
 /* ------------------------------------------------------------------- engine */
 
-/* Returns the stop of the options, or that of photographs. */
-static struct glint_stop_shape stop_shape(void)
+/* Sets CAMERA, with the blades of photographs unless the options or the table
+ * have others, and makes its setup. */
+static int set_up(struct glint_engine_camera *camera, bool exact)
 {
-    struct glint_stop_shape shape = {8, 0, PHOTO_ROUNDNESS, 0};
+    double nm[GLINT_MAX_WAVELENGTHS];
+    int n;
 
-    if (web.options.stop)
-        glint_option_stop(web.options.stop, &shape);
-    else if (!web.is_model && web.table.stop_is_circle)
-        shape = (struct glint_stop_shape){0, 0, 0, 0};
-    return shape;
-}
-
-static int set_up(bool exact)
-{
-    const struct glint_options *const o = &web.options;
-    const struct glint_stop_shape shape = stop_shape();
-    struct glint_waves waves = {GLINT_WAVES_AUTO, 0, {0}};
-    double nm[GLINT_MAX_WAVELENGTHS] = {650, 532, 450};
-    double rgb[GLINT_MAX_WAVELENGTHS][3], share[GLINT_MAX_WAVELENGTHS];
-    struct glint_iris iris = {.roundness = shape.roundness,
-                              .softness = shape.softness};
-    struct glint_setup *const s = &web.setup;
-    enum glint_status status;
-    int n = 3;
-
-    glint_option_waves(o->wavelengths, &waves);
-    if (waves.kind == GLINT_WAVES_AUTO && exact) {
-        waves.kind = GLINT_WAVES_COUNT;
-        waves.n = EXACT_WAVES;
+    if (!web.options.stop && !web.is_model && web.table.stop_is_circle) {
+        camera->n_blades = 0;
+        camera->iris.roundness = 0;
     }
-    if (waves.kind != GLINT_WAVES_AUTO)
-        n = waves.n;
-    if (waves.kind == GLINT_WAVES_COUNT)
-        glint_spectrum(n, nm, rgb, share);
-    else if (waves.kind == GLINT_WAVES_LIST)
-        memcpy(nm, waves.nm, sizeof nm);
-    if (o->dust)
-        glint_option_dust(o->dust, &iris.dust, &iris.dust_seed);
-    status =
-        exact ? glint_setup_init(s, &web.table, shape.n_blades,
-                                 shape.rotation_deg, nm, n, &web.error)
-              : glint_setup_from_model(s, &web.lens, shape.n_blades,
-                                       shape.rotation_deg, nm, n, &web.error);
-    if (status == GLINT_OK && !exact && o->f_number > 0)
-        status = glint_setup_stop_down(s, &web.lens, o->f_number, &web.error);
-    if (status == GLINT_OK &&
-        (iris.roundness > 0 || iris.softness > 0 || iris.dust > 0))
-        status = glint_setup_iris(s, &iris, &web.dirt, &web.error);
-    if (status != GLINT_OK)
-        return check(status);
-    if (waves.kind == GLINT_WAVES_COUNT)
-        glint_setup_weigh(s);
-    else if (waves.kind == GLINT_WAVES_AUTO)
-        glint_setup_spread(s, &web.lens);
-    if (o->balance)
-        glint_setup_balance(s);
-    return 1;
-}
-
-static int make_front(void)
-{
-    struct glint_front front = {.dust = 0};
-
-    if (web.options.front_dust)
-        glint_option_dust(web.options.front_dust, &front.dust,
-                          &front.dust_seed);
-    return check(glint_front_make(&web.front, &front, &web.error));
+    if (exact && camera->waves.kind == GLINT_WAVES_AUTO)
+        camera->waves =
+            (struct glint_waves){GLINT_WAVES_COUNT, EXACT_WAVES, {0}};
+    n = glint_waves_list(&camera->waves, nm);
+    return (!exact || check(glint_setup_init(
+                          &web.setup, &web.table, camera->n_blades,
+                          camera->blade_rotation_deg, nm, n, &web.error))) &&
+           check(glint_engine_setup(&web.setup, exact ? NULL : &web.lens,
+                                    camera, &web.dirt, &web.error));
 }
 
 /* How bright flares of the last lenses and stops are, which takes about as long
@@ -413,15 +363,15 @@ int web_size(int width, int height)
         !check(glint_projection_of(&web.projection, &web.table, &miss_deg,
                                    &web.error)))
         return 0;
-    if (!set_up(exact) || !make_front())
-        return 0;
     glint_engine_defaults(&cfg, width, height);
+    cfg.camera.iris.roundness = PHOTO_ROUNDNESS;
     glint_engine_configure(&cfg, o);
+    if (!set_up(&cfg.camera, exact))
+        return 0;
     cfg.model = exact ? NULL : &web.lens;
     cfg.search.more_lamps = GLINT_ENGINE_MAX_LAMPS;
     cfg.camera.setup = &web.setup;
     cfg.camera.rays = &glint_frame_traces;
-    cfg.camera.front = web.front;
     cfg.camera.projection = &web.projection;
     if (!(cfg.camera.sensor_width_mm > 0)) {
         cfg.camera.sensor_width_mm = web.table.film_width_mm;

@@ -232,11 +232,6 @@ class Engine:
         if stop is None:
             is_circle = isinstance(lens, str) and not lens.endswith(".glint") and _prescription(lens, coating).stop_is_circle
             stop = (0, 0.0) if is_circle else (8, 0.2)
-        shape = _ffi.new("struct glint_stop_shape *")
-        if isinstance(stop, str):
-            _lib.glint_option_stop(stop.encode(), shape)
-        else:
-            shape.n_blades, shape.roundness, shape.rotation_deg = stop[0], stop[1], rotation
         if isinstance(lens, str):
             lens = pathlib.Path(lens).read_bytes() if lens.endswith(".glint") else _cached(lens, coating, f_number, self._pool)
         # words of 32 bits: memory of C is aligned, that of bytes need not be
@@ -248,16 +243,12 @@ class Engine:
         cfg, error = _ffi.new("struct glint_engine_config *"), _ffi.new("struct glint_error *")
         _lib.glint_engine_defaults(cfg, width, height)
         cfg.model, cfg.workers, cfg.sets = self._lens, self._pool.workers, _lib.glint_system_sets()
-        cfg.camera.n_blades, cfg.camera.blade_rotation_deg = shape.n_blades, shape.rotation_deg
+        if not isinstance(stop, str):
+            cfg.camera.n_blades, cfg.camera.iris.roundness, cfg.camera.blade_rotation_deg = stop[0], stop[1], rotation
         _lib.glint_engine_configure(cfg, set_)
         at = _ffi.new("struct glint_engine **")
         _check(_lib.glint_engine_create(at, cfg, error), error)
         self._engine = _ffi.gc(at[0], _lib.glint_engine_destroy)
-        if (shape.n_blades and shape.roundness > 0) or shape.softness > 0:
-            iris = _ffi.new("struct glint_iris *", {"roundness": shape.roundness, "softness": shape.softness})
-            _check(_lib.glint_engine_iris(self._engine, shape.n_blades, shape.rotation_deg, iris, error), error)
-            if exposure is None:  # videos are exposed by what is measured through this stop
-                _check(_lib.glint_engine_stop(self._engine, f_number, error), error)
         film = _ffi.new("double[2]")
         _lib.glint_film_mm_(self._lens, film)
         if cfg.camera.sensor_width_mm > 0:
