@@ -57,6 +57,14 @@ enum glint_option_group {
     GLINT_OPTION_GROUPS
 };
 
+/* Who applies an option: the engine, to pictures; who opens the lens, to its
+ * table; or the program itself, of files, scenes and videos. */
+enum glint_option_scope {
+    GLINT_OPTION_PICTURE,
+    GLINT_OPTION_TABLE,
+    GLINT_OPTION_PROGRAM
+};
+
 /* When an option takes effect: when an engine is created, when the size of its
  * pictures changes, or with the next frame. */
 enum glint_option_change {
@@ -79,6 +87,7 @@ struct glint_option {
     double initial;      /* default of a number or a word; NAN: none */
     enum glint_option_type type;
     enum glint_option_group group;
+    enum glint_option_scope scope;
     enum glint_option_change changes;
 };
 

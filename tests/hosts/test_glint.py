@@ -56,6 +56,8 @@ class Package(unittest.TestCase):
               "--haze", ".01"]),
             ({"lens": LENS, "threshold": "-0.5,-0.6", "whole": 0, "cull": 1, "half": True, "sensor": "24x16"},
              ["--lens", LENS, "--threshold=-0.5,-0.6", "--whole", "0", "--cull", "1", "--half", "--sensor", "24x16"]),
+            ({"lens": LENS, "dust": "0.02,3", "front_dust": "0.01", "wavelengths": "600,500", "balance": True},
+             ["--lens", LENS, "--dust", ".02,3", "--front-dust", ".01", "--wavelengths", "600,500", "--balance"]),
         ]:
             with self.subTest(options=options):
                 got = self.photo.copy()
@@ -163,8 +165,7 @@ class Package(unittest.TestCase):
             ("384x256", lambda: glint.Engine(LENS, 9, 9).overlay(picture)),
             ("quality is 0 to 1", lambda: glint.overlay(picture, LENS, quality=2)),
             ("stop is circle or polygon", lambda: glint.overlay(picture, LENS, stop="round")),
-            ("does not support rays yet", lambda: glint.overlay(picture, LENS, quality="exact")),
-            ("does not support balance yet", lambda: glint.overlay(picture, LENS, balance=True)),
+            ("exact rays need the command", lambda: glint.overlay(picture, LENS, quality="exact")),
             ("f-number|f/", lambda: glint.overlay(picture, LENS, f_number=0.1)),
             ("at most", lambda: glint.overlay(picture, LENS, [glint.Lamp(1, 1)] * 2000)),
         ]:

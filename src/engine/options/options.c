@@ -17,27 +17,30 @@
 #define LENS       GLINT_OPTIONS_LENS
 #define BRIGHTNESS GLINT_OPTIONS_BRIGHTNESS
 #define SPEED      GLINT_OPTIONS_SPEED
+#define PICTURE    GLINT_OPTION_PICTURE
+#define TABLE      GLINT_OPTION_TABLE
+#define PROGRAM    GLINT_OPTION_PROGRAM
 #define CREATE     GLINT_OPTION_CREATE
 #define RESIZE     GLINT_OPTION_RESIZE
 #define FRAME      GLINT_OPTION_FRAME
 
 static const struct glint_option table[] = {
-#define NUMBER(type, name, value, low, high, initial, unit, group, changes,  \
-               help)                                                         \
-    {name,  value,  unit, help, "", low, high, initial, GLINT_OPTION_##type, \
-     group, changes},
+#define NUMBER(type, name, value, low, high, initial, unit, group, scope,     \
+               changes, help)                                                 \
+    {name,  value, unit,   help, "", low, high, initial, GLINT_OPTION_##type, \
+     group, scope, changes},
 #define GLINT_ROW_REAL(member, ...)    NUMBER(REAL, __VA_ARGS__)
 #define GLINT_ROW_INTEGER(member, ...) NUMBER(INTEGER, __VA_ARGS__)
-#define GLINT_ROW_FLAG(member, name, group, changes, help) \
-    {name, "", "", help, "", 0, 1, 0, GLINT_OPTION_FLAG, group, changes},
-#define GLINT_ROW_WORD(member, name, value, words, initial, group, changes, \
-                       help)                                                \
-    {name,  value,  words, help, "", 0, 0, initial, GLINT_OPTION_WORD,      \
-     group, changes},
-#define GLINT_ROW_TEXT(member, name, value, initial, accepts, group, changes, \
-                       help)                                                  \
-    {name, value, accepts,           help,  initial, 0,                       \
-     0,    NAN,   GLINT_OPTION_TEXT, group, changes},
+#define GLINT_ROW_FLAG(member, name, group, scope, changes, help) \
+    {name, "", "", help, "", 0, 1, 0, GLINT_OPTION_FLAG, group, scope, changes},
+#define GLINT_ROW_WORD(member, name, value, words, initial, group, scope, \
+                       changes, help)                                     \
+    {name,  value, words,  help, "", 0, 0, initial, GLINT_OPTION_WORD,    \
+     group, scope, changes},
+#define GLINT_ROW_TEXT(member, name, value, initial, accepts, group, scope, \
+                       changes, help)                                       \
+    {name, value, accepts,           help,  initial, 0,                     \
+     0,    NAN,   GLINT_OPTION_TEXT, group, scope,   changes},
 #include "glint/options.inc"
 };
 

@@ -66,9 +66,7 @@ struct glint_view glint_view_fit(int width, int height, double film_width_mm, do
 void glint_view_to_angles(const struct glint_view *view, double focal_mm, double x, double y, struct glint_lamp *lamp);
 void glint_view_to_pixel(const struct glint_view *view, double focal_mm, const struct glint_lamp *lamp, double *x, double *y);
 
-struct glint_option { const char *name; ...; };
-struct glint_options { double f_number; const char *coating; _Bool given[...]; ...; };
-const struct glint_option *glint_option(int index);
+struct glint_options { double f_number; const char *coating; int rays; ...; };
 void glint_options_defaults(struct glint_options *options);
 enum glint_status glint_options_set(struct glint_options *options, const char *name, double value, struct glint_error *error);
 enum glint_status glint_options_set_text(struct glint_options *options, const char *name, const char *text, struct glint_error *error);

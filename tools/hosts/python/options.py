@@ -12,23 +12,23 @@ import textwrap
 INCLUDE = pathlib.Path(__file__).resolve().parents[3] / "include"
 # Rows as tuples of Python: their strings are literals of both languages.
 MACROS = """
-#define NUMBER(type, member, name, value, low, high, initial, unit, group, changes, help) \\
-    (#member, name, #type, initial, unit, #group, help),
+#define NUMBER(type, member, name, value, low, high, initial, unit, group, scope, changes, help) \\
+    (#member, name, #type, initial, unit, #scope, help),
 #define GLINT_ROW_REAL(...) NUMBER(float, __VA_ARGS__)
 #define GLINT_ROW_INTEGER(...) NUMBER(int, __VA_ARGS__)
-#define GLINT_ROW_FLAG(member, name, group, changes, help) (#member, name, "bool", False, "", #group, help),
-#define GLINT_ROW_WORD(member, name, value, words, initial, group, changes, help) \\
-    (#member, name, "Literal", None if initial == None else words.split("|")[initial], words, #group, help),
-#define GLINT_ROW_TEXT(member, name, value, initial, accepts, group, changes, help) \\
-    (#member, name, "str", initial or None, "", #group, help),
+#define GLINT_ROW_FLAG(member, name, group, scope, changes, help) (#member, name, "bool", False, "", #scope, help),
+#define GLINT_ROW_WORD(member, name, value, words, initial, group, scope, changes, help) \\
+    (#member, name, "Literal", None if initial == None else words.split("|")[initial], words, #scope, help),
+#define GLINT_ROW_TEXT(member, name, value, initial, accepts, group, scope, changes, help) \\
+    (#member, name, "str", initial or None, "", #scope, help),
 #include "glint/options.inc"
 """
-GROUPS = ["LAMPS", "LENS", "BRIGHTNESS", "SPEED"]  # others are of files and scenes
+TABLE = ["coating"]  # of the options of lens tables
 OWN = ["lens", "stop", "exposure"]  # parameters of Engine with other types or defaults
 
 
 def rows():
-    """Returns (member, name, type, default, words or unit, group, help) of each option."""
+    """Returns (member, name, type, default, words or unit, scope, help) of each option."""
     command = [*shlex.split(os.environ.get("CC", "cc")), "-E", "-P", "-x", "c", "-I", str(INCLUDE), "-"]
     text = subprocess.run(command, input=MACROS, check=True, stdout=subprocess.PIPE, text=True).stdout
     return eval(f"[{text}]", {"NAN": None})  # constants of this tree
@@ -45,9 +45,9 @@ def hint(kind, accepts, default):
 
 def source():
     keys, defaults = [], []
-    for member, name, kind, default, accepts, group, text in rows():
+    for member, name, kind, default, accepts, scope, text in rows():
         assert member.replace("_", "-") == name, name
-        if group not in GROUPS or member in OWN:
+        if (scope != "PICTURE" and member not in TABLE) or member in OWN:
             continue
         keys += textwrap.wrap(text, 110, initial_indent="    # ", subsequent_indent="    # ")
         keys.append(f"    {member}: {hint(kind, accepts, default)}")

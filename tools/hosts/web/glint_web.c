@@ -83,23 +83,6 @@ void web_reset(void)
     glint_options_defaults(&web.options);
 }
 
-/* Returns whether option ROW is for the command alone: files, scenes, videos,
- * and what the page itself does. */
-static bool is_foreign(const struct glint_option *row)
-{
-    static const char *const names[] = {
-        "lights",      "interpolate", "light-at", "save-lights", "light",
-        "no-tracking", "show",        "layer",    "style",       "preview",
-        "mask",        "edge-fade",   "keys",     "still",       "stop-mask",
-        "ghosts",      "front-mask",  "budget"};
-    bool is = row->group == GLINT_OPTIONS_SCENE ||
-              row->group == GLINT_OPTIONS_SHADING;
-
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        is = is || strcmp(row->name, names[i]) == 0;
-    return is;
-}
-
 int web_set(const char *name, const char *text)
 {
     const struct glint_option *const row = glint_option_named(name);
@@ -107,7 +90,7 @@ int web_set(const char *name, const char *text)
     char *copy;
 
     web.error.text[0] = '\0';
-    if (!row || is_foreign(row)) {
+    if (!row || row->scope == GLINT_OPTION_PROGRAM) {
         snprintf(web.error.text, sizeof web.error.text, "no option %s", name);
         return 0;
     }

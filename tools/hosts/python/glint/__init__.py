@@ -159,10 +159,6 @@ def _cached(lens: str, coating: str, f_number: float, pool: _Pool) -> bytes:
 
 # --------------------------------------------------------------------- options
 
-# Options that the engine has. Others of the table are for glint overlay alone; to set one is an error.
-_DRAWN = {"apart", "area-samples", "coating", "cull", "dim", "dispersion", "dither", "error", "exposure", "f-number", "gain",
-          "ghost", "grid", "half", "haze", "headroom", "max-lights", "memory", "only", "quality", "quantum", "sensor",
-          "star-cull", "starburst", "stop", "strength", "threshold", "tile", "veil", "whole", "work"}
 _Stop = Union[str, Tuple[int, float], None]
 
 
@@ -189,10 +185,8 @@ def _options(values: Dict[str, object]):
             status = _lib.glint_options_set(options, name, value, error)
         if status != _lib.GLINT_OK:
             raise ValueError(f"{key} is {_ffi.string(error.text).decode()}, not {value}")
-    for i, is_given in enumerate(options.given):
-        name = _ffi.string(_lib.glint_option(i).name).decode() if is_given else ""
-        if is_given and name not in _DRAWN:
-            raise ValueError(f"the engine does not support {name} yet: use glint overlay --{name}")
+    if options.rays:
+        raise ValueError("exact rays need the command: glint overlay --rays exact")
     return options, texts
 
 
@@ -215,7 +209,7 @@ class Engine:
     exposure  stops, instead of strength: 0 is physical
     threads   0: one a processor
     Others are the options of glint overlay of the same names, with their ranges and defaults (class Options): numbers,
-    or texts as on the command line. None: the default. A ValueError names those that the engine does not support yet.
+    or texts as on the command line. None: the default.
     """
 
     def __init__(self, lens: Union[str, bytes], height: int, width: int, *, stop: _Stop = None, rotation: float = 0.0,
