@@ -8,6 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "glint/options.h"
 #include "posix/ending.h"
 #include "posix/error.h"
 #include "posix/input.h"
@@ -647,6 +648,7 @@ static bool set_by_name(struct glint_colours *c, const char *name)
 {
     static const double adobe[4][2] = {
         {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, {0.3127, 0.329}};
+    const char *end;
     double gamma;
 
     if (strcasecmp(name, "sRGB") == 0)
@@ -660,7 +662,8 @@ static bool set_by_name(struct glint_colours *c, const char *name)
         glint_colours_set(c, GLINT_TONE_IS_GAMMA, 563 / 256.0, "Adobe RGB");
         return glint_colours_primaries(c, adobe);
     } else if (strncmp(name, "Gamma", 5) == 0 &&
-               (gamma = strtod(name + 5, NULL)) > 0.1 && gamma < 10)
+               (gamma = glint_option_number(name + 5, &end)) > 0.1 &&
+               gamma < 10)
         glint_colours_set(c, GLINT_TONE_IS_GAMMA, gamma, "gamma");
     else
         return false;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "glint/options.h"
 #include "posix/error.h"
 
 /* max bytes of a word of the header, with the final 0 */
@@ -58,7 +59,8 @@ static int side_of(const char *token)
 static bool read_pfm_header(struct glint_pnm_header *h, const uint8_t *data,
                             size_t bytes)
 {
-    char token[3][TOKEN_CHARS], *end;
+    char token[3][TOKEN_CHARS];
+    const char *end;
     double scale;
 
     h->channels = data[1] == 'F' ? 3 : 1;
@@ -68,7 +70,7 @@ static bool read_pfm_header(struct glint_pnm_header *h, const uint8_t *data,
             return false;
     h->width = side_of(token[0]);
     h->height = side_of(token[1]);
-    scale = strtod(token[2], &end);
+    scale = glint_option_number(token[2], &end);
     h->little = scale < 0;
     return h->width > 0 && h->height > 0 && !*end && isfinite(scale) &&
            (scale < 0 || scale > 0);

@@ -15,6 +15,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "glint/options.h"
 #include "import/lines.h"
 #include "options/tool.h"
 
@@ -123,10 +124,10 @@ static bool take_terms(struct polyflare *p, int k, struct imported_surface *s)
 {
     const char *at = p->lines.word[k] + strlen("#!aspheric=");
     double value[5];
-    char *end;
+    const char *end;
 
     for (int i = 0; i < 5; i++) {
-        value[i] = strtod(at, &end);
+        value[i] = glint_option_number(at, &end);
         if (end == at || *end != (i < 4 ? ',' : '\0') || !isfinite(value[i]))
             return imported_fail(p->lens, p->lines.number,
                                  "'%.60s' is not #!aspheric=K,A4,A6,A8,A10",

@@ -14,6 +14,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "glint/options.h"
 #include "import/lines.h"
 
 struct seq {
@@ -32,15 +33,16 @@ static bool numbered_glass(struct imported_surface *s, const char *word)
     const size_t all = strlen(word), before = strspn(word, digits);
     const bool point = word[before] == '.';
     const size_t n = point ? before : 3, from = point ? n + 1 : n;
+    const char *end;
     char text[24];
 
     if (n < 3 || all < from + 2 || all > from + 6 || before < n ||
         strspn(word + from, digits) != all - from || (!point && all != 6))
         return false;
     snprintf(text, sizeof text, "1.%.*s", (int)n, word);
-    s->nd = strtod(text, NULL);
+    s->nd = glint_option_number(text, &end);
     snprintf(text, sizeof text, "0.%s", word + from);
-    s->vd = 100 * strtod(text, NULL);
+    s->vd = 100 * glint_option_number(text, &end);
     return n <= 6;
 }
 

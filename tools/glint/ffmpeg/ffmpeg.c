@@ -20,6 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "glint/options.h"
 #include "posix/at_death.h"
 #include "posix/error.h"
 #include "posix/input.h"
@@ -742,9 +743,9 @@ static enum glint_status too_long(const char *name, struct glint_error *error)
 /* Returns the ratio TEXT, "N/D", or 0. */
 static double ratio_of(const char *text)
 {
-    char *end;
-    const double n = strtod(text, &end);
-    const double d = *end == '/' ? strtod(end + 1, NULL) : 1;
+    const char *end;
+    const double n = glint_option_number(text, &end);
+    const double d = *end == '/' ? glint_option_number(end + 1, &end) : 1;
 
     return d > 0 ? n / d : 0;
 }
@@ -769,11 +770,12 @@ static int by_time(const void *a, const void *b)
 static void read_times(FILE *from, struct ffmpeg_times *times)
 {
     double *more;
-    char line[128], *end;
+    char line[128];
+    const char *end;
     int room = 0;
 
     while (fgets(line, sizeof line, from)) {
-        const double time = strtod(line, &end);
+        const double time = glint_option_number(line, &end);
 
         if (end == line || strchr(end, 'D'))
             continue;
@@ -808,6 +810,7 @@ bool ffmpeg_times_read(struct ffmpeg_times *times, const char *name,
                        const struct ffmpeg_video *video)
 {
     char url[FFMPEG_URL], text[PROBE_BYTES], start[FFMPEG_WORD] = "";
+    const char *end;
     const char *const argv[] = {"ffprobe",
                                 "-v",
                                 "quiet",
@@ -840,7 +843,7 @@ bool ffmpeg_times_read(struct ffmpeg_times *times, const char *name,
     text[strcspn(text, "\r\n")] = '\0';
     take_word(text, "start_time", start);
     for (int i = 0; i < times->n; i++)
-        times->at[i] -= strtod(start, NULL);
+        times->at[i] -= glint_option_number(start, &end);
     return true;
 }
 
