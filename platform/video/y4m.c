@@ -24,7 +24,7 @@ static const struct colour {
     enum glint_pixel_format format;
     bool has_alpha, is_411, may_be_deep;
 } colours[] = {
-    /* glint_y4m_layout_tag() returns the first tag of each format. */
+    /* tag_of() returns the first tag of each format. */
     {"420jpeg", GLINT_I420, false, false, false},
     {"420mpeg2", GLINT_I420, false, false, false},
     {"420paldv", GLINT_I420, false, false, false},
@@ -55,7 +55,9 @@ static int bits_of(const char *text, bool is_grey)
     return 0;
 }
 
-bool glint_y4m_layout_parse(struct glint_y4m_layout *layout, const char *tag)
+/* Sets LAYOUT by TAG, "" being 420jpeg. Returns false if there is no such
+ * tag. */
+static bool parse_layout(struct glint_y4m_layout *layout, const char *tag)
 {
     const char *const text = *tag ? tag : colours[0].tag;
 
@@ -75,7 +77,9 @@ bool glint_y4m_layout_parse(struct glint_y4m_layout *layout, const char *tag)
     return false;
 }
 
-const char *glint_y4m_layout_tag(enum glint_pixel_format format)
+/* Returns the tag that glint writes for FORMAT: _GREY, _I420, _I422 or
+ * _I444. */
+static const char *tag_of(enum glint_pixel_format format)
 {
     size_t i = 0;
 
@@ -91,8 +95,10 @@ bool glint_y4m_is_plain(const struct glint_y4m_header *header)
            header->primaries == GLINT_PRIMARIES_BT709;
 }
 
-void glint_y4m_layout_size(const struct glint_y4m_layout *layout, int plane,
-                           int width, int height, int size[2])
+/* Sets SIZE to the samples across and down PLANE, 0 .. 3, or to 0 and 0 if
+ * there is no such plane. */
+static void plane_size(const struct glint_y4m_layout *layout, int plane,
+                       int width, int height, int size[2])
 {
     const enum glint_pixel_format format = layout->format;
     const bool is_chroma = plane == 1 || plane == 2;
@@ -114,7 +120,7 @@ size_t glint_y4m_layout_bytes(const struct glint_y4m_layout *layout, int width,
     for (int p = 0; p < 4; p++) {
         int size[2];
 
-        glint_y4m_layout_size(layout, p, width, height, size);
+        plane_size(layout, p, width, height, size);
         samples += (size_t)size[0] * (size_t)size[1];
     }
     return samples * (layout->bits > 8 ? 2 : 1);
@@ -132,7 +138,7 @@ static void find_planes(const struct glint_y4m_layout *layout, int width,
                         int height, uint8_t *planes, struct plane plane[4])
 {
     for (int p = 0; p < 4; p++) {
-        glint_y4m_layout_size(layout, p, width, height, plane[p].size);
+        plane_size(layout, p, width, height, plane[p].size);
         plane[p].is_wide = layout->bits > 8;
         plane[p].at = planes;
         planes += (size_t)plane[p].size[0] * (size_t)plane[p].size[1] *
@@ -219,8 +225,8 @@ void glint_y4m_header_init(struct glint_y4m_header *header, int width,
         .interlace = 'p',
         .aspect = "1:1",
     };
-    strcpy(header->colour, glint_y4m_layout_tag(format));
-    (void)glint_y4m_layout_parse(&header->layout, header->colour);
+    strcpy(header->colour, tag_of(format));
+    (void)parse_layout(&header->layout, header->colour);
 }
 
 /* Returns the number at *AT, at most INT_MAX, and moves *AT past it. Returns -1
@@ -317,7 +323,7 @@ static enum glint_status check_header(struct glint_y4m_header *h,
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "larger than %d pixels a side",
                                   GLINT_MAX_SIDE);
-    if (!glint_y4m_layout_parse(&h->layout, h->colour))
+    if (!parse_layout(&h->layout, h->colour))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "C%s is none of 420, 422, 444 (to p16), 411, "
                                   "444alpha and mono (to mono16)",
@@ -553,8 +559,8 @@ static ptrdiff_t read_rows(struct glint_y4m_reader *r)
         size_t stride = r->stride;
         int size[2];
 
-        glint_y4m_layout_size(&r->header.layout, p, r->header.width,
-                              r->header.height, size);
+        plane_size(&r->header.layout, p, r->header.width, r->header.height,
+                   size);
         if (size[0] < r->header.width)
             stride /= 2;
         for (int y = 0; y < size[1]; y++) {

@@ -126,22 +126,9 @@ struct glint_y4m_writer {
     long n_frames; /* frames written so far */
 };
 
-/* Sets LAYOUT by TAG; "" stands for 420jpeg. Returns false if TAG is
- * unknown. */
-bool glint_y4m_layout_parse(struct glint_y4m_layout *layout, const char *tag);
-
-/* Returns the tag that glint writes for FORMAT: _GREY, _I420, _I422 or
- * _I444. */
-const char *glint_y4m_layout_tag(enum glint_pixel_format format);
-
 /* Returns whether stored frames have the layout of struct glint_image and need
  * no conversion: 8 bits, BT.709, not 4:1:1. An alpha plane may follow. */
 bool glint_y4m_is_plain(const struct glint_y4m_header *header);
-
-/* Sets SIZE to the samples across and down PLANE, 0 .. 3, or to 0 and 0 if
- * there is no such plane. */
-void glint_y4m_layout_size(const struct glint_y4m_layout *layout, int plane,
-                           int width, int height, int size[2]);
 
 /* Returns the bytes of all planes of a frame. */
 size_t glint_y4m_layout_bytes(const struct glint_y4m_layout *layout, int width,

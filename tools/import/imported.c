@@ -81,7 +81,8 @@ bool imported_note(struct imported *lens, int line, const char *format, ...)
     return true;
 }
 
-void imported_tell(struct imported *lens, int line, const char *format, ...)
+/* Adds a note of what changes nothing, which STRICT accepts, too. */
+static void add_remark(struct imported *lens, int line, const char *format, ...)
 {
     va_list values;
 
@@ -127,10 +128,10 @@ void imported_image(struct imported *lens, int line, double radius,
     if (defocus == 0)
         return;
     lens->surface[lens->n - 1].thickness += defocus;
-    imported_tell(lens, line,
-                  "the image's defocus, %.6g mm, is added to the sensor's "
-                  "distance",
-                  defocus * lens->unit_mm);
+    add_remark(lens, line,
+               "the image's defocus, %.6g mm, is added to the sensor's "
+               "distance",
+               defocus * lens->unit_mm);
 }
 
 bool imported_need_unit(struct imported *lens, const char *word)
@@ -429,10 +430,10 @@ static bool drop_dummies(struct imported *lens)
         memmove(s, s + 1, (size_t)(lens->n - k) * sizeof *s);
     }
     if (n > 0)
-        imported_tell(lens, line,
-                      "the same medium on both sides: left out%s, which "
-                      "changes nothing",
-                      n > 1 ? ", and others like it" : "");
+        add_remark(lens, line,
+                   "the same medium on both sides: left out%s, which "
+                   "changes nothing",
+                   n > 1 ? ", and others like it" : "");
     return lens->n > 0 || imported_fail(lens, 0, "there is no glass in it");
 }
 

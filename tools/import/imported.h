@@ -95,9 +95,6 @@ bool imported_empty(struct imported *lens);
 /* Adds a note about a guess. Returns true, so that callers continue. */
 bool imported_note(struct imported *lens, int line, const char *format, ...);
 
-/* Adds a note about a change without effect, which STRICT accepts. */
-void imported_tell(struct imported *lens, int line, const char *format, ...);
-
 /* Adds a note that WORD is not supported, the first time that it occurs. */
 bool imported_unread(struct imported *lens, int line, const char *word);
 

@@ -90,7 +90,8 @@ double bench_ms(const struct bench *b, const struct bench_case *c, int stage)
     return canvas_median(c->ms[stage], b->rounds);
 }
 
-double bench_floor_ms(const struct bench *b, const struct bench_case *c)
+/* Returns the median time of the memory floor, ms. */
+static double floor_ms_of(const struct bench *b, const struct bench_case *c)
 {
     return canvas_median(c->canvas->floor_ms, b->rounds);
 }
@@ -109,7 +110,7 @@ static void print(const struct bench *b)
     const int whole = s->n_stages - 1;
 
     printf("floor %.3f ms (%dx%d %s, %d rounds); stages are ratios to it\n",
-           bench_floor_ms(b, b->cases[0]), b->cases[0]->canvas->image.width,
+           floor_ms_of(b, b->cases[0]), b->cases[0]->canvas->image.width,
            b->cases[0]->canvas->image.height, bench_format[b->word], b->rounds);
     printf("%s %8s %7s ", s->heads, "ms", "ratio");
     for (int k = 0; k < whole; k++)
@@ -117,7 +118,7 @@ static void print(const struct bench *b)
     printf("  %s\n", s->tail);
     for (int i = 0; i < b->n_cases; i++) {
         const struct bench_case *const c = b->cases[i];
-        const double floor_ms = bench_floor_ms(b, c);
+        const double floor_ms = floor_ms_of(b, c);
 
         s->print_case(b, c);
         printf(" %8.3f %7.1f ", bench_ms(b, c, whole),
@@ -145,7 +146,7 @@ void bench_json_times(struct json_writer *json, const struct bench *b,
     const int whole = s->n_stages - 1;
     const double ms = bench_ms(b, c, whole);
 
-    json_write(json, "ms: %.4f, ratio: %.3f", ms, ms / bench_floor_ms(b, c));
+    json_write(json, "ms: %.4f, ratio: %.3f", ms, ms / floor_ms_of(b, c));
     for (int k = 0; k < whole; k++)
         json_write(json, "%s_ms: %.4f", s->stage[k], bench_ms(b, c, k));
 }
@@ -157,7 +158,7 @@ static void print_json(const struct bench *b)
     json_write(&json,
                "{floor_ms: %.5f, rounds: %d, version: %s, machine: %s, "
                "cases: [",
-               bench_floor_ms(b, b->cases[0]), b->rounds, GLINT_VERSION,
+               floor_ms_of(b, b->cases[0]), b->rounds, GLINT_VERSION,
                canvas_machine());
     for (int i = 0; i < b->n_cases; i++) {
         json_write(&json, "\n{%s: %s", b->subject->word, b->cases[i]->name);

@@ -115,10 +115,9 @@ void bench_json_format(struct json_writer *json, const struct bench *bench,
 void bench_json_times(struct json_writer *json, const struct bench *bench,
                       const struct bench_case *c);
 
-/* Return the median time, ms, of STAGE of C, and of the memory floor. */
+/* Returns the median time, ms, of STAGE of C. */
 double bench_ms(const struct bench *bench, const struct bench_case *c,
                 int stage);
-double bench_floor_ms(const struct bench *bench, const struct bench_case *c);
 
 /* Options that both subjects have. */
 enum { BENCH_OWN = 'A' }; /* subjects number their own options from here on */

@@ -149,8 +149,8 @@ static int add_list(struct bench *b, const struct opened_lens *lens,
 /* ------------------------------------------------------------------ rounds */
 
 /* tools/measure/budget recognises timed frames by this name. */
-enum glint_status bench_run(struct bench *b, struct bench_case *c, int round);
-enum glint_status bench_run(struct bench *b, struct bench_case *c, int round)
+static enum glint_status bench_run(struct bench *b, struct bench_case *c,
+                                   int round)
 {
     struct flare_case *const t = (struct flare_case *)c;
     const struct glint_engine_report *const r = &t->report;

@@ -68,7 +68,8 @@ const struct control_form control_forms[] = {
 /* clang-format on */
 const int control_n_forms = sizeof control_forms / sizeof *control_forms;
 
-bool control_changes(const struct glint_option *option)
+/* Returns whether lines of control can change OPTION. */
+static bool is_changeable(const struct glint_option *option)
 {
     return option->changes == GLINT_OPTION_FRAME &&
            option->type == GLINT_OPTION_REAL;
@@ -136,7 +137,7 @@ static enum glint_status fail_word(const struct reader *r, const char *before)
             suggest_try(&suggest, may, strlen(may));
     }
     for (int i = 0; !before && i < GLINT_N_OPTIONS; i++)
-        if (control_changes(glint_option(i)))
+        if (is_changeable(glint_option(i)))
             suggest_try(&suggest, glint_option(i)->name,
                         strlen(glint_option(i)->name));
     return control_fail(r->error, r->where, r->column, "'%.24s' is no %s%s%s",
@@ -278,7 +279,7 @@ static enum glint_status read_command(struct reader *r,
                    : control_fail(r->error, r->where, r->column,
                                   "a command has to follow the frame");
     option = glint_option_named(r->word);
-    if (option && control_changes(option)) {
+    if (option && is_changeable(option)) {
         snprintf(usage, sizeof usage, "%s %s", option->name, option->value);
         set.usage = usage;
         status = read_option(r, option, form, line);
@@ -444,7 +445,7 @@ bool keyboard_next(struct keyboard *k, struct control_line *line)
     return false;
 }
 
-void keyboard_close(struct keyboard *k)
+static void close_keyboard(struct keyboard *k)
 {
     if (k->fd >= 0)
         put_back();
@@ -530,7 +531,7 @@ void controls_close(struct controls *input)
 {
     text_lines_close(&input->lines);
     if (input->is_open && input->is_keys)
-        keyboard_close(&input->keys);
+        close_keyboard(&input->keys);
     free(input->row);
     *input = (struct controls){.is_open = false};
 }

@@ -94,9 +94,6 @@ extern const struct control_form control_forms[];
 
 extern const int control_n_forms;
 
-/* Returns whether control lines and key frames can change OPTION. */
-bool control_changes(const struct glint_option *option);
-
 struct control_line {
     int number; /* line number in the file, from 1 */
     int frame;  /* -1: no frame given */
@@ -160,8 +157,6 @@ enum glint_status keyboard_open(struct keyboard *k, int fd);
  * there is no key. Keys without a command are skipped; q requests the end of
  * the process. */
 bool keyboard_next(struct keyboard *k, struct control_line *line);
-
-void keyboard_close(struct keyboard *k);
 
 /* Sets LINE to the command of the first key of TEXT[N], with verb CONTROL_NONE
  * if the key has no command. Returns the bytes of the key. */

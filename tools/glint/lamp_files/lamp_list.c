@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "glint/area.h"
+#include "glint/options.h"
 #include "lamp_files/lamp_keys.h"
 #include "options/timed_text.h"
 
@@ -37,7 +38,7 @@ static const struct text_column columns[COLUMNS] = {
      "frame must be a whole number from 0, or *"},
     {"x", -1e6, 1e6, FAR},
     {"y", -1e6, 1e6, FAR},
-    {"power", 0, LAMP_MAX_POWER, POWERS},
+    {"power", 0, GLINT_MAX_LAMP_POWER, POWERS},
     {"r", 0, DBL_MAX, NEGATIVE},
     {"g", 0, DBL_MAX, NEGATIVE},
     {"b", 0, DBL_MAX, NEGATIVE},
@@ -74,14 +75,6 @@ static struct lamp_row row_of(const double *v)
                              .next = -1};
 }
 
-bool lamp_power_ok(double power, const double rgb[3])
-{
-    const double most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
-
-    return power >= 0 && power <= LAMP_MAX_POWER && most <= LAMP_MAX_POWER &&
-           power * most <= LAMP_MAX_POWER;
-}
-
 /* Reads the fields that are there into V, which holds defaults. OTHER is the
  * cause if one is not a number. */
 static const char *take_fields(char *const field[COLUMNS], bool is_object,
@@ -109,7 +102,7 @@ static const char *take_fields(char *const field[COLUMNS], bool is_object,
         return cause;
     if (v[FRAME] != floor(v[FRAME]))
         return columns[FRAME].range;
-    return lamp_power_ok(v[POWER], v + RED) ? NULL : POWERS;
+    return glint_lamp_power_is_valid(v[POWER], v + RED) ? NULL : POWERS;
 }
 
 /* Reads LINE, "frame,x,y,power[,r,g,b[,size]]" or as a heading says. */

@@ -10,12 +10,6 @@
 
 enum { LAMP_LIST_MAX_ROWS = 1 << 20 };
 
-#define LAMP_MAX_POWER 1e30 /* Such a lamp is finite in all outputs. */
-
-/* Returns whether POWER is 0 .. LAMP_MAX_POWER, and RGB and POWER * RGB are at
- * most LAMP_MAX_POWER. */
-bool lamp_power_ok(double power, const double rgb[3]);
-
 /* One line of a list. X and Y are pixels from the top left corner, and may be
  * off-screen. */
 struct lamp_row {

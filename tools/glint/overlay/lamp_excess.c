@@ -111,7 +111,7 @@ static void set_lamp(struct glint_engine_lamp *lamp, const struct sum *sum,
     track->y_q8 = (int32_t)lrint(256 * sum->y / sum->luminance);
     glint_view_to_angles(view, focal_mm, track->x_q8 / 256.0,
                          track->y_q8 / 256.0, &lamp->lamp);
-    lamp->lamp.power = fmin(sum->luminance, LAMP_MAX_POWER) * lamp->level;
+    lamp->lamp.power = fmin(sum->luminance, GLINT_MAX_LAMP_POWER) * lamp->level;
     for (int c = 0; c < 3; c++)
         lamp->lamp.rgb[c] = sum->rgb[c] / sum->luminance;
 }

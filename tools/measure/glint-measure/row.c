@@ -49,7 +49,8 @@ static bool has_word(const char *words, const char *word, size_t length)
     return false;
 }
 
-bool row_wants(const struct figure_row *row, const char *names)
+/* Returns whether one of NAMES, with commas, is among the metrics. */
+static bool has_metric(const struct figure_row *row, const char *names)
 {
     for (const char *at = names; at; at = strchr(at, ',')) {
         at += *at == ',';
@@ -212,7 +213,7 @@ static int open_lens(struct figure_row *r)
     r->settings.max_deg = fmax(r->settings.max_deg, r->theta);
     if (r->bake_stop >= 0 && r->table.n_surfaces)
         return bake(r);
-    if (!row_wants(r, ROW_BAKE "," ROW_PICTURE "," ROW_FRAME "," ROW_RAYS))
+    if (!has_metric(r, ROW_BAKE "," ROW_PICTURE "," ROW_FRAME "," ROW_RAYS))
         return EXIT_OK;
     return opened_lens_open(r->tool, &r->opened, &r->settings, r->lens);
 }
@@ -394,11 +395,11 @@ static enum glint_status expose(struct figure_row *r, struct frame *f)
 {
     enum glint_status status = GLINT_OK;
 
-    if (!isnan(r->stops) || (is_linear(r) && !row_wants(r, ROW_PICTURE)))
+    if (!isnan(r->stops) || (is_linear(r) && !has_metric(r, ROW_PICTURE)))
         f->exposure = 1;
-    else if (!row_wants(r, ROW_PICTURE) || r->reference)
+    else if (!has_metric(r, ROW_PICTURE) || r->reference)
         status = canvas_exposure(f->engine, f->lamp, r->n_lights, &f->exposure);
-    if (status != GLINT_OK || !row_wants(r, ROW_PICTURE))
+    if (status != GLINT_OK || !has_metric(r, ROW_PICTURE))
         return status;
     if (r->reference)
         return draw_reference(r, f);
@@ -413,7 +414,7 @@ static enum glint_status expose(struct figure_row *r, struct frame *f)
 
 static enum glint_status compare(struct figure_row *r, struct frame *f)
 {
-    if (!row_wants(r, ROW_PICTURE))
+    if (!has_metric(r, ROW_PICTURE))
         return GLINT_OK;
     if (is_linear(r))
         return glint_measure_compare(&f->exact, &f->got, false, &f->measure)
@@ -428,7 +429,7 @@ static void write_frame(struct figure_row *r, const struct frame *f)
 {
     const struct glint_engine_report *const p = &f->report;
 
-    if (row_wants(r, ROW_PICTURE))
+    if (has_metric(r, ROW_PICTURE))
         json_write(&r->json, "psnr_db: %.4f, ssim: %.6f, flux: %.6f",
                    f->measure.psnr_db, f->measure.ssim, f->measure.flux);
     json_write(&r->json,
@@ -467,13 +468,13 @@ int row_measure(struct figure_row *row)
 
     json_write(&row->json, "{");
     code = open_lens(row);
-    if (code == EXIT_OK && row_wants(row, ROW_BAKE))
+    if (code == EXIT_OK && has_metric(row, ROW_BAKE))
         write_model(row);
-    if (code == EXIT_OK && row_wants(row, ROW_PICTURE "," ROW_FRAME))
+    if (code == EXIT_OK && has_metric(row, ROW_PICTURE "," ROW_FRAME))
         code = measure_frame(row);
-    if (code == EXIT_OK && row_wants(row, ROW_RAYS))
+    if (code == EXIT_OK && has_metric(row, ROW_RAYS))
         code = row_rays(row);
-    if (code == EXIT_OK && row_wants(row, ROW_PLACES))
+    if (code == EXIT_OK && has_metric(row, ROW_PLACES))
         code = row_places(row);
     json_write(&row->json, "}\n");
     return code;

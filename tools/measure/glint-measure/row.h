@@ -50,10 +50,6 @@ int row_open(struct figure_row *row, struct tool *tool, int n,
 /* Measures ROW and prints a JSON object. Returns an exit code. */
 int row_measure(struct figure_row *row);
 
-/* Returns whether one of NAMES, separated by commas, is among the row's
- * metrics. */
-bool row_wants(const struct figure_row *row, const char *names);
-
 /* Write the errors of the model against exact rays (rays.c), and the positions
  * of lights and ghosts by the lens's projection (places.c). Return an exit
  * code. */
