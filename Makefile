@@ -75,7 +75,7 @@ absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,ope
 absent += tools/glint/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/posix/$(if $(CROSS),plugin,plugin_absent).c platform/assimp/assimp.c platform/sdl/sdl.c
-absent += tools/glint/glint.c tools/glint/live/glint_live.c tools/glint/model/models_only.c tools/glint/scenes/scenes_only.c tools/measure/insncount.c
+absent += tools/glint/glint.c tools/glint/glint_live.c tools/glint/model/models_only.c tools/glint/scenes/scenes_only.c tools/measure/insncount.c
 
 core_o      := $(call objects,src,$(CORE))
 engine_o    := $(call objects,src,$(ENGINE))
@@ -83,7 +83,7 @@ bake_o      := $(call objects,src,$(BAKE))
 platform_o  := $(call objects,platform,$(PLATFORM))
 tools_o     := $(call objects,tools,$(TOOLS))
 measure_o   := $(call objects,tools,measure/glint-measure)
-main_o      := $(patsubst %,$(OUT)/tools/glint/%.o,glint live/glint_live model/models_only scenes/scenes_only)
+main_o      := $(patsubst %,$(OUT)/tools/glint/%.o,glint glint_live model/models_only scenes/scenes_only)
 LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
         $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) \
         $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) $(if $(filter yes,$(WITH_EXPAT)),$(EXPAT_LIBS)) -lm -lpthread -ldl
@@ -169,7 +169,7 @@ embed_embed_cxx    = $(if $(findstring clang,$(CC)),clang++,$(CXX)) -std=c++17 -
 # The live command alone, for baked models, stripped.
 glint-live: $(OUT)/glint-live
 $(OUT)/glint-live: LDFLAGS += $(if $(filter yes,$(STRIP)),-s) -Wl,--gc-sections
-$(OUT)/glint-live: $(OUT)/tools/glint/live/glint_live.o $(OUT)/tools/glint/model/models_only.o $(OUT)/tools/glint/scenes/scenes_only.o $(libs)
+$(OUT)/glint-live: $(OUT)/tools/glint/glint_live.o $(OUT)/tools/glint/model/models_only.o $(OUT)/tools/glint/scenes/scenes_only.o $(libs)
 	$(link)
 
 # The image plug-in, the only C++: PNG, JPEG, EXR ... through OpenImageIO.

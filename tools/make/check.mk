@@ -171,7 +171,8 @@ sources = $(shell find include src platform tools tests -name '*.[ch]' -o -name 
 format:
 	$(Q)clang-format -i $(sources)
 libraries := $(OUT)/libglint.a
-all_o := $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
+# The main programs, too, but not the files that replace others in them.
+all_o := $(core_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(filter-out %_only.o,$(main_o))
 lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a $(all_o)
 	@tools/lint/layers && tools/lint/cycles $(NM) $(OUT) $(all_o) && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links && tools/lint/prose && tests/mutants/run --check && tools/measure/write-figures --check
 	@tools/lint/symbols $(NM) $(filter %.a,$^)
