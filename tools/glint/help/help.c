@@ -4,9 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "glint/glint.h"
-#include "linux/sets.h"
-
 enum { NAME_CHARS = 48, ABOUT = 22 /* column of what it does */ };
 
 /* Most common options, shown for commands whose help is longer than a
@@ -152,23 +149,4 @@ void help_options(const struct help *help, const struct option *options)
                 break;
         putchar('\n');
     }
-}
-
-void help_version(bool is_json)
-{
-    static const struct {
-        unsigned set;
-        const char *name;
-    } kernels[] = {{GLINT_SET_SSE41, "sse41"},
-                   {GLINT_SET_AVX2, "avx2"},
-                   {GLINT_SET_NEON, "neon"}};
-
-    printf(is_json ? "{\"name\": \"glint\", \"version\": \"%s\", "
-                     "\"kernels\": [\"c\""
-                   : "glint %s (kernels: c",
-           GLINT_VERSION);
-    for (int i = 0; i < 3; i++)
-        if (glint_system_sets() & kernels[i].set)
-            printf(is_json ? ", \"%s\"" : " %s", kernels[i].name);
-    puts(is_json ? "], \"licence\": \"MIT\"}" : "; MIT licence)");
 }

@@ -28,7 +28,4 @@ void help_screen(const struct help *help);
  * if the option has a value, a tab, and the first line of its text in HELP. */
 void help_options(const struct help *help, const struct option *options);
 
-/* Prints the version and the kernels used on this machine. */
-void help_version(bool is_json);
-
 #endif

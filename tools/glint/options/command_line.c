@@ -10,6 +10,7 @@
 #include "glint/glint.h"
 #include "linux/sets.h"
 #include "posix/workers.h"
+#include "options/json_writer.h"
 #include "options/suggest.h"
 
 /* Sets the instruction sets that VALUE, a word of --kernels, allows. Returns
@@ -110,6 +111,35 @@ int tool_getopt(int argc, char *const *argv, const char *shorts,
     return getopt_long(argc, argv, shorts, options, index);
 }
 
+/* Prints the version and the kernels that this machine runs. */
+static void print_version(bool is_json)
+{
+    static const struct {
+        unsigned set;
+        const char *name;
+    } kernels[] = {{GLINT_SET_SSE41, "sse41"},
+                   {GLINT_SET_AVX2, "avx2"},
+                   {GLINT_SET_NEON, "neon"}};
+    struct json_writer json = {stdout, false};
+
+    if (is_json)
+        json_write(&json, "{name: %s, version: %s, kernels: [%s", "glint",
+                   GLINT_VERSION, "c");
+    else
+        printf("glint %s (kernels: c", GLINT_VERSION);
+    for (int i = 0; i < 3; i++)
+        if (!(glint_system_sets() & kernels[i].set))
+            continue;
+        else if (is_json)
+            json_write(&json, "%s", kernels[i].name);
+        else
+            printf(" %s", kernels[i].name);
+    if (is_json)
+        json_write(&json, "], licence: %s}\n", "MIT");
+    else
+        puts("; MIT licence)");
+}
+
 int tool_option(struct tool *tool, int option, const char *value)
 {
     static char of_engine[ENGINE_HELP_BYTES];
@@ -131,7 +161,7 @@ int tool_option(struct tool *tool, int option, const char *value)
         values_print_words(tool->name, value);
         return EXIT_OK;
     case 'V':
-        help_version(tool->json);
+        print_version(tool->json);
         return EXIT_OK;
     case 'q':
         tool->quiet = true;
