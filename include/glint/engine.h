@@ -87,8 +87,8 @@ struct glint_engine_camera {
         sensor_height_mm; /* sensor size, mm; 0: size of the model's film */
     const struct glint_projection
         *projection; /* copied; NULL: pinhole projection */
-    /* A setup of the caller, for example of glint_engine_setup(), instead of the
-     * stop and colours above; must outlive the engine. The caller calls
+    /* A setup of the caller, for example of glint_engine_setup(), instead of
+     * the stop and colours above; must outlive the engine. The caller calls
      * glint_engine_update_stop() after changing the setup. NULL: the engine
      * makes a setup from the model. */
     const struct glint_setup *setup;
@@ -238,9 +238,9 @@ struct glint_engine_config {
 void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
                                  int width, int height);
 
-/* Sets CFG to the defaults of glint overlay, except that blades are straight:
- * overlay uses a roundness of 0.2, see glint_engine_iris(). The caller still
- * has to set the model and the workers. */
+/* Sets CFG to the defaults of glint overlay, except for straight blades: blades
+ * of overlay have an iris.roundness of 0.2. The caller still sets the model and
+ * the workers. */
 static inline void glint_engine_defaults(struct glint_engine_config *cfg,
                                          int width, int height)
 {
