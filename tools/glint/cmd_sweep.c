@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 
 #include "linux/instructions.h"
-#include "posix/workers.h"
 #include "measure/sweep.h"
 #include "options/command_line.h"
 #include "posix/output.h"
@@ -186,8 +185,6 @@ static int run(struct sweep *s, const struct asked *a)
     code = tool_check_output(s->tool, path);
     if (code != EXIT_OK)
         return code;
-    if (glint_pool_create(&s->one, 1) != GLINT_OK)
-        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     add_cases(s, a);
     if (sweep_plan(s) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
@@ -322,7 +319,6 @@ static void close_sweep(struct sweep *s)
 {
     for (int i = 0; i < s->n_pictures; i++)
         free(s->picture[i].rgb);
-    glint_pool_destroy(s->one);
     free(s->picture);
     free(s->point);
     free(s);

@@ -44,7 +44,7 @@ struct bench_case *bench_add(struct bench *b, const char *name,
     c->canvas = canvas;
     c->workers = v->two_threads       ? b->two
                  : b->tool->n_threads ? b->tool->workers
-                                      : b->one;
+                                      : NULL;
     c->threads = v->two_threads       ? 2
                  : b->tool->n_threads ? b->tool->n_threads
                                       : 1;
@@ -174,8 +174,7 @@ int bench_run_all(struct bench *b, int n_names, const char *const *names)
 {
     int code;
 
-    if (glint_pool_create(&b->one, 1) != GLINT_OK ||
-        glint_pool_create(&b->two, 2) != GLINT_OK || b->two->n != 2)
+    if (glint_pool_create(&b->two, 2) != GLINT_OK || b->two->n != 2)
         return tool_fail(b->tool, GLINT_E_MEMORY, "no threads to be had");
     code = b->subject->open(b, n_names, names);
     if (code == EXIT_OK)
@@ -194,7 +193,6 @@ void bench_close(struct bench *b)
     for (int i = 0; i < b->n_canvases; i++)
         canvas_finish(&b->canvas[i]);
     b->subject->close(b);
-    glint_pool_destroy(b->one);
     glint_pool_destroy(b->two);
     free(b);
 }

@@ -83,8 +83,8 @@ struct bench {
     struct settings base;            /* settings of the command line */
     int width, height, rounds, word; /* word: index in bench_format */
     bool all;
-    bool moving; /* The first light moves from round to round. */
-    struct glint_workers *one, *two;
+    bool moving;               /* The first light moves from round to round. */
+    struct glint_workers *two; /* two threads */
     struct canvas canvas[BENCH_CANVASES];
     int n_canvases;
     struct bench_case *cases[BENCH_CASES];

@@ -101,7 +101,6 @@ struct sweep {
     int rounds, grid;
     bool small;
     int counter; /* descriptor that counts instructions, or -1 */
-    struct glint_workers *one;
 };
 
 /* Applies SET to SETTINGS; if OPENING, only parameters that are needed to open

@@ -89,7 +89,7 @@ static int make_run(struct bay *b, struct run *r)
     sweep_set(&asked, &r->point->set, false);
     canvas_engine(b->s->tool, &r->open->lens, &asked, b->c->width, b->c->height,
                   &cfg);
-    cfg.workers = b->s->tool->n_threads ? b->s->tool->workers : b->s->one;
+    cfg.workers = b->s->tool->n_threads ? b->s->tool->workers : NULL;
     status = glint_engine_create(&r->engine, &cfg, &error);
     r->point->metric[SWEEP_MODEL_BYTES] = (double)r->open->lens.model.bytes;
     return status == GLINT_OK ? EXIT_OK

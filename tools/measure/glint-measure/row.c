@@ -11,7 +11,6 @@
 #include "model/model_cache.h"
 #include "model/model_summary.h"
 #include "model/table_file.h"
-#include "posix/workers.h"
 
 #define ROW_BAKE \
     "bake_s,model_kib,mean_terms,barrel_rms,f_number,focal_mm,table_ghosts"
@@ -240,7 +239,6 @@ static void write_model(struct figure_row *r)
 
 struct frame {
     struct glint_engine *engine;
-    struct glint_workers *one; /* draws frames with one thread */
     struct glint_lamp *lamp;
     struct canvas canvas;
     struct glint_float_image exact, got; /* linear light */
@@ -267,7 +265,7 @@ static enum glint_status make_engine(struct figure_row *r, struct frame *f,
     struct glint_engine_config cfg;
 
     canvas_engine(r->tool, &r->opened, &r->settings, r->width, r->height, &cfg);
-    cfg.workers = f->one;
+    cfg.workers = NULL; /* one thread */
     if (r->settings.options.starburst > 0)
         cfg.drawing.parts |= GLINT_ENGINE_CORES;
     if (r->dust_log2)
@@ -332,8 +330,7 @@ static enum glint_status make_frame(struct figure_row *r, struct frame *f)
     f->exact.rgb = malloc(n * sizeof(float));
     f->got.rgb = malloc(n * sizeof(float));
     f->codes = malloc(n);
-    if (!f->lamp || !f->exact.rgb || !f->got.rgb || !f->codes ||
-        glint_pool_create(&f->one, 1) != GLINT_OK)
+    if (!f->lamp || !f->exact.rgb || !f->got.rgb || !f->codes)
         return GLINT_E_MEMORY;
     canvas_lamps(f->lamp, r->n_lights, r->theta);
     f->lamp[0].phi_deg = r->phi;
@@ -345,7 +342,6 @@ static enum glint_status make_frame(struct figure_row *r, struct frame *f)
 static void free_frame(struct frame *f)
 {
     glint_engine_destroy(f->engine);
-    glint_pool_destroy(f->one);
     canvas_finish(&f->canvas);
     free(f->lamp);
     free(f->exact.rgb);
