@@ -75,12 +75,15 @@ absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,ope
 absent += tools/glint/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/posix/$(if $(CROSS),plugin,plugin_absent).c platform/assimp/assimp.c platform/sdl/sdl.c
+# WebAssembly has no threads.
+absent += $(if $(filter wasm32,$(ARCH)),platform/posix/pool.c)
 absent += tools/glint/glint.c tools/glint/glint_live.c tools/glint/model/models_only.c tools/glint/scenes/scenes_only.c tools/measure/insncount.c
 
 core_o      := $(call objects,src,$(CORE))
-engine_o    := $(call objects,src,$(ENGINE))
+# With the thread pool: of the platform the only file that is installed.
+engine_o    := $(call objects,src,$(ENGINE)) $(filter %/pool.o,$(call objects,platform,posix))
 bake_o      := $(call objects,src,$(BAKE))
-platform_o  := $(call objects,platform,$(PLATFORM))
+platform_o  := $(filter-out $(engine_o),$(call objects,platform,$(PLATFORM)))
 tools_o     := $(call objects,tools,$(TOOLS))
 measure_o   := $(call objects,tools,measure/glint-measure)
 main_o      := $(patsubst %,$(OUT)/tools/glint/%.o,glint glint_live model/models_only scenes/scenes_only)

@@ -43,6 +43,7 @@
 #include "glint/light.h"
 #include "glint/model.h"
 #include "glint/options.h"
+#include "glint/pool.h"
 #include "glint/prescription.h"
 #include "glint/profile.h"
 #include "glint/quality.h"

@@ -2,9 +2,10 @@
  *
  * glint/workers.h - the parallel-for that an application passes to glint.
  *
- * glint has no threads of its own. Where a header takes a struct
- * glint_workers, NULL means that the calling thread does all the work. No
- * result depends on the number of workers or on the order of the jobs.
+ * glint starts no threads of its own: a program passes its own workers, or the
+ * pool of glint/pool.h. Where a header takes a struct glint_workers, NULL means
+ * that the calling thread does all the work. No result depends on the number of
+ * workers or on the order of the jobs.
  */
 #ifndef GLINT_WORKERS_H
 #define GLINT_WORKERS_H
@@ -13,12 +14,14 @@
 extern "C" {
 #endif
 
+#define GLINT_MAX_WORKERS 64
+
 /* Does job number JOB. WORKER, 0 .. n - 1, is the number of the worker that
  * calls it; no two threads have the same number at the same time. */
 typedef void glint_job_fn(void *ctx, int job, int worker);
 
 struct glint_workers {
-    int n; /* threads that may run jobs at once, 1 .. 64 */
+    int n; /* threads that may run jobs at once, 1 .. GLINT_MAX_WORKERS */
 
     /* Calls FN once for each job 0 .. n_jobs - 1, in any order, and returns
      * when all jobs are done. Never called from inside a job. */

@@ -8,6 +8,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* Bytes of a stack for baking, whatever the system's default: baking needs
+ * GLINT_BAKE_STACK_BYTES, and several times more under a sanitizer. */
+#ifdef GLINT_SANITIZED
+#define GLINT_WORKER_STACK_BYTES (16 << 20)
+#else
+#define GLINT_WORKER_STACK_BYTES (2 << 20)
+#endif
+
 /* Opens each closed descriptor of 0 to 2 in a way that reading or writing it
  * fails, so that no file opened later becomes standard output. */
 void glint_process_hold_streams(void);

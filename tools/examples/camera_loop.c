@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
  * camera_loop MODEL DEVICE FRAMES >FRAMES.yuyv - draws the flare of the lamps
- * in each frame of a camera: 640x480, read by read(), as the simplest cameras
- * deliver frames. DEVICE may be a file of such frames.
+ * in each frame of a camera, with a thread per processor: 640x480, read by
+ * read(), as the simplest cameras deliver frames. DEVICE may be a file of such
+ * frames.
  */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <linux/videodev2.h>
 
 #include "glint/engine.h"
+#include "glint/pool.h"
 
 enum { WIDTH = 640, HEIGHT = 480, BYTES = 2 * WIDTH * HEIGHT, US = 33333 };
 
@@ -24,9 +25,8 @@ static unsigned char frame[BYTES], model[8 << 20];
 static int is_ready(int camera)
 {
     struct v4l2_capability can;
-    struct v4l2_format format;
+    static struct v4l2_format format;
 
-    memset(&format, 0, sizeof format);
     format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     format.fmt.pix.width = WIDTH;
     format.fmt.pix.height = HEIGHT;
@@ -42,7 +42,7 @@ int main(int argc, char **argv)
     const int camera = argc == 4 ? open(argv[2], O_RDONLY) : -1;
     FILE *file = argc == 4 ? fopen(argv[1], "rb") : NULL;
     const size_t bytes = file ? fread(model, 1, sizeof model, file) : 0;
-    struct glint_image image;
+    static struct glint_image image;
     struct glint_engine_config cfg;
     struct glint_engine_report report;
     struct glint_error error = {"no model, no camera, or not of 640x480"};
@@ -52,18 +52,16 @@ int main(int argc, char **argv)
     const char *reason = "";
     int left = argc == 4 ? atoi(argv[3]) : 0;
 
-    memset(&image, 0, sizeof image);
     image.format = GLINT_YUYV;
     image.range = GLINT_RANGE_LIMITED;
     image.width = WIDTH;
     image.height = HEIGHT;
     glint_image_place(&image, frame);
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.model = &lens;
     if (glint_lens_open(&lens, model, bytes, &reason) == GLINT_OK &&
-        is_ready(camera)) {
-        glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-        cfg.model = &lens;
+        is_ready(camera) && glint_pool_create(&cfg.workers, 0) == GLINT_OK)
         glint_engine_create(&engine, &cfg, &error);
-    }
     while (engine && left > 0 && read(camera, frame, BYTES) == BYTES) {
         const int n = glint_engine_find(engine, &image, US, lamps, 16);
 
@@ -74,5 +72,6 @@ int main(int argc, char **argv)
         fprintf(stderr, "camera_loop: %s %s\n", engine ? "no more" : error.text,
                 reason);
     glint_engine_destroy(engine);
+    glint_pool_destroy(cfg.workers);
     return !engine || left > 0;
 }

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "posix/process.h"
-#include "posix/workers.h"
 #include "options/suggest.h"
 #include "options/command_line.h"
 

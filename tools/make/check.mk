@@ -17,7 +17,7 @@ unit_c := $(filter-out %/test_mjpeg$(if $(filter yes,$(WITH_JPEG)),_absent).c \
         $(if $(filter yes,$(WITH_JANSSON)),,%/test_recording.c),$(unit_c))
 UNIT := $(patsubst test_%,%,$(basename $(notdir $(unit_c))))
 ifeq ($(CONFIG),tsan) # what starts threads or is interrupted by signals
-UNIT := $(filter bake exact flare flare_light flare_room workers output at_death frame live,$(UNIT))
+UNIT := $(filter bake exact flare flare_light flare_room output at_death frame live pool,$(UNIT))
 endif
 FUZZERS := $(filter-out $(if $(filter yes,$(WITH_JPEG)),,mjpeg) $(if $(filter yes,$(WITH_INIH)),,config) \
         $(if $(filter yes,$(WITH_JANSSON)),,recording), \
@@ -33,7 +33,7 @@ $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
         -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
 $(OUT)/tests/unit/test_output: LDFLAGS += -Wl,--wrap=close
 $(OUT)/tests/unit/test_output_together: LDFLAGS += -Wl,--wrap=realpath
-$(OUT)/tests/unit/test_workers: LDFLAGS += -Wl,--wrap=pthread_create
+$(OUT)/tests/unit/test_pool: LDFLAGS += -Wl,--wrap=pthread_create
 $(OUT)/tests/unit/test_flare_room: LDFLAGS += -Wl,--wrap=glint_edges_bin
 $(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
 FAKE_CAMERA := ioctl open64 stat64 close read mmap64 munmap malloc calloc \

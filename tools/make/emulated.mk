@@ -5,7 +5,7 @@
 ARM_TARGETS := aarch64 armv7 armv7-neon armv6-soft
 ARM_MODELS  := heliar-tronnier double-gauss-angenieux nikon-zoom-mid
 ARM_UNIT := aim arena divide cuts kernels model transfer curve edges resolve composite lamp_finder lamp_shapes flare flare_light flare_room plan account lights scene_draw scene_model scene_rays scene_shade translucent bright match window pass blend star_bits hidden_lamps \
-        lamp_tracker lamp_tracker_any quantise pnm y4m y4m_divide output workers measure lamps fourcc panel frame \
+        lamp_tracker lamp_tracker_any quantise pnm y4m y4m_divide output pool measure lamps fourcc panel frame \
         show_lights live_stats live_adapt
 # Those that want a model bake it here first, for all.
 ARM_BAKES := $(OUT)/tests/unit/test_frame

@@ -10,8 +10,8 @@ shared_names = lib$(1).so.$(VERSION) lib$(1).so.$(SOVERSION) lib$(1).so
 
 # Libraries of others that they take: the run-time half none, and all.
 taken_glint :=
-taken_glint-engine := -lm
-taken_glint-bake := $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) -lm
+taken_glint-engine := -lm -pthread
+taken_glint-bake := $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) $(taken_glint-engine)
 taken := $(taken_glint-bake)
 # What a library shows is what public headers name of it, and for glint's other
 # libraries what these take besides.

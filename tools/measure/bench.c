@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "measure/bench.h"
+#include "glint/pool.h"
 #include "linux/sets.h"
 #include "options/json_writer.h"
-#include "posix/workers.h"
 
 const char *const bench_format[] = {"yuyv",     "i420",   "nv12", "rgb24",
                                     "xrgb8888", "rgb565", NULL};

@@ -11,9 +11,9 @@
 
 #include "engine/frame/frame.h"
 #include "glint/measure.h"
+#include "glint/pool.h"
 #include "formats/pnm.h"
 #include "posix/input.h"
-#include "posix/workers.h"
 #include "support/lens_check.h"
 
 enum { MAX_PIXELS = 480 * 270 };
@@ -27,7 +27,7 @@ static float floats[2][3 * MAX_PIXELS];
 
 TEST_OPEN
 {
-    assert_ok(glint_pool_create(&workers, glint_cpu_count()));
+    assert_ok(glint_pool_create(&workers, 0));
 }
 
 TEST_CLOSE

@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "glint/kernels.h"
+#include "glint/pool.h"
 #include "linux/sets.h"
-#include "posix/workers.h"
 #include "support/ghosts.h"
 #include "support/shuffle.h"
 #include "support/test.h"

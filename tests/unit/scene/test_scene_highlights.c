@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "glint/pool.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/highlights.h"
 #include "glint/view.h"
-#include "posix/workers.h"
 #include "scene/parts.h"
 #include "scenes/scene_frame.h"
 #include "reference/scenes/twin_highlights.h"

@@ -9,7 +9,6 @@
 #include "help/values.h"
 #include "glint/glint.h"
 #include "linux/sets.h"
-#include "posix/workers.h"
 #include "options/json_writer.h"
 #include "options/suggest.h"
 

@@ -2,6 +2,7 @@
 #include "options/tool.h"
 
 #include "glint/options.h"
+#include "glint/pool.h"
 #include "help/values.h"
 
 #include <errno.h>
@@ -17,7 +18,6 @@
 #include "linux/sets.h"
 #include "posix/ending.h"
 #include "posix/error.h"
-#include "posix/workers.h"
 
 /* Copies the message to the tool's cause, if it has one, and prints it. */
 static void print_error(const struct tool *tool, const char *format,
@@ -92,15 +92,15 @@ int tool_fail(const struct tool *tool, enum glint_status status,
 
 int tool_start(struct tool *tool)
 {
-    const int n = tool->n_threads ? tool->n_threads : glint_cpu_count();
-    const enum glint_status status = glint_pool_create(&tool->workers, n);
+    const enum glint_status status =
+        glint_pool_create(&tool->workers, tool->n_threads);
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
     if (tool->n_threads > tool->workers->n && !tool->quiet)
         fprintf(stderr,
                 "glint %s: %d of %d threads, as the system gives no more\n",
-                tool->name, tool->workers->n, n);
+                tool->name, tool->workers->n, tool->n_threads);
     return EXIT_OK;
 }
 

@@ -40,7 +40,6 @@ typedef void glint_progress_fn(void *ctx, double done);
 struct glint_workers { int n; ...; };
 enum glint_status glint_pool_create(struct glint_workers **workers, int n_threads);
 void glint_pool_destroy(struct glint_workers *workers);
-int glint_cpu_count(void);
 unsigned glint_system_sets(void);
 
 struct glint_bake_options { double max_deg; double tolerance; struct glint_workers *workers; ...; };
@@ -96,7 +95,6 @@ ffi.set_source("glint._engine", r"""
 #include "glint/glint.h"
 #include "glint/options.h"
 #include "linux/sets.h"
-#include "posix/workers.h"
 
 /* Coats LENS as glint overlay does, with films that differ by surface. */
 static void glint_coat_mixed_(struct glint_prescription *lens)
@@ -127,5 +125,5 @@ static void glint_film_mm_(const struct glint_lens *lens, double mm[2])
     mm[1] = glint_real_value(lens->header->film_height_mm);
 }
 """, include_dirs=[str(TREE / "include"), str(TREE / "platform")],
-    extra_objects=objects, depends=objects, libraries=["pthread"], extra_compile_args=["-D_POSIX_C_SOURCE=200809L"],
+    extra_objects=objects, depends=objects, extra_compile_args=["-D_POSIX_C_SOURCE=200809L"],
     extra_link_args=taken + ["-Wl,--exclude-libs,ALL"])

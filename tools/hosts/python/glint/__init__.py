@@ -110,7 +110,7 @@ class _Pool:
 
     def __init__(self, threads: int) -> None:
         at = _ffi.new("struct glint_workers **")
-        _check(_lib.glint_pool_create(at, threads or _lib.glint_cpu_count()))
+        _check(_lib.glint_pool_create(at, threads))
         self.workers = _ffi.gc(at[0], _lib.glint_pool_destroy)
 
 

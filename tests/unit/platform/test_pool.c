@@ -16,9 +16,9 @@
 #include <unistd.h>
 
 #include "glint/bake.h"
+#include "glint/pool.h"
 #include "posix/at_death.h"
 #include "posix/process.h"
-#include "posix/workers.h"
 #include "support/test.h"
 
 #define MAX_JOBS 1000
@@ -109,15 +109,21 @@ TEST(refuses)
 {
     struct glint_workers *workers = NULL;
 
-    assert_int_equal(glint_pool_create(&workers, 0), GLINT_E_ARGUMENT);
+    assert_int_equal(glint_pool_create(&workers, -1), GLINT_E_ARGUMENT);
     assert_int_equal(glint_pool_create(&workers, GLINT_MAX_WORKERS + 1),
                      GLINT_E_ARGUMENT);
     assert_null(workers);
 }
 
-TEST(cpu_count)
+/* As many workers as processors are online. */
+TEST(one_per_processor)
 {
-    assert_in_range(glint_cpu_count(), 1, GLINT_MAX_WORKERS);
+    const long n = sysconf(_SC_NPROCESSORS_ONLN);
+    struct glint_workers *workers;
+
+    assert_ok(glint_pool_create(&workers, 0));
+    assert_int_equal(workers->n, n > GLINT_MAX_WORKERS ? GLINT_MAX_WORKERS : n);
+    glint_pool_destroy(workers);
 }
 
 /* ------------------------------------------------------------------ threads */

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #define _XOPEN_SOURCE 700 /* SIGSYS */
-#include "posix/workers.h"
+#include "glint/pool.h"
 
 #include <pthread.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <unistd.h>
+
+#include "posix/process.h"
 
 struct pool;
 
@@ -138,12 +140,20 @@ static void start_helpers(struct pool *p, int n)
     pthread_attr_destroy(&attr);
 }
 
+/* Returns the number of processors online, 1 .. GLINT_MAX_WORKERS. */
+static int count_processors(void)
+{
+    const long n = sysconf(_SC_NPROCESSORS_ONLN);
+
+    return n < 1 ? 1 : n > GLINT_MAX_WORKERS ? GLINT_MAX_WORKERS : (int)n;
+}
+
 enum glint_status glint_pool_create(struct glint_workers **workers,
                                     int n_threads)
 {
     struct pool *p;
 
-    if (n_threads < 1 || n_threads > GLINT_MAX_WORKERS)
+    if (n_threads < 0 || n_threads > GLINT_MAX_WORKERS)
         return GLINT_E_ARGUMENT;
     p = calloc(1, sizeof *p);
     if (!p)
@@ -152,7 +162,7 @@ enum glint_status glint_pool_create(struct glint_workers **workers,
     pthread_mutex_init(&p->lock, NULL);
     pthread_cond_init(&p->wake, NULL);
     pthread_cond_init(&p->idle, NULL);
-    start_helpers(p, n_threads - 1);
+    start_helpers(p, (n_threads ? n_threads : count_processors()) - 1);
     p->base.n = p->n_helpers + 1;
     *workers = &p->base;
     return GLINT_OK;
@@ -174,11 +184,4 @@ void glint_pool_destroy(struct glint_workers *workers)
     pthread_cond_destroy(&p->wake);
     pthread_mutex_destroy(&p->lock);
     free(p);
-}
-
-int glint_cpu_count(void)
-{
-    const long n = sysconf(_SC_NPROCESSORS_ONLN);
-
-    return n < 1 ? 1 : n > GLINT_MAX_WORKERS ? GLINT_MAX_WORKERS : (int)n;
 }
