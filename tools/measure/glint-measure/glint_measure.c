@@ -23,6 +23,7 @@
 #include "measure/canvas.h"
 #include "measure/glint-measure/recipes.h"
 #include "measure/glint-measure/row.h"
+#include "options/json_writer.h"
 
 #define RECIPES "tools/measure/recipes"
 #define CSV     "build/measure.csv"
@@ -100,6 +101,19 @@ static double metric_of(const char *json, const char *name, size_t length)
     return (double)NAN;
 }
 
+/* Appends the instructions of a frame to JSON, as an object on a line of its
+ * own. Returns false if there is no memory. */
+static bool append_count(char json[TEXT], double instructions)
+{
+    const size_t used = strlen(json);
+    struct json_writer more = {.to = fmemopen(json + used, TEXT - used, "w")};
+
+    if (!more.to)
+        return false;
+    json_write(&more, "{minsn: %.6f}\n", 1e-6 * instructions);
+    return fclose(more.to) == 0;
+}
+
 /* Measures ROW to JSON; counts instructions if they are a metric. */
 static int measure(const struct recipe *r, const struct recipe_row *row,
                    const char *self, char json[TEXT])
@@ -112,13 +126,10 @@ static int measure(const struct recipe *r, const struct recipe_row *row,
         return code;
     code = run_row(r, row, self, true, counted);
     count = strstr(counted, "Collected : ");
-    if (code == EXIT_OK && count) {
-        const size_t used = strlen(json);
-
-        snprintf(json + used, TEXT - used, "\"minsn\": %.6f",
-                 1e-6 * strtod(count + 12, NULL));
-    }
-    return code != EXIT_OK || count ? code : EXIT_RUNTIME;
+    if (code != EXIT_OK)
+        return code;
+    return count && append_count(json, strtod(count + 12, NULL)) ? EXIT_OK
+                                                                 : EXIT_RUNTIME;
 }
 
 /* --------------------------------------------------------------------- csv */
