@@ -255,11 +255,12 @@ struct glint_options;
 void glint_engine_configure(struct glint_engine_config *cfg,
                             const struct glint_options *options);
 
-/* Makes SETUP of MODEL with the stop and the colours of CAMERA, as an engine
- * does. MODEL NULL: SETUP was made from a lens table, by glint_setup_init()
- * with the blades and wavelengths of CAMERA. *DIRT receives what SETUP then
- * refers to, or NULL. GLINT_E_ARGUMENT, with ERROR; GLINT_E_LENS,
- * GLINT_E_MEMORY. */
+/* Makes SETUP from MODEL with the stop and the colours of CAMERA, as an engine
+ * does. If MODEL is NULL, the caller has made SETUP from a lens table by
+ * glint_setup_init() with the blades and wavelengths of CAMERA. Sets *DIRT to
+ * the dirt that SETUP refers to, which the caller frees after SETUP by
+ * glint_dirt_free(), or to NULL. Returns GLINT_E_ARGUMENT, GLINT_E_LENS or
+ * GLINT_E_MEMORY and sets ERROR on failure. */
 enum glint_status glint_engine_setup(struct glint_setup *setup,
                                      const struct glint_lens *model,
                                      const struct glint_engine_camera *camera,

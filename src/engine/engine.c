@@ -100,11 +100,20 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
                                      struct glint_dirt **dirt,
                                      struct glint_error *error)
 {
+    const struct glint_waves *const waves = &camera->waves;
     double nm[GLINT_MAX_WAVELENGTHS];
-    const int n = glint_waves_list(&camera->waves, nm);
     enum glint_status status = GLINT_OK;
+    int n;
 
     *dirt = NULL;
+    if (waves->kind != GLINT_WAVES_AUTO &&
+        (waves->n < 1 || waves->n > GLINT_MAX_WAVELENGTHS)) {
+        snprintf(error->text, sizeof error->text,
+                 "there are %d wavelengths; 1 to %d are possible", waves->n,
+                 GLINT_MAX_WAVELENGTHS);
+        return GLINT_E_ARGUMENT;
+    }
+    n = glint_waves_list(waves, nm);
     if (model)
         status =
             glint_setup_from_model(setup, model, camera->n_blades,
@@ -118,9 +127,9 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
         *dirt = NULL;
         return status;
     }
-    if (camera->waves.kind == GLINT_WAVES_COUNT)
+    if (waves->kind == GLINT_WAVES_COUNT)
         glint_setup_weigh(setup);
-    else if (camera->waves.kind == GLINT_WAVES_AUTO)
+    else if (waves->kind == GLINT_WAVES_AUTO)
         glint_setup_spread(setup, model);
     if (camera->balance)
         glint_setup_balance(setup);

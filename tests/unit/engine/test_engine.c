@@ -296,7 +296,7 @@ TEST(refuses)
                      GLINT_E_ARGUMENT);
     glint_engine_destroy(engine);
     glint_engine_destroy(NULL);
-    for (int k = 0; k < 14; k++) {
+    for (int k = 0; k < 16; k++) {
         glint_engine_defaults(&cfg, k == 0 ? 0 : WIDTH, HEIGHT);
         cfg.model = k == 1 ? NULL : &opened.lens.model.lens;
         cfg.search.max_found = k == 2 ? 1025 : cfg.search.max_found;
@@ -310,6 +310,11 @@ TEST(refuses)
         cfg.search.max_drawn = k == 10 ? -1 : 0;
         cfg.light.reserved[15] = k == 12;
         cfg.drawing.dials.reserved[0] = k == 13;
+        if (k >= 14)
+            cfg.camera.waves = (struct glint_waves){k == 14 ? GLINT_WAVES_COUNT
+                                                            : GLINT_WAVES_LIST,
+                                                    k == 14 ? 33 : 0,
+                                                    {0}};
         *error.text = '\0';
         assert_int_equal(glint_engine_create(&engine, &cfg, &error),
                          GLINT_E_ARGUMENT);
@@ -464,6 +469,22 @@ TEST(configured_camera)
     glint_front_free(on_front);
     glint_dirt_free(dirt);
     free(setup);
+}
+
+/* Dust behind straight blades, and nothing else of an iris, must be drawn. */
+TEST(dust_alone)
+{
+    static uint8_t dusty[BYTES], clean[BYTES];
+    const struct glint_iris iris = {.dust = 0.02, .dust_seed = 7};
+    struct glint_engine_report report;
+    struct glint_engine *engine = make(NULL, 0);
+    struct glint_error error;
+
+    run(engine, 0, clean, &report);
+    assert_ok(glint_engine_iris(engine, 8, 0, &iris, &error));
+    run(engine, 0, dusty, &report);
+    assert_memory_not_equal(dusty, clean, BYTES);
+    glint_engine_destroy(engine);
 }
 
 /* Each number of the table accepts its limits alone, and counts as given only
