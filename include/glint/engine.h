@@ -73,14 +73,21 @@ struct glint_engine_lamp glint_engine_lamp_of(const struct glint_lamp *lamp,
 /* ------------------------------------------------------------ configuration */
 
 /* Lens, stop and sensor. */
-struct glint_frame_rays; /* opaque: traces rays */
+struct glint_frame_rays;   /* opaque: traces rays */
+struct glint_engine_stops; /* opaque: makes the iris and front_dirt */
+
+/* A program that names it links the code for dust, masks and other stops than
+ * straight, clean blades. */
+extern const struct glint_engine_stops glint_engine_all_stops;
+
 struct glint_engine_camera {
     /* n_blades: sides of the stop, 3 .. 64, or 0 for a circle;
      * blade_rotation_deg: angle of the first corner of the stop; f_number: 0
      * selects the f-number of the model, its widest opening. */
     int n_blades;
     double blade_rotation_deg, f_number;
-    struct glint_iris iris;   /* its mask must outlive the engine */
+    struct glint_iris iris;   /* needs STOPS unless all 0; its mask must outlive
+                                 the engine */
     struct glint_waves waves; /* default: AUTO */
     int balance;              /* not 0: glint_setup_balance() */
     double sensor_width_mm,
@@ -98,11 +105,14 @@ struct glint_engine_camera {
     const struct glint_tint *tints; /* [ghosts of the setup], or NULL; must
                                        outlive the engine */
     /* Dirt on the front element: from glint_front_make(), which must outlive
-     * the engine, or NULL: the engine makes that of front_dirt, whose mask is
-     * copied. */
+     * the engine, or NULL: the engine makes that of front_dirt, which needs
+     * STOPS unless all 0, and whose mask is copied. */
     const struct glint_front_dirt *front;
     struct glint_front front_dirt;
-    uint64_t reserved[16]; /* 0 */
+    /* &glint_engine_all_stops, which glint_engine_configure() sets, or NULL:
+     * the stop is of straight, clean blades, and the front element is clean. */
+    const struct glint_engine_stops *stops;
+    uint64_t reserved[15]; /* 0 */
 };
 
 /* Parameters of the search for lamps. */

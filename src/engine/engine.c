@@ -36,14 +36,13 @@ void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
     memcpy(cfg, &all, size < sizeof all ? size : sizeof all);
 }
 
-/* Returns whether no program of a newer library sets members of C that this one
- * does not know. */
-static bool is_known(const struct glint_engine_config *c)
+/* Returns whether the reserved members of C are 0: a program of a newer library
+ * may set members there that this one does not know. */
+static bool are_reserved_unset(const struct glint_engine_config *c)
 {
-    static const struct glint_engine_config zero;
-#define UNSET(group)                                \
-    (memcmp(c->group.reserved, zero.group.reserved, \
-            sizeof zero.group.reserved) == 0)
+    static const uint64_t zero[16];
+#define UNSET(group) \
+    (memcmp(c->group.reserved, zero, sizeof c->group.reserved) == 0)
 
     return UNSET(camera) && UNSET(search) && UNSET(light) && UNSET(drawing) &&
            UNSET(drawing.dials);
@@ -94,6 +93,20 @@ static bool has_iris(const struct glint_iris *iris)
            iris->mask;
 }
 
+static enum glint_status set_iris(struct glint_setup *setup,
+                                  const struct glint_engine_camera *camera,
+                                  struct glint_dirt **dirt,
+                                  struct glint_error *error)
+{
+    if (!has_iris(&camera->iris))
+        return GLINT_OK;
+    if (camera->stops)
+        return camera->stops->set_iris(setup, &camera->iris, dirt, error);
+    snprintf(error->text, sizeof error->text,
+             "camera.iris needs camera.stops = &glint_engine_all_stops");
+    return GLINT_E_ARGUMENT;
+}
+
 enum glint_status glint_engine_setup(struct glint_setup *setup,
                                      const struct glint_lens *model,
                                      const struct glint_engine_camera *camera,
@@ -120,8 +133,8 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
                                    camera->blade_rotation_deg, nm, n, error);
     if (status == GLINT_OK && model && camera->f_number != 0)
         status = glint_setup_stop_down(setup, model, camera->f_number, error);
-    if (status == GLINT_OK && has_iris(&camera->iris))
-        status = glint_setup_iris(setup, &camera->iris, dirt, error);
+    if (status == GLINT_OK)
+        status = set_iris(setup, camera, dirt, error);
     if (status != GLINT_OK) {
         glint_dirt_free(*dirt);
         *dirt = NULL;
@@ -138,15 +151,21 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
 
 /* Makes the dirt on the front element, unless the caller of C has some. */
 static enum glint_status make_front(struct glint_engine_optics *o,
-                                    const struct glint_engine_config *c,
+                                    const struct glint_engine_camera *camera,
                                     struct glint_error *error)
 {
-    const enum glint_status status =
-        c->camera.front
-            ? GLINT_OK
-            : glint_front_make(&o->own_front, &c->camera.front_dirt, error);
+    const struct glint_front *const dirt = &camera->front_dirt;
+    enum glint_status status = GLINT_OK;
 
-    o->front = c->camera.front ? c->camera.front : o->own_front;
+    if (!camera->front && camera->stops) {
+        status = camera->stops->make_front(&o->own_front, dirt, error);
+    } else if (!camera->front && (dirt->dust != 0 || dirt->mask)) {
+        snprintf(error->text, sizeof error->text,
+                 "camera.front_dirt needs camera.stops = "
+                 "&glint_engine_all_stops");
+        status = GLINT_E_ARGUMENT;
+    }
+    o->front = camera->front ? camera->front : o->own_front;
     return status;
 }
 
@@ -266,7 +285,7 @@ static enum glint_status make(struct glint_engine *e,
         status =
             glint_engine_setup(&o->own, c->model, &o->camera, &o->dirt, error);
     if (status == GLINT_OK)
-        status = make_front(o, c, error);
+        status = make_front(o, &c->camera, error);
     if (status == GLINT_OK &&
         c->drawing.only_ghost >= o->setup->n_ghosts - o->setup->n_parts) {
         snprintf(error->text, sizeof error->text, "the lens has %d ghosts",
@@ -314,7 +333,8 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
     enum glint_status status;
 
     *engine = NULL;
-    if (cfg->size < FIRST_SIZE || cfg->size > sizeof whole || !is_known(cfg)) {
+    if (cfg->size < FIRST_SIZE || cfg->size > sizeof whole ||
+        !are_reserved_unset(cfg)) {
         snprintf(error->text, sizeof error->text,
                  "the program needs another version of the library, or its "
                  "configuration is not of glint_engine_defaults()");
@@ -347,7 +367,8 @@ void glint_engine_destroy(struct glint_engine *engine)
     glint_lamp_detector_close(&engine->find.detector);
     glint_frame_finish(&engine->paint.frame);
     glint_dirt_free(engine->optics.dirt);
-    glint_front_free(engine->optics.own_front);
+    if (engine->optics.own_front)
+        engine->optics.camera.stops->free_front(engine->optics.own_front);
     free(engine->paint.lamp);
     free(engine->expose.before);
     free(engine);
@@ -406,38 +427,59 @@ void glint_engine_update_stop(struct glint_engine *engine)
     glint_frame_retune(f);
 }
 
+/* Exchanges the stop of ENGINE, which OTHER, CAMERA and DIRT make, with
+ * these. */
+static void exchange_stop(struct glint_engine *engine,
+                          struct glint_setup *other,
+                          struct glint_engine_camera *camera,
+                          struct glint_dirt **dirt)
+{
+    struct glint_engine_optics *const o = &engine->optics;
+    const struct glint_setup own = o->own;
+    const struct glint_engine_camera own_camera = o->camera;
+    struct glint_dirt *const own_dirt = o->dirt;
+
+    o->own = *other;
+    o->camera = *camera;
+    o->dirt = *dirt;
+    *other = own;
+    *camera = own_camera;
+    *dirt = own_dirt;
+    glint_engine_update_stop(engine);
+}
+
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
                                        const struct glint_engine_camera *camera,
                                        bool measure, struct glint_error *error)
 {
-    struct glint_engine_optics *const o = &engine->optics;
-    struct glint_frame *f = &engine->paint.frame;
+    struct glint_frame *const f = &engine->paint.frame;
+    struct glint_response response = engine->expose.response;
+    struct glint_engine_camera other = *camera;
     struct glint_setup setup;
     struct glint_dirt *dirt = NULL;
     enum glint_status status = GLINT_E_ARGUMENT;
 
-    if (o->setup == &o->own)
+    if (engine->optics.setup == &engine->optics.own)
         status = glint_engine_setup(&setup, f->lens, camera, &dirt, error);
     else
         snprintf(error->text, sizeof error->text,
                  "the setup is not the engine's own");
     if (status != GLINT_OK)
         return status;
-    o->own = setup;
-    o->camera = *camera;
-    glint_engine_update_stop(engine);
-    glint_dirt_free(o->dirt);
-    o->dirt = dirt;
-    if (!measure || engine->expose.light.by_hand) {
-        if (measure)
-            engine->expose.response.n = 0; /* of another stop */
-        return GLINT_OK;
-    }
-    status = glint_response_measure(f, f->limits.reserved ? f->memory.bytes : 0,
-                                    &engine->expose.response);
-    if (status != GLINT_OK)
+    exchange_stop(engine, &setup, &other, &dirt);
+    if (measure && engine->expose.light.by_hand)
+        response.n = 0; /* of another stop */
+    else if (measure)
+        status = glint_response_measure(
+            f, f->limits.reserved ? f->memory.bytes : 0, &response);
+    if (status == GLINT_OK) {
+        engine->expose.response = response;
+    } else {
+        exchange_stop(engine, &setup, &other, &dirt);
         snprintf(error->text, sizeof error->text, "%s",
                  glint_status_text(status));
+    }
+    glint_dirt_free(dirt);
     return status;
 }
 
@@ -448,17 +490,4 @@ enum glint_status glint_engine_stop(struct glint_engine *engine,
 
     camera.f_number = f_number;
     return glint_engine_reshape(engine, &camera, true, error);
-}
-
-enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades,
-                                    double rotation_deg,
-                                    const struct glint_iris *iris,
-                                    struct glint_error *error)
-{
-    struct glint_engine_camera camera = engine->optics.camera;
-
-    camera.n_blades = n_blades;
-    camera.blade_rotation_deg = rotation_deg;
-    camera.iris = *iris;
-    return glint_engine_reshape(engine, &camera, false, error);
 }

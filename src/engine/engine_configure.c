@@ -64,6 +64,7 @@ void glint_engine_configure_stop(struct glint_engine_camera *camera,
     struct glint_iris *const iris = &camera->iris;
     struct glint_stop_shape shape;
 
+    camera->stops = &glint_engine_all_stops;
     if (o->stop && glint_option_stop(o->stop, &shape)) {
         camera->n_blades = shape.n_blades;
         camera->blade_rotation_deg = shape.rotation_deg;

@@ -12,6 +12,18 @@
 #include "glint/engine.h"
 #include "glint/setup.h"
 
+/* glint_setup_iris(), glint_front_make() and glint_front_free(). */
+struct glint_engine_stops {
+    enum glint_status (*set_iris)(struct glint_setup *setup,
+                                  const struct glint_iris *iris,
+                                  struct glint_dirt **dirt,
+                                  struct glint_error *error);
+    enum glint_status (*make_front)(struct glint_front_dirt **dirt,
+                                    const struct glint_front *front,
+                                    struct glint_error *error);
+    void (*free_front)(struct glint_front_dirt *dirt);
+};
+
 struct glint_engine_optics {
     const struct glint_setup *setup; /* OWN, or the caller's */
     struct glint_setup own;
@@ -69,8 +81,8 @@ void glint_engine_configure_stop(struct glint_engine_camera *camera,
                                  const struct glint_options *o);
 
 /* Sets another stop of ENGINE, which makes its own setup; with MEASURE,
- * measures the brightness of flares again. The stop stays as it is after an
- * error. */
+ * measures the brightness of flares again. After an error, stop and brightness
+ * are unchanged. */
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
                                        const struct glint_engine_camera *camera,
                                        bool measure, struct glint_error *error);

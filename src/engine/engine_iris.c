@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Stops other than straight, clean blades, and dirt on the front element: only
+ * programs that name them link this file. */
+#include "engine/engine_parts.h"
+
+const struct glint_engine_stops glint_engine_all_stops = {
+    glint_setup_iris, glint_front_make, glint_front_free};
+
+enum glint_status glint_engine_iris(struct glint_engine *engine, int n_blades,
+                                    double rotation_deg,
+                                    const struct glint_iris *iris,
+                                    struct glint_error *error)
+{
+    struct glint_engine_camera camera = engine->optics.camera;
+
+    camera.n_blades = n_blades;
+    camera.blade_rotation_deg = rotation_deg;
+    camera.iris = *iris;
+    camera.stops = &glint_engine_all_stops;
+    return glint_engine_reshape(engine, &camera, false, error);
+}
