@@ -143,7 +143,7 @@ static const char *check_mesh(const struct aiMesh *mesh, size_t *n)
         ++*n;
         for (int j = 0; j < 3; j++)
             if (face->mIndices[j] >= mesh->mNumVertices)
-                return "has corners that are not there";
+                return "has faces with vertex numbers out of range";
     }
     return NULL;
 }
@@ -158,7 +158,7 @@ static const char *check(const struct aiScene *scene, unsigned max_triangles)
     for (unsigned i = 0; i < scene->mNumMeshes && !refusal; i++)
         refusal = check_mesh(scene->mMeshes[i], &n);
     if (!refusal && n > max_triangles)
-        refusal = "has more triangles than scenes take";
+        refusal = "has more triangles than a scene can have";
     return refusal || n ? refusal : "has no triangles";
 }
 

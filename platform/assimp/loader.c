@@ -30,9 +30,9 @@ enum {
     MAX_NODES = 1 << 22
 };
 
-#define TOO_MUCH                                                          \
-    "takes more than 60 s or 3 GiB to read: too large, or made to be so " \
-    "(parts that contain each other many times)"
+#define TOO_MUCH                                                    \
+    "needs more than 60 s or 3 GiB to read: the mesh is too large " \
+    "(or its parts refer to each other too many times)"
 
 static const struct glint_assimp *load(struct glint_error *error)
 {

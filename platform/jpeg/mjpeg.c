@@ -255,9 +255,10 @@ static enum glint_pixel_format format_of(struct glint_mjpeg *d)
         if (across == 2 * c[1].h_samp_factor && down == 2 * c[1].v_samp_factor)
             return GLINT_I420;
     }
-    snprintf(text, sizeof text, "subsampling %dx%d,%dx%d,%dx%d is not handled",
-             across, down, c[1].h_samp_factor, c[1].v_samp_factor,
-             c[2].h_samp_factor, c[2].v_samp_factor);
+    snprintf(text, sizeof text,
+             "chroma subsampling %dx%d,%dx%d,%dx%d is not supported", across,
+             down, c[1].h_samp_factor, c[1].v_samp_factor, c[2].h_samp_factor,
+             c[2].v_samp_factor);
     refuse(d, text);
     return GLINT_GREY;
 }
@@ -277,11 +278,11 @@ static void check_header(struct glint_mjpeg *d)
                                     d->max_width, d->max_height));
     if (j->jpeg_color_space != JCS_YCbCr &&
         j->jpeg_color_space != JCS_GRAYSCALE)
-        refuse(d, "colours are neither Y, Cb, Cr nor grey");
+        refuse(d, "the components are neither Y, Cb, Cr nor grey");
     if (j->arith_code)
-        refuse(d, "arithmetic coding is not handled");
+        refuse(d, "arithmetic coding is not supported");
     if (jpeg_has_multiple_scans(&d->jpeg))
-        refuse(d, "frames in several scans are not handled");
+        refuse(d, "progressive frames (several scans) are not supported");
 }
 
 static void start(struct glint_mjpeg *d, struct glint_image *image)

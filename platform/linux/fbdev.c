@@ -401,9 +401,10 @@ static enum glint_status draw_seen(struct glint_fbdev *fb,
 
     if (first > n_rows - fb->var.yres ||
         left + (size_t)fb->width * (size_t)fb->layout.bytes > fb->stride_bytes)
-        return glint_error_report(error, GLINT_E_DEVICE, fb->name,
-                                  "shows what is not in its memory, at %u, %u",
-                                  fb->var.xoffset, first);
+        return glint_error_report(
+            error, GLINT_E_DEVICE, fb->name,
+            "does not show the pixels of its memory, at %u, %u",
+            fb->var.xoffset, first);
     if (fb->has_vsync && glint_ioctl(fb->fd, FBIO_WAITFORVSYNC, &screen) < 0)
         fb->has_vsync = false;
     draw(fb, image, row_at(fb, first) + left, 0);

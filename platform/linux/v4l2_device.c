@@ -254,15 +254,16 @@ static enum glint_status take_format(struct glint_v4l2_device *d,
     for (int i = 0; i < f->n_blocks; i++)
         f->block_bytes[i] = pix->bytes[i];
     if (!f->is_jpeg && !glint_fourcc_to_format(pix->fourcc, &f->pixels))
-        return glint_error_report(error, GLINT_E_UNSUPPORTED, d->path,
-                                  "delivers %s, which glint does not read; "
-                                  "--list-formats shows what there is",
-                                  name);
+        return glint_error_report(
+            error, GLINT_E_UNSUPPORTED, d->path,
+            "delivers pixel format %s, which glint does not support; "
+            "--list-formats lists the formats of this camera",
+            name);
     if (!f->is_jpeg && !lay_out(f, pix))
-        return glint_error_report(error, GLINT_E_DEVICE, d->path,
-                                  "%ux%u %s does not fit the %u bytes that the "
-                                  "driver says it has",
-                                  pix->width, pix->height, name, pix->bytes[0]);
+        return glint_error_report(
+            error, GLINT_E_DEVICE, d->path,
+            "%ux%u %s needs more bytes than the %u that the driver reports",
+            pix->width, pix->height, name, pix->bytes[0]);
     take_colour(d, &pix->colour);
     return GLINT_OK;
 }
@@ -296,10 +297,11 @@ static enum glint_status set_format(struct glint_v4l2_device *d,
 
         glint_fourcc_text(d->wish.fourcc, asked);
         glint_fourcc_text(pix.fourcc, got);
-        return glint_error_report(error, GLINT_E_DEVICE, d->path,
-                                  "has no %s (gives %s instead); "
-                                  "--list-formats shows what there is",
-                                  asked, got);
+        return glint_error_report(
+            error, GLINT_E_DEVICE, d->path,
+            "does not support %s (the driver returns %s instead); "
+            "--list-formats lists the formats of this camera",
+            asked, got);
     }
     return take_format(d, &pix, error);
 }
@@ -382,8 +384,9 @@ static enum glint_status attach(struct glint_v4l2_device *d, const char *name,
     if (glint_ioctl(d->fd, VIDIOC_QUERYCAP, &cap) < 0) {
         status = errno == ENODEV
                      ? glint_ioctl_failed(error, d->path, "VIDIOC_QUERYCAP")
-                     : glint_error_report(error, GLINT_E_DEVICE, d->path,
-                                          "not a camera: does not speak V4L2");
+                     : glint_error_report(
+                           error, GLINT_E_DEVICE, d->path,
+                           "not a camera: the device does not support V4L2");
         glint_v4l2_device_close(d);
         return status;
     }
@@ -397,9 +400,10 @@ static enum glint_status attach(struct glint_v4l2_device *d, const char *name,
     if (d->caps & (V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_VIDEO_CAPTURE_MPLANE))
         return GLINT_OK;
     glint_v4l2_device_close(d);
-    return glint_error_report(error, GLINT_E_DEVICE, d->path,
-                              "not a camera: '%s' captures no pictures here",
-                              (const char *)cap.card);
+    return glint_error_report(
+        error, GLINT_E_DEVICE, d->path,
+        "not a camera: the device '%s' does not capture pictures",
+        (const char *)cap.card);
 }
 
 void glint_v4l2_device_close(struct glint_v4l2_device *d)

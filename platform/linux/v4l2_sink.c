@@ -50,12 +50,13 @@ static enum glint_status check_node(struct glint_v4l2_sink *out,
     can = cap.capabilities & V4L2_CAP_DEVICE_CAPS ? cap.device_caps
                                                   : cap.capabilities;
     if (!(can & V4L2_CAP_VIDEO_OUTPUT))
-        return glint_error_report(error, GLINT_E_DEVICE, out->name,
-                                  "%s is no video output, or one in use",
-                                  out->card);
+        return glint_error_report(
+            error, GLINT_E_DEVICE, out->name,
+            "%s is not a video output, or another program uses it", out->card);
     if (!(can & V4L2_CAP_READWRITE))
         return glint_error_report(error, GLINT_E_DEVICE, out->name,
-                                  "%s takes no frames by write()", out->card);
+                                  "%s does not accept frames by write()",
+                                  out->card);
     return GLINT_OK;
 }
 
@@ -91,8 +92,8 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
     glint_fourcc_text(px->pixelformat, got);
     return glint_error_report(
         error, GLINT_E_DEVICE, out->name,
-        "takes %s %u x %u, not %s %d x %d: it knows no such format, or another "
-        "program uses it",
+        "accepts %s %u x %u, not %s %d x %d: the driver does not support this "
+        "format, or another program uses the device",
         got, px->width, px->height, want, like->width, like->height);
 }
 
@@ -143,10 +144,11 @@ static enum glint_status lay_out(struct glint_v4l2_sink *out, size_t stride,
                       (size_t)glint_image_plane_height(f->format, i, f->height);
     }
     if (size && size < out->bytes)
-        return glint_error_report(error, GLINT_E_DEVICE, out->name,
-                                  "frames of %zu bytes, rows of %zu: that does "
-                                  "not fit",
-                                  size, stride);
+        return glint_error_report(
+            error, GLINT_E_DEVICE, out->name,
+            "the driver requests frames of %zu bytes with rows of %zu, which "
+            "are too small for this size",
+            size, stride);
     out->mem = calloc(1, out->bytes);
     if (!out->mem)
         return glint_error_report(error, GLINT_E_MEMORY, out->name,
@@ -220,8 +222,8 @@ static enum glint_status put(struct glint_sink *sink,
         return failed(out, "write", error);
     if ((size_t)n < out->bytes)
         return glint_error_report(error, GLINT_E_DEVICE, out->name,
-                                  "took %zu of %zu bytes", (size_t)n,
-                                  out->bytes);
+                                  "accepted %zu of %zu bytes of a frame",
+                                  (size_t)n, out->bytes);
     out->n_frames++;
     return GLINT_OK;
 }

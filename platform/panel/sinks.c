@@ -237,10 +237,11 @@ static enum glint_status put(struct glint_sink *sink,
         return status;
     if (image->format != y->like.format || image->width != y->like.width ||
         image->height != y->like.height || image->range != y->like.range)
-        return glint_error_report(error, GLINT_E_OUTPUT, y->writer.out.name,
-                                  "frames of another size or format, now %d x "
-                                  "%d, need a stream of their own",
-                                  image->width, image->height);
+        return glint_error_report(
+            error, GLINT_E_OUTPUT, y->writer.out.name,
+            "the size or format of the frames changed, to %d x %d; a stream "
+            "has one size and format",
+            image->width, image->height);
     if (!is_ready(y)) {
         y->n_dropped++;
         return GLINT_OK;

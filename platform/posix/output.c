@@ -359,9 +359,10 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
             break;
     }
     if (out->fd < 0)
-        return glint_error_report(error, GLINT_E_OUTPUT, out->name,
-                                  "cannot create a file beside it: %s",
-                                  strerror(number));
+        return glint_error_report(
+            error, GLINT_E_OUTPUT, out->name,
+            "cannot create a temporary file in its folder: %s",
+            strerror(number));
     /* The lock shows clean_folder() that the file is in use. */
     flock(out->fd, LOCK_EX | LOCK_NB);
     if (keep && fchmod(out->fd, mode) < 0)

@@ -8,7 +8,9 @@
 const void *glint_plugin_load(const struct glint_plugin *plugin,
                               struct glint_error *error)
 {
-    glint_error_report(error, GLINT_E_UNSUPPORTED, plugin->file,
-                       "a static glint loads no plug-ins%s", plugin->without);
+    glint_error_report(
+        error, GLINT_E_UNSUPPORTED, plugin->file,
+        "this glint is linked statically and cannot load plug-ins%s",
+        plugin->without);
     return NULL;
 }

@@ -324,10 +324,11 @@ static enum glint_status check_header(struct glint_y4m_header *h,
                                   "larger than %d pixels a side",
                                   GLINT_MAX_SIDE);
     if (!parse_layout(&h->layout, h->colour))
-        return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
-                                  "C%s is none of 420, 422, 444 (to p16), 411, "
-                                  "444alpha and mono (to mono16)",
-                                  h->colour);
+        return glint_error_report(
+            error, GLINT_E_UNSUPPORTED, name,
+            "C%s is not a supported colour space: 420, 422, 444 (up to p16), "
+            "411, 444alpha and mono (up to mono16) are",
+            h->colour);
     h->format = h->layout.format;
     return GLINT_OK;
 }

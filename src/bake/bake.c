@@ -400,8 +400,8 @@ static enum glint_status set_up_beside(struct bake_run *run,
             beside->n_surfaces != run->lens->n_surfaces ||
             beside->stop_after != run->lens->stop_after)
             snprintf(run->error->text, sizeof run->error->text,
-                     "%s is not round, or what is beside it is no position of "
-                     "it: another number of surfaces, or another stop",
+                     "%s is not rotationally symmetric, or the adjacent zoom "
+                     "position has another number of surfaces or another stop",
                      run->lens->name);
         else
             status = glint_setup_init(&run->beside[k], beside, 0, 0, rgb_nm, 3,
@@ -437,7 +437,8 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
         status = bake_run(run);
         if (status == GLINT_E_LENS && !error->text[0])
             snprintf(error->text, sizeof error->text,
-                     "%s: no proof that its integers cannot overflow",
+                     "%s: cannot prove that the integers of the model do not "
+                     "overflow",
                      lens->name);
         if (status == GLINT_OK) {
             sum_up(run, report);

@@ -41,12 +41,12 @@ enum glint_status glint_bake_check(const struct glint_bake_options *options,
         : !(o->max_deg > 0 && o->max_deg <= 89)
             ? "the largest angle must be above 0 and at most 89 degrees"
         : !(o->field_mm >= 0 && o->field_mm < 1e6)
-            ? "the field must be a length"
+            ? "the field must be a length above 0"
         : !(o->tolerance >= 0.1 && o->tolerance <= 100)
             ? "the tolerance must be 0.1 to 100"
         : !(o->n_beside >= 0 && o->n_beside <= GLINT_MAX_BESIDE) ||
                 (o->n_beside > 0 && !o->beside)
-            ? "a position has none, one or two beside it"
+            ? "a zoom position has at most two adjacent positions"
             : NULL;
 
     if (wrong)

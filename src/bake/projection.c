@@ -125,8 +125,8 @@ enum glint_status glint_projection_of(struct glint_projection *projection,
     *miss_deg = 0;
     if (!glint_prescription_is_round(lens)) {
         snprintf(error->text, sizeof error->text,
-                 "%s is not symmetric about its axis: its projection is not "
-                 "known, only that by tangents",
+                 "%s is not rotationally symmetric: its own projection cannot "
+                 "be computed; use --projection tan",
                  lens->name);
         return GLINT_E_LENS;
     }
@@ -137,10 +137,11 @@ enum glint_status glint_projection_of(struct glint_projection *projection,
         n = trace(&path, &optics, step, rho);
     }
     if (n < LEAST) {
-        snprintf(error->text, sizeof error->text,
-                 "%s: only %d chief rays get through, at %g degrees each; its "
-                 "projection is not known, only that by tangents",
-                 lens->name, n, step);
+        snprintf(
+            error->text, sizeof error->text,
+            "%s: only %d chief rays, %g degrees apart, reach the sensor: its "
+            "own projection cannot be computed; use --projection tan",
+            lens->name, n, step);
         return GLINT_E_LENS;
     }
     fit(p, rho, n, step);

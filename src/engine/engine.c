@@ -62,7 +62,7 @@ static const char *check(const struct glint_engine_config *c)
         !(c->camera.setup && c->camera.rays && c->camera.sensor_width_mm > 0))
         return "there is no model";
     if (s->max_found < 0 || s->max_found > GLINT_ENGINE_MAX_LAMPS)
-        return "0 to 1024 lamps can be looked for";
+        return "max_found must be 0 to 1024";
     if (s->more_lamps < 0 || s->more_lamps > 1 << 24 || s->max_drawn < 0 ||
         isnan(s->headroom_ev))
         return "the number of lamps is out of range";
@@ -70,9 +70,9 @@ static const char *check(const struct glint_engine_config *c)
         !(l->gain >= 0 && isfinite(l->gain)) || !(fabs(l->exposure_ev) <= 100))
         return "the exposure is out of range";
     if (d->tile_log2 < 3 || d->tile_log2 > 6 || !(d->apart_px >= 0))
-        return "the tiles or the merging of lights are out of range";
+        return "tile_log2 or apart_px is out of range";
     if (c->arena && c->arena_has_all)
-        return "an arena of the caller's is for ghosts alone";
+        return "arena must be NULL if arena_has_all is set";
     if (!(l->starburst >= 0 && l->starburst <= 1000))
         return "the starburst is out of range";
     if (!(l->veil >= 0 && l->haze >= 0 && l->veil + l->haze <= GLINT_MOST_VEIL))
@@ -266,7 +266,7 @@ static void say(struct glint_engine *e, const struct glint_engine_config *c,
     if (status == GLINT_E_MEMORY && c->arena_bytes)
         snprintf(
             error->text, sizeof error->text,
-            "pictures of %dx%d with this lens take %zu MiB at least", c->width,
+            "pictures of %dx%d with this lens need at least %zu MiB", c->width,
             c->height,
             (glint_frame_star_bytes(f) + glint_frame_least_bytes(f) + mib - 1) /
                 mib);
@@ -463,7 +463,8 @@ enum glint_status glint_engine_reshape(struct glint_engine *engine,
         status = glint_engine_setup(&setup, f->lens, camera, &dirt, error);
     else
         snprintf(error->text, sizeof error->text,
-                 "the setup is not the engine's own");
+                 "the stop belongs to the caller's setup, so the engine cannot "
+                 "change it");
     if (status != GLINT_OK)
         return status;
     exchange_stop(engine, &setup, &other, &dirt);

@@ -70,9 +70,9 @@ uint32_t glint_model_crc32(const void *data, size_t bytes)
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] = {
     [GLINT_BLOB_UNALIGNED] = "the model is not aligned to 4 bytes",
-    [GLINT_BLOB_FOREIGN] = "this is no glint model",
+    [GLINT_BLOB_FOREIGN] = "this is not a glint model",
     [GLINT_BLOB_NEWER] = "the model was made by a newer glint",
-    [GLINT_BLOB_NO_VERSION] = "no glint ever made models of this version",
+    [GLINT_BLOB_NO_VERSION] = "the model's version is unknown",
     [GLINT_BLOB_OLDER] = "the model was made by an older glint: bake it again",
     [GLINT_BLOB_TRUNCATED] = "the model is truncated",
     [GLINT_BLOB_LONGER] = "the model continues after its end",

@@ -49,7 +49,7 @@ static const char *check_vertices(struct check *c,
         for (int k = 0; k < 3; k++)
             off[k] = at[3 * i + (size_t)k] - m->centre[k];
         if (glint_scene_length(off) > reach)
-            return "a vertex is outside its mesh's ball";
+            return "a vertex is outside the bounding sphere of its mesh";
     }
     return NULL;
 }
@@ -71,7 +71,7 @@ static const char *check_attributes(struct check *c,
         if (uv_q16 && !glint_scene_within(uv_q16 + 2 * i, 2, UV_LIMIT))
             return "a vertex's u or v is out of range";
         if (normal_q30 && !glint_scene_is_unit(normal_q30 + 3 * i, 3))
-            return "a vertex's normal is no unit vector";
+            return "a vertex's normal is not a unit vector";
     }
     return NULL;
 }
@@ -231,7 +231,7 @@ static const char *check_object(const struct check *check,
     if (o->radius < is_sphere || o->radius > (is_sphere ? SPAN / 2 : 0))
         return "a sphere's radius is out of range";
     if (o->catcher_q15 < 0 || o->catcher_q15 > (is_plane ? 1 << 15 : 0))
-        return "a plane's share of shadow is out of range";
+        return "a plane's fraction of shadow is out of range";
     if (o->hidden > 1 || !glint_scene_is_unit(o->turn_q30, 4))
         return "an object's pose is out of range";
     return glint_scene_fits(&check->model, o, o->at)
@@ -252,7 +252,7 @@ static const char *check_stone(struct check *c,
     m = &c->model.material[s->material];
     if (m->ambient_q15 || m->diffuse_q15 || m->specular_q15 || m->reflect_q15 ||
         m->pass_q15 || m->texture != GLINT_SCENE_NONE)
-        return "a stone is Phong's, too";
+        return "a translucent material is Phong's, too";
     if (s->file_bytes < sizeof(struct glint_translucent_header) ||
         s->file_bytes % 4 ||
         !glint_blob_section(&c->blob, s->file_at, s->file_bytes / 4, 4))
@@ -405,7 +405,7 @@ static const char *check_light(const struct glint_scene_light *light)
         return "a light is too far out, or too large";
     if (is_sun ? !glint_scene_is_unit(light->toward_q30, 3)
                : !glint_scene_within(light->toward_q30, 3, 0))
-        return "a light's direction is no unit vector";
+        return "a light's direction is not a unit vector";
     for (int k = 0; k < 3; k++)
         if (!glint_scene_is_light(&light->rgb[k]))
             return "a light is negative or not normalised";
@@ -478,7 +478,7 @@ static const char *check_suns(const struct glint_scene_model *m)
 
     for (uint32_t k = 1; k <= h->n_environment_lights; k++)
         if (m->light[h->n_lights - k].kind != GLINT_LIGHT_SUN)
-            return "a light of the environment is no sun";
+            return "a light of the environment is not a sun";
     return NULL;
 }
 
@@ -528,7 +528,7 @@ static const char *check_header(const struct glint_scene_header *h)
         h->n_skins > GLINT_SCENE_MAX_SKINS || h->n_motions > 1 ||
         h->n_environments > GLINT_SCENE_MAX_ENVIRONMENTS ||
         h->n_environment_lights > (h->n_environments ? h->n_lights : 0))
-        return "the scene has too many of a kind";
+        return "the scene has too many objects of one type";
     if (h->background == GLINT_BACKGROUND_ENVIRONMENT && !h->n_environments)
         return "the background's environment is not there";
     return glint_scene_camera_fault(&h->camera);

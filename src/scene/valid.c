@@ -95,7 +95,7 @@ const char *glint_scene_camera_fault(const struct glint_scene_camera *c)
     for (int k = 0; k < 3; k++)
         if (!glint_scene_is_unit(c->axis_q30[k], 3) ||
             !is_crossed(c->axis_q30[k], c->axis_q30[(k + 1) % 3]))
-            return "the camera's axes are no units, or not at right angles";
+            return "the camera's axes are not orthogonal unit vectors";
     if (!glint_scene_between(c->tan_x_q24, has_x << 12, has_x << 30) ||
         !glint_scene_between(c->tan_y_q24, has_y << 12, has_y << 30))
         return "the camera's field is out of range";

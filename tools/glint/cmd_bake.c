@@ -138,10 +138,10 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
     if (!b->output)
         return tool_usage(tool, "needs -o MODEL");
     if (b->positions && b->zoom.is_zoomed)
-        return tool_usage(tool, "--positions are of the whole zoom: leave out "
-                                "--zoom");
+        return tool_usage(
+            tool, "--positions bakes the whole zoom range and excludes --zoom");
     if (!b->positions && b->halfway_db >= 0)
-        return tool_usage(tool, "--halfway goes with --positions");
+        return tool_usage(tool, "--halfway needs --positions");
     if (b->halfway_db < 0)
         b->halfway_db = ZOOM_BAKE_DB;
     return -1;
@@ -214,8 +214,8 @@ static void tell_zoom(const struct tool *tool, const struct bake *b,
            "bytes, %.0f s\n",
            b->positions, baked->n_models - b->positions, baked->bytes, seconds);
     if (baked->least_db > 0)
-        printf("half-way between positions pictures are %.1f dB from exact "
-               "ones at least, at %.2f mm\n",
+        printf("halfway between positions the worst PSNR against exact "
+               "pictures is %.1f dB, at %.2f mm\n",
                baked->least_db, baked->least_mm);
     if (baked->least_db > 0 && baked->least_db < b->halfway_db)
         printf("that is less than %g dB: bake more --positions\n",

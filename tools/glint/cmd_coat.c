@@ -269,11 +269,11 @@ static int parse(struct tool *tool, int argc, char **argv, struct coat *o)
 
     if (code < 0)
         code =
-            tool_inputs(tool, argc, argv, 1, "takes one coating, or one lens");
+            tool_inputs(tool, argc, argv, 1, "needs one coating or one lens");
     if (code >= 0)
         return code;
     if (o->output && !glint_ends_in(o->output, ".svg"))
-        return tool_usage(tool, "a plot is a .svg, not '%s'", o->output);
+        return tool_usage(tool, "the plot must be a .svg, not '%s'", o->output);
     if (o->output && o->surface >= 0)
         apart_read(&files, NULL, argv[optind]);
     apart_write(&files, "-o", o->output);
@@ -323,9 +323,9 @@ static int of_coating(const struct tool *tool, const char *text, struct coat *c)
     int n = 0;
 
     if (glint_coatings_parse(read, &n, text, &error) != GLINT_OK)
-        return tool_usage(tool, "%s (a lens takes --surface K)", error.text);
+        return tool_usage(tool, "%s (a lens needs --surface K)", error.text);
     if (n != 1)
-        return tool_usage(tool, "takes one coating, not %d", n);
+        return tool_usage(tool, "needs one coating, not %d", n);
     c->coating = read[0];
     snprintf(c->name, sizeof c->name, "%.150s", text);
     return EXIT_OK;

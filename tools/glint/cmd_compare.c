@@ -61,11 +61,11 @@ static void print_json(const struct glint_measure *m, bool identical)
 
 static void print(const struct glint_measure *m, bool identical)
 {
-    const char *words = identical           ? "identical: "
-                        : m->psnr_db == 999 ? "differ in nothing that can be "
-                                              "seen at this exposure: "
-                        : m->same_codes     ? "the same codes: "
-                                            : "";
+    const char *words = identical ? "identical: "
+                        : m->psnr_db == 999
+                            ? "are visually identical at this exposure: "
+                        : m->same_codes ? "the same codes: "
+                                        : "";
 
     if (m->psnr_db == 999)
         printf("%sPSNR inf dB", words);

@@ -97,7 +97,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct draw *o)
     if (!o->output)
         return tool_usage(tool, "needs -o, a .svg");
     if (o->drawing.angle_deg >= 0 && o->drawing.ghost < 0)
-        return tool_usage(tool, "--angle is of the light of a --ghost");
+        return tool_usage(tool, "--angle needs --ghost");
     apart_read(&files, NULL, argv[optind]);
     apart_write(&files, "-o", o->output);
     code = apart_check(tool, &files);
@@ -119,7 +119,7 @@ static int save(const struct tool *tool, const struct draw *o)
     if (code != EXIT_OK)
         return code;
     if (shown == 0 && !tool->quiet)
-        fprintf(stderr, "glint draw: no ray of these gets through\n");
+        fprintf(stderr, "glint draw: none of these rays reaches the sensor\n");
     if (tool->json)
         json_write(&(struct json_writer){.to = stdout}, "{rays: %d}\n", shown);
     return EXIT_OK;
@@ -142,8 +142,8 @@ static int draw(struct tool *tool, struct draw *o, const char *name)
     o->drawing.focus_m = o->zoom.focus_m;
     n = glint_ghost_list(&o->lens, NULL, 0);
     if (o->drawing.ghost >= n)
-        return tool_usage(tool, "%s has %d ghosts, 0 .. %d", o->lens.name, n,
-                          n - 1);
+        return tool_usage(tool, "%s has %d ghosts, numbered 0 .. %d",
+                          o->lens.name, n, n - 1);
     return save(tool, o);
 }
 

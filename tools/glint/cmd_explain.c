@@ -111,22 +111,24 @@ static int check(struct tool *tool, const struct explain_command *c)
     const struct settings *s = &c->drawing.line.settings;
 
     if (c->input && c->width)
-        return tool_usage(tool, "takes one picture, or --size");
+        return tool_usage(tool, "needs one picture, or --size");
     if (c->input && c->picture == LINEAR)
-        return tool_usage(tool, "--picture linear goes with --size");
+        return tool_usage(tool, "--picture linear needs --size");
     if (c->drawing.line.settings.options.scene && c->picture == LINEAR)
-        return tool_usage(tool, "--picture linear is not for --scene");
+        return tool_usage(tool, "--picture linear excludes --scene");
     if (!c->drawing.line.settings.options.scene &&
         strcmp(c->drawing.line.settings.options.lens, "none") == 0)
-        return tool_usage(tool, "--lens none leaves nothing to explain but a "
-                                "--scene");
+        return tool_usage(
+            tool,
+            "--lens none needs --scene: there is nothing else to explain");
     if (!c->input && !c->drawing.line.settings.options.scene &&
         c->drawing.line.n_hand == 0 && c->drawing.line.at.n == 0 &&
         !c->drawing.line.settings.options.lights)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
     if (s->options.rays != GLINT_RAYS_MODEL)
-        return tool_usage(tool, "explains what is drawn from a model, not "
-                                "with --rays exact");
+        return tool_usage(
+            tool,
+            "explains pictures drawn from a model, not with --rays exact");
     return -1;
 }
 
@@ -156,7 +158,7 @@ static int parse(struct tool *tool, int argc, char **argv,
     code =
         c->width && optind == argc
             ? -1
-            : tool_inputs(tool, argc, argv, 1, "takes one picture, or --size");
+            : tool_inputs(tool, argc, argv, 1, "needs one picture, or --size");
     if (code >= 0)
         return code;
     c->input = argv[optind]; /* or NULL at the end */

@@ -124,8 +124,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct import *o)
     if (!o->format)
         o->format = import_format_of(argv[optind]);
     if (!o->format)
-        return tool_usage(tool, "%s: which --format has it: %s?", argv[optind],
-                          values_of("import", "format"));
+        return tool_usage(tool,
+                          "%s: the format is ambiguous; choose --format %s",
+                          argv[optind], values_of("import", "format"));
     apart_read(&files, NULL, argv[optind]);
     apart_write(&files, "-o", o->output);
     code = apart_check(tool, &files);

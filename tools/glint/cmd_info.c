@@ -165,11 +165,10 @@ static int info_of_model(const struct tool *tool, const char *path,
     if (code != EXIT_OK)
         return code;
     if (model.zoom && zoom->is_zoomed)
-        code = tool_usage(
-            tool,
-            "%s is a zoom: info takes no --zoom, it tells of the first "
-            "position",
-            path);
+        code = tool_usage(tool,
+                          "%s is a zoom model: info prints its first position "
+                          "and does not accept --zoom",
+                          path);
     else
         code = zoom_option_of_model(tool, zoom, path);
     if (code == EXIT_OK)
@@ -293,15 +292,16 @@ static int info_of_other(const struct tool *tool, const char *path, bool stop,
         (stone_file_is_text(path) || stone_file_is_baked(path));
 
     if (stop && (is_motion || is_scene || is_around || is_stone))
-        return tool_usage(tool, "%s has no lens to stop or coat",
-                          is_motion   ? "a motion"
-                          : is_scene  ? "a scene"
-                          : is_around ? "an environment"
-                                      : "a stone");
+        return tool_usage(
+            tool, "%s is not a lens: --f-number and --coating do not apply",
+            is_motion   ? "a motion"
+            : is_scene  ? "a scene"
+            : is_around ? "an environment"
+                        : "a stone");
     if (is_motion)
         return info_of_motion(tool, path, poses);
     if (poses)
-        return tool_usage(tool, "--poses are of a motion");
+        return tool_usage(tool, "--poses needs a motion");
     return is_scene    ? info_of_scene(tool, path)
            : is_around ? info_of_environment(tool, path)
            : is_stone  ? info_of_stone(tool, path)

@@ -355,8 +355,8 @@ static int tell_none(const struct lenses *l)
 {
     if (l->n_words)
         return lens_words_missed(l->tool, l->words, l->n_words);
-    fprintf(stderr, "glint lenses: there are none; $GLINT_LENSES names a "
-                    "folder of them\n");
+    fprintf(stderr, "glint lenses: no lens was found; set $GLINT_LENSES to a "
+                    "folder of lens tables\n");
     return EXIT_LENS;
 }
 
@@ -443,13 +443,12 @@ static int parse(struct lenses *l, int argc, char **argv)
     l->words = argv + optind;
     l->n_words = argc - optind;
     if (l->exact && !l->html)
-        return tool_usage(l->tool, "--rays exact goes with --html");
+        return tool_usage(l->tool, "--rays exact needs --html");
     if (l->html && (l->tool->json || l->folder || l->names))
-        return tool_usage(l->tool, "--html goes with neither --json, --models "
-                                   "nor --names");
+        return tool_usage(l->tool,
+                          "--html excludes --json, --models and --names");
     if (l->names && (l->tool->json || l->folder))
-        return tool_usage(l->tool, "--names goes with neither --json nor "
-                                   "--models");
+        return tool_usage(l->tool, "--names excludes --json and --models");
     if (!l->html)
         return -1;
     code = tool_check_ending(l->tool, l->html, ".html", "a page");

@@ -380,7 +380,7 @@ static void print_text(const char *file, const char *wrong,
     }
     puts(wrong);
     if (n == 0)
-        puts("no single slip, undone, makes it right");
+        puts("no single corrected misprint mends the table");
     for (int k = 0; k < n && k < MENDS; k++)
         printf("%s:%d:%d: %s for %s? (%s; then f = %.3f mm, back focus %.3f "
                "mm)\n",

@@ -228,7 +228,8 @@ static int check_line(const struct tool *tool, int argc, char **argv,
     o->input = argv[optind];
     if (o->drawing.line.reserve_bytes &&
         o->drawing.line.settings.options.rays == GLINT_RAYS_EXACT)
-        return tool_usage(tool, "--memory is for models, not for exact rays");
+        return tool_usage(tool,
+                          "--memory applies to models, not to exact rays");
     return -1;
 }
 

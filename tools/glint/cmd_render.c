@@ -72,7 +72,8 @@ static int take(struct tool *tool, struct render *r, int c)
     case 's':
         if (tool_size(optarg, &r->width, &r->height))
             return -1;
-        return tool_usage(tool, "--size takes WxH of 1 to %d pixels, not '%s'",
+        return tool_usage(tool,
+                          "--size must be WxH of 1 to %d pixels, not '%s'",
                           GLINT_MAX_SIDE, optarg);
     case 'l':
         if (r->n_lamps == SETTINGS_MAX_LAMPS)
@@ -82,11 +83,10 @@ static int take(struct tool *tool, struct render *r, int c)
                 fmax(r->settings.max_deg, r->lamp[r->n_lamps - 1].theta_deg);
             return -1;
         }
-        return tool_usage(
-            tool,
-            "--light takes THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA "
-            "0 to 89.9, not '%s'",
-            optarg);
+        return tool_usage(tool,
+                          "--light must be THETA,PHI[,POWER[,R,G,B[,SIZE]]] "
+                          "with THETA 0 to 89.9, not '%s'",
+                          optarg);
     case 'f':
         r->lights_file = optarg;
         return -1;
@@ -131,7 +131,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         return tool_usage(tool, "needs a --light or --lights");
     if (r->settings.options.memory &&
         r->settings.options.rays == GLINT_RAYS_EXACT)
-        return tool_usage(tool, "--memory is for models, not for exact rays");
+        return tool_usage(tool,
+                          "--memory applies to models, not to exact rays");
     return -1;
 }
 

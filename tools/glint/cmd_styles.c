@@ -87,7 +87,7 @@ static enum glint_status load_photograph(struct glint_image *image,
     char folder[PATH_BYTES - 40], path[PATH_BYTES];
     enum glint_status status = glint_error_report(
         error, GLINT_E_ARGUMENT, "bridge.ppm",
-        "comes with glint, but is not there; name a picture");
+        "is installed with glint, but was not found; name a picture");
 
     for (int k = 0; k < 4; k++)
         for (int i = 0; lens_folder(i, "lenses", folder, sizeof folder); i++) {
@@ -273,7 +273,8 @@ static int check(struct tool *tool, struct styles_command *c)
     drawing_line_defaults(&drawing->line);
     code = parse(tool, c, drawing);
     if (code < 0 && drawing->line.style)
-        code = tool_usage(tool, "draws every style; --style is for overlay");
+        code =
+            tool_usage(tool, "draws every style and does not accept --style");
     if (code < 0 && check_apart(tool, c, drawing) != EXIT_OK)
         code = EXIT_USAGE;
     drawing_close(drawing);

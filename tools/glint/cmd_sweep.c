@@ -286,7 +286,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
     if (!a->folder)
         return tool_usage(tool, "needs -o FOLDER");
     if (argc - optind > SWEEP_LENSES)
-        return tool_usage(tool, "takes %d lenses at most", SWEEP_LENSES);
+        return tool_usage(tool, "accepts at most %d lenses", SWEEP_LENSES);
     for (; optind < argc; optind++)
         s->lens[s->n_lenses++] = argv[optind];
     return -1;

@@ -106,7 +106,7 @@ static bool file_path(char path[SYNTH_PATH_BYTES], const char *folder,
 
 static int too_long(const struct tool *tool, const struct synth_set *set)
 {
-    return tool_usage(tool, "-o %s is too long a name", set->folder);
+    return tool_usage(tool, "-o %s: the name is too long", set->folder);
 }
 
 static bool line_path(char path[SYNTH_PATH_BYTES], const struct synth_set *set,
@@ -164,10 +164,9 @@ static int check_apart(const struct tool *tool, const struct synth_set *set)
     snprintf(path, sizeof path, "%s/synth.json", set->folder);
     if (access(path, F_OK) != 0)
         return EXIT_OK;
-    return tool_usage(tool,
-                      "a set was begun in %s (%s): name another folder for "
-                      "--item",
-                      set->folder, path);
+    return tool_usage(
+        tool, "%s already contains a set (%s): name another folder for --item",
+        set->folder, path);
 }
 
 /* Rejects a count below the number of items in SET: a set never shrinks, or its
@@ -194,7 +193,7 @@ static int check_count(const struct tool *tool, const struct synth_set *set)
         return EXIT_OK;
     return tool_usage(tool,
                       "%s has items up to %ld, and --count %d would leave some "
-                      "out: take --count %ld or more, or name another folder",
+                      "out: use --count %ld or more, or name another folder",
                       set->folder, last, set->count, last + 1);
 }
 
@@ -570,7 +569,7 @@ static int take_coating(const struct tool *tool, struct synth *s,
     const int code = coating_take(tool, &probe, text);
 
     if (code < 0 && strlen(text) >= sizeof s->all.coating)
-        return tool_usage(tool, "--coating is too long a list");
+        return tool_usage(tool, "the list of --coating is too long");
     snprintf(s->all.coating, sizeof s->all.coating, "%s", text);
     return code;
 }
@@ -662,8 +661,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct synth *s)
     if (code >= 0)
         return code;
     if (optind == argc)
-        return tool_usage(tool, "needs backgrounds, pictures or folders of "
-                                "such");
+        return tool_usage(
+            tool, "needs backgrounds: pictures, or folders of pictures");
     if (!s->set.folder || !*s->set.folder)
         return tool_usage(tool, "needs -o FOLDER");
     code = take_type(tool, s);

@@ -248,7 +248,7 @@ static int prepare_model(const struct tool *tool, const struct options *o,
         return tool_fail(tool, GLINT_E_LENS,
                          "the model was baked from another lens");
     if (o->ghost < 0)
-        return tool_usage(tool, "a model has no direct path");
+        return tool_usage(tool, "a model has ghosts only, not the direct path");
     if (wave_q24 < h->wave_lo_q24 || wave_q24 > h->wave_hi_q24)
         return tool_usage(tool, "%g nm is outside the model's band",
                           o->wavelength_nm);
@@ -280,9 +280,9 @@ static int area_of(const struct tool *tool, const struct options *o,
     glint_optics_of(lens, &optics);
     if (!glint_pupil_find(area, &tracer->path, o->angle_deg,
                           optics.stop_radius_mm, NULL))
-        return tool_fail(tool, GLINT_E_LENS,
-                         "no light of this path gets through the stop and the "
-                         "barrels");
+        return tool_fail(
+            tool, GLINT_E_LENS,
+            "no light of this path passes the stop and the barrels");
     if (area->mirrored)
         area->y0_mm = -area->y1_mm;
     return EXIT_OK;
@@ -317,8 +317,8 @@ static void print_rays(const struct tool *tool, const struct options *o,
             printf(",,,,,\n");
     }
     if (n == 0 && !ferror(stdout) && !o->pupil && !tool->quiet)
-        fprintf(stderr, "glint trace: no ray of this grid gets through; "
-                        "--pupil spans where light comes in\n");
+        fprintf(stderr, "glint trace: no ray of this grid reaches the sensor; "
+                        "--pupil limits the grid to the entrance pupil\n");
 }
 
 static int trace(const struct tool *tool, const struct options *o,
@@ -332,8 +332,8 @@ static int trace(const struct tool *tool, const struct options *o,
     int code = EXIT_OK;
 
     if (o->ghost >= n)
-        return tool_usage(tool, "%s has %d ghosts, there is no %d", lens->name,
-                          n, o->ghost);
+        return tool_usage(tool, "%s has %d ghosts; number %d does not exist",
+                          lens->name, n, o->ghost);
     tracer.angle_deg = o->angle_deg;
     tracer.trace = trace_path;
     glint_path_init(&tracer.path, lens, o->ghost < 0 ? NULL : &ghosts[o->ghost],

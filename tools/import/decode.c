@@ -84,13 +84,13 @@ char *import_read(struct imported *lens, const struct import_format *format,
     lens->format = format->name;
     decode_text(data, bytes);
     if (*bytes && memchr(data, 0, *bytes)) {
-        imported_fail(lens, 0, "is no text");
+        imported_fail(lens, 0, "is not a text file");
         return NULL;
     }
     if (!format->read(lens, (const char *)data, *bytes) || lens->error[0])
         return NULL;
     if (lens->key && !lens->keyed) {
-        imported_fail(lens, 0, "has one lens, which no key is needed for");
+        imported_fail(lens, 0, "has one lens; --lens is not needed");
         return NULL;
     }
     if (lens->position > 1 && !lens->chosen) {

@@ -18,10 +18,10 @@ static bool take_kind(struct imported *lens, const struct lines *l,
     if (!*kind || strcmp(kind, "sphere") == 0 || strcmp(kind, "spherical") == 0)
         return true;
     if (strcmp(kind, "cyl_x") != 0 && strcmp(kind, "cyl_y") != 0)
-        return imported_fail(lens, l->number,
-                             "surfaces of kind '%.40s' are not read: cyl_x and "
-                             "cyl_y are",
-                             kind);
+        return imported_fail(
+            lens, l->number,
+            "surfaces of type '%.40s' are not supported; cyl_x and cyl_y are",
+            kind);
     s->shape.bend = kind[4] == 'x' ? GLINT_BEND_Y : GLINT_BEND_X;
     return true;
 }
@@ -101,7 +101,7 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
             good = imported_fail(lens, lines.number, "unknown word '%.40s'%s",
                                  lines.word[0],
                                  lines_is(&lines, "name")
-                                     ? ": this is a table of glint's already"
+                                     ? ": this already is a glint lens table"
                                      : "");
     }
     if (!good)
@@ -109,5 +109,5 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
     if (lens->n < 2)
         return imported_empty(lens);
     return settle_diameters(lens) &&
-           imported_note(lens, 0, "coatings are not read");
+           imported_note(lens, 0, "coatings are ignored");
 }

@@ -52,9 +52,9 @@ bool imported_fail(struct imported *lens, int line, const char *format, ...)
 
 bool imported_empty(struct imported *lens)
 {
-    return imported_fail(lens, 0,
-                         "there are no surfaces in it, read as %s (--format)",
-                         lens->format);
+    return imported_fail(
+        lens, 0, "no surfaces were found; the file was read as %s (--format)",
+        lens->format);
 }
 
 static void add_note(struct imported *lens, int line, bool guess,
@@ -113,7 +113,7 @@ bool imported_unit(struct imported *lens, int line, double mm)
 {
     lens->unit_mm = mm;
     lens->unit_said = true;
-    return mm > 0 || imported_fail(lens, line, "unit %g is no length", mm);
+    return mm > 0 || imported_fail(lens, line, "unit %g is not a length", mm);
 }
 
 void imported_image(struct imported *lens, int line, double radius,
@@ -122,8 +122,8 @@ void imported_image(struct imported *lens, int line, double radius,
     /* Some programs write planes with a radius that is too large for tables. */
     if (radius != 0 && fabs(radius) * lens->unit_mm < 1e9)
         imported_note(lens, line,
-                      "the image is bent, by a radius of %.6g mm: a flat "
-                      "sensor taken",
+                      "the image surface is curved, radius %.6g mm; a flat "
+                      "sensor is assumed",
                       radius * lens->unit_mm);
     if (defocus == 0)
         return;
@@ -137,7 +137,8 @@ void imported_image(struct imported *lens, int line, double radius,
 bool imported_need_unit(struct imported *lens, const char *word)
 {
     return lens->unit_said ||
-           imported_note(lens, 0, "no %s line: lengths are taken as mm", word);
+           imported_note(lens, 0, "no %s line: lengths are assumed to be in mm",
+                         word);
 }
 
 bool imported_choose(struct imported *lens, int line, int n, int *at)
@@ -149,7 +150,7 @@ bool imported_choose(struct imported *lens, int line, int n, int *at)
     *at = lens->position > 0 ? lens->position - 1 : 0;
     return lens->position > 0 || n == 1 ||
            imported_note(lens, line,
-                         "the first of %d positions is taken (--position)", n);
+                         "the first of %d positions is used (--position)", n);
 }
 
 void imported_sort_notes(struct imported *lens)
@@ -266,18 +267,18 @@ static double guess_abbe(struct imported *lens,
             continue;
         vd = abbe_of(glass);
         imported_note(lens, s->line,
-                      "no Abbe number of index %.9g: %.1f guessed, that of %s, "
-                      "which has this index",
+                      "no Abbe number for index %.9g: %.1f assumed, that of "
+                      "%s, which has this index",
                       s->nd, vd, glass->name);
         return vd;
     }
     /* Schott's line of normal glasses, from K7 to F2. */
     vd = 60.5 - 24.2 * (s->nd - 1.511) / 0.109;
     vd = vd > 70 ? 70 : vd < 22 ? 22 : vd;
-    imported_note(lens, s->line,
-                  "no Abbe number of index %g: %.1f guessed, that of "
-                  "normal glasses",
-                  s->nd, vd);
+    imported_note(
+        lens, s->line,
+        "no Abbe number for index %g: %.1f assumed, that of ordinary glass",
+        s->nd, vd);
     return vd;
 }
 
@@ -309,8 +310,8 @@ static void check_numbers(struct imported *lens,
 
     if (!(fabs(s->nd - nd) < 2e-3 && fabs(s->vd / vd - 1) < 0.02))
         imported_note(lens, s->line,
-                      "index %g and Abbe number %g beside glass %s, which "
-                      "has %.5f and %.2f: those of the glass taken",
+                      "index %g and Abbe number %g contradict glass %s, which "
+                      "has %.5f and %.2f; the values of the glass are used",
                       s->nd, s->vd, glass->name, nd, vd);
 }
 
@@ -332,18 +333,17 @@ static bool settle_medium(struct imported *lens, struct imported_surface *s)
         return by_numbers(lens, s);
     if (!glass) {
         glass = glint_glass_near(name, strlen(name));
-        return imported_fail(
-            lens, s->line,
-            "glass '%s' is not in the catalogue, and the file has no index of "
-            "it%s%s%s",
-            s->glass, glass ? "; did they mean " : "", glass ? glass->name : "",
-            glass ? "?" : "");
+        return imported_fail(lens, s->line,
+                             "glass '%s' is not in the catalogue, and the file "
+                             "does not state its index%s%s%s",
+                             s->glass, glass ? "; did they mean " : "",
+                             glass ? glass->name : "", glass ? "?" : "");
     }
     if (succeeds)
-        imported_note(lens, s->line,
-                      "glass %s is not in the catalogue: its successor %s "
-                      "taken",
-                      s->glass, glass->name);
+        imported_note(
+            lens, s->line,
+            "glass %s is not in the catalogue; its successor %s is used",
+            s->glass, glass->name);
     if (has_numbers)
         check_numbers(lens, s, glass);
     s->index = index_at(glass, LINE_D_NM);
@@ -495,8 +495,8 @@ static bool stop_beside(struct imported *lens, int k)
     /* If the stop was guessed, a note was added then. */
     return lens->stop_guessed ||
            imported_note(lens, stop.line,
-                         "the stop is a surface of glass: put %.3g %s it, at "
-                         "its rim",
+                         "the stop is a glass surface; it is moved %.3g %s it, "
+                         "to the surface's rim",
                          fabs(off) * lens->unit_mm,
                          behind ? "mm behind" : "mm before");
 }
@@ -534,7 +534,7 @@ static bool settle_stop(struct imported *lens)
         at = k;
     }
     if (at < 0) {
-        imported_note(lens, 0, "there is no stop: taken at the front");
+        imported_note(lens, 0, "no stop is stated; it is assumed at the front");
         lens->surface[0].stop = lens->stop_guessed = true;
         at = 0;
     }
@@ -566,14 +566,14 @@ static void settle_film(struct imported *lens, double focal_units)
         lens->film_mm[0] = 36;
         lens->film_mm[1] = 24;
         imported_note(lens, 0,
-                      "no field is stated: film 36x24 mm taken (--film)");
+                      "no field is stated; film 36x24 mm is assumed (--film)");
         return;
     }
     lens->film_mm[0] = 2 * half * 3 / sqrt(13);
     lens->film_mm[1] = 2 * half * 2 / sqrt(13);
     imported_note(lens, 0,
-                  "film %.4g x %.4g mm taken, 3:2 within the image of %.4g mm "
-                  "(--film)",
+                  "film %.4g x %.4g mm is assumed, 3:2 within the image of "
+                  "%.4g mm (--film)",
                   lens->film_mm[0], lens->film_mm[1], 2 * half);
 }
 
@@ -601,12 +601,12 @@ static bool settle_pupil(struct imported *lens, double focal_units)
         lens->f_number = ceil(lens->f_number * 1000) / 1000;
         lens->pupil = focal_units / lens->f_number;
         return imported_note(lens, lens->surface[stop].line,
-                             "f/%g taken, to which the stop opens",
+                             "f/%g is assumed, the stop's full opening",
                              lens->f_number);
     } else
         return imported_fail(lens, 0,
-                             "neither f-number, pupil nor the stop's size is "
-                             "in it (--f-number)");
+                             "the file states neither f-number, pupil nor the "
+                             "size of the stop (--f-number)");
     return true;
 }
 
@@ -641,17 +641,17 @@ static void settle_semis(struct imported *lens)
         }
         if (s->semi < (1 - 1e-5) * least)
             imported_note(lens, s->line,
-                          "the stop's semi-diameter is %.6g mm, f/%.4g needs "
-                          "%.6g: taken",
+                          "the stop's semi-diameter is %.6g mm, but f/%.4g "
+                          "needs %.6g, which is used",
                           s->semi * lens->unit_mm, lens->f_number,
                           least * lens->unit_mm);
         s->semi = fmax(s->semi, least);
     }
     if (n > 0)
-        imported_note(lens, 0,
-                      "%d surface%s no semi-diameter: those of paraxial rays "
-                      "taken",
-                      n, n == 1 ? " has" : "s have");
+        imported_note(
+            lens, 0,
+            "%d surface%s no semi-diameter; those of paraxial rays are used", n,
+            n == 1 ? " has" : "s have");
 }
 
 /* Reduces semi-diameters that exceed the extent of a sphere or conic. */
@@ -665,8 +665,8 @@ static void cut_semis(struct imported *lens)
 
         if (s->radius != 0 && s->semi >= size) {
             imported_note(lens, s->line,
-                          "semi-diameter %.6g of a surface that ends at "
-                          "%.6g: %.6g taken",
+                          "semi-diameter %.6g of a surface that ends at %.6g; "
+                          "%.6g is used",
                           s->semi, size, 0.98 * size);
             s->semi = 0.98 * size;
         }
@@ -704,8 +704,8 @@ static bool part_rims(struct imported *lens)
                                  "crosses it next to the axis",
                                  s->thickness * lens->unit_mm);
         imported_note(lens, s->line,
-                      "the next surface crosses this at its rim: "
-                      "semi-diameters of %.6g mm taken",
+                      "the next surface crosses this one at its rim; "
+                      "semi-diameters of %.6g mm are used",
                       semi * lens->unit_mm);
         for (int i = 0; i < 2; i++)
             s[i].semi = fmin(s[i].semi, semi);
@@ -730,8 +730,8 @@ static bool settle_focus(struct imported *lens)
                              -behind * lens->unit_mm);
     last->thickness = behind;
     return imported_note(lens, last->line,
-                         "no distance to the sensor: the paraxial focus taken, "
-                         "%.6g mm",
+                         "no distance to the sensor is stated; the paraxial "
+                         "focus is used, %.6g mm",
                          behind * lens->unit_mm);
 }
 
@@ -740,12 +740,13 @@ static bool settle_focus(struct imported *lens)
 static void tell_object(struct imported *lens)
 {
     if (lens->object_near)
-        imported_note(lens, lens->object_line,
-                      "the object is %g mm away: light from afar taken%s",
-                      lens->object * lens->unit_mm,
-                      lens->surface[lens->n - 1].thickness > 0
-                          ? ", the sensor where the file has it"
-                          : "");
+        imported_note(
+            lens, lens->object_line,
+            "the object is %g mm away; light from infinity is assumed%s",
+            lens->object * lens->unit_mm,
+            lens->surface[lens->n - 1].thickness > 0
+                ? ", the sensor where the file has it"
+                : "");
 }
 
 /* Refuses negative thicknesses, except behind a stop at the front, which may
@@ -768,8 +769,8 @@ static bool check_end(struct imported *lens)
 
     return strcmp(last->medium, "air") == 0 ||
            imported_fail(lens, last->line,
-                         "there is glass behind the last surface: one is "
-                         "missing, as sensors stand in the air");
+                         "there is glass behind the last surface; a surface is "
+                         "missing, as the sensor is in air");
 }
 
 /* Refuses an f-number of the user if its light does not fit through the front
@@ -784,13 +785,13 @@ static bool check_front(struct imported *lens, double focal_units)
         front++;
     if (!(lens->f_number_given > 0) || lens->pupil / 2 <= front->semi * slack)
         return true;
-    return imported_fail(lens, front->line,
-                         "f/%.4g needs %.4g mm of the front, which has a "
-                         "semi-diameter of %.4g: f/%g is the fastest "
-                         "that there can be",
-                         lens->f_number, lens->pupil / 2 * lens->unit_mm,
-                         front->semi * lens->unit_mm,
-                         ceil(500 * focal_units / front->semi) / 1000);
+    return imported_fail(
+        lens, front->line,
+        "f/%.4g needs a front semi-diameter of %.4g mm, but the front has "
+        "%.4g; the lens cannot be faster than f/%g",
+        lens->f_number, lens->pupil / 2 * lens->unit_mm,
+        front->semi * lens->unit_mm,
+        ceil(500 * focal_units / front->semi) / 1000);
 }
 
 /* Checks LENS and sets all values that the table needs. */
@@ -811,14 +812,14 @@ static bool complete(struct imported *lens)
                       "there may be a misprint (glint lint)",
                       f * lens->unit_mm, lens->nominal * lens->unit_mm);
     if (f == 0)
-        return imported_fail(lens, 0,
-                             "light leaves it as it comes in, without a focus; "
-                             "glint takes lenses that form an image");
+        return imported_fail(
+            lens, 0,
+            "the system is afocal; glint needs a lens that forms an image");
     if (!(f > 0))
-        return imported_fail(lens, 0,
-                             "focal length is %.6g mm; glint takes lenses "
-                             "that form an image",
-                             f * lens->unit_mm);
+        return imported_fail(
+            lens, 0,
+            "focal length is %.6g mm; glint needs a lens that forms an image",
+            f * lens->unit_mm);
     settle_film(lens, f);
     if (!settle_pupil(lens, f))
         return false;
@@ -919,8 +920,8 @@ char *imported_finish(struct imported *lens, size_t *bytes)
         return NULL;
     imported_sort_notes(lens);
     if (lens->strict && lens->n_guesses > 0) {
-        imported_fail(lens, 0, "%d guess%s, which --strict refuses",
-                      lens->n_guesses, lens->n_guesses == 1 ? "" : "es");
+        imported_fail(lens, 0, "%d assumption%s, which --strict rejects",
+                      lens->n_guesses, lens->n_guesses == 1 ? "" : "s");
         return NULL;
     }
     file = glint_memory_file_open(&text, bytes);

@@ -146,7 +146,7 @@ static bool take_realflare(struct json_lens *j, json_t *root)
         if (!take_element(j, json_array_get(elements, (size_t)k),
                           k == (int)stop))
             return false;
-    return imported_note(j->lens, 0, "coatings are not read");
+    return imported_note(j->lens, 0, "coatings are ignored");
 }
 
 bool import_realflare(struct imported *lens, const char *text, size_t bytes)
@@ -168,7 +168,7 @@ static bool take_geometry(struct json_lens *j, const json_t *element,
         return true;
     if (strcmp(kind, "cyl-x") != 0 && strcmp(kind, "cyl-y") != 0)
         return imported_fail(j->lens, s->line,
-                             "surfaces of geometry '%.40s' are not read: "
+                             "surfaces of geometry '%.40s' are not supported; "
                              "spherical, cyl-x and cyl-y are",
                              kind);
     s->shape.bend = kind[4] == 'x' ? GLINT_BEND_Y : GLINT_BEND_X;
@@ -189,8 +189,8 @@ static bool take_lentil_element(struct json_lens *j, json_t *element)
     if (json_object_get(element, "aspherical-equation") &&
         !json_is_null(json_object_get(element, "aspherical-equation")))
         return imported_fail(j->lens, line,
-                             "an asphere (\"aspherical-equation\"): spheres "
-                             "and cylinders are read");
+                             "aspheres (\"aspherical-equation\") are not "
+                             "supported; spheres and cylinders are");
     note_others(j, element, line,
                 " radius thickness housing-radius ior abbe material "
                 "lens-geometry ");
@@ -220,7 +220,7 @@ static const json_t *find_lens(struct imported *lens, json_t *root)
     if (found)
         return found;
     if (json_object_size(root) == 0)
-        imported_fail(lens, 0, "there are no lenses in it");
+        imported_fail(lens, 0, "the file contains no lenses");
     else
         imported_fail(
             lens, 0, "has %d lenses%s%.40s%s: --lens %.40s or another",

@@ -162,6 +162,5 @@ bool lines_fields(const struct lines *l, double *most)
 
 bool lines_mirror(const struct lines *l)
 {
-    return imported_fail(l->lens, l->number,
-                         "a mirror: glint has lenses alone");
+    return imported_fail(l->lens, l->number, "mirrors are not supported");
 }

@@ -55,7 +55,7 @@ static void XMLCALL take_start(void *data, const char *name, const char **pairs)
     r->bytes = 0;
     if (r->depth++ == 0 && strcmp(name, "opticalSystem") != 0)
         go_on(r, imported_fail(r->lens, line_of(r),
-                               "<%.40s> is no <opticalSystem>", name));
+                               "<%.40s> is not an <opticalSystem>", name));
     if (strcmp(name, "element") == 0) {
         r->in_element = true;
         r->line = line_of(r);
@@ -83,7 +83,7 @@ static void XMLCALL refuse_doctype(void *data, const char *name,
     (void)public_id;
     (void)has_internal;
     go_on(r, imported_fail(r->lens, line_of(r),
-                           "a <!DOCTYPE>: lens files have none"));
+                           "<!DOCTYPE> is not allowed in lens files"));
 }
 
 /* Stores the <element> that ends: a surface, the stop or the sensor. */
@@ -98,7 +98,7 @@ static bool take_element(struct reader *r)
         return r->ended = true;
     if (!stop && strcmp(r->kind, "lensSpherical") != 0)
         return imported_fail(r->lens, r->line,
-                             "elements of type '%s' are not read: "
+                             "elements of type '%s' are not supported; "
                              "lensSpherical, apertureStop and sensor are",
                              r->kind);
     for (int i = 0; i < ELEMENT_VALUES; i++)
@@ -200,7 +200,7 @@ static bool settle(struct reader *r)
     for (int k = 0; k < lens->n && r->system_has[MULTIPLIER]; k++)
         lens->surface[k].semi *=
             lens->surface[k].stop ? 0.5 : r->system[MULTIPLIER];
-    return !r->coated || imported_note(lens, 0, "coatings are not read");
+    return !r->coated || imported_note(lens, 0, "coatings are ignored");
 }
 
 bool import_openlensflare(struct imported *lens, const char *text, size_t bytes)

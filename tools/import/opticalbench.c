@@ -193,7 +193,7 @@ static bool take_term(struct optical_bench *b, struct imported_surface *s,
         return true;
     if (i < 0 || i >= GLINT_SHAPE_TERMS)
         return imported_fail(b->lens, b->lines.number,
-                             "a term of h^%d: only h^4 to h^20 are read",
+                             "a term of h^%d: only h^4 to h^20 are supported",
                              i < 0 ? b->a2 > 0 ? 2 : 3 : 2 * i + 4);
     s->shape.term[i] = value;
     return true;
@@ -214,14 +214,15 @@ static bool take_asphere(struct optical_bench *b)
                              word(b, 0));
     if (b->odd > 1)
         return imported_fail(b->lens, b->lines.number,
-                             "%g odd terms: only even ones are read", b->odd);
+                             "%g odd terms: only even ones are supported",
+                             b->odd);
     if (strcasecmp(word(b, 1), "Infinity") == 0)
         radius = 0;
     else if (!lines_number(&b->lines, 1, "radius", &radius))
         return false;
     if (fabs(radius - s->radius) > 1e-3 * fabs(s->radius))
         imported_note(b->lens, b->lines.number,
-                      "radius %g, but %g in [lens data], which is taken",
+                      "radius %g contradicts %g in [lens data], which is used",
                       radius, s->radius);
     if (*word(b, 2) && !lines_number(&b->lines, 2, "conic", &s->shape.conic))
         return false;
@@ -238,8 +239,8 @@ static bool take(struct optical_bench *b)
     switch (b->section) {
     case NO_SECTION:
         return imported_fail(b->lens, b->lines.number,
-                             "'%.40s' is no [section] of Optical Bench's "
-                             "(polyflare's tables: --format polyflare)",
+                             "'%.40s' is not a [section] of Optical Bench (for "
+                             "tables of polyflare use --format polyflare)",
                              word(b, 0));
     case TITLE:
         if (strcasecmp(word(b, 0), "title") == 0)

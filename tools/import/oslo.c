@@ -55,11 +55,11 @@ static bool take_other(struct oslo *o)
         return lines_mirror(l);
     for (size_t i = 0; i < sizeof shaping / sizeof *shaping; i++)
         if (lines_is(l, shaping[i]))
-            return imported_fail(o->lens, l->number,
-                                 "'%s': surfaces that are tilted, decentred, "
-                                 "not round, of other terms or curved as rays "
-                                 "or others are, are not read",
-                                 l->word[0]);
+            return imported_fail(
+                o->lens, l->number,
+                "'%s': surfaces that are tilted, decentred, not rotationally "
+                "symmetric, or of other types are not supported",
+                l->word[0]);
     return imported_unread(o->lens, l->number, l->word[0]);
 }
 

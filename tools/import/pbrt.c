@@ -47,6 +47,6 @@ bool import_pbrt(struct imported *lens, const char *text, size_t bytes)
         lens->surface[k].thickness = lens->surface[k + 1].thickness;
     lens->surface[lens->n - 1].thickness = 0;
     return imported_note(lens, lens->surface[0].line,
-                         "the first distance is 0: distances are taken from "
-                         "the surface before");
+                         "the first distance is 0; distances are assumed to "
+                         "start at the surface before");
 }

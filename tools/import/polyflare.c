@@ -49,7 +49,7 @@ static void cut_comment(struct lines *l)
 static bool too_many(struct polyflare *p)
 {
     return imported_fail(p->lens, p->lines.number,
-                         "more than %d positions of a zoom are not read",
+                         "more than %d zoom positions are not supported",
                          POSITIONS);
 }
 
@@ -198,8 +198,9 @@ static bool find_stop(struct imported *lens)
     if (at < 0)
         return true;
     lens->surface[at].stop = true;
-    return imported_note(lens, lens->surface[at].line,
-                         "no iris: the plane in the air is taken as the stop");
+    return imported_note(
+        lens, lens->surface[at].line,
+        "no iris is stated; the plane in air is used as the stop");
 }
 
 bool import_polyflare(struct imported *lens, const char *text, size_t bytes)

@@ -113,10 +113,10 @@ static bool take_aperture(struct seq *q)
 
     if (l->n > 1 && (strcasecmp(l->word[1], "OBS") == 0 ||
                      strcasecmp(l->word[1], "HOL") == 0))
-        return imported_note(q->lens, l->number,
-                             "'%s %s' is not read: glint has no openings but "
-                             "round ones",
-                             l->word[0], l->word[1]);
+        return imported_note(
+            q->lens, l->number,
+            "'%s %s' is not supported; openings must be circles", l->word[0],
+            l->word[1]);
     if (l->n > 1 && strcasecmp(l->word[1], "EDG") == 0 && q->s->semi > 0)
         return true;
     if (!lines_number(l, k, "semi-diameter", &value))
@@ -177,10 +177,11 @@ static bool take_surface(struct seq *q)
             return true;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
         if (lines_is(l, refused[i]))
-            return imported_fail(q->lens, l->number,
-                                 "'%s': tilted, diffractive and other surfaces "
-                                 "that are not round are not read",
-                                 l->word[0]);
+            return imported_fail(
+                q->lens, l->number,
+                "'%s': tilted, diffractive and other surfaces without "
+                "rotational symmetry are not supported",
+                l->word[0]);
     return imported_unread(q->lens, l->number, l->word[0]);
 }
 
@@ -191,7 +192,7 @@ static bool take_dimension(struct seq *q)
 
     if (unit != 'I' && unit != 'C' && unit != 'M')
         return imported_fail(q->lens, q->lines.number,
-                             "unit '%s' is none of M, C and I", word);
+                             "unit '%s' is unknown; expected M, C or I", word);
     return imported_unit(q->lens, q->lines.number,
                          unit == 'I'   ? 25.4
                          : unit == 'C' ? 10
@@ -223,11 +224,11 @@ static bool take_head(struct seq *q)
         return lines_fields(l, &q->lens->height);
     if (lines_is(l, "PRV"))
         return imported_note(q->lens, l->number,
-                             "glasses of the file's own (PRV) are not read: "
-                             "those of the catalogue taken");
+                             "private glasses (PRV) are ignored; those of the "
+                             "catalogue are used");
     return !lines_is(l, "ZOO") ||
            imported_note(q->lens, l->number,
-                         "zoom positions but the first are not read");
+                         "only the first zoom position is read");
 }
 
 /* Converts the first word to upper case. */
@@ -290,7 +291,7 @@ bool import_seq(struct imported *lens, const char *text, size_t bytes)
     if (lens->n == 0)
         return imported_empty(lens);
     if (!q.image)
-        imported_note(lens, 0,
-                      "no SI line, the image: the file may be cut off");
+        imported_note(
+            lens, 0, "the SI line (image) is missing; the file may be cut off");
     return imported_need_unit(lens, "DIM");
 }

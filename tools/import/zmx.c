@@ -31,8 +31,8 @@ static bool take_type(struct zmx *z)
     z->even = strcmp(type, "EVENASPH") == 0;
     return z->even || strcmp(type, "STANDARD") == 0 ||
            imported_fail(z->lens, z->lines.number,
-                         "surfaces of type '%s' are not read: STANDARD and "
-                         "EVENASPH are",
+                         "surfaces of type '%s' are not supported; STANDARD "
+                         "and EVENASPH are",
                          type);
 }
 
@@ -72,7 +72,7 @@ static bool take_parameter(struct zmx *z)
         return true;
     if (k < 2 || k > 8 || k != floor(k))
         return imported_fail(z->lens, z->lines.number,
-                             "a term of h^%g: only h^4 to h^16 are read",
+                             "a term of h^%g: only h^4 to h^16 are supported",
                              2 * k);
     z->s->shape.term[(int)k - 2] = value;
     return true;
@@ -125,7 +125,8 @@ static bool take_unit(struct zmx *z)
         if (strcmp(units[i].word, word) == 0)
             return imported_unit(z->lens, z->lines.number, units[i].mm);
     return imported_fail(z->lens, z->lines.number,
-                         "unit '%s' is none of MM, CM, IN, METER", word);
+                         "unit '%s' is unknown; expected MM, CM, IN or METER",
+                         word);
 }
 
 static bool take_head(struct zmx *z)
@@ -134,9 +135,9 @@ static bool take_head(struct zmx *z)
     double value;
 
     if (lines_is(l, "MODE") && l->n > 1 && strcmp(l->word[1], "SEQ") != 0)
-        return imported_fail(z->lens, l->number,
-                             "mode '%s': only SEQ, sequential lenses, are read",
-                             l->word[1]);
+        return imported_fail(
+            z->lens, l->number,
+            "mode '%s' is not supported; only SEQ (sequential) is", l->word[1]);
     if (lines_is(l, "NAME")) {
         snprintf(z->lens->title, sizeof z->lens->title, "%.230s", l->rest);
         return true;
@@ -210,7 +211,7 @@ static bool check_distances(struct imported *lens)
 
         if (isnan(s->thickness)) {
             imported_note(lens, s->line,
-                          "no DISZ of it: a thickness of 0 taken");
+                          "no DISZ is stated; a thickness of 0 is assumed");
             s->thickness = 0;
         }
         if (!isfinite(s->thickness))
@@ -261,7 +262,7 @@ bool import_zmx(struct imported *lens, const char *text, size_t bytes)
             tail = true;
             more = l->n < 2 || strcmp(l->word[1], "1") == 0 ||
                    imported_note(lens, l->number,
-                                 "configurations but the first are not read");
+                                 "only the first configuration is read");
         } else if (lines_is(l, "TOL") || lines_is(l, "DMFS"))
             tail = true;
         else if (!z.s)

@@ -78,11 +78,11 @@ static int add_folder(const struct tool *tool, struct synth_backgrounds *list,
     if (!is_room)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (list->n == before)
-        return tool_fail(tool,
-                         glint_error_report(&error, GLINT_E_IO, folder,
-                                            "holds no pictures (.ppm, .png, "
-                                            ".jpg ...)"),
-                         error.text);
+        return tool_fail(
+            tool,
+            glint_error_report(&error, GLINT_E_IO, folder,
+                               "contains no pictures (.ppm, .png, .jpg ...)"),
+            error.text);
     return EXIT_OK;
 }
 
@@ -118,8 +118,8 @@ int synth_backgrounds_open(const struct tool *tool,
             return tool_usage(tool, "%s: its name is too long", list->path[i]);
         if (i > 0 && by_name(&list->path[i - 1], &list->path[i]) == 0)
             return tool_usage(tool,
-                              "%s and %s have one name, by which a manifest "
-                              "would not tell them apart",
+                              "%s and %s have the same name, so that the "
+                              "manifest could not distinguish them",
                               list->path[i - 1], list->path[i]);
     }
     return EXIT_OK;
@@ -328,7 +328,7 @@ int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
             return EXIT_OK;
     }
     if (lenses->n == SYNTH_MAX_LENSES)
-        return tool_usage(tool, "takes up to %d lenses", SYNTH_MAX_LENSES);
+        return tool_usage(tool, "accepts at most %d lenses", SYNTH_MAX_LENSES);
     *lens = calloc(1, sizeof **lens);
     if (!*lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);

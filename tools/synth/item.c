@@ -103,7 +103,7 @@ bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
 
     if (k < 0) {
         snprintf(why->text, sizeof why->text,
-                 "nothing is named '%.*s'; --range list names what there is",
+                 "'%.*s' is not a range; --range list prints all names",
                  (int)(n < 60 ? n : 60), text);
         return false;
     }
@@ -114,14 +114,14 @@ bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
     if (count == 0 || v[0] > v[1] || v[0] < f->least || v[1] > f->most ||
         ((f->law == SYNTH_LOG || f->law == SYNTH_HALF) && v[0] <= 0 &&
          v[1] > 0)) {
-        snprintf(why->text, sizeof why->text,
-                 "%s takes LOW,HIGH or one number within %g to %g%s, not "
-                 "'%.40s'",
-                 f->name, f->least, f->most,
-                 f->law == SYNTH_LOG || f->law == SYNTH_HALF
-                     ? ", LOW above 0 or both 0"
-                     : "",
-                 text[n] ? text + n + 1 : "");
+        snprintf(
+            why->text, sizeof why->text,
+            "%s must be LOW,HIGH or one number within %g to %g%s, not '%.40s'",
+            f->name, f->least, f->most,
+            f->law == SYNTH_LOG || f->law == SYNTH_HALF
+                ? ", LOW above 0 or both 0"
+                : "",
+            text[n] ? text + n + 1 : "");
         return false;
     }
     ranges->low[k] = v[0];

@@ -33,7 +33,7 @@ static enum glint_status take(const struct synth_field *field,
     if (field->text_bytes) {
         text = json_string_value(value);
         if (!text || strlen(text) >= field->text_bytes)
-            return refuse(error, field->name, "is no text, or too long");
+            return refuse(error, field->name, "is not a text, or is too long");
         memcpy(at, text, strlen(text) + 1);
         return GLINT_OK;
     }
@@ -41,7 +41,7 @@ static enum glint_status take(const struct synth_field *field,
     x = json_number_value(value);
     if (!json_is_number(value) || x < field->least || x > field->most ||
         (is_whole && x != floor(x))) {
-        snprintf(cause, sizeof cause, "takes %s, %.10g to %.10g",
+        snprintf(cause, sizeof cause, "must be %s, %.10g to %.10g",
                  is_whole ? "a whole number" : "a number", field->least,
                  field->most);
         return refuse(error, field->name, cause);

@@ -93,6 +93,6 @@ glint_environment_parse(struct glint_environment_options *options,
     }
     if (good && !source[0])
         good = glint_text_fail(&text, glint_text_end(&text),
-                               "there is no picture: source FILE");
+                               "the line 'source FILE' is missing");
     return good ? GLINT_OK : GLINT_E_LENS;
 }

@@ -109,7 +109,7 @@ static bool gather(struct writer *w, const struct glint_float_image *picture,
     if (w->report->largest > 0 &&
         (w->report->largest < 1e-30 || w->report->largest > 1e30)) {
         snprintf(error->text, sizeof error->text,
-                 "the brightest of the environment is %.3g",
+                 "the brightest pixel of the environment is %.3g",
                  w->report->largest);
         return false;
     }

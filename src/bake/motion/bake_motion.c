@@ -367,17 +367,17 @@ static const char *check(const struct glint_motion_baker *b,
     if (b->n_frames == GLINT_MOTION_MAX_FRAMES)
         return "more than 67108864 frames";
     if (s->n_foods < 3)
-        return "fewer than three foods: nothing can be localised";
+        return "fewer than three foods: poses cannot be computed";
     if (s->n_foods > GLINT_MOTION_MAX_FOODS)
         return "more than 32 foods";
     if (b->n_frames && s->n_foods != b->n_foods)
-        return "another number of foods than in the first frame";
+        return "the number of foods differs from the first frame";
     if (b->n_frames && s->n_intensities != b->n_intensities)
-        return "another number of intensities than in the first frame";
+        return "the number of intensities differs from the first frame";
     for (int i = 0; i < s->n_foods; i++)
         for (int k = 0; k < 3; k++)
             if (!(fabs(s->food[i][k]) <= REACH))
-                return "a food's place is not within +-1e6";
+                return "the position of a food is not within +-1e6";
     for (int k = 0; k < 3; k++)
         if (!(fabs(s->tv[k]) <= REACH) || !(fabs(s->rv[k]) <= REACH))
             return "rv or tv is not within +-1e6";

@@ -63,8 +63,9 @@ static const char *locate(struct glint_localiser *l, int n,
                           struct glint_located *located)
 {
     if (!fit_all(l, n, seen, is_new, -1, &located->pose))
-        return located->n_known < 3 ? "fewer than three foods are known"
-                                    : "the foods that are known lie on a line";
+        return located->n_known < 3
+                   ? "fewer than three foods have known positions"
+                   : "the foods with known positions lie on a line";
     if (l->average)
         update_places(l, n, seen, is_new);
     for (int i = 0; i < n; i++)

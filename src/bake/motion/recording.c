@@ -150,7 +150,7 @@ static bool pass_string(struct recording *r, char *name)
         return false;
     while (r->c != '"') {
         if (r->c >= 0 && r->c < ' ')
-            return fail(r, "a string ends on its line, with '\"'");
+            return fail(r, "a string must end on its line, with '\"'");
         if (name && n + 1 < NAME_BYTES && r->c >= 0)
             name[n++] = (char)r->c;
         if ((r->c == '\\' && !pass(r)) || !pass(r))
@@ -253,7 +253,7 @@ static bool number(const struct recording *r, const json_t *object,
         return fail_at(r, 1, 1, "%s has no '%s'", what, name);
     *x = json_number_value(value);
     return json_is_number(value) ||
-           fail_at(r, 1, 1, "'%s' of %s is no number", name, what);
+           fail_at(r, 1, 1, "'%s' of %s is not a number", name, what);
 }
 
 /* Sets V to the vector NAME of OBJECT, or to zeros if OBJECT has no such
@@ -266,7 +266,7 @@ static bool read_vector(const struct recording *r, const json_t *object,
     for (size_t k = 0; k < 3; k++) {
         v[k] = json_number_value(json_array_get(value, k));
         if (value && !json_is_number(json_array_get(value, k)))
-            return fail_at(r, 1, 1, "'%s' takes three numbers", name);
+            return fail_at(r, 1, 1, "'%s' needs three numbers", name);
     }
     return true;
 }
@@ -281,13 +281,13 @@ static bool take_body(const struct recording *r, const json_t *object)
     struct glint_error cause;
 
     if (!json_is_object(object))
-        return fail_at(r, 1, 1, "the structure is no object");
+        return fail_at(r, 1, 1, "the structure is not a JSON object");
     if (!number(r, object, "size", "meret", "the structure", &body.size) ||
         !number(r, object, "angleofview", "latoszog", "the structure",
                 &body.angle_deg))
         return false;
     if (sensors && !json_is_array(sensors))
-        return fail_at(r, 1, 1, "'sensors' is no array");
+        return fail_at(r, 1, 1, "'sensors' is not an array");
     if (json_array_size(sensors) > GLINT_MOTION_MAX_SENSORS)
         return fail_at(r, 1, 1, "more than %d sensors",
                        GLINT_MOTION_MAX_SENSORS);
@@ -328,7 +328,7 @@ static bool take_intensities(const struct recording *r, const json_t *food,
             json_is_array(value) ? json_array_get(value, k) : value;
 
         if (!json_is_number(one) && !json_is_boolean(one))
-            return fail_at(r, 1, 1, "an intensity is no number");
+            return fail_at(r, 1, 1, "an intensity is not a number");
         s->intensity[i][k] =
             json_is_number(one) ? json_number_value(one) : json_is_true(one);
     }
@@ -360,13 +360,13 @@ static bool read_frame(const struct recording *r, const json_t *object,
 
     *s = (struct glint_motion_sight){.number = -1};
     if (!json_is_object(object))
-        return fail_at(r, 1, 1, "it is no object");
+        return fail_at(r, 1, 1, "the frame is not a JSON object");
     if (of && (!json_is_integer(of) || json_integer_value(of) < 0))
-        return fail_at(r, 1, 1, "'frame_num' is no whole number from 0 on");
+        return fail_at(r, 1, 1, "'frame_num' is not a whole number from 0");
     if (of)
         s->number = json_integer_value(of);
     if (!json_is_array(foods))
-        return fail_at(r, 1, 1, "it has no array 'foods'");
+        return fail_at(r, 1, 1, "the frame has no array 'foods'");
     if (json_array_size(foods) > GLINT_MOTION_MAX_FOODS)
         return fail_at(r, 1, 1, "more than %d foods", GLINT_MOTION_MAX_FOODS);
     for (size_t i = 0; i < json_array_size(foods); i++)
@@ -488,7 +488,7 @@ static bool read_all(struct recording *r)
     load(r);
     if (!pass_space(r))
         return false;
-    return r->c < 0 || fail(r, "the recording has ended before this");
+    return r->c < 0 || fail(r, "text follows the end of the recording");
 }
 
 enum glint_status glint_recording_read(struct glint_motion_baker *baker,

@@ -249,8 +249,8 @@ bool glint_name_read(struct glint_text *text, const char *what, char *name,
     }
     if (!good)
         return glint_text_fail(text, word.place,
-                               "a name is a letter and at most %d letters, "
-                               "digits, - and _",
+                               "a name must be a letter followed by at most %d "
+                               "letters, digits, - and _",
                                bytes - 2);
     memcpy(name, word.start, (size_t)word.length);
     name[word.length] = '\0';
@@ -263,6 +263,7 @@ bool glint_line_ends(struct glint_text *text, const char *line)
     char quote[GLINT_QUOTE_BYTES];
 
     return !word.length ||
-           glint_text_fail(text, word.place, "'%s' is more than %s takes",
+           glint_text_fail(text, word.place,
+                           "'%s' is one value too many for %s",
                            glint_word_quote(&word, quote), line);
 }

@@ -27,7 +27,7 @@ static bool read_norm(struct glint_describer *d, const struct glint_word *word,
                                           : GLINT_DESCRIBED_BOUNDED;
     return glint_word_is(word, "1992") || glint_word_is(word, "bounded") ||
            glint_text_fail(&d->text, word->place,
-                           "a norm is bounded or 1992, not '%s'",
+                           "'norm' must be bounded or 1992, not '%s'",
                            glint_word_quote(word, quote));
 }
 
@@ -42,8 +42,8 @@ static void hold_ratio(struct glint_describer *d,
         return;
     if (!d->scene->warning[0])
         snprintf(d->scene->warning, sizeof d->scene->warning,
-                 "material %s: alphas of %.4g and %.4g are held to a ratio of "
-                 "%d: the smaller is %.4g",
+                 "material %s: the ratio of the alphas %.4g and %.4g is "
+                 "limited to %d: the smaller is set to %.4g",
                  m->name, m->alpha[0], m->alpha[1], GLINT_DESCRIPTION_MAX_RATIO,
                  least);
     m->alpha[smaller] = least;
@@ -84,10 +84,11 @@ static bool read_metal(struct glint_describer *d,
         return false;
     for (int c = 0; c < 3; c++)
         if (m->colour[c] + m->metal[c] > 1 + SLACK)
-            return glint_text_fail(&d->text, clause[1].place,
-                                   "'diffuse' and 'specular' sum to %.6g; more "
-                                   "than 1 would make light",
-                                   m->colour[c] + m->metal[c]);
+            return glint_text_fail(
+                &d->text, clause[1].place,
+                "'diffuse' and 'specular' sum to %.6g; above 1 the surface "
+                "would reflect more light than it receives",
+                m->colour[c] + m->metal[c]);
     return read_lobe(d, m, &norm);
 }
 
@@ -115,7 +116,8 @@ static bool read_file(struct glint_describer *d, const struct glint_word *word,
                                "more than %d translucent materials",
                                GLINT_DESCRIPTION_MAX_STONES);
     if (!d->files->stone)
-        return glint_text_fail(&d->text, word->place, "no stone is read here");
+        return glint_text_fail(&d->text, word->place,
+                               "translucent materials cannot be read here");
     glint_describe_file(word, name);
     status = d->files->stone(d->files->ctx, name, &stone->data, &stone->bytes,
                              d->error);
@@ -136,7 +138,7 @@ static bool read_fresnel(struct glint_describer *d,
     m->fresnel = !glint_word_is(word, "off");
     return glint_word_is(word, "on") || glint_word_is(word, "off") ||
            glint_text_fail(&d->text, word->place,
-                           "fresnel is on or off, not '%s'",
+                           "'fresnel' must be on or off, not '%s'",
                            glint_word_quote(word, quote));
 }
 
@@ -160,15 +162,17 @@ static bool read_stone(struct glint_describer *d,
     glint_text_next_word(&d->text); /* translucent */
     file = glint_text_next_word(&d->text);
     if (!file.length)
-        return glint_text_fail(&d->text, file.place,
-                               "the stone's file is missing");
+        return glint_text_fail(
+            &d->text, file.place,
+            "the file of the translucent material is missing");
     if (!glint_clauses_read(&d->text, "material", clause) ||
         (fresnel.length && !read_fresnel(d, &fresnel, m)) ||
         !read_file(d, &file, m))
         return false;
     m->is_metal = coat.length > 0;
     if (m->is_metal && !glint_word_is(&coat, "ward"))
-        return glint_text_fail(&d->text, coat.place, "a coat is ward, not '%s'",
+        return glint_text_fail(&d->text, coat.place,
+                               "'coat' must be ward, not '%s'",
                                glint_word_quote(&coat, quote));
     for (int i = 1; i <= 3; i++)
         if (clause[i].place.line && !m->is_metal)
@@ -241,8 +245,9 @@ static void check_stretch(struct glint_describer *d,
     }
     if (stretched > STRETCHED_AREA * area && !d->scene->warning[0])
         snprintf(d->scene->warning, sizeof d->scene->warning,
-                 "mesh %s: its texels are stretched up to %.3g times, over 1.5 "
-                 "on %.0f %% of the stone: light spreads as much farther there",
+                 "mesh %s: its texels are stretched up to %.3g times, and "
+                 "above 1.5 times on %.0f %% of its area: light spreads "
+                 "farther there by this factor",
                  o->name, worst, 100 * stretched / area);
 }
 
@@ -257,22 +262,22 @@ static bool check_triangle(struct glint_describer *d,
     if (!t->has_uv)
         return glint_text_fail(&d->text, place,
                                "material %s is translucent, but a face has no "
-                               "places on its map (uv, vt)",
+                               "texture coordinates (uv, vt)",
                                m->name);
     if (*first >= 0 && *first != t->material)
         return glint_text_fail(&d->text, place,
                                "materials %s and %s are both translucent: a "
-                               "mesh has one map",
+                               "mesh can have one translucent material",
                                d->scene->material[*first].name, m->name);
     *first = t->material;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 2; i++)
             if (t->uv[k][i] < -1e-6 || t->uv[k][i] > 1 + 1e-6)
-                return glint_text_fail(&d->text, place,
-                                       "u and v of what is translucent are 0 "
-                                       "to 1, not %.4g: each place has a texel "
-                                       "of its own",
-                                       t->uv[k][i]);
+                return glint_text_fail(
+                    &d->text, place,
+                    "u and v of a translucent mesh must be 0 to 1, not %.4g: "
+                    "its map does not repeat",
+                    t->uv[k][i]);
     return true;
 }
 
@@ -285,8 +290,8 @@ bool glint_describe_skin(struct glint_describer *d,
 
     if (o->kind == GLINT_DESCRIBED_PLANE && s->material[o->material].is_stone)
         return glint_text_fail(&d->text, place,
-                               "a plane has no end, and so no map: what is "
-                               "translucent is a sphere or has uv");
+                               "an infinite plane cannot be translucent: use a "
+                               "sphere or a mesh with uv");
     for (int i = 0; i < o->n_triangles; i++) {
         const struct glint_described_triangle *t =
             &s->triangle[o->first_triangle + i];
@@ -318,10 +323,11 @@ static void check_sun(struct glint_describer *d,
     const double white = most * sine * sine;
 
     if (white > 0 && white < 1. / 256 && !d->scene->warning[0])
-        snprintf(d->scene->warning, sizeof d->scene->warning,
-                 "light sun: its colour is the radiance of a disc, and of this "
-                 "radius %.3g lights a white surface to %.2g; %.3g would to 1",
-                 most, white, most / white);
+        snprintf(
+            d->scene->warning, sizeof d->scene->warning,
+            "light sun: colour is the radiance of its disc; with this radius, "
+            "%.3g lights a white surface to %.2g, and %.3g would light it to 1",
+            most, white, most / white);
 }
 
 static bool read_sun(struct glint_describer *d,
@@ -352,7 +358,8 @@ static bool ride(struct glint_describer *d,
 
     glint_describe_file(word, name);
     if (d->rides.line && strcmp(d->rides_on, name) != 0)
-        return glint_text_fail(&d->text, place, "there is one motion at most");
+        return glint_text_fail(&d->text, place,
+                               "a scene has at most one motion");
     d->rides = place;
     snprintf(d->rides_on, sizeof d->rides_on, "%.31s", name);
     d->scene->motion.riders |= 1u << (light - d->scene->light);
@@ -398,12 +405,12 @@ bool glint_describe_light(struct glint_describer *d)
         return glint_text_fail(&d->text, word.place, "more than %d lights",
                                GLINT_DESCRIPTION_TEXT_LIGHTS);
     if (!glint_word_is(&word, "sun") && !glint_word_is(&word, "lamp"))
-        return word.length
-                   ? glint_text_fail(&d->text, word.place,
-                                     "a light is a sun or a lamp, not '%s'",
-                                     glint_word_quote(&word, quote))
-                   : glint_text_fail(&d->text, word.place,
-                                     "a light is a sun or a lamp");
+        return word.length ? glint_text_fail(
+                                 &d->text, word.place,
+                                 "a light must be a sun or a lamp, not '%s'",
+                                 glint_word_quote(&word, quote))
+                           : glint_text_fail(&d->text, word.place,
+                                             "a light must be a sun or a lamp");
     good =
         glint_word_is(&word, "sun") ? read_sun(d, light) : read_lamp(d, light);
     name_light(s, light, light->kind == GLINT_DESCRIBED_SUN ? "sun" : "lamp");
@@ -475,14 +482,15 @@ static bool check_shares(struct glint_describer *d,
     const double sum = m->ambient + m->diffuse + m->specular;
 
     if (sum > 1 + SLACK)
-        return glint_text_fail(&d->text, clause[0].place,
-                               "weights of phong sum to %.6g; more than 1 "
-                               "would make light",
-                               sum);
+        return glint_text_fail(
+            &d->text, clause[0].place,
+            "the weights of phong sum to %.6g; above 1 the surface would "
+            "reflect more light than it receives",
+            sum);
     if (m->reflect + m->pass > 1 + SLACK)
         return glint_text_fail(&d->text, clause[4].place,
-                               "'reflect' and 'pass' sum to %.6g; more than 1 "
-                               "would make light",
+                               "'reflect' and 'pass' sum to %.6g; above 1 the "
+                               "surface would emit more light than it receives",
                                m->reflect + m->pass);
     if (clause[6].place.line && !(m->pass > 0))
         return glint_text_fail(&d->text, clause[6].place,
@@ -490,8 +498,8 @@ static bool check_shares(struct glint_describer *d,
     if (sum < 1 - SLACK && !(m->reflect > 0 || m->pass > 0) &&
         !d->scene->warning[0])
         snprintf(d->scene->warning, sizeof d->scene->warning,
-                 "material %s: weights of phong sum to %.6g, what is left to 1 "
-                 "is dark",
+                 "material %s: the weights of phong sum to %.6g; the surface "
+                 "absorbs the rest",
                  m->name, sum);
     return true;
 }

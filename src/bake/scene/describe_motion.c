@@ -147,7 +147,8 @@ static bool open_motion(struct glint_describer *d,
 
     glint_describe_file(file, name);
     if (!d->files->motion)
-        return glint_text_fail(&d->text, file->place, "no motion is read here");
+        return glint_text_fail(&d->text, file->place,
+                               "motions cannot be read here");
     status =
         d->files->motion(d->files->ctx, name, &m->data, &m->bytes, d->error);
     if (status != GLINT_OK)
@@ -169,13 +170,13 @@ static bool check_detect(struct glint_describer *d,
 {
     d->scene->motion.both = both->place.line > 0;
     if (detect->place.line && (angle->place.line > 0) == (both->place.line > 0))
-        return glint_text_fail(&d->text, detect->place,
-                               "detect takes 'angle', or 'both' and a least "
-                               "intensity");
+        return glint_text_fail(
+            &d->text, detect->place,
+            "'detect' needs 'angle', or 'both' and a minimum intensity");
     if (!detect->place.line && (angle->place.line || both->place.line))
         return glint_text_fail(&d->text,
                                angle->place.line ? angle->place : both->place,
-                               "'angle' and 'both' belong to 'detect'");
+                               "'angle' and 'both' may only follow 'detect'");
     return true;
 }
 
@@ -207,12 +208,11 @@ bool glint_describe_motion(struct glint_describer *d)
         return false;
     if (clause[3].place.line && !clause[2].place.line)
         return glint_text_fail(&d->text, clause[3].place,
-                               "'shells' are about 'foods', which have no "
-                               "radius");
+                               "'shells' needs 'foods' with a radius");
     if (m->box > 0 && !clause[4].place.line)
         return glint_text_fail(&d->text, clause[5].place,
-                               "'box' is a factor of the width of 'lines', "
-                               "which is missing");
+                               "'box' is a factor on the width of 'lines', but "
+                               "'lines' is missing");
     m->box *= m->lines;
     return open_motion(d, &file, clause[0].place.line > 0);
 }
@@ -228,13 +228,13 @@ bool glint_describe_sensors(struct glint_describer *d)
         glint_motion_open(&motion, m->data, m->bytes, &reason) == GLINT_OK)
         n = (int)motion.header.n_sensors;
     if (d->sensor.line && m->camera >= n)
-        return glint_text_fail(&d->text, d->sensor,
-                               m->data ? "the motion has %d sensors"
-                                       : "there is no motion, and no sensor",
-                               n);
+        return glint_text_fail(
+            &d->text, d->sensor,
+            m->data ? "the motion has %d sensors"
+                    : "the scene has no motion, and so no sensors",
+            n);
     if (d->rides.line && strcmp(d->rides_on, m->name) != 0)
         return glint_text_fail(&d->text, d->rides,
-                               "there is no motion '%s' to ride on",
-                               d->rides_on);
+                               "the motion '%s' is not defined", d->rides_on);
     return true;
 }

@@ -15,7 +15,7 @@
 #define LEAST GLINT_DESCRIPTION_LEAST
 /* Max repetitions of a texture over a triangle. */
 #define REPEATS 250.0
-#define NO_AXIS "the axis of a turn must not be 0 0 0"
+#define NO_AXIS "the axis of a rotation must not be 0 0 0"
 
 struct glint_described_object *
 glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
@@ -30,7 +30,7 @@ glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
         return NULL;
     }
     if (strcmp(name, "camera") == 0) {
-        glint_text_fail(&d->text, place, "'camera' is the camera's name");
+        glint_text_fail(&d->text, place, "the name 'camera' is reserved");
         return NULL;
     }
     for (int i = 0; i < s->n_objects; i++)
@@ -160,10 +160,9 @@ bool glint_describe_triangle(struct glint_describer *d)
         return glint_text_fail(&d->text, clause[1].place,
                                "a material with a texture needs 'uv'");
     if (repeats(&t))
-        return glint_text_fail(&d->text, clause[0].place,
-                               "a texture repeats at most %g times over a "
-                               "triangle",
-                               REPEATS);
+        return glint_text_fail(
+            &d->text, clause[0].place,
+            "a texture may repeat at most %g times over a triangle", REPEATS);
     to = more(d, 1, clause[1].place);
     if (!to)
         return false;
@@ -192,7 +191,7 @@ bool glint_describe_plane(struct glint_describer *d)
     if (!clause[2].place.line == !clause[3].place.line)
         return glint_text_fail(
             &d->text, clause[2].place.line ? clause[2].place : clause[0].place,
-            "a plane has a material or is a catcher%s",
+            "a plane needs a material or the word 'catcher'%s",
             clause[2].place.line ? ", not both" : "");
     return !clause[2].place.line ||
            (glint_describe_find(d, &material, &o->material) &&
@@ -217,9 +216,8 @@ static bool find_materials(struct glint_describer *d,
         if (of[i] < 0)
             return glint_text_fail(
                 &d->text, place,
-                "%s uses '%s', which is not a material above "
-                "this line; 'material' of the mesh would "
-                "stand in",
+                "%s uses '%s', which is not a material above this line; add "
+                "'material' to the mesh to replace it",
                 file, mesh->name[i]);
     }
     return true;
@@ -250,13 +248,14 @@ static bool put_mesh(struct glint_describer *d,
         if (s->material[t->material].texture >= 0 && !t->has_uv)
             return glint_text_fail(&d->text, place,
                                    "material %s has a texture, but faces of "
-                                   "the mesh have no places on it (vt)",
+                                   "the mesh have no texture coordinates (vt)",
                                    s->material[t->material].name);
         if (repeats(t))
-            return glint_text_fail(&d->text, place,
-                                   "a texture repeats at most %g times over a "
-                                   "triangle, and more on the mesh",
-                                   REPEATS);
+            return glint_text_fail(
+                &d->text, place,
+                "a texture may repeat at most %g times over a triangle, but "
+                "repeats more often on this mesh",
+                REPEATS);
         for (int k = 0; k < 3; k++) {
             if (t->has_normals && !glint_describe_unit(t->normal[k]))
                 t->has_normals = false;
@@ -264,8 +263,8 @@ static bool put_mesh(struct glint_describer *d,
                 t->place[k][axis] *= scale;
                 if (!(fabs(t->place[k][axis]) <= REACH))
                     return glint_text_fail(&d->text, place,
-                                           "the mesh reaches %.4g from its "
-                                           "origin; at most %g",
+                                           "the mesh extends %.4g from its "
+                                           "origin; the limit is %g",
                                            fabs(t->place[k][axis]), REACH);
             }
         }

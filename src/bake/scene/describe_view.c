@@ -101,7 +101,7 @@ bool glint_describe_flare(struct glint_describer *d)
                                : GLINT_DESCRIBED_FLARE_LIGHTS;
     return n == s->n_highlights ||
            glint_text_fail(&d->text, clause[0].place,
-                           "highlights are a whole number");
+                           "'highlights' must be a whole number");
 }
 
 /* Reads the first words of a camera: its field. Returns false on failure, and
@@ -213,14 +213,15 @@ bool glint_describe_axes(struct glint_describer *d)
             c->forward[i] = d->toward[i] - c->at[i];
     }
     if (!glint_describe_unit(c->forward))
-        return glint_text_fail(&d->text, d->camera,
-                               "the camera stands where it looks");
+        return glint_text_fail(
+            &d->text, d->camera,
+            "the camera's position equals the point that it looks at");
     if (!glint_describe_unit(d->up))
         return glint_text_fail(&d->text, d->camera, "'up' has no direction");
     cross(c->forward, d->up, c->right);
     if (!(dot(c->right, c->right) > LEAST_RIGHT * LEAST_RIGHT))
         return glint_text_fail(&d->text, d->camera,
-                               "the camera looks along 'up'");
+                               "the camera's direction is parallel to 'up'");
     glint_describe_unit(c->right);
     cross(c->right, c->forward, c->up);
     glint_describe_unit(c->up);

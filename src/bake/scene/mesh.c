@@ -108,14 +108,16 @@ static bool read_index(struct reader *r, const struct glint_word *word, int *at,
     if (i == start || (i < word->length && word->start[i] != '/')) {
         char quote[GLINT_QUOTE_BYTES];
 
-        return glint_text_fail(&r->text, word->place,
-                               "corner '%s' is none of V, V/T, V//N and V/T/N",
-                               glint_word_quote(word, quote));
+        return glint_text_fail(
+            &r->text, word->place,
+            "'%s' is not a corner; expected V, V/T, V//N or V/T/N",
+            glint_word_quote(word, quote));
     }
     value = negative ? list->n - value : value - 1;
     if (value < 0 || value >= list->n)
         return glint_text_fail(
-            &r->text, word->place, "there is no %s %.*s, only %d so far", what,
+            &r->text, word->place,
+            "%s %.*s does not exist; %d are defined above", what,
             i - start + negative < 12 ? i - start + negative : 12,
             word->start + start - negative, list->n);
     *index = (int)value;
@@ -204,9 +206,9 @@ static bool read_face(struct reader *r, struct glint_text_place place)
             first = now;
         last = now;
     }
-    return n >= 3 ||
-           glint_text_fail(&r->text, place,
-                           "a face has 3 corners or more, this %d", n);
+    return n >= 3 || glint_text_fail(
+                         &r->text, place,
+                         "a face needs 3 or more corners; this face has %d", n);
 }
 
 static bool read_name(struct reader *r)

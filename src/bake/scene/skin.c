@@ -225,8 +225,8 @@ static bool check_painted(const struct painter *p, const char *name,
                  name);
     else if (p->shared > MOST_SHARED * p->painted)
         snprintf(error->text, sizeof error->text,
-                 "mesh %s is translucent, but %.3g %% of its texels have two "
-                 "places: its u and v must not lie on each other",
+                 "mesh %s is translucent, but %.3g %% of its texels belong to "
+                 "two places of the mesh: texture coordinates must not overlap",
                  name, 100. * p->shared / p->painted);
     return error->text[0] == '\0';
 }

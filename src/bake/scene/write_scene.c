@@ -252,10 +252,10 @@ static bool set_object(const struct writer *w,
         o->kind = GLINT_OBJECT_SPHERE;
         o->radius = (int32_t)lrint(from->radius * w->steps.scale);
         if (o->radius < 1) {
-            snprintf(w->error->text, sizeof w->error->text,
-                     "sphere %s is too small, %g, beside how far the scene "
-                     "reaches, %g",
-                     from->name, from->radius, w->report->reach);
+            snprintf(
+                w->error->text, sizeof w->error->text,
+                "sphere %s, radius %g, is too small for a scene of extent %g",
+                from->name, from->radius, w->report->reach);
             return false;
         }
         break;

@@ -169,7 +169,7 @@ static bool check_optics(const struct glint_prescription *lens,
 
     glint_optics_of(lens, &optics);
     if (!(fabs(optics.focal_mm) <= GLINT_MAX_FOCAL_MM))
-        return glint_text_fail(text, end, "the lens has no power");
+        return glint_text_fail(text, end, "the lens has no refractive power");
     if (!(optics.focal_mm > 0.0 && optics.back_focal_mm > 0.0))
         return glint_text_fail(text, end,
                                "the lens has no focus behind it: focal length "
@@ -183,9 +183,9 @@ static bool check_optics(const struct glint_prescription *lens,
                                optics.focal_mm / optics.squeeze,
                                optics.focal_mm);
     if (!(optics.stop_radius_mm >= MIN_STOP_MM))
-        return glint_text_fail(text, places->stop,
-                               "the stop lies in a focus of the surfaces "
-                               "before it");
+        return glint_text_fail(
+            text, places->stop,
+            "the stop lies in the focal plane of the surfaces before it");
     if (!(optics.stop_radius_mm <= lens->stop_semi_mm * (1.0 + STOP_SLACK)))
         return glint_text_fail(text, places->f_number,
                                "f/%g needs a stop of %.4g mm radius, but its "

@@ -103,11 +103,11 @@ static bool read_kind(const struct glint_text *text,
             return true;
         }
     if (word->length > 0 && word->start[0] >= 'a' && word->start[0] <= 'z')
-        return glint_text_fail(text, word->place,
-                               "no coating is called '%s'; there are none, %s, "
-                               "%s, %s and wavelengths",
-                               glint_word_quote(word, quote), named[0].name,
-                               named[1].name, named[2].name);
+        return glint_text_fail(
+            text, word->place,
+            "'%s' is not a coating; known are none, %s, %s, %s and wavelengths",
+            glint_word_quote(word, quote), named[0].name, named[1].name,
+            named[2].name);
     if (!read_value(text, *word, &nm_range, &nm))
         return false;
     glint_coating_single(coating, nm);
@@ -191,10 +191,10 @@ static bool read_word(struct glint_text *text, struct glint_word word,
         return false;
     if (parts.rest.length < 0)
         return glint_text_fail(text, parts.rest.place,
-                               "nothing follows the slash");
+                               "a value is missing after the slash");
     return !parts.rest.length ||
            glint_text_fail(text, parts.rest.place,
-                           "'%s' is more than the coating takes",
+                           "'%s' is one value too many for the coating",
                            glint_word_quote(&parts.rest, quote));
 }
 
@@ -230,7 +230,8 @@ glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
 
     if (length >= (int)sizeof words) {
         snprintf(error->text, sizeof error->text,
-                 "coatings take at most %d characters", GLINT_LINE_BYTES);
+                 "the text of a coating has at most %d characters",
+                 GLINT_LINE_BYTES);
         return GLINT_E_ARGUMENT;
     }
     for (char *c = words; *c; c++)

@@ -123,7 +123,8 @@ enum glint_status glint_prescription_focus(struct glint_prescription *lens,
 
     if (!(metres > 0.0 && metres <= 1e6)) {
         snprintf(error->text, sizeof error->text,
-                 "a focus is a distance of up to 1e6 metres, not %g", metres);
+                 "focus must be a distance of up to 1e6 metres, not %g",
+                 metres);
         return GLINT_E_ARGUMENT;
     }
     if (!solve(lens, metres, &d)) {

@@ -35,8 +35,9 @@ static bool read_radius(struct glint_text *text, double *radius_mm)
     if (!glint_text_number_of(text, &word, radius_range.name, radius_mm))
         return false;
     if (*radius_mm == 0.0)
-        return glint_text_fail(text, word.place,
-                               "radius must not be 0; a plane is flat");
+        return glint_text_fail(
+            text, word.place,
+            "radius must not be 0; a plane has the radius 'flat'");
     return glint_text_in_range(text, word.place, &radius_range,
                                fabs(*radius_mm));
 }
@@ -96,10 +97,10 @@ static bool read_word(struct glint_text *text, struct glint_shape *shape,
                    ? is_twice(text, word)
                    : glint_text_value(text, &term_range, &shape->term[term],
                                       NULL);
-    return glint_text_fail(text, word->place,
-                           "'%s' is none of conic, A4, A6 .. A20, cylinder "
-                           "and toric",
-                           glint_word_quote(word, quote));
+    return glint_text_fail(
+        text, word->place,
+        "'%s' is unknown; expected conic, A4, A6 .. A20, cylinder or toric",
+        glint_word_quote(word, quote));
 }
 
 /* Reads the rest of a line "shape [conic K] [A4 V] .. [A20 V] [cylinder AXIS |
@@ -187,8 +188,8 @@ static bool read(struct glint_text *text, const struct glint_text_range *range,
     if (*n > 1 && zoom->n_positions && *n != zoom->n_positions)
         return glint_text_fail(
             text, word.place,
-            "%s has %d positions, but what stands above has %d", range->name,
-            *n, zoom->n_positions);
+            "%s has %d positions, but the lines above have %d", range->name, *n,
+            zoom->n_positions);
     for (int k = 0; k < *n; k++) {
         const struct glint_word one = cut_before_slash(&word);
 
@@ -233,8 +234,9 @@ static bool read_gap(struct glint_text *text,
     if (n == 1)
         return true;
     if (k == GLINT_MAX_MOVES)
-        return glint_text_fail(text, *place, "more than %d gaps that change",
-                               GLINT_MAX_MOVES);
+        return glint_text_fail(
+            text, *place, "more than %d thicknesses that change with the zoom",
+            GLINT_MAX_MOVES);
     zoom->move[k] = element;
     memcpy(zoom->gap_mm[k], column, sizeof column);
     zoom->n_moves++;
@@ -404,8 +406,9 @@ static bool read_name(struct parser *p)
         const char c = word.start[i];
 
         if (!is_lower(c) && !is_digit(c) && (c != '-' || i == 0))
-            return glint_text_fail(&p->text, word.place,
-                                   "name may have a-z, 0-9 and, inside, -");
+            return glint_text_fail(
+                &p->text, word.place,
+                "a name may have a-z, 0-9 and, not at its ends, -");
     }
     memcpy(p->lens.name, word.start, (size_t)word.length);
     return true;
@@ -637,7 +640,7 @@ static bool read_shape(struct parser *p)
 {
     if (!p->is_surface)
         return glint_text_fail(&p->text, p->word[SHAPE],
-                               "a shape stands below its surface");
+                               "a shape must follow the line of its surface");
     return read_shape_words(&p->text,
                             &p->lens.surface[p->lens.n_surfaces - 1].shape);
 }
@@ -744,7 +747,8 @@ static bool read_line(struct parser *p)
         return false;
     word = glint_text_next_word(&p->text);
     return !word.length ||
-           glint_text_fail(&p->text, word.place, "'%s' is more than %s takes",
+           glint_text_fail(&p->text, word.place,
+                           "'%s' is one value too many for %s",
                            glint_word_quote(&word, quote), fields[f].word);
 }
 

@@ -174,8 +174,7 @@ bool glint_text_may_follow(struct glint_text *text, const char *only,
 
     *word = glint_text_next_word(text);
     return !word->length || glint_word_is(word, only) ||
-           glint_text_fail(text, word->place,
-                           "'%s' stands where only %s may follow",
+           glint_text_fail(text, word->place, "unexpected '%s'; expected %s",
                            glint_word_quote(word, quote), only);
 }
 

@@ -107,8 +107,8 @@ enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
     if (!lens->zoom.n_positions)
         return no_zoom(lens, error);
     if (!(along >= 0.0 && along <= 1.0)) {
-        snprintf(error->text, sizeof error->text,
-                 "a zoom goes from 0 to 1, not to %g", along);
+        snprintf(error->text, sizeof error->text, "zoom must be 0 to 1, not %g",
+                 along);
         return GLINT_E_ARGUMENT;
     }
     move(&moved, along);

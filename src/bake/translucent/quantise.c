@@ -259,7 +259,7 @@ static bool write_taps(struct writer *w)
     for (int c = 0; good && c < CHANNELS; c++)
         if (!set_taps(w, c, tap + (size_t)c * n * k, shift + (size_t)c * n)) {
             snprintf(w->error->text, sizeof w->error->text,
-                     "the stone would make more light than falls on it");
+                     "the material would emit more light than it receives");
             good = false;
         }
     if (good) {
@@ -330,7 +330,8 @@ static bool set_header(struct writer *w, const char *name, uint64_t key)
     if (1 << log2 != w->fit->side || log2 < GLINT_TRANSLUCENT_LEAST_LOG2 ||
         log2 > GLINT_TRANSLUCENT_MOST_LOG2) {
         snprintf(w->error->text, sizeof w->error->text,
-                 "a baked stone has 32, 64, 128 or 256 texels each way, not %d",
+                 "a baked translucent material must have 32, 64, 128 or 256 "
+                 "texels per side, not %d",
                  w->fit->side);
         return false;
     }

@@ -155,8 +155,8 @@ enum glint_status glint_scatter_read(const struct glint_float_image *picture,
     }
     if (picture->width != side * kernel || picture->height != side * kernel) {
         snprintf(error->text, sizeof error->text,
-                 "rows are a picture of %d x %d, not %d x %d: %d x %d tiles of "
-                 "%d x %d",
+                 "rows must be a picture of %d x %d, not %d x %d: %d x %d "
+                 "tiles of %d x %d",
                  side * kernel, side * kernel, picture->width, picture->height,
                  side, side, kernel, kernel);
         return GLINT_E_UNSUPPORTED;

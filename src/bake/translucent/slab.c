@@ -384,19 +384,19 @@ void glint_stone_defaults(struct glint_stone *stone)
 static const char *find_invalid(const struct glint_stone *s)
 {
     if (!(s->side >= 1 && s->side <= GLINT_SCATTER_MAX_SIDE))
-        return "size is 1 to 256 texels";
+        return "size must be 1 to 256 texels";
     if (!(s->kernel >= 1 && s->kernel <= GLINT_SCATTER_MAX_KERNEL &&
           s->kernel % 2))
-        return "kernels are odd, 1 to 63 texels";
+        return "kernel must be odd, 1 to 63 texels";
     if (!(s->texel_mm >= 0.01 && s->texel_mm <= 100))
-        return "texels are 0.01 to 100 mm";
+        return "texel must be 0.01 to 100 mm";
     if (!(s->slab_mm >= 0.1 && s->slab_mm <= 1000))
-        return "slabs are 0.1 to 1000 mm";
+        return "thickness of the slab must be 0.1 to 1000 mm";
     if (!(s->index >= 1 && s->index <= 3))
         return "index is 1 to 3";
     if (s->pattern == GLINT_STONE_CHESS &&
         !(s->fields >= 1 && s->fields <= s->side))
-        return "chess has 1 field to one a texel, each way";
+        return "chess needs 1 or more fields per side, at most one per texel";
     if (s->pattern == GLINT_STONE_MASK && !s->mask)
         return "a mask is missing";
     for (int i = 0; i < 2; i++)
@@ -405,9 +405,9 @@ static const char *find_invalid(const struct glint_stone *s)
             const double absorb = s->material[i].absorb[c];
 
             if (!(scatter >= 1e-3 && scatter <= 1e3))
-                return "scatter is 0.001 to 1000 a mm";
+                return "scatter must be 0.001 to 1000 per mm";
             if (!(absorb >= 0 && absorb <= 1e3))
-                return "absorb is 0 to 1000 a mm";
+                return "absorb must be 0 to 1000 per mm";
         }
     for (int i = 0; s->pattern == GLINT_STONE_MASK && i < s->side * s->side;
          i++)

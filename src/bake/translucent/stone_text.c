@@ -38,7 +38,7 @@ static bool read_integer(struct reader *r, const char *what, int min, int max,
         return false;
     *value = (int)x;
     return (double)*value == x ||
-           glint_text_fail(&r->text, place, "%s takes a whole number", what);
+           glint_text_fail(&r->text, place, "%s needs a whole number", what);
 }
 
 static bool read_number(struct reader *r, const char *what, double min,
@@ -56,7 +56,7 @@ static bool read_size(struct reader *r)
     return read_integer(r, "size", 32, 256, side) &&
            ((*side & (*side - 1)) == 0 ||
             glint_text_fail(&r->text, place,
-                            "size takes 32, 64, 128 or 256, not %d", *side));
+                            "size must be 32, 64, 128 or 256, not %d", *side));
 }
 
 static bool read_kernel(struct reader *r)
@@ -68,7 +68,7 @@ static bool read_kernel(struct reader *r)
     return read_integer(r, "kernel", 1, GLINT_SCATTER_MAX_KERNEL, kernel) &&
            (*kernel % 2 == 1 ||
             glint_text_fail(&r->text, place,
-                            "kernel takes an odd number, not %d", *kernel));
+                            "kernel must be an odd number, not %d", *kernel));
 }
 
 /* Sets INDEX to the translucent medium that WORD names. */
@@ -77,7 +77,7 @@ static bool find_stone(struct reader *r, const struct glint_word *word,
 {
     if (!word->length)
         return glint_text_fail(&r->text, word->place,
-                               "the name of a stone is missing");
+                               "the name of a 'stone' is missing");
     return glint_name_find(&r->text, word, "stone", r->name[0],
                            sizeof r->name[0], r->n_stones, index);
 }
@@ -132,7 +132,7 @@ static bool read_pair(struct reader *r)
             return false;
         if (i && index[0] == index[1])
             return glint_text_fail(&r->text, word.place,
-                                   "a pattern takes two different stones");
+                                   "a pattern needs two different stones");
     }
     r->is_turned = index[0] == 1;
     return true;
@@ -163,12 +163,12 @@ static bool read_pattern(struct reader *r)
         s->pattern = GLINT_STONE_MASK;
         return read_file(r, "mask", &file, r->to->mask) && read_pair(r);
     }
-    return glint_text_fail(&r->text, word.place,
-                           "a pattern is chess N A B, veins SEED A B or image "
-                           "MASK A B%s%s%s",
-                           word.length ? ", not '" : "",
-                           word.length ? glint_word_quote(&word, quote) : "",
-                           word.length ? "'" : "");
+    return glint_text_fail(
+        &r->text, word.place,
+        "a pattern must be chess N A B, veins SEED A B or image MASK A B%s%s%s",
+        word.length ? ", not '" : "",
+        word.length ? glint_word_quote(&word, quote) : "",
+        word.length ? "'" : "");
 }
 
 static bool read_model(struct reader *r)
@@ -227,11 +227,11 @@ static bool check_lines(struct reader *r)
 
     if (!t->rows[0] && !r->n_stones)
         return glint_text_fail(&r->text, glint_text_end(&r->text),
-                               "there is no stone: stone NAME scatter R G B "
-                               "absorb R G B, or data ROWS.pfm");
+                               "a line 'stone NAME scatter R G B absorb R G B' "
+                               "or 'data ROWS.pfm' is missing");
     if (t->rows[0] && (r->n_stones || r->pattern.line))
         return glint_text_fail(&r->text, glint_text_end(&r->text),
-                               "measured rows have no stone and no pattern");
+                               "'data' excludes 'stone' and 'pattern'");
     if (r->n_stones == 2 && !r->pattern.line)
         return glint_text_fail(&r->text, glint_text_end(&r->text),
                                "two stones need a pattern: chess N A B, veins "
@@ -239,7 +239,7 @@ static bool check_lines(struct reader *r)
     if (t->stone.pattern == GLINT_STONE_CHESS &&
         t->stone.fields > t->stone.side)
         return glint_text_fail(&r->text, r->pattern,
-                               "%d fields each way are more than %d texels",
+                               "%d fields per side are more than %d texels",
                                t->stone.fields, t->stone.side);
     if (t->fit.model == GLINT_SCATTER_ALBEDO)
         t->fit.kernels = 1;

@@ -48,9 +48,9 @@ static const struct glint_front_method method;
 static const char *check(const struct glint_front *f)
 {
     if (!(f->dust >= 0 && f->dust <= 0.5))
-        return "dust covers 0 to 0.5 of the front element";
+        return "dust must cover 0 to 0.5 of the front element";
     if (f->mask && (f->mask_width < 2 || f->mask_height < 2))
-        return "a mask has 2 pixels a side at least";
+        return "a mask must have at least 2 pixels per side";
     return NULL;
 }
 

@@ -211,13 +211,13 @@ static void set_table(struct glint_dirt *d)
 static const char *check(const struct glint_iris *i)
 {
     if (!(i->roundness >= 0 && i->roundness <= 1))
-        return "the roundness of blades is 0 to 1";
+        return "the roundness of blades must be 0 to 1";
     if (!(i->softness >= 0 && i->softness <= 1))
-        return "the softness of the stop's edge is 0 to 1 stop radii";
+        return "the softness of the stop's edge must be 0 to 1 stop radii";
     if (!(i->dust >= 0 && i->dust <= 0.5))
-        return "dust covers 0 to 0.5 of the stop";
+        return "dust must cover 0 to 0.5 of the stop";
     if (i->mask && (i->mask_width < 2 || i->mask_height < 2))
-        return "a mask has 2 pixels a side at least";
+        return "a mask must have at least 2 pixels per side";
     return NULL;
 }
 

@@ -50,7 +50,7 @@ enum glint_status glint_setup_check(int n_blades, double rotation_deg,
 {
     if (n_blades != 0 && (n_blades < 3 || n_blades > GLINT_MAX_BLADES))
         snprintf(error->text, sizeof error->text,
-                 "a stop has 3 to %d blades, not %d", GLINT_MAX_BLADES,
+                 "a stop must have 3 to %d blades, not %d", GLINT_MAX_BLADES,
                  n_blades);
     else if (!isfinite(rotation_deg))
         snprintf(error->text, sizeof error->text,
@@ -96,7 +96,7 @@ enum glint_status glint_setup_units(struct glint_setup *s, const char *name,
     for (int i = 0; i < n; i++) {
         if (!(s->direct_flux[i] > 0)) {
             snprintf(error->text, sizeof error->text,
-                     "%s: no light of %g nm gets through to the sensor", name,
+                     "%s: no light of %g nm reaches the sensor", name,
                      s->wavelength_nm[i]);
             return GLINT_E_LENS;
         }
@@ -183,7 +183,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
 
     if (!(by <= 1 && by >= 0x1p-10)) {
         snprintf(error->text, sizeof error->text,
-                 "%s: the model was baked for f/%g and serves f/%g to f/%g, "
+                 "%s: the model was baked for f/%g and can draw f/%g to f/%g, "
                  "not f/%g",
                  h->name, widest, widest, 1024 * widest, f_number);
         return GLINT_E_ARGUMENT;

@@ -97,10 +97,10 @@ static const char *check_counts(const struct glint_motion_header *h)
         h->n_foods > GLINT_MOTION_MAX_FOODS ||
         h->n_sensors > GLINT_MOTION_MAX_SENSORS || h->n_events < h->n_foods ||
         h->n_events > (uint64_t)h->n_frames * h->n_foods)
-        return "the motion has too many of a kind";
+        return "the motion has too many records of one type";
     if (h->intensities != 0 && h->intensities != h->n_foods &&
         h->intensities != h->n_foods * h->n_sensors)
-        return "intensities fit neither foods nor sensors";
+        return "the number of intensities differs from foods times sensors";
     if (h->unit_log2 < -30 || h->unit_log2 > 60 || h->size < 0 ||
         h->size >= GLINT_MOTION_SPAN || h->cos_half_q30 < -(1 << 30) ||
         h->cos_half_q30 > 1 << 30 || h->tan_half_q24 < 1 << 12 ||
@@ -298,7 +298,7 @@ static const char *take_sensors(struct glint_motion *m)
             return "the motion's sensors cannot be read";
         m->sensor[i] = *(const struct glint_motion_sensor *)record;
         if (!glint_scene_is_unit(m->sensor[i].axis_q30, 3))
-            return "a sensor's axis is no unit vector";
+            return "a sensor's axis is not a unit vector";
     }
     return NULL;
 }

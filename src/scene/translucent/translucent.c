@@ -134,7 +134,7 @@ static const char *find_tables(struct glint_translucent *t,
     if (!t->code || !t->tap || !t->shift || !t->transmit_q15)
         return outside;
     if (h->variant != GLINT_TRANSLUCENT_CLUSTERED)
-        return h->cluster_at ? "the stone has clusters that it does not use"
+        return h->cluster_at ? "the translucent material has unused clusters"
                              : NULL;
     t->cluster = glint_blob_section(b, h->cluster_at, texels / 4, 4);
     return t->cluster ? NULL : outside;

@@ -42,7 +42,7 @@ static const char *check_header(const struct glint_environment_header *h)
         h->side_log2 > GLINT_ENVIRONMENT_MOST_LOG2 ||
         h->n_levels != h->side_log2 + 1 ||
         h->n_lights > GLINT_ENVIRONMENT_MAX_LIGHTS)
-        return "the environment has too many of a kind";
+        return "the environment has too many records of one type";
     if (h->unit_log2 < -160 || h->unit_log2 > 100)
         return "the environment's unit is out of range";
     return NULL;
@@ -76,7 +76,7 @@ static void place_level(struct glint_environment *e, uint32_t k)
 static const char *check_light(const struct glint_environment_light *light)
 {
     if (!glint_scene_is_unit(light->toward_q30, 3))
-        return "a light's direction is no unit vector";
+        return "a light's direction is not a unit vector";
     if (light->radius_q30 < 0 || light->radius_q30 > 1 << 29)
         return "a light is too large";
     for (int c = 0; c < 3; c++)

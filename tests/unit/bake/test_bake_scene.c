@@ -386,5 +386,6 @@ TEST(extremes)
                           "sphere dot at 0 0 0 radius 1e-6 material m\n",
                           &error),
                      GLINT_E_LENS);
-    assert_non_null(strstr(error.text, "sphere dot is too small, 1e-06"));
+    assert_non_null(
+        strstr(error.text, "sphere dot, radius 1e-06, is too small"));
 }

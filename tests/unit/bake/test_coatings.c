@@ -88,7 +88,7 @@ TEST(mistakes)
          "x.lens:10:19: coating index must be 1.01 .. 4, not 5"},
         {"mixed-coating 450/\n", "x.lens:10:19: coating index is missing"},
         {"mixed-coating blue\n",
-         "x.lens:10:15: no coating is called 'blue'; there are none, v-coat, "
+         "x.lens:10:15: 'blue' is not a coating; known are none, v-coat, "
          "broadband-3, broadband-4 and wavelengths"},
         {"mixed-coating 450\nmixed-coating 500\n",
          "x.lens:11:1: a second mixed-coating; the first is on line 10"}};
@@ -124,11 +124,11 @@ TEST(refused)
 {
     static const char *const bad[][2] = {
         {"", "there is no coating"},
-        {"blue", "no coating is called 'blue'; there are none, v-coat, "
+        {"blue", "'blue' is not a coating; known are none, v-coat, "
                  "broadband-3, broadband-4 and wavelengths"},
-        {"v-coat/500/2", "'2' is more than the coating takes"},
-        {"none/2", "'2' is more than the coating takes"},
-        {"none/", "nothing follows the slash"},
+        {"v-coat/500/2", "'2' is one value too many for the coating"},
+        {"none/2", "'2' is one value too many for the coating"},
+        {"none/", "a value is missing after the slash"},
         {"v-coat/", "coating wavelength is missing"},
         {"500//2", "coating index is missing"},
         {"500/1.4:0", "coating thickness must be 0.01 .. 16, not 0"},
@@ -137,8 +137,8 @@ TEST(refused)
         {"450,99", "coating wavelength must be 100 .. 5000, not 99"},
         {"5001", "coating wavelength must be 100 .. 5000, not 5001"},
         {"450/1", "coating index must be 1.01 .. 4, not 1"},
-        {"nan", "no coating is called 'nan'; there are none, v-coat, "
-                "broadband-3, broadband-4 and wavelengths"}};
+        {"nan", "'nan' is not a coating; known are none, v-coat, broadband-3, "
+                "broadband-4 and wavelengths"}};
 
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct glint_coating coating[GLINT_MAX_COATINGS] = {{.nm = 1}};
@@ -163,7 +163,8 @@ TEST(too_many)
         strcat(text, i ? ",500" : "500");
     assert_int_equal(glint_coatings_parse(coating, &n, text, &error),
                      GLINT_E_ARGUMENT);
-    assert_string_equal(error.text, "coatings take at most 200 characters");
+    assert_string_equal(error.text,
+                        "the text of a coating has at most 200 characters");
 }
 
 /* Reads TEXT as one coating and compares its films, index and quarters. */

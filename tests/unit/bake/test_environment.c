@@ -572,7 +572,7 @@ TEST(text)
     assert_string_equal(source, "a night.exr");
     assert_true(o.side_log2 == 7 && o.turn_deg == -90 && o.scale == .5 &&
                 o.max_lights == 3 && o.light_deg == 2.5 && o.light_above == 20);
-    wrong("size 128\n", "n.environment:2:1: there is no picture: source FILE");
+    wrong("size 128\n", "n.environment:2:1: the line 'source FILE' is missing");
     wrong("source\n", "n.environment:1:7: the name of the picture is missing");
     wrong("source x\nsize 100\n",
           "2:6: size takes 16, 32, 64, 128, 256, 512 or "
@@ -580,7 +580,7 @@ TEST(text)
     wrong("source x\nturn 400\n", "turn");
     wrong("source x\nlights 17\n", "lights");
     wrong("source x\nlights 3 radios 2\n", "did you mean 'radius'?");
-    wrong("source x\nsize 64 64\n", "'64' is more than size takes");
+    wrong("source x\nsize 64 64\n", "'64' is one value too many for size");
     wrong("source x\nsource y\n",
           "2:1: a second source; the first is on line 1");
     wrong("sources x\n", "unknown word 'sources'; did you mean 'source'?");

@@ -246,10 +246,13 @@ static const struct {
     /* mistakes in names and words */
     {1, "", "x.lens:11:1: there is no name line"},
     {1, "name", "x.lens:1:5: name is missing"},
-    {1, "name Tiny", "x.lens:1:6: name may have a-z, 0-9 and, inside, -"},
-    {1, "name -a", "x.lens:1:6: name may have a-z, 0-9 and, inside, -"},
-    {1, "name ../a", "x.lens:1:6: name may have a-z, 0-9 and, inside, -"},
-    {1, "name a b", "x.lens:1:8: 'b' is more than name takes"},
+    {1, "name Tiny",
+     "x.lens:1:6: a name may have a-z, 0-9 and, not at its ends, -"},
+    {1, "name -a",
+     "x.lens:1:6: a name may have a-z, 0-9 and, not at its ends, -"},
+    {1, "name ../a",
+     "x.lens:1:6: a name may have a-z, 0-9 and, not at its ends, -"},
+    {1, "name a b", "x.lens:1:8: 'b' is one value too many for name"},
     {1,
      "name aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
      "x.lens:1:6: name is longer than 63 bytes"},
@@ -317,7 +320,7 @@ static const struct {
      "x.lens:6:16: medium is missing: air, ND VD or a "
      "glass"},
     {6, "surface 0 6 12 N-BK7",
-     "x.lens:6:9: radius must not be 0; a plane is flat"},
+     "x.lens:6:9: radius must not be 0; a plane has the radius 'flat'"},
     {6, "surface plane 6 12 N-BK7",
      "x.lens:6:9: radius 'plane' is not a number"},
     {6, "surface 1e-9 6 12 N-BK7",
@@ -336,7 +339,7 @@ static const struct {
      "x.lens:6:17: medium is the same on both "
      "sides"},
     {6, "surface 50 6 12 N-BK7 1.5",
-     "x.lens:6:23: '1.5' stands where only coating may follow"},
+     "x.lens:6:23: unexpected '1.5'; expected coating"},
     {6, "surface 50 6 12 N-BK7 coating",
      "x.lens:6:30: coating wavelength is missing"},
     {6, "surface 50 6 12 N-BK7 coating 50",
@@ -344,7 +347,7 @@ static const struct {
     {6, "surface 50 6 12 N-BK7 coating 550 1",
      "x.lens:6:35: coating index must be 1.01 .. 4, not 1"},
     {6, "surface 50 6 12 N-BK7 coating none 1.4",
-     "x.lens:6:36: '1.4' is more than surface takes"},
+     "x.lens:6:36: '1.4' is one value too many for surface"},
     {6, "surface 50 6 12 N-BK7 coating 550 1.38:0.5 2.1:17",
      "x.lens:6:48: coating thickness must be 0.01 .. 16, not 17"},
     {6, "surface 50 6 12 N-BK7 coating 550 1.38:",
@@ -354,12 +357,12 @@ static const struct {
     {6, "surface 50 6 12 N-BK7 coating 550 1.1 1.2 1.3 1.4 1.5 1.6 1.7 1.8 2",
      "x.lens:6:67: more than 8 films"},
     {6, "surface 50 6 12 N-BK7 coating v-coat 500 1.38",
-     "x.lens:6:42: '1.38' is more than surface takes"},
+     "x.lens:6:42: '1.38' is one value too many for surface"},
     {6, "surface 50 6 12 N-BK7 coating broadband-4 99",
      "x.lens:6:43: coating wavelength must be 100 .. 5000, not 99"},
     {6, "surface 50 6 12 N-BK7 coating v2",
-     "x.lens:6:31: no coating is called 'v2'; there are none, v-coat, "
-     "broadband-3, broadband-4 and wavelengths"},
+     "x.lens:6:31: 'v2' is not a coating; known are none, v-coat, broadband-3, "
+     "broadband-4 and wavelengths"},
     {7, "surface -50 3 12 1.7 30 coating v-coat\nsurface -50 2 12 air",
      "x.lens:7:25: a cemented surface has no coating"},
     {7, "surface -50 3 12 1.7 30 coating 550\nsurface -50 2 12 air",
@@ -372,8 +375,8 @@ static const struct {
     {8, "stop 5 8\nstop 5 8",
      "x.lens:9:1: a second stop; the first is on line 8"},
     {8, "stop 5", "x.lens:8:7: semi-diameter is missing"},
-    {8, "stop 5 8 circle 9", "x.lens:8:17: '9' is more than stop takes"},
-    {8, "stop 5 8 9", "x.lens:8:10: '9' stands where only circle may follow"},
+    {8, "stop 5 8 circle 9", "x.lens:8:17: '9' is one value too many for stop"},
+    {8, "stop 5 8 9", "x.lens:8:10: unexpected '9'; expected circle"},
     /* mistakes that only the lens as a whole shows */
     {6, "surface 50 2.3 12 N-BK7",
      "x.lens:6:12: overlaps the next element by 0.06066 mm at 10.8 mm from "
@@ -500,12 +503,12 @@ TEST(power)
 {
     expect_whole_lens_error("stop 1 20\nsurface flat 3 9 1.5 60\n"
                             "surface flat 9 9 air\n",
-                            "x.lens:7:1: the lens has no power");
+                            "x.lens:7:1: the lens has no refractive power");
     /* With R1 - R2 = d (n - 1) / n, which these decimals fulfil exactly, the
      * lens is afocal. */
     expect_whole_lens_error("stop 1 20\nsurface 40 60 9 1.5 60\n"
                             "surface 20 9 9 air\n",
-                            "x.lens:7:1: the lens has no power");
+                            "x.lens:7:1: the lens has no refractive power");
     expect_whole_lens_error("stop 1 20\nsurface -50 3 9 1.5 60\n"
                             "surface 50 9 9 air\n",
                             "x.lens:7:1: the lens has no focus behind it: "
@@ -517,8 +520,8 @@ TEST(power)
                             "stop 100 5\n"
                             "surface 50 3 9 1.5 60\nsurface -50 200 9 air\n"
                             "surface 50 3 9 1.5 60\nsurface -50 100 9 air\n",
-                            "x.lens:6:10: the stop lies in a focus of the "
-                            "surfaces before it");
+                            "x.lens:6:10: the stop lies in the focal plane of "
+                            "the surfaces before it");
 }
 
 /* The focal lengths that a table states may be 0.1 % off. */

@@ -396,11 +396,12 @@ TEST(turned_lens)
 TEST(mistakes)
 {
     static const char *const rows[][2] = {
-        {"shape conic 1", "t.lens:5:1: a shape stands below its surface"},
+        {"shape conic 1",
+         "t.lens:5:1: a shape must follow the line of its surface"},
         {"surface 20 9 9 1.5 60\nshape", "t.lens:6:6: shape is missing"},
         {"surface 20 9 9 1.5 60\nshape A5 1",
-         "t.lens:6:7: 'A5' is none of conic, A4, A6 .. A20, cylinder and "
-         "toric"},
+         "t.lens:6:7: 'A5' is unknown; expected conic, A4, A6 .. A20, cylinder "
+         "or toric"},
         {"surface 20 9 9 1.5 60\nshape conic -1\nshape conic -2",
          "t.lens:7:7: a second 'conic' of this surface"},
         {"surface 20 9 9 1.5 60\nshape A4", "t.lens:6:9: aspheric term is "

@@ -86,11 +86,11 @@ TEST(order)
 static const struct {
     const char *text, *error;
 } wrong[] = {
-    {"", "x:1:1: there is no stone"},
-    {"size 96\n", "x:1:6: size takes 32, 64, 128 or 256, not 96"},
+    {"", "x:1:1: a line 'stone NAME"},
+    {"size 96\n", "x:1:6: size must be 32, 64, 128 or 256, not 96"},
     {"size 16\n", "x:1:6: "},
     {"size 512\n", "x:1:6: "},
-    {"kernel 14\n", "x:1:8: kernel takes an odd number, not 14"},
+    {"kernel 14\n", "x:1:8: kernel must be an odd number, not 14"},
     {"kernel 65\n", "x:1:8: "},
     {"kernel 0\n", "x:1:8: "},
     {"texel 0\n", "x:1:7: "},
@@ -114,18 +114,18 @@ static const struct {
      "x:2:7: a stone of this name is already defined"},
     {TWO, "two stones need a pattern"},
     {TWO "pattern stripes 3 pale dark\n",
-     "x:3:9: a pattern is chess N A B, veins SEED A B or image MASK A B, "
+     "x:3:9: a pattern must be chess N A B, veins SEED A B or image MASK A B, "
      "not 'stripes'"},
     {TWO "pattern chess 3 pale dart\n",
      "x:3:22: no stone 'dart' is defined above this line; did you mean "
      "'dark'?"},
     {TWO "pattern chess 3 pale pale\n",
-     "x:3:22: a pattern takes two different stones"},
-    {TWO "pattern chess 3 pale\n", "the name of a stone is missing"},
+     "x:3:22: a pattern needs two different stones"},
+    {TWO "pattern chess 3 pale\n", "the name of a 'stone' is missing"},
     {"size 32\n" TWO "pattern chess 33 pale dark\n",
-     "x:4:9: 33 fields each way are more than 32 texels"},
+     "x:4:9: 33 fields per side are more than 32 texels"},
     {"data a.pfm\nstone a scatter 1 1 1 absorb 0 0 0\n",
-     "measured rows have no stone and no pattern"},
+     "'data' excludes 'stone' and 'pattern'"},
     {"data\n", "the name of the rows is missing"},
 };
 

@@ -229,7 +229,7 @@ TEST(text)
     refuses("f-number 10\n" FRONT "4/x" BACK, "t.lens:5:15: thickness 'x'");
     refuses("f-number 10\n" FRONT "4//6" BACK, "thickness");
     refuses("f-number 10/11/12\n" FRONT "4/6" BACK,
-            "thickness has 2 positions, but what stands above has 3");
+            "thickness has 2 positions, but the lines above have 3");
     refuses("f-number 10/11\n" FRONT "4" BACK, "no thickness changes");
     refuses("f-number 10\n" FRONT "4/4" BACK,
             "focal lengths must only rise or only fall");

@@ -55,7 +55,7 @@ TEST(truncated)
     for (size_t bytes = 0; bytes < m.bytes; bytes++) {
         void *copy = malloc(bytes ? bytes : 1);
         const char *expected =
-            bytes < 8 ? "this is no glint model" : "the model is truncated";
+            bytes < 8 ? "this is not a glint model" : "the model is truncated";
 
         memcpy(copy, m.data, bytes);
         assert_string_equal(reason_of(copy, bytes), expected);
@@ -95,7 +95,7 @@ TEST(not_a_model)
     bytes = fread(text, 1, sizeof text, file);
     fclose(file);
     memcpy(copy, text, bytes);
-    assert_string_equal(reason_of(copy, bytes), "this is no glint model");
+    assert_string_equal(reason_of(copy, bytes), "this is not a glint model");
     free(copy);
     memmove(m.data + 2, m.data, m.bytes);
     assert_string_equal(reason_of(m.data + 2, m.bytes),
@@ -111,7 +111,7 @@ TEST(not_a_model)
                         "the model was made by an older glint: bake it again");
     word[1] = 0;
     assert_string_equal(reason_of(m.data, m.bytes),
-                        "no glint ever made models of this version");
+                        "the model's version is unknown");
     free(m.data);
 }
 

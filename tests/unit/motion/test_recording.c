@@ -95,21 +95,21 @@ TEST(bad_recordings_are_refused)
     refused("{" BODY_0 ", \"frames\": []}", "there are no frames");
     refused("{" BODY_0 "}", "there are no frames");
     refused("{" BODY_0 ", \"frames\": 3}", "'[' is expected");
-    refused(RUN("{}"), "frame 0: it has no array 'foods'");
-    refused(RUN("3"), "frame 0: it is no object");
+    refused(RUN("{}"), "frame 0: the frame has no array 'foods'");
+    refused(RUN("3"), "frame 0: the frame is not a JSON object");
     refused(RUN(FRAME ",\n {\"foods\": 5}"), "run.json:2:2: frame 1: ");
     refused(RUN(FRAME ", {\"foods\": " FOODS("NaN") "}"), "invalid token");
     refused(RUN(FRAME ", {\"foods\": " FOODS("1e999") "}"), "overflow");
     refused(RUN(FRAME ", {\"foods\": " FOODS("1e7") "}"), "not within +-1e6");
     refused(RUN(FRAME ", {\"foods\": " FOODS("\"2\"") "}"),
-            "'x' of food 0 is no number");
+            "'x' of food 0 is not a number");
     refused(RUN(FRAME ", {\"foods\": [{\"x\": 1, \"z\": 2}]}"),
             "frame 1: food 0 has no 'y'");
     refused(RUN("{\"foods\": [{\"x\":1,\"y\":0,\"z\":0}]}"),
             "fewer than three foods");
     refused(RUN(FRAME ", {\"foods\": [{\"x\":1,\"y\":0,\"z\":0},{\"x\":1,"
                       "\"y\":1,\"z\":0},{\"x\":1,\"y\":0,\"z\":1}]}"),
-            "another number of foods");
+            "the number of foods differs");
     refused(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
                 "2") "}, {\"frame_num\": 6, \"foods\": " FOODS("2") "}"),
             "frame 1: frames are missing: 6 follows 4");
@@ -117,14 +117,14 @@ TEST(bad_recordings_are_refused)
                 "2") "}, {\"frame_num\": 4, \"foods\": " FOODS("2") "}"),
             "out of order: 4 follows 4");
     refused(RUN("{\"frame_num\": -1, \"foods\": " FOODS("2") "}"),
-            "'frame_num' is no whole number");
+            "'frame_num' is not a whole number");
     refused(RUN("{\"rv\": [1, 2], \"foods\": " FOODS("2") "}"),
-            "'rv' takes three numbers");
+            "'rv' needs three numbers");
     refused(RUN("{\"foods\": " FOODS("2")), "']' closes what '{' opened");
     refused("{" BODY_0 ", \"frames\": [" FRAME ", {\"foods\": [{\"x\": 1",
             "the text ends within frame 1");
     refused("{" BODY_0 ", " BODY_0 "}", "a second 'structure'");
-    refused(RUN(FRAME) " {", "the recording has ended before this");
+    refused(RUN(FRAME) " {", "text follows the end of the recording");
     refused("{\"structure\": {\"size\": -1, \"angleofview\": 60}}",
             "the size of the body");
     refused("{\"structure\": {\"size\": 1, \"angleofview\": 0}}",
@@ -135,7 +135,7 @@ TEST(bad_recordings_are_refused)
             "[{\"theta\": 1}]}}",
             "a sensor has no 'phi'");
     refused("{\"a\": [1, 2}", "'}' closes what '[' opened");
-    refused("{\"a\": \"b\nc\"}", "a string ends on its line");
+    refused("{\"a\": \"b\nc\"}", "a string must end on its line");
     refused("{\"a\" 1}", "':' is expected");
     refused("{\"a\": , }", "a value is expected");
 }
@@ -153,9 +153,9 @@ TEST(what_cannot_be_localised_is_refused)
     struct baked baked;
 
     refused(RUN(LINE ", " LINE),
-            "frame 1: the foods that are known lie on a line");
+            "frame 1: the foods with known positions lie on a line");
     refused(RUN(FRAME ", " GONE("true", "1")),
-            "frame 1: fewer than three foods are known");
+            "frame 1: fewer than three foods have known positions");
     assert_ok(bake(RUN(FRAME ", " GONE("true", "false")), 9, &baked));
     assert_int_equal(baked.report.n_resets, 1);
     free(baked.data);

@@ -481,13 +481,14 @@ TEST(refusals)
     refuse(y444, tune_progressive, "several scans");
     refuse(y444, tune_scans, "several scans");
     refuse(y420, tune_arithmetic, "arithmetic");
-    refuse(y444, tune_rgb, "colours");
+    refuse(y444, tune_rgb, "components");
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
         memcpy(c.factor, odd[i], sizeof c.factor);
         refuse(c, NULL, "subsampling");
     }
-    assert_string_equal(error.text,
-                        NAME ": MJPEG: subsampling 2x1,1x1,2x1 is not handled");
+    assert_string_equal(
+        error.text,
+        NAME ": MJPEG: chroma subsampling 2x1,1x1,2x1 is not supported");
 }
 
 TEST(deep_and_odd_processes)

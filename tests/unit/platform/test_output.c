@@ -430,8 +430,8 @@ TEST(refuses)
     struct glint_error error;
     struct glint_output out;
 
-    refuse("/nowhere/x.ppm", "/nowhere/x.ppm: cannot create a file beside it: "
-                             "No such file or directory");
+    refuse("/nowhere/x.ppm", "/nowhere/x.ppm: cannot create a temporary file "
+                             "in its folder: No such file or directory");
     refuse("", ": No such file or directory");
     snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
     refuse(scratch_dir, text);
@@ -441,8 +441,9 @@ TEST(refuses)
     assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
                      GLINT_E_OUTPUT);
     assert_memory_equal(error.text, "...000", 6);
-    assert_non_null(strstr(error.text, "1/x?.ppm: cannot create a file beside"
-                                       " it: No such file or directory"));
+    assert_non_null(strstr(error.text,
+                           "1/x?.ppm: cannot create a temporary file in its "
+                           "folder: No such file or directory"));
 }
 
 TEST(checks)
@@ -456,8 +457,9 @@ TEST(checks)
     assert_string_equal(error.text, text);
     assert_int_equal(glint_output_check("/nowhere/x.ppm", &error),
                      GLINT_E_OUTPUT);
-    assert_string_equal(error.text, "/nowhere/x.ppm: cannot create a file "
-                                    "beside it: No such file or directory");
+    assert_string_equal(error.text,
+                        "/nowhere/x.ppm: cannot create a temporary file in its "
+                        "folder: No such file or directory");
     assert_ok(glint_output_check("-", &error));
     assert_ok(glint_output_check("/dev/null", &error));
     snprintf(name, sizeof name, "%s/x.ppm", scratch_dir);

@@ -454,7 +454,7 @@ TEST(v4l2_no_room)
     node.write_errno = 0;
     node.most = 3;
     assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_E_DEVICE);
-    assert_non_null(strstr(error.text, "took 3 of 4 bytes"));
+    assert_non_null(strstr(error.text, "accepted 3 of 4 bytes of a frame"));
     assert_int_equal(out.n_frames, 0);
     out.sink.close(&out.sink);
 }
@@ -483,12 +483,12 @@ TEST(v4l2_refuses)
 
     reset_node();
     node.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
-    expect_refused(GLINT_E_DEVICE, "fake is no video output");
+    expect_refused(GLINT_E_DEVICE, "fake is not a video output");
     node.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_STREAMING;
-    expect_refused(GLINT_E_DEVICE, "takes no frames by write()");
+    expect_refused(GLINT_E_DEVICE, "does not accept frames by write()");
     reset_node();
     node.fourcc = V4L2_PIX_FMT_MJPEG;
-    expect_refused(GLINT_E_DEVICE, "takes MJPG 2 x 2, not YUYV 2 x 2");
+    expect_refused(GLINT_E_DEVICE, "accepts MJPG 2 x 2, not YUYV 2 x 2");
     reset_node();
     node.fail_request = VIDIOC_S_FMT;
     node.fail_errno = EBUSY;
@@ -497,7 +497,7 @@ TEST(v4l2_refuses)
     reset_node();
     node.stride = 8;
     node.size = 15;
-    expect_refused(GLINT_E_DEVICE, "frames of 15 bytes, rows of 8");
+    expect_refused(GLINT_E_DEVICE, "frames of 15 bytes with rows of 8");
     reset_node();
     node.fail_request = VIDIOC_QUERYCAP;
     node.fail_errno = ENODEV;

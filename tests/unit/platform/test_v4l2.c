@@ -132,11 +132,13 @@ TEST(unread_format)
 
     camera.mode[0].fourcc = camera.now.fourcc = V4L2_PIX_FMT_H264;
     must_refuse(NULL, GLINT_E_UNSUPPORTED,
-                FAKE_PATH ": delivers H264, which glint does not read; "
-                          "--list-formats");
+                FAKE_PATH
+                ": delivers pixel format H264, which glint does not support; "
+                "--list-formats");
     fake_camera_reset();
     wish.fourcc = V4L2_PIX_FMT_NV12;
-    must_refuse(&wish, GLINT_E_DEVICE, "has no NV12 (gives YUYV instead)");
+    must_refuse(&wish, GLINT_E_DEVICE,
+                "does not support NV12 (the driver returns YUYV instead)");
 }
 
 /* A camera that chooses another format than was requested must be believed. */
@@ -368,8 +370,9 @@ TEST(data_offset)
 TEST(too_small)
 {
     camera.sizeimage = 2 * 64 * 48 - 1;
-    must_refuse(NULL, GLINT_E_DEVICE,
-                "64x48 YUYV does not fit the 6143 bytes that the driver says");
+    must_refuse(
+        NULL, GLINT_E_DEVICE,
+        "64x48 YUYV needs more bytes than the 6143 that the driver reports");
     fake_camera_reset();
     camera.length_less = 1; /* The driver hides this. */
     must_open(NULL);

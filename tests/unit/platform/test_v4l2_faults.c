@@ -67,7 +67,8 @@ TEST(refuses)
          ": VIDIOC_S_FMT: Device or resource busy; "
          "another program is using it"},
         {VIDIOC_G_FMT, EINVAL, ": VIDIOC_G_FMT: Invalid argument"},
-        {VIDIOC_QUERYCAP, ENOTTY, ": not a camera: does not speak V4L2"},
+        {VIDIOC_QUERYCAP, ENOTTY,
+         ": not a camera: the device does not support V4L2"},
         {VIDIOC_QUERYCAP, ENODEV, "; the device is gone"},
         {VIDIOC_S_FMT, ENODEV, "; the device is gone"},
     };
@@ -79,7 +80,7 @@ TEST(refuses)
     }
     fake_camera_reset();
     camera.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_STREAMING;
-    must_refuse(NULL, GLINT_E_DEVICE, "'Fake' captures no pictures here");
+    must_refuse(NULL, GLINT_E_DEVICE, "'Fake' does not capture pictures");
 }
 
 /* The source must do without these requests. */
@@ -148,7 +149,7 @@ TEST(other_format)
     camera.mode[0].fourcc = camera.now.fourcc = V4L2_PIX_FMT_H264;
     camera.is_broken = true;
     assert_int_equal(next(), GLINT_E_UNSUPPORTED);
-    assert_non_null(strstr(said.text, "delivers H264"));
+    assert_non_null(strstr(said.text, "delivers pixel format H264"));
     must_close();
 }
 

@@ -104,12 +104,12 @@ TEST(header)
     REFUSES(header.highlights, 9, "the scene's settings are unknown");
     REFUSES(header.background_q15[1], 1,
             "the background's colour is out of range");
-    REFUSES(header.n_lights, 33, "the scene has too many of a kind");
+    REFUSES(header.n_lights, 33, "the scene has too many objects of one type");
     REFUSES(header.name[0], 7, "the name has a control character");
     REFUSES(header.camera.kind, 3, "the camera's kind is unknown");
     REFUSES(header.camera.at[2], GLINT_SCENE_SPAN, "the camera is too far out");
     REFUSES(header.camera.axis_q30[0][1], 1 << 28,
-            "the camera's axes are no units, or not at right angles");
+            "the camera's axes are not orthogonal unit vectors");
     REFUSES(header.camera.tan_x_q24, 0, "the camera's field is out of range");
     REFUSES(header.camera.tan_y_q24, 1, "the camera's field is out of range");
 }
@@ -122,8 +122,9 @@ TEST(lights)
     REFUSES(light[0].at[0], 1, "a light is too far out, or too large");
     REFUSES(light[1].radius, -1, "a light is too far out, or too large");
     REFUSES(light[0].toward_q30[0], 1 << 29,
-            "a light's direction is no unit vector");
-    REFUSES(light[1].toward_q30[0], 1, "a light's direction is no unit vector");
+            "a light's direction is not a unit vector");
+    REFUSES(light[1].toward_q30[0], 1,
+            "a light's direction is not a unit vector");
     REFUSES(light[0].rgb[2].mantissa, -(1 << 30),
             "a light is negative or not normalised");
 }
@@ -146,8 +147,10 @@ TEST(materials)
             "a brushed metal's roughness or norm is out of range");
     REFUSES(header.background, GLINT_BACKGROUND_ENVIRONMENT,
             "the background's environment is not there");
-    REFUSES(header.n_environments, 17, "the scene has too many of a kind");
-    REFUSES(header.n_environment_lights, 1, "the scene has too many of a kind");
+    REFUSES(header.n_environments, 17,
+            "the scene has too many objects of one type");
+    REFUSES(header.n_environment_lights, 1,
+            "the scene has too many objects of one type");
     REFUSES(texture[0].width_log2, 13, "a texture is too large");
     REFUSES(texture[0].height_log2, 12, "a table lies outside the file");
 }
@@ -177,7 +180,8 @@ TEST(grid_lists)
 
 TEST(meshes)
 {
-    REFUSES(mesh[0].radius, 2000, "a vertex is outside its mesh's ball");
+    REFUSES(mesh[0].radius, 2000,
+            "a vertex is outside the bounding sphere of its mesh");
     REFUSES(mesh[0].radius, GLINT_SCENE_SPAN / 2,
             "a mesh is too large or too far out");
     REFUSES(mesh[0].n_vertices, 3, "a triangle's vertex is out of range");
@@ -191,7 +195,7 @@ TEST(meshes)
     REFUSES(mesh[0].uv_at, file.mesh[0].normal_at,
             "a vertex's u or v is out of range");
     REFUSES(mesh[0].normal_at, file.mesh[0].vertex_at,
-            "a vertex's normal is no unit vector");
+            "a vertex's normal is not a unit vector");
     make();
     for (int i = 0; i < 63; i++)
         file.mesh[file.header.n_meshes++] = file.mesh[0];
@@ -207,7 +211,7 @@ TEST(objects)
     REFUSES(object[0].radius, 0, "a sphere's radius is out of range");
     REFUSES(object[1].radius, 1, "a sphere's radius is out of range");
     REFUSES(object[0].catcher_q15, 1,
-            "a plane's share of shadow is out of range");
+            "a plane's fraction of shadow is out of range");
     REFUSES(object[0].turn_q30[1], 1 << 24, "an object's pose is out of range");
     REFUSES(object[0].at[0], GLINT_SCENE_SPAN - 1000,
             "an object is too far out");

@@ -46,7 +46,7 @@ static int take(void *ctx, const struct option *option, const char *value)
     if (option->val == 'D')
         return EXIT_OK;
     if (option->val == 'g' && !tool_integer(value, 4, 1024, &c->grid))
-        return tool_usage(&c->tool, "--%s: '%s' is not something it takes",
+        return tool_usage(&c->tool, "--%s: '%s' is not valid",
                           option->name, value);
     return -1;
 }
@@ -161,7 +161,7 @@ TEST(long_lines)
         assert_int_equal(
             config_parse(&config, "x.ini", text, (size_t)used, &error),
             EXIT_INPUT);
-        assert_string_equal(error.text, "x.ini:2: is too long a line");
+        assert_string_equal(error.text, "x.ini:2: has a line that is too long");
         assert_string_equal(command.log, "");
         text[7] = ';';
         expect_taken(text, (size_t)used, "grid=4;");
@@ -197,17 +197,17 @@ static void expect_mistake(const char *text, size_t bytes, const char *want)
 TEST(mistakes)
 {
     expect_mistake(BYTES("grid=64\n\n[lens]\ngrdi=5\n"),
-                   "x.ini:4: there is no option grdi for a file");
+                   "x.ini:4: grdi is not an option of configuration files");
     expect_mistake(BYTES("--grid=64\n"),
-                   "x.ini:1: there is no option --grid for a file");
+                   "x.ini:1: --grid is not an option of configuration files");
     expect_mistake(BYTES("gri=64\n"),
-                   "x.ini:1: there is no option gri for a file");
+                   "x.ini:1: gri is not an option of configuration files");
     expect_mistake(BYTES("config=y.ini\n"),
-                   "x.ini:1: there is no option config for a file");
+                   "x.ini:1: config is not an option of configuration files");
     expect_mistake(BYTES("help=yes"),
-                   "x.ini:1: there is no option help for a file");
+                   "x.ini:1: help is not an option of configuration files");
     expect_mistake(BYTES("grid=64\nversion=yes"),
-                   "x.ini:2: there is no option version for a file");
+                   "x.ini:2: version is not an option of configuration files");
     expect_mistake(BYTES("grid=64\nlens\n"),
                    "x.ini:2: is neither [section] nor name = value");
     expect_mistake(BYTES("[lens\ngrid=64\n"),
@@ -215,8 +215,9 @@ TEST(mistakes)
     expect_mistake(BYTES("lens ; = x\ngrid=64\nfoo=1\n"),
                    "x.ini:1: is neither [section] nor name = value");
     expect_mistake(BYTES("foo=1\nlens\n"),
-                   "x.ini:1: there is no option foo for a file");
-    expect_mistake(BYTES("=5\n"), "x.ini:1: there is no option  for a file");
+                   "x.ini:1: foo is not an option of configuration files");
+    expect_mistake(BYTES("=5\n"),
+                   "x.ini:1:  is not an option of configuration files");
     expect_mistake(BYTES("grid=\n"), "x.ini:1: grid needs a value");
     expect_mistake(BYTES("grid= ; 64\n"), "x.ini:1: grid needs a value");
     expect_mistake(BYTES("dither=maybe\n"), "x.ini:1: dither takes yes or no");
@@ -241,7 +242,7 @@ TEST(bad_value)
     assert_int_equal(config_parse(&config, "x.ini",
                                   BYTES("lens=a\ngrid=3\nlens=b\n"), &error),
                      EXIT_INPUT);
-    expect_said("glint live: x.ini:2: --grid: '3' is not something it takes\n");
+    expect_said("glint live: x.ini:2: --grid: '3' is not valid\n");
     assert_string_equal(error.text, "");
     assert_string_equal(command.log, "lens=a;grid=3;");
     assert_null(command.tool.where);
@@ -250,8 +251,9 @@ TEST(bad_value)
     assert_int_equal(config_parse(&config, "x.ini",
                                   BYTES("list-devices=yes\nlens=b\n"), &error),
                      EXIT_INPUT);
-    assert_string_equal(error.text,
-                        "x.ini:1: list-devices is for the command line");
+    assert_string_equal(
+        error.text,
+        "x.ini:1: list-devices is an option of the command line only");
     config_free(&config);
 }
 
@@ -264,7 +266,8 @@ TEST(long_name)
     strcpy(name + sizeof name - 7, "/x.ini");
     config_parse(&config, name, BYTES("foo=1"), &error);
     assert_non_null(
-        strstr(error.text, "nnn/x.ini:1: there is no option foo for a file"));
+        strstr(error.text,
+               "nnn/x.ini:1: foo is not an option of configuration files"));
 }
 
 TEST(unknown_section)
@@ -275,8 +278,8 @@ TEST(unknown_section)
 
     listen_to_stderr();
     assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
-    expect_said("glint live: x.ini:4: no section is called [camra]; its lines "
-                "count all the same\n");
+    expect_said("glint live: x.ini:4: the section [camra] is unknown; its "
+                "lines are used all the same\n");
     assert_string_equal(command.log, "lens=a;grid=5;light=1,2;lens=b;lens=c;");
     config_free(&config);
     config = start();
@@ -338,7 +341,7 @@ TEST(reload)
     listen_to_stderr();
     assert_int_equal(config_read(&second, scratch_file), EXIT_INPUT);
     snprintf(want, sizeof want,
-             "glint live: %s:2: --grid: 'x' is not something it takes\n",
+             "glint live: %s:2: --grid: 'x' is not valid\n",
              scratch_file);
     expect_said(want);
     assert_null(second.values);
@@ -355,7 +358,7 @@ TEST(files)
     listen_to_stderr();
     assert_int_equal(config_read(&config, scratch_file), EXIT_INPUT);
     snprintf(want, sizeof want,
-             "glint live: %s:2: there is no option foo for a file\n",
+             "glint live: %s:2: foo is not an option of configuration files\n",
              scratch_file);
     expect_said(want);
     listen_to_stderr();

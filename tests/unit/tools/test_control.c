@@ -79,36 +79,42 @@ TEST(mistakes)
 {
     static char text[400];
 
-    refuses("orbti 3 4", "f:1:1: 'orbti' is no command; did you mean 'orbit'?");
-    refuses("frob", "f:1:1: 'frob' is no command");
+    refuses("orbti 3 4",
+            "f:1:1: 'orbti' is not a command; did you mean 'orbit'?");
+    refuses("frob", "f:1:1: 'frob' is not a command");
     refuses("orbit 3", "f:1:8: expected orbit YAW PITCH");
-    refuses("orbit 3 x", "f:1:9: 'x' is no number; expected orbit YAW PITCH");
-    refuses("orbit 3 4 5", "f:1:11: '5' is too much; expected orbit YAW PITCH");
-    refuses("orbit 3 400", "f:1:9: orbit YAW PITCH is -360 to 360, not 400");
+    refuses("orbit 3 x",
+            "f:1:9: 'x' is not a number; expected orbit YAW PITCH");
+    refuses("orbit 3 4 5",
+            "f:1:11: '5' is one value too many; expected orbit YAW PITCH");
+    refuses("orbit 3 400",
+            "f:1:9: orbit YAW PITCH must be -360 to 360, not 400");
     refuses("orbit nan 4",
-            "f:1:7: 'nan' is no number; expected orbit YAW PITCH");
+            "f:1:7: 'nan' is not a number; expected orbit YAW PITCH");
     refuses("set", "f:1:4: expected set MATERIAL alpha X [Y]");
     refuses("set steel", "f:1:10: expected set MATERIAL alpha X [Y]");
     refuses("set steel alhpa 1",
-            "f:1:11: 'alhpa' is no word of set; did you mean 'alpha'?");
+            "f:1:11: 'alhpa' is not a word of set; did you mean 'alpha'?");
     refuses("environment", "f:1:12: expected environment turn DEG");
-    refuses("environment nxt", "f:1:13: 'nxt' is no word of environment; did "
-                               "you mean 'next'?");
+    refuses("environment nxt",
+            "f:1:13: 'nxt' is not a word of environment; did you mean 'next'?");
     refuses("environment map", "f:1:16: expected environment map NAME");
     refuses("environment map a b",
-            "f:1:19: 'b' is too much; expected environment map NAME");
+            "f:1:19: 'b' is one value too many; expected environment map NAME");
     refuses("environment scale 0",
-            "f:1:19: environment scale X is 1e-06 to 1000000, not 0");
+            "f:1:19: environment scale X must be 1e-06 to 1000000, not 0");
     refuses("set steel alpha 0",
-            "f:1:17: set MATERIAL alpha X [Y] is 0.001 to 1, not 0");
-    refuses("jump 1.5", "f:1:6: jump N takes whole numbers, not 1.5");
-    refuses("-1 stop", "f:1:1: a frame is a whole number from 0, not '-1'");
-    refuses("1.5 stop", "f:1:1: a frame is a whole number from 0, not '1.5'");
-    refuses("7 ", "f:1:3: a command has to follow the frame");
+            "f:1:17: set MATERIAL alpha X [Y] must be 0.001 to 1, not 0");
+    refuses("jump 1.5", "f:1:6: jump N needs whole numbers, not 1.5");
+    refuses("-1 stop",
+            "f:1:1: a frame must be a whole number from 0, not '-1'");
+    refuses("1.5 stop",
+            "f:1:1: a frame must be a whole number from 0, not '1.5'");
+    refuses("7 ", "f:1:3: a command must follow the frame");
     refuses("show a23456789012345678901234567890123",
-            "f:1:6: a name has 31 letters at most");
+            "f:1:6: a name has at most 31 letters");
     memset(text, 'a', sizeof text - 1);
-    refuses(text, "f:1:256: a line has 255 bytes at most");
+    refuses(text, "f:1:256: a line has at most 255 bytes");
 }
 
 /* The forms of one word take as many names. */
@@ -217,7 +223,7 @@ TEST(file)
     controls_close(&input);
     assert_int_equal(read_text("stop\n  jumb 3\n"), GLINT_E_FORMAT);
     snprintf(wanted, sizeof wanted,
-             "%s:2:3: 'jumb' is no command; did you mean 'jump'?",
+             "%s:2:3: 'jumb' is not a command; did you mean 'jump'?",
              scratch_file);
     assert_string_equal(error.text, wanted);
     assert_int_equal(controls_open(&input, "/nonexistent", false, &error),
@@ -242,7 +248,7 @@ TEST(pipe)
     next_is(2, CONTROL_PAUSE);
     assert_null(controls_next(&input, 2));
     assert_int_equal(input.n_bad, 1);
-    assert_non_null(strstr(input.bad.text, ":2:1: 'rubbish' is no command"));
+    assert_non_null(strstr(input.bad.text, ":2:1: 'rubbish' is not a command"));
     assert_null(controls_next(&input, 4));
     next_is(5, CONTROL_PLAY);
     next_is(5, CONTROL_STOP);

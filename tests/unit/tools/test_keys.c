@@ -65,11 +65,13 @@ TEST(many)
 TEST(refused)
 {
     static const char *const bad[][2] = {
-        {"0,1\n", "k.csv:1: '0' is no column: the first line names"},
-        {"gain\n1\n", "k.csv:1: a column is needed"},
-        {"frame,gain,gain\n", "k.csv:1: a column is there twice"},
-        {"frame,wine\n", "k.csv:1: 'wine' is no column: the first line names"},
-        {"frame,exposure,strength\n", "k.csv:1: strength chooses"},
+        {"0,1\n", "k.csv:1: '0' is not a column; the first line names"},
+        {"gain\n1\n", "k.csv:1: the column 'frame' is missing"},
+        {"frame,gain,gain\n", "k.csv:1: a column appears twice"},
+        {"frame,wine\n",
+         "k.csv:1: 'wine' is not a column; the first line names"},
+        {"frame,exposure,strength\n",
+         "k.csv:1: the columns strength and exposure"},
         {"frame,x\n", "k.csv:1: a light needs"},
         {"frame,ev\n", "k.csv:1: a light needs"},
         {"frame,gain\n", "k.csv: has no key frames"},

@@ -140,9 +140,10 @@ static enum glint_status fail_word(const struct reader *r, const char *before)
         if (is_changeable(glint_option(i)))
             suggest_try(&suggest, glint_option(i)->name,
                         strlen(glint_option(i)->name));
-    return control_fail(r->error, r->where, r->column, "'%.24s' is no %s%s%s",
-                        r->word, before ? "word of " : "command",
-                        before ? before : "", suggest_words(&suggest));
+    return control_fail(r->error, r->where, r->column,
+                        "'%.24s' is not a %s%s%s", r->word,
+                        before ? "word of " : "command", before ? before : "",
+                        suggest_words(&suggest));
 }
 
 /* Returns the first form from index I on that begins with WORD, or NULL. */
@@ -165,7 +166,7 @@ static enum glint_status read_names(struct reader *r,
                                 form->usage);
         if (strlen(r->word) >= CONTROL_NAME)
             return control_fail(r->error, r->where, r->column,
-                                "a name has 31 letters at most");
+                                "a name has at most 31 letters");
         memcpy(line->name[i], r->word, strlen(r->word) + 1);
         line->name_column[i] = r->column;
     }
@@ -202,15 +203,15 @@ static enum glint_status read_numbers(struct reader *r,
 
         if (!tool_number(r->word, &v))
             return control_fail(r->error, r->where, r->column,
-                                "'%.24s' is no number; expected %s", r->word,
+                                "'%.24s' is not a number; expected %s", r->word,
                                 form->usage);
         if (!(v >= form->lowest && v <= form->highest))
             return control_fail(r->error, r->where, r->column,
-                                "%s is %.9g to %.9g, not %.9g", form->usage,
-                                form->lowest, form->highest, v);
+                                "%s must be %.9g to %.9g, not %.9g",
+                                form->usage, form->lowest, form->highest, v);
         if (form->is_whole && v != rint(v))
             return control_fail(r->error, r->where, r->column,
-                                "%s takes whole numbers, not %.9g", form->usage,
+                                "%s needs whole numbers, not %.9g", form->usage,
                                 v);
         line->v[line->n++] = v;
     }
@@ -232,9 +233,9 @@ static enum glint_status read_frame(struct reader *r, struct control_line *line)
     *r = ahead;
     if (!tool_number(r->word, &v) || !(v >= 0 && v <= CONTROL_MOST_FRAME) ||
         v != rint(v))
-        return control_fail(r->error, r->where, r->column,
-                            "a frame is a whole number from 0, not '%.24s'",
-                            r->word);
+        return control_fail(
+            r->error, r->where, r->column,
+            "a frame must be a whole number from 0, not '%.24s'", r->word);
     line->frame = (int)v;
     return GLINT_OK;
 }
@@ -277,7 +278,7 @@ static enum glint_status read_command(struct reader *r,
         return line->frame < 0
                    ? GLINT_OK
                    : control_fail(r->error, r->where, r->column,
-                                  "a command has to follow the frame");
+                                  "a command must follow the frame");
     option = glint_option_named(r->word);
     if (option && is_changeable(option)) {
         snprintf(usage, sizeof usage, "%s %s", option->name, option->value);
@@ -297,8 +298,8 @@ static enum glint_status read_command(struct reader *r,
     }
     if (status == GLINT_OK && next_word(r))
         status = control_fail(r->error, r->where, r->column,
-                              "'%.24s' is too much; expected %s", r->word,
-                              form->usage);
+                              "'%.24s' is one value too many; expected %s",
+                              r->word, form->usage);
     line->verb = form->verb;
     return status;
 }
@@ -314,7 +315,7 @@ enum glint_status control_parse(const char *text, const char *where,
 
     if (strlen(text) >= CONTROL_LINE)
         return control_fail(error, where, CONTROL_LINE,
-                            "a line has %d bytes at most", CONTROL_LINE - 1);
+                            "a line has at most %d bytes", CONTROL_LINE - 1);
     status = read_frame(&r, &read);
     if (status == GLINT_OK)
         status = read_command(&r, &read);

@@ -457,12 +457,12 @@ enum glint_status steer_check(const struct steer *steer,
         return status;
     if (is_set && line->verb != CONTROL_COLOUR && !is_metal(steer, index[0]))
         return control_fail(error, where, line->name_column[0],
-                            "'%s' is no brushed metal, and takes 'colour'",
+                            "'%s' is not brushed metal; use 'colour'",
                             line->name[0]);
     if (line->verb == CONTROL_SIZE &&
         steer->model.object[index[0]].kind != GLINT_OBJECT_SPHERE)
         return control_fail(error, where, line->name_column[0],
-                            "'%s' is no ball, whose size is its radius",
+                            "'%s' is not a sphere, so it has no radius",
                             line->name[0]);
     return GLINT_OK;
 }
@@ -736,8 +736,8 @@ enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
         status = control_fail(
             error, where, line->column,
             is_of_material(line)
-                ? "specular and diffuse colour sum to more than 1"
-                : "that leaves the range that the scene was baked for");
+                ? "the specular and diffuse colours sum to more than 1"
+                : "the value is out of the range that the scene was baked for");
     return status;
 }
 

@@ -68,9 +68,9 @@ static const char *add(struct keys *keys, int column, struct key_value key)
 static const char *check_heading(unsigned seen)
 {
     if (!(seen & 1))
-        return "a column is needed that is called frame";
+        return "the column 'frame' is missing";
     if (seen >> KEYS_EXPOSURE & 1 && seen >> KEYS_STRENGTH & 1)
-        return "strength chooses the exposure; have one column of these two";
+        return "the columns strength and exposure exclude each other";
     if ((seen >> KEYS_X & 1) != (seen >> KEYS_Y & 1) ||
         (seen >> KEYS_EV & 1 && !(seen >> KEYS_X & 1)))
         return "a light needs the columns x and y";
@@ -90,16 +90,16 @@ static const char *take_heading(struct reading *r, struct text_lines *lines,
         if (column < 0)
             return text_lines_cause(
                 lines,
-                "'%.32s' is no column: the first line names frame, and of "
-                "exposure, strength, gain, starburst, f-number, turn, "
+                "'%.32s' is not a column; the first line names frame and any "
+                "of exposure, strength, gain, starburst, f-number, turn, "
                 "round, zoom, x, y, ev",
                 name[i]);
         if (seen >> column & 1)
-            return "a column is there twice";
+            return "a column appears twice";
         seen |= 1u << column;
         r->column[r->n_columns++] = column;
     }
-    return n > KEYS_COLUMNS ? "a column is there twice" : check_heading(seen);
+    return n > KEYS_COLUMNS ? "a column appears twice" : check_heading(seen);
 }
 
 static const char *take_row(struct reading *r, struct text_lines *lines,

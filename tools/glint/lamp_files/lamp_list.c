@@ -148,8 +148,8 @@ static const char *take_heading(struct reading *r, char *line)
     if (!(seen >> ID & 1))
         return NULL;
     if (seen >> COLUMNS & 1)
-        return "a column is none of frame x y power r g b size id shape "
-               "turn level seen";
+        return "a column is unknown; expected frame x y power r g b size id "
+               "shape turn level seen";
     r->n = n;
     return (seen & 0xf) == 0xf && n <= COLUMNS
                ? NULL

@@ -301,7 +301,7 @@ static enum glint_status open_test(struct live_timed *test,
     if (image.width < 16 || image.height < 16 ||
         image.width > GLINT_PANEL_SIDE || image.height > GLINT_PANEL_SIDE)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, "test",
-                                  "has sides of 16 to %d pixels",
+                                  "must have sides of 16 to %d pixels",
                                   GLINT_PANEL_SIDE);
     *test =
         (struct live_timed){.image = image, .seed = seed, .is_black = is_black};

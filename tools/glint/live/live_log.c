@@ -338,7 +338,7 @@ void live_log_conclude(struct live_log *log, bool is_well, int n_shown,
     live_log_say(log, text);
     if (log->n_short) {
         snprintf(text, sizeof text,
-                 "in %d frames something was left out for want of --memory",
+                 "%d frames are incomplete because --memory is too small",
                  log->n_short);
         live_log_say(log, text);
     }

@@ -353,8 +353,7 @@ static void say_signal(struct live *l)
         live_log_say(
             &l->log,
             has ? "the camera has a signal again"
-                : "the camera has no signal: its picture is what it makes "
-                  "of that");
+                : "the camera reports no signal; its frames may be blank");
     l->had_signal = has;
 }
 
@@ -405,8 +404,8 @@ static bool names_lens(const struct live *l, const struct live_options *fresh)
     if (GLINT_OPTION_GIVEN(&fresh->drawing.line.settings.options, lens) ||
         !GLINT_OPTION_GIVEN(&l->o->drawing.line.settings.options, lens))
         return true;
-    tool_error(l->tool, "the configuration names no lens any more: is it empty "
-                        "or half-written?");
+    tool_error(l->tool, "the configuration does not name a lens any more: it "
+                        "may be empty or incomplete");
     return false;
 }
 
@@ -417,7 +416,7 @@ static void reload(struct live *l)
     struct live_options *fresh = calloc(1, sizeof *fresh);
 
     if (!fresh) {
-        live_log_say(&l->log, "not reloaded, without memory");
+        live_log_say(&l->log, "not reloaded: out of memory");
         return;
     }
     l->tool->no_bake = true;
@@ -428,7 +427,8 @@ static void reload(struct live *l)
         live_log_say(&l->log, "reloaded");
     } else {
         drawing_close(&fresh->drawing);
-        live_log_say(&l->log, "not reloaded: all stays as it was");
+        live_log_say(&l->log,
+                     "not reloaded: the previous configuration stays in use");
     }
     free(fresh);
 }
@@ -494,7 +494,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
     live_adapt_init(&l->adapt);
     code = live_output_parse(&l->output, o->output)
                ? EXIT_OK
-               : tool_usage(tool, "-o: '%s' is no output", o->output);
+               : tool_usage(tool, "-o: '%s' is not an output", o->output);
     l->output.fit = o->fit;
     l->output.dither = o->drawing.line.settings.options.dither;
     live_log_init(&l->log, tool, o->report,

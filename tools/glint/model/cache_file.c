@@ -112,7 +112,7 @@ static enum glint_status clear_way(const char *path, struct glint_error *error)
         return GLINT_OK;
     if (!S_ISREG(st.st_mode))
         return glint_error_report(error, GLINT_E_OUTPUT, path,
-                                  "is no file; remove it");
+                                  "is not a regular file; remove it");
     /* A failure needs no report: replacing the file will fail, too. */
     if (!is_ours(&st))
         unlink(path);
@@ -125,11 +125,12 @@ enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
     enum glint_status status;
 
     cache_file_make_folders(path);
-    status = is_folder_ours(path)
-                 ? clear_way(path, error)
-                 : glint_error_report(error, GLINT_E_OUTPUT, path,
-                                      "is in a folder that others may write "
-                                      "to; chmod o-w makes it a cache");
+    status =
+        is_folder_ours(path)
+            ? clear_way(path, error)
+            : glint_error_report(
+                  error, GLINT_E_OUTPUT, path,
+                  "is in a folder that other users may write to; chmod o-w it");
     return status == GLINT_OK ? glint_output_save(path, GLINT_OUTPUT_BINARY,
                                                   data, bytes, error)
                               : status;

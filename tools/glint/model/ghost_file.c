@@ -62,7 +62,7 @@ static const char *take_gain(struct glint_tint *tint, const char *text)
     double gain;
 
     if (!text || !tool_number(text, &gain) || !(gain >= 0 && gain <= 1000))
-        return "gain takes a factor, 0 to 1000";
+        return "gain must be a factor, 0 to 1000";
     tint->gain = glint_real_of(gain);
     return NULL;
 }
@@ -75,7 +75,7 @@ static const char *take_tint(struct glint_tint *tint, const char *text)
         return "tint takes R,G,B";
     for (int c = 0; c < 3; c++) {
         if (!(rgb[c] >= 0 && rgb[c] <= 4))
-            return "tint takes R,G,B, each 0 to 4";
+            return "tint must be R,G,B, each 0 to 4";
         tint->rgb_q14[c] = (int32_t)lrint(rgb[c] * 16384);
     }
     return NULL;
@@ -124,8 +124,8 @@ static const char *take_line(void *ctx, struct text_lines *lines, char *line)
         word = next_word(&rest);
         return word && strcmp(word, r->lens) == 0
                    ? NULL
-                   : "these are ghosts of another lens (glint explain "
-                     "--save-ghosts writes those of this one)";
+                   : "the file lists ghosts of another lens (glint explain "
+                     "--save-ghosts writes those of this lens)";
     }
     ghost = ghost_of(r, word);
     if (ghost >= 0)

@@ -114,8 +114,8 @@ static void keep(const struct tool *tool, char *path,
 
     if (cache_file_write(path, model->data, model->bytes, &error) != GLINT_OK &&
         !tool->quiet)
-        fprintf(stderr, "glint %s: the model is not kept: %s\n", tool->name,
-                error.text);
+        fprintf(stderr, "glint %s: the model cannot be cached: %s\n",
+                tool->name, error.text);
 }
 
 /* Bakes the model of LENS into MODEL, and caches it in PATH, unless PATH is
@@ -158,8 +158,8 @@ static int refuse_bake(const struct tool *tool,
                        const struct glint_prescription *lens)
 {
     tool_error(tool,
-               "%s is not baked, which a reload does not wait for; bake it "
-               "with glint bake, or restart",
+               "%s has no model, and a reload does not bake; run glint bake, "
+               "or restart",
                lens->name);
     return EXIT_LENS;
 }

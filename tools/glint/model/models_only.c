@@ -18,12 +18,12 @@ int tool_lens(const struct tool *tool, const char *argument,
     (void)lens;
     if (!tool_is_file_name(argument))
         snprintf(error.text, sizeof error.text,
-                 "%.120s names no file: that of a model has a slash or ends in "
-                 ".glint",
+                 "%.120s is not a file name: that of a model has a slash or "
+                 "ends in .glint",
                  argument);
     else if (access(argument, R_OK) == 0)
         snprintf(error.text, sizeof error.text,
-                 "%.120s is no model; this program takes baked ones only "
+                 "%.120s is not a model; this program reads baked models only "
                  "(glint bake, on any machine)",
                  argument);
     else
@@ -45,7 +45,8 @@ int stop_mask_read(const struct tool *tool, const char *file,
                    struct stop_mask *mask)
 {
     (void)mask;
-    return tool_usage(tool, "%s is a picture; this program reads none", file);
+    return tool_usage(
+        tool, "%s is a picture; this program does not read pictures", file);
 }
 
 /* Reports that there is no model. Never reached, as all opened lenses have a

@@ -51,8 +51,7 @@ enum glint_status tool_find_input(const char *text, const char *name,
     if (!written || !glint_target_is_input(path, written))
         return GLINT_OK;
     snprintf(error->text, sizeof error->text,
-             "%.180s would be lost: it is what -o names; name another file",
-             name);
+             "%.180s would be overwritten by -o; name another file", name);
     return GLINT_E_ARGUMENT;
 }
 
@@ -69,7 +68,6 @@ int tool_scene_is_kept(const struct tool *tool, const char *path)
     if (!tool->written || !glint_target_is_input(path, tool->written))
         return EXIT_OK;
     return tool_usage(tool,
-                      "-o %s is the input, which would be lost; name another "
-                      "file",
+                      "-o %s would overwrite the input; name another file",
                       tool->written);
 }

@@ -59,8 +59,8 @@ enum glint_status opened_lens_zoom(struct opened_lens *lens,
             settings->options.rays == GLINT_RAYS_EXACT
                 ? "exact rays do not zoom from frame to frame"
             : lens->table.zoom.n_positions
-                ? "a table is baked for one position: zoom a model that "
-                  "'glint bake LENS --positions N' made"
+                ? "a lens table is baked for one zoom position; zooming needs "
+                  "a model of 'glint bake LENS --positions N'"
             : lens->table.n_surfaces
                 ? "does not zoom: its table has one position"
                 : "does not zoom: its model is of one position");
@@ -99,9 +99,8 @@ static void warn_field(const struct tool *tool, const struct opened_lens *lens,
 
     if (!tool->quiet && 0.5 * diagonal > field)
         fprintf(stderr,
-                "glint %s: the model was baked for a field of %.1f mm around "
-                "the middle; corners beyond are left to chance (bake --field)"
-                "\n",
+                "glint %s: the model was baked for a field of radius %.1f mm; "
+                "flares in corners outside may be wrong (bake --field)\n",
                 tool->name, field);
 }
 
@@ -157,9 +156,10 @@ static int set_up(const struct tool *tool, struct opened_lens *lens,
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (settings_only_ghost(s) >= lens->setup.n_ghosts - lens->setup.n_parts)
-        return tool_usage(
-            tool, "%s has %d ghosts, there is no %d", lens->table.name,
-            lens->setup.n_ghosts - lens->setup.n_parts, s->options.ghost);
+        return tool_usage(tool, "%s has %d ghosts; number %d does not exist",
+                          lens->table.name,
+                          lens->setup.n_ghosts - lens->setup.n_parts,
+                          s->options.ghost);
     return EXIT_OK;
 }
 
@@ -191,11 +191,11 @@ int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
 
     if ((settings->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
         settings->options.rays == GLINT_RAYS_EXACT)
-        return tool_usage(tool, "--half is not for exact rays");
+        return tool_usage(tool, "--half does not apply to exact rays");
     if (settings->options.only == GLINT_ONLY_VEIL &&
         !settings_has_veil(settings))
-        code = tool_usage(tool, "--only veil needs a --veil, --haze or "
-                                "--front-dust to draw");
+        code = tool_usage(tool,
+                          "--only veil needs --veil, --haze or --front-dust");
     if (code == EXIT_OK && settings->options.stop_mask)
         code = stop_mask_read(tool, settings->options.stop_mask, &lens->mask);
     if (code == EXIT_OK)

@@ -161,28 +161,29 @@ void settings_warn_lights(const struct tool *tool,
                           const struct glint_engine_report *r)
 {
     if (r->tight)
-        fprintf(stderr,
-                "glint %s: the frame could take more memory than it may, by an "
-                "estimate that does not depend on --threads; it is drawn "
-                "coarser (a larger --memory, up to 1024 MiB, allows more)\n",
-                tool->name);
+        fprintf(
+            stderr,
+            "glint %s: the estimated memory of the frame exceeds --memory, so "
+            "the frame is drawn coarser (--memory accepts up to 1024 MiB)\n",
+            tool->name);
     else if (r->coarsened)
         fprintf(stderr,
-                "glint %s: the frame would have taken more work than --work "
-                "allows; it is drawn coarser\n",
+                "glint %s: the cost of the frame exceeds --work, so the frame "
+                "is drawn coarser\n",
                 tool->name);
     if (!tool->quiet && r->blurred)
         fprintf(stderr,
-                "glint %s: dust and masks of the stop are drawn blurred, as %s "
-                "allows no more\n",
+                "glint %s: dust and masks of the stop are drawn blurred to "
+                "stay within %s\n",
                 tool->name, r->quality >= 0 ? "--budget" : "--work");
     if (!tool->quiet && r->unveiled)
-        fprintf(stderr, "glint %s: --budget has no time for the veil\n",
+        fprintf(stderr,
+                "glint %s: the veil is left out to stay within --budget\n",
                 tool->name);
     if (!tool->quiet && r->beyond_lights > 0)
         fprintf(stderr,
-                "glint %s: %d of %d lights lie beyond the angle that the model "
-                "was baked for; they give nothing (bake --max-angle)\n",
+                "glint %s: %d of %d lights lie outside the angles that the "
+                "model was baked for and cause no ghosts (bake --max-angle)\n",
                 tool->name, r->beyond_lights, r->lights);
     if (!tool->quiet && r->drawn_lights < r->apart_lights)
         fprintf(stderr,
@@ -190,14 +191,14 @@ void settings_warn_lights(const struct tool *tool,
                 "%d, the faint ones first (--max-lights)\n",
                 tool->name, r->apart_lights, r->drawn_lights);
     if (r->stats.dropped_bundles > 0)
-        fprintf(stderr,
-                "glint %s: there was no room for %d bundles of rays, which are "
-                "missing: a larger --memory, fewer lights or a smaller --grid "
-                "would fit\n",
-                tool->name, r->stats.dropped_bundles);
+        fprintf(
+            stderr,
+            "glint %s: %d bundles of rays are missing because --memory is too "
+            "small; increase it, or use fewer lights or a smaller --grid\n",
+            tool->name, r->stats.dropped_bundles);
     if (tool->verbose && r->stats.dropped_cells > 0)
         fprintf(stderr,
-                "glint %s: %d cells of rays give no light: a corner of each "
-                "lies too far outside to be drawn\n",
+                "glint %s: %d cells of rays are missing because a corner of "
+                "each lies too far outside the picture\n",
                 tool->name, r->stats.dropped_cells);
 }

@@ -48,10 +48,10 @@ static int print_matches(const struct tool *tool, const char *name)
     if (strlen(name) >= 3)
         lens_files_each(match, &m);
     if (m.n > 1)
-        tool_error(tool,
-                   "%s: %d lenses have this in their names (did you "
-                   "mean %.*s or %s)",
-                   name, m.n, (int)m.last - 2, m.text + 2, m.text + m.last + 2);
+        tool_error(
+            tool,
+            "%s: %d lenses have this in their names (did you mean %.*s or %s)",
+            name, m.n, (int)m.last - 2, m.text + 2, m.text + m.last + 2);
     return m.n;
 }
 
@@ -104,13 +104,13 @@ static enum glint_status parse_table(const char *file,
     status = glint_input_slurp(&text, &bytes, file, 1 << 20, error);
     if (status == GLINT_E_UNSUPPORTED ||
         (status == GLINT_OK && bytes > 0 && memchr(text, 0, bytes)))
-        status = glint_error_report(error, GLINT_E_FORMAT, file,
-                                    "is no lens table; glint lenses lists "
-                                    "those that come with glint");
+        status = glint_error_report(
+            error, GLINT_E_FORMAT, file,
+            "is not a lens table; glint lenses lists the installed ones");
     else if (status == GLINT_OK && bytes > 5 && memcmp(text, "name:", 5) == 0)
-        status = glint_error_report(error, GLINT_E_FORMAT, file,
-                                    "a lens file of FlareSim; glint import "
-                                    "makes a table of it");
+        status = glint_error_report(
+            error, GLINT_E_FORMAT, file,
+            "a lens file of FlareSim; glint import converts it");
     else if (status == GLINT_OK)
         status = glint_prescription_parse(lens, (const char *)text, bytes, file,
                                           error);
@@ -122,14 +122,14 @@ const char *tool_lens_file(const struct tool *tool, const char *argument,
                            char *path, size_t bytes)
 {
     if (is_foreign(argument)) {
-        tool_error(tool,
-                   "%s: a lens file of another program; glint import "
-                   "makes a table of it",
-                   argument);
+        tool_error(
+            tool,
+            "%s: a lens file of another program; glint import converts it",
+            argument);
         return NULL;
     }
     if (tool_is_model(argument)) {
-        tool_error(tool, "%s: a baked model; this needs the lens table",
+        tool_error(tool, "%s: a baked model; this command needs the lens table",
                    argument);
         return NULL;
     }
@@ -155,8 +155,7 @@ int tool_lens(const struct tool *tool, const char *argument,
     if (status == GLINT_OK)
         return EXIT_OK;
     if (status == GLINT_E_LENS && !glint_ends_in(file, ".lens"))
-        tool_error(tool,
-                   "%s; a lens file of another program goes to glint import",
+        tool_error(tool, "%s; glint import reads lens files of other programs",
                    error.text);
     else
         tool_fail(tool, status, error.text);

@@ -43,8 +43,6 @@ int zoom_option_of_model(const struct tool *tool,
 {
     if (!option->is_zoomed && !option->is_focused)
         return EXIT_OK;
-    return tool_usage(tool,
-                      "%s is a model: where it is %s was chosen when it was "
-                      "baked",
-                      path, option->is_focused ? "focused" : "zoomed");
+    return tool_usage(tool, "%s is a model: its %s was fixed when it was baked",
+                      path, option->is_focused ? "focus" : "zoom");
 }

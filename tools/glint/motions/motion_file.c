@@ -107,16 +107,16 @@ int motion_file_open(const struct tool *tool, const char *path,
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
     if (r->bad_frames && !tool->quiet)
-        fprintf(stderr,
-                "glint %s: %s: in %ld frames foods are seen more than a "
-                "thousandth of the span, %.4g, from their places; most in "
-                "frame %ld, %.4g: did they move, or was a reset not "
-                "recorded?\n",
-                tool->name, path, r->bad_frames, r->span, r->residual_frame,
-                r->residual);
+        fprintf(
+            stderr,
+            "glint %s: %s: in %ld frames foods deviate from their positions by "
+            "more than a thousandth of the extent, %.4g; most in frame %ld, by "
+            "%.4g: they moved, or a reset was not recorded\n",
+            tool->name, path, r->bad_frames, r->span, r->residual_frame,
+            r->residual);
     if (r->held_intensities && !tool->quiet)
         fprintf(stderr,
-                "glint %s: %s: %ld intensities outside 0 .. 1 were held\n",
+                "glint %s: %s: %ld intensities outside 0 .. 1 were clamped\n",
                 tool->name, path, r->held_intensities);
     return EXIT_OK;
 }

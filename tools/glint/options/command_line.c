@@ -174,19 +174,20 @@ int tool_option(struct tool *tool, int option, const char *value)
     case 'j':
         if (tool_integer(value, 1, GLINT_MAX_WORKERS, &tool->n_threads))
             return -1;
-        return tool_usage(tool, "--threads takes 1 to %d, not '%s'",
+        return tool_usage(tool, "--threads must be 1 to %d, not '%s'",
                           GLINT_MAX_WORKERS, value);
     case 'K':
         if (take_sets(tool, value))
             return -1;
         return tool_usage(tool,
-                          "--kernels takes c, auto or what this CPU has "
-                          "(glint --version), not '%s'",
+                          "--kernels must be c, auto or an instruction set of "
+                          "this CPU (glint --version), not '%s'",
                           value);
     case 'S':
         if (tool_integer(value, 0, INT_MAX, &tool->seed))
             return -1;
-        return tool_usage(tool, "--seed takes a whole number, not '%s'", value);
+        return tool_usage(tool, "--seed must be a whole number, not '%s'",
+                          value);
     default: /* getopt_long has printed the error */
         if (tool->cause)
             snprintf(tool->cause->text, sizeof tool->cause->text,

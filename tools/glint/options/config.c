@@ -105,7 +105,7 @@ static char *read_line(char *dst, int size, void *stream)
     if (!is_text(line, n))
         return fail(p, "holds a control character%s", ""), NULL;
     if (n > CONFIG_LINE || n + 2 > (size_t)size)
-        return fail(p, "is too long a line%s", ""), NULL;
+        return fail(p, "has a line that is too long%s", ""), NULL;
     memcpy(dst, line, n);
     memcpy(dst + n, "\n", 2);
     return dst;
@@ -125,8 +125,8 @@ static void note_section(struct pass *p, const char *section)
         return;
     set_where(p, p->section_line);
     fprintf(stderr,
-            "glint %s: %s: no section is called [%s]; its lines count "
-            "all the same\n",
+            "glint %s: %s: the section [%s] is unknown; its lines are used all "
+            "the same\n",
             p->config->tool->name, p->where, section);
 }
 
@@ -181,7 +181,8 @@ static int take_entry(struct pass *p, const struct option *option,
     tool->where = NULL;
     p->value += bytes;
     if (code == EXIT_OK) /* an option such as --list-devices */
-        return fail(p, "%s is for the command line", option->name);
+        return fail(p, "%s is an option of the command line only",
+                    option->name);
     if (code > 0)
         p->code = code;
     return code < 0;
@@ -198,7 +199,7 @@ static int on_entry(void *ctx, const char *section, const char *name,
     note_section(p, section);
     option = find_option(p->config, name);
     if (!option)
-        return fail(p, "there is no option %s for a file", name);
+        return fail(p, "%s is not an option of configuration files", name);
     return p->taking ? take_entry(p, option, value)
                      : check_entry(p, option, value);
 }

@@ -66,8 +66,8 @@ int tool_refuse(const struct tool *tool, const char *option, const char *value)
 {
     const char *takes = values_of(tool->name, option);
 
-    return tool_usage(tool, "--%s: '%s' is not something it takes%s%s", option,
-                      value, takes ? ": " : "", takes ? takes : "");
+    return tool_usage(tool, "--%s: '%s' is not valid%s%s", option,
+                      value, takes ? "; expected " : "", takes ? takes : "");
 }
 
 int tool_fail(const struct tool *tool, enum glint_status status,
@@ -98,8 +98,7 @@ int tool_start(struct tool *tool)
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
     if (tool->n_threads > tool->workers->n && !tool->quiet)
-        fprintf(stderr,
-                "glint %s: %d of %d threads, as the system gives no more\n",
+        fprintf(stderr, "glint %s: the system provides %d of %d threads\n",
                 tool->name, tool->workers->n, tool->n_threads);
     return EXIT_OK;
 }
@@ -285,10 +284,10 @@ static void tell_length(struct tool_progress *p, double spent, double done)
     if (all < 20)
         return;
     if (left < 120)
-        fprintf(stderr, "%s: takes about %.0f s%s\n", p->what, left,
+        fprintf(stderr, "%s: will take about %.0f s%s\n", p->what, left,
                 p->besides ? p->besides : "");
     else
-        fprintf(stderr, "%s: takes about %.0f minutes%s%s%s\n", p->what,
+        fprintf(stderr, "%s: will take about %.0f minutes%s%s%s\n", p->what,
                 left / 60, p->besides ? p->besides : "",
                 p->less ? "; less with " : "", p->less ? p->less : "");
 }

@@ -63,11 +63,11 @@ static int refuse_lost(const struct tool *tool, const struct apart_file *input,
 
     if (!input->option)
         return tool_usage(tool,
-                          "%s %s is the input, which would be lost; name "
-                          "another file",
+                          "%s %s would overwrite the input; name another "
+                          "file",
                           output->option, name);
     return tool_usage(tool,
-                      "%s %s is the file of %s, which would be lost; name "
+                      "%s %s would overwrite the file of %s; name "
                       "another file",
                       output->option, name, input->option);
 }

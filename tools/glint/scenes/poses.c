@@ -106,7 +106,8 @@ static const char *make(const struct glint_scene_model *m,
     if (is_sun ? !set_unit(m, v + PLACE, 3, pose->at)
                : !set_place(m, v + PLACE, pose->at))
         return is_sun ? "the direction to a sun must not be 0 0 0"
-                      : "x, y or z is beyond what the scene was baked for";
+                      : "x, y or z is out of the range that the scene was "
+                        "baked for";
     if (pose->has_turn && !set_unit(m, v + TURN, 4, pose->turn_q30))
         return "qw, qx, qy, qz must not be all 0";
     return NULL;

@@ -72,11 +72,12 @@ static enum glint_status place(struct scene_frame *frame)
 
 static int say(const struct tool *tool, enum glint_status status)
 {
-    return tool_fail(tool, status,
-                     status == GLINT_E_ARGUMENT
-                         ? "the scene's camera sees too much for a picture of "
-                           "this shape: tangents of 64 from the middle"
-                         : NULL);
+    return tool_fail(
+        tool, status,
+        status == GLINT_E_ARGUMENT
+            ? "the field of view of the scene's camera is too large for a "
+              "picture of this shape: its corner exceeds a tangent of 64"
+            : NULL);
 }
 
 int scene_frame_open(struct scene_frame *frame, const struct tool *tool,

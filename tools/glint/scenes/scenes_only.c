@@ -18,7 +18,7 @@ int tool_scene_bake(const struct tool *tool, const char *path, uint8_t **data,
 
     (void)data, (void)bytes, (void)report;
     snprintf(error.text, sizeof error.text,
-             "%.120s is a text; this program takes baked scenes only (glint "
+             "%.120s is a text; this program reads baked scenes only (glint "
              "bake, on any machine)",
              path);
     return tool_fail(tool, GLINT_E_LENS, error.text);

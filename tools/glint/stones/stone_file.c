@@ -242,7 +242,8 @@ static enum glint_status bake(const struct tool *tool, struct source *s,
     tool_progress_end(&progress);
     if (s->held > 0 && !tool->quiet)
         fprintf(stderr,
-                "glint %s: %s: %lld numbers below 0 or not finite became 0\n",
+                "glint %s: %s: %lld numbers that are negative or not finite "
+                "were set to 0\n",
                 tool->name, name, s->held);
     file->is_baked_now = true;
     file->errors.seconds = (double)(clock() - began) / CLOCKS_PER_SEC;
@@ -274,8 +275,8 @@ static void keep(const struct tool *tool, char *path,
 
     if (cache_file_write(path, file->data, file->bytes, &error) != GLINT_OK &&
         !tool->quiet)
-        fprintf(stderr, "glint %s: the stone is not kept: %s\n", tool->name,
-                error.text);
+        fprintf(stderr, "glint %s: the baked material cannot be cached: %s\n",
+                tool->name, error.text);
 }
 
 static enum glint_status
