@@ -12,6 +12,7 @@
 #include "glint/trace.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "bake/table/form.h"
 #include "bake/trace/spot.h"
@@ -24,9 +25,12 @@ enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
 struct search {
     struct glint_openings openings;
-    int across, down; /* number of cells of this round */
+    struct glint_path places; /* the path of openings, without energies */
+    int across, down;         /* number of cells of this round */
     struct glint_ray ray[DOWN + 1][ACROSS + 1];
     enum glint_ray_status status[DOWN + 1][ACROSS + 1];
+    struct glint_pupil grid;         /* what the grid covers */
+    bool kept[DOWN + 1][ACROSS + 1]; /* corners of cells that are kept */
 };
 
 static double column_x(const struct search *s, const struct glint_pupil *p,
@@ -41,19 +45,18 @@ static double row_y(const struct search *s, const struct glint_pupil *p,
     return p->y0_mm + (p->y1_mm - p->y0_mm) * j / s->down;
 }
 
-static void sample_grid(struct search *s, const struct glint_pupil *p)
+/* Traces row J of the grid over P along PATH. */
+static void sample_row(struct search *s, const struct glint_pupil *p,
+                       const struct glint_path *path, int j)
 {
-    struct glint_row row = {s->across + 1,
-                            p->x0_mm,
-                            (p->x1_mm - p->x0_mm) / s->across,
-                            0,
-                            {s->openings.direction[0], s->openings.direction[1],
-                             s->openings.direction[2]}};
+    const double *d = s->openings.direction;
+    const struct glint_row row = {s->across + 1,
+                                  p->x0_mm,
+                                  (p->x1_mm - p->x0_mm) / s->across,
+                                  row_y(s, p, j),
+                                  {d[0], d[1], d[2]}};
 
-    for (int j = 0; j <= s->down; j++) {
-        row.y_mm = row_y(s, p, j);
-        glint_trace_row(s->openings.path, &row, s->ray[j], s->status[j], NULL);
-    }
+    glint_trace_row(path, &row, s->ray[j], s->status[j], NULL);
 }
 
 struct bounds {
@@ -101,11 +104,9 @@ static bool may_pass(const struct search *s, const struct bounds *b)
                s->openings.field_mm;
 }
 
-/* Adds one cell to those that are kept: its place, its energy and where its
- * light lands. */
-static void keep(const struct search *s, int i, int j,
-                 const struct bounds *cell, struct bounds *box,
-                 struct glint_pupil *found)
+/* Adds one cell to those that are kept: its place and where its light lands. */
+static void keep(struct search *s, int i, int j, const struct bounds *cell,
+                 struct bounds *box, struct glint_pupil *found)
 {
     const int at[4] = {i, i + 1, j, j + 1};
     double *sensor = found->sensor_mm;
@@ -123,12 +124,8 @@ static void keep(const struct search *s, int i, int j,
         sensor[2 * k + 1] = box->n ? fmax(sensor[2 * k + 1], hi) : hi;
     }
     box->n++;
-    for (int k = 0; k < 4; k++) {
-        const int row = j + (k >> 1), column = i + (k & 1);
-
-        if (s->status[row][column] == GLINT_RAY_OK)
-            found->energy = fmax(found->energy, s->ray[row][column].energy);
-    }
+    for (int k = 0; k < 4; k++)
+        s->kept[j + (k >> 1)][i + (k & 1)] = true;
 }
 
 /* Adds the mirror image of the light on the sensor. */
@@ -145,8 +142,10 @@ static bool shrink(struct search *s, struct glint_pupil *p)
     struct glint_pupil found = *p;
     struct bounds box = {.n = 0};
 
-    found.energy = 0;
-    sample_grid(s, p);
+    s->grid = *p;
+    memset(s->kept, 0, sizeof s->kept);
+    for (int j = 0; j <= s->down; j++)
+        sample_row(s, p, &s->places, j);
     for (int j = 0; j < s->down; j++)
         for (int i = 0; i < s->across; i++) {
             struct bounds cell = {.n = 0};
@@ -217,6 +216,22 @@ static struct glint_pupil whole_front(const struct glint_path *path,
                                 .mirrored = path->round};
 }
 
+/* Returns the largest energy at the corners that the last grid kept. */
+static double energy_of(struct search *s)
+{
+    double most = 0;
+
+    for (int j = 0; j <= s->down; j++) {
+        if (!memchr(s->kept[j], true, sizeof s->kept[j]))
+            continue;
+        sample_row(s, &s->grid, s->openings.path, j);
+        for (int i = 0; i <= s->across; i++)
+            if (s->kept[j][i] && s->status[j][i] == GLINT_RAY_OK)
+                most = fmax(most, s->ray[j][i].energy);
+    }
+    return most;
+}
+
 static double extent(const struct glint_pupil *p)
 {
     return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
@@ -257,6 +272,9 @@ static bool shrink_on(struct search *s, struct glint_pupil *p, int across,
         if (round > 0 && extent(p) > 0.8 * before)
             break;
     }
+    /* Places decide what is kept: only the last grid's energies are needed. */
+    if (found)
+        p->energy = energy_of(s);
     return found;
 }
 
@@ -320,7 +338,7 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
                               const double direction[3], double stop_radius_mm,
                               double field_mm, const struct glint_pupil *near)
 {
-    struct search s; /* 110 KB: the offline half has the stack for it */
+    struct search s; /* 150 KB: the offline half has the stack for it */
     struct glint_pupil whole, p;
     const struct glint_event *front = NULL;
     bool found;
@@ -335,6 +353,8 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
         .direction = {direction[0], direction[1], direction[2]},
         .stop_mm = stop_radius_mm,
         .field_mm = field_mm};
+    s.places = *path;
+    s.places.places_only = true;
     whole = whole_front(path, front, direction);
     p = near ? surroundings(near, &whole) : whole;
     found = find(&s, &whole, &p, near);
