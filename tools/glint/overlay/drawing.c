@@ -198,9 +198,13 @@ static void watch(const struct tool *tool, struct drawing *d,
         !GLINT_OPTION_GIVEN(&d->line.settings.options, exposure))
         fprintf(stderr,
                 "glint %s: exact rays: first how bright flares of %s are, "
-                "a minute or more for a zoom, then each frame again\n",
+                "longer for a zoom, then each frame again\n",
                 tool->name, d->files.lens.table.name);
     tool_progress_start(&d->run.progress, tool, "exact rays");
+    /* Measuring how bright flares are begins at 0 several times: an estimate
+     * would be wrong, so only a terminal's bar moves. */
+    d->run.progress.shown &= d->run.progress.is_terminal;
+    d->run.progress.told = true;
     d->run.is_progressing = true;
     cfg->drawing.progress = tool_progress_show;
     cfg->drawing.progress_ctx = &d->run.progress;
@@ -578,12 +582,18 @@ enum glint_status drawing_expose(struct drawing *drawing,
 {
     struct drawing_run *const run = &drawing->run;
     struct glint_engine_config cfg;
+    enum glint_status status;
 
     save_lamps(&drawing->files.save, run, focal_of(drawing));
     glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
-    return glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
-                               run->white);
+    status = glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
+                                 run->white);
+    /* What follows is drawn once: its clock starts here. */
+    if (run->is_progressing)
+        tool_progress_start(&run->progress, drawing->files.scene.tool,
+                            "exact rays");
+    return status;
 }
 
 /* Ends the flare of a frame that was begun at START, in seconds. */
