@@ -942,16 +942,16 @@ static enum glint_status begin_flare(struct glint_frame *f, double scale)
 /* Sets the capacities for N edges and REFS references. */
 static size_t bytes_for(struct glint_frame *f, double n, double refs)
 {
-    f->cfg.max_primitives = (int)fmin(INT_MAX, n + 1024);
-    f->cfg.max_refs = (int)fmin(INT_MAX, refs + 1024);
+    f->cfg.max_primitives = (int)fmin(INT_MAX, n);
+    f->cfg.max_refs = (int)fmin(INT_MAX, refs);
     return glint_flare_bytes(&f->cfg);
 }
 
-static bool is_served(const struct glint_frame *f,
-                      const struct glint_flare_stats *s)
+static bool has_capacity(const struct glint_frame *f,
+                         const struct glint_flare_stats *s)
 {
     return s->need_primitives <= f->cfg.max_primitives &&
-           s->need_refs <= f->cfg.max_refs && s->dropped_bundles == 0;
+           s->need_refs <= f->cfg.max_refs;
 }
 
 /* Gives the flare more room for what S needs, as much as it may take unless
@@ -964,8 +964,9 @@ static bool widen(struct glint_frame *f, const struct glint_flare_stats *s,
     const double uneven = glint_workers_count(f->cfg.workers) > 1 ? 1.5 : 1;
     double part = 1;
 
-    while (bytes_for(f, fmax(had, part * uneven * s->need_primitives),
-                     fmax(refs_had, part * s->need_refs)) > most_bytes(f) &&
+    while (bytes_for(f, fmax(had, part * (uneven * s->need_primitives + 1024)),
+                     fmax(refs_had, part * (s->need_refs + 1024.0))) >
+               most_bytes(f) &&
            !anyway && part > 1e-3)
         part *= 0.9;
     return f->cfg.max_primitives > had || f->cfg.max_refs > refs_had;
@@ -1019,10 +1020,12 @@ static enum glint_status draw_rows(struct glint_frame *f, double scale,
         struct glint_flare_stats s;
 
         bin_rows(f, y0, y0 + n, &s);
-        if (!is_served(f, &s)) {
-            if (widen(f, &s, n <= side))
+        if (!has_capacity(f, &s) || s.dropped_bundles) {
+            const bool more = widen(f, &s, n <= side);
+
+            if (more)
                 status = begin_flare(f, scale);
-            else
+            if (!more || !has_capacity(f, &s))
                 rows = fewer_rows(f, n, &s);
             continue;
         }
