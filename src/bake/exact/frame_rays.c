@@ -960,12 +960,16 @@ static bool widen(struct glint_frame *f, const struct glint_flare_stats *s,
                   bool anyway)
 {
     const int had = f->cfg.max_primitives, refs_had = f->cfg.max_refs;
+    /* A row of tiles cannot be divided: it gets more until it is drawn. */
+    const double least = anyway ? 1.25 * had + 1024 : had;
+    const double least_refs = anyway ? 1.25 * refs_had + 1024 : refs_had;
     /* Workers' shares are never quite even. */
     const double uneven = glint_workers_count(f->cfg.workers) > 1 ? 1.5 : 1;
     double part = 1;
 
-    while (bytes_for(f, fmax(had, part * (uneven * s->need_primitives + 1024)),
-                     fmax(refs_had, part * (s->need_refs + 1024.0))) >
+    while (bytes_for(f,
+                     fmax(least, part * (uneven * s->need_primitives + 1024)),
+                     fmax(least_refs, part * (s->need_refs + 1024.0))) >
                most_bytes(f) &&
            !anyway && part > 1e-3)
         part *= 0.9;
