@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <string>
@@ -18,6 +19,7 @@
 #include <unistd.h>
 
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 
 #include "glint/image.h"
 #include "glint/status.h"
@@ -198,6 +200,29 @@ try {
     std::snprintf(error->text, sizeof error->text,
                   "not enough memory for a picture");
     return GLINT_E_MEMORY;
+}
+
+/* Throws failure if IN reads videos: that reader opens the files that a text
+ * with a video's name lists. */
+inline void check_picture(const OIIO::ImageInput *in)
+{
+    if (in && OIIO::Strutil::istarts_with(in->format_name(), "ffmpeg"))
+        throw failure{GLINT_E_UNSUPPORTED, "is a video, not a picture"};
+}
+
+/* Opens the picture PATH as CONFIG requests. Throws failure. */
+inline std::unique_ptr<OIIO::ImageInput>
+open_picture(const std::string &path, const OIIO::ImageSpec *config = nullptr)
+{
+    std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(path);
+
+    (void)OIIO::geterror(); /* other readers may know the file */
+    check_picture(in.get());
+    in = OIIO::ImageInput::open(path, config);
+    if (!in)
+        throw failure{GLINT_E_FORMAT, OIIO::geterror()};
+    check_picture(in.get());
+    return in;
 }
 
 /* Throws failure if glint cannot read a picture of SPEC. Called before any

@@ -30,6 +30,7 @@
 using glint::bytes;
 using glint::check_spec;
 using glint::failure;
+using glint::open_picture;
 using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
@@ -246,9 +247,7 @@ void read_file(struct glint_oiio_file &file, const char *path)
     ImageSpec as_stored;
 
     as_stored.attribute("oiio:UnassociatedAlpha", 1);
-    const std::unique_ptr<ImageInput> in = ImageInput::open(path, &as_stored);
-    if (!in)
-        throw failure{GLINT_E_FORMAT, OIIO::geterror()};
+    const std::unique_ptr<ImageInput> in = open_picture(path, &as_stored);
     check_spec(in->spec());
     file.type = in->format_name();
     if (is_carried(file.type))

@@ -28,6 +28,7 @@ namespace
 using glint::check_spec;
 using glint::failure;
 using glint::guarded;
+using glint::open_picture;
 
 /* Returns the channels for R, G, B: the first three, or the first for all. */
 std::vector<int> channel_order(int n_channels)
@@ -41,11 +42,9 @@ std::vector<int> channel_order(int n_channels)
  * file name would answer from a cache after the file has changed. */
 OIIO::ImageBuf load_upright(const char *path)
 {
-    const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path);
-
-    if (!in)
-        throw failure{GLINT_E_FORMAT, OIIO::geterror()};
+    const std::unique_ptr<OIIO::ImageInput> in = open_picture(path);
     OIIO::ImageSpec spec = in->spec();
+
     check_spec(spec);
     spec.set_format(spec.format.is_floating_point() ? OIIO::TypeDesc::FLOAT
                                                     : OIIO::TypeDesc::UINT8);
