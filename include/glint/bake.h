@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/bake.h - computes models from lens tables; includes all of the offline
- * half.
+ * glint/bake.h - computes models from lens tables. Includes all headers of the
+ * offline half.
  *
  *     glint_bake_defaults(&options);
- *     glint_bake(&lens, &options, &model, &bytes, &report, &error); */
+ *     glint_bake(&lens, &options, &model, &bytes, &report, &error);
+ */
 #ifndef GLINT_BAKE_H
 #define GLINT_BAKE_H
 
@@ -99,8 +100,8 @@ struct glint_bake_model {
     unsigned char *data;
     size_t bytes;
     int32_t along_q30;
-    const bool *ghosts; /* the member GHOSTS of the options that it was baked
-                           with; NULL at both ends of the zoom */
+    /* options.ghosts of its bake; NULL at both ends of the zoom */
+    const bool *ghosts;
 };
 
 /* Joins N models of one lens, sorted by rising position from 0 to 2^30, into a

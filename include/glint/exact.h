@@ -40,8 +40,8 @@ struct glint_exact_config {
 enum glint_status glint_exact_render(const struct glint_exact_config *cfg,
                                      double *rgb);
 
-/* Traces exact rays for each picture; for RAYS of struct
- * glint_engine_camera. */
+/* Ray source that traces exact rays for each picture; assign it to
+ * glint_engine_camera.rays. */
 struct glint_frame_rays;
 extern const struct glint_frame_rays glint_frame_traces;
 

@@ -46,7 +46,7 @@ struct glint_coating {
     struct glint_film film[GLINT_MAX_FILMS];
 };
 
-#define GLINT_SHAPE_TERMS 9 /* A4, A6 .. A20 */
+#define GLINT_SHAPE_TERMS 9 /* aspheric coefficients A4, A6 .. A20 */
 
 enum glint_bend {
     GLINT_BEND_ROUND, /* the profile is rotated about the axis */
@@ -98,8 +98,9 @@ struct glint_form {
      * and curvature of the profile there; beyond, the profile continues from
      * them without its powers. */
     double end2, end_at[3];
-    /* Transform from the frame of the light at the vertex to the frame of the
-     * surface: at = turn at + shift; rows of TURN are unit vectors. */
+    /* Rigid transform of a point p from the frame of the light at the vertex
+     * to the frame of the surface: turn p + shift; rows of TURN are unit
+     * vectors. */
     double turn[3][3], shift[3];
     /* LEVEL: the form is round or a cylinder, and on the axis, so rays stay in
      * the frame of the light. ALONG: direction of the profile in that frame.
@@ -204,8 +205,8 @@ struct glint_prescription {
     /* First surface and number of the surfaces that move together along the
      * axis to focus; 0 surfaces: the whole lens moves. */
     int focus_first, n_focus;
-    /* Current zoom position, 0 .. 1, and distance of the focused object from
-     * the sensor, m, 0 for infinity. */
+    /* Current zoom position, 0 .. 1, and distance from the sensor to the
+     * focused object, m; 0: infinity. */
     double zoom_along, focus_m;
 };
 
@@ -253,9 +254,9 @@ enum glint_status glint_prescription_focus(struct glint_prescription *lens,
                                            double metres,
                                            struct glint_error *error);
 
-/* Replaces the coatings of LENS: from the front, surfaces between air and glass
- * get COATINGS[N] in turn, starting again at the first when all are used; N is
- * 1 .. GLINT_MAX_COATINGS. Cemented surfaces are bare. */
+/* Replaces the coatings of LENS. Surfaces between air and glass get
+ * COATINGS[N] in turn, from the front, starting again at the first when all
+ * are used; N is 1 .. GLINT_MAX_COATINGS. Cemented surfaces get no coating. */
 void glint_prescription_coat(struct glint_prescription *lens,
                              const struct glint_coating *coatings, int n);
 
@@ -305,9 +306,9 @@ struct glint_ghost {
     int i, j; /* indices into glint_prescription.surface, i < j */
 };
 
-/* Lists all pairs of surfaces on the same side of the stop, first the pairs
- * before the stop, sorted by I, then J. Writes at most MAX; returns how many
- * there are. [Hullin11] */
+/* Lists all pairs of surfaces on the same side of the stop: first the pairs
+ * before the stop, sorted by I, then J. Writes at most MAX pairs and returns
+ * the number of all pairs. [Hullin11] */
 int glint_ghost_list(const struct glint_prescription *lens,
                      struct glint_ghost *ghosts, int max);
 

@@ -55,7 +55,7 @@ struct glint_film_at {
 struct glint_path {
     int n_events;
     struct glint_event event[GLINT_MAX_EVENTS + 1];
-    /* The coatings of the surfaces. */
+    /* Layers of the coating of each surface, at the wavelength of the path. */
     struct glint_film_at film[GLINT_MAX_SURFACES][GLINT_MAX_FILMS];
     /* Defined only for surfaces that are not centred spheres. */
     struct glint_form form[GLINT_MAX_SURFACES];
@@ -76,8 +76,9 @@ void glint_path_init(struct glint_path *path,
                      const struct glint_prescription *lens,
                      const struct glint_ghost *ghost, double wavelength_nm);
 
-/* Does the same for light in the plane at PHI_DEG about the axis. The lens is
- * rotated, so that this plane is the x-z plane of rays, hits and pupils. */
+/* Like glint_path_init(), for light in the plane at PHI_DEG about the axis.
+ * The lens is rotated so that this plane is the x-z plane of rays, hits and
+ * pupils. */
 void glint_path_init_at(struct glint_path *path,
                         const struct glint_prescription *lens,
                         const struct glint_ghost *ghost, double wavelength_nm,
@@ -118,8 +119,8 @@ struct glint_launch {
     double x_mm, y_mm, direction[3];
 };
 
-/* Traces N rays like glint_trace(), bit by bit, in a fraction of the time. RAY
- * and STATUS have N entries, HITS has [n][n_events][2]. */
+/* Traces N rays with results bit-identical to glint_trace(), in a fraction
+ * of the time. RAY and STATUS have N entries, HITS has [n][n_events][2]. */
 void glint_trace_many(const struct glint_path *path, int n,
                       const struct glint_launch *from, struct glint_ray *ray,
                       enum glint_ray_status *status, double (*hits)[2]);
