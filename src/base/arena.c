@@ -17,7 +17,8 @@ void *glint_arena_take(struct glint_arena *arena, size_t count, size_t bytes)
     const size_t at = arena->used;
 
     if (bytes > 0 && count > (room - GLINT_ALIGN) / bytes) {
-        arena->used = SIZE_MAX - GLINT_ALIGN; /* Nothing fits any more. */
+        /* Makes all later allocations fail. */
+        arena->used = SIZE_MAX - GLINT_ALIGN;
         return NULL;
     }
     arena->used +=

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Bump allocation from one block that the caller owns; nothing is freed.
+ * Bump allocator in one block that the caller owns; nothing is freed.
  *
- * With base == NULL the arena only counts. Each object has one function that
- * carves its buffers, and it runs twice: first to measure the size, then to
- * place the buffers. So the reported size is always the size that init
- * needs. */
+ * With base == NULL the arena only counts bytes. Each object has one function
+ * that allocates its buffers. The function runs twice: first to measure the
+ * size, then to place the buffers. So the reported size is always the size that
+ * init needs.
+ */
 #ifndef GLINT_BASE_ARENA_H
 #define GLINT_BASE_ARENA_H
 
@@ -24,7 +25,7 @@ struct glint_arena {
 /* Returns an arena that measures. */
 struct glint_arena glint_arena_measure(void);
 
-/* Returns an arena over MEM[BYTES], aligned to GLINT_ALIGN. */
+/* Returns an arena over MEM[BYTES]; MEM is aligned to GLINT_ALIGN. */
 struct glint_arena glint_arena_over(void *mem, size_t bytes);
 
 /* Allocates COUNT items of BYTES each, uninitialised; NULL while measuring, or

@@ -7,9 +7,9 @@ STATIC_ASSERT(sizeof(struct glint_blob_header) == 92);
 
 /* ---------------------------------------------------------------------- CRC */
 
-/* Continues with the checksum CRC over N bytes; half a byte at a time needs a
- * table of only 16 words. */
-static uint32_t crc32_more(uint32_t crc, const unsigned char *byte, size_t n)
+/* Updates the checksum CRC with N bytes. Processes half a byte at a
+ * time, which needs a table of only 16 words. */
+static uint32_t update_crc32(uint32_t crc, const unsigned char *byte, size_t n)
 {
     static const uint32_t table[16] = {
         0x00000000, 0x1db71064, 0x3b6e20c8, 0x26d930ac, 0x76dc4190, 0x6b6b51f4,
@@ -25,10 +25,10 @@ static uint32_t crc32_more(uint32_t crc, const unsigned char *byte, size_t n)
 
 uint32_t glint_blob_crc32(const void *data, size_t bytes)
 {
-    return ~crc32_more(UINT32_MAX, data, bytes);
+    return ~update_crc32(UINT32_MAX, data, bytes);
 }
 
-static uint32_t checksum(const void *data, size_t bytes)
+static uint32_t compute_checksum(const void *data, size_t bytes)
 {
     const size_t from = offsetof(struct glint_blob_header, variant);
 
@@ -57,7 +57,7 @@ enum glint_blob_fault glint_blob_open(struct glint_blob *blob,
         return GLINT_BLOB_TRUNCATED;
     if (bytes > h->bytes)
         return GLINT_BLOB_LONGER;
-    if (checksum(data, bytes) != h->crc32)
+    if (compute_checksum(data, bytes) != h->crc32)
         return GLINT_BLOB_DAMAGED;
     *blob = (struct glint_blob){h, bytes, kind->header_bytes, 0};
     return GLINT_BLOB_OK;
@@ -73,7 +73,7 @@ enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob)
 
         if (c < 0x20 || c == 0x7f)
             return GLINT_BLOB_NAME_CONTROL;
-        if (c >= 0x80) /* 0x9b would begin a command to a terminal */
+        if (c >= 0x80) /* terminals interpret 0x9b as the start of a command */
             return GLINT_BLOB_NAME_FOREIGN;
     }
     if (n == sizeof blob->header->name)
@@ -100,5 +100,5 @@ void glint_blob_seal(void *data, size_t bytes)
     struct glint_blob_header *h = data;
 
     h->bytes = (uint32_t)bytes;
-    h->crc32 = checksum(data, bytes);
+    h->crc32 = compute_checksum(data, bytes);
 }

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * A baked file: one block of little-endian 32-bit words that is checked once
- * and then used where it lies, in ROM or a mapped file.
+ * Baked file: one block of little-endian 32-bit words that is checked once and
+ * then used where it lies, in ROM or in a mapped file.
  *
  *     fault = glint_blob_open(&blob, &kind, data, bytes);
  *     table = glint_blob_section(&blob, at, n, sizeof *table);
  *
- * The header of every kind begins with struct glint_blob_header and continues
- * with fields of its own. After it come the sections: tables, in any order, to
- * which the kind's fields point by bytes from the start of the file, multiples
- * of 4. The magic number tells the kind. */
+ * The header of every file type begins with struct glint_blob_header and
+ * continues with fields of its own type. The sections follow: tables in any
+ * order. Header fields hold their offsets in bytes from the start of the file,
+ * multiples of 4. The magic number identifies the file type.
+ */
 #ifndef GLINT_BASE_BLOB_H
 #define GLINT_BASE_BLOB_H
 
@@ -20,42 +21,42 @@
 
 struct glint_blob_header {
     uint32_t magic, version;
-    uint32_t bytes;   /* bytes of the whole file */
+    uint32_t bytes;   /* size of the file including the header, bytes */
     uint32_t crc32;   /* CRC-32 of all bytes after this word: polynomial
                          0xedb88320, reflected, initial value and final XOR all
                          ones */
-    uint32_t variant; /* variant of the kind; its meaning depends on the kind */
-    uint32_t key[2];  /* key of the source and the options that it was baked
-                         from, low word first */
-    char name[64];    /* name of the object baked, terminated */
+    uint32_t variant; /* variant of the file type, which defines its meaning */
+    uint32_t key[2];  /* hash of the source and of the options of the bake, low
+                         word first */
+    char name[64];    /* name of the baked object, zero-terminated */
 };
 
 struct glint_blob_kind {
     uint32_t magic, version;
-    size_t header_bytes; /* bytes of the header, including the fields of its
-                            kind */
+    /* size of the header with the fields of its file type */
+    size_t header_bytes;
 };
 
 enum glint_blob_fault {
     GLINT_BLOB_OK,
-    GLINT_BLOB_UNALIGNED,  /* the block does not begin at a multiple of 4 bytes
-                            */
-    GLINT_BLOB_FOREIGN,    /* it has no magic number of this kind */
-    GLINT_BLOB_NEWER,      /* a later version */
-    GLINT_BLOB_NO_VERSION, /* version 0, which never existed */
-    GLINT_BLOB_OLDER,      /* an earlier version */
-    GLINT_BLOB_TRUNCATED,  /* bytes are missing */
-    GLINT_BLOB_LONGER,     /* there are more bytes than the header says */
-    GLINT_BLOB_DAMAGED,    /* the checksum is wrong */
-    GLINT_BLOB_NAME_CONTROL, /* the name has a control character */
-    GLINT_BLOB_NAME_FOREIGN, /* the name has a byte beyond ASCII */
-    GLINT_BLOB_NAME_ENDLESS, /* the name is not terminated */
+    GLINT_BLOB_UNALIGNED,    /* the block's address is not a multiple of 4 */
+    GLINT_BLOB_FOREIGN,      /* wrong magic number */
+    GLINT_BLOB_NEWER,        /* newer version than this program reads */
+    GLINT_BLOB_NO_VERSION,   /* version 0, which never existed */
+    GLINT_BLOB_OLDER,        /* older version than this program reads */
+    GLINT_BLOB_TRUNCATED,    /* the file is shorter than its header states */
+    GLINT_BLOB_LONGER,       /* the file is longer than its header states */
+    GLINT_BLOB_DAMAGED,      /* the checksum is wrong */
+    GLINT_BLOB_NAME_CONTROL, /* the name contains a control character */
+    GLINT_BLOB_NAME_FOREIGN, /* the name contains a byte above 0x7f */
+    GLINT_BLOB_NAME_ENDLESS, /* the name is not zero-terminated */
     GLINT_BLOB_NAME_EMPTY,
     GLINT_BLOB_FAULTS
 };
 
-/* Texts of the faults. THING names the type of file, THINGS is its plural, DONE
- * is the participle of the operation. The text of GLINT_BLOB_OK is NULL. */
+/* Error messages of the faults. THING names the file type, THINGS is its
+ * plural, DONE is the participle of the operation. The message of
+ * GLINT_BLOB_OK is NULL. */
 #define GLINT_BLOB_FAULT_TEXT(thing, things, done)                          \
     {                                                                       \
         [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes", \
@@ -75,8 +76,8 @@ enum glint_blob_fault {
         [GLINT_BLOB_NAME_EMPTY] = "the name is empty"                       \
     }
 
-/* Checks that the struct HEADER begins with the fields of struct
- * glint_blob_header. VARIANT_FIELD is its field for the variant. */
+/* Checks at compile time that the struct HEADER begins with the fields of
+ * struct glint_blob_header. VARIANT_FIELD is the name of its variant field. */
 #define GLINT_BLOB_HEADER(header, variant_field)           \
     GLINT_BLOB_SAME_PLACE(header, magic, magic);           \
     GLINT_BLOB_SAME_PLACE(header, version, version);       \
@@ -97,9 +98,9 @@ struct glint_blob {
     uint64_t referred;
 };
 
-/* Checks that DATA[BYTES] is complete and of KIND, in time proportional to
- * BYTES, and points BLOB into it. Header fields from the variant on are not
- * checked. BLOB is set only without a fault. */
+/* Checks that DATA[BYTES] is a complete file of KIND, in time proportional
+ * to BYTES, and points BLOB into it. Does not check the header fields from
+ * the variant on. Sets BLOB only if there is no fault. */
 enum glint_blob_fault glint_blob_open(struct glint_blob *blob,
                                       const struct glint_blob_kind *kind,
                                       const void *data, size_t bytes);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Works on eight bytes in a word; the first byte is the lowest. */
+ * Compares and counts the eight bytes of a 64-bit word in parallel. The byte at
+ * the lowest address is the lowest byte of the word.
+ */
 #ifndef GLINT_BASE_BYTES_H
 #define GLINT_BASE_BYTES_H
 
@@ -31,14 +33,14 @@ static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
     return (is_above_128 ? sum & v : sum | v) & BYTES_HIGH;
 }
 
-/* Packs the high bits of the eight bytes of HIGH into bits 0 .. 7; bit 0 is
- * that of the first byte. */
+/* Packs the high bits of the eight bytes of HIGH into bits 0 .. 7; the first
+ * byte gives bit 0. */
 static WHOLLY_INLINE uint32_t bytes_high_bits(uint64_t high)
 {
     return (uint32_t)((high >> 7) * UINT64_C(0x0102040810204080) >> 56);
 }
 
-/* Returns how many high bits of HIGH are set. */
+/* Returns the number of bytes of HIGH whose high bit is set. */
 static WHOLLY_INLINE uint32_t bytes_count(uint64_t high)
 {
     return (uint32_t)((high >> 7) * BYTES_EACH >> 56);

@@ -16,7 +16,7 @@
 /* Right shifts of negative numbers are arithmetic wherever glint runs. */
 STATIC_ASSERT((-3 >> 1) == -2);
 
-/* Makes the compiler forget where P points, so that it loads values again from
+/* Hides the value of P from the optimiser, so that it reloads values from
  * memory instead of spilling registers to preserve them. */
 #define FORGET(p) __asm__("" : "+r"(p))
 
@@ -27,14 +27,15 @@ STATIC_ASSERT((-3 >> 1) == -2);
 #define PREFETCH(p) ((void)(p))
 #endif
 
-/* Keeps a function that is seldom called, and its arrays, out of its callers.
- */
+/* Prevents inlining of a rarely called function, so that its arrays do not
+ * enlarge the stack frames of its callers. */
 #define OUT_OF_LINE __attribute__((noinline))
 
 /* Aligns a variable or member to a multiple of BYTES bytes. */
 #define ALIGNED(bytes) __attribute__((aligned(bytes)))
 
-/* Returns the bits needed to write X: 0 for 0, 64 for UINT64_MAX. */
+/* Returns the number of bits in the binary representation of X: 0 for 0, 64
+ * for UINT64_MAX. */
 static inline int bit_length(uint64_t x)
 {
 #if defined(__GNUC__)
@@ -57,11 +58,11 @@ static inline uint32_t bits_set(uint32_t x)
     return n;
 }
 
-/* Functions marked WIDE_VECTORS are compiled twice, once for wider vectors than
- * every CPU of the architecture has; the loader chooses one of the two; their
- * results are equal. WHOLLY_INLINE is for the functions they call. Sanitizers
- * do not work with it, and clang would export the choosers of static
- * functions. */
+/* The compiler builds a function marked WIDE_VECTORS twice: for every CPU of
+ * the architecture, and for AVX2. The loader chooses one; both give equal
+ * results. Functions that it calls are marked WHOLLY_INLINE. Disabled with
+ * sanitizers, which do not support such functions, and with clang, which
+ * would export the resolvers of static functions. */
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && \
     !defined(GLINT_SANITIZED)
 #define WIDE_VECTORS __attribute__((target_clones("avx2", "default")))

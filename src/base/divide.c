@@ -3,28 +3,30 @@
 
 #include "base/q.h"
 
-static uint32_t upper(uint32_t a, uint32_t b)
+static uint32_t multiply_high(uint32_t a, uint32_t b)
 {
     return (uint32_t)((uint64_t)a * b >> 32);
 }
 
-/* Returns 2^63 / X or a little less, X from 2^31 on: starts with a line that is
- * off by 1/17 at most, then Newton's method squares the error three times.
- * Products are cut, so the result is never too large. */
-static uint32_t reciprocal(uint32_t x)
+/* Returns 2^63 / X, or slightly less, for X >= 2^31. Starts from a linear
+ * approximation with an error of at most 1/17; three steps of Newton's
+ * method square the error each time. Products are truncated, so the result
+ * is never too large. */
+static uint32_t approximate_reciprocal(uint32_t x)
 {
-    /* 48/17 - 32/17 x in _q31, modulo 2^32, for x in _q32 */
-    uint32_t r_q31 = 1768515944 - upper(x, 4042322161U);
+    /* 48/17 - 32/17 x in _q31, modulo 2^32; x in _q32 */
+    uint32_t r_q31 = 1768515944 - multiply_high(x, 4042322161U);
 
     for (int i = 0; i < 3; i++)
-        r_q31 =
-            (uint32_t)((uint64_t)r_q31 * (UINT32_MAX - upper(r_q31, x)) >> 31);
+        r_q31 = (uint32_t)((uint64_t)r_q31 *
+                               (UINT32_MAX - multiply_high(r_q31, x)) >>
+                           31);
     return r_q31;
 }
 
 uint32_t glint_reciprocal(uint32_t x)
 {
-    uint32_t r = reciprocal(x);
+    uint32_t r = approximate_reciprocal(x);
     uint64_t rest = (UINT64_MAX >> 1) - (uint64_t)r * x;
 
     for (; rest >= x; rest -= x)
@@ -32,22 +34,23 @@ uint32_t glint_reciprocal(uint32_t x)
     return r;
 }
 
-/* Divides as by hand, with up to thirty bits of the quotient at a time: the
- * upper 32 bits of rest and D give a digit that is never too large. The loop
- * ends when the rest is less than four times D. */
+/* Long division with up to 30 bits of the quotient per step. The upper
+ * 32 bits of the remainder and of D give a digit that is never too large. The
+ * loop ends when the remainder is less than four times D. */
 int64_t glint_divide(int64_t n, int64_t d)
 {
     const uint64_t by = q_magnitude(d);
     const int wide = bit_length(by);
     /* NOLINTNEXTLINE: D is not 0 */
     const uint32_t top = (uint32_t)(by << (64 - wide) >> 32);
-    const uint32_t one_over = reciprocal(top < UINT32_MAX ? top + 1 : top);
+    const uint32_t one_over =
+        approximate_reciprocal(top < UINT32_MAX ? top + 1 : top);
     uint64_t rest = q_magnitude(n), q = 0;
     int more;
 
     while ((more = bit_length(rest) - wide) >= 2) {
         const uint32_t of = (uint32_t)(rest << (64 - wide - more) >> 32);
-        const uint64_t ratio = upper(of, one_over); /* 2^31 stands for 1 */
+        const uint64_t ratio = multiply_high(of, one_over); /* Q31 */
         const uint64_t times =
             more < 31 ? ratio >> (31 - more) : ratio << (more - 31);
 

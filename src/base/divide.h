@@ -18,7 +18,7 @@ int64_t glint_divide(int64_t n, int64_t d);
 static inline int64_t q_divide(int64_t n, int64_t d)
 {
 #if UINTPTR_MAX > UINT32_MAX
-    return n / d; /* NOLINT: the caller sees to it that D is not 0 */
+    return n / d; /* NOLINT: the caller guarantees that D is not 0 */
 #else
     return glint_divide(n, d);
 #endif
@@ -36,8 +36,8 @@ static inline uint32_t q_reciprocal(uint32_t x)
 #endif
 }
 
-/* Returns X times 2^UP, truncated. The result must be below 2^32 and UP in -31
- * .. 31. */
+/* Returns X times 2^UP, truncated. The result must be below 2^32, and UP
+ * within -31 .. 31. */
 static inline uint32_t q_upper(uint64_t x, int up)
 {
 #if UINTPTR_MAX > UINT32_MAX
@@ -47,7 +47,8 @@ static inline uint32_t q_upper(uint64_t x, int up)
 #endif
 }
 
-/* Returns by how many bits X is shorter than 32; negative if it is longer. */
+/* Returns 32 minus the bit length of X; negative if X is longer than 32
+ * bits. */
 static inline int q_up(uint64_t x)
 {
     return 32 - bit_length(x | 1);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Logarithm and power to base 2: continuous, exact at powers of 2. */
+ * Binary logarithm and exponential in fixed point: continuous, exact at powers
+ * of 2.
+ */
 #ifndef GLINT_BASE_LOG2_H
 #define GLINT_BASE_LOG2_H
 

@@ -2,8 +2,9 @@
 #include "base/q.h"
 
 #ifdef GLINT_Q_CHECK
-/* The trap of CONFIG=qcheck. It stops at once, so that the failing operation is
- * on the stack; nothing in the run-time half may print. */
+/* Traps where an operation of CONFIG=qcheck overflows, so that the failing
+ * operation is on the stack. Does not print, since the run-time half has no
+ * stdio. */
 void glint_q_overflow(const char *operation, int64_t exact)
 {
     (void)operation;
@@ -11,5 +12,6 @@ void glint_q_overflow(const char *operation, int64_t exact)
     __builtin_trap();
 }
 #else
-typedef int glint_q_is_all_inline; /* A translation unit must not be empty. */
+typedef int glint_q_is_all_inline; /* C99 requires a declaration in each
+                                      translation unit */
 #endif

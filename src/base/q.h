@@ -2,10 +2,10 @@
  *
  * Fixed-point arithmetic.
  *
- * The container is a stdint type, the format is the name's suffix: x_q30 has
- * 30 fraction bits, and q_mul(a_qA, b_qB, s) is a Q(A + B - s); tools/lint/q
- * checks that. One rounding everywhere: to nearest, ties up.
- * With -DGLINT_Q_CHECK an operation whose exact result does not fit aborts.
+ * Variables have stdint types, and the suffix of a name states the format:
+ * x_q30 has 30 fraction bits. q_mul(a_qA, b_qB, s) is a Q(A + B - s);
+ * tools/lint/q checks the suffixes. All functions round to nearest, ties up.
+ * With -DGLINT_Q_CHECK, an operation whose exact result does not fit aborts.
  */
 #ifndef GLINT_BASE_Q_H
 #define GLINT_BASE_Q_H
@@ -27,7 +27,7 @@ void glint_q_overflow(const char *operation, int64_t exact);
 #define Q_FITS(op, r, lo, hi) ((void)0)
 #endif
 
-/* Returns a literal as a constant, rounded; folds at compile time. */
+/* Converts a literal to a rounded Q(FRAC) constant at compile time. */
 #define Q_CONST(x, frac) \
     ((int32_t)((x) * (double)(INT64_C(1) << (frac)) + ((x) < 0 ? -0.5 : 0.5)))
 
@@ -38,7 +38,7 @@ static inline int64_t q_shift(int64_t x, int s)
     return s ? (x + (INT64_C(1) << (s - 1))) >> s : x;
 }
 
-/* Returns X as an int32; the caller sees to it that X fits. */
+/* Returns X as an int32; the caller guarantees that X fits. */
 static inline int32_t q_narrow(int64_t x)
 {
     Q_FITS("q_narrow", x, INT32_MIN, INT32_MAX);
@@ -51,8 +51,8 @@ static inline int32_t q_mul(int32_t a, int32_t b, int s)
     return q_narrow(q_shift((int64_t)a * b, s));
 }
 
-/* Returns X / 2^S, rounded, for any S, if the quotient is below LIMIT (2^30 at
- * most) in magnitude; otherwise returns 0 and sets all bits of *LOST. */
+/* Returns X / 2^S, rounded, for any S. If the magnitude of the result would
+ * reach LIMIT (at most 2^30), returns 0 and sets all bits of *LOST. */
 static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
 {
     int64_t y = 0;
@@ -69,8 +69,8 @@ static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
     return fits ? (int32_t)y : 0;
 }
 
-/* Returns the square root of X, rounded down; the root of a Q(2 n) is a
- * Q(n). */
+/* Returns the square root of X, rounded down. If X is a Q(2 n), the root is
+ * a Q(n). */
 static inline uint32_t q_root(uint64_t x)
 {
     uint64_t root = 0;
@@ -95,7 +95,7 @@ static inline int32_t q_larger(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* Returns X clamped to LO .. HI: for light, never for geometry. */
+/* Returns X clamped to LO .. HI. Used for light, never for geometry. */
 static inline int32_t q_clamp_sat(int64_t x, int32_t lo, int32_t hi)
 {
     return x < lo ? lo : x > hi ? hi : (int32_t)x;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Heaps and heap sort: in place, without further memory, O(n log n) at worst.
+ * Binary heap and heap sort, in place, O(n log n) in the worst case.
  *
- *     glint_sort(order, n, before, ctx);       indices of objects, or
- *     glint_heap_sort(&heap, n);               objects that swap places */
+ *     glint_sort(order, n, before, ctx);       sorts indices of objects
+ *     glint_heap_sort(&heap, n);               sorts objects by swapping them
+ */
 #ifndef GLINT_BASE_SORT_H
 #define GLINT_BASE_SORT_H
 
@@ -15,9 +16,9 @@ typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
 
-/* Objects at indices 0, 1 and so on. In a heap the object at index i does not
- * come after the object at index (i - 1) / 2, so that the last object is at
- * index 0. */
+/* Objects at indices 0 .. n - 1. In a heap the object at index i does not
+ * come after the object at index (i - 1) / 2, so that the last object in
+ * sorting order is at index 0. */
 struct glint_heap {
     int (*before)(const void *things, int a,
                   int b); /* returns whether the object at index A comes before
@@ -30,7 +31,7 @@ struct glint_heap {
 void glint_heap_make(const struct glint_heap *heap, int n);
 
 /* Restores the heap of objects 0 .. N - 1 after object AT was replaced by an
- * object that comes earlier. */
+ * object that comes earlier in sorting order. */
 void glint_heap_sift(const struct glint_heap *heap, int at, int n);
 
 void glint_heap_sort(const struct glint_heap *heap, int n);
