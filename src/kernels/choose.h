@@ -2,18 +2,19 @@
  *
  * Chooses among the variants of a kernel.
  *
- * KERNEL_SETS(X): X(c), and X(set) for each instruction set that is built.
- * BEST_OF(sets, NAME_): the best of NAME_c, NAME_sse41 and so on that the
- * GLINT_SET_ bits SETS allow; NAME_c if there is no bit. PIXEL_SETS,
- * BEST_OF_PIXELS: as these, for kernels of pixels. They are large, and so have
- * no C variant where every CPU that this is built for has NEON. */
+ * KERNEL_SETS(X) expands to X(c) and to X(set) for each instruction set that is
+ * built. BEST_OF(sets, NAME_) is the best of NAME_c, NAME_sse41 and so on that
+ * the GLINT_SET_ bits in SETS allow; NAME_c if no bit is set. PIXEL_SETS and
+ * BEST_OF_PIXELS do the same for pixel kernels. These have no C variant where
+ * every CPU of the target has NEON, to save memory.
+ */
 #ifndef GLINT_KERNELS_CHOOSE_H
 #define GLINT_KERNELS_CHOOSE_H
 
 #include "glint/kernels.h"
 
-/* NEON kernels are built for every ARM that may have NEON. The compiler or the
- * system reports whether the CPU has it. */
+/* NEON kernels are built for every ARM CPU that may have NEON. The compiler
+ * or the operating system reports whether the CPU has NEON. */
 #if defined(__aarch64__) || defined(__ARM_NEON) ||               \
     (defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'A' && \
      __ARM_ARCH >= 7)

@@ -39,8 +39,8 @@ static inline void v_store_codes(uint8_t *p, V x)
                                 _mm256_extracti128_si256(x, 1)));
 }
 
-/* Loads sixteen values: even values to the lower half, odd values to the upper
- * half. */
+/* Loads sixteen values: even-indexed values into the lower half, odd-indexed
+ * values into the upper half. */
 static inline void v_load_pairs(const uint16_t *p, V x[1])
 {
     x[0] = _mm256_permute4x64_epi64(
@@ -49,9 +49,9 @@ static inline void v_load_pairs(const uint16_t *p, V x[1])
         0xd8);
 }
 
-/* Returns, as _q7, the bytes of CODES that the shuffle control PLACES selects
- * for each half. */
-static inline V spread(__m128i codes, V places)
+/* Returns, for each half, the bytes of CODES that the shuffle control PLACES
+ * selects, converted to _q7. */
+static inline V spread_bytes(__m128i codes, V places)
 {
     return v_right(v_shuffle(_mm256_broadcastsi128_si256(codes), places), 1);
 }
@@ -63,17 +63,18 @@ static inline V spread(__m128i codes, V places)
 
 static inline void v_pairs_of(__m128i codes, V x[1])
 {
-    x[0] = spread(codes, _mm256_set_epi64x(ODDS, EVENS));
+    x[0] = spread_bytes(codes, _mm256_set_epi64x(ODDS, EVENS));
 }
 
 static inline void v_chroma_of(__m128i codes, V c[2])
 {
-    c[0] = spread(codes, _mm256_set_epi64x(EVENS, EVENS));
-    c[1] = spread(codes, _mm256_set_epi64x(ODDS, ODDS));
+    c[0] = spread_bytes(codes, _mm256_set_epi64x(EVENS, EVENS));
+    c[1] = spread_bytes(codes, _mm256_set_epi64x(ODDS, ODDS));
 }
 
-/* Interleaves the codes in the lower halves of X and Y. */
-static inline __m128i woven(V x, V y)
+/* Interleaves the codes in the lower halves of X and Y and packs them into
+ * bytes. */
+static inline __m128i interleave_codes(V x, V y)
 {
     const __m128i both =
         _mm_packus_epi16(_mm_srai_epi16(_mm256_castsi256_si128(x), 7),
@@ -84,23 +85,23 @@ static inline __m128i woven(V x, V y)
 }
 
 /* Returns X with its halves swapped. */
-static inline V turned(V x)
+static inline V swap_halves(V x)
 {
     return _mm256_permute2x128_si256(x, x, 1);
 }
 
 static inline __m128i b_of_pairs(const V x[1])
 {
-    return woven(x[0], turned(x[0]));
+    return interleave_codes(x[0], swap_halves(x[0]));
 }
 
 static inline __m128i b_of_chroma(const V c[2])
 {
-    return woven(c[0], c[1]);
+    return interleave_codes(c[0], c[1]);
 }
 
-/* Load eight thresholds for sixteen pixels, and for their chroma, Cb and Cr
- * separately. */
+/* Load eight dither thresholds for sixteen pixels, and for their chroma, Cb
+ * and Cr separately. */
 static inline void v_round_pairs(const int16_t *p, V x[1])
 {
     x[0] = v_shuffle(v_repeat(p),
@@ -123,16 +124,16 @@ static inline void v_store_mean(int16_t *p, V x)
     b_store(p, _mm256_castsi256_si128(x));
 }
 
-/* Returns, in both halves, the means of pairs of an even pixel and the next odd
- * pixel. */
+/* Averages each even pixel with the next odd pixel. Both halves receive the
+ * means. */
 static inline V v_pair_mean(const V x[1])
 {
-    return v_mean(x[0], turned(x[0]));
+    return v_mean(x[0], swap_halves(x[0]));
 }
 
-/* Join two blocks of quads, one in each half: the means of their pairs, or
- * their chroma. v_quads_of_block() gives the values of block B in both halves.
- */
+/* Join two blocks of quads, one in each half: the means of their pixel
+ * pairs, or their chroma. v_quads_of_block() copies the values of block B to
+ * both halves. */
 static inline V v_pairs_joined(V x[2][1])
 {
     return v_mean(_mm256_permute2x128_si256(x[0][0], x[1][0], 0x20),
@@ -166,7 +167,7 @@ static inline V w_sums(V x)
 
     x = OP(add_epi32)(x, _mm256_slli_si256(x, 4));
     x = OP(add_epi32)(x, _mm256_slli_si256(x, 8));
-    /* 0 in the lower half, the lower half's sums in the upper. */
+    /* lower half: 0; upper half: sums of the lower half */
     low = _mm256_permute2x128_si256(x, x, 0x08);
     return OP(add_epi32)(x, _mm256_shuffle_epi32(low, 0xff));
 }

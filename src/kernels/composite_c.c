@@ -5,18 +5,18 @@
 
 #include "base/compiler.h"
 
-static int16_t held(int x, int low, int high)
+static int16_t clamp_int16(int x, int low, int high)
 {
     return (int16_t)(x < low ? low : x > high ? high : x);
 }
 
-static int16_t sum_sat(int a, int b)
+static int16_t add_saturating(int a, int b)
 {
-    return held(a + b, INT16_MIN, INT16_MAX);
+    return clamp_int16(a + b, INT16_MIN, INT16_MAX);
 }
 
 /* Returns a * b / 2^15, rounded. A and B must not both be INT16_MIN. */
-static int16_t times(int a, int b)
+static int16_t multiply_q15(int a, int b)
 {
     return (int16_t)((a * b + (1 << 14)) >> 15);
 }
@@ -25,29 +25,30 @@ static uint16_t decode(const struct glint_tone16 *t, int16_t code)
 {
     const int16_t *f = t->factor.one;
     const int w = code > t->toe_end[0] ? code - t->toe_end[0] : 0;
-    int rise = t->rise[1][0] + times(w, f[GLINT_TONE_RISE]);
+    int rise = t->rise[1][0] + multiply_q15(w, f[GLINT_TONE_RISE]);
 
-    rise = t->rise[0][0] + times(w, rise);
-    return (uint16_t)(times(code, f[GLINT_TONE_TOE]) +
-                      times(times(w, w), rise));
+    rise = t->rise[0][0] + multiply_q15(w, rise);
+    return (uint16_t)(multiply_q15(code, f[GLINT_TONE_TOE]) +
+                      multiply_q15(multiply_q15(w, w), rise));
 }
 
 static int16_t encode(const struct glint_tone16 *t, uint16_t light)
 {
     const int zeros = 16 - bit_length(light);
     const int16_t z = (int16_t)(uint16_t)((uint32_t)light << zeros);
-    const int turn = t->turn[0] + times(z, t->factor.one[GLINT_TONE_TURN]);
+    const int turn =
+        t->turn[0] + multiply_q15(z, t->factor.one[GLINT_TONE_TURN]);
     int x;
 
     if (zeros == 16)
         return 0;
-    x = t->slope[zeros] + times(z, times(turn, t->curve[zeros]));
-    return (int16_t)(t->level[zeros] + times(z, x));
+    x = t->slope[zeros] + multiply_q15(z, multiply_q15(turn, t->curve[zeros]));
+    return (int16_t)(t->level[zeros] + multiply_q15(z, x));
 }
 
-/* Returns by how much CODE rises if LIGHT is added. */
-static int16_t change_of(const struct glint_tone16 *t, int16_t code,
-                         uint16_t light_q16)
+/* Returns the increase of CODE when LIGHT is added. */
+static int16_t compute_change(const struct glint_tone16 *t, int16_t code,
+                              uint16_t light_q16)
 {
     const int16_t lit =
         encode(t, (uint16_t)(decode(t, code) + (light_q16 >> 1)));
@@ -55,28 +56,32 @@ static int16_t change_of(const struct glint_tone16 *t, int16_t code,
     return lit > code ? (int16_t)(lit - code) : 0;
 }
 
-/* Indices of the changes that chroma depends on, among the changes of R', G',
- * B', Y'. */
-static const int kept[3] = {0, 2, 3};
+/* Indices, among the changes of R', G', B' and Y', of the three that chroma
+ * depends on. */
+static const int chroma_changes[3] = {0, 2, 3};
 
-/* Sets RGB to R', G', B' of a pixel whose Y', Cb and Cr are _q7. */
-static WHOLLY_INLINE void full_range(int luma_q7, int cb_q7, int cr_q7,
-                                     int16_t rgb[3],
-                                     const struct glint_mix *mix)
+/* Sets RGB to the full-range R', G', B' of a pixel given by Y', Cb and Cr,
+ * _q7. */
+static WHOLLY_INLINE void convert_to_rgb(int luma_q7, int cb_q7, int cr_q7,
+                                         int16_t rgb[3],
+                                         const struct glint_mix *mix)
 {
     const int16_t *from = mix->from_ycc.one;
-    const int base = times(luma_q7, from[GLINT_MIX_BASE]) + mix->black[0];
+    const int base =
+        multiply_q15(luma_q7, from[GLINT_MIX_BASE]) + mix->black[0];
     const int b_q7 = cb_q7 - (1 << 14), r_q7 = cr_q7 - (1 << 14);
-    const int tint[3] = {times(r_q7, from[GLINT_MIX_RED_CR]),
-                         times(b_q7, from[GLINT_MIX_GREEN_CB]) +
-                             times(r_q7, from[GLINT_MIX_GREEN_CR]),
-                         2 * times(b_q7, from[GLINT_MIX_BLUE_CB])};
+    const int tint[3] = {multiply_q15(r_q7, from[GLINT_MIX_RED_CR]),
+                         multiply_q15(b_q7, from[GLINT_MIX_GREEN_CB]) +
+                             multiply_q15(r_q7, from[GLINT_MIX_GREEN_CR]),
+                         2 * multiply_q15(b_q7, from[GLINT_MIX_BLUE_CB])};
 
     for (int c = 0; c < 3; c++)
-        rgb[c] = held(2 * sum_sat(base, tint[c]), 0, GLINT_WHITE_Q15);
+        rgb[c] =
+            clamp_int16(2 * add_saturating(base, tint[c]), 0, GLINT_WHITE_Q15);
 }
 
-/* Sets CHANGE to the changes of R', G', B' (_q15) and Y' (_q7) of a pixel. */
+/* Sets CHANGE to the changes of R', G', B' (_q15) and Y' (_q7) when LIGHT is
+ * added to a pixel. */
 static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
                          const uint16_t light[3], int16_t change[4],
                          const struct glint_mix *mix)
@@ -87,20 +92,20 @@ static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
     change[0] = change[1] = change[2] = change[3] = 0;
     if (!(light[0] | light[1] | light[2]))
         return;
-    full_range(luma_q7, cb_q7, cr_q7, rgb, mix);
+    convert_to_rgb(luma_q7, cb_q7, cr_q7, rgb, mix);
     for (int c = 0; c < 3; c++) {
-        change[c] = change_of(&mix->tone, rgb[c], light[c]);
-        change[3] =
-            (int16_t)(change[3] + times(change[c], to[GLINT_MIX_LUMA + c]));
+        change[c] = compute_change(&mix->tone, rgb[c], light[c]);
+        change[3] = (int16_t)(change[3] +
+                              multiply_q15(change[c], to[GLINT_MIX_LUMA + c]));
     }
 }
 
 static uint8_t add_luma(int code, int16_t change_q7, int16_t round_q7)
 {
-    return (uint8_t)(sum_sat(code * 128 + round_q7, change_q7) >> 7);
+    return (uint8_t)(add_saturating(code * 128 + round_q7, change_q7) >> 7);
 }
 
-/* Adds light to one pixel: returns its new luma and sets CHANGE. */
+/* Adds light to one pixel. Returns its new luma and sets CHANGE. */
 static uint8_t add_pixel(int luma, int cb, int cr, const uint16_t light[3],
                          int16_t change[4], const struct glint_mix *mix,
                          int16_t round_q7)
@@ -120,27 +125,29 @@ void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
         luma[i] =
             add_pixel(luma[i], cb[i], cr[i], here, changed, mix, round[i & 7]);
         for (int c = 0; c < 3; c++)
-            change[c][i] = changed[kept[c]];
+            change[c][i] = changed[chroma_changes[c]];
     }
 }
 
 /* Returns the mean of A and B, rounded up. */
-static int16_t mean_of(int a, int b)
+static int16_t compute_mean(int a, int b)
 {
     return (int16_t)((a + b + 1) >> 1);
 }
 
-/* Returns the new code of chroma after B' (for Cb) or R' (for Cr) of its pixels
- * changed by OWN, and Y' by LUMA. K is the index of the first of its two
- * factors. */
+/* Returns the new code of chroma after the mean B' (for Cb) or R' (for Cr)
+ * of its pixels changed by OWN, and their mean Y' by LUMA. K is the index of
+ * the first of its two factors in to_ycc. */
 static uint8_t add_chroma(int code, int own, int luma, int k,
                           const struct glint_mix *mix, int16_t round_q7)
 {
     const int16_t *to = mix->to_ycc.one;
-    const int change_q7 = times(own, to[k]) - times(luma, to[k + 1]);
+    const int change_q7 =
+        multiply_q15(own, to[k]) - multiply_q15(luma, to[k + 1]);
 
-    return (uint8_t)(held(code * 128 + round_q7 + change_q7, 0, INT16_MAX) >>
-                     7);
+    return (
+        uint8_t)(clamp_int16(code * 128 + round_q7 + change_q7, 0, INT16_MAX) >>
+                 7);
 }
 
 void glint_add_pairs_c(uint8_t *luma, uint8_t *chroma,
@@ -160,11 +167,12 @@ void glint_add_pairs_c(uint8_t *luma, uint8_t *chroma,
                                     changed[k], mix, round[(i + k) & 7]);
         }
         for (int c = 0; c < 3; c++) {
-            own[c] = mean_of(changed[0][kept[c]], changed[1][kept[c]]);
+            own[c] = compute_mean(changed[0][chroma_changes[c]],
+                                  changed[1][chroma_changes[c]]);
             if (step == GLINT_PAIRS_FIRST)
                 mean[c][i / 2] = own[c];
             if (step == GLINT_PAIRS_SECOND)
-                own[c] = mean_of(own[c], mean[c][i / 2]);
+                own[c] = compute_mean(own[c], mean[c][i / 2]);
         }
         if (step == GLINT_PAIRS_FIRST)
             continue;
@@ -199,25 +207,26 @@ void glint_add_packed_c(uint8_t *pixels, const uint16_t *const light[3], int n,
     }
 }
 
-/* Returns PART / WHOLE, both 0 or more, as _q15; PART is clamped to WHOLE. The
- * error of Newton's method is below 2^-12. */
-static int16_t share(int part, int whole)
+/* Returns PART / WHOLE, both 0 or more, as _q15. PART is clamped to WHOLE.
+ * Uses Newton's method; the error is below 2^-12. */
+static int16_t divide_q15(int part, int whole)
 {
     const int zeros = 16 - bit_length((uint32_t)whole);
     const int n_q15 = (uint16_t)((uint32_t)whole << zeros) >> 1;
     const int n = n_q15 > 1 << 14 ? n_q15 : 1 << 14;
     const int d = (uint16_t)((uint32_t)(part < whole ? part : whole) << zeros);
-    int16_t r_q14 = (int16_t)(GLINT_SHARE_FROM - times(n, GLINT_SHARE_SLOPE));
+    int16_t r_q14 =
+        (int16_t)(GLINT_SHARE_FROM - multiply_q15(n, GLINT_SHARE_SLOPE));
     int16_t q_q14;
 
     for (int k = 0; k < 2; k++) {
-        const int16_t rest_q14 = (int16_t)((1 << 15) - times(n, r_q14));
+        const int16_t rest_q14 = (int16_t)((1 << 15) - multiply_q15(n, r_q14));
 
-        r_q14 = times(r_q14, rest_q14);
-        r_q14 = sum_sat(r_q14, r_q14);
+        r_q14 = multiply_q15(r_q14, rest_q14);
+        r_q14 = add_saturating(r_q14, r_q14);
     }
-    q_q14 = times(d >> 1, r_q14);
-    return sum_sat(q_q14, q_q14);
+    q_q14 = multiply_q15(d >> 1, r_q14);
+    return add_saturating(q_q14, q_q14);
 }
 
 /* Adds light to 2 x 2 pixels. Both rows are read before either is written, as
@@ -239,23 +248,24 @@ static void add_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
     int change_c[2];
 
     change_pixel(y_q7, c_q7[0], c_q7[1], light, change, mix);
-    q = share(change[3], headroom);
-    change_c[0] = times(change[2], to[GLINT_MIX_CB_BLUE]) -
-                  times(change[3], to[GLINT_MIX_CB_LUMA]);
-    change_c[1] = times(change[0], to[GLINT_MIX_CR_RED]) -
-                  times(change[3], to[GLINT_MIX_CR_LUMA]);
+    q = divide_q15(change[3], headroom);
+    change_c[0] = multiply_q15(change[2], to[GLINT_MIX_CB_BLUE]) -
+                  multiply_q15(change[3], to[GLINT_MIX_CB_LUMA]);
+    change_c[1] = multiply_q15(change[0], to[GLINT_MIX_CR_RED]) -
+                  multiply_q15(change[3], to[GLINT_MIX_CR_LUMA]);
     for (int row = 0; row < 2; row++)
         for (int k = 0; k < 2; k++) {
-            const int16_t more =
-                sum_sat(change[3], times(y_q7 - y[row][k] * 128, q));
-            const int16_t more_c =
-                sum_sat(change_c[k], times(c_q7[k] - c[row][k] * 128, q));
+            const int16_t more = add_saturating(
+                change[3], multiply_q15(y_q7 - y[row][k] * 128, q));
+            const int16_t more_c = add_saturating(
+                change_c[k], multiply_q15(c_q7[k] - c[row][k] * 128, q));
 
-            luma[row][k] =
-                add_luma(y[row][k], held(more, 0, INT16_MAX), round[row][k]);
+            luma[row][k] = add_luma(y[row][k], clamp_int16(more, 0, INT16_MAX),
+                                    round[row][k]);
             chroma[row][k] =
-                (uint8_t)(held(c[row][k] * 128 + round_chroma[row][k] + more_c,
-                               0, INT16_MAX) >>
+                (uint8_t)(clamp_int16(c[row][k] * 128 + round_chroma[row][k] +
+                                          more_c,
+                                      0, INT16_MAX) >>
                           7);
         }
 }
@@ -309,14 +319,15 @@ void glint_add_code_c(uint8_t *code, const uint16_t *light, int n,
 {
     for (int i = 0; i < n; i++) {
         const int16_t change =
-            light[i]
-                ? change_of(tone, (int16_t)((code[i] * 257) >> 1), light[i])
-                : 0;
+            light[i] ? compute_change(tone, (int16_t)((code[i] * 257) >> 1),
+                                      light[i])
+                     : 0;
         const int16_t change_q7 =
-            times(change, tone->factor.one[GLINT_TONE_Q7]);
+            multiply_q15(change, tone->factor.one[GLINT_TONE_Q7]);
 
         code[i] =
-            (uint8_t)(sum_sat(code[i] * 128 + round[i & 7], change_q7) >> 7);
+            (uint8_t)(add_saturating(code[i] * 128 + round[i & 7], change_q7) >>
+                      7);
     }
 }
 
@@ -338,8 +349,10 @@ void glint_run_sum_c(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
     *carry = sum;
 }
 
-/* Returns the full-range CODE after COVER hides a fraction of its light. */
-static int16_t left_of(const struct glint_tone16 *t, int16_t code, int cover_q8)
+/* Returns the full-range CODE after the fraction COVER of its light is
+ * hidden. */
+static int16_t hide_light(const struct glint_tone16 *t, int16_t code,
+                          int cover_q8)
 {
     const uint32_t light = decode(t, code) * (uint32_t)(256 - cover_q8);
     const int16_t left = encode(t, (uint16_t)((light + 128) >> 8));
@@ -352,8 +365,9 @@ void glint_cover_code_c(uint8_t *code, const uint16_t *cover_q8, int n,
 {
     for (int i = 0; i < n; i++) {
         const int16_t full = (int16_t)((code[i] * 257) >> 1);
-        const int change_q7 = times(left_of(tone, full, cover_q8[i]) - full,
-                                    tone->factor.one[GLINT_TONE_Q7]);
+        const int change_q7 =
+            multiply_q15(hide_light(tone, full, cover_q8[i]) - full,
+                         tone->factor.one[GLINT_TONE_Q7]);
 
         if (cover_q8[i])
             code[i] = cover_q8[i] < 256
@@ -362,7 +376,8 @@ void glint_cover_code_c(uint8_t *code, const uint16_t *cover_q8, int n,
     }
 }
 
-/* Hides the fraction COVER_Q8 of one pixel, given as Y', Cb, Cr in _q7. */
+/* Hides the fraction COVER_Q8 of the light of one pixel, given as Y', Cb, Cr
+ * in _q7. */
 static void cover_pixel(int16_t ycc_q7[3], int cover_q8,
                         const struct glint_mix *mix)
 {
@@ -370,18 +385,20 @@ static void cover_pixel(int16_t ycc_q7[3], int cover_q8,
     int16_t rgb[3];
     int change[4] = {0, 0, 0, 0};
 
-    full_range(ycc_q7[0], ycc_q7[1], ycc_q7[2], rgb, mix);
+    convert_to_rgb(ycc_q7[0], ycc_q7[1], ycc_q7[2], rgb, mix);
     for (int c = 0; c < 3; c++) {
-        change[c] = left_of(&mix->tone, rgb[c], cover_q8) - rgb[c];
-        change[3] += times(change[c], to[GLINT_MIX_LUMA + c]);
+        change[c] = hide_light(&mix->tone, rgb[c], cover_q8) - rgb[c];
+        change[3] += multiply_q15(change[c], to[GLINT_MIX_LUMA + c]);
     }
-    ycc_q7[0] = held(ycc_q7[0] + change[3], 0, INT16_MAX);
-    ycc_q7[1] = held(ycc_q7[1] + times(change[2], to[GLINT_MIX_CB_BLUE]) -
-                         times(change[3], to[GLINT_MIX_CB_LUMA]),
-                     0, INT16_MAX);
-    ycc_q7[2] = held(ycc_q7[2] + times(change[0], to[GLINT_MIX_CR_RED]) -
-                         times(change[3], to[GLINT_MIX_CR_LUMA]),
-                     0, INT16_MAX);
+    ycc_q7[0] = clamp_int16(ycc_q7[0] + change[3], 0, INT16_MAX);
+    ycc_q7[1] =
+        clamp_int16(ycc_q7[1] + multiply_q15(change[2], to[GLINT_MIX_CB_BLUE]) -
+                        multiply_q15(change[3], to[GLINT_MIX_CB_LUMA]),
+                    0, INT16_MAX);
+    ycc_q7[2] =
+        clamp_int16(ycc_q7[2] + multiply_q15(change[0], to[GLINT_MIX_CR_RED]) -
+                        multiply_q15(change[3], to[GLINT_MIX_CR_LUMA]),
+                    0, INT16_MAX);
 }
 
 void glint_cover_ycc_c(int16_t *const ycc_q7[3], const uint16_t *cover_q8,

@@ -28,7 +28,8 @@
 #define v_and_not(mask, x)       vbicq_s16(x, mask)
 #define v_equal(a, b)            S(vceqq_s16(a, b))
 
-/* Make X, or the load from P, wait for Y. */
+/* Order X, or the load from P, after the computation of Y. The empty
+ * assembly pretends to use both. */
 #define AFTER(x, y)      __asm__("" : "+w"(x) : "w"(y))
 #define LOAD_AFTER(p, y) __asm__("" : "+r"(p) : "w"(y))
 
@@ -52,9 +53,8 @@ static inline int v_is_zero(V x)
 
 /* --------------------------------------------------------------- constants */
 
-/* Constants stay in registers, eight factors in each. Compilers keep a table in
- * two consecutive registers only if it is a variable, not a member of a
- * struct. */
+/* Factors stay in registers, eight in each. Compilers keep a table in two
+ * consecutive registers only if it is a variable, not a member of a struct. */
 struct v_tone {
     int16x8_t factor, toe_end, rise[2], turn;
     const uint8x16x2_t *level, *slope, *curve;
@@ -76,8 +76,8 @@ struct v_mix {
     vqrdmulhq_lane_s16(x, (i)&4 ? vget_high_s16(f) : vget_low_s16(f), (i)&3)
 #endif
 
-/* Tables are loaded once if there are enough registers, otherwise at each
- * use. */
+/* 64-bit ARM loads the tables once, as it has enough registers; 32-bit ARM
+ * loads them at each use. */
 #if defined(__aarch64__)
 #define TABLES(t, tone)                                     \
     const uint8x16x2_t t##_level = table_at((tone)->level), \
@@ -122,7 +122,8 @@ static inline uint8x16x2_t table_at(const int16_t *p)
 /* Number of leading zeros, 0 .. 16. */
 #define v_zeros vclzq_s16
 
-/* Byte offsets of a table's entries; offsets past its end give 0. */
+/* Byte offsets of entries of a table; lookups at offsets past the table's
+ * end give 0. */
 #define PLACES uint8x16_t
 
 static inline PLACES v_places_of(const TONE *t, V k)
@@ -149,7 +150,8 @@ static inline V v_look(const uint8x16x2_t *table, PLACES at)
         vcombine_u8(vtbl4_u8(quarters, vget_low_u8(at)),
                     vtbl4_u8(quarters, vget_high_u8(at))));
 #else
-    /* Inline assembly, as GCC would load four registers by way of the stack. */
+    /* Inline assembly, as GCC would copy the four registers through the
+     * stack */
     uint8x8x4_t quarters;
     uint8x16_t entry;
 
@@ -238,8 +240,8 @@ static inline void v_store_packed(uint8_t *p, int luma_at, const V y[2],
     vst4_u8(p, quads);
 }
 
-/* Loads eight thresholds for sixteen pixels: even thresholds, then odd; for
- * chroma, those of Cb, then of Cr. */
+/* Loads eight dither thresholds for sixteen pixels: thresholds of even
+ * pixels, then of odd pixels; for chroma, thresholds of Cb, then of Cr. */
 static inline void v_round_pairs(const int16_t *p, V x[2])
 {
     const int16x8x2_t pairs = vuzpq_s16(vld1q_s16(p), vld1q_s16(p));
@@ -250,7 +252,7 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
 
 #define v_round_chroma v_round_pairs
 
-/* Returns the means of pairs of an even pixel and the next odd pixel. */
+/* Averages each even pixel with the next odd pixel. */
 static inline V v_pair_mean(const V x[2])
 {
     return v_mean(x[0], x[1]);
@@ -260,15 +262,16 @@ static inline V v_pair_mean(const V x[2])
 
 /* -------------------------------------------------------------------- sums */
 
-/* Returns sums rounded to _q16, clamped to 0 .. 65535. FEWER is minus the
- * number of their fraction bits beyond 16. */
-static inline uint16x4_t rounded(uint32x4_t sum, int32x4_t fewer)
+/* Returns SUM rounded to _q16 and clamped to 0 .. 65535. FEWER is 16 minus
+ * the number of fraction bits of SUM. */
+static inline uint16x4_t round_q16(uint32x4_t sum, int32x4_t fewer)
 {
     return vqmovun_s32(vrshlq_s32(vreinterpretq_s32_u32(sum), fewer));
 }
 
-/* Sums sixteen lanes in groups of four: first within each group, then the sums
- * of all groups before it are added. Groups without changes are common. */
+/* Computes the prefix sum of sixteen lanes in groups of four: first within
+ * each group, then adds the total of all earlier groups. If all sixteen
+ * changes are 0, which is common, the additions are skipped. */
 void glint_run_sum_neon(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
                         int n, int more)
 {
@@ -288,7 +291,7 @@ void glint_run_sum_neon(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
         uint16x4x4_t light;
 
         if (v_is_zero(vreinterpretq_s16_u32(any))) {
-            const uint16x4_t same = rounded(before, fewer);
+            const uint16x4_t same = round_q16(before, fewer);
 
             vst1q_u16(light_q16 + i, vcombine_u16(same, same));
             vst1q_u16(light_q16 + i + 8, vcombine_u16(same, same));
@@ -299,11 +302,11 @@ void glint_run_sum_neon(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
         sum = vaddq_u32(all, vextq_u32(zero, all, 3));
         sum = vaddq_u32(sum, vextq_u32(zero, sum, 2));
         sum = vaddq_u32(sum, before);
-        before = vextq_u32(before, sum, 3); /* the sum before each group */
-        light.val[0] = rounded(vaddq_u32(x.val[0], before), fewer);
-        light.val[1] = rounded(vaddq_u32(x01, before), fewer);
-        light.val[2] = rounded(vaddq_u32(x012, before), fewer);
-        light.val[3] = rounded(sum, fewer);
+        before = vextq_u32(before, sum, 3); /* total before each group */
+        light.val[0] = round_q16(vaddq_u32(x.val[0], before), fewer);
+        light.val[1] = round_q16(vaddq_u32(x01, before), fewer);
+        light.val[2] = round_q16(vaddq_u32(x012, before), fewer);
+        light.val[3] = round_q16(sum, fewer);
         vst4_u16(light_q16 + i, light);
         before = vdupq_n_u32(vgetq_lane_u32(sum, 3));
     }

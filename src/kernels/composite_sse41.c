@@ -37,15 +37,17 @@ static inline void v_store_codes(uint8_t *p, V x)
     _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi16(x, x));
 }
 
-/* Returns the even lanes, then the odd lanes. */
-static inline V parted(V x)
+/* Returns the even lanes of X in its lower half and the odd lanes in its
+ * upper half. */
+static inline V separate_even_odd(V x)
 {
     return v_shuffle(x, v_bytes(0x0f0e0b0a07060302, 0x0d0c090805040100));
 }
 
 static inline void v_load_pairs(const uint16_t *p, V x[2])
 {
-    const V a = parted(v_half(p)), b = parted(v_half(p + 8));
+    const V a = separate_even_odd(v_half(p)),
+            b = separate_even_odd(v_half(p + 8));
 
     x[0] = _mm_unpacklo_epi64(a, b);
     x[1] = _mm_unpackhi_epi64(a, b);
@@ -64,11 +66,11 @@ static inline V b_of_pairs(const V x[2])
         v_bytes(0x0f070e060d050c04, 0x0b030a0209010800));
 }
 
-/* Loads eight thresholds for sixteen pixels: even thresholds, then odd; for
- * chroma, those of Cb, then of Cr. */
+/* Loads eight dither thresholds for sixteen pixels: thresholds of even
+ * pixels, then of odd pixels; for chroma, thresholds of Cb, then of Cr. */
 static inline void v_round_pairs(const int16_t *p, V x[2])
 {
-    const V both = parted(b_load(p));
+    const V both = separate_even_odd(b_load(p));
 
     x[0] = _mm_unpacklo_epi64(both, both);
     x[1] = _mm_unpackhi_epi64(both, both);
@@ -78,7 +80,7 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
 #define v_load_mean    v_load
 #define v_store_mean   v_store
 
-/* Returns the means of pairs of an even pixel and the next odd pixel. */
+/* Averages each even pixel with the next odd pixel. */
 static inline V v_pair_mean(const V x[2])
 {
     return v_mean(x[0], x[1]);
@@ -105,7 +107,7 @@ static inline V w_last(V x)
     return _mm_shuffle_epi32(x, 0xff);
 }
 
-/* Clamps to 0 .. 65535. */
+/* Packs the lanes of two vectors, clamped to 0 .. 65535. */
 #define w_narrow _mm_packus_epi32
 
 #include "kernels/run_sum_x86.inc"

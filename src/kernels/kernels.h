@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loops for pixels. The loops for rays are in kernels/rays/rays.h, so
- * that a program links only the kernels that it uses. All code that differs
- * between CPUs is in this folder.
+ * Kernels for pixels: vectorised loops that add light to rows of codes. The
+ * kernels for rays are in kernels/rays/rays.h, so that a program links only the
+ * kernels that it uses. All code that differs between CPUs is in this folder.
  *
  * A kernel is a pure function over arrays: no allocation, errors or globals.
- * NAME_c.c defines it; NAME_sse41.c, NAME_avx2.c and NAME_neon.c give the same
- * bits. Arrays are disjoint, begin at 32-byte boundaries and are as long as N
- * rounded up to a multiple of GLINT_LANES, so that no variant has a tail.
+ * NAME_c.c defines it; NAME_sse41.c, NAME_avx2.c and NAME_neon.c give
+ * bit-identical results. Arrays are disjoint, begin at 32-byte boundaries and
+ * have N entries rounded up to a multiple of GLINT_LANES, so that no variant
+ * needs a scalar loop for the remainder.
  *
- * Products are rounded to nearest, ties up, as pmulhrsw and vqrdmulh do, unless
- * a comment states that they are truncated. */
+ * Products are rounded to nearest, ties up, like pmulhrsw and vqrdmulh, unless
+ * a comment states that they are truncated.
+ */
 #ifndef GLINT_KERNELS_KERNELS_H
 #define GLINT_KERNELS_KERNELS_H
 
@@ -22,7 +24,7 @@
  *   luma    codes, changed in place
  *   cb, cr  codes, one for each pixel
  *   light   R, G, B: _q16, white = 65535
- *   round   _q7, below 1: pixel i takes round[i & 7]
+ *   round   dither thresholds, _q7, below 1; pixel i uses round[i & 7]
  *   change  receives the changes of R', B' (_q15, white = 32767) and Y' (_q7),
  *           each 0 or more; 0 for a pixel without light */
 typedef void
@@ -30,12 +32,13 @@ glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
-/* How a row whose pixel pairs share chroma uses the mean changes of R', B' and
- * Y' of its pairs. */
+/* Role of a row in 4:2:2 or 4:2:0, whose pixel pairs share chroma. Chroma
+ * changes with the mean changes of R', B' and Y' of its pixels. */
 enum glint_pair_step {
-    GLINT_PAIRS_ALONE, /* the row's chroma is its own */
-    GLINT_PAIRS_FIRST, /* the first of two rows stores them */
-    GLINT_PAIRS_SECOND /* the second row's chroma changes by the mean of both
+    GLINT_PAIRS_ALONE, /* 4:2:2: the row's pairs have their own chroma */
+    GLINT_PAIRS_FIRST, /* 4:2:0, first row: stores the mean changes of its pairs
+                        */
+    GLINT_PAIRS_SECOND /* 4:2:0, second row: changes chroma by the mean of both
                           rows */
 };
 
@@ -54,21 +57,22 @@ typedef void glint_add_pairs_fn(uint8_t *luma, uint8_t *chroma,
                                 const int16_t *round,
                                 const int16_t *round_chroma);
 
-/* Adds light to N pixels of two bytes each: luma, and Cb or Cr in turn; luma
- * comes first unless LUMA_AT is 1. PIXELS needs no alignment; the other
- * arguments are as for glint_add_pairs_fn. */
+/* Adds light to N pixels of two bytes each: luma, followed by Cb and Cr
+ * alternately. Luma comes first unless LUMA_AT is 1. PIXELS needs no
+ * alignment; the other arguments are as for glint_add_pairs_fn. */
 typedef void glint_add_packed_fn(uint8_t *pixels,
                                  const uint16_t *const light[3], int n,
                                  int luma_at, const struct glint_mix *mix,
                                  const int16_t *round,
                                  const int16_t *round_chroma);
 
-/* Adds light that 2 x 2 pixels share to two rows of N pixels, N a multiple of
- * twice GLINT_LANES. The change by light is computed once, for the mean of the
- * four pixels. Each pixel's change is scaled by its distance to white relative
- * to the mean's distance, so light that makes the mean white makes each pixel
- * white. Chroma moves towards its mean by the same fraction. Y' never falls.
- *   luma    codes of two rows; if the last row is alone, that row twice
+/* Adds light at half resolution to two rows of N pixels, one value for 2 x 2
+ * pixels; N is a multiple of twice GLINT_LANES. The change is computed once,
+ * for the mean of the four pixels. It is scaled per pixel by the pixel's
+ * distance to white relative to the mean's distance, so light that makes the
+ * mean white makes each pixel white. Chroma moves towards its mean by the
+ * same fraction. Y' never decreases.
+ *   luma    codes of two rows; for a single last row, the same pointer twice
  *   chroma  codes Cb, Cr of each pair of both rows; the same row twice if they
  *           share it
  *   light   R, G, B: _q16, one for every two pixels of a row
@@ -80,9 +84,9 @@ typedef void glint_add_quads_fn(uint8_t *const luma[2],
                                 const int16_t *const round[2],
                                 const int16_t *const round_chroma[2]);
 
-/* Does the same as glint_add_quads_fn for pixels of two bytes in the layout of
- * glint_add_packed_fn. PIXELS needs no alignment; ROUND is used for chroma,
- * too. */
+/* Like glint_add_quads_fn, for pixels of two bytes in the layout of
+ * glint_add_packed_fn. PIXELS needs no alignment; ROUND also applies to
+ * chroma. */
 typedef void glint_add_quads_packed_fn(uint8_t *const pixels[2],
                                        const uint16_t *const light[3], int n,
                                        int luma_at, const struct glint_mix *mix,
@@ -94,9 +98,9 @@ typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
                                const struct glint_tone16 *tone,
                                const int16_t *round);
 
-/* Hide COVER (_q8, 0 .. 256: all) of N pixels: the remaining light is rounded
- * to the nearest codes. Codes are unchanged where COVER is 0 and become black
- * where it is 256.
+/* Hide the fraction COVER (_q8, 256: all) of the light of N pixels and round
+ * the remaining light to the nearest codes. Codes are unchanged where COVER
+ * is 0 and become black where it is 256.
  *   code  one channel of R'G'B'
  *   ycc   Y', Cb, Cr of each pixel, _q7; BLACK: code of Y' = 0 */
 typedef void glint_cover_code_fn(uint8_t *code, const uint16_t *cover_q8, int n,
@@ -107,14 +111,15 @@ typedef void glint_cover_ycc_fn(int16_t *const ycc_q7[3],
 glint_cover_code_fn glint_cover_code_c;
 glint_cover_ycc_fn glint_cover_ycc_c;
 
-/* Turns changes into light along a row: light[i] is *CARRY plus changes 0 .. i,
- * which have MORE fraction bits than _q16, 2 .. 15, rounded to _q16 and clamped
- * to 0 .. 65535. The function clears the changes; intermediate sums may wrap
- * around. *CARRY becomes the sum of the whole row. */
+/* Computes light along a row as the prefix sum of its changes: light[i] is
+ * *CARRY plus changes 0 .. i, rounded to _q16 and clamped to 0 .. 65535.
+ * Changes and *CARRY have 16 + MORE fraction bits, MORE in 2 .. 15. The
+ * function clears the changes; intermediate sums may wrap around. *CARRY
+ * becomes the sum at the end of the row. */
 typedef void glint_run_sum_fn(uint32_t *change, uint32_t *carry,
                               uint16_t *light_q16, int n, int more);
 
-/* The kernels for pictures, except those at half resolution. */
+/* The kernels for pictures at full resolution. */
 struct glint_kernels {
     glint_add_luma_fn *add_luma;
     glint_add_pairs_fn *add_pairs;
@@ -123,7 +128,8 @@ struct glint_kernels {
     glint_run_sum_fn *run_sum;
 };
 
-/* The kernels for pictures in Y'CbCr in which four pixels share their light. */
+/* The kernels for Y'CbCr pictures at half resolution of light (one value for
+ * 2 x 2 pixels). */
 struct glint_quad_kernels {
     glint_add_quads_fn *add;
     glint_add_quads_packed_fn *add_packed;

@@ -18,7 +18,7 @@ unsigned glint_sets_built(void)
 
 #include <cpuid.h>
 
-/* Returns whether the system saves the registers of AVX. */
+/* Returns whether the operating system saves the AVX registers. */
 static int saves_avx(void)
 {
     unsigned low, high;

@@ -1,24 +1,26 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loop for maps of translucent objects. The rules of kernels.h apply,
- * except that arrays need no alignment. */
+ * Kernel that convolves texture maps of translucent objects. The rules of
+ * kernels.h apply, except that arrays need no alignment.
+ */
 #ifndef GLINT_KERNELS_MAPS_MAPS_H
 #define GLINT_KERNELS_MAPS_MAPS_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* Two int16, the first in the lower half. */
+/* Packs two int16 into an int32, FIRST in the lower half. */
 static inline int32_t glint_pair(int32_t first, int32_t second)
 {
     return (int32_t)((uint32_t)(uint16_t)first | (uint32_t)second << 16);
 }
 
-/* Adds to SUM[0 .. N - 1] a convolution: pairs of values by pairs of taps,
+/* Adds a convolution of pairs of values with pairs of taps to SUM[0 .. N -
+ * 1]:
  *   sum[i] += sum over k of value[i + k stride] . tap[k]
- * where a product of pairs is that of the first ones and that of the second
- * ones. No element is -32768; no sum leaves int32, whatever the order in which
- * it is taken. N is a multiple of 32. */
+ * where . is the dot product of two pairs of int16. No int16 is -32768, and
+ * the caller guarantees that partial sums fit int32 in any order. N is a
+ * multiple of 32. */
 typedef void glint_convolve_fn(int32_t *sum, const int32_t *value,
                                ptrdiff_t stride, const int32_t *tap, int n_taps,
                                int n);

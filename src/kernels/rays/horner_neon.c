@@ -20,8 +20,8 @@ static inline struct factor factor_of(W x_q30)
     return (struct factor){x_q30};
 }
 
-/* Returns a product, rounded. Values are below 2^30: the upper half of 2 (2 A)
- * BY is A BY / 2^30, rounded in the same way. */
+/* Returns A BY / 2^30, rounded. vqrdmulh returns the rounded upper half of 2
+ * x BY, so A, below 2^30, is doubled first. */
 static inline W w_times(W a, struct factor by)
 {
     return vqrdmulhq_s32(vshlq_n_s32(a, 1), by.x);

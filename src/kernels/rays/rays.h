@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loops for rays. The rules of kernels.h apply. */
+ * Kernels for rays: polynomial evaluation and rotation. The rules of kernels.h
+ * apply.
+ */
 #ifndef GLINT_KERNELS_RAYS_RAYS_H
 #define GLINT_KERNELS_RAYS_RAYS_H
 
@@ -8,10 +10,10 @@
 
 #include "base/compiler.h"
 
-/* Give N values of a polynomial by Horner's rule: ((c[D] x + c[D - 1]) x + ...)
- * + c[0], each product rounded to an integer after a shift by 30 bits. The
- * caller must see to it that values stay below 2^30 in magnitude, and X within
- * +-2^30.
+/* Evaluate N values of a polynomial by Horner's rule: ((c[D] x + c[D - 1]) x
+ * + ...) + c[0]. Each product is shifted right by 30 bits and rounded to an
+ * integer. The caller guarantees that values stay below 2^30 in magnitude,
+ * and X within +-2^30.
  *   along   one polynomial at x[0 .. N - 1]
  *   across  N polynomials at X; the coefficients C[k] begin STRIDE apart */
 typedef void glint_horner_along_fn(int32_t *out, const int32_t *c, int degree,
@@ -19,14 +21,15 @@ typedef void glint_horner_along_fn(int32_t *out, const int32_t *c, int degree,
 typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
                                     int degree, int32_t x_q30, int n);
 
-/* Turns points (X, Y) by an angle, and their mirror images (X, -Y):
+/* Rotates points (X, Y), and their mirror images (X, -Y), by an angle, and
+ * scales them:
  *   out     x cos - y sin, x sin + y cos; x cos + y sin, x sin - y cos; each
- *           over 2^shift, or 0 if that reaches LIMIT in magnitude
- *   lost    [0] of points, [1] of images: all bits are set if a coordinate
+ *           divided by 2^shift, or 0 if that reaches LIMIT in magnitude
+ *   lost    [0] for points, [1] for images: all bits are set if a coordinate
  *           reaches LIMIT; else left unchanged
  * X and Y are below 2^30 in magnitude, cosine and sine below 2^31, LIMIT is
  * 2^30 at most. Shifts are 1 .. 62; the C variant accepts any shift. */
-enum { GLINT_TURNED = 8 }; /* rays that are turned at once */
+enum { GLINT_TURNED = 8 }; /* number of rays per call */
 
 struct glint_turn {
     int32_t cos, sin;

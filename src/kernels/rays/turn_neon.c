@@ -3,38 +3,39 @@
 
 #include <arm_neon.h>
 
-/* Products of four lanes with a factor. */
+/* 64-bit products of four lanes with one factor. */
 struct products {
     int64x2_t low, high;
 };
 
-static inline struct products times(int32x4_t x, int32x2_t factor)
+static inline struct products multiply(int32x4_t x, int32x2_t factor)
 {
     return (struct products){vmull_s32(vget_low_s32(x), factor),
                              vmull_s32(vget_high_s32(x), factor)};
 }
 
-static inline struct products plus(struct products a, struct products b)
+static inline struct products add_products(struct products a, struct products b)
 {
     return (struct products){vaddq_s64(a.low, b.low),
                              vaddq_s64(a.high, b.high)};
 }
 
-static inline struct products minus(struct products a, struct products b)
+static inline struct products subtract_products(struct products a,
+                                                struct products b)
 {
     return (struct products){vsubq_s64(a.low, b.low),
                              vsubq_s64(a.high, b.high)};
 }
 
-/* The shift to the scale of the result, and the first value that no longer
- * fits. */
+/* Exponent of the factor applied to products (up), and the magnitude that
+ * results must stay below. */
 struct scale {
     int64x2_t up;
     int32x4_t limit;
 };
 
-/* Writes SUM, scaled, to OUT, or 0 where it does not fit; returns where it
- * fits. */
+/* Writes SUM, scaled, to OUT; lanes that reach the limit become 0. Returns a
+ * mask of the lanes that fit. */
 static inline uint32x4_t scale(struct scale s, struct products sum,
                                int32_t *out)
 {
@@ -46,7 +47,8 @@ static inline uint32x4_t scale(struct scale s, struct products sum,
     return fits;
 }
 
-static inline void lose(uint32x4_t x_fits, uint32x4_t y_fits, int32_t *lost)
+static inline void mark_lost(uint32x4_t x_fits, uint32x4_t y_fits,
+                             int32_t *lost)
 {
     const int32x4_t fit = vreinterpretq_s32_u32(vandq_u32(x_fits, y_fits));
 
@@ -63,12 +65,13 @@ void glint_turn_neon(const struct glint_turn *t, const int32_t *x,
 
     for (int i = 0; i < GLINT_TURNED; i += 4) {
         const int32x4_t a = vld1q_s32(x + i), b = vld1q_s32(y + i);
-        const struct products xc = times(a, c), xs = times(a, s);
-        const struct products yc = times(b, c), ys = times(b, s);
+        const struct products xc = multiply(a, c), xs = multiply(a, s);
+        const struct products yc = multiply(b, c), ys = multiply(b, s);
 
-        lose(scale(to, minus(xc, ys), out[0] + i),
-             scale(to, plus(xs, yc), out[1] + i), lost[0] + i);
-        lose(scale(to, plus(xc, ys), out[2] + i),
-             scale(to, minus(xs, yc), out[3] + i), lost[1] + i);
+        mark_lost(scale(to, subtract_products(xc, ys), out[0] + i),
+                  scale(to, add_products(xs, yc), out[1] + i), lost[0] + i);
+        mark_lost(scale(to, add_products(xc, ys), out[2] + i),
+                  scale(to, subtract_products(xs, yc), out[3] + i),
+                  lost[1] + i);
     }
 }

@@ -4,10 +4,10 @@
 
 enum { ONE_Q14 = 1 << 14, ONE_Q16 = 1 << 16 };
 
-/* Returns 2^31 / X for X in 2^15 .. 2^16, with a relative error of at most
- * 2^-14: a linear estimate with an error of 1/17, then two steps of Newton's
- * method. */
-static uint32_t reciprocal(uint32_t x)
+/* Returns 2^31 / X for X in 2^15 .. 2^16 with a relative error of at most
+ * 2^-14. Starts from a linear approximation with an error of 1/17; two steps
+ * of Newton's method follow. */
+static uint32_t approximate_reciprocal(uint32_t x)
 {
     uint32_t r_q15 = 92521 - (x * 61681 >> 16); /* 48/17 - 32/17 x */
 
@@ -16,10 +16,10 @@ static uint32_t reciprocal(uint32_t x)
     return r_q15;
 }
 
-/* Returns the square root of X_Q14, 1 .. 2^14. X is scaled to 1/4 .. 1; 1 /
- * root begins with a linear estimate with an error of 1/11, then follow three
- * steps of Newton's method. */
-static uint32_t root_q15(uint32_t x_q14)
+/* Returns the square root of X_Q14, 1 .. 2^14. Scales X to 1/4 .. 1 and
+ * approximates 1 / root linearly with an error of 1/11; three steps of
+ * Newton's method follow. */
+static uint32_t compute_root_q15(uint32_t x_q14)
 {
     const int up = (16 - bit_length(x_q14)) & ~1;
     const uint32_t part_q14 = x_q14 << up >> 2;
@@ -33,15 +33,16 @@ static uint32_t root_q15(uint32_t x_q14)
     return (y_q14 * part_q14 >> 14 << 2) >> (up / 2);
 }
 
-/* A sample: the direction to the light in the surface's frame, h.o, and whether
- * it counts. */
+/* A sample of the lobe: direction i to the light in the surface's frame, h.o
+ * (half vector . direction to the eye), and whether the sample counts: h.o
+ * and n.i are positive. */
 struct sample {
     int32_t in_q14[3], ho_q14;
     int counts;
 };
 
-static struct sample sample_of(const struct glint_ward_lobe *lobe, int k,
-                               const struct glint_ward_place *place)
+static struct sample compute_sample(const struct glint_ward_lobe *lobe, int k,
+                                    const struct glint_ward_place *place)
 {
     const int32_t *out_q14 = place->out_q14;
     struct sample s;
@@ -58,39 +59,43 @@ static struct sample sample_of(const struct glint_ward_lobe *lobe, int k,
     return s;
 }
 
-/* Returns 2 - (n.o) / ((h.o) (h.n)). */
-static int32_t bounded_q12(int32_t ho_q14, int32_t hn_q14, int32_t no_q14)
+/* Returns 2 - (n.o) / ((h.o) (h.n)), the weight of a sample in the bounded
+ * norm (ward.h). */
+static int32_t compute_bounded_weight_q12(int32_t ho_q14, int32_t hn_q14,
+                                          int32_t no_q14)
 {
     const int32_t d_q16 =
         q_smaller(q_larger(ho_q14 * hn_q14 >> 12, 1), ONE_Q16 - 1);
     const int up = 16 - bit_length((uint32_t)d_q16);
-    const uint32_t r_q15 = reciprocal((uint32_t)d_q16 << up);
-    /* (n.o) 2^up is below 2^15 where n.i is above 0. */
+    const uint32_t r_q15 = approximate_reciprocal((uint32_t)d_q16 << up);
+    /* (n.o) 2^up is below 2^15 where n.i is positive */
     const uint32_t q_q12 = ((uint32_t)no_q14 << up) * r_q15 >> 17;
 
     return q_larger((2 << 12) - (int32_t)q_q12, 0);
 }
 
-static int32_t weight_q12(const struct glint_ward_lobe *lobe, int k,
-                          const struct sample *s,
-                          const struct glint_ward_place *place)
+static int32_t compute_weight_q12(const struct glint_ward_lobe *lobe, int k,
+                                  const struct sample *s,
+                                  const struct glint_ward_place *place)
 {
     uint32_t root, part_q15;
 
     if (lobe->norm == GLINT_WARD_BOUNDED)
-        return bounded_q12(s->ho_q14, lobe->half_q14[2][k], place->out_q14[2]);
-    root = root_q15((uint32_t)q_smaller(q_larger(s->in_q14[2], 1), ONE_Q14));
+        return compute_bounded_weight_q12(s->ho_q14, lobe->half_q14[2][k],
+                                          place->out_q14[2]);
+    root = compute_root_q15(
+        (uint32_t)q_smaller(q_larger(s->in_q14[2], 1), ONE_Q14));
     part_q15 = ((uint32_t)(s->ho_q14 * lobe->factor_q14[k]) >> 14) * root >> 14;
     return q_smaller((int32_t)(part_q15 * (uint32_t)place->root_q14 >>
                                (17 - place->root_log2)),
                      8 << 12);
 }
 
-/* Sets U and V to the position of the sample's light in the square of the
- * octahedron. */
-static void place_of(const struct sample *s,
-                     const struct glint_ward_place *place, int32_t *u_q17,
-                     int32_t *v_q17)
+/* Projects the light direction of sample S to the square of the octahedron
+ * map. */
+static void project_to_square(const struct sample *s,
+                              const struct glint_ward_place *place,
+                              int32_t *u_q17, int32_t *v_q17)
 {
     int32_t toward_q14[3], p_q16, q_q16;
     uint32_t away_q14[3], r_q15;
@@ -102,7 +107,8 @@ static void place_of(const struct sample *s,
                         14;
         away_q14[k] = (uint32_t)q_magnitude(toward_q14[k]);
     }
-    r_q15 = reciprocal((away_q14[0] + away_q14[1] + away_q14[2]) << 1);
+    r_q15 =
+        approximate_reciprocal((away_q14[0] + away_q14[1] + away_q14[2]) << 1);
     p_q16 = q_smaller((int32_t)(away_q14[0] * r_q15 >> 14), ONE_Q16);
     q_q16 = q_smaller((int32_t)(away_q14[2] * r_q15 >> 14), ONE_Q16);
     if (toward_q14[1] < 0) {
@@ -115,11 +121,12 @@ static void place_of(const struct sample *s,
     *v_q17 = ONE_Q16 + (toward_q14[2] < 0 ? -q_q16 : q_q16);
 }
 
-/* Returns the level that is as blurred as sample K or sharper. SHARE_Q8 is the
- * weight of the next level, with four times the variance, so that both levels
- * together have the variance of the sample. */
-static int32_t level_of(const struct glint_ward_lobe *lobe, int k,
-                        int32_t ho_q14, int32_t last, uint32_t *share_q8)
+/* Returns the blurriest mipmap level that is not blurrier than sample K.
+ * *SHARE_Q8 receives the weight of the next level, which has four times the
+ * variance, such that the blend of both levels has the variance of the
+ * sample. */
+static int32_t choose_level(const struct glint_ward_lobe *lobe, int k,
+                            int32_t ho_q14, int32_t last, uint32_t *share_q8)
 {
     const int up = 15 - bit_length((uint32_t)ho_q14);
     const int32_t span_q28 = lobe->span_q14[k] * (ho_q14 << up);
@@ -132,7 +139,7 @@ static int32_t level_of(const struct glint_ward_lobe *lobe, int k,
         return 0;
     if (level >= last)
         return last;
-    *share_q8 = (uint32_t)(over_q8 - 256) * 171 >> 9; /* a third */
+    *share_q8 = (uint32_t)(over_q8 - 256) * 171 >> 9; /* divided by 3 */
     return level;
 }
 
@@ -143,7 +150,7 @@ void glint_ward_sum_c(const struct glint_ward_lobe *lobe,
     for (int j = 0; j < 3; j++)
         sum_q12[j] = 0;
     for (int k = 0; k < lobe->n; k++) {
-        const struct sample s = sample_of(lobe, k, place);
+        const struct sample s = compute_sample(lobe, k, place);
         struct glint_reads reads;
         struct glint_found found;
         int32_t u_q17, v_q17, level;
@@ -151,14 +158,14 @@ void glint_ward_sum_c(const struct glint_ward_lobe *lobe,
 
         if (!s.counts)
             continue;
-        place_of(&s, place, &u_q17, &v_q17);
-        level = level_of(lobe, k, s.ho_q14, texels->last, &share_q8);
+        project_to_square(&s, place, &u_q17, &v_q17);
+        level = choose_level(lobe, k, s.ho_q14, texels->last, &share_q8);
         glint_reads_of(&texels->level[level], u_q17, v_q17, 256 - share_q8,
                        reads.at, reads.weight_q22);
         glint_reads_of(&texels->level[level + 1], u_q17, v_q17, share_q8,
                        reads.at + 4, reads.weight_q22 + 4);
         glint_find_light(texels->code, &reads, 8, &found);
-        glint_count_light(&found, (uint32_t)weight_q12(lobe, k, &s, place),
-                          sum_q12);
+        glint_count_light(
+            &found, (uint32_t)compute_weight_q12(lobe, k, &s, place), sum_q12);
     }
 }

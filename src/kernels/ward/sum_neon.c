@@ -44,7 +44,7 @@ static inline int w_any(W mask)
     return vget_lane_u64(vreinterpret_u64_u32(half), 0) != 0;
 }
 
-/* Loads lane I of TO from index I of AT. */
+/* Loads lane I of TO from FROM[lane I of AT]. */
 #define LOAD_LANE(to, from, at, i) \
     to = vld1q_lane_u32((from) + vgetq_lane_u32(at, i), to, i)
 
@@ -59,8 +59,8 @@ static inline W w_gather(const uint32_t *code, W at)
     return S(c);
 }
 
-/* Levels are two words each: a load of four words gives a level and the next
- * level. */
+/* Loads level K and the next level for each lane. A level has two words, so
+ * one load of four words reads both. */
 static inline void w_gather_levels(const struct glint_texels_level *level, W k,
                                    W side_log2[2], W first[2])
 {
@@ -78,18 +78,18 @@ static inline void w_gather_levels(const struct glint_texels_level *level, W k,
     first[1] = next.val[1];
 }
 
-/* Three factors. */
+/* Three scalars, as operands of multiplications by lane. */
 struct three {
     int32x2_t low, high;
 };
 
-static inline struct three three_of(const int32_t x[3])
+static inline struct three load_three(const int32_t x[3])
 {
     return (struct three){vld1_s32(x), vld1_dup_s32(x + 2)};
 }
 
 #define THREE struct three
-/* K is 0, 1 or 2. */
+/* Multiply by scalar K of X; K is 0, 1 or 2. */
 #define w_mad_by(a, b, x, k)                       \
     ((k) == 0   ? vmlaq_lane_s32(a, b, (x).low, 0) \
      : (k) == 1 ? vmlaq_lane_s32(a, b, (x).low, 1) \
@@ -99,20 +99,20 @@ static inline struct three three_of(const int32_t x[3])
      : (k) == 1 ? vdupq_lane_s32((x).low, 1) \
                 : vdupq_lane_s32((x).high, 0))
 
-/* Sums of pairs of lanes. */
+/* Light of R, G, B; each of the two lanes sums half of the samples. */
 struct total {
     uint64x2_t rgb[3];
 };
 
-static inline struct total nothing(void)
+static inline struct total zero_total(void)
 {
     return (struct total){{vdupq_n_u64(0), vdupq_n_u64(0), vdupq_n_u64(0)}};
 }
 
 struct lane_found;
-static inline void count(struct total *total, const struct lane_found *found,
-                         W weight_q12);
-static inline void finish(const struct total *total, uint64_t sum_q12[3])
+static inline void add_to_total(struct total *total,
+                                const struct lane_found *found, W weight_q12);
+static inline void store_total(const struct total *total, uint64_t sum_q12[3])
 {
     for (int j = 0; j < 3; j++)
         sum_q12[j] =
@@ -121,8 +121,8 @@ static inline void finish(const struct total *total, uint64_t sum_q12[3])
 
 #include "kernels/ward/sum_v.inc"
 
-static inline void count(struct total *total, const struct lane_found *found,
-                         W weight_q12)
+static inline void add_to_total(struct total *total,
+                                const struct lane_found *found, W weight_q12)
 {
     const W by = w_sub(found->log2, w_set(34));
     const int64x2_t low = vmovl_s32(vget_low_s32(by));

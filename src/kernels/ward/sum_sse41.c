@@ -10,8 +10,8 @@
 #define WHOLE(name)  _mm_##name##_si128
 #define REPEAT(x)    x
 
-/* Returns X times 2^BY per lane, BY 0 .. 15. SSE4.1 has no shift per lane, so
- * the two bytes of 2^BY are looked up. */
+/* Returns X times 2^BY per lane, BY 0 .. 15. SSE4.1 cannot shift each lane
+ * by its own count, so a byte shuffle looks up the two bytes of 2^BY. */
 static inline W w_shl_each(W x, W by)
 {
     const W low =
@@ -25,7 +25,8 @@ static inline W w_shl_each(W x, W by)
                         _mm_slli_epi32(_mm_shuffle_epi8(high, at), 8)));
 }
 
-static inline W level_and_next(const struct glint_texels_level *level, int k)
+static inline W load_level_and_next(const struct glint_texels_level *level,
+                                    int k)
 {
     return _mm_loadu_si128((const W *)(const void *)(level + k));
 }
@@ -33,10 +34,10 @@ static inline W level_and_next(const struct glint_texels_level *level, int k)
 static inline void w_gather_levels(const struct glint_texels_level *level, W k,
                                    W side_log2[2], W first[2])
 {
-    const W a = level_and_next(level, _mm_extract_epi32(k, 0));
-    const W b = level_and_next(level, _mm_extract_epi32(k, 1));
-    const W c = level_and_next(level, _mm_extract_epi32(k, 2));
-    const W d = level_and_next(level, _mm_extract_epi32(k, 3));
+    const W a = load_level_and_next(level, _mm_extract_epi32(k, 0));
+    const W b = load_level_and_next(level, _mm_extract_epi32(k, 1));
+    const W c = load_level_and_next(level, _mm_extract_epi32(k, 2));
+    const W d = load_level_and_next(level, _mm_extract_epi32(k, 3));
     const W low[2] = {_mm_unpacklo_epi32(a, c), _mm_unpacklo_epi32(b, d)};
     const W high[2] = {_mm_unpackhi_epi32(a, c), _mm_unpackhi_epi32(b, d)};
 

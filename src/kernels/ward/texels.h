@@ -1,35 +1,37 @@
 /* SPDX-License-Identifier: MIT
  *
- * Bilinear lookups in the levels of an unfolded octahedron, one at a time. */
+ * Bilinear texel lookups in mipmap levels of an octahedron map.
+ */
 #ifndef GLINT_KERNELS_WARD_TEXELS_H
 #define GLINT_KERNELS_WARD_TEXELS_H
 
 #include "base/q.h"
 #include "glint/scene/lobe.h"
 
-/* Codes of four texels, or of four texels in each of two levels, and their
- * weights, which sum to 2^22. */
+/* Indices of the codes of four texels, or of four texels in each of two
+ * levels, and their weights, which sum to 2^22. */
 struct glint_reads {
     uint32_t at[8], weight_q22[8];
 };
 
-/* Light in units: RGB 2^(log2 - 34), RGB up to 2^31, log2 up to 31. */
+/* Light as RGB with a shared exponent: RGB 2^(log2 - 34) display white; RGB
+ * is at most 2^31, log2 at most 31. */
 struct glint_found {
     uint32_t rgb[3];
     int32_t log2;
 };
 
-/* Sets four entries of AT and WEIGHT_Q22 to the texels of LEVEL around (U, V),
- * 0 .. 1 across and down the square, with the total weight SHARE_Q8. A point
- * beyond an edge is mirrored about the middle of that edge, as octahedra
- * fold. */
+/* Sets four entries of AT and WEIGHT_Q22 to the texels of LEVEL around (U,
+ * V), 0 .. 1 across and down the square, with the total weight SHARE_Q8. A
+ * texel beyond an edge is replaced by its mirror image about the middle of
+ * that edge, as the octahedron folds. */
 static inline void glint_reads_of(const struct glint_texels_level *level,
                                   int32_t u_q17, int32_t v_q17,
                                   uint32_t share_q8, uint32_t at[4],
                                   uint32_t weight_q22[4])
 {
     const int32_t last = (1 << level->side_log2) - 1;
-    /* Distance from the middle of the first texel, -128 .. 2^18. */
+    /* distance from the centre of the first texel, -128 .. 2^18 */
     const int32_t x_q8 = (u_q17 << level->side_log2 >> 9) - 128;
     const int32_t y_q8 = (v_q17 << level->side_log2 >> 9) - 128;
     const int32_t x = x_q8 >> 8, y = y_q8 >> 8;
@@ -50,7 +52,7 @@ static inline void glint_reads_of(const struct glint_texels_level *level,
     }
 }
 
-/* Sets FOUND to the light of N READS of CODE. */
+/* Sets FOUND to the weighted sum of N texels of CODE. */
 static inline void glint_find_light(const uint32_t *code,
                                     const struct glint_reads *reads, int n,
                                     struct glint_found *found)

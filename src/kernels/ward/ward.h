@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loop of brushed metal. The rules of kernels.h apply, except that
- * texels are gathered from any address.
+ * Kernel that shades brushed metal: sums environment light over samples of a
+ * Ward lobe. The rules of kernels.h apply, except that texels are gathered from
+ * any address.
  *
- * With o to the eye, i = 2 (h.o) h - o to the light, n the normal, a sample
- * counts (h.o) (h.n)^3 sqrt(n.i / n.o) in the norm of 1992 and, bounded, (n.i)
- * / ((h.o) (h.n)), which is 2 - (n.o) / ((h.o) (h.n)); clamped to 8. */
+ * o: direction to the eye; h: half vector; i = 2 (h.o) h - o: direction to the
+ * light; n: normal. The weight of a sample is (h.o) (h.n)^3 sqrt(n.i / n.o) in
+ * the norm of 1992 [Ward92], and (n.i) / ((h.o) (h.n)) = 2 - (n.o) / ((h.o)
+ * (h.n)) in the bounded norm [Geisler10]; clamped to 8.
+ */
 #ifndef GLINT_KERNELS_WARD_WARD_H
 #define GLINT_KERNELS_WARD_WARD_H
 
