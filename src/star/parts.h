@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * State of a star, and its lights as the pass draws them. */
+ * Internal state of a starburst, and its lights in the form that the pass
+ * draws.
+ */
 #ifndef GLINT_STAR_PARTS_H
 #define GLINT_STAR_PARTS_H
 
@@ -8,55 +10,58 @@
 #include "tile/blend.h"
 
 enum {
-    /* zones of distance; each reaches four times as far as the previous zone */
+    /* number of zones of distance from a light; each ends at four times the
+     * distance of the previous zone */
     GLINT_STAR_ZONES = 8,
     GLINT_STAR_INVERSES = 128 /* steps of the table of 1 / x over x = 1 .. 2 */
 };
 
-/* A light with its power multiplied by the units of the tables. */
+/* A light, its power multiplied by the units of the tables. */
 struct glint_star_lamp {
     int32_t x_q8, y_q8;
-    uint64_t inner_q16; /* min of r^2; smaller values are raised to it,
-                           pixels^2 */
-    int is_bare;        /* 1: the lamp's core is drawn as well */
-    /* line: light of one step of a profile, core: power of the lamp, both by
-     * channel, 15 bits times 2^exponent. halo: log2 of the power by channel. */
+    uint64_t inner_q16; /* lower bound of r^2 in 1 / r^2, pixels^2 */
+    int is_bare;        /* 1: draw the lamp's core as well */
+    /* line: light of one step of a profile; core: power of the lamp; per
+     * channel, 15 bits times 2^exponent. halo: log2 of the power per
+     * channel. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
-    /* Scale of the profiles for this lamp's extent: steps per pixel, and pixels
-     * per step. */
+    /* Scale of the profiles for this lamp's radius: steps per pixel, and
+     * pixels per step. */
     int32_t per_pixel_q16, pixels_q16;
-    /* [GLINT_STAR_HALO_ROWS] each: halos of the next smaller and the next
-     * larger extent, and the position of the lamp's extent between the two.
-     * Both pointers are equal if there is a single halo. */
+    /* [GLINT_STAR_HALO_ROWS] each: halos for the tabulated radii below and
+     * above the lamp's radius, and the weight of the latter. Both pointers
+     * are equal if there is a single halo. */
     const glint_star_halo_row *halo, *next_halo;
     int halo_part_q15;
     int reach, halo_reach; /* distances in pixels at which lines, and the halo,
                               become invisible */
-    int smear_reach;       /* the same for dirt in the stop */
+    int smear_reach; /* distance in pixels at which diffraction by dirt in the
+                        stop becomes invisible */
     int n_zones;
-    /* Zone i reaches from start[i] to start[i + 1] pixels along x or y,
-     * whichever is more. In zone i the steps of a profile below seen[i] are
+    /* Zone i reaches from start[i] to start[i + 1] pixels; the distance is
+     * max(|dx|, |dy|). In zone i the steps of a profile below seen[i] are
      * visible. */
     int start[GLINT_STAR_ZONES + 1];
     int seen[GLINT_STAR_ZONES];
 };
 
-/* Light of a run of pixels of a row. */
+/* Light that is accumulated for a range of pixels of one row. */
 struct glint_star_stretch {
-    int y, x0, x1; /* row; pixels x0 .. x1 - 1 of it */
-    int lo, hi;    /* columns lo .. hi - 1 have light; all others are 0 */
-    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3]: linear light of pixels from
-                                                x0 on */
+    int y, x0, x1; /* row; pixels x0 .. x1 - 1 of the row */
+    int lo, hi;    /* columns lo .. hi - 1 may have light; all others are 0 */
+    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3][x1 - x0]: linear light,
+                                                display white */
 };
 
-/* A worker's state in a row of tiles. */
+/* State of a worker that draws a row of tiles. */
 struct glint_star_row {
     const struct glint_star *star;
     struct glint_box tile;
     int n_near, n_here; /* numbers of lights that reach this row of tiles, and
                            this tile */
     uint16_t *near, *here; /* [max_lights] each: indices of these lights */
-    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3]; 0 between rows */
+    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3]: buffer for one row of
+                                                pixels; 0 between rows */
 };
 
 struct glint_star {
@@ -72,7 +77,7 @@ struct glint_star {
 
 glint_star_part_fn glint_star_lines, glint_star_halo, glint_star_core;
 
-/* Returns whether lines of LAMP may reach pixels of BOX. */
+/* Returns whether lines of LAMP may reach pixels of BOX; conservative. */
 int glint_star_lines_reach(const struct glint_star *star,
                            const struct glint_star_lamp *lamp,
                            struct glint_box box);
@@ -85,7 +90,7 @@ static inline int glint_star_core_reach(const struct glint_star *star)
     return GLINT_STAR_CORE >> (steps == 4 ? 2 : steps == 2 ? 1 : 0);
 }
 
-/* Extends the lit columns of ROW by X0 .. X1 - 1. */
+/* Extends the range of lit columns of ROW by X0 .. X1 - 1. */
 static inline void glint_star_note(struct glint_star_stretch *row, int x0,
                                    int x1)
 {

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * The light that dust, scratches, smudges and masks in the stop diffract around
- * a lamp: a table in nested squares around it, each twice as wide as the
- * previous square, with the same number of steps. Its drawing code is linked
- * only by programs that name glint_star_smear_part. */
+ * Diffraction by dust, scratches, smudges and masks in the stop: light around a
+ * lamp, tabulated in nested squares. Each square is twice as wide as the
+ * previous one and has the same number of steps. A program links the drawing
+ * code only if it refers to glint_star_smear_part.
+ */
 #ifndef GLINT_STAR_SMEARED_H
 #define GLINT_STAR_SMEARED_H
 
@@ -13,9 +14,9 @@
 
 enum {
     GLINT_STAR_SMEAR_RINGS = 9,
-    GLINT_STAR_SMEAR_HALF = 32, /* steps from the middle to a side */
-    GLINT_STAR_SMEAR_PX = 8     /* pixels from the middle to a side of the first
-                                   square */
+    GLINT_STAR_SMEAR_HALF = 32, /* steps from the centre to a side */
+    /* pixels from the centre to a side of the first square */
+    GLINT_STAR_SMEAR_PX = 8
 };
 
 struct glint_star;
@@ -29,11 +30,11 @@ typedef void glint_star_part_fn(const struct glint_star *star,
 glint_star_part_fn glint_star_smear_part;
 
 struct glint_star_smear {
-    glint_star_part_fn *part;                       /* glint_star_smear_part */
-    struct glint_real step[GLINT_STAR_SMEAR_RINGS]; /* light that the value 1
-                                                       stands for */
-    /* [ring][row][column][channel], the half with y from 0 on; the other half
-     * is its mirror image about the middle. */
+    glint_star_part_fn *part; /* glint_star_smear_part() */
+    struct glint_real step[GLINT_STAR_SMEAR_RINGS]; /* light that the table
+                                                       value 1 stands for */
+    /* [ring][row][column][channel] for y >= 0. The half with y < 0 is its
+     * point reflection through the centre. */
     uint16_t light[GLINT_STAR_SMEAR_RINGS][GLINT_STAR_SMEAR_HALF + 1]
                   [2 * GLINT_STAR_SMEAR_HALF + 1][3];
 };

@@ -8,7 +8,7 @@
 
 /* ------------------------------------------------------------------ memory */
 
-static int config_ok(const struct glint_star_config *c)
+static int is_valid_config(const struct glint_star_config *c)
 {
     return c->n_workers >= 1 && c->n_workers <= 64 && c->width >= 1 &&
            c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
@@ -18,8 +18,8 @@ static int config_ok(const struct glint_star_config *c)
 
 /* Allocates a star and its tables from A. Called twice: to measure (returns
  * NULL) and to place. */
-static struct glint_star *carve(struct glint_arena *a,
-                                const struct glint_star_config *c)
+static struct glint_star *allocate_star(struct glint_arena *a,
+                                        const struct glint_star_config *c)
 {
     const size_t n = (size_t)c->max_lights, n_workers = (size_t)c->n_workers;
     struct glint_star measured, *placed, *s;
@@ -45,9 +45,9 @@ size_t glint_star_bytes(const struct glint_star_config *cfg)
 {
     struct glint_arena arena = glint_arena_measure();
 
-    if (!config_ok(cfg))
+    if (!is_valid_config(cfg))
         return 0;
-    carve(&arena, cfg);
+    allocate_star(&arena, cfg);
     return arena.used;
 }
 
@@ -58,11 +58,11 @@ enum glint_status glint_star_init(struct glint_star **star,
     struct glint_arena arena = glint_arena_over(mem, bytes);
     struct glint_star *s;
 
-    if (!config_ok(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
+    if (!is_valid_config(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
         return GLINT_E_ARGUMENT;
     if (glint_star_bytes(cfg) > bytes)
         return GLINT_E_MEMORY;
-    s = carve(&arena, cfg);
+    s = allocate_star(&arena, cfg);
     s->cfg = *cfg;
     s->tables = NULL;
     s->n_lamps = s->is_linear = 0;
@@ -81,9 +81,10 @@ enum glint_status glint_star_init(struct glint_star **star,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Sets PART to the product of each channel of RGB and X, 15 bits each. Returns
- * the exponent of PART. */
-static int share(const int32_t rgb_q14[3], struct glint_real x, int32_t part[3])
+/* Sets PART to the product of X and each channel of RGB, 15 bits each.
+ * Returns the exponent of PART. */
+static int multiply_rgb(const int32_t rgb_q14[3], struct glint_real x,
+                        int32_t part[3])
 {
     for (int c = 0; c < 3; c++)
         part[c] = (int32_t)((int64_t)q_clamp_sat(rgb_q14[c], 0, 1 << 14) *
@@ -99,17 +100,18 @@ static int32_t log2_q16(struct glint_real x)
                : INT32_MIN / 2;
 }
 
-/* Returns the distance 2^LOG2_OF pixels, rounded up; 2^20 + 1 at most. */
-static int distance(int32_t log2_of_q16)
+/* Returns 2^LOG2_OF pixels, rounded up; at most 2^20 + 1. */
+static int exp2_rounded_up(int32_t log2_of_q16)
 {
     const int64_t far_q16 = q_exp2_q16(q_smaller(log2_of_q16, 20 * 65536));
 
     return (int)(far_q16 >> 16) + 1;
 }
 
-/* Returns the number of steps of profiles up to the last step whose light
- * exceeds 2^MIN_LOG2. */
-static int seen_to(const struct glint_star_tables *t, int32_t min_log2_q16)
+/* Returns the number of profile steps up to the last one whose light exceeds
+ * 2^MIN_LOG2. */
+static int count_visible_steps(const struct glint_star_tables *t,
+                               int32_t min_log2_q16)
 {
     const int64_t least =
         q_exp2_q16(q_clamp_sat(min_log2_q16, -65536, 17 * 65536)) >> 16;
@@ -121,9 +123,9 @@ static int seen_to(const struct glint_star_tables *t, int32_t min_log2_q16)
     return i;
 }
 
-/* Sets zones of distance up to the lamp's reach, and how much of a profile is
- * seen in each. OVER is the log2 of the light of one step of a profile, at 1
- * pixel, divided by the min visible light. */
+/* Divides the distance up to the lamp's reach into zones and sets the number
+ * of visible profile steps in each. OVER is log2 of (light of one step of a
+ * profile at 1 pixel / min visible light). */
 static void set_zones(struct glint_star_lamp *lamp,
                       const struct glint_star_tables *t, int32_t over_log2_q16)
 {
@@ -139,15 +141,15 @@ static void set_zones(struct glint_star_lamp *lamp,
         const uint64_t r = (uint64_t)lamp->start[i];
         const int32_t r2_log2_q16 = r ? q_log2_q16(r * r) : 0;
 
-        lamp->seen[i] =
-            seen_to(t, q_larger(r2_log2_q16, inner_log2_q16) - over_log2_q16);
+        lamp->seen[i] = count_visible_steps(
+            t, q_larger(r2_log2_q16, inner_log2_q16) - over_log2_q16);
     }
 }
 
 /* Returns the distance in pixels up to which the halo of a light of POWER
- * exceeds MIN, both as log2; 0 if it never does. */
-static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
-                      int32_t min_log2_q16)
+ * exceeds MIN, both as log2; 0 if it never exceeds MIN. */
+static int compute_halo_reach(const struct glint_star_tables *t,
+                              int32_t power_log2_q16, int32_t min_log2_q16)
 {
     int row = GLINT_STAR_HALO_ROWS - 1;
 
@@ -156,20 +158,20 @@ static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
             t->halo_log2_q16 + t->halo_max[row] * 32 + power_log2_q16;
         const int32_t r2_log2_q16 = light_log2_q16 - min_log2_q16;
 
-        /* rows are half octaves of r^2 from 2^4 on; the last row holds for all
+        /* row i holds for r^2 from 2^(4 + i / 2) on, the last row for all
          * larger r^2 */
         if (row == GLINT_STAR_HALO_ROWS - 1 && r2_log2_q16 > (26 << 16))
-            return distance(r2_log2_q16 / 2);
+            return exp2_rounded_up(r2_log2_q16 / 2);
         if (r2_log2_q16 >= (4 << 16) + row * 32768)
-            return distance((4 << 15) + (row + 1) * 16384);
+            return exp2_rounded_up((4 << 15) + (row + 1) * 16384);
     }
     return 0;
 }
 
-/* Returns the distance in pixels up to which the smear of a light of POWER
- * exceeds MIN, both as log2. */
-static int smear_reach(const struct glint_star_smear *s, int32_t power_log2_q16,
-                       int32_t min_log2_q16)
+/* Returns the distance in pixels up to which the diffraction by dirt of a
+ * light of POWER exceeds MIN, both as log2. */
+static int compute_smear_reach(const struct glint_star_smear *s,
+                               int32_t power_log2_q16, int32_t min_log2_q16)
 {
     int k = s ? GLINT_STAR_SMEAR_RINGS : 0;
 
@@ -179,17 +181,17 @@ static int smear_reach(const struct glint_star_smear *s, int32_t power_log2_q16,
     return k > 0 ? GLINT_STAR_SMEAR_PX << (k - 1) : 0;
 }
 
-static struct glint_real held(struct glint_real power)
+static struct glint_real clamp_power(struct glint_real power)
 {
     const struct glint_real most = {1 << 30, 0};
 
     return real_less(most, power) ? most : power;
 }
 
-/* Returns the factor by which a lamp of RADIUS makes lines wider and fainter,
- * at most 2^10. The light of a disc is 1.73 radii wide at half its
- * brightness. */
-static int64_t wider_q8(const struct glint_star_tables *t, int32_t radius_q8)
+/* Returns the factor by which a lamp of RADIUS widens and dims lines, at
+ * most 2^10. A uniform disc is 1.73 radii wide at half its brightness. */
+static int64_t compute_widening_q8(const struct glint_star_tables *t,
+                                   int32_t radius_q8)
 {
     const int64_t disc_q8 = q_divide(
         443 * (int64_t)q_clamp_sat(radius_q8, 0, 1 << 22), t->width_q8);
@@ -198,13 +200,14 @@ static int64_t wider_q8(const struct glint_star_tables *t, int32_t radius_q8)
     return q_root((uint64_t)(65536 + held_q8 * held_q8));
 }
 
-/* Chooses the halos that a lamp of RADIUS is drawn with. */
+/* Chooses the two halo tables between which the halo of a lamp of RADIUS is
+ * interpolated. */
 static void set_halos(struct glint_star_lamp *lamp,
                       const struct glint_star_tables *t, int32_t radius_q8)
 {
     const int32_t radius = q_clamp_sat(radius_q8, 0, 1 << 22);
     const int32_t last_q16 = (GLINT_STAR_WIDE - 1) << 16;
-    /* index among the wide halos; -1 is the halo of a point */
+    /* index into the halos of extended lamps; -1: halo of a point light */
     const int32_t at_q16 =
         radius < 128
             ? (radius - 128) * 512
@@ -223,15 +226,15 @@ static void set_halos(struct glint_star_lamp *lamp,
     }
 }
 
-/* Sets LAMP for light L. Returns 0 if no light of it is visible. */
+/* Sets LAMP for light L. Returns 0 if the light is not visible. */
 static int set_lamp(struct glint_star_lamp *lamp,
                     const struct glint_star_tables *t,
                     const struct glint_star_light *l,
                     struct glint_real faintest)
 {
     const int32_t far = 1 << 25;
-    const struct glint_real power = held(l->power);
-    const int64_t wide_q8 = wider_q8(t, l->radius_q8);
+    const struct glint_real power = clamp_power(l->power);
+    const int64_t wide_q8 = compute_widening_q8(t, l->radius_q8);
     const struct glint_real line =
         real_over(real_times(power, t->step), real_of(wide_q8, -8));
     const int32_t min_log2_q16 = q_larger(log2_q16(faintest), -21 * 65536);
@@ -253,8 +256,8 @@ static int set_lamp(struct glint_star_lamp *lamp,
     lamp->pixels_q16 = (int32_t)(t->pixels_q16 * wide_q8 >> 8);
     lamp->inner_q16 = (uint64_t)radius_q8 * (uint64_t)radius_q8;
     set_halos(lamp, t, l->radius_q8);
-    lamp->line_exponent = share(l->rgb_q14, line, lamp->line);
-    lamp->core_exponent = share(l->rgb_q14, power, lamp->core);
+    lamp->line_exponent = multiply_rgb(l->rgb_q14, line, lamp->line);
+    lamp->core_exponent = multiply_rgb(l->rgb_q14, power, lamp->core);
     for (int c = 0; c < 3; c++)
         lamp->halo_log2_q16[c] =
             l->rgb_q14[c] > 0
@@ -262,11 +265,12 @@ static int set_lamp(struct glint_star_lamp *lamp,
                 : INT32_MIN / 2;
     lamp->reach =
         t->n_lines && line.mantissa > 0
-            ? distance((log2_q16(line) + 16 * 65536 - min_log2_q16) / 2)
+            ? exp2_rounded_up((log2_q16(line) + 16 * 65536 - min_log2_q16) / 2)
             : 0;
     set_zones(lamp, t, log2_q16(line) - min_log2_q16);
-    lamp->halo_reach = halo_reach(t, log2_q16(power), min_log2_q16);
-    lamp->smear_reach = smear_reach(t->smear, log2_q16(power), min_log2_q16);
+    lamp->halo_reach = compute_halo_reach(t, log2_q16(power), min_log2_q16);
+    lamp->smear_reach =
+        compute_smear_reach(t->smear, log2_q16(power), min_log2_q16);
     return lamp->smear_reach > 1 || lamp->is_bare || lamp->reach > 1 ||
            lamp->halo_reach > 1;
 }

@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * The core of a star: the exact pattern near a light less lines and halo. It is
- * a lattice finer than pixels, and light is interpolated between its nodes, so
- * that the sum over all pixels does not change as the light moves. */
+ * Draws the core of a starburst: the exact diffraction pattern near a light,
+ * minus lines and halo. The core is a lattice finer than pixels. Light is
+ * interpolated between its nodes, so that the sum over all pixels does not
+ * change as the light moves.
+ */
 #include "base/q.h"
 #include "star/parts.h"
 
-/* Returns node (I, J) of channel C, counted from the middle, _q40. */
-static int64_t node_q40(const struct glint_star_tables *t, int i, int j, int c)
+/* Decodes node (I, J) of channel C, relative to the centre. */
+static int64_t decode_node_q40(const struct glint_star_tables *t, int i, int j,
+                               int c)
 {
     const int turn = j < 0 ? -1 : 1;
     const uint16_t code = t->core[j * turn][i * turn + GLINT_STAR_CORE][c];
@@ -18,7 +21,7 @@ static int64_t node_q40(const struct glint_star_tables *t, int i, int j, int c)
 }
 
 /* Returns X 2^-SHIFT, |X| below 2^57, clamped to +-2^50. */
-static int64_t scaled(int64_t x, int shift)
+static int64_t shift_clamped(int64_t x, int shift)
 {
     const uint64_t size = q_magnitude(x);
 
@@ -38,15 +41,15 @@ static void add_pixel(const struct glint_star *star,
     const int64_t a_q8 = i_q8 & 255, b_q8 = j_q8 & 255;
 
     for (int c = 0; c < 3; c++) {
-        const int64_t above = node_q40(t, i, j, c) * (256 - a_q8) +
-                              node_q40(t, i + 1, j, c) * a_q8;
-        const int64_t below = node_q40(t, i, j + 1, c) * (256 - a_q8) +
-                              node_q40(t, i + 1, j + 1, c) * a_q8;
+        const int64_t above = decode_node_q40(t, i, j, c) * (256 - a_q8) +
+                              decode_node_q40(t, i + 1, j, c) * a_q8;
+        const int64_t below = decode_node_q40(t, i, j + 1, c) * (256 - a_q8) +
+                              decode_node_q40(t, i + 1, j + 1, c) * a_q8;
         const int64_t light_q40 =
             ((above >> 8) * (256 - b_q8) + (below >> 8) * b_q8) >> 8;
 
         *light_q20[c] +=
-            scaled(light_q40 * lamp->core[c], 20 - lamp->core_exponent);
+            shift_clamped(light_q40 * lamp->core[c], 20 - lamp->core_exponent);
     }
 }
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * The halo of a star, the smooth part of the far field: a table of logarithms
- * by distance from the light and by distance from the nearest line. */
+ * Draws the halo of a starburst, the smooth component of the far field. Its
+ * table holds logarithms of light by distance from the lamp and distance from
+ * the nearest line.
+ */
 #include "base/log2.h"
 #include "star/parts.h"
 
-/* The halo of one lamp in one row. */
+/* The halo of one lamp in one row of pixels. */
 struct span {
     const struct glint_star *star;
     const struct glint_star_lamp *lamp;
@@ -13,33 +15,34 @@ struct span {
     struct glint_star_stretch *row;
 };
 
-/* A fractional index into a table. */
+/* A fractional index into a table: index and weight of the next entry. */
 struct place {
     int at, part_q15;
 };
 
-/* Converts X to a fractional index, clamped to LAST. */
-static struct place place_of(int32_t x_q16, int last)
+/* Converts X to a fractional index, clamped to below LAST. */
+static struct place compute_index(int32_t x_q16, int last)
 {
     const int32_t held_q16 = q_clamp_sat(x_q16, 0, (last << 16) - 1);
 
     return (struct place){held_q16 >> 16, held_q16 >> 1 & 32767};
 }
 
-static int32_t between(int32_t a, int32_t b, int part_q15)
+static int32_t interpolate(int32_t a, int32_t b, int part_q15)
 {
     return a + ((b - a) * part_q15 >> 15);
 }
 
-/* A pixel, its position relative to the lamp, and its light. */
+/* A pixel at which the halo is evaluated: column, position relative to the
+ * lamp along x and across the nearest line, and light. */
 struct node {
     int x;
     int64_t dx_q8, v_q8;
     int64_t light_q20[3];
 };
 
-static struct node node_at(const struct span *s,
-                           const struct glint_star_line *line, int x)
+static struct node make_node(const struct span *s,
+                             const struct glint_star_line *line, int x)
 {
     struct node n = {.x = x, .dx_q8 = (int64_t)x * 256 + 128 - s->lamp->x_q8};
 
@@ -47,19 +50,19 @@ static struct node node_at(const struct span *s,
     return n;
 }
 
-/* Returns channel C of HALO at ROW and COLUMN. */
-static int32_t halo_at(const glint_star_halo_row *halo, struct place row,
-                       struct place column, int c)
+/* Interpolates channel C of HALO at ROW and COLUMN. */
+static int32_t interpolate_halo(const glint_star_halo_row *halo,
+                                struct place row, struct place column, int c)
 {
     const uint16_t(*near)[3] = &halo[row.at][column.at];
     const uint16_t(*far)[3] = &halo[row.at + 1][column.at];
 
-    return between(between(near[0][c], near[1][c], column.part_q15),
-                   between(far[0][c], far[1][c], column.part_q15),
-                   row.part_q15);
+    return interpolate(interpolate(near[0][c], near[1][c], column.part_q15),
+                       interpolate(far[0][c], far[1][c], column.part_q15),
+                       row.part_q15);
 }
 
-static void light(const struct span *s, struct node *n)
+static void compute_light(const struct span *s, struct node *n)
 {
     const struct glint_star_tables *t = s->star->tables;
     const int64_t v_q8 = n->v_q8 < 0 ? -n->v_q8 : n->v_q8;
@@ -72,14 +75,16 @@ static void light(const struct span *s, struct node *n)
     /* log2 of 1 + 4 v / reach */
     column_q16 =
         q_log2_q16((uint64_t)(v_q8 * 4 + t->reach_q8)) - t->reach_log2_q16;
-    row = place_of((r2_log2_q16 - 4 * 65536) * 2, GLINT_STAR_HALO_ROWS - 1);
-    column = place_of(column_q16 * 4, GLINT_STAR_HALO_COLUMNS - 1);
+    row =
+        compute_index((r2_log2_q16 - 4 * 65536) * 2, GLINT_STAR_HALO_ROWS - 1);
+    column = compute_index(column_q16 * 4, GLINT_STAR_HALO_COLUMNS - 1);
     for (int c = 0; c < 3; c++) {
-        int32_t at = halo_at(s->lamp->halo, row, column, c);
+        int32_t at = interpolate_halo(s->lamp->halo, row, column, c);
 
         if (s->lamp->halo_part_q15 > 0)
-            at = between(at, halo_at(s->lamp->next_halo, row, column, c),
-                         s->lamp->halo_part_q15);
+            at = interpolate(
+                at, interpolate_halo(s->lamp->next_halo, row, column, c),
+                s->lamp->halo_part_q15);
         log2_of_q16 = 32 * at;
         log2_of_q16 += t->halo_log2_q16 + s->lamp->halo_log2_q16[c] -
                        r2_log2_q16 + 4 * 65536;
@@ -87,8 +92,8 @@ static void light(const struct span *s, struct node *n)
     }
 }
 
-/* Adds the light of the STEP pixels from A on, interpolated linearly from A to
- * B, which are STEP apart. */
+/* Adds the light of STEP pixels from A on, interpolated linearly between A
+ * and B. STEP is the distance from A to B. */
 static void add_between(const struct span *s, const struct node *a,
                         const struct node *b, int step)
 {
@@ -110,10 +115,10 @@ static int64_t min_size(int64_t a, int64_t b)
     return (a < 0) != (b < 0) ? 0 : p < q ? p : q;
 }
 
-/* Returns whether light may be interpolated linearly between A and B, n pixels
- * apart. The light falls with r^-3 and v^-2, so the interpolated light is too
- * high by at most the fractions 1.5 n^2 / r^2 and 0.75 n^2 / v^2, here 0.01 and
- * 0.02. */
+/* Returns whether light may be interpolated linearly between A and B, n
+ * pixels apart. Light falls with r^-3 and v^-2, so interpolated light is too
+ * high by at most the fractions 1.5 n^2 / r^2 and 0.75 n^2 / v^2, here 0.01
+ * and 0.02. */
 static int is_straight(const struct span *s, const struct node *a,
                        const struct node *b)
 {
@@ -124,47 +129,47 @@ static int is_straight(const struct span *s, const struct node *a,
            dx_q8 * dx_q8 + s->dy_q8 * s->dy_q8 >= 144 * far_q8 * far_q8;
 }
 
-/* Returns how many pixels from FROM on, up to X1, are interpolated linearly: 8,
- * 4 or 1. Runs begin at multiples of their length, so that tiles do not show.
- */
-static int run_of(const struct span *s, const struct glint_star_line *line,
-                  const struct node *from, int x1)
+/* Returns the number of pixels from FROM on, up to X1, that can be
+ * interpolated linearly: 8, 4 or 1. Runs begin at multiples of their length,
+ * so that the result does not depend on tile borders. */
+static int choose_run(const struct span *s, const struct glint_star_line *line,
+                      const struct node *from, int x1)
 {
     for (int n = 8; n >= 4; n >>= 1) {
         struct node to;
 
         if ((from->x & (n - 1)) != 0 || from->x + n > x1)
             continue;
-        to = node_at(s, line, from->x + n);
+        to = make_node(s, line, from->x + n);
         if (is_straight(s, from, &to))
             return n;
     }
     return 1;
 }
 
-/* Adds light to pixels X0 .. X1 - 1, which are in the sector of LINE. */
+/* Adds light to pixels X0 .. X1 - 1, which lie in the sector of LINE. */
 static void add_sector(const struct span *s, const struct glint_star_line *line,
                        int x0, int x1)
 {
-    struct node at = node_at(s, line, x0);
+    struct node at = make_node(s, line, x0);
 
     if (x0 < x1)
-        light(s, &at);
+        compute_light(s, &at);
     for (int n; at.x < x1;) {
         struct node next;
 
-        n = run_of(s, line, &at, x1);
-        next = node_at(s, line, at.x + n);
+        n = choose_run(s, line, &at, x1);
+        next = make_node(s, line, at.x + n);
         if (next.x < x1 || n > 1)
-            light(s, &next);
+            compute_light(s, &next);
         add_between(s, &at, &next, n);
         at = next;
     }
 }
 
-/* Adds light to pixels X0 .. X1 - 1 sector by sector. In the order of the
- * lines, borders between sectors come from right to left below the lamp and
- * from left to right above it. */
+/* Adds light to pixels X0 .. X1 - 1 sector by sector. Lines are sorted by
+ * angle, so that borders between sectors are crossed from right to left
+ * below the lamp and from left to right above it. */
 static void add_sectors(const struct span *s, int x0, int x1)
 {
     const struct glint_star_tables *t = s->star->tables;

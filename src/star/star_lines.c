@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * The lines of a star: light that each edge of the stop diffracts at right
- * angles to the edge, in strips through each lamp.
+ * Draws the lines of a starburst: each edge of the stop diffracts light at
+ * right angles to the edge, into a strip through each lamp.
  *
  * A strip covers the pixels where it is visible. Light falls with the square of
- * the distance, so that a narrower range of the profile is visible in each zone
- * than in the previous zone, which is four times nearer. */
+ * the distance, so the strip is narrower in each zone of distance than in the
+ * previous one, which is four times nearer.
+ */
 #include "base/q.h"
 #include "star/parts.h"
 
 /* Returns X 2^-SHIFT, at most 2^50. X must be below 2^48; SHIFT may be
  * negative. */
-static int64_t scaled(uint64_t x, int shift)
+static int64_t shift_clamped(uint64_t x, int shift)
 {
     const uint64_t most = UINT64_C(1) << 50;
 
@@ -25,12 +26,12 @@ struct stretch {
     int x0, x1;
 };
 
-static struct stretch cut(struct stretch a, struct stretch b)
+static struct stretch intersect_stretches(struct stretch a, struct stretch b)
 {
     return (struct stretch){q_larger(a.x0, b.x0), q_smaller(a.x1, b.x1)};
 }
 
-/* A strip in one row. */
+/* The strip of one line of one lamp in one row of pixels. */
 struct strip {
     const struct glint_star *star;
     const struct glint_star_lamp *lamp;
@@ -39,15 +40,15 @@ struct strip {
     struct glint_star_stretch *row;
 };
 
-/* Returns INVERSE and sets BITS such that 1 / r^2 = INVERSE 2^(1 - BITS),
- * px^-2. */
-static uint32_t inverse_of(const struct glint_star *star, uint64_t r2_q16,
-                           int *bits)
+/* Looks up 1 / r^2 in pixels^-2 = INVERSE 2^(1 - BITS): returns INVERSE and
+ * sets BITS. */
+static uint32_t compute_inverse(const struct glint_star *star, uint64_t r2_q16,
+                                int *bits)
 {
     const int n = bit_length(r2_q16);
+    /* mantissa, 2^15 .. 2^16 - 1 */
     const uint32_t m =
-        (uint32_t)(n > 16 ? r2_q16 >> (n - 16)
-                          : r2_q16 << (16 - n)); /* 2^15 .. 2^16 - 1 */
+        (uint32_t)(n > 16 ? r2_q16 >> (n - 16) : r2_q16 << (16 - n));
     const uint32_t at = (m - 32768) >> 8, part = m & 255;
     const uint32_t *v = star->inverse_q31 + at;
 
@@ -67,7 +68,7 @@ static void add_pixel(const struct strip *s, int x, int64_t v_q16)
     int bits;
 
     r2_q16 = r2_q16 > s->lamp->inner_q16 ? r2_q16 : s->lamp->inner_q16;
-    inverse = inverse_of(s->star, r2_q16, &bits);
+    inverse = compute_inverse(s->star, r2_q16, &bits);
     /* (v / r)^2, _q16 */
     less_q16 = (uint32_t)((v_q8 * v_q8 * inverse) >> (bits - 1));
     less_q16 = less_q16 < 65536 ? less_q16 : 65536;
@@ -75,14 +76,14 @@ static void add_pixel(const struct strip *s, int x, int64_t v_q16)
     for (int c = 0; c < 3; c++) {
         const int32_t steps = p[c] + ((p[c + 3] - p[c]) * part_q8 >> 8);
 
-        s->row->light_q20[c][x - s->row->x0] += scaled(
+        s->row->light_q20[c][x - s->row->x0] += shift_clamped(
             (uint64_t)((uint32_t)s->lamp->line[c] * (uint32_t)steps) * inverse,
             bits - 21 - s->lamp->line_exponent);
     }
 }
 
-/* Adds light to pixels of HERE that are less than SEEN steps from the strip's
- * middle line. */
+/* Adds light to the pixels of HERE that are less than SEEN steps from the
+ * strip's centre line. */
 static void add_stretch(const struct strip *s, struct stretch here, int seen)
 {
     const int64_t step_q16 = s->lamp->per_pixel_q16;
@@ -106,8 +107,8 @@ static void add_stretch(const struct strip *s, struct stretch here, int seen)
 }
 
 /* Returns the pixels of the row that are at most SEEN steps from the strip's
- * middle line. */
-static struct stretch across(const struct strip *s, int seen)
+ * centre line. */
+static struct stretch find_strip_pixels(const struct strip *s, int seen)
 {
     const int64_t middle_q8 = (int64_t)s->dy_q8 * s->line->cot_q16 >> 16;
     const int64_t v_q8 = ((int64_t)seen * s->lamp->pixels_q16 >> 8) + 1;
@@ -132,18 +133,23 @@ static void add_line(const struct strip *s, struct stretch here)
 
         if (lamp->seen[i] == 0)
             continue;
-        row = cut(here, across(s, lamp->seen[i]));
+        row = intersect_stretches(here, find_strip_pixels(s, lamp->seen[i]));
         if (row.x0 >= row.x1)
             continue;
         if (down >= near) {
-            add_stretch(s, cut(row, (struct stretch){x - far + 1, x + far}),
+            add_stretch(s,
+                        intersect_stretches(
+                            row, (struct stretch){x - far + 1, x + far}),
                         lamp->seen[i]);
         } else {
             add_stretch(s,
-                        cut(row, (struct stretch){x - far + 1, x - near + 1}),
+                        intersect_stretches(
+                            row, (struct stretch){x - far + 1, x - near + 1}),
                         lamp->seen[i]);
-            add_stretch(s, cut(row, (struct stretch){x + near, x + far}),
-                        lamp->seen[i]);
+            add_stretch(
+                s,
+                intersect_stretches(row, (struct stretch){x + near, x + far}),
+                lamp->seen[i]);
         }
     }
 }
@@ -163,9 +169,9 @@ void glint_star_lines(const struct glint_star *star,
     }
 }
 
-/* Returns the distance from pixel (X, Y) to BOX, along x or y, whichever is
- * more; 0 if it is inside. */
-static int off(struct glint_box b, int x, int y)
+/* Returns the distance max(|dx|, |dy|) from pixel (X, Y) to BOX; 0 if the
+ * pixel is inside. */
+static int compute_box_distance(struct glint_box b, int x, int y)
 {
     const int dx = q_larger(b.x0 - x, x - (b.x1 - 1));
     const int dy = q_larger(b.y0 - y, y - (b.y1 - 1));
@@ -180,7 +186,8 @@ int glint_star_lines_reach(const struct glint_star *star,
     const int64_t x_q8 = 128 * (int64_t)(box.x0 + box.x1) - lamp->x_q8;
     const int64_t y_q8 = 128 * (int64_t)(box.y0 + box.y1) - lamp->y_q8;
     const int64_t half_q8 = 128 * (int64_t)(box.x1 - box.x0 + box.y1 - box.y0);
-    const int near = off(box, lamp->x_q8 >> 8, lamp->y_q8 >> 8);
+    const int near =
+        compute_box_distance(box, lamp->x_q8 >> 8, lamp->y_q8 >> 8);
     int zone = 0, seen;
 
     if (near >= lamp->reach)

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws stars as a pass: finds the lights that reach a row of tiles and then a
- * tile, and adds their light to its rows. */
+ * Draws starbursts as a pass: finds the lights that reach each row of tiles and
+ * each tile, and adds their light to the rows of pixels.
+ */
 #include "base/q.h"
 #include "flare/draw_over.h"
 #include "flare/state.h"
 #include "star/parts.h"
 
-/* Returns the distance in pixels from the light within which halo and core
- * lie. */
-static int round_reach(const struct glint_star *star,
-                       const struct glint_star_lamp *lamp)
+/* Returns the distance in pixels from LAMP up to which it has halo, core or
+ * smear. */
+static int compute_round_reach(const struct glint_star *star,
+                               const struct glint_star_lamp *lamp)
 {
     return q_larger(lamp->is_bare ? glint_star_core_reach(star) : 0,
                     q_larger(lamp->halo_reach, lamp->smear_reach)) +
@@ -34,13 +35,13 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     r->n_near = 0;
     for (int i = 0; i < star->n_lamps; i++)
         if (is_within(&star->lamp[i], row,
-                      q_larger(round_reach(star, &star->lamp[i]),
+                      q_larger(compute_round_reach(star, &star->lamp[i]),
                                star->lamp[i].reach)))
             r->near[r->n_near++] = (uint16_t)i;
     return r;
 }
 
-static int go_on(void *state, struct glint_box tile)
+static int begin_tile(void *state, struct glint_box tile)
 {
     struct glint_star_row *r = state;
     const struct glint_star *s = r->star;
@@ -50,7 +51,7 @@ static int go_on(void *state, struct glint_box tile)
     for (int i = 0; i < r->n_near; i++) {
         const struct glint_star_lamp *lamp = &s->lamp[r->near[i]];
 
-        if (is_within(lamp, tile, round_reach(s, lamp)) ||
+        if (is_within(lamp, tile, compute_round_reach(s, lamp)) ||
             glint_star_lines_reach(s, lamp, tile))
             r->here[r->n_here++] = r->near[i];
     }
@@ -73,10 +74,10 @@ static void light_row(const struct glint_star_row *r,
     }
 }
 
-/* Moves the light of channel C in ROW to LIGHT, clamped to 16 bits, and clears
- * it in ROW. Returns whether there was any light. */
-static int give_codes(const struct glint_star_stretch *row, int c,
-                      uint16_t *light_q16)
+/* Moves the light of channel C from ROW to LIGHT, clamped to 16 bits, and
+ * clears it in ROW. Returns whether there was any light. */
+static int move_to_codes(const struct glint_star_stretch *row, int c,
+                         uint16_t *light_q16)
 {
     int64_t *const light_q20 = row->light_q20[c];
     int any = 0;
@@ -91,8 +92,8 @@ static int give_codes(const struct glint_star_stretch *row, int c,
     return any;
 }
 
-static int give_linear(const struct glint_star_stretch *row, int c,
-                       int32_t *to_q20)
+static int move_to_linear(const struct glint_star_stretch *row, int c,
+                          int32_t *to_q20)
 {
     int64_t *const light_q20 = row->light_q20[c];
 
@@ -122,15 +123,15 @@ static enum glint_given light_rows(void *state,
         light_row(r, &row);
         for (int c = 0; c < 3; c++)
             any |= r->star->is_linear
-                       ? give_linear(&row, c, rows->light_q20[c])
-                       : give_codes(&row, c, rows->light->rgb_q16[c][k]);
+                       ? move_to_linear(&row, c, rows->light_q20[c])
+                       : move_to_codes(&row, c, rows->light->rgb_q16[c][k]);
     }
     return any ? GLINT_GIVES_LIGHT : GLINT_GIVES_NOTHING;
 }
 
-static struct glint_pass pass_of(const struct glint_star *star)
+static struct glint_pass make_pass(const struct glint_star *star)
 {
-    return (struct glint_pass){star, begin_row, go_on, light_rows};
+    return (struct glint_pass){star, begin_row, begin_tile, light_rows};
 }
 
 /* ----------------------------------------------------------------- drawing */
@@ -149,12 +150,12 @@ static void row_job(void *ctx, int job, int worker)
                     &d->flare->worker[worker].tile);
 }
 
-/* Draws the star to all pixels, even if the flare is drawn at half
+/* Draws the starburst to all pixels, even if the flare is drawn at half
  * resolution. */
 static void draw_alone(struct glint_star *star, struct glint_flare *flare,
                        const struct glint_image *image)
 {
-    struct draw d = {flare, glint_flare_start(flare, image), pass_of(star)};
+    struct draw d = {flare, glint_flare_start(flare, image), make_pass(star)};
 
     d.tiles.half = 0;
     d.tiles.quads = NULL;
@@ -168,7 +169,7 @@ struct glint_pass glint_star_pass_on(struct glint_star *star,
                                      const struct glint_image *image)
 {
     star->is_linear = image && image->format == GLINT_LINEAR_Q20;
-    return pass_of(star);
+    return make_pass(star);
 }
 
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
@@ -183,7 +184,7 @@ void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
 void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
                      const struct glint_image *image)
 {
-    const struct glint_pass pass = pass_of(star);
+    const struct glint_pass pass = make_pass(star);
     const struct glint_flare_under under = {&pass, 1, &glint_blend, star->rows};
 
     star->is_linear = image && image->format == GLINT_LINEAR_Q20;

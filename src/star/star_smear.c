@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the light that dirt in the stop diffracts around a lamp, from a table
- * of squares; see smeared.h. The lamp's disc blurs the light: squares with
- * steps finer than half of the disc's radius are not used. */
+ * Draws light that dirt in the stop diffracts around a lamp, from a table of
+ * nested squares (smeared.h). The lamp's disc blurs this light, so squares
+ * whose steps are finer than half of the disc's radius are skipped.
+ */
 #include "base/compiler.h"
 #include "base/q.h"
 #include "star/parts.h"
@@ -10,20 +11,21 @@
 enum {
     HALF = GLINT_STAR_SMEAR_HALF,
     RINGS = GLINT_STAR_SMEAR_RINGS,
-    /* log2 of the steps per pixel of the first square, and of its size in
-     * _q8 */
+    /* log2 of the steps per pixel of the first square, and of its half side
+     * in _q8 */
     STEPS_LOG2 = 2,
     FIRST_LOG2 = 11
 };
 
-/* One ring in one row of pixels. */
+/* State for drawing one ring (the area between two nested squares) in one
+ * row of pixels. */
 struct span {
     const struct glint_star_smear *table;
     const struct glint_star_lamp *lamp;
     int64_t (*light_q20)[GLINT_CODES_WIDTH];
     int ring;
-    int32_t share[3]; /* light of value 1 by channel */
-    int shift;        /* light of value 1 is share 2^-shift, _q20 */
+    int32_t share[3]; /* light of table value 1 per channel */
+    int shift;        /* light of table value 1 is share 2^-shift, _q20 */
 };
 
 static void set_ring(struct span *s, int ring)
@@ -37,12 +39,12 @@ static void set_ring(struct span *s, int ring)
     s->shift = -(s->lamp->core_exponent + step.exponent + 16 + 20);
 }
 
-/* Adds light to pixel AT of the row, (DX, DY) from the lamp. */
+/* Adds light to pixel AT of the row, at (DX, DY) from the lamp. */
 static void add_pixel(const struct span *s, int at, int64_t dx_q8,
                       int64_t dy_q8)
 {
     const int turn = dy_q8 < 0 ? -1 : 1, down = s->ring;
-    /* in steps, _q8 */
+    /* position in steps */
     const int64_t x_q8 =
         (turn * dx_q8 * (1 << STEPS_LOG2) >> down) + HALF * 256;
     const int64_t y_q8 = turn * dy_q8 * (1 << STEPS_LOG2) >> down;
@@ -58,7 +60,7 @@ static void add_pixel(const struct span *s, int at, int64_t dx_q8,
              (high[0][c] * (256 - a) + high[1][c] * a) * b) >>
             16;
 
-        /* below 2^46 */
+        /* each sum stays below 2^46 */
         s->light_q20[c][at] +=
             s->shift >= 0 ? s->shift < 63 ? value * s->share[c] >> s->shift : 0
             : s->shift > -16 ? value * s->share[c] * (1 << -s->shift)
@@ -66,9 +68,9 @@ static void add_pixel(const struct span *s, int at, int64_t dx_q8,
     }
 }
 
-/* Returns the ring of pixels at distance FAR from the lamp, along x or y,
- * whichever is more; RINGS if they are outside all rings. */
-static int ring_of(int64_t far_q8, int least)
+/* Returns the ring of pixels at distance FAR = max(|dx|, |dy|) from the
+ * lamp, at least LEAST; RINGS if they are outside all rings. */
+static int find_ring(int64_t far_q8, int least)
 {
     const int bits = bit_length((uint64_t)far_q8) - FIRST_LOG2;
 
@@ -82,13 +84,13 @@ void glint_star_smear_part(const struct glint_star *star,
     struct span s = {.table = star->tables->smear,
                      .lamp = lamp,
                      .light_q20 = row->light_q20,
-                     .ring = RINGS}; /* no ring yet */
+                     .ring = RINGS}; /* no ring is set yet */
     const int64_t dy_q8 = (int64_t)row->y * 256 + 128 - lamp->y_q8;
     const int64_t high_q8 = dy_q8 < 0 ? -dy_q8 : dy_q8;
     const int middle = lamp->x_q8 >> 8;
     const int x0 = q_larger(row->x0, middle - lamp->smear_reach);
     const int x1 = q_smaller(row->x1, middle + lamp->smear_reach + 1);
-    /* a step is a quarter of a pixel times 2^ring */
+    /* A step of ring k is 2^k / 4 pixels. */
     const int wide = bit_length(lamp->inner_q16 >> 18);
     const int least = wide > 1 ? (wide + 1) / 2 : 0;
 
@@ -98,7 +100,8 @@ void glint_star_smear_part(const struct glint_star *star,
     for (int x = x0; x < x1; x++) {
         const int64_t dx_q8 = (int64_t)x * 256 + 128 - lamp->x_q8;
         const int64_t wide_q8 = dx_q8 < 0 ? -dx_q8 : dx_q8;
-        const int ring = ring_of(wide_q8 > high_q8 ? wide_q8 : high_q8, least);
+        const int ring =
+            find_ring(wide_q8 > high_q8 ? wide_q8 : high_q8, least);
 
         if (ring >= RINGS)
             continue;
