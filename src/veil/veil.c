@@ -7,16 +7,16 @@
 
 /* ------------------------------------------------------------------ memory */
 
-static int config_ok(const struct glint_veil_config *c)
+static int is_valid_config(const struct glint_veil_config *c)
 {
     return c->n_workers >= 1 && c->n_workers <= 64 && c->width >= 1 &&
            c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE;
 }
 
-/* Returns the number of cells along SIDE of a picture whose longer side is
- * LONGER. */
-static int cells_along(int side, int longer)
+/* Returns the number of cells along SIDE of a picture whose longer side has
+ * LONGER pixels. */
+static int count_cells(int side, int longer)
 {
     const int most =
         q_larger(1, q_smaller(GLINT_VEIL_CELLS, longer / GLINT_VEIL_LEAST_PX));
@@ -28,12 +28,12 @@ void glint_veil_cells(int width, int height, int cells[2])
 {
     const int longer = q_larger(width, height);
 
-    cells[0] = cells_along(width, longer);
-    cells[1] = cells_along(height, longer);
+    cells[0] = count_cells(width, longer);
+    cells[1] = count_cells(height, longer);
 }
 
-static void take_axis(struct glint_arena *a, struct glint_veil_axis *axis,
-                      int side)
+static void allocate_axis(struct glint_arena *a, struct glint_veil_axis *axis,
+                          int side)
 {
     enum { N = GLINT_VEIL_CELLS };
 
@@ -47,8 +47,8 @@ static void take_axis(struct glint_arena *a, struct glint_veil_axis *axis,
 
 /* Allocates a veil and its tables from A. Called twice: to measure (returns
  * NULL) and to place. */
-static struct glint_veil *carve(struct glint_arena *a,
-                                const struct glint_veil_config *c)
+static struct glint_veil *allocate_veil(struct glint_arena *a,
+                                        const struct glint_veil_config *c)
 {
     struct glint_veil measured, *placed, *v;
     int cells[2];
@@ -58,8 +58,8 @@ static struct glint_veil *carve(struct glint_arena *a,
     n = 3 * (size_t)cells[0] * (size_t)cells[1];
     placed = glint_arena_take(a, 1, sizeof *placed);
     v = placed ? placed : &measured;
-    take_axis(a, &v->across, c->width);
-    take_axis(a, &v->down, c->height);
+    allocate_axis(a, &v->across, c->width);
+    allocate_axis(a, &v->down, c->height);
     v->curve = glint_arena_take(a, 1, sizeof *v->curve);
     v->light_q16 = glint_arena_take(a, n, sizeof *v->light_q16);
     v->narrow = glint_arena_take(a, n, sizeof *v->narrow);
@@ -81,21 +81,21 @@ size_t glint_veil_bytes(const struct glint_veil_config *cfg)
 {
     struct glint_arena arena = glint_arena_measure();
 
-    if (!config_ok(cfg))
+    if (!is_valid_config(cfg))
         return 0;
-    carve(&arena, cfg);
+    allocate_veil(&arena, cfg);
     return arena.used;
 }
 
-/* Sets fill_q16: the width of N cells over SIDE pixels, divided by the number
- * of pixels that are summed in each, if these are read STEP at a time. */
+/* Sets fill_q16: width of a cell (N cells over SIDE pixels) / number of its
+ * pixels that are summed, when every STEP pixels are read together. */
 static void set_fill(struct glint_veil_axis *axis, int side, int n, int step)
 {
     for (int k = 0; k < n; k++)
         axis->fill_q16[k] = 0;
     for (int i = 0; i < side; i += step)
         axis->fill_q16[axis->cell[i]] += (uint32_t)q_smaller(step, side - i);
-    for (int k = 0; k < n; k++) { /* pixels are at most 2^15, cells 2^6 */
+    for (int k = 0; k < n; k++) { /* SIDE is at most 2^15, N at most 2^6 */
         const uint32_t pixels = axis->fill_q16[k] ? axis->fill_q16[k] : 1;
 
         axis->fill_q16[k] =
@@ -103,14 +103,14 @@ static void set_fill(struct glint_veil_axis *axis, int side, int n, int step)
     }
 }
 
-/* Finds the cell and the weights of each of SIDE pixels among N cells. */
+/* Sets the cell and the spline weights of each of SIDE pixels among N cells. */
 static void set_axis(struct glint_veil_axis *axis, int side, int n)
 {
     const uint32_t twice = 2 * (uint32_t)side;
     uint32_t next = 0;
 
     for (int i = 0; i < side; i++) {
-        /* the pixel's middle, in units of 1 / TWICE cells */
+        /* the pixel's centre, in units of 1 / TWICE cells */
         const uint32_t at = (uint32_t)(2 * i + 1) * (uint32_t)n;
         const uint32_t cell = at / twice;
         const uint64_t t_q16 = ((uint64_t)(at - cell * twice) << 16) / twice;
@@ -137,11 +137,11 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
     struct glint_arena arena = glint_arena_over(mem, bytes);
     struct glint_veil *v;
 
-    if (!config_ok(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
+    if (!is_valid_config(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
         return GLINT_E_ARGUMENT;
     if (glint_veil_bytes(cfg) > bytes)
         return GLINT_E_MEMORY;
-    v = carve(&arena, cfg);
+    v = allocate_veil(&arena, cfg);
     v->cfg = *cfg;
     v->is_linear = v->any = v->any_front = v->has_curve = 0;
     v->front = NULL;
@@ -161,13 +161,12 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
 
 /* ---------------------------------------------------------------- spreading */
 
-/* Max light of a cell, 2^8 white, so that interpolation between cells fits 63
- * bits. */
+/* Max light of a cell, 2^8 white, so that interpolation fits 63 bits. */
 enum { MOST_Q20 = 1 << 28 };
 
-/* Returns by how many bits the largest of N sums exceeds 30 bits; 0 if it does
- * not. */
-static int bits_over(const int64_t *light_q16, int n)
+/* Returns the number of bits by which the largest of N sums exceeds 30 bits;
+ * 0 if none does. */
+static int count_excess_bits(const int64_t *light_q16, int n)
 {
     uint64_t all = 0;
     int over = 0;
@@ -180,9 +179,9 @@ static int bits_over(const int64_t *light_q16, int n)
 }
 
 /* Sets SHARE to the fraction of each of N cells' light that reaches cell TO,
- * mirror images included. */
-static void shares_of(const int32_t *table_q30, int n, int to,
-                      int32_t share_q30[GLINT_VEIL_CELLS])
+ * including light mirrored at the borders. */
+static void set_shares(const int32_t *table_q30, int n, int to,
+                       int32_t share_q30[GLINT_VEIL_CELLS])
 {
     for (int from = 0; from < n; from++) {
         const int direct = to > from ? to - from : from - to;
@@ -194,8 +193,8 @@ static void shares_of(const int32_t *table_q30, int n, int to,
 }
 
 /* Returns the sum of N cells, STEP apart, weighted by SHARE. */
-static int32_t gather(const int32_t *from, int step,
-                      const int32_t share_q30[GLINT_VEIL_CELLS], int n)
+static int32_t sum_weighted(const int32_t *from, int step,
+                            const int32_t share_q30[GLINT_VEIL_CELLS], int n)
 {
     int64_t sum = 0;
 
@@ -210,16 +209,16 @@ static void spread_across(struct glint_veil *v,
     int32_t share_q30[GLINT_VEIL_CELLS];
 
     for (int x = 0; x < v->n_x; x++) {
-        shares_of(s->across_q30, v->n_x, x, share_q30);
+        set_shares(s->across_q30, v->n_x, x, share_q30);
         for (int row = 0; row < 3 * v->n_y; row++)
             v->along[row * v->n_x + x] =
-                gather(v->narrow + row * v->n_x, 1, share_q30, v->n_x);
+                sum_weighted(v->narrow + row * v->n_x, 1, share_q30, v->n_x);
     }
 }
 
 /* Returns LIGHT, white times pixels in units of 2^(OVER - 16), times SHARE,
  * _q30 of white in a cell of 1 / CELLS of the picture's PIXELS. */
-static int64_t share_of(int32_t light, struct glint_real factor)
+static int64_t scale_light(int32_t light, struct glint_real factor)
 {
     const int64_t product = (int64_t)light * factor.mantissa;
     const int down = -factor.exponent;
@@ -228,7 +227,7 @@ static int64_t share_of(int32_t light, struct glint_real factor)
         return 0;
     if (down >= 0)
         return q_shift(product, down);
-    /* clamped to 2^50, more than any light that is drawn */
+    /* clamped to 2^50, more than can be drawn */
     return product > INT64_C(1) << 50 >> q_smaller(-down, 50)
                ? INT64_C(1) << 50
                : (int64_t)((uint64_t)product << -down);
@@ -240,13 +239,13 @@ static void spread_down(struct glint_veil *v, const struct glint_veil_spread *s,
     int32_t share_q30[GLINT_VEIL_CELLS];
 
     for (int y = 0; y < v->n_y; y++) {
-        shares_of(s->down_q30, v->n_y, y, share_q30);
+        set_shares(s->down_q30, v->n_y, y, share_q30);
         for (int c = 0; c < 3; c++)
             for (int x = 0; x < v->n_x; x++) {
                 const int first = c * v->n_y * v->n_x + x;
 
-                v->sum_q30[first + y * v->n_x] += share_of(
-                    gather(v->along + first, v->n_x, share_q30, v->n_y),
+                v->sum_q30[first + y * v->n_x] += scale_light(
+                    sum_weighted(v->along + first, v->n_x, share_q30, v->n_y),
                     factor);
             }
     }
@@ -257,7 +256,7 @@ int glint_veil_spread_to(struct glint_veil *v,
                          int32_t *cell_q20)
 {
     const int cells = v->n_x * v->n_y;
-    const int over = bits_over(v->light_q16, 3 * cells);
+    const int over = count_excess_bits(v->light_q16, 3 * cells);
     int any = 0;
 
     for (int i = 0; i < 3 * cells; i++) {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light that dirt on the front element spreads: its cells, times the covered
- * fraction of the front as each pixel sees it. */
+ * Draws light that dirt on the front element scatters: interpolated cells times
+ * the covered fraction of the front element, as each pixel sees it.
+ */
 #include "base/q.h"
 #include "veil/parts.h"
 
@@ -18,17 +19,17 @@ void glint_veil_front(struct glint_veil *veil,
                       glint_veil_spread_to(veil, spreads, n, veil->front_q20);
     for (int i = 0; i < 3 * veil->n_x * veil->n_y && veil->any_front; i++)
         max_q20 = q_larger(max_q20, veil->front_q20[i]);
-    /* so that the brightest cell has 16 bits in codes */
+    /* shift such that the brightest cell fits 16 bits */
     veil->front_down = 4;
     while (max_q20 >> veil->front_down > 65534)
         veil->front_down++;
 }
 
-/* Sets PART to the covered fraction of the pixels X0 .. X1 - 1 of row Y, and a
- * few more; X0 must be a multiple of PX. Linear between nodes, which lie on the
- * borders of every PX-th pixel. */
-static void part_row(const struct glint_veil_front *front, int y, int x0,
-                     int x1, uint16_t *part_q16)
+/* Interpolates the covered fraction of the front element linearly for pixels
+ * X0 .. X1 - 1 of row Y, and a few more. X0 must be a multiple of PX. Nodes
+ * lie at the top left corners of every PX-th pixel. */
+static void interpolate_cover(const struct glint_veil_front *front, int y,
+                              int x0, int x1, uint16_t *part_q16)
 {
     const uint32_t low = 2 * (uint32_t)(y % PX) + 1, high = 2 * PX - low;
     const uint16_t *top = front->part_q16 + (ptrdiff_t)(y / PX) * front->n_x;
@@ -46,7 +47,7 @@ static void part_row(const struct glint_veil_front *front, int y, int x0,
                            (4 * PX * PX));
 }
 
-/* Adds to N pixels LIGHT, white times 2^16 >> DOWN, times PART. */
+/* Adds LIGHT, white times 2^16 >> DOWN, times PART to N pixels. */
 static void add_codes(const uint16_t *restrict light,
                       const uint16_t *restrict part_q16, int down, int n,
                       uint16_t *restrict to_q16)
@@ -79,7 +80,7 @@ void glint_veil_front_row(const struct glint_veil_row *r,
     uint16_t light[GLINT_CODES_WIDTH];
     int32_t light_q20[GLINT_CODES_WIDTH];
 
-    part_row(v->front, y, r->tile.x0, r->tile.x1, part_q16);
+    interpolate_cover(v->front, y, r->tile.x0, r->tile.x1, part_q16);
     for (int c = 0; c < 3; c++)
         if (v->is_linear) {
             glint_veil_row(r, v->front_q20, c, y, 0, NULL, light_q20);

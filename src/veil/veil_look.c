@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The light of a picture by cells, and of lamps. */
+ * Sums the light of a picture, and of lamps, in the cells of a veil.
+ */
 #include "base/q.h"
 #include "base/real.h"
 #include "veil/parts.h"
@@ -11,13 +12,14 @@ struct look {
     struct glint_real white;
 };
 
-/* Adds SUM to cell (X, Y). */
-static void give(const struct look *l, int x, int y, const int64_t sum_q20[3])
+/* Adds SUM, the light of pixels in cell (X, Y), scaled to the cell's area. */
+static void add_to_cell(const struct look *l, int x, int y,
+                        const int64_t sum_q20[3])
 {
     const struct glint_veil *v = l->veil;
 
     for (int c = 0; c < 3; c++) {
-        /* in units of 2^-11, 2^16 pixels of white have 28 bits; sums over 31
+        /* in units of 2^-11: 2^16 white pixels need 28 bits; sums over 31
          * bits are clamped */
         const int64_t seen = q_clamp_sat(q_shift(sum_q20[c], 9), 0, INT32_MAX);
         const int64_t part =
@@ -34,9 +36,10 @@ static void give(const struct look *l, int x, int y, const int64_t sum_q20[3])
     }
 }
 
-/* Adds rows Y .. Y + N_Y - 1, two at most, to the cells of their row. */
-static void look_at_rows(const struct look *l, struct glint_codes *codes, int y,
-                         int n_y, int64_t (*sum_q20)[3])
+/* Adds rows Y .. Y + N_Y - 1 of the picture (N_Y at most 2) to the cells of
+ * their row. */
+static void sum_rows(const struct look *l, struct glint_codes *codes, int y,
+                     int n_y, int64_t (*sum_q20)[3])
 {
     const struct glint_veil *v = l->veil;
     const int width = l->sum.image->width;
@@ -56,8 +59,8 @@ static void look_at_rows(const struct look *l, struct glint_codes *codes, int y,
     }
 }
 
-/* Reads the pairs of rows whose first row lies in the row of cells JOB. */
-static void look_job(void *ctx, int job, int worker)
+/* Sums the pairs of rows of pixels whose first row lies in row JOB of cells. */
+static void sum_rows_job(void *ctx, int job, int worker)
 {
     const struct look *l = ctx;
     struct glint_veil *v = l->veil;
@@ -67,10 +70,10 @@ static void look_job(void *ctx, int job, int worker)
         sum_q20[x][0] = sum_q20[x][1] = sum_q20[x][2] = 0;
     for (int y = 0; y < l->sum.image->height; y += 2)
         if (v->down.cell[y] == job)
-            look_at_rows(l, &v->worker[worker].codes, y,
-                         q_smaller(2, l->sum.image->height - y), sum_q20);
+            sum_rows(l, &v->worker[worker].codes, y,
+                     q_smaller(2, l->sum.image->height - y), sum_q20);
     for (int x = 0; x < v->n_x; x++)
-        give(l, x, job, sum_q20[x]);
+        add_to_cell(l, x, job, sum_q20[x]);
 }
 
 void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
@@ -87,21 +90,22 @@ void glint_veil_look(struct glint_veil *veil, const struct glint_image *image,
         glint_light_curve_init(veil->curve, image->transfer);
     veil->has_curve = 1;
     veil->transfer = image->transfer;
-    glint_workers_run(workers, veil->n_y, look_job, &l);
+    glint_workers_run(workers, veil->n_y, sum_rows_job, &l);
 }
 
 /* ------------------------------------------------------------------- lamps */
 
-/* The cell of a position, and the weights of this cell and its neighbours. */
+/* The cell of a position, and the weights of the previous cell, this cell
+ * and the next. */
 struct place {
     int cell;
     int32_t weight_q15[3];
 };
 
-static struct place place_of(int32_t at_q8, int side, int n)
+static struct place find_cell(int32_t at_q8, int side, int n)
 {
     const int32_t along_q15 =
-        (int32_t)((((int64_t)at_q8 * n) << 7) / side); /* cells */
+        (int32_t)((((int64_t)at_q8 * n) << 7) / side); /* position in cells */
     struct place p = {.cell = q_smaller(along_q15 >> 15, n - 1)};
     const int32_t t_q15 = along_q15 - p.cell * 32768, rest_q15 = 32768 - t_q15;
 
@@ -111,9 +115,9 @@ static struct place place_of(int32_t at_q8, int side, int n)
     return p;
 }
 
-/* Returns POWER times RGB, white times pixels, at most 2^46 of the units of
+/* Returns POWER times RGB, white times pixels, clamped to 2^46 units of
  * light_q16. */
-static int64_t power_q16(struct glint_real power, int32_t rgb_q14)
+static int64_t compute_power_q16(struct glint_real power, int32_t rgb_q14)
 {
     const int64_t part = (int64_t)power.mantissa * rgb_q14;
     const int down = 14 - 16 - power.exponent;
@@ -134,15 +138,15 @@ void glint_veil_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
     if (x_q8 < 0 || y_q8 < 0 || x_q8 > veil->cfg.width * 256 ||
         y_q8 > veil->cfg.height * 256)
         return;
-    x = place_of(x_q8, veil->cfg.width, veil->n_x);
-    y = place_of(y_q8, veil->cfg.height, veil->n_y);
+    x = find_cell(x_q8, veil->cfg.width, veil->n_x);
+    y = find_cell(y_q8, veil->cfg.height, veil->n_y);
     for (int c = 0; c < 3; c++) {
-        const int64_t all = power_q16(power, rgb_q14[c]);
+        const int64_t all = compute_power_q16(power, rgb_q14[c]);
 
         for (int j = 0; j < 9; j++) {
             const int at_x = glint_veil_beside(x.cell, j % 3 - 1, veil->n_x);
             const int at_y = glint_veil_beside(y.cell, j / 3 - 1, veil->n_y);
-            /* all is below 2^47, a weight at most 2^15 */
+            /* the light is below 2^47, a weight at most 2^15 */
             const int64_t part = q_shift(all * x.weight_q15[j % 3], 15);
 
             veil->light_q16[(c * veil->n_y + at_y) * veil->n_x + at_x] +=

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a veil as a pass: interpolates the cells' light between their
- * middles. */
+ * Draws a veil as a pass: interpolates the light of the cells between their
+ * centres.
+ */
 #include "base/q.h"
 #include "flare/draw_over.h"
 #include "flare/state.h"
@@ -15,7 +16,7 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     return &veil->worker[worker];
 }
 
-static int go_on(void *state, struct glint_box tile)
+static int begin_tile(void *state, struct glint_box tile)
 {
     struct glint_veil_row *r = state;
 
@@ -23,11 +24,12 @@ static int go_on(void *state, struct glint_box tile)
     return r->veil->any || r->veil->any_front;
 }
 
-/* Sets LIGHT to the light of N cells from FIRST on, interpolated to row Y of
- * pixels, white times 2^20 >> DOWN, at most MOST. */
-static void between_rows(const struct glint_veil *v, const int32_t *cell_q20,
-                         int c, int y, int first, int n, int down, int32_t most,
-                         int32_t light[GLINT_VEIL_CELLS])
+/* Interpolates N cells from FIRST on to row Y of pixels: LIGHT in units of
+ * white 2^(DOWN - 20), at most MOST. */
+static void interpolate_rows(const struct glint_veil *v,
+                             const int32_t *cell_q20, int c, int y, int first,
+                             int n, int down, int32_t most,
+                             int32_t light[GLINT_VEIL_CELLS])
 {
     const struct glint_veil_axis *axis = &v->down;
     const int cell = axis->cell[y];
@@ -49,24 +51,25 @@ static void between_rows(const struct glint_veil *v, const int32_t *cell_q20,
                                0, most);
 }
 
-/* Returns the upper half of a product, one instruction for a whole vector. */
-static inline uint16_t high(uint16_t a, uint16_t b)
+/* Returns the upper half of a product; vectorises to one instruction. */
+static inline uint16_t multiply_high(uint16_t a, uint16_t b)
 {
     return (uint16_t)((uint32_t)a * b >> 16);
 }
 
-/* Sets TO to the light of N pixels from X on, rounded up to whole vectors,
- * interpolated between cells of LIGHT, 0 .. 65534. Each product is truncated
- * and loses 2^-17 on average, which the addition of 2^-16 where there is light
- * compensates in part. */
-static void stretch_codes(const struct glint_veil_axis *axis, int x, int n,
-                          const int32_t light_q16[3], uint16_t *restrict to_q16)
+/* Interpolates LIGHT of three neighbouring cells, 0 .. 65534, for N pixels
+ * from X on, rounded up to whole vectors. Each product is truncated and
+ * loses 2^-17 on average. Adding 2^-16 where there is light compensates for
+ * a part of the loss. */
+static void interpolate_codes(const struct glint_veil_axis *axis, int x, int n,
+                              const int32_t light_q16[3],
+                              uint16_t *restrict to_q16)
 {
     enum { LANES = GLINT_VEIL_LANES };
     const uint16_t *restrict s0_q16 = axis->share_q16[0] + x;
     const uint16_t *restrict s1_q16 = axis->share_q16[1] + x;
     const uint16_t *restrict s2_q16 = axis->share_q16[2] + x;
-    uint16_t near_q16[4][LANES]; /* as vectors */
+    uint16_t near_q16[4][LANES]; /* each value repeated in all lanes */
 
     for (int k = 0; k < LANES; k++) {
         for (int i = 0; i < 3; i++)
@@ -75,14 +78,15 @@ static void stretch_codes(const struct glint_veil_axis *axis, int x, int n,
     }
     for (int at = 0; at < n; at += LANES)
         for (int k = 0; k < LANES; k++)
-            to_q16[at + k] = (uint16_t)(high(s0_q16[at + k], near_q16[0][k]) +
-                                        high(s1_q16[at + k], near_q16[1][k]) +
-                                        high(s2_q16[at + k], near_q16[2][k]) +
-                                        near_q16[3][k]);
+            to_q16[at + k] =
+                (uint16_t)(multiply_high(s0_q16[at + k], near_q16[0][k]) +
+                           multiply_high(s1_q16[at + k], near_q16[1][k]) +
+                           multiply_high(s2_q16[at + k], near_q16[2][k]) +
+                           near_q16[3][k]);
 }
 
-static void stretch_linear(const struct glint_veil_axis *axis, int x, int n,
-                           const int32_t light_q20[3], int32_t *to_q20)
+static void interpolate_linear(const struct glint_veil_axis *axis, int x, int n,
+                               const int32_t light_q20[3], int32_t *to_q20)
 {
     for (int i = 0; i < n; i++)
         to_q20[i] = (int32_t)q_shift(
@@ -103,8 +107,8 @@ void glint_veil_row(const struct glint_veil_row *r, const int32_t *cell_q20,
     int32_t light[GLINT_VEIL_CELLS];
     uint16_t row[GLINT_CODES_WIDTH + GLINT_VEIL_LANES] = {0};
 
-    between_rows(v, cell_q20, c, y, first, last - first + 1, down,
-                 to ? 65534 : 1 << 28, light);
+    interpolate_rows(v, cell_q20, c, y, first, last - first + 1, down,
+                     to ? 65534 : 1 << 28, light);
     for (int x = x0, next; x < x1; x = next) {
         const int cell = axis->cell[x];
         const int32_t *at = light + cell - first;
@@ -113,9 +117,9 @@ void glint_veil_row(const struct glint_veil_row *r, const int32_t *cell_q20,
 
         next = q_smaller(x1, axis->start[cell + 1]);
         if (to)
-            stretch_codes(axis, x, next - x, near, row + x - x0);
+            interpolate_codes(axis, x, next - x, near, row + x - x0);
         else
-            stretch_linear(axis, x, next - x, near, to_q20 + x - x0);
+            interpolate_linear(axis, x, next - x, near, to_q20 + x - x0);
     }
     for (int x = 0; x < x1 - x0 && to; x++)
         to[x] = row[x];
@@ -130,7 +134,7 @@ static enum glint_given light_rows(void *state,
     for (int k = 0; k < rows->n; k++) {
         const int y = rows->y + k;
 
-        /* light that is white or more saturates codes in any case */
+        /* codes saturate at white, so 16 bits are enough */
         for (int c = 0; c < 3; c++)
             if (v->is_linear)
                 glint_veil_row(r, v->cell_q20, c, y, 0, NULL,
@@ -183,8 +187,9 @@ static void draw_passes(struct glint_veil *veil, struct glint_flare *flare,
 void glint_veil_draw(struct glint_veil *veil, const struct glint_pass *over,
                      struct glint_flare *flare, const struct glint_image *image)
 {
-    const struct glint_pass passes[2] = {{veil, begin_row, go_on, light_rows},
-                                         over ? *over : (struct glint_pass){0}};
+    const struct glint_pass passes[2] = {
+        {veil, begin_row, begin_tile, light_rows},
+        over ? *over : (struct glint_pass){0}};
     const struct glint_flare_under under = {passes, over ? 2 : 1, &glint_blend,
                                             veil->rows};
 
@@ -200,7 +205,7 @@ void glint_veil_draw(struct glint_veil *veil, const struct glint_pass *over,
 void glint_veil_draw_alone(struct glint_veil *veil, struct glint_flare *flare,
                            const struct glint_image *image)
 {
-    const struct glint_pass pass = {veil, begin_row, go_on, light_rows};
+    const struct glint_pass pass = {veil, begin_row, begin_tile, light_rows};
 
     veil->is_linear = image && image->format == GLINT_LINEAR_Q20;
     glint_flare_forget(flare);
