@@ -8,12 +8,12 @@
 #include "glint/model.h"
 #include "glint/trace.h"
 
-/* Cells of the grid over the pupil. Lenses that are not round use as many down
- * as across. */
+/* Cells of the grid over the pupil, of which round lenses need only the
+ * upper half. Lenses that are not round use ACROSS rows. */
 enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN, WAVES = 3 };
 
-/* The light of a cell of the grid on the sensor. Of round lenses its mirror
- * image at -y counts, too. */
+/* Light of one cell of the pupil grid on the sensor. In round lenses it also
+ * stands for its mirror image at -y. */
 struct patch {
     double irradiance, area_mm2, x_mm, y_mm;
 };
@@ -22,26 +22,27 @@ struct task {
     struct glint_brightness *out;
     const struct glint_setup *setup;
     double field_mm;
-    /* The first is the middle of the band. Of lenses that are not round the
-     * mean of all stands for that over the nodes of zones, as coatings let ten
-     * times as much light into some colours as into others. */
+    /* Round lenses use the first wavelength, the middle of the band. Others
+     * use the mean energy of all, as their coatings may transmit ten times
+     * as much light at one wavelength as at another. */
     double nm[WAVES];
     double half_mm[2]; /* half the width and height of the picture */
-    double pixel_mm;   /* of a picture 1920 wide */
-    /* Azimuths of lenses that are not round, in turns: a quarter turn, with
-     * both ends, if the lens has two planes of symmetry; else a full turn. */
+    double pixel_mm;   /* width of a pixel if the picture is 1920 pixels wide */
+    /* Azimuths that are sampled in lenses that are not round, and turns from
+     * one to the next. They cover a quarter turn, both ends included, if the
+     * lens has two planes of symmetry; else a full turn. */
     int n_azimuths;
     double turns;
     enum glint_status status[GLINT_BRIGHTNESS_ANGLES];
 };
 
-static bool passes(const struct task *t, const struct glint_ray *ray)
+static bool passes_lens(const struct task *t, const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 && hypot(ray->stop_x_mm, ray->stop_y_mm) <=
                                        t->setup->optics.stop_radius_mm;
 }
 
-static int brighter_first(const void *a, const void *b)
+static int compare_brightness(const void *a, const void *b)
 {
     const double x = ((const struct patch *)a)->irradiance;
     const double y = ((const struct patch *)b)->irradiance;
@@ -53,13 +54,13 @@ static int brighter_first(const void *a, const void *b)
 
 static bool is_seen(const struct task *t, const struct glint_ray *ray)
 {
-    return passes(t, ray) &&
+    return passes_lens(t, ray) &&
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= t->field_mm;
 }
 
-static struct patch patch_of(const struct glint_ray *a,
-                             const struct glint_ray *b,
-                             const struct glint_ray *c, double pupil_mm2)
+static struct patch make_patch(const struct glint_ray *a,
+                               const struct glint_ray *b,
+                               const struct glint_ray *c, double pupil_mm2)
 {
     const double area = fabs(
         (b->sensor_x_mm - a->sensor_x_mm) * (c->sensor_y_mm - a->sensor_y_mm) -
@@ -69,7 +70,7 @@ static struct patch patch_of(const struct glint_ray *a,
                           a->sensor_x_mm, a->sensor_y_mm};
 }
 
-/* Adds the patches of one ghost; returns their number. */
+/* Adds the patches of one ghost. Returns their number. */
 static int add_ghost(const struct task *t, int ghost, double sine,
                      struct patch *patch)
 {
@@ -101,13 +102,13 @@ static int add_ghost(const struct task *t, int ghost, double sine,
             if (status[~j & 1][i] == GLINT_RAY_OK &&
                 status[~j & 1][i + 1] == GLINT_RAY_OK &&
                 status[j & 1][i] == GLINT_RAY_OK && is_seen(t, &below[i]))
-                patch[n++] = patch_of(&below[i], &below[i + 1], &here[i],
-                                      row.step_mm * dy);
+                patch[n++] = make_patch(&below[i], &below[i + 1], &here[i],
+                                        row.step_mm * dy);
     }
     return n;
 }
 
-/* Returns whether (X, Y) lies in the picture if the light's azimuth is PHI. */
+/* Returns whether (X, Y) lies inside the picture for light from azimuth PHI. */
 static bool in_picture(const struct task *t, double x, double y, double phi)
 {
     const double c = cos(phi), s = sin(phi);
@@ -116,10 +117,10 @@ static bool in_picture(const struct task *t, double x, double y, double phi)
            fabs(s * x + c * y) <= t->half_mm[1];
 }
 
-/* Returns the irradiance that 1/1000 of the picture exceeds; HUGE_VAL if less
- * of it has light. PATCH is sorted, the brightest first. */
-static double level_at(const struct task *t, const struct patch *patch, int n,
-                       double phi)
+/* Returns the irradiance that 1/1000 of the picture's area exceeds; HUGE_VAL
+ * if a smaller area has light. PATCH is sorted by descending irradiance. */
+static double find_level(const struct task *t, const struct patch *patch, int n,
+                         double phi)
 {
     double left = 0.001 * 4 * t->half_mm[0] * t->half_mm[1];
 
@@ -134,11 +135,12 @@ static double level_at(const struct task *t, const struct patch *patch, int n,
     return HUGE_VAL;
 }
 
-/* Finds the level of one angle: the min over all azimuths. The brightest ghosts
- * may lie outside the picture, which is then exposed for other ghosts. */
+/* Finds the level for one angle: the min over all azimuths. The brightest
+ * ghosts may lie outside the picture, whose exposure then depends on other
+ * ghosts. */
 static void angle_job(void *ctx, int job, int worker)
 {
-    enum { AZIMUTHS = 7 }; /* azimuths from 0 to 90 degrees */
+    enum { AZIMUTHS = 7 }; /* number of azimuths from 0 to 90 degrees */
     struct task *t = ctx;
     const int ghosts = t->setup->n_ghosts;
     struct patch *patch = malloc(((size_t)ghosts * CELLS + 1) * sizeof *patch);
@@ -151,10 +153,10 @@ static void angle_job(void *ctx, int job, int worker)
         return;
     for (int k = 0; k < ghosts; k++)
         n += add_ghost(t, k, t->out->sine[job], patch + n);
-    qsort(patch, (size_t)n, sizeof *patch, brighter_first);
+    qsort(patch, (size_t)n, sizeof *patch, compare_brightness);
     for (int k = 0; k < AZIMUTHS; k++)
-        level = fmin(
-            level, level_at(t, patch, n, 0.5 * GLINT_PI * k / (AZIMUTHS - 1)));
+        level = fmin(level, find_level(t, patch, n,
+                                       0.5 * GLINT_PI * k / (AZIMUTHS - 1)));
     t->out->level[job] = level < HUGE_VAL ? level
                          : n              ? patch[n - 1].irradiance
                                           : 0;
@@ -163,27 +165,27 @@ static void angle_job(void *ctx, int job, int worker)
 
 /* --------------------------------------------------------------- not round */
 
-/* The picture of a lens that is not round does not just rotate with the light:
- * light comes from several azimuths, and is spread over at least a pixel, so
- * that a thin streak does not count as bright. */
+/* Lenses that are not round: their picture does not simply rotate with the
+ * azimuth of the light, so several azimuths are traced. Light is spread over
+ * at least a pixel, so that a thin streak does not count as bright. */
 static bool is_in_picture(const struct task *t, const struct glint_ray *ray)
 {
-    return passes(t, ray) && fabs(ray->sensor_x_mm) <= t->half_mm[0] &&
+    return passes_lens(t, ray) && fabs(ray->sensor_x_mm) <= t->half_mm[0] &&
            fabs(ray->sensor_y_mm) <= t->half_mm[1];
 }
 
-/* Returns the light between ray A and its neighbours B and C; its area is the
- * area of their ellipse of inertia, blurred by a pixel. */
-static struct patch skew_patch_of(const struct task *t,
-                                  const struct glint_ray *a,
-                                  const struct glint_ray *b,
-                                  const struct glint_ray *c, double pupil_mm2)
+/* Returns the patch of light between ray A and its neighbours B and C. Its
+ * area is that of their ellipse of inertia, blurred by a pixel. */
+static struct patch make_skew_patch(const struct task *t,
+                                    const struct glint_ray *a,
+                                    const struct glint_ray *b,
+                                    const struct glint_ray *c, double pupil_mm2)
 {
     const double bx = b->sensor_x_mm - a->sensor_x_mm;
     const double by = b->sensor_y_mm - a->sensor_y_mm;
     const double cx = c->sensor_x_mm - a->sensor_x_mm;
     const double cy = c->sensor_y_mm - a->sensor_y_mm;
-    /* A pixel in all cells of a row. */
+    /* a pixel, divided among the cells of the grid */
     const double blur = t->pixel_mm * t->pixel_mm / (ACROSS * ACROSS);
     const double xx = bx * bx + cx * cx + blur, yy = by * by + cy * cy + blur;
     const double xy = bx * by + cx * cy;
@@ -193,7 +195,7 @@ static struct patch skew_patch_of(const struct task *t,
                           .area_mm2 = area};
 }
 
-/* Rays of a row, with their mean energies. */
+/* Rays of a grid row; energies are means over all wavelengths. */
 struct rays {
     struct glint_ray at[ACROSS + 1];
     enum glint_ray_status status[ACROSS + 1];
@@ -215,8 +217,8 @@ static void trace_row(const struct glint_path path[WAVES],
         rays->at[i].energy /= WAVES;
 }
 
-/* Adds the light of one ghost from DIRECTION; returns the number of cells
- * added. */
+/* Adds the patches of one ghost for light from DIRECTION. Returns their
+ * number. */
 static int add_skew_ghost(const struct task *t, int ghost,
                           const double direction[3], struct patch *patch)
 {
@@ -252,26 +254,27 @@ static int add_skew_ghost(const struct task *t, int ghost,
                 below->status[i + 1] == GLINT_RAY_OK &&
                 here->status[i] == GLINT_RAY_OK &&
                 is_in_picture(t, &below->at[i]))
-                patch[n++] = skew_patch_of(t, &below->at[i], &below->at[i + 1],
-                                           &here->at[i], row.step_mm * dy);
+                patch[n++] =
+                    make_skew_patch(t, &below->at[i], &below->at[i + 1],
+                                    &here->at[i], row.step_mm * dy);
     }
     return n;
 }
 
-/* Returns the irradiance that 1/1000 of the picture exceeds, or the min
- * irradiance if a smaller fraction has light. */
-static double skew_level_of(const struct task *t, struct patch *patch, int n)
+/* Returns the irradiance that 1/1000 of the picture's area exceeds; the min
+ * irradiance if a smaller area has light. */
+static double find_skew_level(const struct task *t, struct patch *patch, int n)
 {
     double left = 0.001 * 4 * t->half_mm[0] * t->half_mm[1];
     int k = 0;
 
-    qsort(patch, (size_t)n, sizeof *patch, brighter_first);
+    qsort(patch, (size_t)n, sizeof *patch, compare_brightness);
     while (k + 1 < n && (left -= patch[k].area_mm2) > 0)
         k++;
     return patch[k].irradiance;
 }
 
-/* Finds the level of one angle: the min over the azimuths that have light,
+/* Finds the level for one angle: the min over all azimuths with light;
  * HUGE_VAL if no azimuth has light. */
 static void skew_angle_job(void *ctx, int job, int worker)
 {
@@ -295,7 +298,7 @@ static void skew_angle_job(void *ctx, int job, int worker)
         for (int k = 0; k < ghosts; k++)
             n += add_skew_ghost(t, k, direction, patch + n);
         if (n > 0)
-            level = fmin(level, skew_level_of(t, patch, n));
+            level = fmin(level, find_skew_level(t, patch, n));
     }
     t->out->level[job] = level;
     free(patch);
@@ -356,7 +359,7 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
 
     t.pixel_mm = 2 * t.half_mm[0] / 1920;
     for (int k = 0; k < WAVES && !round; k++) {
-        /* The middle wavelength comes first. */
+        /* the middle wavelength first, then both outer ones */
         const double node = (k + 1) % WAVES - 1.0;
         const double lo = pow(band_nm[1], -2), hi = pow(band_nm[0], -2);
 

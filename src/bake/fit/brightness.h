@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds how bright a ghost must be to count; the tolerances that follow.
+ * Finds the irradiance of the brightest ghosts, relative to which faint ghosts
+ * get larger tolerances; defines the tolerances of a fit.
  *
  *   in   a lens, the field, the band
- *   out  for a few angles: the irradiance that 1/1000 of the picture reaches or
- *        exceeds, at the azimuth where it is lowest: the level that determines
- *        the exposure
+ *   out  for some angles: the irradiance that 1/1000 of the picture's area
+ *        exceeds, at the azimuth where it is lowest. This level determines the
+ *        exposure of the flare.
  *
- * A ghost far below that level may have larger errors before they are visible.
- * Overlapping ghosts are not summed, which is accurate enough.
+ * Errors of ghosts far below that level are less visible. The light of
+ * overlapping ghosts is not summed, which is accurate enough.
  */
 #ifndef GLINT_BAKE_FIT_BRIGHTNESS_H
 #define GLINT_BAKE_FIT_BRIGHTNESS_H
@@ -25,53 +26,55 @@ struct glint_brightness {
     double level[GLINT_BRIGHTNESS_ANGLES];
 };
 
-/* Sets the angles; returns the number needed for lights up to MAX_DEG. */
+/* Sets the angles. Returns the number of angles that lights up to MAX_DEG
+ * need. */
 int glint_brightness_angles(struct glint_brightness *brightness,
                             double max_deg);
 
-/* Returns the planes of symmetry of a lens: GLINT_MIRRORS_X, GLINT_MIRRORS_Y.
- */
+/* Returns the planes of symmetry of a lens: bits GLINT_MIRRORS_X,
+ * GLINT_MIRRORS_Y. */
 uint32_t glint_skew_mirrors(const struct glint_prescription *lens);
 
-/* Finds the levels that angles up to MAX_DEG need; they do not depend on
- * WORKERS. GLINT_E_MEMORY. */
+/* Finds the levels for the angles that lights up to MAX_DEG need. The result
+ * does not depend on WORKERS. May return GLINT_E_MEMORY. */
 enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const struct glint_setup *setup,
                                         double field_mm, double max_deg,
                                         const double band_nm[2],
                                         struct glint_workers *workers);
 
-/* Returns the lower level of the two angles around SINE. */
+/* Returns the min of the levels at the two tabulated angles around SINE. */
 double glint_brightness_at(const struct glint_brightness *brightness,
                            double sine);
 
-/* Max number of times that a zone's box may be halved: in general, in lenses
- * with shaped surfaces, and at the axis for fine tolerances. */
+/* Max number of times that a zone's box may be halved: usually; in lenses
+ * with surfaces that are not spheres; at the axis for fine tolerances. */
 enum { GLINT_PART_DEPTH = 4, GLINT_SHAPED_DEPTH = 6, GLINT_MAX_AXIS_DEPTH = 8 };
 
-/* Tolerances, root mean square; single rays may be off by five times as much.
- * Positions in the stop and at barrels draw the outline: EDGE_MM is how far
- * they may shift it on the sensor. From that follow their own tolerances:
- * STOP_LEAST to STOP, in stop radii, and 0.06 BARREL to BARREL, in radii of the
- * barrel. The lower limits are needed as the outline of a ghost that is larger
- * than the picture may lie outside it, but moves in when the stop closes.
+/* Tolerances of a fit, root mean square; single rays may be off by five
+ * times as much. Positions in the stop and at barrels determine the outline
+ * of a ghost: EDGE_MM is the tolerance of the outline on the sensor. It
+ * implies the tolerances of these positions, which are then clamped: at the
+ * stop to STOP_LEAST .. STOP stop radii, at a barrel to 0.06 BARREL ..
+ * BARREL semi-diameters. The lower limits are needed because the outline of
+ * a large ghost may lie outside the picture, but moves in when the stop
+ * closes.
  *
- * The values are for ghosts of the level above. In sRGB an error in a ghost of
- * v times that level is v^0.42 times as visible, so edges and energy of fainter
- * ghosts have larger tolerances, up to EASE times. */
+ * The values hold for ghosts at the level above. In sRGB an error in a ghost
+ * of v times that level is v^0.42 times as visible, so edges and energy of
+ * fainter ghosts have larger tolerances, up to EASE times. */
 struct glint_tolerance {
     double sensor_mm, edge_mm, stop, stop_least, barrel, energy;
-    double faint_sensor_mm; /* mm; sensor_mm of fainter ghosts is eased up to
-                               this, no further */
-    double escape; /* relative radius that a ray may get past a barrel that is
-                      left out */
+    double faint_sensor_mm; /* mm; upper limit of sensor_mm of faint ghosts */
+    double escape; /* largest excess of the relative radius with which a ray may
+                      pass a barrel that is not fitted */
     double ease;
-    double pixel_mm; /* of a picture 1920 wide */
-    /* Factor for zones at the axis, where light folds into rings: on how narrow
-     * they may become, and on the tolerance of places. */
+    double pixel_mm; /* width of a pixel if the picture is 1920 pixels wide */
+    /* Factor for zones at the axis, where light folds into rings: on their
+     * min width and on the tolerance of positions. */
     double axis;
-    int axis_depth; /* times that boxes of zones at the axis may be halved,
-                       GLINT_PART_DEPTH to GLINT_MAX_AXIS_DEPTH */
+    int axis_depth; /* number of times that boxes of zones at the axis may be
+                       halved, GLINT_PART_DEPTH .. GLINT_MAX_AXIS_DEPTH */
     const struct glint_brightness *brightness;
 };
 

@@ -8,19 +8,20 @@
 #include "engine/setup/degrees.h"
 #include "bake/fit/next.h"
 
-/* Least fraction of a box that a ghost must fill: less would waste cells of the
- * grids. */
+/* Min fraction of its box that a ghost must fill. A lower fill would waste
+ * cells of the ray grids. */
 #define LEAST_FILL 0.33
-/* Degrees: a wider zone with more than two barrels is halved, as a vertex has
- * room for two, unless that was found to gain nothing. */
+/* Degrees: a wider zone with more than two barrels is halved, as a vertex
+ * stores the radii at two barrels only. */
 #define CROWD_DEG 1.5
 /* Degrees: narrower zones may fill their boxes less. */
 #define FILL_DEG 0.6
-/* Cropping continues while it leaves a smaller fraction of the part. */
+/* A part is cropped again only if the last crop left a smaller fraction of
+ * it. */
 #define WORTH_CROP 0.8
 
 enum {
-    /* Times that a band can be halved, which follows from LEAST_BAND. */
+    /* max number of times that a band is halved; follows from LEAST_BAND */
     BAND_DEPTH = 2,
     CROPS = 2 /* max number of times that a part is cropped */
 };
@@ -28,7 +29,8 @@ enum {
 struct fitter {
     const struct glint_visible *visible;
     const struct glint_tolerance *tolerance;
-    struct glint_next_rules rules; /* of both */
+    /* rules for dividing zones, from VISIBLE and TOLERANCE */
+    struct glint_next_rules rules;
     struct glint_fitted_ghost *out;
     struct glint_zone_buffers buffers;
     glint_zone_sampling sampling;
@@ -37,12 +39,13 @@ struct fitter {
     struct glint_visible beside_band[GLINT_MAX_BESIDE];
     struct glint_visible beside_part[GLINT_MAX_BESIDE];
     struct glint_visible_profile band_profile;
-    double profiled[4];      /* angles and band of band_profile */
-    int n_parts;             /* number of parts of the zone so far */
+    /* range of angles and band for which band_profile holds */
+    double profiled[4];
+    int n_parts;             /* number of fitted parts of the current zone */
     glint_fit_told_fn *told; /* NULL: no progress reports */
     void *told_ctx;
-    double work, share; /* see glint_fit_told_fn */
-    double sines;       /* width of all ranges */
+    double work, share; /* arguments of glint_fit_told_fn */
+    double sines;       /* sum of the widths of all ranges, sines */
 };
 
 /* ------------------------------------------------------------------- zones */
@@ -66,16 +69,17 @@ static bool is_whole_band(double w0, double w1)
     return w0 <= -1 && w1 >= 1;
 }
 
-/* Returns the boxes for the angles and the part of the band of P. */
+/* Returns the profile (boxes by angle) for the band of P. */
 static const struct glint_visible_profile *
-profile_of(struct fitter *f, const struct glint_zone_piece *p)
+find_profile(struct fitter *f, const struct glint_zone_piece *p)
 {
     const double range[2] = {p->lo, p->hi};
     const double key[4] = {p->lo, p->hi, p->w0, p->w1};
 
     if (is_whole_band(p->w0, p->w1))
         return &f->profile;
-    /* NOLINTNEXTLINE: 0 and -0 may differ, which recomputes a profile. */
+    /* NOLINTNEXTLINE: 0 and -0 may differ; the profile is then computed
+     * again */
     if (memcmp(key, f->profiled, sizeof key) != 0) {
         glint_visible_narrow(&f->in_band, f->visible, p->w0, p->w1);
         glint_visible_profile_find(&f->in_band, range, &f->band_profile);
@@ -84,11 +88,11 @@ profile_of(struct fitter *f, const struct glint_zone_piece *p)
     return &f->band_profile;
 }
 
-/* Cuts ZONE to the part of P; returns the visibility of the ghost in its band.
- */
-static const struct glint_visible *cut_out(struct fitter *f,
-                                           const struct glint_zone_piece *p,
-                                           struct glint_zone *zone)
+/* Cuts ZONE to the part of P. Returns the visibility of the ghost in the
+ * part's band. */
+static const struct glint_visible *cut_zone(struct fitter *f,
+                                            const struct glint_zone_piece *p,
+                                            struct glint_zone *zone)
 {
     const struct glint_zone_part *part = &p->part;
     const struct glint_visible *band =
@@ -101,27 +105,27 @@ static const struct glint_visible *cut_out(struct fitter *f,
     return &f->in_part;
 }
 
-/* Cuts the part of P out of ZONE. A thorough fit also crops the part to what is
- * seen: if a ghost comes through in red at one place and in blue at another,
- * much of its box is dark. Returns the visibility of the ghost in the part's
- * band. */
+/* Cuts ZONE to the part of P. If P is thorough, first crops the part to its
+ * visible region: where a ghost is visible in red at one place and in blue
+ * at another, much of the box is dark. Returns the visibility of the ghost
+ * in the part's band. */
 static const struct glint_visible *
 set_part(struct fitter *f, struct glint_zone_piece *p, struct glint_zone *zone)
 {
     const struct glint_zone uncropped = *zone;
-    const struct glint_visible *band = cut_out(f, p, zone);
+    const struct glint_visible *band = cut_zone(f, p, zone);
     double rest = p->thorough ? 0 : 1;
 
     for (int round = 0; round < CROPS && rest < WORTH_CROP; round++) {
         rest = glint_zone_crop(zone, band, &p->part);
         *zone = uncropped;
-        band = cut_out(f, p, zone);
+        band = cut_zone(f, p, zone);
     }
     return band;
 }
 
-/* Traces and fits ZONE in BAND. If no light comes through a part of a zone, the
- * part gets no outputs. */
+/* Traces rays of ZONE in BAND and fits its outputs. A part through which no
+ * light passes gets no outputs. */
 static enum glint_status
 fit_zone(struct fitter *f, const struct glint_zone_piece *p,
          const struct glint_zone *zone, const struct glint_visible *band,
@@ -151,13 +155,13 @@ fit_zone(struct fitter *f, const struct glint_zone_piece *p,
     return status;
 }
 
-/* Fits P unless its box or its barrels show that it is too wide. May crop the
- * part of P. */
+/* Fits P, unless its box is filled too little or is cut by too many barrels,
+ * so that it must be halved. May crop the part of P. */
 static enum glint_status try_zone(struct fitter *f, struct glint_zone_piece *p,
                                   struct glint_fitted_system *system,
                                   struct glint_attempt *a)
 {
-    const struct glint_visible_profile *profile = profile_of(f, p);
+    const struct glint_visible_profile *profile = find_profile(f, p);
     const struct glint_visible *band;
     struct glint_zone zone;
 
@@ -187,10 +191,10 @@ static enum glint_status try_zone(struct fitter *f, struct glint_zone_piece *p,
     return fit_zone(f, p, &zone, band, system, a);
 }
 
-static const struct glint_zone_part whole = {-1, 1, 1, -1, 1, 0};
+static const struct glint_zone_part whole_part = {-1, 1, 1, -1, 1, 0};
 
-/* Puts the halves of P on the stack and returns how many entries it has then.
- * Parts are halved along v first, which separates the middle from the rim. */
+/* Pushes the halves of P onto the stack and returns the new number of
+ * entries. Parts are halved along v first, which separates centre and rim. */
 static int push_halves(struct glint_zone_piece *stack, int n,
                        struct glint_zone_piece p, enum glint_next how)
 {
@@ -201,7 +205,7 @@ static int push_halves(struct glint_zone_piece *stack, int n,
         a.hi = b.lo = angle;
     } else if (how == GLINT_BANDS) {
         a.w1 = b.w0 = 0.5 * (p.w0 + p.w1);
-        a.part = b.part = whole;
+        a.part = b.part = whole_part;
     } else {
         a.depth = b.depth = p.depth + 1;
         glint_zone_part_halve(&p.part, p.depth % 2 == 0, &a.part, &b.part);
@@ -211,7 +215,7 @@ static int push_halves(struct glint_zone_piece *stack, int n,
     return n + 2;
 }
 
-/* Counts the fit of P; KEPT: the zone P is finished. */
+/* Counts the fit of P. KEPT: the fit is accepted, so the zone is done. */
 static void count_fit(struct fitter *f, const struct glint_zone_piece *p,
                       bool kept)
 {
@@ -223,15 +227,15 @@ static void count_fit(struct fitter *f, const struct glint_zone_piece *p,
         f->told(f->told_ctx, f->work, f->share);
 }
 
-/* Fits the zones of a range from the lowest angle up; upper halves wait on a
- * stack. */
+/* Fits the zones of a range of angles, depth first from the lowest angle up;
+ * upper halves wait on a stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
-    /* Fewer than 20 halvings shrink a zone to half of LEAST_DEG, or at the axis
-     * to a tenth of that size. */
+    /* Fewer than 20 halvings shrink a zone to half of LEAST_DEG, or at the
+     * axis to a tenth of that. */
     enum { DEEP = 24 + BAND_DEPTH + GLINT_MAX_AXIS_DEPTH };
     struct glint_zone_piece stack[DEEP] = {
-        {range[0], range[1], HUGE_VAL, -1, 1, false, whole, 0}};
+        {range[0], range[1], HUGE_VAL, -1, 1, false, whole_part, 0}};
     enum glint_status status = GLINT_OK;
     int n = 1;
 
@@ -287,7 +291,7 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
     f->rules = (struct glint_next_rules){visible, tolerance};
     f->in_band.beside = f->beside_band;
     f->in_part.beside = f->beside_part;
-    /* No profile of a part of the band exists yet. */
+    /* no band_profile exists yet */
     f->profiled[0] = HUGE_VAL;
     f->out = out;
     f->told = told;

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fits a ghost's polynomials, one zone of angles after the other.
+ * Fits polynomials to a ghost, one zone (range of angles) after the other.
  *
  *   in   a ghost, a tolerance
  *   out  systems whose outputs are sparse polynomials in u, v, s and w
  *
- * A zone that its terms cannot describe well enough, or that the box cannot
- * follow, is halved, until halving no longer helps. If its error is then still
- * visible, its band is halved, if the box moves with the wavelength, and its
- * box is divided into parts. The barrels that cut each get a polynomial of
- * their own, (1 + r^2) / 2, which is as smooth as the positions are; the
- * maximum of all relative radii is not. Limits: invisible rays have little
- * weight.
+ * A zone whose polynomials or box are not accurate enough is halved until
+ * halving no longer helps. If the remaining error is visible, the zone's band
+ * is halved (if the box moves with the wavelength) and its box is divided into
+ * parts. Each barrel that cuts the ghost gets a polynomial of its own, (1 +
+ * r^2) / 2, which is as smooth as the positions are; the max of all relative
+ * radii is not smooth. Limits: rays that are blocked have little weight.
  */
 #ifndef GLINT_BAKE_FIT_FIT_H
 #define GLINT_BAKE_FIT_FIT_H
@@ -26,8 +25,8 @@
  * done. */
 typedef void glint_fit_told_fn(void *ctx, double work, double share);
 
-/* Fits a ghost; TOLD may be NULL. The caller finishes OUT in any case.
- * GLINT_E_MEMORY. */
+/* Fits a ghost; TOLD may be NULL. The caller must call glint_fitted_finish()
+ * on OUT even after an error. May return GLINT_E_MEMORY. */
 enum glint_status glint_fit_ghost(const struct glint_visible *visible,
                                   double max_deg,
                                   const struct glint_tolerance *tolerance,

@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Decides what to do with a zone, or a part of one, after an attempt to fit it.
+ * Decides how to proceed with a zone, or a part of a zone, after an attempt to
+ * fit it.
  *
- *   in   how wide it is, and the errors of its fit in tolerances
- *   out whether to accept, halve, fit thoroughly, or divide it by wavelength or
- *   into parts; and the error at which a fit may stop early
+ *   in   its width, and the errors of its fit in tolerances
+ *   out  whether to accept, halve, fit thoroughly, or divide it by wavelength
+ * or into parts; and the error at which a fit may stop early
  *
- * In lenses with shaped surfaces, faint zones are accepted with larger errors:
- * aspheric powers leave errors at every width, and halving gains nothing. */
+ * In lenses with surfaces that are not spheres, faint zones are accepted with
+ * larger errors: aspheric powers leave errors at every width, and halving does
+ * not help.
+ */
 #ifndef GLINT_BAKE_FIT_NEXT_H
 #define GLINT_BAKE_FIT_NEXT_H
 
@@ -15,9 +18,10 @@
 #include "bake/visible/visible.h"
 #include "bake/fit/zone_fit.h"
 
-/* A zone, or a part of a zone, that waits to be fitted. BEFORE is the error of
- * the last attempt at the wider zone that contains it. THOROUGH: it is fitted
- * with a box that follows the colours, a root of the energy, and more terms. */
+/* A zone, or a part of a zone, that waits to be fitted. BEFORE is the error
+ * of the last attempt at the wider zone that contains it. THOROUGH: fit it
+ * with a box that depends on the wavelength, a root of the energy, and more
+ * terms. */
 struct glint_zone_piece {
     double lo, hi, before;
     double w0, w1; /* range of the part within the band, -1 .. 1 */
@@ -26,13 +30,14 @@ struct glint_zone_piece {
     int depth; /* number of halvings that led to the part; 0: the whole zone */
 };
 
-/* The outcome of an attempt at a zone. */
+/* The result of an attempt to fit a zone. */
 struct glint_attempt {
     struct glint_zone_aim aim;
-    /* Errors in tolerances, at most 1 if good; worst is HUGE_VAL if nothing was
-     * fitted. */
+    /* errors in tolerances, at most 1 if the fit is good; worst is HUGE_VAL
+     * if nothing was fitted */
     struct glint_zone_errors errors;
-    double wanders; /* half widths that the box moves or grows over the band */
+    double wanders; /* displacement or growth of the box over the band, in half
+                       widths */
 };
 
 enum glint_next {
@@ -43,7 +48,7 @@ enum glint_next {
     GLINT_PART
 };
 
-/* Returns the width from the sine LO to HI in degrees. */
+/* Returns asin(HI) - asin(LO) in degrees. */
 double glint_next_degrees(double lo, double hi);
 
 /* Returns whether a coating of several films reflects the ghost. */
@@ -56,20 +61,21 @@ struct glint_next_rules {
 };
 
 /* Returns the error, in tolerances, above which P will be halved or divided
- * anyway, so that its fit may stop early; 0: no such error. Narrow zones may be
- * at the end of halving, where the error has to be known. */
+ * in any case, so that its fit may stop early; 0: no such error. There is
+ * none for narrow zones, as halving may end there and the error must be
+ * known. */
 double glint_next_hopeless(const struct glint_next_rules *f,
                            const struct glint_zone_piece *p,
                            const struct glint_zone_aim *aim);
 
-/* Returns the error, in tolerances, above which glint_next() decides the same
- * for P, and later for its halves, however large the error is; 0: no such
- * error. */
+/* Returns the error, in tolerances, above which the decisions of
+ * glint_next() for P, and later for its halves, no longer depend on the
+ * error; 0: no such error. */
 double glint_next_settled(const struct glint_next_rules *f,
                           const struct glint_zone_piece *p,
                           const struct glint_zone_aim *aim);
 
-/* Returns the next step for P after attempt A. For bright ghosts zones are
+/* Returns the next step for P after attempt A. Zones of bright ghosts are
  * halved further. */
 enum glint_next glint_next(const struct glint_next_rules *f,
                            const struct glint_zone_piece *p,

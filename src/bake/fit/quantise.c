@@ -9,7 +9,7 @@
 /* ------------------------------------------------------------------ scaling */
 
 /* Returns the sum of the magnitudes of N values. */
-static double sum_of(const double *value, int n)
+static double sum_magnitudes(const double *value, int n)
 {
     double sum = 0;
 
@@ -20,9 +20,9 @@ static double sum_of(const double *value, int n)
 
 enum { LEAST_EXPONENT = -80 }; /* min binary exponent of a model */
 
-/* Returns the exponent at which the sum of N values, of magnitude SUM before
- * each was rounded, stays below the limit. */
-static int exponent_for(double sum, int n)
+/* Returns the exponent at which the sum of N rounded values stays below
+ * GLINT_COEF_LIMIT. SUM is the sum of their magnitudes before rounding. */
+static int choose_exponent(double sum, int n)
 {
     int exponent;
 
@@ -41,8 +41,8 @@ static bool all_finite(const double *value, int n)
     return true;
 }
 
-static enum glint_status to_integers(const double *value, int n, int exponent,
-                                     int32_t **out)
+static enum glint_status round_to_integers(const double *value, int n,
+                                           int exponent, int32_t **out)
 {
     *out = malloc((size_t)n * sizeof **out);
     if (!*out)
@@ -54,42 +54,43 @@ static enum glint_status to_integers(const double *value, int n, int exponent,
 
 /* ---------------------------------------------------------------- intervals */
 
-/* The range of a number computed at run time, and the max distance between its
- * rounded and its true value, in its unit. Doubles hold these exactly enough:
- * they stay below 2^31, and errors are rounded up at the end. */
+/* Interval of a number computed at run time, and the max distance between
+ * its rounded and its true value, in its unit. Double precision is
+ * sufficient: values stay below 2^31, and errors are rounded up at the end. */
 struct range {
     double lo, hi, error;
 };
 
-static double reach(struct range r)
+static double max_magnitude(struct range r)
 {
     return fmax(fabs(r.lo), fabs(r.hi)) + r.error;
 }
 
 struct proof {
-    double bound; /* largest magnitude of all intermediates so far */
+    double bound; /* largest magnitude of all intermediate results so far */
 };
 
-static struct range seen(struct proof *p, struct range r)
+static struct range record_bound(struct proof *p, struct range r)
 {
-    p->bound = fmax(p->bound, reach(r));
+    p->bound = fmax(p->bound, max_magnitude(r));
     return r;
 }
 
-static struct range plus(struct proof *p, struct range a, struct range b)
+static struct range add_ranges(struct proof *p, struct range a, struct range b)
 {
-    return seen(p, (struct range){a.lo + b.lo, a.hi + b.hi, a.error + b.error});
+    return record_bound(
+        p, (struct range){a.lo + b.lo, a.hi + b.hi, a.error + b.error});
 }
 
-/* Returns the range of q_mul(a, x, 30). X is a variable within -1 .. 1; its
- * error is in units of 2^-30. */
+/* Returns the interval of q_mul(a, x, 30). X is a variable within -1 .. 1,
+ * its error is in units of 2^-30. */
 static struct range multiply_range(struct proof *p, struct range a,
                                    struct range x)
 {
     const double c[4] = {a.lo * x.lo, a.lo * x.hi, a.hi * x.lo, a.hi * x.hi};
     const double most_x = fmax(fabs(x.lo), fabs(x.hi));
 
-    return seen(
+    return record_bound(
         p, (struct range){fmin(fmin(c[0], c[1]), fmin(c[2], c[3])),
                           fmax(fmax(c[0], c[1]), fmax(c[2], c[3])),
                           a.error * (most_x + x.error * 0x1p-30) +
@@ -97,9 +98,9 @@ static struct range multiply_range(struct proof *p, struct range a,
                               0.5});
 }
 
-/* Returns the range of X^N as the run time works it out; X is a variable with
+/* Returns the interval of X^N as computed at run time. X is a variable with
  * an error of its own. */
-static struct range power_of(struct range x, int n)
+static struct range power_range(struct range x, int n)
 {
     struct range r = {n % 2 ? x.lo : fmax(0, x.lo), 1,
                       n * x.error + (n > 1 ? 0.5 * n : 0)};
@@ -109,17 +110,17 @@ static struct range power_of(struct range x, int n)
     return r;
 }
 
-static const struct range both_ways = {-1, 1, 0};
+static const struct range unit_range = {-1, 1, 0};
 
-/* Returns the range of COEF. Its error includes rounding to an integer, or to a
- * multiple of 2^SHIFT. */
-static struct range coefficient(int32_t coef, int shift)
+/* Returns the interval of COEF, including the error of rounding it to an
+ * integer, or to a multiple of 2^SHIFT. */
+static struct range coefficient_range(int32_t coef, int shift)
 {
     return (struct range){coef, coef, 0.5 + (shift ? ldexp(0.5, shift) : 0)};
 }
 
-/* Proves the step that puts angle and wavelength in: TABLE receives the
- * coefficients of u and v. */
+/* Bounds the substitution of angle and wavelength. TABLE receives the
+ * intervals of the coefficients of u and v. */
 static void prove_table(struct proof *p, const struct glint_fitted_output *o,
                         const struct glint_quantised_output *q,
                         struct range table[][GLINT_MAX_POWER + 1])
@@ -127,29 +128,30 @@ static void prove_table(struct proof *p, const struct glint_fitted_output *o,
     for (int i = 0; i < o->n_terms; i++) {
         const int k = q->order[i];
         const int shift = i < o->n_terms - q->n_narrow ? 0 : q->shift;
-        struct range value = seen(p, coefficient(q->coef[k], shift));
+        struct range value =
+            record_bound(p, coefficient_range(q->coef[k], shift));
         struct range *to = &table[o->power[k][1]][o->power[k][0]];
 
         for (int x = 2; x < GLINT_VARIABLES; x++)
             if (o->power[k][x])
                 value = multiply_range(p, value,
-                                       power_of(both_ways, o->power[k][x]));
-        *to = plus(p, *to, value);
+                                       power_range(unit_range, o->power[k][x]));
+        *to = add_ranges(p, *to, value);
     }
 }
 
-/* Returns the range of the terms of TABLE with u to the power A and odd, or
- * even, powers of v. */
-static struct range across(struct proof *p,
-                           struct range table[][GLINT_MAX_POWER + 1], int a,
-                           bool odd)
+/* Returns the interval of the sum over odd or even powers of v of the terms
+ * of TABLE with power A of u. */
+static struct range row_range(struct proof *p,
+                              struct range table[][GLINT_MAX_POWER + 1], int a,
+                              bool odd)
 {
     const struct range v2 = {0, 1, 0.5};
     struct range sum = {0, 0, 0};
 
     for (int b = GLINT_MAX_POWER - 1 + odd; b >= 0; b -= 2)
-        sum = plus(p, multiply_range(p, sum, v2), table[b][a]);
-    return odd ? multiply_range(p, sum, both_ways) : sum;
+        sum = add_ranges(p, multiply_range(p, sum, v2), table[b][a]);
+    return odd ? multiply_range(p, sum, unit_range) : sum;
 }
 
 static void prove_output(struct proof *p, const struct glint_fitted_output *o,
@@ -163,16 +165,17 @@ static void prove_output(struct proof *p, const struct glint_fitted_output *o,
 
     prove_table(p, o, q, table);
     for (int a = GLINT_MAX_POWER; a >= 0; a--) {
-        struct range sum = across(p, table, a, odd && !skew);
+        struct range sum = row_range(p, table, a, odd && !skew);
 
         if (skew)
-            sum = plus(p, sum, across(p, table, a, true));
-        *result = plus(p, multiply_range(p, *result, both_ways), sum);
+            sum = add_ranges(p, sum, row_range(p, table, a, true));
+        *result = add_ranges(p, multiply_range(p, *result, unit_range), sum);
     }
 }
 
-/* Returns the range of the energy that the run time makes of its polynomial. */
-static struct range energy_of(struct range x, int head, int roots)
+/* Returns the interval of the energy that the run time computes from its
+ * polynomial. */
+static struct range energy_range(struct range x, int head, int roots)
 {
     if (head || roots)
         x = (struct range){0, fmin(fmax(0, ldexp(x.hi, head)), 0x1p29),
@@ -183,18 +186,18 @@ static struct range energy_of(struct range x, int head, int roots)
     return x;
 }
 
-static void prove(const struct glint_fitted_system *s,
-                  const struct glint_fitted_output *o,
-                  struct glint_quantised_output *out)
+static void prove_bounds(const struct glint_fitted_system *s,
+                         const struct glint_fitted_output *o,
+                         struct glint_quantised_output *out)
 {
     struct proof p = {0};
     struct range result = {0, 0, 0};
 
     prove_output(&p, o, out, s->skew, &result);
     while (out->head > 0 &&
-           energy_of(result, out->head, o->roots).error >= 0x1p22)
-        out->head--; /* only rounding would go up there */
-    result = energy_of(result, out->head, o->roots);
+           energy_range(result, out->head, o->roots).error >= 0x1p22)
+        out->head--; /* A larger scale would only enlarge rounding errors. */
+    result = energy_range(result, out->head, o->roots);
     out->proven = p.bound < 0x1p30 && result.error < 0x1p23;
     out->bound = out->proven ? (uint32_t)ceil(p.bound) : 0;
     out->rounding_q8 = out->proven ? (uint32_t)ceil(256 * result.error) : 0;
@@ -202,9 +205,10 @@ static void prove(const struct glint_fitted_system *s,
 
 /* ------------------------------------------------------------------- narrow */
 
-/* Moves coefficients for which 16 bits are enough to the end of the order. */
-static void narrow(const struct glint_fitted_output *o,
-                   struct glint_quantised_output *out)
+/* Moves coefficients for which 16 bits are sufficient to the end of the
+ * order. */
+static void choose_narrow(const struct glint_fitted_output *o,
+                          struct glint_quantised_output *out)
 {
     const double steps = ldexp(o->grain, -out->exponent);
     int n_wide = 0, end = o->n_terms;
@@ -237,18 +241,19 @@ static int offset_to_pair(enum glint_channel kind)
                                                                     : 0;
 }
 
-static int output_exponent(const struct glint_fitted_system *s, int k)
+static int choose_output_exponent(const struct glint_fitted_system *s, int k)
 {
     const struct glint_fitted_output *o = &s->output[k];
 
-    return exponent_for(sum_of(o->coef, o->n_terms), o->n_terms);
+    return choose_exponent(sum_magnitudes(o->coef, o->n_terms), o->n_terms);
 }
 
-/* Returns by how many bits a polynomial can be scaled up so that, where light
- * gets through, it stays below half of the largest allowed integer. For a
- * fourth root the energy must stay below that, and one bit of the root is four
- * bits of the energy. */
-static int head_of(const struct glint_fitted_output *o, int exponent)
+/* Returns the number of bits by which the energy's polynomial can be scaled
+ * up such that, where light passes, it stays below half of the largest
+ * allowed integer. If the energy is the fourth power of the polynomial, the
+ * limit holds for the energy, and one bit of the root is four bits of the
+ * energy. */
+static int choose_head(const struct glint_fitted_output *o, int exponent)
 {
     const double most = o->roots ? 0x1.ap28 : 0x1p28;
     int head = 0;
@@ -267,33 +272,33 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
     const int pair = offset_to_pair(o->kind);
     enum glint_status status;
 
-    out->exponent = output_exponent(s, k);
+    out->exponent = choose_output_exponent(s, k);
     if (pair) {
-        const int other = output_exponent(s, k + pair);
+        const int other = choose_output_exponent(s, k + pair);
 
         out->exponent = out->exponent > other ? out->exponent : other;
     }
-    out->head = head_of(o, out->exponent);
-    status = to_integers(o->coef, o->n_terms, out->exponent, &out->coef);
+    out->head = choose_head(o, out->exponent);
+    status = round_to_integers(o->coef, o->n_terms, out->exponent, &out->coef);
     for (int i = 0; i < o->n_terms; i++)
         out->order[i] = (uint8_t)i;
     if (status == GLINT_OK) {
-        narrow(o, out);
-        prove(s, o, out);
+        choose_narrow(o, out);
+        prove_bounds(s, o, out);
         status = out->proven ? GLINT_OK : GLINT_E_LENS;
     }
     return status;
 }
 
-static int box_size(const struct glint_fitted_system *s)
+static int count_box_terms(const struct glint_fitted_system *s)
 {
     return (s->skew ? GLINT_LENS_SIDES : 3) * GLINT_BOX_TERMS;
 }
 
-/* Returns whether every output has terms and all numbers are finite. */
+/* Returns whether every output has terms and all coefficients are finite. */
 static bool is_sound(const struct glint_fitted_system *s)
 {
-    const int n_box = box_size(s);
+    const int n_box = count_box_terms(s);
 
     for (int k = 0; k < s->n_outputs; k++) {
         const struct glint_fitted_output *o = &s->output[k];
@@ -311,13 +316,14 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
     double most = 0;
 
     *out = (struct glint_quantised_system){.box_exponent = 0};
-    out->n_box = box_size(system);
+    out->n_box = count_box_terms(system);
     if (!is_sound(system))
         return GLINT_E_LENS;
     for (int k = 0; k < out->n_box; k += GLINT_BOX_TERMS)
-        most = fmax(most, sum_of(system->box + k, GLINT_BOX_TERMS));
-    out->box_exponent = exponent_for(most, GLINT_BOX_TERMS);
-    status = to_integers(system->box, out->n_box, out->box_exponent, &out->box);
+        most = fmax(most, sum_magnitudes(system->box + k, GLINT_BOX_TERMS));
+    out->box_exponent = choose_exponent(most, GLINT_BOX_TERMS);
+    status = round_to_integers(system->box, out->n_box, out->box_exponent,
+                               &out->box);
     for (int k = 0; k < system->n_outputs && status == GLINT_OK; k++)
         status = quantise_output(system, k, &out->output[k]);
     return status;

@@ -1,34 +1,36 @@
 /* SPDX-License-Identifier: MIT
  *
- * Converts the doubles of a fit into the integers of a model, and proves that
- * they cannot overflow.
+ * Converts the doubles of a fit into the integers of a model and proves that
+ * these cannot overflow at run time.
  *
  *   in   a fitted system
  *   out  integer coefficients and exponents; for each output a proven bound on
- *        every intermediate of src/lens/transfer*.c and on how far rounding can
- *        take its result from the polynomial
+ *        every intermediate result of src/lens/transfer*.c and on the rounding
+ *        error of its value
  *
- * Method: interval arithmetic over the whole domain, operation by operation as
- * the run time does them: angle and wavelength into the coefficients, v into
+ * Method: interval arithmetic over the whole domain, operation by operation in
+ * the order of the run time: angle and wavelength into the coefficients, v into
  * the row, Horner's rule along u. Interpolated coefficients lie between those
- * of two knots, so the range of both is taken. */
+ * of two knots, so the interval covers both.
+ */
 #ifndef GLINT_BAKE_FIT_QUANTISE_H
 #define GLINT_BAKE_FIT_QUANTISE_H
 
 #include "bake/fit/fitted.h"
 
-/* Limit of the sum of coefficients' magnitudes. */
+/* Limit of the sum of the coefficients' magnitudes. */
 #define GLINT_COEF_LIMIT (INT64_C(1) << 29)
 
-/* One output. The last N_NARROW coefficients in ORDER fit 16 bits when divided
- * by 2^SHIFT; here they are multiples of that. */
+/* One output. The last N_NARROW coefficients in ORDER are multiples of
+ * 2^SHIFT; divided by it, they fit 16 bits. */
 struct glint_quantised_output {
     int32_t exponent;
     int32_t *coef; /* [sets][n_terms]; owned */
     int n_narrow, shift;
-    int head;                             /* as in struct glint_model_output */
-    uint8_t order[GLINT_MAX_MODEL_TERMS]; /* indices of the terms in the file's
-                                             order */
+    int head; /* shift of the energy polynomial, as in struct glint_model_output
+               */
+    uint8_t order[GLINT_MAX_MODEL_TERMS]; /* indices of the terms in the order
+                                             of the file */
     uint32_t bound, rounding_q8;
     bool proven;
 };
@@ -40,8 +42,9 @@ struct glint_quantised_system {
     int n_box;
 };
 
-/* Quantises SYSTEM. GLINT_E_MEMORY. GLINT_E_LENS: a number is not finite, or
- * the proof fails. The caller finishes OUT in any case. */
+/* Quantises SYSTEM. Returns GLINT_E_LENS if a number is not finite or the
+ * proof fails; may return GLINT_E_MEMORY. The caller must call
+ * glint_quantised_finish() on OUT even after an error. */
 enum glint_status glint_quantise(const struct glint_fitted_system *system,
                                  struct glint_quantised_system *out);
 

@@ -5,12 +5,12 @@
 #include "bake/regress/regress.h"
 #include "engine/setup/degrees.h"
 
-/* Fraction of a box: if as much of it is visible, it is full enough. A fuller
- * box would need higher powers of s, which the polynomials in it would have to
- * undo. */
+/* A box is full enough if the visible light fills this fraction of it. A
+ * fuller box would need higher powers of s, which the polynomials defined on
+ * the box would have to compensate. */
 #define ENOUGH_FILL 0.6
-/* A higher degree in s is chosen only if rays fill its box this many times as
- * well. */
+/* A higher degree in s is chosen only if rays then fill the box this many
+ * times as well. */
 #define FULLER 1.6
 
 double glint_zone_node(int k, int n)
@@ -42,8 +42,8 @@ double glint_zone_side(const struct glint_zone *zone,
                (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
-/* The boxes that a zone's box must contain, at values of s and w of the
- * zone. */
+/* The visible boxes that a zone's box must contain, at the zone's
+ * coordinates s and w. */
 enum { ROOM = GLINT_PROFILE * GLINT_VISIBLE_WAVES };
 
 struct seen {
@@ -53,8 +53,8 @@ struct seen {
     double narrowest;
 };
 
-static void add(struct seen *seen, double s, double w,
-                const struct glint_pupil *box)
+static void add_box(struct seen *seen, double s, double w,
+                    const struct glint_pupil *box)
 {
     const int i = seen->n++;
 
@@ -66,8 +66,8 @@ static void add(struct seen *seen, double s, double w,
     seen->narrowest = fmin(seen->narrowest, seen->half_x[i]);
 }
 
-/* Gathers the boxes of the zone and of one more angle at each end, so that the
- * ends are covered. */
+/* Collects the visible boxes of the zone, and of one more angle at each end,
+ * so that the ends of the zone are covered. */
 static void gather_boxes(const struct glint_visible_profile *p, double lo,
                          double hi, bool by_colour, struct seen *seen)
 {
@@ -81,20 +81,20 @@ static void gather_boxes(const struct glint_visible_profile *p, double lo,
     seen->n_angles = last - first + 1;
     seen->narrowest = HUGE_VAL;
     for (int k = first; k <= last && !by_colour; k++)
-        add(seen, (2 * p->sine[k] - lo - hi) / (hi - lo), 0, &p->box[k]);
+        add_box(seen, (2 * p->sine[k] - lo - hi) / (hi - lo), 0, &p->box[k]);
     for (int k = 0; k < p->n_samples && by_colour; k++) {
         const struct glint_box_sample *g = &p->sample[k];
 
         if (g->sine >= p->sine[first] && g->sine <= p->sine[last])
-            add(seen, (2 * g->sine - lo - hi) / (hi - lo), g->w, &g->box);
+            add_box(seen, (2 * g->sine - lo - hi) / (hi - lo), g->w, &g->box);
     }
 }
 
-/* Sets SIDE to the polynomial that follows VALUE within TOLERANCE, or as well
- * as it can: powers of s up to DEGREE and, BY_COLOUR, w and s w. */
-static void follow(const struct seen *seen, const double *value, int degree,
-                   bool by_colour, double tolerance,
-                   double side[GLINT_BOX_TERMS])
+/* Fits the polynomial SIDE to VALUE within TOLERANCE, or as well as
+ * possible: powers of s up to DEGREE and, if BY_COLOUR is set, w and s w. */
+static void fit_side(const struct seen *seen, const double *value, int degree,
+                     bool by_colour, double tolerance,
+                     double side[GLINT_BOX_TERMS])
 {
     static const double zero[ROOM];
     double scratch[GLINT_REGRESS_DOUBLES(ROOM, GLINT_BOX_TERMS, GLINT_BOX_TERMS,
@@ -122,10 +122,10 @@ static void follow(const struct seen *seen, const double *value, int degree,
                              : fit.power[k][2]] = fit.coef[k];
 }
 
-/* Returns minus the min value of the polynomial HALF over the zone, sampled:
- * the increase of its constant that makes it 0 or more; negative if it is
- * already. */
-static double missing_height(const double half[GLINT_BOX_TERMS])
+/* Returns the constant that must be added to the polynomial HALF to make it
+ * 0 or more everywhere in the zone, sampled; negative if it is positive
+ * everywhere. */
+static double compute_missing_height(const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;
 
@@ -135,8 +135,8 @@ static double missing_height(const double half[GLINT_BOX_TERMS])
     return -lowest;
 }
 
-/* Widens the box until it holds all that was seen, and by 1/100 more. */
-static void widen(struct glint_zone *z, const struct seen *seen)
+/* Widens the box until it contains all visible boxes, with a margin of 1 %. */
+static void widen_box(struct glint_zone *z, const struct seen *seen)
 {
     double more_x = 0, more_y = 0;
 
@@ -151,11 +151,14 @@ static void widen(struct glint_zone *z, const struct seen *seen)
     }
     z->half_x[0] += more_x;
     z->half_y[0] += more_y;
-    z->half_x[0] += fmax(0.01 * z->half_x[0], 1.1 * missing_height(z->half_x));
-    z->half_y[0] += fmax(0.01 * z->half_y[0], 1.1 * missing_height(z->half_y));
+    z->half_x[0] +=
+        fmax(0.01 * z->half_x[0], 1.1 * compute_missing_height(z->half_x));
+    z->half_y[0] +=
+        fmax(0.01 * z->half_y[0], 1.1 * compute_missing_height(z->half_y));
 }
 
-static double mean_fill(const struct glint_zone *z, const struct seen *seen)
+static double compute_mean_fill(const struct glint_zone *z,
+                                const struct seen *seen)
 {
     double sum = 0;
 
@@ -172,11 +175,11 @@ static void set_box(struct glint_zone *z, const struct seen *seen, int degree,
     const double tolerance = 0.02 * seen->narrowest;
     const int tame = degree < 2 ? degree : 2;
 
-    follow(seen, seen->middle, degree, by_colour, tolerance, z->middle);
-    follow(seen, seen->half_x, tame, by_colour, tolerance, z->half_x);
-    follow(seen, seen->half_y, tame, by_colour, tolerance, z->half_y);
-    widen(z, seen);
-    z->fill = mean_fill(z, seen);
+    fit_side(seen, seen->middle, degree, by_colour, tolerance, z->middle);
+    fit_side(seen, seen->half_x, tame, by_colour, tolerance, z->half_x);
+    fit_side(seen, seen->half_y, tame, by_colour, tolerance, z->half_y);
+    widen_box(z, seen);
+    z->fill = compute_mean_fill(z, seen);
 }
 
 void glint_zone_init(struct glint_zone *zone,
@@ -199,8 +202,8 @@ void glint_zone_init(struct glint_zone *zone,
     }
 }
 
-/* Replaces w by W0 + (1 + w) / 2 * (W1 - W0). */
-static void narrow(double side[GLINT_BOX_TERMS], double w0, double w1)
+/* Substitutes w by W0 + (1 + w) / 2 * (W1 - W0) in the polynomial SIDE. */
+static void narrow_side(double side[GLINT_BOX_TERMS], double w0, double w1)
 {
     double *of_w = side + GLINT_BOX_POWERS;
 
@@ -223,7 +226,7 @@ void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
 
     *first = *second = *part;
     if (along_v) { /* The part spans k .. k + 1 in units of 1 / (k + 1) of its
-                      height. */
+                      outer height. */
         first->top *= (2 * k + 1) / (2 * k + 2.0);
         first->annulus = 2 * k;
         second->annulus = 2 * k + 1;
@@ -239,16 +242,15 @@ void glint_zone_cut(struct glint_zone *zone, const struct glint_zone_part *part)
         zone->half_x[k] *= 0.5 * (part->u1 - part->u0);
         zone->half_y[k] *= part->top;
     }
-    narrow(zone->middle, part->w0, part->w1);
-    narrow(zone->half_x, part->w0, part->w1);
-    narrow(zone->half_y, part->w0, part->w1);
+    narrow_side(zone->middle, part->w0, part->w1);
+    narrow_side(zone->half_x, part->w0, part->w1);
+    narrow_side(zone->half_y, part->w0, part->w1);
     zone->annulus = part->annulus;
 }
 
-/* Sets X to point number K of a low-discrepancy sequence, -1 .. 1 in each
- * variable, which fills four dimensions evenly: the fractional parts of 1/2 +
- * (K + 1) / g, / g^2 .. / g^4, g being the root of x^5 = x + 1, spread over -1
- * .. 1. */
+/* Sets X to point K of a low-discrepancy sequence in four dimensions, each
+ * -1 .. 1: the fractional parts of 1/2 + (K + 1) / g^i for i = 1 .. 4,
+ * scaled to -1 .. 1, where g is the root of x^5 = x + 1. */
 static void scatter_in_four(int k, double x[GLINT_VARIABLES])
 {
     const double root = 1.16730397826141868426;
@@ -278,8 +280,8 @@ void glint_zone_scatter(const struct glint_zone *zone, int k,
     }
 }
 
-static void direction_of(const struct glint_zone *z,
-                         const double x[GLINT_VARIABLES], double d[3])
+static void compute_direction(const struct glint_zone *z,
+                              const double x[GLINT_VARIABLES], double d[3])
 {
     d[0] = 0.5 * (z->lo + z->hi) + 0.5 * x[GLINT_S] * (z->hi - z->lo);
     d[1] = z->skew ? 0.5 * (z->y_lo + z->y_hi) +
@@ -303,7 +305,7 @@ void glint_zone_batch_add(struct glint_zone_batch *batch,
     from->y_mm = batch->x[batch->n][1] * glint_zone_side(zone, zone->half_y, x);
     if (zone->skew)
         from->y_mm += glint_zone_side(zone, zone->middle_y, x);
-    direction_of(zone, x, from->direction);
+    compute_direction(zone, x, from->direction);
     batch->n++;
 }
 
@@ -315,8 +317,9 @@ void glint_zone_batch_trace(struct glint_zone_batch *batch)
                      batch->status, batch->hits);
 }
 
-/* Reduces *FROM .. *TO to LOW .. HIGH of it, where -1 .. 1 is the whole. */
-static void reduce(double low, double high, double *from, double *to)
+/* Shrinks the interval *FROM .. *TO to the sub-interval LOW .. HIGH, given
+ * in relative coordinates -1 .. 1. */
+static void shrink_interval(double low, double high, double *from, double *to)
 {
     const double middle = 0.5 * (*from + *to), half = 0.5 * (*to - *from);
 
@@ -324,12 +327,14 @@ static void reduce(double low, double high, double *from, double *to)
     *to = middle + fmin(1, high) * half;
 }
 
-/* Bounds of the visible rays in u, v, s and w. */
+/* Bounding box of the visible rays in u, v, s and w. */
 struct sighting {
     double low[GLINT_VARIABLES], high[GLINT_VARIABLES];
 };
 
-/* Traces T at wavelength WAVE for the ghost and for the ghosts beside it. */
+/* Traces the rays of batch T at wavelength number WAVE through the ghost and
+ * through the same ghost at neighbouring zoom positions, and extends SEEN by
+ * the visible ones. */
 static void trace_members(const struct glint_visible *visible, int wave,
                           struct glint_zone_batch *t, struct sighting *seen)
 {
@@ -353,8 +358,9 @@ double glint_zone_crop(const struct glint_zone *zone,
                        struct glint_zone_part *part)
 {
     enum { ANGLES = 5, COLUMNS = GLINT_ZONE_BATCH, ROWS = 12 };
-    /* Rays of shaped lenses are slow to trace, and their colours rarely
-     * separate. */
+    /* Rays through surfaces that are not spheres are slow to trace, and the
+     * colours of such lenses rarely separate, so fewer wavelengths are
+     * traced. */
     const int stride = visible->shaped ? (GLINT_VISIBLE_WAVES - 1) / 2 : 1;
     const double margin = 3.0 / COLUMNS;
     const struct glint_zone_part before = *part;
@@ -378,8 +384,10 @@ double glint_zone_crop(const struct glint_zone *zone,
     }
     if (seen.high[0] < seen.low[0])
         return 0;
-    reduce(seen.low[0] - margin, seen.high[0] + margin, &part->u0, &part->u1);
-    reduce(seen.low[3] - 0.3, seen.high[3] + 0.3, &part->w0, &part->w1);
+    shrink_interval(seen.low[0] - margin, seen.high[0] + margin, &part->u0,
+                    &part->u1);
+    shrink_interval(seen.low[3] - 0.3, seen.high[3] + 0.3, &part->w0,
+                    &part->w1);
     if (!part->annulus)
         part->top *= fmin(1, seen.high[1] + 1.5 / ROWS);
     return (part->u1 - part->u0) / (before.u1 - before.u0) *

@@ -1,22 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * A range of angles of one ghost, and the box on the pupil that follows the
- * visible part through it.
+ * A zone: a range of angles of one ghost, and a box on the pupil that contains
+ * the ghost's rays at each angle.
  *
  *   in   boxes of visible light at many angles and wavelengths
- *   out  the box's middle and half sizes as polynomials of s and w
+ *   out  centre and half sizes of the box as polynomials of s and w
  *
- * Coordinates of a zone, each -1 .. 1:
- *   u, v  place in the box, the light's plane along u
- *   s     the sine of the light's angle within the range
- *   w     1 / wavelength^2 within the band
- * In these coordinates a ghost varies smoothly. It is symmetric in v, so only v
- * >= 0 is traced.
+ * Coordinates in a zone, each -1 .. 1:
+ *   u, v  position in the box; u lies in the plane of the light
+ *   s     position of the sine of the light's angle within the range
+ *   w     position of 1 / wavelength^2 within the band
+ * A ghost is a smooth function of these coordinates. It is symmetric in v, so
+ * only v >= 0 is traced.
  *
- * A zone of a lens that is not round is SKEW: it covers ranges of both
- * components of the light's direction, in the lens's own frame, and
- *   p     the y component of the direction within its range
- * is a fifth variable. Its box lies at any height. */
+ * In lenses that are not round, zones are SKEW: they cover ranges of both
+ * components of the light's direction, in the lens's own frame. A fifth
+ * variable,
+ *   p     position of the direction's y component within its range,
+ * is added. The box may be centred at any height.
+ */
 #ifndef GLINT_BAKE_FIT_ZONE_H
 #define GLINT_BAKE_FIT_ZONE_H
 
@@ -27,39 +29,42 @@
 
 struct glint_zone {
     double lo, hi;                  /* range of the sine of the angle */
-    double middle[GLINT_BOX_TERMS]; /* mm; terms as in a model */
+    double middle[GLINT_BOX_TERMS]; /* centre of the box along u, mm; terms as
+                                       in a model */
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
     bool skew;
-    double y_lo, y_hi; /* range of the y component of a skew zone's directions;
-                          lo .. hi is the range of x */
-    double middle_y[GLINT_BOX_TERMS]; /* mm; of a skew zone */
-    double fill; /* mean fraction of the box that the ghost needs */
-    int annulus; /* as in struct glint_model_system */
+    double y_lo, y_hi; /* range of the y component of directions, only if SKEW;
+                          lo .. hi is then the range of x */
+    double middle_y[GLINT_BOX_TERMS]; /* centre of the box along v, mm; only if
+                                         SKEW */
+    double fill; /* mean fraction of the box that visible boxes cover */
+    int annulus; /* ring of the pupil, as in struct glint_model_system */
 };
 
-/* A part of a zone's box and band: u from U0 to U1, v up to TOP, w from W0 to
- * W1. */
+/* A part of a zone's box and band: u from U0 to U1, |v| up to TOP, w from W0
+ * to W1. */
 struct glint_zone_part {
     double u0, u1, top, w0, w1;
     int annulus;
 };
 
-/* Returns the middle or a half size of the box, SIDE, at S and W. */
+/* Evaluates the polynomial SIDE (centre or half size of a box) at S and W. */
 double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w);
 
-/* Returns the same of ZONE, skew or not, at X. */
+/* Evaluates the polynomial SIDE of ZONE, skew or not, at X. */
 double glint_zone_side(const struct glint_zone *zone,
                        const double side[GLINT_BOX_TERMS],
                        const double x[GLINT_VARIABLES]);
 
-/* Sets the box for LO .. HI of PROFILE. BY_COLOUR: the box moves with the
- * wavelength and has more terms; else one box contains all colours. */
+/* Sets the box for the angles LO .. HI from PROFILE. BY_COLOUR: the box
+ * depends on the wavelength and has more terms; else one box contains all
+ * wavelengths. */
 void glint_zone_init(struct glint_zone *zone,
                      const struct glint_visible_profile *profile, double lo,
                      double hi, bool by_colour);
 
-/* Returns |v| at which an annular box begins, as a fraction of its half height.
- */
+/* Returns the inner edge |v| of a ring-shaped box, as a fraction of its half
+ * height. */
 double glint_zone_rim(int annulus);
 
 /* Halves PART along v (inner and outer half) or along u. */
@@ -78,7 +83,8 @@ double glint_zone_crop(const struct glint_zone *zone,
                        const struct glint_visible *visible,
                        struct glint_zone_part *part);
 
-/* Returns node K of N over -1 .. 1, with nodes at both ends. */
+/* Returns node K of N on -1 .. 1. Nodes are denser towards both ends, which
+ * are included. */
 double glint_zone_node(int k, int n);
 
 /* Rays of a zone that share a path and are traced together.
@@ -92,33 +98,33 @@ enum { GLINT_ZONE_BATCH = 32 };
 struct glint_zone_batch {
     const struct glint_path *path;
     int n;
-    /* coordinates in the zone, each -1 .. 1 */
+    /* coordinates in the zone */
     double x[GLINT_ZONE_BATCH][GLINT_VARIABLES];
     struct glint_launch from[GLINT_ZONE_BATCH];
     struct glint_ray ray[GLINT_ZONE_BATCH];
     enum glint_ray_status status[GLINT_ZONE_BATCH];
     double hits[GLINT_ZONE_BATCH * (GLINT_MAX_EVENTS + 1)]
-               [2]; /* mm; -1: not reached */
+               [2]; /* mm; -1: the ray does not reach the event */
 };
 
-/* Adds the ray at X of the zone. X must have the w of the path; v is 0 .. 1
- * from the middle, or the inner end, of the box to its rim, or of a skew zone
- * -1 .. 1. */
+/* Adds the ray at coordinates X of the zone. The w of X must be that of the
+ * path. v is 0 .. 1, from the centre or inner edge of the box to its rim; in
+ * a skew zone -1 .. 1. */
 void glint_zone_batch_add(struct glint_zone_batch *batch,
                           const struct glint_zone *zone,
                           const double x[GLINT_VARIABLES]);
 
 void glint_zone_batch_trace(struct glint_zone_batch *batch);
 
-/* Returns the position of ray K at each event of the path, [n_events]. */
+/* Returns the positions of ray K at the events of the path, [n_events]. */
 static inline double (*glint_zone_batch_hits(struct glint_zone_batch *batch,
                                              int k))[2]
 {
     return batch->hits + k * batch->path->n_events;
 }
 
-/* Sets X to point number K of a sequence that fills ZONE evenly, in five
- * dimensions if ZONE is skew, else with v >= 0. */
+/* Sets X to point K of a low-discrepancy sequence that fills ZONE, in five
+ * dimensions if ZONE is skew, else in four with v >= 0. */
 void glint_zone_scatter(const struct glint_zone *zone, int k,
                         double x[GLINT_VARIABLES]);
 

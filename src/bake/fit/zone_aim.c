@@ -3,27 +3,28 @@
 
 #include <math.h>
 
-/* Light of a ray below which its errors show no less. */
+/* Light of a ray below which the weight of its errors does not decrease any
+ * further. */
 #define LEAST_LIGHT 1e-3
-/* Min factor on the position tolerances of skew zones that are brighter than
- * white: a shift of their outlines shows more by the same factor. */
+/* Min factor on the position tolerances of skew zones brighter than white. A
+ * shift of their outlines is more visible by the same factor. */
 #define CLIPPED 0.4
-/* Min factor on the position tolerance across a streak that is thinner than a
- * pixel: where the streak crosses from one pixel row to the next, all of its
- * light moves. */
+/* Min factor on the position tolerance across a streak that is thinner than
+ * a pixel: where such a streak crosses from one row of pixels to the next,
+ * all of its light moves. */
 #define THIN 0.1
 
-/* The rays of one angle and wavelength: how many are seen, and where they land.
- */
+/* Summary of the rays of one angle and wavelength: numbers of visible and of
+ * all rays, and the area that they hit. */
 struct sight {
     int n, n_all;
-    double low[2], high[2]; /* corners of the area on the sensor on which seen
-                               rays land, mm */
-    double energy;          /* mean energy of the seen rays */
-    double spread;          /* their mean RAY_SPREAD */
+    double low[2], high[2]; /* corners of the bounding box on the sensor of
+                               visible rays, mm */
+    double energy;          /* mean energy of the visible rays */
+    double spread;          /* mean RAY_SPREAD of the visible rays */
 };
 
-static struct sight look(const struct glint_zone_rays *r, int first)
+static struct sight summarise_rays(const struct glint_zone_rays *r, int first)
 {
     struct sight s = {.low = {HUGE_VAL, HUGE_VAL},
                       .high = {-HUGE_VAL, -HUGE_VAL}};
@@ -45,9 +46,9 @@ static struct sight look(const struct glint_zone_rays *r, int first)
     return s;
 }
 
-/* Returns the sine of the light's angle at X. */
-static double sine_of(const struct glint_zone *zone,
-                      const double x[GLINT_VARIABLES])
+/* Returns the sine of the angle between light and axis at the coordinates X. */
+static double compute_sine(const struct glint_zone *zone,
+                           const double x[GLINT_VARIABLES])
 {
     const double along =
         0.5 * (zone->lo + zone->hi) + 0.5 * x[GLINT_S] * (zone->hi - zone->lo);
@@ -58,32 +59,33 @@ static double sine_of(const struct glint_zone *zone,
                                   0.5 * x[GLINT_P] * (zone->y_hi - zone->y_lo));
 }
 
-/* Returns the area that the rays of V land on, of a ghost in ZONE, mm^2. */
+/* Estimates the area on the sensor that the rays of V cover, mm^2. */
 static double area_on_sensor(const struct glint_zone *zone,
                              const struct sight *v, double blur_mm)
 {
-    /* The light of a round lens is symmetric in y. */
+    /* round lenses: the ghost extends symmetrically to -y */
     const double y = zone->skew ? 0.5 * (v->high[1] - v->low[1] + blur_mm)
                                 : fmax(fabs(v->low[1]), fabs(v->high[1]));
 
     return fmax(1e-9, (v->high[0] - v->low[0] + blur_mm) * 1.6 * y);
 }
 
-/* Returns how bright the ghost is in the zone, relative to the level that
- * counts: at its brightest, or of skew zones, which have few rays at each of
- * many directions, in the mean. Of these light spreads over a pixel at least.
- */
-static double share_of(const struct glint_tolerance *tolerance,
-                       const struct glint_zone *zone,
-                       const struct glint_zone_rays *r, double thin[2])
+/* Returns the brightness of the ghost in the zone relative to the level of
+ * struct glint_brightness: the max over angles and wavelengths; for skew
+ * zones, which have few rays per direction, the mean. In skew zones light
+ * spreads over at least a pixel. */
+static double compute_share(const struct glint_tolerance *tolerance,
+                            const struct glint_zone *zone,
+                            const struct glint_zone_rays *r, double thin[2])
 {
-    enum { FEW = 4 }; /* this few rays have no area to speak of */
+    /* with at most this many visible rays the area is not defined */
+    enum { FEW = 4 };
     const double blur = zone->skew ? tolerance->pixel_mm : 0;
     double most = 0, light = 0, area = 0, covered = 0, on_screen[2] = {0},
            n = 0;
 
     for (int i = 0, next; i < r->n; i = next) {
-        const struct sight v = look(r, i);
+        const struct sight v = summarise_rays(r, i);
         const double x[GLINT_VARIABLES] = {0, 0, r->x[GLINT_S][i],
                                            r->x[GLINT_W][i], r->x[GLINT_P][i]};
         const double pupil = 4 * (1 - glint_zone_rim(zone->annulus)) *
@@ -91,7 +93,7 @@ static double share_of(const struct glint_tolerance *tolerance,
                              glint_zone_side(zone, zone->half_y, x) * v.n /
                              v.n_all;
         const double level =
-            glint_brightness_at(tolerance->brightness, sine_of(zone, x));
+            glint_brightness_at(tolerance->brightness, compute_sine(zone, x));
         const double on = area_on_sensor(zone, &v, blur);
 
         next = i + v.n_all;
@@ -137,8 +139,8 @@ double glint_zone_aim_stretch(const struct glint_zone_rays *rays,
     return change2 > 0 ? sqrt(moved2 / change2) : 0;
 }
 
-static double outline(const struct glint_zone_aim *aim, double least,
-                      double most, double stretch_mm)
+static double clamp_outline(const struct glint_zone_aim *aim, double least,
+                            double most, double stretch_mm)
 {
     return fmax(least, fmin(most, aim->edge_mm / fmax(1e-12, stretch_mm)));
 }
@@ -146,7 +148,7 @@ static double outline(const struct glint_zone_aim *aim, double least,
 double glint_zone_aim_outline(const struct glint_zone_aim *aim, double least,
                               double most, double stretch_mm)
 {
-    return outline(aim, least * most, most, stretch_mm);
+    return clamp_outline(aim, least * most, most, stretch_mm);
 }
 
 struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
@@ -155,7 +157,7 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
 {
     const struct glint_tolerance *t = tolerance;
     double thin[2];
-    const double share = share_of(t, zone, rays, thin);
+    const double share = compute_share(t, zone, rays, thin);
     const double faint = pow(fmax(share, 1e-9), -0.42);
     const double shows = fmax(1, faint);
     const double ease = fmin(t->ease, shows);
@@ -171,9 +173,10 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
         .thin = {thin[0], thin[1]}};
 
     aim.hidden = shows * t->sensor_mm / aim.sensor_mm;
-    aim.stop = outline(&aim, t->stop_least, t->stop,
-                       glint_zone_aim_stretch(rays, rays->at[RAY_STOP_X],
-                                              rays->at[RAY_STOP_Y], -HUGE_VAL));
+    aim.stop =
+        clamp_outline(&aim, t->stop_least, t->stop,
+                      glint_zone_aim_stretch(rays, rays->at[RAY_STOP_X],
+                                             rays->at[RAY_STOP_Y], -HUGE_VAL));
     return aim;
 }
 
@@ -201,9 +204,9 @@ double glint_zone_aim_off(const struct glint_zone_rays *r,
 
 /* ------------------------------------------------------------------- light */
 
-/* Returns the ray nearest to ray I in the previous row of the same plane, or
- * -1. */
-static int ray_before(const struct glint_zone_rays *r, int i)
+/* Returns the ray of the previous row (same angle and wavelength) that is
+ * nearest to ray I, or -1 if there is no such row. */
+static int find_ray_before(const struct glint_zone_rays *r, int i)
 {
     int row = i, near = -1;
 
@@ -219,39 +222,42 @@ static int ray_before(const struct glint_zone_rays *r, int i)
     return near;
 }
 
-/* Returns the area between channels C and D of ray I, A and B. */
-static double area_of(const double *c, const double *d, int i, int a, int b)
+/* Returns the area in the plane of channels C and D of the parallelogram
+ * that rays A and B span at ray I. */
+static double compute_area(const double *c, const double *d, int i, int a,
+                           int b)
 {
     return fabs((c[a] - c[i]) * (d[b] - d[i]) - (d[a] - d[i]) * (c[b] - c[i]));
 }
 
-/* Returns the light of ray I by how far its neighbours A and B, in its plane,
- * land from it. */
-static double light_of(const struct glint_zone *zone,
-                       const struct glint_zone_rays *r, int i, int a, int b)
+/* Returns the light at ray I of a round lens, from the distances on the
+ * sensor to its neighbours A and B. */
+static double compute_light(const struct glint_zone *zone,
+                            const struct glint_zone_rays *r, int i, int a,
+                            int b)
 {
     double x[GLINT_VARIABLES], pupil;
 
     glint_zone_rays_x(r, i, x);
     pupil = glint_zone_side(zone, zone->half_x, x) *
             glint_zone_side(zone, zone->half_y, x) *
-            area_of(r->x[GLINT_U], r->x[GLINT_V], i, a, b);
+            compute_area(r->x[GLINT_U], r->x[GLINT_V], i, a, b);
 
     return r->at[RAY_ENERGY][i] * pupil /
-           fmax(1e-12,
-                area_of(r->at[RAY_SENSOR_X], r->at[RAY_SENSOR_Y], i, a, b));
+           fmax(1e-12, compute_area(r->at[RAY_SENSOR_X], r->at[RAY_SENSOR_Y], i,
+                                    a, b));
 }
 
-/* Returns the light of ray I of a skew zone, as glint_zone_aim_light(). */
-static double light_of_skew(const struct glint_tolerance *tolerance,
-                            const struct glint_zone *zone,
-                            const struct glint_zone_aim *aim,
-                            const struct glint_zone_rays *r, int i)
+/* Returns the light at ray I of a skew zone, see glint_zone_aim_light(). */
+static double compute_skew_light(const struct glint_tolerance *tolerance,
+                                 const struct glint_zone *zone,
+                                 const struct glint_zone_aim *aim,
+                                 const struct glint_zone_rays *r, int i)
 {
     double x[GLINT_VARIABLES], level, pupil;
 
     glint_zone_rays_x(r, i, x);
-    level = glint_brightness_at(tolerance->brightness, sine_of(zone, x)) *
+    level = glint_brightness_at(tolerance->brightness, compute_sine(zone, x)) *
             aim->share;
     pupil = glint_zone_side(zone, zone->half_x, x) *
             glint_zone_side(zone, zone->half_y, x);
@@ -266,9 +272,9 @@ void glint_zone_aim_light(const struct glint_tolerance *tolerance,
                           const struct glint_zone_rays *rays, double *light)
 {
     for (int i = 0; i < rays->n && zone->skew; i++)
-        light[i] = light_of_skew(tolerance, zone, aim, rays, i);
+        light[i] = compute_skew_light(tolerance, zone, aim, rays, i);
     for (int i = 0; i < rays->n && !zone->skew; i++) {
-        const int before = ray_before(rays, i);
+        const int before = find_ray_before(rays, i);
         const int beside =
             i + 1 < rays->n && glint_zone_rays_alike(rays, i, i + 1) &&
                     rays->x[GLINT_V][i] == rays->x[GLINT_V][i + 1]
@@ -277,13 +283,14 @@ void glint_zone_aim_light(const struct glint_tolerance *tolerance,
         double x[GLINT_VARIABLES], level;
 
         glint_zone_rays_x(rays, i, x);
-        level = glint_brightness_at(tolerance->brightness, sine_of(zone, x)) *
-                aim->share;
+        level =
+            glint_brightness_at(tolerance->brightness, compute_sine(zone, x)) *
+            aim->share;
         light[i] = 1;
         if (before >= 0 && beside != before && beside >= 0 &&
             glint_zone_rays_alike(rays, i, beside))
-            light[i] = fmin(
-                1, fmax(LEAST_LIGHT, light_of(zone, rays, i, beside, before) /
-                                         fmax(level, 1e-30)));
+            light[i] = fmin(1, fmax(LEAST_LIGHT, compute_light(zone, rays, i,
+                                                               beside, before) /
+                                                     fmax(level, 1e-30)));
     }
 }

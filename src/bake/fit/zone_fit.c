@@ -9,32 +9,35 @@
 
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
-/* Max error of a single ray, as a multiple of the RMS error aimed at. */
+/* Max error of a single ray / RMS tolerance. */
 #define PEAK 5.0
-/* Ratio of max to min energy above which a root of it is fitted. */
+/* Ratio of max to min energy above which a root of the energy is fitted. */
 #define WIDE_ENERGY 60
 
-/* Outline errors of wide stops show at the rim of a ghost, position errors all
- * over it: a box is divided for outline errors only if they are this many times
- * as large. */
+/* Lenses that open wide: outline errors are visible at the rim of a ghost
+ * only, position errors everywhere. A box is divided because of outline
+ * errors only if they are this many times as large. */
 #define RIM 4.0
-/* Least tolerance of a barrel, as a fraction of its largest; where light grazes
- * a half sphere a ghost lies within 0.003 of its rim. */
+/* Min tolerance of a barrel, as a fraction of its max. LEAST_FAR holds for
+ * lights beyond GLINT_FAR: where light grazes a hemispherical surface, the
+ * whole ghost lies within 0.003 of its rim. */
 #define LEAST     0.06
 #define LEAST_FAR 5e-4
-/* For lights beyond GLINT_FAR: leaking rays / visible rays that count as one
- * tolerance of outlines. */
+/* For lights beyond GLINT_FAR: ratio of leaking to visible rays that counts
+ * as an outline error of one tolerance. */
 #define LEAK 0.02
-/* If a fit missed its tolerance, a second fit is discarded when its error
- * exceeds the first error times this factor. */
+/* If a first fit missed its tolerance, the second fit is discarded if its
+ * error exceeds the first error times this factor. */
 #define HARM 1.5
 
 /* ----------------------------------------------------------------- degrees */
 
 enum {
     FEW_TERMS = 64,
-    MANY_TERMS = 96, /* terms of each position output in thorough fits */
-    PATIENCE = 36    /* number of terms after which a hopeless fit stops */
+    /* max number of terms of each position output in thorough fits */
+    MANY_TERMS = 96,
+    PATIENCE = 36 /* number of terms after which a fit whose error is far too
+                     large stops */
 };
 
 static const struct glint_degrees position_degrees = {
@@ -48,16 +51,16 @@ static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
                                                     .total = 10,
                                                     .terms = FEW_TERMS};
 
-/* Terms of thorough fits of energies that change a lot over the pupil, and of
- * all energies of wide stops, as films make them swing with angle and
- * wavelength at once. */
+/* Terms for thorough fits of energies that vary a lot over the pupil, and of
+ * all energies in lenses that open wide, where films make the energy
+ * oscillate with angle and wavelength. */
 static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
                                                    .weight = {1, 1, 1, 1},
                                                    .total = 12,
                                                    .terms = MANY_TERMS};
 
-/* Terms of skew zones, whose powers of s, p and w are below
- * GLINT_LENS_POWERS and GLINT_LENS_WAVE_POWERS. */
+/* Terms for skew zones. Powers of s, p and w are below GLINT_LENS_POWERS and
+ * GLINT_LENS_WAVE_POWERS. */
 static const struct glint_degrees skew_degrees = {
     .most = {GLINT_MAX_POWER, 8, 5, 4, 5},
     .weight = {1, 1, 1, 2, 1},
@@ -69,10 +72,10 @@ static const struct glint_degrees skew_energy_degrees = {
     .total = 10,
     .terms = MANY_TERMS};
 
-/* Returns the terms of output KIND in TASK. STEEP: energies change a lot over
- * the pupil. */
-static struct glint_degrees degrees_of(const struct glint_zone_task *task,
-                                       enum glint_channel kind, bool steep)
+/* Returns the allowed terms for output KIND in TASK. STEEP: the energy
+ * varies a lot over the pupil. */
+static struct glint_degrees choose_degrees(const struct glint_zone_task *task,
+                                           enum glint_channel kind, bool steep)
 {
     const bool energy = kind == GLINT_OUT_ENERGY, wide = task->visible->wide;
     const bool skew = task->zone->skew;
@@ -94,7 +97,7 @@ static struct glint_degrees degrees_of(const struct glint_zone_task *task,
 
 /* --------------------------------------------------------------------- fits */
 
-/* One fit: its task and tolerances, memory, and the errors so far. */
+/* State of one fit: task, tolerances, memory, and the errors so far. */
 struct fit {
     const struct glint_zone_task *task;
     const struct glint_zone_aim *aim;
@@ -107,27 +110,30 @@ static bool is_wide(const struct fit *f)
     return f->task->visible->wide;
 }
 
-/* Returns the factor on the weight of a ray whose relative radius is EXCESS.
- * For wide stops it falls with EXCESS: positions go to infinity towards total
- * reflection, and errors there, which are invisible, would dominate the fit. */
-static double far_out(const struct fit *f, double excess)
+/* Returns a factor on the weight of a ray whose relative radius is EXCESS.
+ * In lenses that open wide it decreases with EXCESS: positions diverge
+ * towards total reflection, and the invisible errors there would dominate
+ * the fit. */
+static double weight_far_out(const struct fit *f, double excess)
 {
     return !is_wide(f) ? 1 : 1 / (1 + 10 * fmax(0, excess * excess - 1.25));
 }
 
-/* Returns the weight of a ray: full up to a little past the edge, as cells
- * straddle it, and nearly 0 far outside, where a ray only has to stay
- * invisible. */
+/* Returns the weight of a ray of relative radius EXCESS: 1 up to slightly
+ * outside the edge, as grid cells straddle it; nearly 0 far outside, where
+ * the polynomials only have to keep the ray invisible. */
 static double weight_past_edge(const struct fit *f, double excess)
 {
     const double past = (excess - 1.02) / 0.05;
 
-    return past <= 0 ? 1 : fmax(0.002 * far_out(f, excess), exp(-past * past));
+    return past <= 0
+               ? 1
+               : fmax(0.002 * weight_far_out(f, excess), exp(-past * past));
 }
 
-/* Returns the factor on the weight of a ray's position for light outside the
- * field, which only has to stay outside: its error may be a fifth of its
- * distance from the field. */
+/* Returns a factor on the weight of the position of a ray FIELDS field radii
+ * from the sensor's centre. A ray outside the field only has to stay
+ * outside: its error may be a fifth of its distance from the field. */
 static double weight_past_field(const struct fit *f, double fields)
 {
     const double out_mm = (fields - 1.01) * f->task->visible->field_mm;
@@ -135,7 +141,8 @@ static double weight_past_field(const struct fit *f, double fields)
     return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->aim->sensor_mm);
 }
 
-/* Sets the light of the rays; of round lenses of spheres, 1. */
+/* Sets the weights by light of all rays; in round lenses with spherical
+ * surfaces these are 1. */
 static void find_light(struct fit *f)
 {
     if (glint_zone_by_light(f->task->zone, f->task->visible))
@@ -161,10 +168,10 @@ static void set_weights(struct fit *f)
     }
 }
 
-/* Returns whether the polynomials let ray I pass although the lens, at its own
- * position and at every position beside it, stops the ray by far. */
-static bool leaks(const struct glint_zone_rays *r, int i,
-                  const struct glint_fitted_system *system, double field_mm)
+/* Returns whether the polynomials transmit ray I although the lens clearly
+ * blocks it, at its own zoom position and at all neighbouring ones. */
+static bool ray_leaks(const struct glint_zone_rays *r, int i,
+                      const struct glint_fitted_system *system, double field_mm)
 {
     double x[GLINT_VARIABLES], at[GLINT_OUT_KINDS] = {0};
     bool passes = r->at[RAY_EXCESS][i] > 1.05;
@@ -182,40 +189,42 @@ static bool leaks(const struct glint_zone_rays *r, int i,
            hypot(at[GLINT_OUT_SENSOR_X], at[GLINT_OUT_SENSOR_Y]) < field_mm;
 }
 
-/* Gives rays that leak enough weight to matter in the next fit. Returns whether
- * there are any. */
-static bool stop_leaks(struct fit *f, const struct glint_fitted_system *system)
+/* Increases the weights of rays that leak, so that the next fit excludes
+ * them. Returns whether there are such rays. */
+static bool weight_leaks(struct fit *f,
+                         const struct glint_fitted_system *system)
 {
     bool any = false;
 
     for (int i = 0; i < f->buffers->rays.n; i++)
-        if (leaks(&f->buffers->rays, i, system, f->task->visible->field_mm)) {
-            f->buffers->weight[i] =
-                fmax(f->buffers->weight[i],
-                     0.1 * far_out(f, f->buffers->rays.at[RAY_EXCESS][i]));
+        if (ray_leaks(&f->buffers->rays, i, system,
+                      f->task->visible->field_mm)) {
+            f->buffers->weight[i] = fmax(
+                f->buffers->weight[i],
+                0.1 * weight_far_out(f, f->buffers->rays.at[RAY_EXCESS][i]));
             any = true;
         }
     return any;
 }
 
 /* Returns the number of leaking rays / visible rays. */
-static double leaking(const struct fit *f,
-                      const struct glint_fitted_system *system)
+static double compute_leak_ratio(const struct fit *f,
+                                 const struct glint_fitted_system *system)
 {
     const struct glint_zone_rays *r = &f->buffers->rays;
     int n = 0, n_seen = 0;
 
     for (int i = 0; i < r->n; i++) {
-        n += leaks(r, i, system, f->task->visible->field_mm);
+        n += ray_leaks(r, i, system, f->task->visible->field_mm);
         n_seen += glint_zone_rays_seen(r, i);
     }
     return n / fmax(1, n_seen);
 }
 
-static enum glint_status keep(struct glint_fitted_system *system,
-                              enum glint_channel kind,
-                              const struct glint_poly *poly, double rms,
-                              bool met)
+static enum glint_status append_output(struct glint_fitted_system *system,
+                                       enum glint_channel kind,
+                                       const struct glint_poly *poly,
+                                       double rms, bool met)
 {
     struct glint_fitted_output *o = &system->output[system->n_outputs];
 
@@ -224,8 +233,8 @@ static enum glint_status keep(struct glint_fitted_system *system,
         return GLINT_E_MEMORY;
     o->kind = kind;
     o->n_terms = poly->n;
-    o->grain = rms / 6; /* a few dozen of these sum up to less than a third of
-                           the tolerance */
+    o->grain = rms / 6; /* the errors of a few dozen coefficients then add up to
+                           less than a third of the tolerance */
     o->met = met;
     memcpy(o->power, poly->power, (size_t)poly->n * sizeof *o->power);
     memcpy(o->coef, poly->coef, (size_t)poly->n * sizeof *o->coef);
@@ -233,8 +242,8 @@ static enum glint_status keep(struct glint_fitted_system *system,
     return GLINT_OK;
 }
 
-/* Fits the values in the buffers over the rays R, weighted by channel_weight;
- * returns the residual in tolerances. */
+/* Fits the values in the buffers for the rays R, weighted by channel_weight.
+ * Returns the residual in tolerances. */
 static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
                        enum glint_channel kind, double rms,
                        struct glint_poly *poly)
@@ -245,14 +254,13 @@ static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
         f->buffers->channel_weight};
     const bool steep = f->task->thorough && kind == GLINT_OUT_ENERGY &&
                        glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP;
-    const struct glint_degrees degrees = degrees_of(f->task, kind, steep);
+    const struct glint_degrees degrees = choose_degrees(f->task, kind, steep);
 
     return glint_regress_fit(f->buffers->scratch, &samples, f->buffers->value,
                              &degrees, rms, PEAK * rms, poly);
 }
 
-/* Fits one output and adds it to SYSTEM; *WORST becomes its residual if that is
- * larger. */
+/* Fits one output and appends it to SYSTEM. Raises *WORST to its residual. */
 static enum glint_status fit_output(struct fit *f,
                                     const struct glint_zone_rays *r,
                                     enum glint_channel kind, double rms,
@@ -263,13 +271,13 @@ static enum glint_status fit_output(struct fit *f,
     const double left = fit_poly(f, r, kind, rms, &poly);
 
     *worst = fmax(*worst, left);
-    return keep(system, kind, &poly, rms, left <= 1);
+    return append_output(system, kind, &poly, rms, left <= 1);
 }
 
-/* Returns the factor on the weight of places of ray I. A stop of radius RHO
- * passes only the rays within RHO, and its smaller ghost shows smaller errors.
- * For wide stops the factor accounts for radii down to an eighth of the full
- * radius. */
+/* Returns a factor on the weight of the position of ray I. A stop of radius
+ * RHO transmits only rays within RHO, and its smaller ghost makes smaller
+ * errors visible. For lenses that open wide the factor accounts for stops
+ * down to an eighth of the full radius. */
 static double weight_inside(const struct fit *f, int i)
 {
     const struct glint_zone_rays *r = &f->buffers->rays;
@@ -294,9 +302,9 @@ static enum glint_status fit_channel(struct fit *f, int channel, double rms,
                       system, worst);
 }
 
-/* Lowers *LEAST and raises *MOST to the energies of visible rays. */
-static void energies_of(const struct glint_zone_rays *r, double *least,
-                        double *most)
+/* Extends the range *LEAST .. *MOST by the energies of visible rays. */
+static void find_energy_range(const struct glint_zone_rays *r, double *least,
+                              double *most)
 {
     for (int i = 0; i < r->n; i++)
         if (glint_zone_rays_seen(r, i)) {
@@ -305,33 +313,35 @@ static void energies_of(const struct glint_zone_rays *r, double *least,
         }
 }
 
-/* Returns whether energies vary by their wavelength alone, with stacks. */
-static bool is_smooth(const struct fit *f, const struct glint_zone_rays *r)
+/* Returns whether the energy varies with the wavelength but hardly over the
+ * pupil, in coatings of several films. */
+static bool is_smooth_over_pupil(const struct fit *f,
+                                 const struct glint_zone_rays *r)
 {
     return f->task->stacks && glint_zone_rays_spread(r) <= GLINT_STEEP;
 }
 
-/* Returns the min energy that errors are divided by; errors of smaller energies
- * are also divided by it. Two stacks of films let almost no light of some
- * wavelengths into a ghost; for them the min is half of the band's mean. */
-static double least_share(const struct fit *f, const struct glint_zone_rays *r,
-                          double most)
+/* Returns the min energy by which energy errors are divided to make them
+ * relative. Two coatings of several films transmit almost no light at some
+ * wavelengths; the min is then half of the band's mean. */
+static double min_energy(const struct fit *f, const struct glint_zone_rays *r,
+                         double most)
 {
     double sum = 0, n = 1e-9;
 
     for (int i = 0; i < r->n && f->task->stacks; i++)
         if (glint_zone_rays_seen(r, i))
             sum += r->at[RAY_ENERGY][i], n++;
-    return fmax(0.005 * most, is_smooth(f, r) ? 0.5 * sum / n : 0);
+    return fmax(0.005 * most, is_smooth_over_pupil(f, r) ? 0.5 * sum / n : 0);
 }
 
-/* Sets VALUE to the energy, or to its fourth root, and CHANNEL_WEIGHT so that
- * errors count as fractions of the energy, or of least_share() if that is more.
- * Returns the largest weight. */
-static double set_energies(struct fit *f, const struct glint_zone_rays *r,
-                           double most, bool root)
+/* Sets VALUE to the energy, or to its fourth root, and CHANNEL_WEIGHT such
+ * that errors count relative to the energy, or to min_energy() if that is
+ * larger. Returns the largest weight. */
+static double set_energy_values(struct fit *f, const struct glint_zone_rays *r,
+                                double most, bool root)
 {
-    const double least = least_share(f, r, most);
+    const double least = min_energy(f, r, most);
     double largest = 0;
 
     for (int i = 0; i < r->n; i++) {
@@ -339,7 +349,7 @@ static double set_energies(struct fit *f, const struct glint_zone_rays *r,
         const double energy = r->at[RAY_ENERGY][i];
         const double share = fmax(energy, least);
 
-        /* The relative error of the root is a quarter of the energy's. */
+        /* the relative error of the root is a quarter of that of the energy */
         f->buffers->value[i] = root ? sqrt(sqrt(energy)) : energy;
         f->buffers->channel_weight[i] =
             fmax(weight_past_edge(f, out), 0.001) /
@@ -349,9 +359,10 @@ static double set_energies(struct fit *f, const struct glint_zone_rays *r,
     return largest;
 }
 
-/* Fits the energy. Towards total reflection it grows a thousandfold, while its
- * fourth root is as smooth as a position. If a coating lets all light of some
- * colour through, the root has a cusp and energy itself is smooth. */
+/* Fits the energy or its fourth root. Towards total reflection the energy
+ * grows a thousandfold, while its root is as smooth as a position. If a
+ * coating reflects nothing at some wavelength, the root has a cusp there,
+ * but the energy itself is smooth. */
 static enum glint_status
 fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
 {
@@ -362,14 +373,15 @@ fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
     struct glint_poly poly, other;
     bool root;
 
-    energies_of(r, &least, &most);
-    energies_of(&f->buffers->rays, &least, &most);
-    root = f->task->thorough && !is_smooth(f, r) && most > WIDE_ENERGY * least;
-    grain = f->aim->energy / set_energies(f, r, most, root);
+    find_energy_range(r, &least, &most);
+    find_energy_range(&f->buffers->rays, &least, &most);
+    root = f->task->thorough && !is_smooth_over_pupil(f, r) &&
+           most > WIDE_ENERGY * least;
+    grain = f->aim->energy / set_energy_values(f, r, most, root);
     left = fit_poly(f, r, GLINT_OUT_ENERGY, f->aim->energy, &poly);
     if (root && left > 1) {
         const double other_grain =
-            f->aim->energy / set_energies(f, r, most, false);
+            f->aim->energy / set_energy_values(f, r, most, false);
         const double other_left =
             fit_poly(f, r, GLINT_OUT_ENERGY, f->aim->energy, &other);
 
@@ -383,11 +395,11 @@ fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
     o->roots = root ? 2 : 0;
     o->most = least > most ? 0 : root ? sqrt(sqrt(most)) : most;
     *worst = fmax(*worst, left);
-    return keep(system, GLINT_OUT_ENERGY, &poly, fmin(grain, f->aim->energy),
-                left <= 1);
+    return append_output(system, GLINT_OUT_ENERGY, &poly,
+                         fmin(grain, f->aim->energy), left <= 1);
 }
 
-/* Fits a barrel, with most weight where it cuts. */
+/* Fits a barrel; rays near its rim have most weight. */
 static enum glint_status fit_barrel(struct fit *f, int barrel,
                                     struct glint_fitted_system *system,
                                     double *worst)
@@ -418,7 +430,7 @@ static void drop_outputs(struct glint_fitted_system *system)
         free(system->output[--system->n_outputs].coef);
 }
 
-static void sum_up(struct fit *f, double energy)
+static void combine_errors(struct fit *f, double energy)
 {
     struct glint_zone_errors *const e = f->errors;
 
@@ -427,8 +439,8 @@ static void sum_up(struct fit *f, double energy)
     e->worst = fmax(fmax(e->places, e->outlines), energy);
 }
 
-/* Returns whether the next step for the zone is the same whatever the errors of
- * the outputs still to be fitted. */
+/* Returns whether the errors of the remaining outputs can no longer change
+ * how the zone is processed next. */
 static bool is_decided(const struct fit *f)
 {
     const struct glint_zone_task *t = f->task;
@@ -441,8 +453,9 @@ static bool is_decided(const struct fit *f)
            (t->settled > 0 && left > t->settled);
 }
 
-/* Returns the tolerance of a position on the sensor or in the stop. */
-static double tolerance_of(const struct fit *f, int channel)
+/* Returns the tolerance for a position channel, on the sensor or in the
+ * stop. */
+static double position_tolerance(const struct fit *f, int channel)
 {
     return channel <= RAY_SENSOR_Y
                ? f->aim->sensor_mm * f->aim->thin[channel - RAY_SENSOR_X]
@@ -460,34 +473,33 @@ static enum glint_status fit_outputs(struct fit *f,
     for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++) {
         const bool sensor = c <= RAY_SENSOR_Y;
 
-        status = fit_channel(f, c, tolerance_of(f, c), system,
+        status = fit_channel(f, c, position_tolerance(f, c), system,
                              sensor ? &e->places : &e->outlines);
-        sum_up(f, 0);
+        combine_errors(f, 0);
         if (is_decided(f))
             return status;
     }
     if (status == GLINT_OK)
         status = fit_energy(f, system, &energy);
     e->energy = energy;
-    sum_up(f, energy);
+    combine_errors(f, energy);
     for (int b = 0;
          b < f->buffers->rays.n_barrels && status == GLINT_OK && !is_decided(f);
          b++) {
         status = fit_barrel(f, b, system, &e->outlines);
-        sum_up(f, energy);
+        combine_errors(f, energy);
     }
     return status;
 }
 
 /* ------------------------------------------------------------------ checks */
 
-/* Largest root mean square error, in tolerances, of rays that were not fitted.
- */
+/* Max RMS error, in tolerances, of rays that were not used in the fit. */
 #define CHECK_RMS 1.6
 
-/* Raises the position errors on sensor and stop to the errors at rays between
- * the fitted rays, divided by the CHECK_RMS tolerances allowed there. A fit can
- * be good at every node and nowhere else. */
+/* Measures the errors of rays between the fitted rays, in units of CHECK_RMS
+ * tolerances, and raises the position errors on sensor and stop to these. A
+ * fit can be good at every node and bad between them. */
 static void check_zone(struct fit *f, const struct glint_fitted_system *system)
 {
     struct glint_zone_errors *const e = f->errors;
@@ -503,17 +515,17 @@ static void check_zone(struct fit *f, const struct glint_fitted_system *system)
             glint_zone_aim_off(&f->buffers->rays, &system->output[k],
                                sensor && by_light ? f->buffers->light : NULL,
                                shaped ? 3 : 1) /
-            tolerance_of(f, k);
+            position_tolerance(f, k);
 
         *error = fmax(*error, left / CHECK_RMS);
     }
-    sum_up(f, e->worst);
+    combine_errors(f, e->worst);
 }
 
 /* --------------------------------------------------------------------- all */
 
-/* Fits SYSTEM again with new weights. With wide stops, restores the previous
- * fit if leaks cannot be removed without larger visible errors. */
+/* Fits SYSTEM again with the new weights. In lenses that open wide, restores
+ * the previous fit if leaks cannot be removed without larger visible errors. */
 static enum glint_status fit_again(struct fit *f,
                                    struct glint_fitted_system *system)
 {
@@ -548,10 +560,11 @@ enum glint_status glint_zone_fit(const struct glint_zone_task *task,
     status = fit_outputs(&f, system);
     if (status != GLINT_OK || is_decided(&f))
         return status;
-    if ((task->thorough || errors->worst <= 1) && stop_leaks(&f, system))
+    if ((task->thorough || errors->worst <= 1) && weight_leaks(&f, system))
         status = fit_again(&f, system);
     if (status == GLINT_OK && task->visible->far)
-        errors->outlines = fmax(errors->outlines, leaking(&f, system) / LEAK);
+        errors->outlines =
+            fmax(errors->outlines, compute_leak_ratio(&f, system) / LEAK);
     if (status == GLINT_OK)
         check_zone(&f, system);
     return status;

@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fits the outputs of one zone, or of one part of it.
+ * Fits the outputs of one zone, or of one part of a zone.
  *
  *   in   rays of the zone, tolerances for its ghost
- *   out  a sparse polynomial of each output, and its errors
+ *   out  a sparse polynomial per output, and its errors
  *
  *     glint_zone_trace(&zone, visible, &buffers->rays, &buffers->energies);
  *     aim = glint_zone_aim_of(tolerance, &zone, &buffers->rays);
  *     status = glint_zone_fit(&task, &aim, buffers, &system, &errors);
  *
- * Errors count where they are visible: a ray outside the visible part or the
+ * Errors count where they are visible: a ray outside the visible region or the
  * field only has to stay outside. Rays that the polynomials transmit although
- * the lens clearly blocks them get more weight in a second fit. */
+ * the lens clearly blocks them get more weight in a second fit.
+ */
 #ifndef GLINT_BAKE_FIT_ZONE_FIT_H
 #define GLINT_BAKE_FIT_ZONE_FIT_H
 
@@ -20,30 +21,30 @@
 struct glint_zone_task {
     const struct glint_zone *zone;
     const struct glint_tolerance *tolerance;
-    /* Visibility of the ghost over the wavelengths to be fitted. */
+    /* visibility of the ghost in the band that is fitted */
     const struct glint_visible *visible;
-    double barrel;   /* tolerance of barrels, as in struct glint_tolerance */
-    bool thorough;   /* true allows a root of the energy, and more terms */
-    bool stacks;     /* the ghost is reflected by coatings of several films */
-    double hopeless; /* tolerances: the fit of a zone with a larger error is
-                        abandoned; 0: never */
-    /* In tolerances: if an output has a larger error, the remaining outputs are
-     * skipped, as the zone will be fitted again in any case. In a thorough fit
-     * only errors of positions and barrels count, in a skew zone only as far as
-     * they are visible. 0: no output is skipped. */
+    double barrel;   /* tolerance at barrels, as in struct glint_tolerance */
+    bool thorough;   /* true: allow a root of the energy, and more terms */
+    bool stacks;     /* true: coatings of several films reflect the ghost */
+    double hopeless; /* tolerances: the fit stops when its error will stay
+                        above; 0: never */
+    /* Tolerances: if an output has a larger error, the remaining outputs are
+     * skipped, as the zone will be fitted again in any case. In a thorough
+     * fit only errors of positions and barrels count, in a skew zone only as
+     * far as they are visible. 0: never skip. */
     double settled;
 };
 
-/* Max moments: the degrees of a skew zone's position outputs, 18, 16, 10, 8 and
- * 10. */
+/* Memory of a fit. The number of moments follows from twice the degrees of a
+ * skew zone's position outputs: 18, 16, 10, 8 and 10. */
 #define GLINT_ZONE_SCRATCH                                  \
     GLINT_REGRESS_DOUBLES(GLINT_ZONE_RAYS, GLINT_MAX_TERMS, \
                           GLINT_MAX_CANDIDATES, 19 * 17 * 11 * 9 * 11)
 
-/* Memory for fits of zones, one after the other. */
+/* Memory for fits of zones, used by one fit at a time. */
 struct glint_zone_buffers {
     double *scratch; /* GLINT_ZONE_SCRATCH doubles */
-    /* Rays to be fitted; they are overwritten. */
+    /* rays to fit; overwritten */
     struct glint_zone_rays rays, energies;
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
     double light[GLINT_ZONE_RAYS]; /* see glint_zone_aim_light() */
@@ -52,18 +53,18 @@ struct glint_zone_buffers {
 
 /* Largest errors of a fit, in tolerances. */
 struct glint_zone_errors {
-    double places;   /* of positions on the sensor */
-    double outlines; /* of positions in the stop and of barrels */
-    double shows;    /* of positions and outlines, as far as they are visible */
-    double dims;     /* of these, and the energy of wide stops: by this a box is
-                        divided */
-    double worst;    /* max of the errors of positions, outlines and energy */
-    double energy;   /* of the energy */
+    double places;   /* positions on the sensor */
+    double outlines; /* positions in the stop, and barrels */
+    double shows;    /* positions and outlines, as far as they are visible */
+    double dims;     /* max of SHOWS and, in lenses that open wide, the energy;
+                        decides whether a box is divided */
+    double worst;    /* max over positions, outlines and energy */
+    double energy;   /* energy */
 };
 
-/* Fits the outputs of SYSTEM, which must have no outputs yet. If errors exceed
- * TASK->hopeless or TASK->settled, some outputs are left out. Returns
- * GLINT_E_MEMORY on failure. */
+/* Fits the outputs of SYSTEM, which must have no outputs yet. Skips some
+ * outputs if errors exceed TASK->hopeless or TASK->settled. May return
+ * GLINT_E_MEMORY. */
 enum glint_status glint_zone_fit(const struct glint_zone_task *task,
                                  const struct glint_zone_aim *aim,
                                  struct glint_zone_buffers *buffers,

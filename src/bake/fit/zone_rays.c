@@ -5,18 +5,17 @@
 
 #include "engine/setup/degrees.h"
 
-/* Returns the largest relative radius of RAY at any surface and at the stop. */
-static double excess_of(const struct glint_visible *h,
-                        const struct glint_ray *ray)
+/* Returns the largest relative radius of RAY over all surfaces and the stop. */
+static double compute_excess(const struct glint_visible *h,
+                             const struct glint_ray *ray)
 {
     return fmax(ray->rel_radius, hypot(ray->stop_x_mm, ray->stop_y_mm) /
                                      h->setup->optics.stop_radius_mm);
 }
 
-/* Returns the distance of RAY from the sensor's centre in radii of the field.
- */
-static double field_of(const struct glint_visible *h,
-                       const struct glint_ray *ray)
+/* Returns the distance of RAY from the sensor's centre, in field radii. */
+static double compute_field(const struct glint_visible *h,
+                            const struct glint_ray *ray)
 {
     return hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
 }
@@ -37,9 +36,9 @@ static void add_ray(const struct glint_visible *h,
     rays->at[RAY_STOP_X][i] = ray->stop_x_mm / stop;
     rays->at[RAY_STOP_Y][i] = ray->stop_y_mm / stop;
     rays->at[RAY_ENERGY][i] = ray->energy;
-    rays->at[RAY_EXCESS][i] = excess_of(h, ray);
+    rays->at[RAY_EXCESS][i] = compute_excess(h, ray);
     rays->at[RAY_SPREAD][i] = 0;
-    rays->at[RAY_FIELD][i] = field_of(h, ray);
+    rays->at[RAY_FIELD][i] = compute_field(h, ray);
     for (int k = 0; k < rays->n_barrels; k++) {
         const int e = rays->barrel[k];
 
@@ -48,22 +47,22 @@ static void add_ray(const struct glint_visible *h,
     }
 }
 
-/* How far out the rays of a batch are in the same ghost at the other zoom
- * positions: the values of the position where they are smallest. */
+/* For each ray of a batch, EXCESS and FIELD (enum in zone_rays.h) at the
+ * neighbouring zoom position where the larger of both is smallest. */
 struct beside {
     double excess[GLINT_ZONE_BATCH], field[GLINT_ZONE_BATCH];
 };
 
-/* Returns whether a ray of EXCESS and FIELD is less far out than ray I beside.
- */
+/* Returns whether (EXCESS, FIELD) is nearer to the visible region than ray I
+ * of B. */
 static bool is_nearer(const struct beside *b, int i, double excess,
                       double field)
 {
     return fmax(excess, field) < fmax(b->excess[i], b->field[i]);
 }
 
-/* Traces the rays of T at wavelength WAVE for the ghosts beside the ghost of
- * VISIBLE. */
+/* Traces the rays of T at wavelength number WAVE at the neighbouring zoom
+ * positions. */
 static void trace_beside(const struct glint_visible *visible, int wave,
                          struct glint_zone_batch *t, struct beside *b)
 {
@@ -79,8 +78,8 @@ static void trace_beside(const struct glint_visible *visible, int wave,
 
             if (t->status[i] != GLINT_RAY_OK)
                 continue;
-            excess = excess_of(h, &t->ray[i]);
-            field = field_of(h, &t->ray[i]);
+            excess = compute_excess(h, &t->ray[i]);
+            field = compute_field(h, &t->ray[i]);
             if (is_nearer(b, i, excess, field)) {
                 b->excess[i] = excess;
                 b->field[i] = field;
@@ -89,9 +88,10 @@ static void trace_beside(const struct glint_visible *visible, int wave,
     }
 }
 
-/* Gives the last of RAYS how far out ray I of B is, if that is less. */
-static void take_beside(const struct beside *b, int i,
-                        struct glint_zone_rays *rays)
+/* Replaces EXCESS and FIELD of the last of RAYS by those of ray I of B if
+ * the latter are nearer to the visible region. */
+static void update_beside(const struct beside *b, int i,
+                          struct glint_zone_rays *rays)
 {
     double *const excess = &rays->at[RAY_EXCESS][rays->n - 1];
     double *const field = &rays->at[RAY_FIELD][rays->n - 1];
@@ -102,9 +102,9 @@ static void take_beside(const struct beside *b, int i,
     *field = b->field[i];
 }
 
-/* Numbers of angles and of cells across and down. There are more nodes than
- * powers in every variable, or a fit would be perfect at the nodes and nowhere
- * else. */
+/* Numbers of angles, and of cells across and down. Each variable has more
+ * nodes than powers; otherwise a fit could be exact at the nodes and wrong
+ * between them. */
 enum { SINES = 9, ACROSS = 24, DOWN = 12 };
 
 /* Returns the fractional part of N times R. */
@@ -113,16 +113,17 @@ static double fraction_of_turn(int n, double r)
     return fmod(n * r, 1);
 }
 
-/* Traces rays at one angle and wavelength. With wide stops each gets a shifted
- * grid; otherwise polynomials could oscillate between the rays. In the finest
- * grid only every third ray far outside the visible region is stored. */
+/* Traces rays at one angle and wavelength. In lenses that open wide each
+ * angle and wavelength gets a shifted grid; otherwise polynomials could
+ * oscillate between the rays. In the finest grid only every third ray far
+ * outside the visible region is stored. */
 static void trace_plane(const struct glint_zone *zone,
                         const struct glint_visible *visible, int sine, int wave,
                         int stride, struct glint_zone_rays *rays)
 {
     const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
-    /* Multiples of these two numbers fill a square evenly: 1 / g and 1 / g^2, g
-     * being the root of x^3 = x + 1. */
+    /* Multiples of 1 / g and 1 / g^2, where g is the root of x^3 = x + 1,
+     * fill a square evenly. */
     const int plane = sine * 4 + wave;
     const double move = visible->wide ? stride : 0;
     const double right = move * fraction_of_turn(plane, 0.75487766624669276);
@@ -151,7 +152,7 @@ static void trace_plane(const struct glint_zone *zone,
                 continue;
             add_ray(visible, t.path, t.x[i], &t.ray[i],
                     glint_zone_batch_hits(&t, i), rays);
-            take_beside(&beside, i, rays);
+            update_beside(&beside, i, rays);
             if (stride == 1 && (i + j) % 3 &&
                 fmax(rays->at[RAY_EXCESS][rays->n - 1],
                      rays->at[RAY_FIELD][rays->n - 1]) > 1.1)
@@ -169,9 +170,10 @@ static int count_visible(const struct glint_zone_rays *rays)
     return n;
 }
 
-/* Traces rays for positions. These change slowly with w: four wavelengths at
- * each angle, in turn, are enough. The grid is coarse first, and fine if few of
- * its rays got through. */
+/* Traces rays for positions. Positions vary slowly with w, so four
+ * wavelengths per angle, different ones at consecutive angles, are
+ * sufficient. Starts with a coarse grid and repeats with a fine one if few
+ * rays pass. */
 static void trace_positions(const struct glint_zone *zone,
                             const struct glint_visible *visible,
                             struct glint_zone_rays *rays)
@@ -189,12 +191,14 @@ static void trace_positions(const struct glint_zone *zone,
     }
 }
 
-/* How far from a ray its neighbours are, in u or v. */
+/* Distance in u or v between a ray and its neighbours. */
 #define ASIDE 0.01
 
-/* Adds the ray at X and, if THREE, its neighbours before and behind it. */
-static void add_place(struct glint_zone_batch *t, const struct glint_zone *zone,
-                      double x[GLINT_VARIABLES], bool three)
+/* Adds the ray at X to batch T; if THREE, between its neighbours in v and in
+ * u. */
+static void add_position(struct glint_zone_batch *t,
+                         const struct glint_zone *zone,
+                         double x[GLINT_VARIABLES], bool three)
 {
     const double v = x[1];
 
@@ -210,8 +214,8 @@ static void add_place(struct glint_zone_batch *t, const struct glint_zone *zone,
     }
 }
 
-/* Adds the middle rays of T, which come in threes, with how far their
- * neighbours land from them. */
+/* Adds the middle ray of each group of three in T, with RAY_SPREAD from its
+ * two neighbours. */
 static void add_middles(const struct glint_visible *visible,
                         struct glint_zone_batch *t,
                         struct glint_zone_rays *rays)
@@ -235,9 +239,9 @@ static void add_middles(const struct glint_visible *visible,
     }
 }
 
-/* Traces the rays of a skew zone, for positions and energies alike: a few at
- * each of many directions and wavelengths. Directions fill the zone up to its
- * borders. */
+/* Traces the rays of a skew zone, for both positions and energies: a few
+ * rays at each of many directions and wavelengths. Directions fill the zone
+ * up to its borders. */
 static void trace_scattered(const struct glint_zone *zone,
                             const struct glint_visible *visible,
                             struct glint_zone_rays *rays)
@@ -258,7 +262,7 @@ static void trace_scattered(const struct glint_zone *zone,
             for (int i = 0; i < GLINT_VARIABLES; i++)
                 x[i] = sin(0.5 * GLINT_PI * (i < GLINT_S ? x[i] : plane[i]));
             x[GLINT_W] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
-            add_place(&t, zone, x, true);
+            add_position(&t, zone, x, true);
         }
         glint_zone_batch_trace(&t);
         add_middles(visible, &t, rays);
@@ -291,9 +295,10 @@ double glint_zone_rays_spread(const struct glint_zone_rays *rays)
     return spread;
 }
 
-/* Traces rays for energies. They hardly change over the pupil, but films make
- * them swing with the wavelength. Towards total reflection they are STEEP: then
- * the grid is finer, with five wavelengths in turn at each angle. */
+/* Traces rays for energies. Energies hardly vary over the pupil, but films
+ * make them oscillate with the wavelength. STEEP: energies vary over the
+ * pupil, as towards total reflection; then the grid is finer, with five
+ * wavelengths per angle. */
 static void trace_energies(const struct glint_zone *zone,
                            const struct glint_visible *visible, bool steep,
                            struct glint_zone_rays *rays)
@@ -325,8 +330,8 @@ void glint_zone_trace(const struct glint_zone *zone,
                    energies);
 }
 
-/* Adds the rays of T in groups of N consecutive rays; only groups whose rays
- * all get through are added. */
+/* Adds the rays of T in groups of N consecutive rays. Skips groups with a
+ * ray that misses a surface. */
 static void add_groups(const struct glint_visible *visible,
                        struct glint_zone_batch *t, int n,
                        struct glint_zone_rays *rays)
@@ -365,7 +370,7 @@ void glint_zone_check(const struct glint_zone *zone,
             x[GLINT_S] = bundle[GLINT_S];
             x[GLINT_W] = bundle[GLINT_W];
             x[GLINT_P] = bundle[GLINT_P];
-            add_place(&t, zone, x, group == 3);
+            add_position(&t, zone, x, group == 3);
         }
         glint_zone_batch_trace(&t);
         if (zone->skew)
@@ -377,37 +382,39 @@ void glint_zone_check(const struct glint_zone *zone,
 
 /* ------------------------------------------------------------------ barrels */
 
-/* Chooses barrels that cut in a zone so that no ray that they pass gets far
- * past any other barrel. */
+/* Chooses the barrels that are fitted in a zone, such that no ray that
+ * passes them is far outside any other barrel. */
 
-/* Relative radius: of a barrel at which rays differ by less, what gets past it
- * counts as if they differed by so much. All of a ghost lies within 0.003 of a
- * half sphere's rim where light of a fisheye grazes that. */
+/* Min range of the relative radii at a barrel. If rays differ by less, the
+ * distance outside the barrel is scaled as if they differed by this much.
+ * Where light grazes a hemispherical surface of a fisheye, the whole ghost
+ * lies within 0.003 of the rim. */
 #define LEAST_RANGE 0.1
 
-/* Relative radius of a ray where it misses a surface. */
+/* Relative radius that stands for missing a surface. */
 #define MISS 1.3
 
-/* Samples of a zone: the relative radius of each ray at each barrel. */
+/* Samples of a zone: relative radius of each ray at each event. */
 struct sampling {
     int n, n_events;
-    bool lost[GLINT_SAMPLING_RAYS]; /* whether a ray misses a surface, so that
-                                       nobody knows if the stop lets it pass */
+    bool lost[GLINT_SAMPLING_RAYS]; /* true: the ray misses a surface, so that
+                                       its position in the stop is unknown */
     double (*radius)[GLINT_MAX_EVENTS + 1];
-    /* Range of the relative radii of rays that stop and field let pass. */
+    /* range of the relative radii of rays inside the stop and the field */
     double low[GLINT_MAX_EVENTS + 1], high[GLINT_MAX_EVENTS + 1];
-    double factor[GLINT_MAX_EVENTS + 1]; /* on what gets past each barrel */
+    /* factor on the distance outside each barrel */
+    double factor[GLINT_MAX_EVENTS + 1];
 };
 
-/* Returns whether HIT marks an event that the ray did not reach. */
+/* Returns whether HIT marks an event that the ray does not reach. */
 static bool is_unreached(const double hit[2])
 {
     return hit[0] == -1 && hit[1] == -1;
 }
 
-/* If a ray misses a surface, sets its relative radius at the first surface
+/* If a ray misses a surface, sets its relative radius at the first event
  * without a hit to MISS and returns MISS; else returns 0. */
-static double note_missed(double *radius, double (*hits)[2], int n_events)
+static double mark_missed(double *radius, double (*hits)[2], int n_events)
 {
     int k = 0;
 
@@ -418,8 +425,8 @@ static double note_missed(double *radius, double (*hits)[2], int n_events)
     return k < n_events ? MISS : 0;
 }
 
-/* Widens the ranges of S by RADIUS. */
-static void note_range(struct sampling *s, const double *radius)
+/* Extends the ranges of S by the relative radii RADIUS. */
+static void extend_range(struct sampling *s, const double *radius)
 {
     for (int k = 0; k < s->n_events; k++) {
         s->low[k] = fmin(s->low[k], radius[k]);
@@ -427,9 +434,9 @@ static void note_range(struct sampling *s, const double *radius)
     }
 }
 
-/* Notes the relative radius of a ray at every event. Returns whether the ray
- * counts: stop and field let it pass, so that only barrels can stop it, and one
- * does. */
+/* Stores the relative radius of a ray at every event. Returns whether the
+ * ray is needed: it is inside the stop and the field, and at least one
+ * barrel blocks it. */
 static bool sample_ray(const struct glint_visible *h,
                        const struct glint_path *path,
                        enum glint_ray_status status,
@@ -450,13 +457,13 @@ static bool sample_ray(const struct glint_visible *h,
     }
     sampling->lost[sampling->n] = status != GLINT_RAY_OK;
     if (status == GLINT_RAY_MISSED && h->far)
-        most = fmax(most, note_missed(radius, hits, path->n_events));
+        most = fmax(most, mark_missed(radius, hits, path->n_events));
     if (status != GLINT_RAY_OK)
         return most > 1;
     if (hypot(ray->stop_x_mm, ray->stop_y_mm) >= 1.02 * stop ||
         hypot(ray->sensor_x_mm, ray->sensor_y_mm) >= h->field_mm)
         return false;
-    note_range(sampling, radius);
+    extend_range(sampling, radius);
     return most > 1;
 }
 
@@ -466,7 +473,8 @@ static void sample_rays(const struct glint_zone *z,
                         const struct glint_visible *visible,
                         struct sampling *sampling)
 {
-    /* Skew zones are many, and rays of shaped lenses are slow to trace. */
+    /* Fewer rays: skew zones are numerous, and rays through surfaces that
+     * are not spheres are slow to trace. */
     const int n = GLINT_SAMPLING_RAYS / (z->skew ? 2 : visible->shaped ? 3 : 1);
     struct glint_zone_batch t;
 
@@ -504,10 +512,10 @@ static void sample_rays(const struct glint_zone *z,
     }
 }
 
-/* Returns how far ray RAY gets past the barrels: its max relative radius - 1,
- * weighted and at most 0.3; 0 if one of the N CHOSEN barrels stops it. */
-static double escape(const struct sampling *s, int ray, const int *chosen,
-                     int n)
+/* Returns how far ray RAY escapes the barrels: its max relative radius - 1,
+ * weighted and at most 0.3; 0 if one of the N CHOSEN barrels blocks it. */
+static double compute_escape(const struct sampling *s, int ray,
+                             const int *chosen, int n)
 {
     const double *r = s->radius[ray];
     double most = 0;
@@ -520,16 +528,17 @@ static double escape(const struct sampling *s, int ray, const int *chosen,
     return fmin(most, 0.3);
 }
 
-/* Returns the sum of the escapes of all rays past N CHOSEN barrels; *MOST
+/* Returns the sum of compute_escape() of all rays past N CHOSEN barrels. *MOST
  * receives the largest. */
-static double escapes(const struct sampling *s, bool lost, const int *chosen,
-                      int n, double *most)
+static double sum_escapes(const struct sampling *s, bool lost,
+                          const int *chosen, int n, double *most)
 {
     double sum = 0;
 
     *most = 0;
     for (int i = 0; i < s->n; i++) {
-        const double e = !lost && s->lost[i] ? 0 : escape(s, i, chosen, n);
+        const double e =
+            !lost && s->lost[i] ? 0 : compute_escape(s, i, chosen, n);
 
         sum += e;
         *most = fmax(*most, e);
@@ -537,14 +546,15 @@ static double escapes(const struct sampling *s, bool lost, const int *chosen,
     return sum;
 }
 
-/* Adds barrels, the most useful first, until escape() is at most SHOWS for all
- * rays, or for all but the rays marked lost unless LOST. */
+/* Adds barrels, each time the one that blocks most, until compute_escape() is
+ * at most SHOWS for all rays, or, if LOST is false, for all rays that do not
+ * miss a surface. */
 static void choose_barrels(const struct sampling *s, bool lost, double shows,
                            struct glint_zone_rays *rays)
 {
     double most;
 
-    escapes(s, lost, rays->barrel, rays->n_barrels, &most);
+    sum_escapes(s, lost, rays->barrel, rays->n_barrels, &most);
     while (most > shows && rays->n_barrels < GLINT_MAX_BARRELS) {
         const int n = rays->n_barrels;
         double least = HUGE_VAL;
@@ -554,7 +564,7 @@ static void choose_barrels(const struct sampling *s, bool lost, double shows,
             double sum;
 
             rays->barrel[n] = k;
-            sum = escapes(s, lost, rays->barrel, n + 1, &most);
+            sum = sum_escapes(s, lost, rays->barrel, n + 1, &most);
             if (sum < least) {
                 least = sum;
                 best = k;
@@ -562,7 +572,7 @@ static void choose_barrels(const struct sampling *s, bool lost, double shows,
         }
         rays->barrel[n] = best;
         rays->n_barrels++;
-        escapes(s, lost, rays->barrel, n + 1, &most);
+        sum_escapes(s, lost, rays->barrel, n + 1, &most);
     }
     rays->missed_cut = most;
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Traces the rays that polynomials of a zone are fitted to.
+ * Traces the rays to which the polynomials of a zone are fitted.
  *
- *   in   a zone, a ghost's paths at a few wavelengths
- *   out  rays in the zone's coordinates: where they land, their energy, how
- *        near they come to the barrels that cut */
+ *   in   a zone, the paths of a ghost at a few wavelengths
+ *   out  rays in the zone's coordinates: positions on the sensor and in the
+ * stop, energy, and relative radii at the barrels that cut the ghost
+ */
 #ifndef GLINT_BAKE_FIT_ZONE_RAYS_H
 #define GLINT_BAKE_FIT_ZONE_RAYS_H
 
@@ -12,34 +13,37 @@
 
 enum { GLINT_ZONE_RAYS = 36 * 120, GLINT_MAX_BARRELS = 4 };
 
-/* Channels of a sample. */
+/* Channels of a ray. */
 enum {
     RAY_SENSOR_X, /* mm */
     RAY_SENSOR_Y,
     RAY_STOP_X, /* stop radii */
     RAY_STOP_Y,
     RAY_ENERGY,
-    /* Largest relative radius at any surface and at the stop, and distance from
-     * the sensor's centre, in radii of the field: of the ghost, or of the one
-     * beside it at which the larger of both is least. */
+    /* EXCESS: largest relative radius over all surfaces and the stop. FIELD:
+     * distance from the sensor's centre in field radii. With neighbouring
+     * zoom positions, the values at the position where the larger of both is
+     * smallest. */
     RAY_EXCESS,
     RAY_FIELD,
-    RAY_SPREAD, /* area on the sensor per area of u and v, mm^2; skew zones
-                   only; 0: unknown */
+    RAY_SPREAD, /* skew zones only: d area on the sensor / d area in (u, v),
+                   mm^2; 0: unknown */
     RAY_CHANNELS
 };
 
 struct glint_zone_rays {
     int n;
-    bool scattered; /* false: neighbours of the same v lie in rows */
+    bool scattered; /* false: rays lie in rows of constant v */
     double x[GLINT_VARIABLES][GLINT_ZONE_RAYS];
     double at[RAY_CHANNELS][GLINT_ZONE_RAYS];
-    /* relative radius at each barrel that cuts in the zone */
+    /* Barrels that cut in the zone, and the relative radius of each ray at
+     * them. */
     int n_barrels;
-    int barrel[GLINT_MAX_BARRELS]; /* events of the path */
+    int barrel[GLINT_MAX_BARRELS]; /* indices of events of the path */
     double radius[GLINT_MAX_BARRELS][GLINT_ZONE_RAYS];
-    double missed_cut; /* largest relative distance by which a ray gets past a
-                          barrel that is not listed */
+    /* largest relative distance by which a ray lies outside a barrel that is
+     * not listed, but inside all listed ones */
+    double missed_cut;
 };
 
 static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,
@@ -65,20 +69,21 @@ static inline bool glint_zone_rays_alike(const struct glint_zone_rays *r, int i,
            r->x[GLINT_P][i] == r->x[GLINT_P][j];
 }
 
-/* Returns true if none of the rays is visible. */
+/* Returns whether all rays are invisible. */
 bool glint_zone_rays_dark(const struct glint_zone_rays *rays);
 
-/* Returns the largest ratio of max to min energy of visible rays at one angle
- * and wavelength, which films do not affect; above GLINT_STEEP it is large. */
+/* Returns the largest ratio of max to min energy among visible rays of one
+ * angle and wavelength. Films do not affect it. Above GLINT_STEEP the energy
+ * varies a lot over the pupil. */
 double glint_zone_rays_spread(const struct glint_zone_rays *rays);
 #define GLINT_STEEP 8
 
-/* Room for the sampling that chooses the barrels. */
+/* Memory for the samples by which barrels are chosen. */
 enum { GLINT_SAMPLING_RAYS = 6000 };
 typedef double glint_zone_sampling[GLINT_SAMPLING_RAYS][GLINT_MAX_EVENTS + 1];
 
-/* Chooses the barrels of RAYS so that no ray gets farther than SHOWS, a
- * relative radius, past any other. */
+/* Chooses the barrels of RAYS such that no ray is farther than SHOWS, a
+ * relative radius, outside any other barrel. */
 void glint_zone_choose_barrels(const struct glint_zone *zone,
                                const struct glint_visible *visible,
                                double shows, glint_zone_sampling *sampling,
@@ -92,8 +97,8 @@ void glint_zone_trace(const struct glint_zone *zone,
                       struct glint_zone_rays *rays,
                       struct glint_zone_rays *energies);
 
-/* Returns whether errors of rays of ZONE are weighted by their local
- * brightness, which needs neighbouring rays. */
+/* Returns whether errors of rays in ZONE are weighted by the local
+ * brightness, whose computation needs neighbouring rays. */
 static inline bool glint_zone_by_light(const struct glint_zone *zone,
                                        const struct glint_visible *visible)
 {
@@ -101,10 +106,10 @@ static inline bool glint_zone_by_light(const struct glint_zone *zone,
 }
 
 /* Sets RAYS to scattered rays of the zone, at angles and wavelengths between
- * those that were fitted, without barrels and what is seen beside alone.
- * Deterministic. If rays are weighted by light they come in threes: the middle
- * ray, a neighbour across and a neighbour along. In a skew zone only the middle
- * ray counts. */
+ * the fitted ones, without barrels and without neighbouring zoom positions.
+ * Deterministic. If errors are weighted by brightness, rays come in groups
+ * of three: the ray itself, a neighbour in v and a neighbour in u; in a skew
+ * zone only the middle one is stored. */
 void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays);
