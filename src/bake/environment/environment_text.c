@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads the text of an environment line by line. */
+ * Parses the text that describes an environment map, line by line.
+ */
 #include <string.h>
 
 #include "bake/scene/clauses.h"

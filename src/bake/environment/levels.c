@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Blurs on the sphere.
+ * Blurs environment light on the sphere.
  *
- * Texels lie in blocks; a block farther from where the blur is requested than
- * four sigma, by the cone that holds it, is skipped as a whole. */
+ * Texels are grouped in square blocks, each enclosed in a cone of directions. A
+ * block is skipped if its cone lies farther than four sigma from the direction
+ * whose blur is computed.
+ */
 #include "bake/environment/sphere.h"
 
 #include <math.h>
@@ -12,13 +14,15 @@
 
 #include "glint/view.h"
 
-enum { BLOCKS = 32 }; /* blocks per side */
+enum { BLOCKS = 32 }; /* max number of blocks per side */
 
-#define REACH 4.0 /* sigmas; 3e-4 of the weight lies farther out */
+#define REACH 4.0 /* sigmas; the Gaussian's weight beyond is 3e-4 */
 
 struct block {
-    double toward[3], angle; /* of a cone that holds its texels */
-    double nearest; /* cosine of the farthest direction that it can reach */
+    /* axis and half angle of a cone that encloses its texels */
+    double toward[3], angle;
+    double nearest; /* cosine of the largest angle between the axis and a
+                       direction that the block contributes to */
 };
 
 static double dot(const double a[3], const double b[3])
@@ -26,8 +30,8 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void enclose(const struct glint_sphere *s, int i, int j, int side,
-                    struct block *b)
+static void compute_cone(const struct glint_sphere *s, int i, int j, int side,
+                         struct block *b)
 {
     double length, cosine = 1;
 
@@ -49,7 +53,8 @@ static void enclose(const struct glint_sphere *s, int i, int j, int side,
     b->angle = acos(cosine);
 }
 
-/* Adds the light of block (I, J), SIDE texels wide, toward TOWARD. */
+/* Adds the light of block (I, J), SIDE texels wide, to the blur in direction
+ * TOWARD. */
 static void add_block(const struct glint_sphere *s, int i, int j, int side,
                       const double toward[3], double sigma, double nearest,
                       double sum[4])
@@ -82,7 +87,7 @@ bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
     if (!block)
         return false;
     for (int k = 0; k < blocks * blocks; k++) {
-        enclose(from, k % blocks, k / blocks, side, &block[k]);
+        compute_cone(from, k % blocks, k / blocks, side, &block[k]);
         block[k].nearest = reach + block[k].angle < GLINT_PI
                                ? cos(reach + block[k].angle)
                                : -2;

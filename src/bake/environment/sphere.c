@@ -16,7 +16,8 @@ double glint_sphere_toward(double u, double v, double toward[3])
                   toward[2] * toward[2]);
     for (int k = 0; k < 3; k++)
         toward[k] /= length;
-    /* A face's plane is 1 / sqrt(3) from the middle and leans by that. */
+    /* d solid angle = dp dq / length^3: the area factor of a face, sqrt(3),
+     * cancels its distance from the centre, 1 / sqrt(3) */
     return 4 / (length * length * length);
 }
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Separates bright lights from the rest of an environment.
+ * Extracts bright lights from an environment map.
  *
- * A threshold falls by octaves, down to some times the mean of what is below
- * it. At each, texels that touch are a spot, and a light while they lie close
- * together; the lowest threshold at which they do determines its extent. Spots
- * that merge at a lower threshold stay separate lights.
+ * A threshold is halved repeatedly, down to a multiple of the mean luminance
+ * below it. At each threshold, connected texels above it form a spot. A spot is
+ * a light as long as it is small enough; the lowest threshold at which it is
+ * determines its extent. Lights that merge at a lower threshold stay separate.
  */
 #include "bake/environment/sphere.h"
 
@@ -15,37 +15,40 @@
 
 #include "glint/view.h"
 
-#define LEAST_SHARE .002 /* of all light, of a light */
+/* Min luminance x solid angle of a light, as a fraction of the sphere's total.
+ */
+#define LEAST_SHARE .002
 
 enum {
     MAX_SPOTS = 4096,
-    RING = 2, /* width in texels of the ring around a light; the mean of the
-                 ring replaces the light */
+    RING = 2, /* width in texels of the ring around a light; its mean replaces
+                 the light */
     NOBODY = -1
 };
 
 struct spot {
-    double light; /* luminance x sr; 0: merged into another spot */
+    /* luminance x sr; 0: merged into another spot, or extracted */
+    double light;
 };
 
 struct split {
     struct glint_sphere *sphere;
     double limit; /* squared rms radius of a light, radians */
-    double all;   /* luminance x sr of the whole sphere */
-    int *owner;   /* [texels] spot, or NOBODY */
-    int *seen;    /* [texels] the round in which it was last seen */
-    int *queue;   /* [texels] */
+    double all;   /* luminance x sr of the sphere */
+    int *owner;   /* [texels]: index of the spot, or NOBODY */
+    int *seen;  /* [texels]: number of the last round that visited the texel */
+    int *queue; /* [texels]: texels of the current flood fill */
     struct spot spot[MAX_SPOTS];
     int n_spots;
 };
 
-static double luminance(const struct split *s, int i)
+static double get_luminance(const struct split *s, int i)
 {
     return glint_luminance(s->sphere->texel[i].light);
 }
 
-/* Sets NEAR to the eight texels about I. */
-static void neighbours(const struct split *s, int i, int near[8])
+/* Sets NEAR to the indices of the eight neighbours of texel I. */
+static void find_neighbours(const struct split *s, int i, int near[8])
 {
     const int side = s->sphere->side, x = i % side, y = i / side;
     int n = 0;
@@ -56,19 +59,19 @@ static void neighbours(const struct split *s, int i, int near[8])
                 near[n++] = (int)glint_sphere_index(side, x + u, y + v);
 }
 
-/* Sets the queue to the texels that touch I and are at THRESHOLD or above;
- * returns their number. */
-static int gather(struct split *s, int i, double threshold, int round)
+/* Flood fill: sets the queue to the connected texels around I whose
+ * luminance is THRESHOLD or above. Returns their number. */
+static int flood_fill(struct split *s, int i, double threshold, int round)
 {
     int n = 0, near[8];
 
     s->queue[n++] = i;
     s->seen[i] = round;
     for (int at = 0; at < n; at++) {
-        neighbours(s, s->queue[at], near);
+        find_neighbours(s, s->queue[at], near);
         for (int k = 0; k < 8; k++)
             if (s->seen[near[k]] != round &&
-                luminance(s, near[k]) >= threshold) {
+                get_luminance(s, near[k]) >= threshold) {
                 s->seen[near[k]] = round;
                 s->queue[n++] = near[k];
             }
@@ -76,9 +79,9 @@ static int gather(struct split *s, int i, double threshold, int round)
     return n;
 }
 
-/* Returns the luminance of the N texels of the queue and sets the square of
- * their rms radius. */
-static double measure(const struct split *s, int n, double *square)
+/* Returns luminance x sr of the N texels of the queue and sets *SQUARE to
+ * the square of their rms radius, radians^2. */
+static double measure_spot(const struct split *s, int n, double *square)
 {
     double middle[3] = {0, 0, 0}, sum = 0, length, cosine;
 
@@ -92,16 +95,17 @@ static double measure(const struct split *s, int n, double *square)
     }
     length = sqrt(middle[0] * middle[0] + middle[1] * middle[1] +
                   middle[2] * middle[2]);
-    cosine = sum > 0 ? length / sum : 0; /* mean of cosines from the middle */
+    /* mean cosine of the angle from the centroid */
+    cosine = sum > 0 ? length / sum : 0;
     *square = 2 * (1 - cosine);
     return sum;
 }
 
-/* Adds the N texels of the queue as one spot if they are a light. */
-static void try_spot(struct split *s, int n)
+/* Records the N texels of the queue as one spot if they are a light. */
+static void add_spot(struct split *s, int n)
 {
     double square;
-    const double light = measure(s, n, &square);
+    const double light = measure_spot(s, n, &square);
 
     if (square > s->limit || light < LEAST_SHARE * s->all ||
         s->n_spots == MAX_SPOTS)
@@ -117,13 +121,13 @@ static void try_spot(struct split *s, int n)
 }
 
 /* Returns the mean luminance of texels below THRESHOLD. */
-static double mean_below(const struct split *s, int n, double threshold)
+static double compute_mean_below(const struct split *s, int n, double threshold)
 {
     double sum = 0, weight = 0;
 
     for (int i = 0; i < n; i++)
-        if (luminance(s, i) < threshold) {
-            sum += s->sphere->texel[i].weight * luminance(s, i);
+        if (get_luminance(s, i) < threshold) {
+            sum += s->sphere->texel[i].weight * get_luminance(s, i);
             weight += s->sphere->texel[i].weight;
         }
     return weight > 0 ? sum / weight : 0;
@@ -134,22 +138,24 @@ static void find_spots(struct split *s, int n, double above)
     double threshold = 0;
 
     for (int i = 0; i < n; i++) {
-        threshold = fmax(threshold, luminance(s, i));
-        s->all += s->sphere->texel[i].weight * luminance(s, i);
+        threshold = fmax(threshold, get_luminance(s, i));
+        s->all += s->sphere->texel[i].weight * get_luminance(s, i);
     }
     for (int round = 1; round < 64; round++) {
         threshold /= 2;
-        if (!(threshold > above * mean_below(s, n, threshold)))
+        if (!(threshold > above * compute_mean_below(s, n, threshold)))
             return;
         for (int i = 0; i < n; i++)
-            if (s->seen[i] != round && luminance(s, i) >= threshold)
-                try_spot(s, gather(s, i, threshold, round));
+            if (s->seen[i] != round && get_luminance(s, i) >= threshold)
+                add_spot(s, flood_fill(s, i, threshold, round));
     }
 }
 
-/* Sets MEAN to the light around spot K, whose texels are marked in round ROUND,
- * or to the light of its darkest texel if other lights surround it. */
-static void ring_of(struct split *s, int k, int n, int round, double mean[3])
+/* Sets MEAN to the mean light of the ring around spot K, without texels of
+ * other lights; black if other lights surround the spot. ROUND is a new
+ * number for marks in SEEN. */
+static void compute_surrounding_mean(struct split *s, int k, int n, int round,
+                                     double mean[3])
 {
     double weight = 0;
     int count = 0, begin = 0;
@@ -166,7 +172,7 @@ static void ring_of(struct split *s, int k, int n, int round, double mean[3])
         for (; begin < end; begin++) {
             int near[8];
 
-            neighbours(s, s->queue[begin], near);
+            find_neighbours(s, s->queue[begin], near);
             for (int j = 0; j < 8; j++)
                 if (s->seen[near[j]] != round) {
                     s->seen[near[j]] = round;
@@ -188,7 +194,7 @@ static void ring_of(struct split *s, int k, int n, int round, double mean[3])
         mean[c] = weight > 0 ? mean[c] / weight : 0;
 }
 
-/* Moves the light of spot K above MEAN into LIGHT. */
+/* Moves the light of spot K in excess of MEAN from the map to LIGHT. */
 static void move_light(struct split *s, int k, int n, const double mean[3],
                        struct glint_split_light *light)
 {
@@ -215,16 +221,16 @@ static void move_light(struct split *s, int k, int n, const double mean[3],
                   middle[2] * middle[2]);
     for (int j = 0; j < 3; j++)
         light->toward[j] = middle[j] / length;
-    /* A texel by itself has 1/6 of its area for a square radius. */
+    /* Subtract the squared radius of a single texel, 1/6 of its area. */
     square = 2 * (1 - fmin(length / sum, 1)) -
              4 * GLINT_PI / (6. * s->sphere->side * s->sphere->side);
     light->radius = sqrt(2 * fmax(square, 0));
 }
 
-/* Takes the strongest spots, at most MOST; returns their number. */
-static int take_strongest(struct split *s, int n, int most,
-                          struct glint_split_light *lights,
-                          struct glint_environment_report *report)
+/* Extracts the strongest spots, at most MOST. Returns their number. */
+static int extract_strongest(struct split *s, int n, int most,
+                             struct glint_split_light *lights,
+                             struct glint_environment_report *report)
 {
     int taken = 0;
 
@@ -240,7 +246,7 @@ static int take_strongest(struct split *s, int n, int most,
                 best = k;
         if (best == NOBODY)
             break;
-        ring_of(s, best, n, 64 + taken, mean);
+        compute_surrounding_mean(s, best, n, 64 + taken, mean);
         move_light(s, best, n, mean, &lights[taken]);
         s->spot[best].light = 0;
         report->light_share +=
@@ -270,7 +276,8 @@ int glint_sphere_split(struct glint_sphere *sphere,
         memset(s->seen, 0, n * sizeof *s->seen);
         if (options->max_lights > 0)
             find_spots(s, (int)n, options->light_above);
-        taken = take_strongest(s, (int)n, options->max_lights, lights, report);
+        taken =
+            extract_strongest(s, (int)n, options->max_lights, lights, report);
     }
     free(words);
     free(s);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Writes a baked environment: header, levels, irradiance, lights. */
+ * Writes a baked environment map: header, mipmap levels, irradiance, lights.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,7 +31,7 @@ void glint_environment_put_9e5(const double (*light)[3], size_t n, double unit,
     }
 }
 
-#define UNITS_9E5 (511 * 0x1p19) /* the brightest code */
+#define UNITS_9E5 (511 * 0x1p19) /* largest value of a 9E5 code */
 
 struct writer {
     const struct glint_environment_options *options;
@@ -65,7 +66,7 @@ static bool is_in_range(const struct glint_environment_options *o)
            o->scale >= 1e-6 && o->scale <= 1e6;
 }
 
-static size_t texels_of(const struct writer *w, int level)
+static size_t count_texels(const struct writer *w, int level)
 {
     return (size_t)1 << (2 * glint_environment_side_log2(
                                  (uint32_t)w->options->levels,
@@ -75,7 +76,8 @@ static size_t texels_of(const struct writer *w, int level)
 
 /* ------------------------------------------------------------------- light */
 
-static void measure(const struct glint_sphere *s, double *mean, double *largest)
+static void measure_light(const struct glint_sphere *s, double *mean,
+                          double *largest)
 {
     double weight = 0, sum = 0;
 
@@ -90,9 +92,11 @@ static void measure(const struct glint_sphere *s, double *mean, double *largest)
     *mean = sum / weight;
 }
 
-/* Spreads the picture, twice as fine as level 0, and splits it. */
-static bool gather(struct writer *w, const struct glint_float_image *picture,
-                   struct glint_error *error)
+/* Resamples the picture to twice the side of level 0 and extracts the
+ * lights. */
+static bool prepare_sphere(struct writer *w,
+                           const struct glint_float_image *picture,
+                           struct glint_error *error)
 {
     double unused;
 
@@ -105,7 +109,7 @@ static bool gather(struct writer *w, const struct glint_float_image *picture,
                  picture->width, picture->height);
         return false;
     }
-    measure(&w->sphere, &w->report->mean, &w->report->largest);
+    measure_light(&w->sphere, &w->report->mean, &w->report->largest);
     if (w->report->largest > 0 &&
         (w->report->largest < 1e-30 || w->report->largest > 1e30)) {
         snprintf(error->text, sizeof error->text,
@@ -115,11 +119,11 @@ static bool gather(struct writer *w, const struct glint_float_image *picture,
     }
     w->n_lights =
         glint_sphere_split(&w->sphere, w->options, w->light, w->report);
-    measure(&w->sphere, &unused, &w->report->residual_largest);
+    measure_light(&w->sphere, &unused, &w->report->residual_largest);
     return w->n_lights >= 0;
 }
 
-/* Sets level K to means of level K - 1, or of the sphere if K is the first. */
+/* Sets level K to 2 x 2 averages of level K - 1, or of the sphere if K is 0. */
 static void average_level(struct writer *w, int k)
 {
     const int side = 1 << (w->options->side_log2 - k);
@@ -139,9 +143,9 @@ static void average_level(struct writer *w, int k)
             }
 }
 
-/* Blurs level K. What is four texels of the fine sphere wide to its sigma is
- * blurred from means of these. */
-static bool blur(struct writer *w, int k)
+/* Computes level K, blurred by a Gaussian. From level 4 on, blurs averages
+ * of sphere texels about sigma / 8 wide, which is faster. */
+static bool blur_level(struct writer *w, int k)
 {
     const double texel =
         sqrt(4 * GLINT_PI) / (double)(1 << w->options->side_log2);
@@ -172,12 +176,12 @@ static bool blur(struct writer *w, int k)
 static bool make_levels(struct writer *w)
 {
     for (int k = 0; k <= w->options->side_log2; k++) {
-        w->level[k] = malloc(texels_of(w, k) * sizeof *w->level[k]);
+        w->level[k] = malloc(count_texels(w, k) * sizeof *w->level[k]);
         if (!w->level[k])
             return false;
         if (w->options->levels == GLINT_ENVIRONMENT_MIP)
             average_level(w, k);
-        else if (!blur(w, k))
+        else if (!blur_level(w, k))
             return false;
     }
     return true;
@@ -185,7 +189,7 @@ static bool make_levels(struct writer *w)
 
 /* ----------------------------------------------------------------- writing */
 
-static double largest_of(double (*light)[3], size_t n)
+static double find_largest(double (*light)[3], size_t n)
 {
     double most = 0;
 
@@ -198,7 +202,7 @@ static double largest_of(double (*light)[3], size_t n)
 static bool write_level(struct writer *w, int k,
                         struct glint_environment_level *level)
 {
-    const size_t n = texels_of(w, k);
+    const size_t n = count_texels(w, k);
     const double unit = ldexp(1, w->header.unit_log2);
     uint32_t *code = malloc(n * sizeof *code);
 
@@ -263,8 +267,9 @@ static bool write_tables(struct writer *w)
     double most = 0;
 
     for (int k = 0; k < n; k++)
-        most = fmax(most, largest_of(w->level[k], texels_of(w, k)));
-    /* The brightest code is 1/512 short of 2^28, and so is the brightest. */
+        most = fmax(most, find_largest(w->level[k], count_texels(w, k)));
+    /* The largest code is 1/512 less than 2^28 units, and so is the
+     * brightest texel. */
     w->header.unit_log2 = most > 0 ? (int)floor(log2(most / UNITS_9E5)) + 1 : 0;
     for (int k = 0; k < n; k++)
         if (!write_level(w, k, &level[k]))
@@ -305,7 +310,8 @@ glint_environment_bake(const struct glint_float_image *picture,
     if (!is_in_range(options))
         return GLINT_E_ARGUMENT;
     glint_draft_put(&w.draft, NULL, sizeof w.header);
-    good = gather(&w, picture, error) && make_levels(&w) && write_tables(&w);
+    good = prepare_sphere(&w, picture, error) && make_levels(&w) &&
+           write_tables(&w);
     set_header(&w, name, key);
     for (int k = 0; k < GLINT_ENVIRONMENT_MAX_LEVELS; k++)
         free(w.level[k]);
