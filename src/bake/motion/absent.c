@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stands in for recording.c where glint is built without jansson. */
+ * Replaces recording.c in builds without jansson: reading a recording fails.
+ */
 #include <stdio.h>
 
 #include "glint/scene/motion_bake.h"

@@ -16,10 +16,10 @@ struct recorded_pose {
     float residual;
 };
 
-/* A food, from its first frame on. */
+/* A food (a static landmark) from its first frame on. */
 struct recorded_food {
     uint32_t frame, slot;
-    double at[3]; /* as it is known in the end */
+    double at[3]; /* final estimate of its position */
 };
 
 struct glint_motion_baker {
@@ -31,20 +31,21 @@ struct glint_motion_baker {
     struct recorded_pose *pose; /* [n_frames] */
     uint32_t n_events, event_room;
     struct recorded_food *event;            /* [n_events] */
-    uint32_t lives[GLINT_MOTION_MAX_FOODS]; /* the event of each slot's food */
+    uint32_t lives[GLINT_MOTION_MAX_FOODS]; /* index of the event of the food in
+                                               each slot */
     size_t n_bytes, byte_room;
-    uint8_t *intensity;        /* [n_frames][n_foods][n_intensities] */
-    long long number;          /* of the last frame */
-    struct glint_rigid sensed; /* sum of the motions rv and tv */
+    uint8_t *intensity; /* [n_frames][n_foods][n_intensities] */
+    long long number;   /* number of the last frame in the recording */
+    /* the body's own odometry: sum of all motions rv, tv */
+    struct glint_rigid sensed;
     struct glint_motion_report report;
 };
 
 enum {
     USUAL_UNIT_LOG2 = 24,
-    REACH_LOG2 = 29, /* log2 of the max coordinate of the farthest point, in
-                        steps */
-    ROOMY_LOG2 = 3   /* by how many bits a motion may be smaller and have the
-                         usual unit */
+    REACH_LOG2 = 29, /* log2 of the largest coordinate of any point, in steps */
+    /* a motion up to this many bits smaller keeps the usual unit */
+    ROOMY_LOG2 = 3
 };
 
 struct writer {
@@ -52,10 +53,10 @@ struct writer {
     const struct glint_motion_report *report;
     struct glint_draft draft;
     struct glint_motion_header header;
-    double scale; /* steps in a unit */
+    double scale; /* steps per unit of length */
     uint8_t block[GLINT_MOTION_BLOCK];
     size_t used;
-    uint32_t number; /* of the block that is filled */
+    uint32_t number; /* index of the block that is being filled */
 };
 
 /* ------------------------------------------------------------------ blocks */
@@ -75,7 +76,7 @@ static void end_block(struct writer *w)
     w->number++;
 }
 
-static void put(struct writer *w, const void *record, size_t bytes)
+static void append_record(struct writer *w, const void *record, size_t bytes)
 {
     if (w->used + bytes > GLINT_MOTION_ROOM)
         end_block(w);
@@ -85,18 +86,19 @@ static void put(struct writer *w, const void *record, size_t bytes)
 
 /* ------------------------------------------------------------------- tables */
 
-static void place(const struct writer *w, const double from[3], int32_t to[3])
+static void convert_position(const struct writer *w, const double from[3],
+                             int32_t to[3])
 {
     for (int k = 0; k < 3; k++)
         to[k] = (int32_t)lrint(from[k] * w->scale);
 }
 
-static uint32_t steps(const struct writer *w, double length)
+static uint32_t convert_length(const struct writer *w, double length)
 {
     return (uint32_t)fmin(ceil(length * w->scale), UINT32_MAX);
 }
 
-static void put_sensors(struct writer *w)
+static void append_sensors(struct writer *w)
 {
     const struct glint_motion_body *body = &w->baker->body;
 
@@ -109,12 +111,12 @@ static void put_sensors(struct writer *w)
 
         for (int k = 0; k < 3; k++)
             s.axis_q30[k] = (int32_t)lrint(0x1p30 * axis[k]);
-        put(w, &s, sizeof s);
+        append_record(w, &s, sizeof s);
     }
     end_block(w);
 }
 
-static void put_events(struct writer *w)
+static void append_events(struct writer *w)
 {
     w->header.event_block = w->number;
     for (uint32_t i = 0; i < w->baker->n_events; i++) {
@@ -122,13 +124,13 @@ static void put_events(struct writer *w)
         struct glint_motion_event e = {.frame = from->frame,
                                        .slot = from->slot};
 
-        place(w, from->at, e.at);
-        put(w, &e, sizeof e);
+        convert_position(w, from->at, e.at);
+        append_record(w, &e, sizeof e);
     }
     end_block(w);
 }
 
-static void put_index(struct writer *w)
+static void append_index(struct writer *w)
 {
     const struct glint_motion_baker *b = w->baker;
     const uint32_t each =
@@ -141,32 +143,32 @@ static void put_index(struct writer *w)
 
         for (uint32_t i = first; i < b->n_frames && i < first + each; i++)
             most = fmax(most, (double)b->pose[i].residual);
-        index.residual = steps(w, most);
+        index.residual = convert_length(w, most);
         for (;
              index.event < b->n_events && b->event[index.event].frame <= first;
              index.event++)
             index.food[b->event[index.event].slot] = index.event;
-        put(w, &index, sizeof index);
+        append_record(w, &index, sizeof index);
     }
     end_block(w);
 }
 
-static void put_poses(struct writer *w)
+static void append_poses(struct writer *w)
 {
     w->header.pose_block = w->number;
     for (uint32_t i = 0; i < w->baker->n_frames; i++) {
         const struct recorded_pose *from = &w->baker->pose[i];
         struct glint_motion_pose p;
 
-        place(w, from->at, p.at);
+        convert_position(w, from->at, p.at);
         for (int k = 0; k < 4; k++)
             p.turn_q14[k] = (int16_t)lrint(0x1p14 * (double)from->turn[k]);
-        put(w, &p, sizeof p);
+        append_record(w, &p, sizeof p);
     }
     end_block(w);
 }
 
-static void put_intensities(struct writer *w)
+static void append_intensities(struct writer *w)
 {
     const size_t each =
         (size_t)w->baker->n_foods * (size_t)w->baker->n_intensities;
@@ -174,11 +176,11 @@ static void put_intensities(struct writer *w)
     w->header.intensities = (uint32_t)each;
     w->header.intensity_block = w->number;
     for (uint32_t i = 0; each && i < w->baker->n_frames; i++)
-        put(w, w->baker->intensity + i * each, each);
+        append_record(w, w->baker->intensity + i * each, each);
     end_block(w);
 }
 
-static void widen(const double at[3], double low[3], double high[3])
+static void extend_box(const double at[3], double low[3], double high[3])
 {
     for (int k = 0; k < 3; k++) {
         low[k] = fmin(low[k], at[k]);
@@ -187,15 +189,15 @@ static void widen(const double at[3], double low[3], double high[3])
 }
 
 /* Sets LOW and HIGH to the bounding box of the body's points and foods. */
-static void box_of(const struct glint_motion_baker *baker, double low[3],
-                   double high[3])
+static void compute_box(const struct glint_motion_baker *baker, double low[3],
+                        double high[3])
 {
     for (int k = 0; k < 3; k++)
         low[k] = high[k] = 0;
     for (uint32_t i = 0; i < baker->n_frames; i++)
-        widen(baker->pose[i].at, low, high);
+        extend_box(baker->pose[i].at, low, high);
     for (uint32_t i = 0; i < baker->n_events; i++)
-        widen(baker->event[i].at, low, high);
+        extend_box(baker->event[i].at, low, high);
 }
 
 /* ------------------------------------------------------------------- header */
@@ -227,7 +229,7 @@ static void set_header(struct writer *w, const char *name, uint64_t key)
     double low[3], high[3];
 
     glint_draft_begin(h, &kind, 0, key, name, "motion");
-    box_of(b, low, high);
+    compute_box(b, low, high);
     set_scale(w, low, high);
     h->n_frames = b->n_frames;
     h->n_foods = (uint32_t)b->n_foods;
@@ -239,14 +241,14 @@ static void set_header(struct writer *w, const char *name, uint64_t key)
         half < GLINT_PI / 2
             ? (int32_t)lrint(0x1p24 * fmin(fmax(tan(half), 0x1p-12), 64))
             : 1 << 30;
-    place(w, low, h->low);
-    place(w, high, h->high);
+    convert_position(w, low, h->low);
+    convert_position(w, high, h->high);
     h->residual_frame = (uint32_t)w->report->residual_frame;
-    h->residual = steps(w, w->report->residual);
+    h->residual = convert_length(w, w->report->residual);
 }
 
-/* Writes the file; the boxes and counts of BAKER are whole. Returns false
- * without memory. */
+/* Writes the file. BAKER must be complete. Returns false if there is no
+ * memory. */
 static bool write_motion(const struct glint_motion_baker *baker,
                          const struct glint_motion_report *report,
                          const char *name, uint64_t key, unsigned char **data,
@@ -256,13 +258,13 @@ static bool write_motion(const struct glint_motion_baker *baker,
     uint32_t sum;
 
     set_header(&w, name, key);
-    put(&w, &w.header, sizeof w.header);
+    append_record(&w, &w.header, sizeof w.header);
     end_block(&w);
-    put_sensors(&w);
-    put_events(&w);
-    put_index(&w);
-    put_poses(&w);
-    put_intensities(&w);
+    append_sensors(&w);
+    append_events(&w);
+    append_index(&w);
+    append_poses(&w);
+    append_intensities(&w);
     w.header.bytes = (uint32_t)w.draft.bytes;
     glint_draft_amend(&w.draft, 0, &w.header, sizeof w.header);
     sum = w.draft.out_of_memory ? 0 : glint_motion_sum(w.draft.data, 0);
@@ -271,7 +273,8 @@ static bool write_motion(const struct glint_motion_baker *baker,
                               bytes);
 }
 
-/* What is warned of, of the span. */
+/* BAD_RESIDUAL: residual from which a frame counts as bad, as a fraction of
+ * the motion's span. REACH: max magnitude of coordinates. */
 #define BAD_RESIDUAL 1e-3
 #define REACH        1e6
 
@@ -297,7 +300,7 @@ void glint_motion_baker_close(struct glint_motion_baker *baker)
     free(baker);
 }
 
-static enum glint_status fail(struct glint_error *error, const char *cause)
+static enum glint_status set_error(struct glint_error *error, const char *cause)
 {
     snprintf(error->text, sizeof error->text, "%s", cause);
     return GLINT_E_LENS;
@@ -308,15 +311,15 @@ enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
                                           struct glint_error *error)
 {
     if (!(body->size >= 0 && body->size <= REACH))
-        return fail(error, "the size of the body is not within 0 .. 1e6");
+        return set_error(error, "the size of the body is not within 0 .. 1e6");
     if (!(body->angle_deg >= 0.01 && body->angle_deg <= 360))
-        return fail(error, "the angle of view is not within 0.01 .. 360 "
-                           "degrees");
+        return set_error(error, "the angle of view is not within 0.01 .. 360 "
+                                "degrees");
     if (body->n_sensors > GLINT_MOTION_MAX_SENSORS)
-        return fail(error, "more than 32 sensors");
+        return set_error(error, "more than 32 sensors");
     for (int i = 0; i < body->n_sensors; i++)
         if (!isfinite(body->theta[i]) || !isfinite(body->phi[i]))
-            return fail(error, "the direction of a sensor is not finite");
+            return set_error(error, "the direction of a sensor is not finite");
     baker->body = *body;
     baker->has_body = true;
     return GLINT_OK;
@@ -324,8 +327,9 @@ enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
 
 /* ------------------------------------------------------------------- frames */
 
-/* Makes room for N items of BYTES in *MEM; returns false without memory. */
-static bool make_room(void **mem, size_t *room, size_t n, size_t bytes)
+/* Ensures that *MEM has capacity for N items of BYTES each. Returns false if
+ * there is no memory. */
+static bool reserve(void **mem, size_t *room, size_t n, size_t bytes)
 {
     size_t more = *room;
     void *grown;
@@ -342,16 +346,16 @@ static bool make_room(void **mem, size_t *room, size_t n, size_t bytes)
     return true;
 }
 
-static bool grow(struct glint_motion_baker *b, int n_foods)
+static bool reserve_frame(struct glint_motion_baker *b, int n_foods)
 {
     void *pose = b->pose, *event = b->event, *intensity = b->intensity;
     size_t poses = b->pose_room, events = b->event_room;
     const size_t each = (size_t)n_foods * (size_t)b->n_intensities;
     bool good =
-        make_room(&pose, &poses, (size_t)b->n_frames + 1, sizeof *b->pose) &&
-        make_room(&event, &events, (size_t)b->n_events + (size_t)n_foods,
-                  sizeof *b->event) &&
-        make_room(&intensity, &b->byte_room, b->n_bytes + each, 1);
+        reserve(&pose, &poses, (size_t)b->n_frames + 1, sizeof *b->pose) &&
+        reserve(&event, &events, (size_t)b->n_events + (size_t)n_foods,
+                sizeof *b->event) &&
+        reserve(&intensity, &b->byte_room, b->n_bytes + each, 1);
 
     b->pose = pose;
     b->event = event;
@@ -361,8 +365,8 @@ static bool grow(struct glint_motion_baker *b, int n_foods)
     return good;
 }
 
-static const char *check(const struct glint_motion_baker *b,
-                         const struct glint_motion_sight *s)
+static const char *check_frame(const struct glint_motion_baker *b,
+                               const struct glint_motion_sight *s)
 {
     if (b->n_frames == GLINT_MOTION_MAX_FRAMES)
         return "more than 67108864 frames";
@@ -384,10 +388,11 @@ static const char *check(const struct glint_motion_baker *b,
     return NULL;
 }
 
-/* Integrates the body's own odometry. */
-static void add_senses(struct glint_motion_baker *b,
-                       const struct glint_motion_sight *s,
-                       const struct glint_rigid *pose)
+/* Adds the motion that the body itself measured in this frame to its
+ * odometry. */
+static void add_odometry(struct glint_motion_baker *b,
+                         const struct glint_motion_sight *s,
+                         const struct glint_rigid *pose)
 {
     struct glint_rigid *r = &b->sensed;
     double moved[3], row[3][3] = {{0}}, axis[3] = {0, 0, 0}, off = 0;
@@ -402,8 +407,8 @@ static void add_senses(struct glint_motion_baker *b,
     glint_rigid_take(r, s->tv, moved);
     memcpy(r->at, moved, sizeof moved);
     for (int i = 0; i < 3; i++) {
-        /* Rodrigues' formula gives column i: where axis i of the new body lies
-         * in the axes of the old one. */
+        /* Rodrigues' formula gives column i of the rotation: axis i of the
+         * new body in the axes of the old one. */
         double to[3];
 
         for (int k = 0; k < 3; k++) {
@@ -423,23 +428,23 @@ static void add_senses(struct glint_motion_baker *b,
     b->report.senses_most = fmax(b->report.senses_most, sqrt(off));
 }
 
-static void keep_intensities(struct glint_motion_baker *b,
-                             const struct glint_motion_sight *s)
+static void store_intensities(struct glint_motion_baker *b,
+                              const struct glint_motion_sight *s)
 {
     for (int i = 0; i < s->n_foods; i++)
         for (int k = 0; k < b->n_intensities; k++) {
             const double x = s->intensity[i][k];
-            const double held = x > 0 ? fmin(x, 1) : 0; /* a NaN is 0 */
+            const double held = x > 0 ? fmin(x, 1) : 0; /* NaN becomes 0 */
 
             b->report.held_intensities += !(held == x);
             b->intensity[b->n_bytes++] = (uint8_t)lrint(255 * held);
         }
 }
 
-/* Keeps a located frame. */
-static void keep(struct glint_motion_baker *b,
-                 const struct glint_motion_sight *s, const bool *is_new,
-                 const struct glint_located *located)
+/* Stores a frame whose pose was found. */
+static void store_frame(struct glint_motion_baker *b,
+                        const struct glint_motion_sight *s, const bool *is_new,
+                        const struct glint_located *located)
 {
     struct recorded_pose *p = &b->pose[b->n_frames];
 
@@ -455,11 +460,12 @@ static void keep(struct glint_motion_baker *b,
                 .frame = b->n_frames, .slot = (uint32_t)i};
             b->report.n_resets += b->n_frames > 0;
         }
-        /* the last frame of its life is the most accurate */
+        /* the estimate of the last frame in the food's life is the most
+         * accurate */
         memcpy(b->event[b->lives[i]].at, b->localiser.place[i],
                sizeof b->event->at);
     }
-    keep_intensities(b, s);
+    store_intensities(b, s);
     b->n_frames++;
 }
 
@@ -471,7 +477,7 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
     struct glint_motion_baker *b = baker;
     bool is_new[GLINT_MOTION_MAX_FOODS];
     struct glint_located located;
-    const char *wrong = check(b, sight);
+    const char *wrong = check_frame(b, sight);
 
     if (!wrong && b->n_frames && sight->number >= 0 && b->number >= 0 &&
         sight->number != b->number + 1) {
@@ -483,21 +489,21 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
         return GLINT_E_LENS;
     }
     if (wrong)
-        return fail(error, wrong);
+        return set_error(error, wrong);
     for (int i = 0; i < sight->n_foods; i++)
         is_new[i] = b->n_frames == 0 || sight->is_new[i];
     b->n_intensities = sight->n_intensities;
-    if (!grow(b, sight->n_foods))
+    if (!reserve_frame(b, sight->n_foods))
         return GLINT_E_MEMORY;
     wrong = glint_localise(&b->localiser, sight->n_foods, sight->food, is_new,
                            &located);
     if (wrong)
-        return fail(error, wrong);
+        return set_error(error, wrong);
     b->n_foods = sight->n_foods;
     b->number = sight->number;
     if (b->n_frames)
-        add_senses(b, sight, &located.pose);
-    keep(b, sight, is_new, &located);
+        add_odometry(b, sight, &located.pose);
+    store_frame(b, sight, is_new, &located);
     return GLINT_OK;
 }
 
@@ -509,12 +515,12 @@ static double distance(const double a[3], const double b[3])
                 (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-static void sum_up(const struct glint_motion_baker *b,
-                   struct glint_motion_report *r)
+static void sum_report(const struct glint_motion_baker *b,
+                       struct glint_motion_report *r)
 {
     double low[3], high[3], squares = 0;
 
-    box_of(b, low, high);
+    compute_box(b, low, high);
     *r = b->report;
     r->n_frames = (long)b->n_frames;
     r->span = distance(low, high);
@@ -542,18 +548,18 @@ enum glint_status glint_motion_baker_finish(struct glint_motion_baker *baker,
 
     error->text[0] = '\0';
     if (!b->has_body)
-        return fail(error,
-                    "there is no structure: size, sensors, angle of view; a "
-                    "lens file of another program goes to glint import");
+        return set_error(
+            error, "there is no structure: size, sensors, angle of view; a "
+                   "lens file of another program goes to glint import");
     if (!b->n_frames)
-        return fail(error, "there are no frames");
+        return set_error(error, "there are no frames");
     if (b->n_intensities > 1 && b->n_intensities != b->body.n_sensors) {
         snprintf(error->text, sizeof error->text,
                  "foods have %d intensities, but there are %d sensors",
                  b->n_intensities, b->body.n_sensors);
         return GLINT_E_LENS;
     }
-    sum_up(b, report);
+    sum_report(b, report);
     return write_motion(b, report, name, key, data, bytes) ? GLINT_OK
                                                            : GLINT_E_MEMORY;
 }

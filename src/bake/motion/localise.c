@@ -13,7 +13,7 @@ void glint_localiser_init(struct glint_localiser *localiser, bool average)
 
 /* ------------------------------------------------------------------- rigid */
 
-/* Finds the pose from the foods that are not new, but BUT. */
+/* Fits the pose to all foods that are not new, except food BUT. */
 static bool fit_all(const struct glint_localiser *l, int n,
                     const double (*seen)[3], const bool *is_new, int but,
                     struct glint_rigid *pose)
@@ -32,8 +32,8 @@ static bool fit_all(const struct glint_localiser *l, int n,
                            pose);
 }
 
-/* Moves the position of each food towards the position that follows from the
- * pose of the other foods. */
+/* Moves the position of each food towards the position that the pose of all
+ * other foods gives. */
 static void update_places(struct glint_localiser *l, int n,
                           const double (*seen)[3], const bool *is_new)
 {
@@ -76,8 +76,9 @@ static const char *locate(struct glint_localiser *l, int n,
     return NULL;
 }
 
-static void begin(struct glint_localiser *l, int n, const double (*seen)[3],
-                  struct glint_located *located)
+static void begin_localiser(struct glint_localiser *l, int n,
+                            const double (*seen)[3],
+                            struct glint_located *located)
 {
     located->pose = (struct glint_rigid){
         {0, 0, 0}, {1, 0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -89,8 +90,8 @@ static void begin(struct glint_localiser *l, int n, const double (*seen)[3],
     l->has_begun = true;
 }
 
-/* Sets the residual: the max distance between where foods that are not new were
- * seen and their positions before this frame. */
+/* Sets the residual: max distance, over foods that are not new, between the
+ * position seen in this frame and the position known before it. */
 static void set_residual(int n, const double (*places)[3],
                          const double (*seen)[3], const bool *is_new,
                          struct glint_located *located)
@@ -118,7 +119,7 @@ const char *glint_localise(struct glint_localiser *localiser, int n,
     located->n_known = 0;
     located->residual = 0;
     if (!l->has_begun) {
-        begin(l, n, seen, located);
+        begin_localiser(l, n, seen, located);
         return NULL;
     }
     memcpy(before, l->place, sizeof before);

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reconstructs the pose of a body, frame by frame, from the positions of static
- * foods in its axes.
+ * Reconstructs the pose of a body in each frame from the positions of static
+ * landmarks (foods), which are given in the body's axes.
  *
  *     glint_localiser_init(&localiser, true);
  *     glint_localise(&localiser, n, seen, is_new, &located);        each frame
  *
- * Frame 0 is at the origin and not turned. A pose is found from the foods whose
- * places are known; then new foods get theirs by it. With an average each place
- * is the mean, over all frames of a food's life so far, of its place as
- * computed from the others: the error of a single frame is not passed on from
- * food to food. */
+ * In frame 0 the body is at the origin, not rotated. A pose is fitted to the
+ * foods whose positions are known; it then gives the positions of new foods. If
+ * averaging is on, the position of a food is the mean over its frames so far,
+ * each computed from the pose of the other foods. So the error of a single
+ * frame is not passed on from food to food.
+ */
 #ifndef GLINT_BAKE_MOTION_LOCALISE_H
 #define GLINT_BAKE_MOTION_LOCALISE_H
 
@@ -18,10 +19,10 @@
 #include "glint/scene/motion.h"
 
 struct glint_localiser {
-    bool average; /* over a food's life */
+    bool average; /* true: average positions over the life of each food */
     double place[GLINT_MOTION_MAX_FOODS][3];
-    double age[GLINT_MOTION_MAX_FOODS]; /* number of frames that the food's
-                                           position is averaged over */
+    double age[GLINT_MOTION_MAX_FOODS]; /* number of frames averaged for each
+                                           food */
     bool has_begun;                     /* private */
 };
 
@@ -34,9 +35,9 @@ struct glint_located {
 
 void glint_localiser_init(struct glint_localiser *localiser, bool average);
 
-/* Adds the next frame: the positions SEEN of N foods, in the body's axes; foods
- * marked NEW were not seen before. N must be the same for all frames. Returns
- * NULL, or the error as static text; then there is no pose. */
+/* Processes the next frame: positions SEEN of N foods, in the body's axes;
+ * foods marked NEW were not seen before. N must be the same for all frames.
+ * Returns NULL, or the error as static text; there is no pose then. */
 const char *glint_localise(struct glint_localiser *localiser, int n,
                            const double (*seen)[3], const bool *is_new,
                            struct glint_located *located);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * A recording in JSON, in the words of two spellings. A long text is split
- * while it is read: jansson gets each frame by itself, without commas that
- * trail. */
+ * Reads a recorded motion in JSON, with English or Hungarian member names. A
+ * long text is split while it is read: jansson parses each frame separately,
+ * with trailing commas removed.
+ */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,7 +16,7 @@
 
 enum { CHUNK = 1 << 16, MOST_BYTES = 1 << 20, MOST_DEEP = 64, NAME_BYTES = 32 };
 
-/* The values that are read. */
+/* Members of the recording that are read; others are skipped. */
 enum { STRUCTURE, SZERKEZET, FRAMES, KEYS };
 
 static const char *const keys[KEYS] = {"structure", "szerkezet", "frames"};
@@ -29,15 +30,16 @@ struct recording {
     enum glint_status status;
     char chunk[CHUNK];
     size_t at, n;
-    int c; /* the next byte, or -1 at the end */
+    int c; /* the next byte; -1: end of the text */
     int line, column;
-    int key;                      /* of the value that is read */
-    int piece_line, piece_column; /* of its first byte, from 1 */
+    int key;                      /* member whose value is being read */
+    int piece_line, piece_column; /* line and column of the first byte of the
+                                     current piece, from 1 */
     long number;                  /* number of the current frame; -1: no
                                      frame */
     bool is_kept;                 /* true: skipped characters are appended to
                                      TEXT */
-    char *text;                   /* malloc'ed */
+    char *text;                   /* the current piece; owned */
     size_t bytes, room;
 };
 
@@ -60,8 +62,8 @@ static bool fail(struct recording *r, const char *format, ...)
     return false;
 }
 
-/* Sets C to the next byte. */
-static void load(struct recording *r)
+/* Sets C to the next byte without consuming it. */
+static void load_byte(struct recording *r)
 {
     if (r->at == r->n && r->status == GLINT_OK) {
         const long n = r->read(r->ctx, r->chunk, sizeof r->chunk);
@@ -77,14 +79,14 @@ static void load(struct recording *r)
     r->c = r->at < r->n ? (unsigned char)r->chunk[r->at] : -1;
 }
 
-static bool ends(struct recording *r)
+static bool fail_at_end(struct recording *r)
 {
     if (r->number >= 0)
         return fail(r, "the text ends within frame %ld", r->number);
     return fail(r, "the text ends within the recording");
 }
 
-static bool keep(struct recording *r, char c)
+static bool append_char(struct recording *r, char c)
 {
     if (r->bytes == MOST_BYTES)
         return fail(r, "the recording takes more than 1 MiB");
@@ -103,12 +105,12 @@ static bool keep(struct recording *r, char c)
     return true;
 }
 
-/* Passes the next byte. */
-static bool pass(struct recording *r)
+/* Consumes the next byte. */
+static bool consume_byte(struct recording *r)
 {
     if (r->c < 0)
-        return ends(r);
-    if (r->is_kept && !keep(r, (char)r->c))
+        return fail_at_end(r);
+    if (r->is_kept && !append_char(r, (char)r->c))
         return false;
     if (r->c == '\n') {
         r->line++;
@@ -117,52 +119,53 @@ static bool pass(struct recording *r)
         r->column++;
     }
     r->at++;
-    load(r);
+    load_byte(r);
     return r->status == GLINT_OK;
 }
 
-static bool pass_space(struct recording *r)
+static bool consume_space(struct recording *r)
 {
     while (r->c == ' ' || r->c == '\t' || r->c == '\n' || r->c == '\r')
-        if (!pass(r))
+        if (!consume_byte(r))
             return false;
     return r->status == GLINT_OK;
 }
 
-static bool expect(struct recording *r, char c)
+static bool consume_char(struct recording *r, char c)
 {
     if (r->c < 0)
-        return ends(r);
+        return fail_at_end(r);
     if (r->c != c)
         return fail(r, "'%c' is expected here, in the recording", c);
-    return pass(r);
+    return consume_byte(r);
 }
 
 /* --------------------------------------------------------------------- values
  */
 
-/* Passes a string, and sets NAME[NAME_BYTES] to its beginning, unless NULL. */
-static bool pass_string(struct recording *r, char *name)
+/* Consumes a string. Copies its beginning to NAME[NAME_BYTES] unless NAME is
+ * NULL. */
+static bool consume_string(struct recording *r, char *name)
 {
     size_t n = 0;
 
-    if (!expect(r, '"'))
+    if (!consume_char(r, '"'))
         return false;
     while (r->c != '"') {
         if (r->c >= 0 && r->c < ' ')
             return fail(r, "a string must end on its line, with '\"'");
         if (name && n + 1 < NAME_BYTES && r->c >= 0)
             name[n++] = (char)r->c;
-        if ((r->c == '\\' && !pass(r)) || !pass(r))
+        if ((r->c == '\\' && !consume_byte(r)) || !consume_byte(r))
             return false;
     }
     if (name)
         name[n] = '\0';
-    return pass(r);
+    return consume_byte(r);
 }
 
-/* Takes a comma that nothing follows out of the text. */
-static void drop_comma(struct recording *r)
+/* Removes a trailing comma from TEXT. */
+static void remove_comma(struct recording *r)
 {
     size_t i = r->bytes;
 
@@ -172,20 +175,20 @@ static void drop_comma(struct recording *r)
         r->text[i - 1] = ' ';
 }
 
-/* Skips a value of any type. Only brackets are checked; the reader of the value
+/* Consumes a value of any type. Checks only that brackets match; jansson
  * checks the rest. */
-static bool pass_value(struct recording *r)
+static bool consume_value(struct recording *r)
 {
     char close[MOST_DEEP];
     int deep = 0;
 
-    if (!pass_space(r))
+    if (!consume_space(r))
         return false;
     if (r->c == ',' || r->c == '}' || r->c == ']')
         return fail(r, "a value is expected here, in the recording");
     do {
         if (r->c == '"') {
-            if (!pass_string(r, NULL))
+            if (!consume_string(r, NULL))
                 return false;
             continue;
         }
@@ -195,22 +198,23 @@ static bool pass_value(struct recording *r)
             close[deep++] = r->c == '{' ? '}' : ']';
         } else if (r->c == '}' || r->c == ']') {
             if (deep == 0)
-                return true; /* of a number: that of what it is in */
+                return true; /* a bracket or comma ends a number; it belongs to
+                                the enclosing value */
             if (r->c != close[--deep])
                 return fail(r, "'%c' closes what '%c' opened", r->c,
                             close[deep] == '}' ? '{' : '[');
-            drop_comma(r);
+            remove_comma(r);
         } else if (deep == 0 && (r->c == ',' || r->c <= ' ')) {
-            return r->c >= 0 || ends(r);
+            return r->c >= 0 || fail_at_end(r);
         }
-        if (!pass(r))
+        if (!consume_byte(r))
             return false;
     } while (deep > 0 || (r->c != ',' && r->c > ' ' && r->c != ':'));
     return true;
 }
 
-/* Writes an error at a line and column of the current piece, with the number of
- * the frame if the piece is a frame; 1, 1: at its beginning. */
+/* Sets an error at LINE and COLUMN of the current piece (1, 1: its
+ * beginning), with the number of the frame if the piece is a frame. */
 static bool fail_at(const struct recording *r, int line, int column,
                     const char *format, ...)
 {
@@ -225,7 +229,8 @@ static bool fail_at(const struct recording *r, int line, int column,
     snprintf(r->error->text, sizeof r->error->text, "%.80s:%d:%d: %s%s",
              r->file_name, r->piece_line + line - 1,
              line > 1 ? column : r->piece_column + column - 1, frame, cause);
-    for (char *c = r->error->text; *c; c++) /* what jansson quotes of a file */
+    /* Replaces control characters that jansson quotes from the file. */
+    for (char *c = r->error->text; *c; c++)
         *c = (unsigned char)*c < ' ' ? '?' : *c;
     return false;
 }
@@ -233,7 +238,7 @@ static bool fail_at(const struct recording *r, int line, int column,
 /* ------------------------------------------------------------------- numbers
  */
 
-/* Returns the member of OBJECT that has one of two names, or NULL. */
+/* Returns the member NAME or OTHER of OBJECT; NULL if there is neither. */
 static json_t *get_member(const json_t *object, const char *name,
                           const char *other)
 {
@@ -242,10 +247,11 @@ static json_t *get_member(const json_t *object, const char *name,
     return value || !other ? value : json_object_get(object, other);
 }
 
-/* Sets X to the number NAME of OBJECT, which WHAT has. */
-static bool number(const struct recording *r, const json_t *object,
-                   const char *name, const char *other, const char *what,
-                   double *x)
+/* Sets X to the number NAME or OTHER of OBJECT. WHAT names the object in
+ * errors. */
+static bool read_number(const struct recording *r, const json_t *object,
+                        const char *name, const char *other, const char *what,
+                        double *x)
 {
     const json_t *value = get_member(object, name, other);
 
@@ -256,8 +262,7 @@ static bool number(const struct recording *r, const json_t *object,
            fail_at(r, 1, 1, "'%s' of %s is not a number", name, what);
 }
 
-/* Sets V to the vector NAME of OBJECT, or to zeros if OBJECT has no such
- * member. */
+/* Sets V to the vector NAME of OBJECT; to zeros if there is no such member. */
 static bool read_vector(const struct recording *r, const json_t *object,
                         const char *name, double v[3])
 {
@@ -274,17 +279,17 @@ static bool read_vector(const struct recording *r, const json_t *object,
 /* ---------------------------------------------------------------------- body
  */
 
-static bool take_body(const struct recording *r, const json_t *object)
+static bool read_body(const struct recording *r, const json_t *object)
 {
     struct glint_motion_body body = {.n_sensors = 0};
     const json_t *sensors = get_member(object, "sensors", "erzosejtek");
     struct glint_error cause;
 
     if (!json_is_object(object))
-        return fail_at(r, 1, 1, "the structure is not a JSON object");
-    if (!number(r, object, "size", "meret", "the structure", &body.size) ||
-        !number(r, object, "angleofview", "latoszog", "the structure",
-                &body.angle_deg))
+        return fail_at(r, 1, 1, "the structure is no object");
+    if (!read_number(r, object, "size", "meret", "the structure", &body.size) ||
+        !read_number(r, object, "angleofview", "latoszog", "the structure",
+                     &body.angle_deg))
         return false;
     if (sensors && !json_is_array(sensors))
         return fail_at(r, 1, 1, "'sensors' is not an array");
@@ -294,8 +299,9 @@ static bool take_body(const struct recording *r, const json_t *object)
     for (size_t i = 0; i < json_array_size(sensors); i++) {
         const json_t *sensor = json_array_get(sensors, i);
 
-        if (!number(r, sensor, "theta", NULL, "a sensor", &body.theta[i]) ||
-            !number(r, sensor, "phi", NULL, "a sensor", &body.phi[i]))
+        if (!read_number(r, sensor, "theta", NULL, "a sensor",
+                         &body.theta[i]) ||
+            !read_number(r, sensor, "phi", NULL, "a sensor", &body.phi[i]))
             return false;
         body.n_sensors++;
     }
@@ -306,9 +312,9 @@ static bool take_body(const struct recording *r, const json_t *object)
 /* -------------------------------------------------------------------- frames
  */
 
-/* Sets the intensities of food I, if it has any: one number for all sensors, or
- * one per sensor. */
-static bool take_intensities(const struct recording *r, const json_t *food,
+/* Sets the intensities of food I, if it has any: one number, or one per
+ * sensor. */
+static bool read_intensities(const struct recording *r, const json_t *food,
                              int i, struct glint_motion_sight *s)
 {
     const json_t *value = get_member(food, "i", "i1");
@@ -335,7 +341,7 @@ static bool take_intensities(const struct recording *r, const json_t *food,
     return true;
 }
 
-static bool take_food(const struct recording *r, const json_t *food, int i,
+static bool read_food(const struct recording *r, const json_t *food, int i,
                       struct glint_motion_sight *s)
 {
     static const char *const axis[3] = {"x", "y", "z"};
@@ -346,10 +352,10 @@ static bool take_food(const struct recording *r, const json_t *food, int i,
     if (!json_is_object(food))
         return fail_at(r, 1, 1, "%s is no object", what);
     for (int k = 0; k < 3; k++)
-        if (!number(r, food, axis[k], NULL, what, &s->food[i][k]))
+        if (!read_number(r, food, axis[k], NULL, what, &s->food[i][k]))
             return false;
     s->is_new[i] = json_is_true(reset) || json_number_value(reset) != 0;
-    return take_intensities(r, food, i, s);
+    return read_intensities(r, food, i, s);
 }
 
 static bool read_frame(const struct recording *r, const json_t *object,
@@ -370,15 +376,15 @@ static bool read_frame(const struct recording *r, const json_t *object,
     if (json_array_size(foods) > GLINT_MOTION_MAX_FOODS)
         return fail_at(r, 1, 1, "more than %d foods", GLINT_MOTION_MAX_FOODS);
     for (size_t i = 0; i < json_array_size(foods); i++)
-        if (!take_food(r, json_array_get(foods, i), (int)i, s))
+        if (!read_food(r, json_array_get(foods, i), (int)i, s))
             return false;
     s->n_foods = (int)json_array_size(foods);
     return read_vector(r, object, "rv", s->rv) &&
            read_vector(r, object, "tv", s->tv);
 }
 
-static enum glint_status take_frame(const struct recording *r,
-                                    const json_t *object)
+static enum glint_status add_frame(const struct recording *r,
+                                   const json_t *object)
 {
     struct glint_motion_sight sight;
     struct glint_error cause = {""};
@@ -395,20 +401,21 @@ static enum glint_status take_frame(const struct recording *r,
 /* ---------------------------------------------------------------------- keys
  */
 
-/* Reads value KEY, or an element of it: at most 1 MiB. */
+/* Reads the value of member KEY, or an element of the frames, with jansson;
+ * at most 1 MiB. */
 static bool read_value(struct recording *r, int key)
 {
     json_error_t wrong;
     json_t *value;
 
-    if (!pass_space(r))
+    if (!consume_space(r))
         return false;
     r->key = key;
     r->piece_line = r->line;
     r->piece_column = r->column;
     r->is_kept = true;
     r->bytes = 0;
-    if (!pass_value(r))
+    if (!consume_value(r))
         return false;
     r->is_kept = false;
     value = json_loadb(r->text, r->bytes, JSON_DECODE_ANY, &wrong);
@@ -417,24 +424,24 @@ static bool read_value(struct recording *r, int key)
         fail_at(r, wrong.line > 0 ? wrong.line : 1,
                 wrong.column > 0 ? wrong.column : 1, "%.100s", wrong.text);
     else if (key == FRAMES)
-        r->status = take_frame(r, value);
-    else if (take_body(r, value))
+        r->status = add_frame(r, value);
+    else if (read_body(r, value))
         r->status = GLINT_OK;
     json_decref(value);
     return r->status == GLINT_OK;
 }
 
-/* Skips space and a comma; sets DONE to whether CLOSE follows. */
-static bool pass_separator(struct recording *r, char close, bool *done)
+/* Consumes space and a comma. Sets DONE to whether CLOSE follows instead. */
+static bool consume_separator(struct recording *r, char close, bool *done)
 {
-    if (!pass_space(r))
+    if (!consume_space(r))
         return false;
     *done = r->c == close;
     if (*done)
         return true;
     if (r->c >= 0 && r->c != ',')
         return fail(r, "',' or '%c' is expected here, in the recording", close);
-    if (!pass(r) || !pass_space(r))
+    if (!consume_byte(r) || !consume_space(r))
         return false;
     *done = r->c == close;
     return true;
@@ -444,14 +451,14 @@ static bool read_frames(struct recording *r)
 {
     bool done;
 
-    if (!expect(r, '[') || !pass_space(r))
+    if (!consume_char(r, '[') || !consume_space(r))
         return false;
     done = r->c == ']';
     for (r->number = 0; !done; r->number++)
-        if (!read_value(r, FRAMES) || !pass_separator(r, ']', &done))
+        if (!read_value(r, FRAMES) || !consume_separator(r, ']', &done))
             return false;
     r->number = -1;
-    return pass(r);
+    return consume_byte(r);
 }
 
 static bool read_member(struct recording *r, unsigned *seen)
@@ -459,13 +466,13 @@ static bool read_member(struct recording *r, unsigned *seen)
     char name[NAME_BYTES];
     int key = 0;
 
-    if (!pass_string(r, name) || !pass_space(r) || !expect(r, ':') ||
-        !pass_space(r))
+    if (!consume_string(r, name) || !consume_space(r) ||
+        !consume_char(r, ':') || !consume_space(r))
         return false;
     while (key < KEYS && strcmp(keys[key], name) != 0)
         key++;
     if (key == KEYS)
-        return pass_value(r);
+        return consume_value(r);
     if (*seen >> key & 1)
         return fail(r, "a second '%s'", name);
     *seen |= 1u << key;
@@ -477,16 +484,16 @@ static bool read_all(struct recording *r)
     unsigned seen = 0;
     bool done;
 
-    if (!pass_space(r) || !expect(r, '{') || !pass_space(r))
+    if (!consume_space(r) || !consume_char(r, '{') || !consume_space(r))
         return false;
     done = r->c == '}';
     while (!done)
-        if (!read_member(r, &seen) || !pass_separator(r, '}', &done))
+        if (!read_member(r, &seen) || !consume_separator(r, '}', &done))
             return false;
     r->at++;
     r->column++;
-    load(r);
-    if (!pass_space(r))
+    load_byte(r);
+    if (!consume_space(r))
         return false;
     return r->c < 0 || fail(r, "text follows the end of the recording");
 }
@@ -509,7 +516,7 @@ enum glint_status glint_recording_read(struct glint_motion_baker *baker,
     r->error = error;
     r->line = r->column = 1;
     r->number = -1;
-    load(r);
+    load_byte(r);
     read_all(r);
     status = r->status;
     free(r->text);

@@ -6,8 +6,9 @@
 
 enum { MOST_SWEEPS = 30 };
 
-/* Turns rows and columns P and Q of A so that A[P][Q] is 0, and V with them. */
-static void turn_pair(double a[4][4], double v[4][4], int p, int q)
+/* Jacobi rotation: rotates rows and columns P and Q of A such that A[P][Q]
+ * becomes 0, and V with them. */
+static void rotate_pair(double a[4][4], double v[4][4], int p, int q)
 {
     const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
     const double t =
@@ -30,9 +31,9 @@ static void turn_pair(double a[4][4], double v[4][4], int p, int q)
     }
 }
 
-/* Sets V to the eigenvector of the largest eigenvalue of the symmetric A, by
- * Jacobi's method. */
-static void largest_of(double a[4][4], double vector[4])
+/* Sets VECTOR to the eigenvector of the largest eigenvalue of the symmetric
+ * matrix A, by Jacobi's method. */
+static void find_eigenvector(double a[4][4], double vector[4])
 {
     double v[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     int best = 0;
@@ -50,7 +51,7 @@ static void largest_of(double a[4][4], double vector[4])
         for (int p = 0; p < 3; p++)
             for (int q = p + 1; q < 4; q++)
                 if (a[p][q] * a[p][q] > 1e-40 * all)
-                    turn_pair(a, v, p, q);
+                    rotate_pair(a, v, p, q);
     }
     for (int k = 1; k < 4; k++)
         best = a[k][k] > a[best][best] ? k : best;
@@ -58,8 +59,8 @@ static void largest_of(double a[4][4], double vector[4])
         vector[k] = v[k][best];
 }
 
-/* Sets ROW to the matrix of the turn. */
-static void set_rows(struct glint_rigid *r)
+/* Sets ROW of R to the matrix of its quaternion. */
+static void set_matrix(struct glint_rigid *r)
 {
     const double w = r->turn[0], x = r->turn[1], y = r->turn[2], z = r->turn[3];
     const double row[3][3] = {
@@ -70,9 +71,9 @@ static void set_rows(struct glint_rigid *r)
     memcpy(r->row, row, sizeof row);
 }
 
-/* Sets the rotation that maximises S, the sum of products of the rotated
- * vectors (rows) and their targets (columns). */
-static void turn_of(const double s[3][3], struct glint_rigid *r)
+/* Sets R to the rotation that maximises the trace of S rotated, where S is
+ * the sum of products of source vectors (rows) and target vectors (columns). */
+static void set_rotation(const double s[3][3], struct glint_rigid *r)
 {
     double n[4][4] = {
         {s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2],
@@ -85,17 +86,17 @@ static void turn_of(const double s[3][3], struct glint_rigid *r)
     for (int i = 1; i < 4; i++)
         for (int k = 0; k < i; k++)
             n[i][k] = n[k][i];
-    largest_of(n, r->turn);
+    find_eigenvector(n, r->turn);
     for (int k = 0; k < 4; k++)
         length += r->turn[k] * r->turn[k];
     length = r->turn[0] < 0 ? -sqrt(length) : sqrt(length);
     for (int k = 0; k < 4; k++)
         r->turn[k] /= length;
-    set_rows(r);
+    set_matrix(r);
 }
 
-/* Returns whether points whose sums of products are C span no area: the sum of
- * the principal 2 x 2 minors of C is far below its bound, a third of the
+/* Returns whether points with the covariance C lie on a line: the sum of the
+ * principal 2 x 2 minors of C is far below its upper bound, a third of the
  * squared trace. */
 static bool is_line(const double c[3][3])
 {
@@ -125,7 +126,7 @@ bool glint_rigid_fit(int n, const double (*from)[3], const double (*to)[3],
             }
     if (n < 3 || is_line((const double(*)[3])c))
         return false;
-    turn_of((const double(*)[3])s, r);
+    set_rotation((const double(*)[3])s, r);
     for (int k = 0; k < 3; k++)
         r->at[k] = 0;
     glint_rigid_take(r, a, moved);
@@ -141,7 +142,7 @@ void glint_rigid_nearest(const double row[3][3], struct glint_rigid *rigid)
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
             s[j][k] = row[k][j];
-    turn_of((const double(*)[3])s, rigid);
+    set_rotation((const double(*)[3])s, rigid);
 }
 
 void glint_rigid_take(const struct glint_rigid *rigid, const double point[3],

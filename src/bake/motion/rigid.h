@@ -1,28 +1,31 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rigid motions in double precision. */
+ * Rigid motions in double precision: least-squares fits of point sets.
+ */
 #ifndef GLINT_BAKE_MOTION_RIGID_H
 #define GLINT_BAKE_MOTION_RIGID_H
 
 #include <stdbool.h>
 
-/* Takes point p of the body to at + turn p. */
+/* A rigid motion: moves point p of the body to at + R p, where R is the
+ * rotation TURN. */
 struct glint_rigid {
     double at[3];
     double turn[4];   /* unit quaternion w, x, y, z; w is not negative */
-    double row[3][3]; /* the same as a matrix */
+    double row[3][3]; /* matrix of the same rotation */
 };
 
-/* Min determinant of a base, as a fraction of its bound. */
+/* Min squared area that points span, as a fraction of its upper bound. */
 #define GLINT_RIGID_LEAST 0x1p-20
 
-/* Finds the motion that moves N points FROM to TO with the least sum of squares
- * [Horn87]. Returns false if N < 3 or the points lie on a line: the square of
- * the area that they span is below GLINT_RIGID_LEAST of its bound. */
+/* Finds the motion that moves N points FROM to TO with the smallest sum of
+ * squared errors [Horn87]. Returns false if N < 3 or the points lie on a
+ * line: the squared area that they span is below GLINT_RIGID_LEAST of its
+ * bound. */
 bool glint_rigid_fit(int n, const double (*from)[3], const double (*to)[3],
                      struct glint_rigid *rigid);
 
-/* Sets the turn of RIGID to the rotation nearest to ROW. */
+/* Sets the rotation of RIGID to the one nearest to the matrix ROW. */
 void glint_rigid_nearest(const double row[3][3], struct glint_rigid *rigid);
 
 /* Sets TO to POINT moved by RIGID. */
