@@ -7,14 +7,15 @@
 
 #include "base/compiler.h"
 
-enum { VECTORS = 4 }; /* columns that are multiplied by another at once */
+/* Number of columns that are multiplied by the same column at once. */
+enum { VECTORS = 4 };
 
-/* Number of sums of a dot product. */
+/* number of partial sums of a dot product */
 enum { LANES = 4 };
 
-/* Returns the dot product of A and B. Four sums at once make shorter chains of
+/* Returns the dot product of A and B. Four partial sums shorten the chain of
  * dependent additions. */
-static WIDE_VECTORS double dot(const double *a, const double *b, int n)
+static WIDE_VECTORS double compute_dot(const double *a, const double *b, int n)
 {
     double s[LANES] = {0, 0, 0, 0};
     int i = 0;
@@ -27,11 +28,11 @@ static WIDE_VECTORS double dot(const double *a, const double *b, int n)
     return (s[0] + s[1]) + (s[2] + s[3]);
 }
 
-/* Sets SUM to the dot products of A and four columns, each with the bits of
- * dot(). A is read once for all of them, and their sums do not
- * wait for each other. */
-static WIDE_VECTORS void dots(const double *a, const double *const b[VECTORS],
-                              int n, double sum[VECTORS])
+/* Sets SUM to the dot products of A with four columns, bit-identical to
+ * compute_dot(). Loads A only once, and the four sums are independent. */
+static WIDE_VECTORS void compute_dots(const double *a,
+                                      const double *const b[VECTORS], int n,
+                                      double sum[VECTORS])
 {
     const double *const b0 = b[0], *const b1 = b[1], *const b2 = b[2],
                         *const b3 = b[3];
@@ -60,8 +61,8 @@ static WIDE_VECTORS void dots(const double *a, const double *const b[VECTORS],
 }
 
 /* Subtracts K times B from A. */
-static WIDE_VECTORS void subtract(double *restrict a, double k,
-                                  const double *restrict b, int n)
+static WIDE_VECTORS void subtract_scaled(double *restrict a, double k,
+                                         const double *restrict b, int n)
 {
     int i = 0;
 
@@ -72,9 +73,10 @@ static WIDE_VECTORS void subtract(double *restrict a, double k,
         a[i] -= k * b[i];
 }
 
-/* Multiplies A by X, POWER times. */
-static WIDE_VECTORS void multiply(double *restrict a, const double *restrict x,
-                                  int power, int n)
+/* Multiplies A elementwise by X, POWER times. */
+static WIDE_VECTORS void multiply_by_power(double *restrict a,
+                                           const double *restrict x, int power,
+                                           int n)
 {
     for (int p = 0; p < power; p++) {
         int i = 0;
@@ -88,7 +90,7 @@ static WIDE_VECTORS void multiply(double *restrict a, const double *restrict x,
 }
 
 /* Returns the largest magnitude of A. */
-static WIDE_VECTORS double largest(const double *a, int n)
+static WIDE_VECTORS double find_max_magnitude(const double *a, int n)
 {
     double most[LANES] = {0, 0, 0, 0};
     int i = 0;
@@ -101,27 +103,28 @@ static WIDE_VECTORS double largest(const double *a, int n)
     return fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
 }
 
-/* Fraction of its first length: a shorter column is a combination of others. */
+/* A column whose remaining length is below this fraction of its original
+ * length is a combination of others. */
 #define DEPENDENT 1e-9
-/* A square computed by differences that is below this fraction of its first
- * value has lost half of its digits. */
+/* A squared length that differences have reduced below this fraction of its
+ * first value has lost half of its digits. */
 #define DOUBTFUL 1e-8
-/* A candidate is represented by three numbers, was2, left2 and pull, which are
- * updated from its fraction along each chosen direction. These fractions follow
- * from products of terms, as in a Cholesky factorisation. A candidate is
- * orthogonalised only when it is chosen itself, or when left2 has become too
- * small to be trusted. */
+/* A candidate term. WAS2, LEFT2 and PULL are updated from its fraction along
+ * each chosen direction. These fractions follow from products of terms, as
+ * in a Cholesky factorisation. A candidate is orthogonalised only when it is
+ * chosen itself, or when LEFT2 has become too inaccurate. */
 struct column {
     uint8_t power[GLINT_VARIABLES];
     bool dead, chosen;
-    int place;                  /* of the term among moments */
-    double length;              /* length of AT */
-    double on[GLINT_MAX_TERMS]; /* fraction of AT along each chosen direction */
-    /* squared length of AT without the directions that were chosen when it was
-     * last made orthogonal, and without all chosen directions */
+    int place;     /* index of the term among moments */
+    double length; /* Euclidean length of AT */
+    /* dot product of AT with each chosen direction */
+    double on[GLINT_MAX_TERMS];
+    /* squared length of AT after subtraction of chosen directions: of those
+     * that were chosen when it was last orthogonalised, and of all */
     double was2, left2;
-    double pull;      /* product of AT with the residual */
-    const double *at; /* [n], the term times the weight */
+    double pull;      /* dot product of AT with the residual */
+    const double *at; /* [n]: values of the term times the weights */
 };
 
 enum {
@@ -133,30 +136,30 @@ struct search {
     const struct glint_regress_samples *s;
     const struct glint_degrees *degrees;
     int n_chosen, n_columns;
-    int chosen[GLINT_MAX_TERMS]; /* columns, in the order they entered */
+    int chosen[GLINT_MAX_TERMS]; /* indices of columns, in the order of choice
+                                  */
     struct column column[GLINT_MAX_CANDIDATES];
-    /* Products of two terms, NAN if not computed yet. A product depends only on
-     * the sums of both terms' powers, which many pairs have in common. */
+    /* Products of two terms; NAN: not computed yet. A product depends only
+     * on the sums of both terms' powers, which many pairs share. */
     double *moment;
     double *residual;  /* [n] */
-    double *direction; /* [terms][n], of length 1, orthogonal to each other */
+    double *direction; /* [terms][n]: orthonormal directions */
     double *values;    /* [n_columns][n] */
 };
 
-/* Returns direction RANK; RANK may be the index of the next direction to
- * choose. */
+/* Returns direction RANK, which may be the next direction to be chosen. */
 static double *direction(const struct search *s, int rank)
 {
     return s->direction + (size_t)rank * (size_t)s->s->n;
 }
 
-/* Returns how many of N rays there are in the block from ray I on. */
-static int block(int n, int i)
+/* Returns the number of rays in the block that begins at ray I of N. */
+static int count_block(int n, int i)
 {
     return n - i < BLOCK ? n - i : BLOCK;
 }
 
-static bool allowed(const struct glint_degrees *d, const uint8_t *power)
+static bool is_allowed(const struct glint_degrees *d, const uint8_t *power)
 {
     int total = 0;
 
@@ -168,8 +171,8 @@ static bool allowed(const struct glint_degrees *d, const uint8_t *power)
     return total <= d->total && (d->parity < 0 || power[1] % 2 == d->parity);
 }
 
-static double *moment_of(const struct search *s, const struct column *a,
-                         const struct column *b)
+static double *get_moment(const struct search *s, const struct column *a,
+                          const struct column *b)
 {
     return &s->moment[a->place + b->place];
 }
@@ -184,28 +187,28 @@ static void find_moments(const struct search *s, const struct column *chosen,
     int n_missing = 0;
 
     for (int k = 0; k < n; k++)
-        if (isnan(*moment_of(s, chosen, column[k])))
+        if (isnan(*get_moment(s, chosen, column[k])))
             missing[n_missing++] = column[k];
     if (n_missing == 0)
         return;
     for (int k = 0; k < VECTORS; k++)
         at[k] = missing[k < n_missing ? k : 0]->at;
-    dots(chosen->at, at, s->s->n, product);
+    compute_dots(chosen->at, at, s->s->n, product);
     for (int k = 0; k < n_missing; k++)
-        *moment_of(s, chosen, missing[k]) = product[k];
+        *get_moment(s, chosen, missing[k]) = product[k];
 }
 
-/* Notes the fractions of N columns, at most VECTORS, along the chosen
+/* Updates N columns, at most VECTORS, with their fractions along the chosen
  * direction of rank RANK. */
-static void note_shares(const struct search *s, struct column *const column[],
-                        int n, int rank)
+static void update_fractions(const struct search *s,
+                             struct column *const column[], int n, int rank)
 {
     const struct column *chosen = &s->column[s->chosen[rank]];
 
     find_moments(s, chosen, column, n);
     for (int k = 0; k < n; k++) {
-        const double share = (*moment_of(s, chosen, column[k]) -
-                              dot(chosen->on, column[k]->on, rank)) /
+        const double share = (*get_moment(s, chosen, column[k]) -
+                              compute_dot(chosen->on, column[k]->on, rank)) /
                              chosen->on[rank];
 
         column[k]->on[rank] = share;
@@ -213,8 +216,8 @@ static void note_shares(const struct search *s, struct column *const column[],
     }
 }
 
-/* Adds to SUM the products of A, M rays from ray FIRST on, and all chosen
- * directions. */
+/* Adds to SUM the dot products of A with all chosen directions, over M rays
+ * from ray FIRST on. */
 static void add_products(const struct search *s, const double *a, int first,
                          int m, double sum[GLINT_MAX_TERMS])
 {
@@ -224,24 +227,24 @@ static void add_products(const struct search *s, const double *a, int first,
 
         for (int j = 0; j < VECTORS; j++)
             at[j] = direction(s, k + j < s->n_chosen ? k + j : k) + first;
-        dots(a + first, at, m, product);
+        compute_dots(a + first, at, m, product);
         for (int j = 0; j < VECTORS && k + j < s->n_chosen; j++)
             sum[k + j] += product[j];
     }
 }
 
-/* Subtracts SHARE times each chosen direction from M rays of A, from ray FIRST
- * on. */
+/* Subtracts SHARE times each chosen direction from A, for M rays from ray
+ * FIRST on. */
 static void subtract_all(const struct search *s, double *a, int first, int m,
                          const double share[GLINT_MAX_TERMS])
 {
     for (int k = 0; k < s->n_chosen; k++)
-        subtract(a + first, share[k], direction(s, k) + first, m);
+        subtract_scaled(a + first, share[k], direction(s, k) + first, m);
 }
 
-/* Sets the next direction to the component of COLUMN orthogonal to all chosen
- * ones, not normalised yet. Orthogonalises twice, to all of them at once,
- * because of rounding. */
+/* Sets the next direction to the component of COLUMN that is orthogonal to
+ * all chosen ones, not normalised. Orthogonalises twice, because of
+ * rounding. */
 static void make_orthogonal(const struct search *s, struct column *column)
 {
     const int n = s->s->n;
@@ -250,19 +253,19 @@ static void make_orthogonal(const struct search *s, struct column *column)
 
     memcpy(q, column->at, (size_t)n * sizeof *q);
     for (int i = 0; i < n; i += BLOCK) {
-        subtract_all(s, q, i, block(n, i), column->on);
-        add_products(s, q, i, block(n, i), again);
+        subtract_all(s, q, i, count_block(n, i), column->on);
+        add_products(s, q, i, count_block(n, i), again);
     }
     for (int i = 0; i < n; i += BLOCK)
-        subtract_all(s, q, i, block(n, i), again);
+        subtract_all(s, q, i, count_block(n, i), again);
     for (int k = 0; k < s->n_chosen; k++)
         column->on[k] += again[k];
-    column->was2 = column->left2 = dot(q, q, n);
-    column->pull = dot(q, s->residual, n);
+    column->was2 = column->left2 = compute_dot(q, q, n);
+    column->pull = compute_dot(q, s->residual, n);
 }
 
-/* Sets the values AT[n] of COLUMN from the values of PARENT, whose term divides
- * its term, or from the weights if PARENT is NULL. */
+/* Sets the values AT[n] of COLUMN from those of PARENT, whose term divides
+ * the term of COLUMN; if PARENT is NULL, from the weights. */
 static void set_values(const struct search *s, struct column *column,
                        const struct column *parent, double *at)
 {
@@ -270,23 +273,25 @@ static void set_values(const struct search *s, struct column *column,
     const double *const from = parent ? parent->at : v->weight;
 
     for (int i = 0; i < v->n; i += BLOCK) {
-        const int n = block(v->n, i);
+        const int n = count_block(v->n, i);
 
         memcpy(at + i, from + i, (size_t)n * sizeof *at);
         for (int k = 0; k < GLINT_VARIABLES; k++)
             if (column->power[k])
-                multiply(at + i, v->x[k] + i,
-                         column->power[k] - (parent ? parent->power[k] : 0), n);
+                multiply_by_power(
+                    at + i, v->x[k] + i,
+                    column->power[k] - (parent ? parent->power[k] : 0), n);
     }
     column->at = at;
-    column->was2 = column->left2 = dot(at, at, v->n);
+    column->was2 = column->left2 = compute_dot(at, at, v->n);
     column->length = sqrt(column->left2);
-    column->pull = dot(at, s->residual, v->n);
+    column->pull = compute_dot(at, s->residual, v->n);
 }
 
-/* Returns the index of the term POWER among moments. The index of a product is
- * the sum of both indices. */
-static int place_of(const struct glint_degrees *d, const uint8_t *power)
+/* Returns the index of the term POWER among moments. The index of a product
+ * of two terms is the sum of their indices. */
+static int compute_moment_index(const struct glint_degrees *d,
+                                const uint8_t *power)
 {
     int place = 0;
 
@@ -295,19 +300,19 @@ static int place_of(const struct glint_degrees *d, const uint8_t *power)
     return place;
 }
 
-/* Adds the term POWER as a candidate; returns it, or NULL if there is nothing
- * to add. Its fractions are not set yet. */
+/* Adds the term POWER as a candidate, without fractions. Returns it, or NULL
+ * if the term is not allowed or exists already. */
 static struct column *add_candidate(struct search *s, const uint8_t *power,
                                     const struct column *parent)
 {
     struct column *column = &s->column[s->n_columns];
 
-    if (s->n_columns == GLINT_MAX_CANDIDATES || !allowed(s->degrees, power))
+    if (s->n_columns == GLINT_MAX_CANDIDATES || !is_allowed(s->degrees, power))
         return NULL;
     for (int i = 0; i < s->n_columns; i++)
         if (memcmp(s->column[i].power, power, GLINT_VARIABLES) == 0)
             return NULL;
-    *column = (struct column){.place = place_of(s->degrees, power)};
+    *column = (struct column){.place = compute_moment_index(s->degrees, power)};
     memcpy(column->power, power, GLINT_VARIABLES);
     set_values(s, column, parent,
                s->values + (size_t)s->n_columns * (size_t)s->s->n);
@@ -315,11 +320,11 @@ static struct column *add_candidate(struct search *s, const uint8_t *power,
     return column;
 }
 
-/* Adds the terms next to COLUMN's as candidates: one power more in a variable,
- * two more in one with parity. With leaps those with two powers more of
- * variable 0 are next to it, too, and of variable 1 if its parity is free:
- * where a ghost is symmetric, near the axis, the odd power in between explains
- * nothing and would never be chosen. */
+/* Adds the neighbours of COLUMN's term as candidates: one power more in one
+ * variable, or two more in a variable of fixed parity. With LEAPS, two
+ * powers more of variable 0 are neighbours, too, and of variable 1 if its
+ * parity is free: near the axis ghosts are symmetric, so the odd power in
+ * between explains nothing and would never be chosen. */
 static void add_neighbours(struct search *s, const struct column *column)
 {
     struct column *added[NEIGHBOURS];
@@ -339,11 +344,12 @@ static void add_neighbours(struct search *s, const struct column *column)
     }
     for (int rank = 0; n > 0 && rank < s->n_chosen; rank++)
         for (int k = 0; k < n; k += VECTORS)
-            note_shares(s, added + k, n - k < VECTORS ? n - k : VECTORS, rank);
+            update_fractions(s, added + k, n - k < VECTORS ? n - k : VECTORS,
+                             rank);
 }
 
-/* Returns the candidate that explains most of the residual, or -1. */
-static int best_candidate(struct search *s)
+/* Returns the index of the candidate that reduces the residual most, or -1. */
+static int find_best_candidate(struct search *s)
 {
     double most = 0;
     int best = -1;
@@ -365,7 +371,7 @@ static int best_candidate(struct search *s)
     return best;
 }
 
-static void choose(struct search *s, int index)
+static void choose_column(struct search *s, int index)
 {
     struct column *c = &s->column[index];
     const int n = s->s->n, rank = s->n_chosen;
@@ -381,12 +387,12 @@ static void choose(struct search *s, int index)
     c->chosen = true;
     s->chosen[s->n_chosen++] = index;
     share = c->pull / c->on[rank];
-    subtract(s->residual, share, q, n);
+    subtract_scaled(s->residual, share, q, n);
     for (int i = 0; i < s->n_columns; i++) {
         if (!s->column[i].dead && !s->column[i].chosen)
             group[grouped++] = &s->column[i];
         if (grouped == VECTORS || (grouped > 0 && i + 1 == s->n_columns)) {
-            note_shares(s, group, grouped, rank);
+            update_fractions(s, group, grouped, rank);
             for (int k = 0; k < grouped; k++)
                 group[k]->pull -= share * group[k]->on[rank];
             grouped = 0;
@@ -402,20 +408,20 @@ static bool is_hopeless(const struct search *s, double left)
     return d->hopeless > 0 && left > d->hopeless && s->n_chosen >= d->patience;
 }
 
-/* Returns the residual divided by its limit: the max of the RMS ratio and the
- * peak ratio. */
-static double excess(const struct search *s, double rms, double peak)
+/* Returns the residual in units of its limits: the larger of RMS / limit and
+ * peak / limit. */
+static double compute_excess(const struct search *s, double rms, double peak)
 {
-    const double sum2 = dot(s->residual, s->residual, s->s->n);
+    const double sum2 = compute_dot(s->residual, s->residual, s->s->n);
 
     return fmax(sqrt(sum2 / s->s->n) / rms,
-                largest(s->residual, s->s->n) / peak);
+                find_max_magnitude(s->residual, s->s->n) / peak);
 }
 
-/* Works out the coefficients of the terms from the fractions of orthogonal
- * directions. */
-static void solve(const struct search *s, const double *y,
-                  struct glint_poly *poly)
+/* Computes the coefficients of the terms from the fractions along the
+ * orthogonal directions, by back substitution. */
+static void solve_coefficients(const struct search *s, const double *y,
+                               struct glint_poly *poly)
 {
     poly->n = s->n_chosen;
     for (int k = s->n_chosen - 1; k >= 0; k--) {
@@ -437,7 +443,7 @@ double glint_regress_fit(double *scratch,
                          double rms, double peak, struct glint_poly *poly)
 {
     const size_t n = (size_t)samples->n;
-    const int n_moments = place_of(degrees, degrees->most) * 2 + 1;
+    const int n_moments = compute_moment_index(degrees, degrees->most) * 2 + 1;
     struct search s = {.s = samples,
                        .degrees = degrees,
                        .moment = scratch,
@@ -453,17 +459,18 @@ double glint_regress_fit(double *scratch,
     for (int i = 0; i < samples->n; i++)
         s.residual[i] = samples->weight[i] * y[i];
     add_candidate(&s, first, NULL);
-    while ((left = excess(&s, rms, peak)) > 1 && s.n_chosen < degrees->terms) {
-        const int best = is_hopeless(&s, left) ? -1 : best_candidate(&s);
+    while ((left = compute_excess(&s, rms, peak)) > 1 &&
+           s.n_chosen < degrees->terms) {
+        const int best = is_hopeless(&s, left) ? -1 : find_best_candidate(&s);
 
         if (best < 0)
             break;
-        choose(&s, best);
+        choose_column(&s, best);
     }
     if (s.n_chosen == 0 && s.n_columns > 0 && s.column[0].length > 0)
-        choose(&s, 0); /* A polynomial has at least one term, however large its
-                          tolerance. */
-    solve(&s, y, poly);
+        choose_column(&s, 0); /* a polynomial has at least one term, however
+                                 large its tolerance */
+    solve_coefficients(&s, y, poly);
     return left;
 }
 
