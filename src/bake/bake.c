@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Makes the model of a lens table: fits, quantises, proves, writes and measures
- * it. */
+ * Bakes a lens table into a model: fits polynomials to every ghost, quantises
+ * them to integers, proves that these cannot overflow, writes the file and
+ * measures its errors.
+ */
 #include "glint/bake.h"
 
 #include <math.h>
@@ -16,7 +18,7 @@
 #include "bake/trace/cells.h"
 #include "bake/write_model.h"
 
-/* All that is needed while one model is made. */
+/* State of one bake. */
 struct bake_run {
     const struct glint_prescription *lens;
     struct glint_bake_options options;
@@ -25,21 +27,25 @@ struct bake_run {
     struct glint_brightness brightness;
     struct glint_fitted_ghost *fitted;         /* [n_ghosts] */
     struct glint_quantised_system **quantised; /* [n_ghosts][n_systems] */
-    enum glint_status *status;                 /* [n_ghosts] */
+    /* [n_ghosts]: result of the current step of each ghost */
+    enum glint_status *status;
     struct glint_draft draft;
-    int *first;     /* index of each ghost's first system */
-    int *intruders; /* number of intruders of each ghost, see struct
-                       glint_bake_report */
+    /* [n_ghosts]: index of each ghost's first system in the model */
+    int *first;
+    int *intruders; /* [n_ghosts]: number of blocked rays that the model
+                       transmits, see struct glint_bake_report */
     int *rays;
-    struct glint_effort effort; /* worker 0's */
+    struct glint_effort effort; /* written by worker 0 only */
     struct glint_error *error;
 };
 
 /* --------------------------------------------------------------------- jobs */
 
-/* Returns the ghost and N beside it, to be freed; NULL: no memory. */
-static struct glint_visible *visible_of(const struct bake_run *run, int ghost,
-                                        int n)
+/* Allocates the visibility of GHOST, followed by that of the same ghost at
+ * the first N neighbouring zoom positions. The caller frees it. Returns NULL
+ * if there is no memory. */
+static struct glint_visible *allocate_visible(const struct bake_run *run,
+                                              int ghost, int n)
 {
     struct glint_visible *const v = calloc((size_t)n + 1, sizeof *v);
 
@@ -71,8 +77,8 @@ static enum glint_status quantise_ghost(struct bake_run *run, int ghost)
     return status;
 }
 
-/* Fraction of a bake until all ghosts are fitted, and until they are quantised.
- */
+/* Progress, as a fraction of the bake, when all ghosts are fitted, and when
+ * they are quantised. */
 #define FITTED    0.96
 #define QUANTISED 0.97
 
@@ -84,7 +90,7 @@ static void report_effort(struct bake_run *run)
         o->progress(o->progress_ctx, FITTED * glint_effort_done(&run->effort));
 }
 
-static void fit_told(void *ctx, double work, double share)
+static void report_fit(void *ctx, double work, double share)
 {
     struct bake_run *run = ctx;
 
@@ -92,12 +98,13 @@ static void fit_told(void *ctx, double work, double share)
     report_effort(run);
 }
 
-/* Factor on all tolerances of lenses that are not round: with two components of
- * the direction, errors of tenths of a pixel need many times as many
- * systems. */
+/* Factor on all tolerances of lenses that are not round. Their directions
+ * have two components, so errors of tenths of a pixel would need many times
+ * as many systems. */
 #define SKEW_TOLERANCE 1.5
 
-/* The same factor for energies, which are cheap to fit in parts of the band. */
+/* Factor on the energy tolerance of lenses that are not round. It is
+ * smaller, as dividing the band reduces energy errors cheaply. */
 #define SKEW_ENERGY 0.7
 
 static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
@@ -110,8 +117,8 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
         .faint_sensor_mm = 0.07 * t * film / 1920,
         .edge_mm = 0.04 * t * film / 1920,
         .stop = 4.5e-4 * t,
-        /* A sixteenth of that, or less of a lens that opens wider than
-         * GLINT_WIDE, as its model serves all narrower stops. */
+        /* a sixteenth of STOP; less for lenses that open wider than
+         * GLINT_WIDE, as the model also serves all narrower stops */
         .stop_least = 2.7e-5 * t * fmin(1, run->lens->f_number / GLINT_WIDE),
         .barrel = 4e-4 * t,
         .escape = 1e-3 * t,
@@ -127,17 +134,17 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
         glint_fit_told_fn *, void *, struct glint_fitted_ghost *) =
         round ? glint_fit_ghost : glint_skew_fit;
     struct glint_visible *const visible =
-        visible_of(run, ghost, run->options.n_beside);
+        allocate_visible(run, ghost, run->options.n_beside);
     const enum glint_status status =
         visible ? fit(visible, run->options.max_deg, &tolerance,
-                      tells ? fit_told : NULL, run, &run->fitted[ghost])
+                      tells ? report_fit : NULL, run, &run->fitted[ghost])
                 : GLINT_E_MEMORY;
 
     free(visible);
     return status;
 }
 
-/* Fits a ghost; worker 0 reports progress. */
+/* Fits one ghost; worker 0 reports progress. */
 static void fit_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;
@@ -164,7 +171,7 @@ static void measure_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;
     const struct glint_lens lens = glint_draft_lens(&run->draft);
-    struct glint_visible *const visible = visible_of(run, ghost, 0);
+    struct glint_visible *const visible = allocate_visible(run, ghost, 0);
 
     (void)worker;
     run->status[ghost] = GLINT_E_MEMORY;
@@ -183,18 +190,17 @@ static void measure_job(void *ctx, int ghost, int worker)
     free(visible);
 }
 
-/* One round of short jobs, a job for each ghost, and its fraction of the
- * progress, 0 .. 1. */
+/* A loop over all ghosts with one short job per ghost, and the progress at
+ * its begin and end, 0 .. 1. */
 struct round {
     struct bake_run *run;
     glint_job_fn *job;
     double from, to;
-    int most; /* largest number of a job that worker 0 has ended */
+    int most; /* largest index of a job that worker 0 has finished */
 };
 
-/* Runs a job of a round. Workers do not wait for each other; worker 0 reports
- * progress. */
-static void round_job(void *ctx, int job, int worker)
+/* Runs a job of the loop. Worker 0 reports progress. */
+static void run_round_job(void *ctx, int job, int worker)
 {
     struct round *r = ctx;
     const struct glint_bake_options *o = &r->run->options;
@@ -207,7 +213,7 @@ static void round_job(void *ctx, int job, int worker)
     o->progress(o->progress_ctx, r->from + (r->to - r->from) * job / n);
 }
 
-static enum glint_status status_of(const struct bake_run *run)
+static enum glint_status find_first_error(const struct bake_run *run)
 {
     for (int i = 0; i < run->setup.n_ghosts; i++)
         if (run->status[i] != GLINT_OK)
@@ -215,19 +221,20 @@ static enum glint_status status_of(const struct bake_run *run)
     return GLINT_OK;
 }
 
-static enum glint_status for_ghosts(struct bake_run *run, glint_job_fn *job,
-                                    double from, double to)
+static enum glint_status run_for_ghosts(struct bake_run *run, glint_job_fn *job,
+                                        double from, double to)
 {
     struct round round = {run, job, from, to, 0};
 
-    glint_workers_run(run->options.workers, run->setup.n_ghosts, round_job,
+    glint_workers_run(run->options.workers, run->setup.n_ghosts, run_round_job,
                       &round);
     if (run->options.progress)
         run->options.progress(run->options.progress_ctx, to);
-    return status_of(run);
+    return find_first_error(run);
 }
 
-static enum glint_effort_kind kind_of(const struct glint_prescription *lens)
+static enum glint_effort_kind
+choose_effort_kind(const struct glint_prescription *lens)
 {
     for (int k = 0; k < lens->n_surfaces; k++)
         if (glint_surface_is_shaped(&lens->surface[k]))
@@ -242,7 +249,8 @@ static enum glint_status fit_ghosts(struct bake_run *run)
     double head, typical;
 
     glint_effort_init(&run->effort, run->setup.n_ghosts,
-                      glint_workers_count(o->workers), kind_of(run->lens));
+                      glint_workers_count(o->workers),
+                      choose_effort_kind(run->lens));
     if (!glint_prescription_is_round(run->lens)) {
         glint_skew_work(run->lens, run->setup.n_ghosts, o->max_deg,
                         o->tolerance, &head, &typical);
@@ -252,12 +260,12 @@ static enum glint_status fit_ghosts(struct bake_run *run)
     glint_workers_run(o->workers, run->setup.n_ghosts, fit_job, run);
     if (o->progress)
         o->progress(o->progress_ctx, FITTED);
-    return status_of(run);
+    return find_first_error(run);
 }
 
 /* ----------------------------------------------------------------- pipeline */
 
-static int parts_of(const struct glint_fitted_ghost *ghost)
+static int count_parts(const struct glint_fitted_ghost *ghost)
 {
     int n = 1;
 
@@ -266,16 +274,16 @@ static int parts_of(const struct glint_fitted_ghost *ghost)
     return n;
 }
 
-/* Turns the second and further parts of each ghost into separate ghosts,
+/* Converts the second and further parts of each ghost into separate ghosts,
  * appended after all others. */
-static enum glint_status part_ghosts(struct bake_run *run)
+static enum glint_status separate_parts(struct bake_run *run)
 {
     struct glint_setup *s = &run->setup;
     const int n = s->n_ghosts;
     enum glint_status status = GLINT_OK;
 
     for (int ghost = 0; ghost < n; ghost++) {
-        const int n_parts = parts_of(&run->fitted[ghost]);
+        const int n_parts = count_parts(&run->fitted[ghost]);
 
         for (int part = 1; part < n_parts && status == GLINT_OK; part++) {
             if (s->n_ghosts == GLINT_MAX_GHOSTS) {
@@ -294,7 +302,7 @@ static enum glint_status part_ghosts(struct bake_run *run)
     return status;
 }
 
-static enum glint_status reserve(struct bake_run *run)
+static enum glint_status allocate_arrays(struct bake_run *run)
 {
     const size_t n = GLINT_MAX_GHOSTS;
 
@@ -310,7 +318,7 @@ static enum glint_status reserve(struct bake_run *run)
                : GLINT_E_MEMORY;
 }
 
-static void clear(struct bake_run *run)
+static void free_arrays(struct bake_run *run)
 {
     for (int g = 0; g < run->setup.n_ghosts && run->fitted && run->quantised;
          g++) {
@@ -328,7 +336,7 @@ static void clear(struct bake_run *run)
     free(run->draft.data);
 }
 
-/* Checks that readers will accept the model: else it is not handed out. */
+/* Checks that the run time accepts the model; otherwise the bake fails. */
 static enum glint_status check_draft(const struct bake_run *run)
 {
     struct glint_lens lens;
@@ -345,7 +353,7 @@ static enum glint_status check_draft(const struct bake_run *run)
 static enum glint_status bake_run(struct bake_run *run)
 {
     struct glint_model_header header;
-    enum glint_status status = reserve(run);
+    enum glint_status status = allocate_arrays(run);
 
     if (status == GLINT_OK)
         status = glint_model_header_of(run->lens, &run->options, &run->setup,
@@ -358,9 +366,9 @@ static enum glint_status bake_run(struct bake_run *run)
     if (status == GLINT_OK)
         status = fit_ghosts(run);
     if (status == GLINT_OK)
-        status = part_ghosts(run);
+        status = separate_parts(run);
     if (status == GLINT_OK)
-        status = for_ghosts(run, quantise_job, FITTED, QUANTISED);
+        status = run_for_ghosts(run, quantise_job, FITTED, QUANTISED);
     if (status == GLINT_OK)
         status = glint_draft_write(&run->draft, &run->setup, &header,
                                    run->fitted, run->quantised);
@@ -368,14 +376,14 @@ static enum glint_status bake_run(struct bake_run *run)
         return status;
     for (int g = 1; g < run->setup.n_ghosts; g++)
         run->first[g] = run->first[g - 1] + run->fitted[g - 1].n_systems;
-    status = for_ghosts(run, measure_job, QUANTISED, 1);
+    status = run_for_ghosts(run, measure_job, QUANTISED, 1);
     if (status != GLINT_OK)
         return status;
     glint_blob_seal(run->draft.data, run->draft.bytes);
     return check_draft(run);
 }
 
-static void sum_up(const struct bake_run *run, struct glint_bake_report *r)
+static void sum_report(const struct bake_run *run, struct glint_bake_report *r)
 {
     *r = (struct glint_bake_report){0, 0, 0};
     for (int g = 0; g < run->setup.n_ghosts; g++) {
@@ -386,7 +394,8 @@ static void sum_up(const struct bake_run *run, struct glint_bake_report *r)
     }
 }
 
-/* Sets up the neighbouring positions of LENS, which must be the same lens. */
+/* Initialises the neighbouring zoom positions, which must be positions of
+ * the same lens. */
 static enum glint_status set_up_beside(struct bake_run *run,
                                        const double rgb_nm[3])
 {
@@ -441,12 +450,12 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
                      "overflow",
                      lens->name);
         if (status == GLINT_OK) {
-            sum_up(run, report);
+            sum_report(run, report);
             *model = run->draft.data;
             *bytes = run->draft.bytes;
             run->draft.data = NULL;
         }
-        clear(run);
+        free_arrays(run);
     }
     free(run);
     return status;

@@ -3,16 +3,18 @@
 
 #include <math.h>
 
-/* In fits, by kind: what finding brightness takes as long as, before ghosts are
- * begun, finding the angles of a ghost, and a ghost before any is known. */
+/* Work in units of zone fits, per enum glint_effort_kind: finding the
+ * brightness before ghosts are fitted; finding the angles of a ghost; a
+ * typical ghost. */
 static const double heads[] = {32, 32, 90};
 static const double looks[] = {1.5, 1.5, 25};
 static const double typicals[] = {4, 25, 110};
-/* How many ghosts the last of these counts for. */
+/* Weight of the typical work in the mean work of ghosts, in ghosts. */
 #define TRUST 3.0
-/* Max cost of a ghost, as a multiple of its expected cost. */
+/* Max work of a ghost, as a multiple of the typical work. */
 #define MOST 10.0
-/* Fraction of a ghost's angles for which the mean of the others counts. */
+/* Weight of the mean of other ghosts when the work of the current ghost is
+ * extrapolated, as a fraction of its angles. */
 #define BLUR 0.1
 
 void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,
@@ -55,8 +57,9 @@ void glint_effort_end(struct glint_effort *e)
     e->share = 1;
 }
 
-/* Returns the work left for worker 0 if all workers do equal shares. */
-static double left_of(const struct glint_effort *e)
+/* Estimates the remaining time in fits of worker 0, assuming that all
+ * workers do equal amounts of work. */
+static double estimate_rest(const struct glint_effort *e)
 {
     const int rest = e->n_ghosts - 1 - e->ghost;
     const int beside = (int)fmin(e->n_workers - 1, rest);
@@ -68,7 +71,7 @@ static double left_of(const struct glint_effort *e)
         own = fmax(0, (e->work + BLUR * mean) / (e->share + BLUR) - e->work);
         all = (known + e->work + own) / (TRUST + e->n_ended + 1);
     }
-    /* The ghosts of the other workers are half done. */
+    /* The ghosts of the other workers are assumed to be half done. */
     others = (rest - 0.5 * beside) * all;
     if (e->expected > 0)
         others =
@@ -81,5 +84,5 @@ double glint_effort_done(const struct glint_effort *e)
 {
     const double spent = e->head / e->n_workers + e->ended + e->work;
 
-    return spent / (spent + left_of(e));
+    return spent / (spent + estimate_rest(e));
 }

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * Estimates the progress of a bake. How often the zones of a ghost must be
- * halved is known only after they are fitted.
+ * Estimates the progress of a bake. The number of zones of a ghost is not known
+ * before they are fitted.
  *
  *     glint_effort_begin(&effort, ghost);              worker 0, for each of
  *     glint_effort_spend(&effort, work, share); ...    its ghosts
  *     glint_effort_end(&effort);
  *     ... glint_effort_done(&effort) ...
  *
- * Work is counted in fits of a zone, about 40 ms. The work of a ghost in
- * progress is its work so far / the fraction of its angles that are done; the
- * work of a ghost not yet begun is the mean of the finished ghosts. Only worker
- * 0 counts; the others are assumed to be as fast. Limits: ghosts differ by a
- * factor of 100, so the estimate of the remaining work may be wrong by a factor
- * of 2 or 3 in the first half of a bake. */
+ * Work is counted in fits of a zone, about 40 ms each. The total work of the
+ * current ghost is extrapolated from the fraction of its angles that are done;
+ * the work of a ghost that was not begun is the mean of the finished ghosts.
+ * Only worker 0 counts; the others are assumed to be as fast. Limits: the work
+ * of ghosts differs by factors up to 100, so the estimate of the remaining work
+ * may be wrong by a factor of 2 or 3 in the first half of a bake.
+ */
 #ifndef GLINT_BAKE_EFFORT_H
 #define GLINT_BAKE_EFFORT_H
 
@@ -21,16 +22,17 @@
 
 struct glint_effort {
     int n_ghosts, n_workers;
-    double head;     /* work before ghosts are begun */
+    double head;     /* work before the first ghost is fitted */
     double look;     /* work of finding the angles of a ghost */
-    double typical;  /* work of a ghost, before any is known */
-    double expected; /* work of all ghosts; 0: unknown */
-    int ghost;       /* index of the last ghost that was begun; -1: no ghost */
-    int n_ended;     /* number of ghosts that worker 0 finished */
-    double ended;    /* work of the finished ghosts */
-    double work;     /* work of the current ghost of worker 0 */
-    double share;    /* fraction of the current ghost's angles that are done, 0
-                        .. 1 */
+    double typical;  /* assumed work of a ghost while none is finished */
+    double expected; /* work of all ghosts, from glint_effort_expect(); 0:
+                        unknown */
+    int ghost; /* largest index of a ghost that worker 0 has begun; -1: none */
+    int n_ended;  /* number of ghosts that worker 0 finished */
+    double ended; /* work of the finished ghosts */
+    double work;  /* work of the current ghost of worker 0 */
+    double share; /* fraction of the current ghost's angles that are done, 0
+                     .. 1 */
 };
 
 /* Classes of lenses by bake time. Ghosts are slow to bake if the lens opens
@@ -44,22 +46,22 @@ enum glint_effort_kind {
 void glint_effort_init(struct glint_effort *effort, int n_ghosts, int n_workers,
                        enum glint_effort_kind kind);
 
-/* Replaces the estimate by HEAD and TYPICAL: N times TYPICAL is the work of
- * all ghosts. In lenses that are not round the last ghosts fold, and cost a
- * hundred times as much as the first ones. */
+/* Sets the estimates HEAD (work before the first ghost) and TYPICAL (mean
+ * work of a ghost). Used for lenses that are not round, whose last ghosts
+ * cost a hundred times as much as the first ones, because their light folds. */
 void glint_effort_expect(struct glint_effort *effort, double head,
                          double typical);
 
 void glint_effort_begin(struct glint_effort *effort, int ghost);
 
-/* Reports that the ghost has cost WORK fits so far, for the fraction SHARE of
- * its angles. */
+/* Reports that the current ghost has cost WORK fits so far, for the fraction
+ * SHARE of its angles. */
 void glint_effort_spend(struct glint_effort *effort, double work, double share);
 
 void glint_effort_end(struct glint_effort *effort);
 
-/* Returns the fraction of the work that is done, 0 .. 1; falls if a ghost
- * turns out to cost more. */
+/* Returns the fraction of the work that is done, 0 .. 1. It decreases when a
+ * ghost costs more than expected. */
 double glint_effort_done(const struct glint_effort *effort);
 
 #endif

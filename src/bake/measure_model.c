@@ -14,8 +14,8 @@ struct random {
     uint64_t state;
 };
 
-/* Returns a random number, -1 .. 1. [Steele14] */
-static double next(struct random *r)
+/* Returns a uniform random number, -1 .. 1. [Steele14] */
+static double draw_random(struct random *r)
 {
     uint64_t z = r->state += UINT64_C(0x9e3779b97f4a7c15);
 
@@ -24,7 +24,8 @@ static double next(struct random *r)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
 }
 
-/* A bundle of the model, its exact path, and the errors found so far. */
+/* A bundle (ghost, direction, wavelength) of the model, its exact path, and
+ * the errors measured so far. */
 struct meter {
     const struct glint_visible *visible;
     const struct glint_fitted_system *fitted;
@@ -32,32 +33,33 @@ struct meter {
     struct glint_path path;
     double direction[3];
     int n;
-    double *error[GLINT_OUT_KINDS]; /* [RAYS] */
-    double *energy;                 /* [RAYS] */
+    double *error[GLINT_OUT_KINDS]; /* [RAYS] per output */
+    double *energy;                 /* [RAYS]: exact energies */
     int n_of[GLINT_OUT_KINDS];
     struct glint_measured *out;
 };
 
-static double value(const struct meter *b, const struct glint_outputs *o,
-                    int kind)
+static double get_output(const struct meter *b, const struct glint_outputs *o,
+                         int kind)
 {
     return ldexp(o->at[kind], b->transfer.exponent[kind]);
 }
 
-static bool has(const struct meter *b, int kind)
+static bool has_output(const struct meter *b, int kind)
 {
     return (b->transfer.outputs >> kind & 1) != 0;
 }
 
-static void note(struct meter *b, int kind, double error)
+static void record_error(struct meter *b, int kind, double error)
 {
     b->error[kind][b->n_of[kind]++] = fabs(error);
 }
 
-/* Records the errors of barrels near their rim, where they cut: there the error
- * of r equals the error of (1 + r^2) / 2. */
-static void note_barrels(struct meter *b, const struct glint_outputs *o,
-                         double (*hits)[2])
+/* Records errors of barrels for rays near the rim of the barrel, where an
+ * error changes which rays are blocked. There the error of (1 + r^2) / 2
+ * equals that of r. */
+static void record_barrels(struct meter *b, const struct glint_outputs *o,
+                           double (*hits)[2])
 {
     for (int k = 0; k < b->fitted->n_outputs; k++) {
         const struct glint_fitted_output *f = &b->fitted->output[k];
@@ -68,56 +70,61 @@ static void note_barrels(struct meter *b, const struct glint_outputs *o,
         r = hypot(hits[f->event][0], hits[f->event][1]) /
             b->path.event[f->event].semi_mm;
         if (fabs(r - 1) < 0.2)
-            note(b, (int)f->kind,
-                 value(b, o, (int)f->kind) - 0.5 * (1 + r * r));
+            record_error(b, (int)f->kind,
+                         get_output(b, o, (int)f->kind) - 0.5 * (1 + r * r));
     }
 }
 
-static void note_ray(struct meter *b, const struct glint_ray *ray,
-                     const struct glint_outputs *o, double (*hits)[2])
+static void record_ray(struct meter *b, const struct glint_ray *ray,
+                       const struct glint_outputs *o, double (*hits)[2])
 {
     const struct glint_setup *s = b->visible->setup;
     const double px = 1920 / s->lens->film_width_mm;
     const double stop = s->optics.stop_radius_mm;
 
-    note(b, GLINT_OUT_SENSOR_X,
-         px * (value(b, o, GLINT_OUT_SENSOR_X) - ray->sensor_x_mm));
-    note(b, GLINT_OUT_SENSOR_Y,
-         px * (value(b, o, GLINT_OUT_SENSOR_Y) - ray->sensor_y_mm));
-    note(b, GLINT_OUT_STOP_X,
-         value(b, o, GLINT_OUT_STOP_X) - ray->stop_x_mm / stop);
-    note(b, GLINT_OUT_STOP_Y,
-         value(b, o, GLINT_OUT_STOP_Y) - ray->stop_y_mm / stop);
-    note(b, GLINT_OUT_ENERGY, value(b, o, GLINT_OUT_ENERGY) - ray->energy);
+    record_error(b, GLINT_OUT_SENSOR_X,
+                 px *
+                     (get_output(b, o, GLINT_OUT_SENSOR_X) - ray->sensor_x_mm));
+    record_error(b, GLINT_OUT_SENSOR_Y,
+                 px *
+                     (get_output(b, o, GLINT_OUT_SENSOR_Y) - ray->sensor_y_mm));
+    record_error(b, GLINT_OUT_STOP_X,
+                 get_output(b, o, GLINT_OUT_STOP_X) - ray->stop_x_mm / stop);
+    record_error(b, GLINT_OUT_STOP_Y,
+                 get_output(b, o, GLINT_OUT_STOP_Y) - ray->stop_y_mm / stop);
+    record_error(b, GLINT_OUT_ENERGY,
+                 get_output(b, o, GLINT_OUT_ENERGY) - ray->energy);
     b->energy[b->n++] = ray->energy;
-    if (has(b, GLINT_OUT_RADIUS))
-        note(b, GLINT_OUT_RADIUS,
-             value(b, o, GLINT_OUT_RADIUS) - ray->rel_radius);
-    note_barrels(b, o, hits);
+    if (has_output(b, GLINT_OUT_RADIUS))
+        record_error(b, GLINT_OUT_RADIUS,
+                     get_output(b, o, GLINT_OUT_RADIUS) - ray->rel_radius);
+    record_barrels(b, o, hits);
 }
 
 static bool passes(const struct meter *b, const struct glint_outputs *o)
 {
-    bool clear = hypot(value(b, o, GLINT_OUT_STOP_X),
-                       value(b, o, GLINT_OUT_STOP_Y)) <= 1 &&
-                 hypot(value(b, o, GLINT_OUT_SENSOR_X),
-                       value(b, o, GLINT_OUT_SENSOR_Y)) <= b->visible->field_mm;
+    bool clear =
+        hypot(get_output(b, o, GLINT_OUT_STOP_X),
+              get_output(b, o, GLINT_OUT_STOP_Y)) <= 1 &&
+        hypot(get_output(b, o, GLINT_OUT_SENSOR_X),
+              get_output(b, o, GLINT_OUT_SENSOR_Y)) <= b->visible->field_mm;
 
     for (int kind = GLINT_OUT_RADIUS; kind < GLINT_OUT_KINDS; kind++)
-        clear &= !has(b, kind) || value(b, o, kind) <= 1;
+        clear &= !has_output(b, kind) || get_output(b, o, kind) <= 1;
     return clear;
 }
 
-/* Returns whether a ray misses by more than any tolerance explains. */
-static bool well_outside(const struct meter *b, enum glint_ray_status status,
-                         const struct glint_ray *ray)
+/* Returns whether the exact ray is blocked by a margin larger than any
+ * tolerance. */
+static bool is_well_outside(const struct meter *b, enum glint_ray_status status,
+                            const struct glint_ray *ray)
 {
     return status != GLINT_RAY_OK || ray->rel_radius > 1.03 ||
            hypot(ray->stop_x_mm, ray->stop_y_mm) >
                1.03 * b->visible->setup->optics.stop_radius_mm;
 }
 
-static void try_ray(struct meter *b, double u, double v)
+static void measure_ray(struct meter *b, double u, double v)
 {
     const double scale = ldexp(1, b->transfer.box_exponent);
     double hits[GLINT_MAX_EVENTS + 1][2];
@@ -131,13 +138,13 @@ static void try_ray(struct meter *b, double u, double v)
     glint_transfer_ray(&b->transfer, (int32_t)lrint(u * 0x1p30),
                        (int32_t)lrint(v * 0x1p30), &o);
     if (status == GLINT_RAY_OK && glint_visible_passes(b->visible, &ray))
-        note_ray(b, &ray, &o, hits);
-    else if (well_outside(b, status, &ray) && passes(b, &o))
+        record_ray(b, &ray, &o, hits);
+    else if (is_well_outside(b, status, &ray) && passes(b, &o))
         b->out->intruders++;
 }
 
-/* Turns errors of energy into fractions of the ray's energy, or of 1/50 of the
- * largest energy if that is more. */
+/* Divides each energy error by the ray's energy, or by 1/50 of the largest
+ * energy if that is more. */
 static void divide_energy(struct meter *b)
 {
     double most = 1e-30;
@@ -148,20 +155,20 @@ static void divide_energy(struct meter *b)
         b->error[GLINT_OUT_ENERGY][i] /= fmax(b->energy[i], 0.02 * most);
 }
 
-static int by_size(const void *a, const void *b)
+static int compare_doubles(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
 
     return (x > y) - (x < y);
 }
 
-static struct glint_errors errors_of(double *error, int n)
+static struct glint_errors compute_errors(double *error, int n)
 {
     struct glint_errors e = {0, 0, 0, 0};
 
     if (n == 0)
         return e;
-    qsort(error, (size_t)n, sizeof *error, by_size);
+    qsort(error, (size_t)n, sizeof *error, compare_doubles);
     for (int i = 0; i < n; i++)
         e.rms += error[i] * error[i] / n;
     e.rms = sqrt(e.rms);
@@ -171,7 +178,8 @@ static struct glint_errors errors_of(double *error, int n)
     return e;
 }
 
-/* Puts the direction and the wavelength into the model. */
+/* Substitutes direction and wavelength of the bundle into the model's
+ * polynomials. */
 static bool init_transfer(struct meter *b, const struct glint_lens *lens,
                           int32_t wave_q24)
 {
@@ -187,13 +195,13 @@ static bool init_transfer(struct meter *b, const struct glint_lens *lens,
                wave_q24) != 0;
 }
 
-/* Sets the bundle to a random angle and wavelength of the system; returns false
- * if it belongs to another system. */
+/* Sets the bundle to a random angle and wavelength of system S. Returns
+ * false if the model uses another system there. */
 static bool set_bundle(struct meter *b, const struct glint_lens *lens,
                        const struct glint_model_system *s, struct random *r)
 {
     const struct glint_fitted_system *f = b->fitted;
-    const double part = 0.5 + 0.5 * next(r), w = next(r);
+    const double part = 0.5 + 0.5 * draw_random(r), w = draw_random(r);
     const double wave = 0.5 * ((double)s->wave_lo_q24 + s->wave_hi_q24) +
                         0.5 * w * ((double)s->wave_hi_q24 - s->wave_lo_q24);
     const int32_t sine_q30 =
@@ -203,9 +211,10 @@ static bool set_bundle(struct meter *b, const struct glint_lens *lens,
 
     b->direction[0] = sine_q30 * 0x1p-30;
     b->direction[1] =
-        f->skew ? f->y_lo + (0.5 + 0.5 * next(r)) * (f->y_hi - f->y_lo) : 0;
-    /* A bundle on a border may belong to the next system, and the corner of a
-     * system may be no valid direction. */
+        f->skew ? f->y_lo + (0.5 + 0.5 * draw_random(r)) * (f->y_hi - f->y_lo)
+                : 0;
+    /* A bundle on the border of S may belong to the next system, and a
+     * corner of the box of directions may be no valid direction. */
     if (hypot(b->direction[0], b->direction[1]) >= 1 ||
         !init_transfer(b, lens, wave_q24) || b->transfer.system != s)
         return false;
@@ -235,14 +244,14 @@ void glint_measure_system(const struct glint_visible *visible,
         if (!set_bundle(&b, lens, &lens->system[system], &random))
             continue;
         for (int i = 0; i < PER_BUNDLE && b.n < RAYS; i++) {
-            const double u = next(&random), v = next(&random);
+            const double u = draw_random(&random), v = draw_random(&random);
 
-            try_ray(&b, u,
-                    fitted->skew ? v : rim + (1 - rim) * (0.5 + 0.5 * v));
+            measure_ray(&b, u,
+                        fitted->skew ? v : rim + (1 - rim) * (0.5 + 0.5 * v));
         }
     }
     out->rays = b.n;
     divide_energy(&b);
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-        out->of[kind] = errors_of(error[kind], b.n_of[kind]);
+        out->of[kind] = compute_errors(error[kind], b.n_of[kind]);
 }

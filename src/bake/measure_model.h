@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures the errors of a model: random rays that get through are traced
- * exactly and sent through the integers of the run time. */
+ * Measures the errors of a model: compares exactly traced random rays with the
+ * run time's integer polynomials.
+ */
 #ifndef GLINT_BAKE_MEASURE_MODEL_H
 #define GLINT_BAKE_MEASURE_MODEL_H
 
@@ -14,16 +15,17 @@ struct glint_errors {
 };
 
 struct glint_measured {
-    int rays; /* number of rays that got through */
-    /* besides RAYS, rays that the model lets through although the real lens
-     * does not: they fail, or lie more than 3 % outside a surface's
-     * semi-diameter or the stop's radius */
+    int rays; /* number of rays that pass the real lens */
+    /* number of rays that the model transmits although the real lens blocks
+     * them: they miss a surface, or lie more than 3 % outside a surface's
+     * semi-diameter or the stop's radius; not included in RAYS */
     int intruders;
-    struct glint_errors of[GLINT_OUT_KINDS]; /* errors of each output, in the
-                                                model file's units */
+    struct glint_errors of[GLINT_OUT_KINDS]; /* errors per output, in the units
+                                                of the model file */
 };
 
-/* Measures system SYSTEM of LENS, which was made from FITTED. Deterministic. */
+/* Measures system SYSTEM of LENS, which was quantised from FITTED.
+ * Deterministic. */
 void glint_measure_system(const struct glint_visible *visible,
                           const struct glint_lens *lens, int system,
                           const struct glint_fitted_system *fitted,

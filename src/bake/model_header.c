@@ -13,15 +13,14 @@
 #include "glint/model.h"
 
 enum {
-    /* Versions of the models: raised if a lens would bake to another model. */
+    /* Revision of the baker, part of the key. It is raised when a lens would
+     * bake to a different model, so that cached models are baked again. */
     REVISION = 13,
-    WIDE_REVISION = 17, /* revision of models of lenses that open wider than
-                           GLINT_WIDE */
+    WIDE_REVISION = 17, /* for lenses that open wider than GLINT_WIDE */
     SHAPED_REVISION =
-        1, /* added for wide lenses with surfaces that are not spheres */
-    SKEW_REVISION = 2, /* revision of models of lenses that are not round */
-    FAR_REVISION = 3   /* revision of models of round lenses with lights beyond
-                          GLINT_FAR */
+        1,             /* added for lenses with surfaces that are not spheres */
+    SKEW_REVISION = 2, /* for lenses that are not round */
+    FAR_REVISION = 3   /* for round lenses with lights beyond GLINT_FAR */
 };
 
 void glint_bake_defaults(struct glint_bake_options *options)
@@ -62,8 +61,8 @@ double glint_bake_field_mm(const struct glint_prescription *lens,
                : 0.55 * hypot(lens->film_width_mm, lens->film_height_mm);
 }
 
-/* Adds the bytes of a number to a key, by FNV-1a. */
-static void mix(uint64_t *key, double value)
+/* Adds the bytes of VALUE to the hash KEY, by FNV-1a. */
+static void add_to_key(uint64_t *key, double value)
 {
     unsigned char byte[sizeof value];
 
@@ -72,57 +71,59 @@ static void mix(uint64_t *key, double value)
         *key = (*key ^ byte[i]) * UINT64_C(0x100000001b3);
 }
 
-/* Adds COATING to the hash; a single quarter wave keeps its original form, so
- * that cached models stay valid. */
-static void mix_coating(uint64_t *key, const struct glint_coating *coating)
+/* Adds COATING to the hash. A single quarter-wave film is hashed as in
+ * earlier versions, so that cached models stay valid. */
+static void add_coating_to_key(uint64_t *key,
+                               const struct glint_coating *coating)
 {
-    mix(key, coating->nm);
-    mix(key, coating->film[0].index);
+    add_to_key(key, coating->nm);
+    add_to_key(key, coating->film[0].index);
     if (coating->n_films == 0 ||
         (coating->n_films == 1 && coating->film[0].quarters == 1.0))
         return;
-    mix(key, coating->n_films);
+    add_to_key(key, coating->n_films);
     for (int k = 0; k < coating->n_films; k++) {
-        mix(key, coating->film[k].index);
-        mix(key, coating->film[k].quarters);
+        add_to_key(key, coating->film[k].index);
+        add_to_key(key, coating->film[k].quarters);
     }
 }
 
-static void mix_shape(uint64_t *key, const struct glint_shape *s)
+static void add_shape_to_key(uint64_t *key, const struct glint_shape *s)
 {
-    mix(key, SHAPED_REVISION);
-    mix(key, s->conic);
+    add_to_key(key, SHAPED_REVISION);
+    add_to_key(key, s->conic);
     for (int k = 0; k < GLINT_SHAPE_TERMS; k++)
-        mix(key, s->term[k]);
-    mix(key, s->bend);
-    mix(key, s->across_mm);
+        add_to_key(key, s->term[k]);
+    add_to_key(key, s->bend);
+    add_to_key(key, s->across_mm);
     for (int k = 0; k < 2; k++) {
-        mix(key, s->decentre_mm[k]);
-        mix(key, s->tilt_deg[k]);
+        add_to_key(key, s->decentre_mm[k]);
+        add_to_key(key, s->tilt_deg[k]);
     }
-    mix(key, s->pivot_mm);
+    add_to_key(key, s->pivot_mm);
 }
 
-static void mix_lens(uint64_t *key, const struct glint_prescription *lens)
+static void add_lens_to_key(uint64_t *key,
+                            const struct glint_prescription *lens)
 {
-    mix(key, lens->f_number);
-    mix(key, lens->film_width_mm);
-    mix(key, lens->film_height_mm);
-    mix(key, lens->stop_after);
-    mix(key, lens->stop_thickness_mm);
+    add_to_key(key, lens->f_number);
+    add_to_key(key, lens->film_width_mm);
+    add_to_key(key, lens->film_height_mm);
+    add_to_key(key, lens->stop_after);
+    add_to_key(key, lens->stop_thickness_mm);
     for (int k = 0; k < lens->n_surfaces; k++) {
         const struct glint_surface *s = &lens->surface[k];
 
-        mix(key, s->radius_mm);
-        mix(key, s->thickness_mm);
-        mix(key, s->semi_mm);
-        mix(key, s->nd);
-        mix(key, s->vd);
+        add_to_key(key, s->radius_mm);
+        add_to_key(key, s->thickness_mm);
+        add_to_key(key, s->semi_mm);
+        add_to_key(key, s->nd);
+        add_to_key(key, s->vd);
         for (int i = 0; i < 6 && s->sellmeier[0] > 0; i++)
-            mix(key, s->sellmeier[i]);
-        mix_coating(key, &s->coating);
+            add_to_key(key, s->sellmeier[i]);
+        add_coating_to_key(key, &s->coating);
         if (glint_surface_is_shaped(s))
-            mix_shape(key, &s->shape);
+            add_shape_to_key(key, &s->shape);
     }
 }
 
@@ -131,36 +132,36 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 {
     uint64_t key = UINT64_C(0xcbf29ce484222325);
 
-    mix(&key, GLINT_MODEL_VERSION);
-    mix(&key, lens->f_number < GLINT_WIDE ? WIDE_REVISION : REVISION);
-    mix(&key, GLINT_BASIS_AUTO);
-    mix(&key, options->band_nm[0]);
-    mix(&key, options->band_nm[1]);
-    mix(&key, options->max_deg);
-    mix(&key, glint_bake_field_mm(lens, options));
-    mix(&key, options->tolerance);
+    add_to_key(&key, GLINT_MODEL_VERSION);
+    add_to_key(&key, lens->f_number < GLINT_WIDE ? WIDE_REVISION : REVISION);
+    add_to_key(&key, GLINT_BASIS_AUTO);
+    add_to_key(&key, options->band_nm[0]);
+    add_to_key(&key, options->band_nm[1]);
+    add_to_key(&key, options->max_deg);
+    add_to_key(&key, glint_bake_field_mm(lens, options));
+    add_to_key(&key, options->tolerance);
     for (int g = 0; options->ghosts && g < glint_ghost_list(lens, NULL, 0); g++)
-        mix(&key, options->ghosts[g]);
-    mix_lens(&key, lens);
+        add_to_key(&key, options->ghosts[g]);
+    add_lens_to_key(&key, lens);
     for (int k = 0; k < options->n_beside; k++)
-        mix_lens(&key, &options->beside[k]);
+        add_lens_to_key(&key, &options->beside[k]);
     if (!glint_prescription_is_round(lens))
-        mix(&key, SKEW_REVISION);
+        add_to_key(&key, SKEW_REVISION);
     else if (options->max_deg > GLINT_FAR)
-        mix(&key, FAR_REVISION);
+        add_to_key(&key, FAR_REVISION);
     for (const char *c = lens->name; *c; c++)
-        mix(&key, (unsigned char)*c);
+        add_to_key(&key, (unsigned char)*c);
     return key;
 }
 
 enum {
     FLUX_NODES = 9,
-    BLADES = 8 /* blades of the stop with which the flux of wide stops is
-                  measured */
+    BLADES = 8 /* number of blades of the stop through which the flux of wide
+                  stops is measured */
 };
 
-/* Sets COEF to the polynomial in w that fits FLUX at the nodes W of the band.
- */
+/* Fits FLUX at the nodes W of the band by a polynomial in w, divides it by
+ * SCALE and writes its coefficients to COEF. */
 static void fit_flux(const double *w, const double *flux, double scale,
                      struct glint_real *coef)
 {
@@ -187,13 +188,16 @@ static void fit_flux(const double *w, const double *flux, double scale,
         coef[poly.power[i][3]] = glint_real_of(poly.coef[i]);
 }
 
-/* Returns the direct image's flux at NM through a stop of AREA times the full
- * area, divided by AREA; below 0 if memory is short. The barrels of a fast lens
- * cut the rim of its widest stop, where blades reach with their corners alone:
- * of wide stops it is taken through blades, and divided by their fraction of
- * the circle, by which a program multiplies it. Through circles f/1.4 of
- * merte-biotar came out 10 % too bright, f/2 of tronnier-double-gauss 2.6 %. */
-static double flux_of(const struct glint_setup *whole, double area, double nm)
+/* Returns the flux of the direct image at NM through a stop of AREA times
+ * the full area, divided by AREA; below 0 if there is no memory. The barrels
+ * of a fast lens cut the rim of its widest stop, which a stop with blades
+ * reaches only with its corners. So lenses that open wider than GLINT_WIDE
+ * are measured through a stop with blades, and the flux is divided by the
+ * blades' fraction of the circle, by which the run time multiplies it. A
+ * circular stop would be 10 % too bright at f/1.4 (merte-biotar) and 2.6 %
+ * at f/2 (tronnier-double-gauss). */
+static double measure_flux(const struct glint_setup *whole, double area,
+                           double nm)
 {
     struct glint_setup setup = *whole;
 
@@ -203,15 +207,15 @@ static double flux_of(const struct glint_setup *whole, double area, double nm)
     return glint_direct_flux(&setup, nm) / area / glint_iris_share(&setup);
 }
 
-/* Sets the direct image's flux over the stop's area, for the whole stop and for
- * smaller ones. Energy and the pupil's aberration are even in the place on the
- * pupil, so the flux is smooth in the square of the stop's radius. It is traced
- * at three squares: the whole, a half and an eighth. */
+/* Sets flux / stop area of the direct image, for the full stop and for
+ * narrower ones. Energy and pupil aberration are even functions of the
+ * position on the pupil, so the flux is smooth in the square of the stop's
+ * radius. It is measured at three squared radii: 1, 1/2 and 1/8. */
 static enum glint_status set_flux(const struct glint_bake_options *options,
                                   const struct glint_setup *whole,
                                   struct glint_model_header *h)
 {
-    /* Closed fractions of the stop's area. */
+    /* closed fractions of the stop's area */
     static const double closed[2] = {0.5, 0.875};
     const double *band = options->band_nm;
     const double lo = 1 / (band[1] * band[1]), hi = 1 / (band[0] * band[0]);
@@ -223,8 +227,8 @@ static enum glint_status set_flux(const struct glint_bake_options *options,
 
         w[i] = 2.0 * i / (FLUX_NODES - 1) - 1;
         for (int k = 0; k < 3; k++) {
-            flux[k][i] = flux_of(whole, k ? 1 - closed[k - 1] : 1,
-                                 1 / sqrt(0.5 * (lo + hi) + w[i] * half));
+            flux[k][i] = measure_flux(whole, k ? 1 - closed[k - 1] : 1,
+                                      1 / sqrt(0.5 * (lo + hi) + w[i] * half));
             if (flux[k][i] < 0)
                 return GLINT_E_MEMORY;
         }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks the options of a bake, and makes the header of a model: what it says
- * of its lens besides the ghosts. The defaults and the key are in glint/bake.h.
+ * Checks the options of a bake and computes the header of a model: the data of
+ * the lens apart from its ghosts. Defaults and key are declared in
+ * glint/bake.h.
  */
 #ifndef GLINT_BAKE_MODEL_HEADER_H
 #define GLINT_BAKE_MODEL_HEADER_H
@@ -10,17 +11,18 @@
 #include "glint/model.h"
 #include "glint/setup.h"
 
-/* Checks OPTIONS. Returns GLINT_E_ARGUMENT if an option is out of range; ERROR
- * then states which. */
+/* Returns GLINT_E_ARGUMENT if an option is out of range; ERROR states which
+ * option. */
 enum glint_status glint_bake_check(const struct glint_bake_options *options,
                                    struct glint_error *error);
 
-/* Returns the field that is requested, or a tenth more than to the film's
- * corners. */
+/* Returns the radius on the sensor within which the model must be accurate,
+ * mm: options.field_mm, or if that is 0, 1.1 times the distance to the
+ * film's corners. */
 double glint_bake_field_mm(const struct glint_prescription *lens,
                            const struct glint_bake_options *options);
 
-/* Fills HEADER except for ghosts and systems. GLINT_E_MEMORY. */
+/* Fills HEADER except for ghosts and systems. May return GLINT_E_MEMORY. */
 enum glint_status
 glint_model_header_of(const struct glint_prescription *lens,
                       const struct glint_bake_options *options,

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * The chief rays of a lens, and a polynomial of where they land.
+ * Traces the chief rays of a lens and fits a polynomial to their positions on
+ * the sensor.
  *
  *   in   a lens table that is round about its axis
- *   out  how its angles go over the sensor (struct glint_projection)
+ *   out  the mapping from field angle to sensor (struct glint_projection)
  *
- * A chief ray passes the middle of the stop. Its place on the front is bisected
- * for: rays start on the vertex plane of the first surface, which light at 90
- * degrees never crosses, so that 85 degrees are the most. */
+ * A chief ray passes the centre of the stop. Its start point on the front is
+ * found by bisection. Rays start on the vertex plane of the first surface,
+ * which light at 90 degrees never crosses, so angles are limited to 85 degrees.
+ */
 #include "glint/bake.h"
 
 #include <math.h>
@@ -17,15 +19,17 @@
 #include "engine/setup/degrees.h"
 
 enum {
-    ANGLES = 86, /* angles that are tried */
-    LEAST = 8,   /* with fewer chief rays, steps are finer */
+    ANGLES = 86, /* max number of angles */
+    /* if fewer chief rays get through, the next smaller step is tried */
+    LEAST = 8,
     HALVINGS = 50,
     D_LINE_NM = 588
 };
 
-/* Finds how far from the axis the chief ray at THETA_DEG lands, mm. */
-static bool chief_mm(const struct glint_path *path, double stop_mm,
-                     double theta_deg, double *mm)
+/* Sets *MM to the distance from the axis at which the chief ray at THETA_DEG
+ * hits the sensor. Returns false if the ray is blocked. */
+static bool trace_chief_ray(const struct glint_path *path, double stop_mm,
+                            double theta_deg, double *mm)
 {
     const double d[3] = {glint_sin_deg(theta_deg), 0, glint_cos_deg(theta_deg)};
     struct glint_pupil box;
@@ -52,17 +56,19 @@ static bool chief_mm(const struct glint_path *path, double stop_mm,
     return fabs(ray.stop_x_mm) < 1e-6 * stop_mm && ray.rel_radius <= 1;
 }
 
-/* Sets RHO to where chief rays at multiples of STEP_DEG land, in focal lengths
- * from the axis; returns how many there are, up to 85 degrees. */
-static int trace(const struct glint_path *path,
-                 const struct glint_optics *optics, double step_deg,
-                 double *rho)
+/* Sets RHO to the distances from the axis, in focal lengths, at which chief
+ * rays at multiples of STEP_DEG hit the sensor. Returns the number of rays,
+ * up to 85 degrees. */
+static int trace_chief_rays(const struct glint_path *path,
+                            const struct glint_optics *optics, double step_deg,
+                            double *rho)
 {
     double mm;
     int n = 0;
 
     while (n < ANGLES - 1 &&
-           chief_mm(path, optics->stop_radius_mm, (n + 1) * step_deg, &mm) &&
+           trace_chief_ray(path, optics->stop_radius_mm, (n + 1) * step_deg,
+                           &mm) &&
            mm / optics->focal_mm > (n ? rho[n - 1] : 0)) {
         rho[n] = mm / optics->focal_mm;
         n++;
@@ -70,10 +76,10 @@ static int trace(const struct glint_path *path,
     return n;
 }
 
-/* Fits the N chief rays at multiples of STEP_DEG that land RHO focal lengths
- * from the axis. */
-static void fit(struct glint_projection *p, const double *rho, int n,
-                double step_deg)
+/* Fits P to the N chief rays at multiples of STEP_DEG with the distances
+ * RHO. */
+static void fit_projection(struct glint_projection *p, const double *rho, int n,
+                           double step_deg)
 {
     static const double zero[ANGLES];
     double scratch[GLINT_REGRESS_DOUBLES(ANGLES, GLINT_PROJECTION_TERMS,
@@ -114,7 +120,7 @@ enum glint_status glint_projection_of(struct glint_projection *projection,
                                       struct glint_error *error)
 {
     struct glint_projection *const p = projection;
-    /* degrees: for most lenses, and smaller for narrow fields */
+    /* degrees between chief rays; the smaller steps are for narrow fields */
     static const double steps[] = {1, 0.25, 0.05};
     double rho[ANGLES], step = 0;
     struct glint_optics optics;
@@ -134,7 +140,7 @@ enum glint_status glint_projection_of(struct glint_projection *projection,
     glint_path_init(&path, lens, NULL, D_LINE_NM);
     for (size_t k = 0; k < sizeof steps / sizeof *steps && n < LEAST; k++) {
         step = steps[k];
-        n = trace(&path, &optics, step, rho);
+        n = trace_chief_rays(&path, &optics, step, rho);
     }
     if (n < LEAST) {
         snprintf(
@@ -144,7 +150,7 @@ enum glint_status glint_projection_of(struct glint_projection *projection,
             lens->name, n, step);
         return GLINT_E_LENS;
     }
-    fit(p, rho, n, step);
+    fit_projection(p, rho, n, step);
     for (int k = 0; k < n; k++)
         *miss_deg = fmax(
             *miss_deg, fabs(glint_projection_deg(p, rho[k]) - (k + 1) * step));

@@ -11,9 +11,9 @@ STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-static uint32_t put_terms(struct glint_draft *d,
-                          const struct glint_fitted_output *o,
-                          const struct glint_quantised_output *q, bool skew)
+static uint32_t append_terms(struct glint_draft *d,
+                             const struct glint_fitted_output *o,
+                             const struct glint_quantised_output *q, bool skew)
 {
     uint16_t power[GLINT_MAX_MODEL_TERMS];
 
@@ -31,10 +31,10 @@ static uint32_t put_terms(struct glint_draft *d,
     return glint_draft_put(d, power, (size_t)o->n_terms * sizeof *power);
 }
 
-/* Appends the coefficients: wide, then narrow. */
-static uint32_t put_coefficients(struct glint_draft *d,
-                                 const struct glint_fitted_output *o,
-                                 const struct glint_quantised_output *q)
+/* Appends the coefficients: 32-bit, then 16-bit ones. */
+static uint32_t append_coefficients(struct glint_draft *d,
+                                    const struct glint_fitted_output *o,
+                                    const struct glint_quantised_output *q)
 {
     const int n_wide = o->n_terms - q->n_narrow;
     int32_t wide[GLINT_MAX_MODEL_TERMS];
@@ -55,11 +55,11 @@ static uint32_t put_coefficients(struct glint_draft *d,
 }
 
 static struct glint_model_output
-put_output(struct glint_draft *d, const struct glint_fitted_output *o,
-           const struct glint_quantised_output *q, bool skew)
+append_output(struct glint_draft *d, const struct glint_fitted_output *o,
+              const struct glint_quantised_output *q, bool skew)
 {
-    const uint32_t term_at = put_terms(d, o, q, skew);
-    const uint32_t coef_at = put_coefficients(d, o, q);
+    const uint32_t term_at = append_terms(d, o, q, skew);
+    const uint32_t coef_at = append_coefficients(d, o, q);
 
     return (struct glint_model_output){
         .kind = (uint8_t)o->kind,
@@ -75,26 +75,26 @@ put_output(struct glint_draft *d, const struct glint_fitted_output *o,
         .rounding_q8 = q->rounding_q8};
 }
 
-static uint32_t put_outputs(struct glint_draft *d,
-                            const struct glint_fitted_system *f,
-                            const struct glint_quantised_system *q)
+static uint32_t append_outputs(struct glint_draft *d,
+                               const struct glint_fitted_system *f,
+                               const struct glint_quantised_system *q)
 {
     struct glint_model_output out[GLINT_OUT_KINDS];
 
     for (int k = 0; k < f->n_outputs; k++)
-        out[k] = put_output(d, &f->output[k], &q->output[k], f->skew);
+        out[k] = append_output(d, &f->output[k], &q->output[k], f->skew);
     return glint_draft_put(d, out, (size_t)f->n_outputs * sizeof *out);
 }
 
-static int32_t to_q30(double x)
+static int32_t convert_to_q30(double x)
 {
     return (int32_t)lrint(x * 0x1p30);
 }
 
-/* Appends the box of a system. Terms that are 0 in all three sides are left
- * out. */
-static uint32_t put_box(struct glint_draft *d,
-                        const struct glint_quantised_system *q, uint8_t *terms)
+/* Appends the box of a system, without terms that are 0 in all sides. */
+static uint32_t append_box(struct glint_draft *d,
+                           const struct glint_quantised_system *q,
+                           uint8_t *terms)
 {
     int32_t packed[GLINT_LENS_SIDES * GLINT_BOX_TERMS];
     size_t n = 0;
@@ -113,17 +113,18 @@ static void write_system(struct glint_draft *d, uint32_t where,
                          const struct glint_fitted_system *f,
                          const struct glint_quantised_system *q)
 {
-    /* Written one after the other, as the order is part of the file format. */
-    const int32_t range_q30[2] = {to_q30(f->y_lo), to_q30(f->y_hi)};
+    /* The order of these calls determines the layout of the file. */
+    const int32_t range_q30[2] = {convert_to_q30(f->y_lo),
+                                  convert_to_q30(f->y_hi)};
     const uint32_t across_at =
         f->skew ? glint_draft_put(d, range_q30, sizeof range_q30)
                 : (uint32_t)d->bytes;
     uint8_t box_terms;
-    const uint32_t box_at = put_box(d, q, &box_terms);
-    const uint32_t output_at = put_outputs(d, f, q);
+    const uint32_t box_at = append_box(d, q, &box_terms);
+    const uint32_t output_at = append_outputs(d, f, q);
     const struct glint_model_system system = {
-        .sine_lo_q30 = to_q30(f->sine_lo),
-        .sine_hi_q30 = to_q30(f->sine_hi),
+        .sine_lo_q30 = convert_to_q30(f->sine_lo),
+        .sine_hi_q30 = convert_to_q30(f->sine_hi),
         .wave_lo_q24 = (int32_t)lrint(f->wave_lo * 0x1p24),
         .wave_hi_q24 = (int32_t)lrint(f->wave_hi * 0x1p24),
         .across_at = across_at,
@@ -182,8 +183,8 @@ struct glint_lens glint_draft_lens(const struct glint_draft *draft)
                                NULL};
 }
 
-/* Rounds an error up to a code of glint_model_error_q20(). */
-static uint16_t to_error(double x)
+/* Rounds an error up to a code that glint_model_error_q20() decodes. */
+static uint16_t encode_error(double x)
 {
     double mantissa = ceil(x * 0x1p20);
     int shift = 0;
@@ -203,9 +204,9 @@ void glint_draft_note(struct glint_draft *draft, int system,
     for (uint32_t k = 0; k < s->n_outputs; k++, o++) {
         const struct glint_errors *e = &measured->of[o->kind];
 
-        o->rms = to_error(e->rms);
-        o->p50 = to_error(e->p50);
-        o->p99 = to_error(e->p99);
-        o->max = to_error(e->max);
+        o->rms = encode_error(e->rms);
+        o->p50 = encode_error(e->p50);
+        o->p99 = encode_error(e->p99);
+        o->max = encode_error(e->max);
     }
 }

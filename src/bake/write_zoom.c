@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Puts models of a zoom's positions into one file: see glint/model.h. */
+ * Joins models at the positions of a zoom lens into one file; format:
+ * glint/model.h.
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,10 +11,10 @@
 #include "glint/bake.h"
 #include "glint/model.h"
 
-/* Appends the list of the ghosts that MODEL has; returns the list's position in
- * the file, or 0 if MODEL has all ghosts. */
-static uint32_t put_ghosts(struct glint_draft *d,
-                           const struct glint_bake_model *model)
+/* Appends the bit mask of the ghosts in MODEL. Returns its offset in the
+ * file, or 0 if MODEL has all ghosts. */
+static uint32_t append_ghost_mask(struct glint_draft *d,
+                                  const struct glint_bake_model *model)
 {
     const struct glint_model_header *const h = (const void *)model->data;
     const uint32_t n = h->n_ghosts - h->n_parts;
@@ -29,25 +31,25 @@ static uint32_t put_ghosts(struct glint_draft *d,
     return at;
 }
 
-/* Appends the models, and lists them at LIST_AT. */
-static void put_models(struct glint_draft *d, uint32_t list_at,
-                       const struct glint_bake_model *model, int n)
+/* Appends the models and writes their list at LIST_AT. */
+static void append_models(struct glint_draft *d, uint32_t list_at,
+                          const struct glint_bake_model *model, int n)
 {
     for (int k = 0; k < n; k++) {
         struct glint_zoom_model entry = {.along_q30 = model[k].along_q30,
                                          .bytes = (uint32_t)model[k].bytes};
 
         entry.at = glint_draft_put(d, model[k].data, model[k].bytes);
-        entry.has_at = put_ghosts(d, &model[k]);
+        entry.has_at = append_ghost_mask(d, &model[k]);
 
         glint_draft_amend(d, list_at + (uint32_t)k * (uint32_t)sizeof entry,
                           &entry, sizeof entry);
     }
 }
 
-/* Checks that readers will accept the file. */
-static enum glint_status check(const unsigned char *data, size_t bytes,
-                               struct glint_error *error)
+/* Checks that the run time accepts the file. */
+static enum glint_status check_zoom(const unsigned char *data, size_t bytes,
+                                    struct glint_error *error)
 {
     struct glint_zoom_lens *const zoom = malloc(sizeof *zoom);
     enum glint_status status = GLINT_E_MEMORY;
@@ -83,10 +85,10 @@ enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
     glint_draft_put(&draft, NULL, sizeof header);
     header.model_at = glint_draft_put(
         &draft, NULL, (size_t)n * sizeof(struct glint_zoom_model));
-    put_models(&draft, header.model_at, model, n);
+    append_models(&draft, header.model_at, model, n);
     if (!glint_draft_finish(&draft, &header, sizeof header, true, &data, bytes))
         return GLINT_E_MEMORY;
-    status = check(data, *bytes, error);
+    status = check_zoom(data, *bytes, error);
     if (status == GLINT_OK)
         *zoom = data;
     else
