@@ -7,17 +7,17 @@
 /* ------------------------------------------------------------ mistyped words
  */
 
-/* letters of the words that are compared, and bytes of a hint */
+/* max letters of compared words; bytes of a hint */
 enum { NEAR_CHARS = 32, NEAR_BYTES = 64 };
 
-/* Finds the known word nearest to a mistyped word. */
+/* Search for the known word nearest to a mistyped one. */
 struct near {
     struct glint_word word;
     const char *best; /* nearest candidate so far, or NULL */
     int distance;
 };
 
-static int least(int a, int b, int c)
+static int min_of_three(int a, int b, int c)
 {
     const int ab = a < b ? a : b;
 
@@ -26,7 +26,8 @@ static int least(int a, int b, int c)
 
 /* Returns the edit distance from WORD to CANDIDATE, or NEAR_CHARS if either has
  * NEAR_CHARS letters or more. */
-static int edit_distance(const struct glint_word *word, const char *candidate)
+static int compute_edit_distance(const struct glint_word *word,
+                                 const char *candidate)
 {
     const int m = (int)strlen(candidate);
     int row[NEAR_CHARS];
@@ -36,28 +37,29 @@ static int edit_distance(const struct glint_word *word, const char *candidate)
     for (int k = 0; k <= m; k++)
         row[k] = k;
     for (int i = 1; i <= word->length; i++) {
-        int corner = row[0]; /* entry of the previous row, one letter back */
+        int corner = row[0]; /* entry of the previous row and previous column */
 
         row[0] = i;
         for (int k = 1; k <= m; k++) {
             const int above = row[k];
 
-            row[k] = least(above + 1, row[k - 1] + 1,
-                           corner + (word->start[i - 1] != candidate[k - 1]));
+            row[k] =
+                min_of_three(above + 1, row[k - 1] + 1,
+                             corner + (word->start[i - 1] != candidate[k - 1]));
             corner = above;
         }
     }
     return row[m];
 }
 
-static struct near near_begin(const struct glint_word *word)
+static struct near begin_search(const struct glint_word *word)
 {
     return (struct near){*word, NULL, NEAR_CHARS};
 }
 
-static void near_offer(struct near *near, const char *candidate)
+static void offer_candidate(struct near *near, const char *candidate)
 {
-    const int d = edit_distance(&near->word, candidate);
+    const int d = compute_edit_distance(&near->word, candidate);
     const int most = (int)strlen(candidate) / 3;
 
     if (d < near->distance && d <= (most > 1 ? most : 1)) {
@@ -66,9 +68,9 @@ static void near_offer(struct near *near, const char *candidate)
     }
 }
 
-/* Writes "; did you mean 'BEST'?" to TEXT, or nothing if no candidate is near:
- * at most a third of its letters are inserted, left out or changed. */
-static const char *near_text(const struct near *near, char text[NEAR_BYTES])
+/* Writes "; did you mean 'BEST'?" to TEXT. Writes nothing if no candidate is
+ * similar: at most a third of its letters differ. */
+static const char *write_hint(const struct near *near, char text[NEAR_BYTES])
 {
     text[0] = '\0';
     if (near->best)
@@ -79,8 +81,9 @@ static const char *near_text(const struct near *near, char text[NEAR_BYTES])
 /* ------------------------------------------------------------------- clauses
  */
 
-/* Lists the words of CLAUSE: "at, radius and material". */
-static void list(const struct glint_clause *clause, char *text, size_t bytes)
+/* Writes the words of CLAUSE as a list: "at, radius and material". */
+static void list_words(const struct glint_clause *clause, char *text,
+                       size_t bytes)
 {
     size_t used = 0;
 
@@ -92,18 +95,18 @@ static void list(const struct glint_clause *clause, char *text, size_t bytes)
                                  clause[i].word);
 }
 
-static bool refuse(struct glint_text *text, const char *line,
-                   const struct glint_clause *clause,
-                   const struct glint_word *word)
+static bool reject_word(struct glint_text *text, const char *line,
+                        const struct glint_clause *clause,
+                        const struct glint_word *word)
 {
-    struct near near = near_begin(word);
+    struct near near = begin_search(word);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES], words[120];
 
     glint_word_quote(word, quote);
     for (int i = 0; clause[i].word; i++)
-        near_offer(&near, clause[i].word);
-    near_text(&near, mean);
-    list(clause, words, sizeof words);
+        offer_candidate(&near, clause[i].word);
+    write_hint(&near, mean);
+    list_words(clause, words, sizeof words);
     return glint_text_fail(text, word->place, "%s takes %s, not '%s'%s", line,
                            words, quote, mean);
 }
@@ -155,7 +158,7 @@ bool glint_clauses_read(struct glint_text *text, const char *line,
         while (c->word && !glint_word_is(&word, c->word))
             c++;
         if (!c->word)
-            return refuse(text, line, clause, &word);
+            return reject_word(text, line, clause, &word);
         if (!read_clause(text, c, &word))
             return false;
     }
@@ -175,18 +178,18 @@ bool glint_line_begin(struct glint_text *text,
 {
     const struct glint_word word = glint_text_next_word(text);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
-    struct near near = near_begin(&word);
+    struct near near = begin_search(&word);
     int i = 0;
 
     *index = -1;
     if (!word.length)
         return true;
     while (i < n && !glint_word_is(&word, lines[i].word))
-        near_offer(&near, lines[i++].word);
+        offer_candidate(&near, lines[i++].word);
     if (i == n)
         return glint_text_fail(text, word.place, "unknown word '%s'%s",
                                glint_word_quote(&word, quote),
-                               near_text(&near, mean));
+                               write_hint(&near, mean));
     if (first[i] && !lines[i].many)
         return glint_text_fail(text, word.place,
                                "a second %s; the first is on line %d",
@@ -200,21 +203,21 @@ bool glint_name_find(struct glint_text *text, const struct glint_word *word,
                      const char *what, const char *names, size_t stride, int n,
                      int *index)
 {
-    struct near near = near_begin(word);
+    struct near near = begin_search(word);
     char quote[GLINT_QUOTE_BYTES], mean[NEAR_BYTES];
 
     for (*index = 0; *index < n; ++*index, names += stride) {
         if (glint_word_is(word, names))
             return true;
-        near_offer(&near, names);
+        offer_candidate(&near, names);
     }
     return glint_text_fail(
         text, word->place, "no %s '%s' is defined above this line%s", what,
-        glint_word_quote(word, quote), near_text(&near, mean));
+        glint_word_quote(word, quote), write_hint(&near, mean));
 }
 
 int glint_choice_read(struct glint_text *text, const char *line,
-                      const char *list, const char *const *names)
+                      const char *list_words, const char *const *names)
 {
     const struct glint_word word = glint_text_next_word(text);
     char quote[GLINT_QUOTE_BYTES];
@@ -222,7 +225,7 @@ int glint_choice_read(struct glint_text *text, const char *line,
     for (int i = 0; names[i]; i++)
         if (glint_word_is(&word, names[i]))
             return i;
-    glint_text_fail(text, word.place, "%s takes %s%s%s%s", line, list,
+    glint_text_fail(text, word.place, "%s takes %s%s%s%s", line, list_words,
                     word.length ? ", not '" : "",
                     word.length ? glint_word_quote(&word, quote) : "",
                     word.length ? "'" : "");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads a scene text line by line. */
+ * Parses a scene text line by line.
+ */
 #include "bake/scene/describe.h"
 
 #include <stdlib.h>

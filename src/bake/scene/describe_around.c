@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on environment light: the environment, whose bright lights become
- * suns of the scene. */
+ * Parses lines on environment light. Bright lights of an environment become
+ * suns of the scene.
+ */
 #include "bake/scene/describe.h"
 
 #include <math.h>
@@ -12,10 +13,10 @@
 #include "glint/scene/environment.h"
 #include "glint/view.h"
 
-/* Half of the angle of a light that is a point. */
+/* angular radius of point lights, degrees */
 #define LEAST_DEG 0.01
 
-/* Sets NAME to the name of an environment of FILE. */
+/* Sets NAME to the base name of FILE without its extension. */
 static void set_name(const char *file, char name[GLINT_DESCRIPTION_NAME_BYTES])
 {
     const char *const folder = strrchr(file, '/');
@@ -30,11 +31,11 @@ static void set_name(const char *file, char name[GLINT_DESCRIPTION_NAME_BYTES])
     name[n] = '\0';
 }
 
-/* Appends an environment of FILE, whose name is at PLACE in the text. Returns
- * NULL if there are too many environments or the name is used. */
-static struct glint_described_environment *append(struct glint_describer *d,
-                                                  const char *file,
-                                                  struct glint_text_place place)
+/* Appends an environment from FILE; PLACE is the position of its name.
+ * Returns NULL if there are too many environments or the name is taken. */
+static struct glint_described_environment *
+append_environment(struct glint_describer *d, const char *file,
+                   struct glint_text_place place)
 {
     struct glint_description *s = d->scene;
     struct glint_described_environment *e;
@@ -81,8 +82,8 @@ bool glint_describe_environment(struct glint_describer *d)
     glint_describe_file(&word, name);
     if (!d->files->environment)
         return glint_text_fail(&d->text, word.place,
-                               "environments cannot be read here");
-    e = append(d, name, word.place);
+                               "no environment is read here");
+    e = append_environment(d, name, word.place);
     if (!e)
         return false;
     e->turn_deg = turn_deg;
@@ -96,7 +97,8 @@ bool glint_describe_environment(struct glint_describer *d)
            glint_text_fail(&d->text, word.place, "%s", reason);
 }
 
-/* Sets TO to FROM, a light of E, as a sun. The environment's z runs away. */
+/* Converts FROM, a light of an environment, to the sun TO. The z axis of the
+ * environment points away from the viewer. */
 static void set_sun(const struct glint_description *s,
                     const struct glint_environment_light *from, int number,
                     struct glint_described_light *to)
@@ -121,7 +123,7 @@ static void set_sun(const struct glint_description *s,
 
 bool glint_describe_around(struct glint_describer *d)
 {
-    /* Fills the slots of lights that an environment lacks. */
+    /* replaces missing lights of environments with fewer lights */
     static const struct glint_environment_light dark = {
         .toward_q30 = {0, 1 << 30, 0}};
     struct glint_description *s = d->scene;
@@ -130,14 +132,16 @@ bool glint_describe_around(struct glint_describer *d)
 
     if (!s->n_environments)
         return s->background != GLINT_BEHIND_ENVIRONMENT ||
-               glint_text_fail(
-                   &d->text, d->background,
-                   "'background environment' needs a line 'environment FILE'");
-    for (int k = s->n_environments; k--;) { /* the first is left in E */
+               glint_text_fail(&d->text, d->background,
+                               "background environment needs a line "
+                               "'environment FILE'");
+    /* Ends with the first environment in E. */
+    for (int k = s->n_environments; k--;) {
         if (glint_environment_open(&e, s->environment[k].data,
                                    s->environment[k].bytes,
                                    &reason) != GLINT_OK)
-            return false; /* it was opened when it was read */
+            return false; /* cannot fail: the file was checked when it was read
+                           */
         if ((int)e.header->n_lights > s->n_environment_lights)
             s->n_environment_lights = (int)e.header->n_lights;
     }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on light and on how surfaces look: brushed metal and translucent
- * translucent medium first, whose parts a material's line names. */
+ * Parses lines on lights, textures and materials: brushed metal, translucent
+ * media, Phong.
+ */
 #include "bake/scene/describe.h"
 
 #include <math.h>
@@ -13,7 +14,8 @@
 #include "glint/scene/translucent.h"
 #include "glint/view.h"
 
-/* What rounding may add to colours and weights that sum to 1. */
+/* Tolerance for rounding in sums of colours and weights that must not exceed
+ * 1. */
 #define SLACK 1e-9
 
 /* ------------------------------------------------------------------- metal */
@@ -31,9 +33,9 @@ static bool read_norm(struct glint_describer *d, const struct glint_word *word,
                            glint_word_quote(word, quote));
 }
 
-/* Holds the smaller alpha at a tenth of the other, with a warning. */
-static void hold_ratio(struct glint_describer *d,
-                       struct glint_described_material *m)
+/* Raises the smaller alpha to 1/10 of the other, with a warning. */
+static void limit_ratio(struct glint_describer *d,
+                        struct glint_described_material *m)
 {
     const int smaller = m->alpha[0] > m->alpha[1];
     const double least = m->alpha[1 - smaller] / GLINT_DESCRIPTION_MAX_RATIO;
@@ -49,19 +51,19 @@ static void hold_ratio(struct glint_describer *d,
     m->alpha[smaller] = least;
 }
 
-/* Reads the NORM of metal, and limits the ratio of its alphas. */
+/* Parses the norm of a Ward lobe and limits the ratio of its alphas. */
 static bool read_lobe(struct glint_describer *d,
                       struct glint_described_material *m,
                       const struct glint_word *norm)
 {
     if (norm->length && !read_norm(d, norm, m))
         return false;
-    hold_ratio(d, m);
+    limit_ratio(d, m);
     return true;
 }
 
-/* Reads a material's line from 'ward' on; TEXTURE receives the name of its
- * texture, if it has one. */
+/* Parses a material's line from 'ward' on. TEXTURE receives the name of its
+ * texture, if any. */
 static bool read_metal(struct glint_describer *d,
                        struct glint_described_material *m,
                        struct glint_word *texture)
@@ -92,15 +94,15 @@ static bool read_metal(struct glint_describer *d,
     return read_lobe(d, m, &norm);
 }
 
-/* A texel may be as much longer or shorter than in the mean, and this fraction
- * of the surface more, before that is warned of. */
+/* Thresholds of the warning about stretch: ratio of a texel's size to the
+ * mean size, and fraction of the surface where it is exceeded. */
 #define MOST_STRETCH   1.5
 #define STRETCHED_AREA .02
 
 /* -------------------------------------------------------------------
  * translucent medium */
 
-/* Reads the translucent medium that WORD names. */
+/* Reads the file of a translucent medium, whose name is WORD. */
 static bool read_file(struct glint_describer *d, const struct glint_word *word,
                       struct glint_described_material *m)
 {
@@ -142,7 +144,7 @@ static bool read_fresnel(struct glint_describer *d,
                            glint_word_quote(word, quote));
 }
 
-/* The same from 'translucent' on. */
+/* Parses a material's line from 'translucent' on. */
 static bool read_stone(struct glint_describer *d,
                        struct glint_described_material *m,
                        struct glint_word *texture)
@@ -157,9 +159,9 @@ static bool read_stone(struct glint_describer *d,
                                     {0}};
     char quote[GLINT_QUOTE_BYTES];
 
-    (void)texture; /* the translucent medium has its own pattern */
+    (void)texture; /* a translucent medium has its own texture */
     m->is_stone = m->fresnel = true;
-    glint_text_next_word(&d->text); /* translucent */
+    glint_text_next_word(&d->text); /* skips the word "translucent" */
     file = glint_text_next_word(&d->text);
     if (!file.length)
         return glint_text_fail(
@@ -187,11 +189,11 @@ static bool read_stone(struct glint_describer *d,
 
 /* ------------------------------------------------------------------ objects */
 
-/* Sets SHORTEST and LONGEST to the min and max length on triangle T of a unit
- * step in (u, v). Returns the triangle's area, or 0 if its area in (u, v) is
- * 0. */
-static double stretch_of(const struct glint_described_triangle *t,
-                         double *shortest, double *longest)
+/* Sets SHORTEST and LONGEST to the min and max length on triangle T of a
+ * unit step in (u, v). Returns the area of the triangle; 0 if its area in
+ * (u, v) is 0. */
+static double compute_stretch(const struct glint_described_triangle *t,
+                              double *shortest, double *longest)
 {
     const double du[2] = {t->uv[1][0] - t->uv[0][0], t->uv[2][0] - t->uv[0][0]};
     const double dv[2] = {t->uv[1][1] - t->uv[0][1], t->uv[2][1] - t->uv[0][1]};
@@ -217,7 +219,7 @@ static double stretch_of(const struct glint_described_triangle *t,
     return *longest * *shortest * fabs(det) / 2;
 }
 
-/* Warns where texels of the mesh have other sizes than in the mean. */
+/* Warns if the texel size varies too much over the mesh. */
 static void check_stretch(struct glint_describer *d,
                           const struct glint_described_object *o, int material)
 {
@@ -232,7 +234,7 @@ static void check_stretch(struct glint_describer *d,
 
             if (t[i].material != material)
                 continue;
-            of = stretch_of(&t[i], &shortest, &longest);
+            of = compute_stretch(&t[i], &shortest, &longest);
             here = fmax(longest / mean, mean / fmax(shortest, 1e-30));
             if (!pass && of > 0) {
                 area += of;
@@ -251,8 +253,8 @@ static void check_stretch(struct glint_describer *d,
                  o->name, worst, 100 * stretched / area);
 }
 
-/* Checks triangle T of a translucent object; FIRST is the translucent medium of
- * the triangles before, or -1. */
+/* Checks triangle T of a translucent object. FIRST is the translucent medium
+ * of earlier triangles, or -1. */
 static bool check_triangle(struct glint_describer *d,
                            const struct glint_described_triangle *t,
                            struct glint_text_place place, int *first)
@@ -309,11 +311,11 @@ bool glint_describe_skin(struct glint_describer *d,
 
 #define MAX_LIGHT 1e9
 #define REACH     GLINT_DESCRIPTION_REACH
-/* Half of the sun's angle in the sky. */
+/* Angular radius of the sun, degrees. */
 #define SUN_DEG 0.267
 
-/* Warns of a sun whose COLOUR seems to be its irradiance on objects instead:
- * its light would be below one 8-bit code. */
+/* Warns of a sun whose COLOUR seems to be its irradiance instead of its
+ * radiance: its light would be below one 8-bit code. */
 static void check_sun(struct glint_describer *d,
                       const struct glint_described_light *sun)
 {
@@ -349,10 +351,11 @@ static bool read_sun(struct glint_describer *d,
                            "the direction to the sun must not be 0 0 0");
 }
 
-/* Notes that LIGHT rides on the motion called WORD. */
-static bool ride(struct glint_describer *d,
-                 const struct glint_described_light *light,
-                 const struct glint_word *word, struct glint_text_place place)
+/* Attaches LIGHT to the motion with the file name WORD. */
+static bool attach_to_motion(struct glint_describer *d,
+                             const struct glint_described_light *light,
+                             const struct glint_word *word,
+                             struct glint_text_place place)
 {
     char name[GLINT_FILE_BYTES];
 
@@ -379,10 +382,12 @@ static bool read_lamp(struct glint_describer *d,
 
     light->kind = GLINT_DESCRIBED_LAMP;
     return glint_clauses_read(&d->text, "light lamp", clause) &&
-           (!clause[3].place.line || ride(d, light, &on, clause[3].place));
+           (!clause[3].place.line ||
+            attach_to_motion(d, light, &on, clause[3].place));
 }
 
-/* Names LIGHT after its kind and, from the second on, its number. */
+/* Sets the name of LIGHT to its kind, followed by a number from the second
+ * light on. */
 static void name_light(struct glint_description *s,
                        struct glint_described_light *light, const char *kind)
 {
@@ -474,7 +479,7 @@ bool glint_describe_find(struct glint_describer *d,
                            sizeof *s->material, s->n_materials, index);
 }
 
-/* Checks that no sum of the fractions of a material exceeds 1. */
+/* Checks that the reflected fractions of a material sum to at most 1. */
 static bool check_shares(struct glint_describer *d,
                          const struct glint_described_material *m,
                          const struct glint_clause *clause)
@@ -504,8 +509,8 @@ static bool check_shares(struct glint_describer *d,
     return true;
 }
 
-/* Reads a material's line from 'phong' on, as read_metal() does from
- * 'ward' on. */
+/* Parses a material's line from 'phong' on. TEXTURE receives the name of its
+ * texture, if any. */
 static bool read_phong(struct glint_describer *d,
                        struct glint_described_material *m,
                        struct glint_word *texture)

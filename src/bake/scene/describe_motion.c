@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on a recorded motion: its objects become balls like any other, which
- * the run time moves; its shells, lines and box have materials alone. */
+ * Parses the line on a recorded motion. Body, sensors and foods become spheres
+ * of the scene, which the run time moves; shells, lines and box only get
+ * materials.
+ */
 #include "bake/scene/describe.h"
 
 #include <math.h>
@@ -13,9 +15,9 @@
 #define REACH GLINT_DESCRIPTION_REACH
 #define LEAST GLINT_DESCRIPTION_LEAST
 
-enum { NAME_BYTES = 19 /* with room for "-sensor32" */ };
+enum { NAME_BYTES = 19 /* leaves space for "-sensor32" */ };
 
-/* Default materials of the parts whose name is no material of the text. */
+/* Default materials, used if the text defines no material of that name. */
 static const struct glint_described_material looks[] = {
     {.name = "body",
      .ambient = .3,
@@ -42,8 +44,8 @@ static const struct glint_described_material looks[] = {
     {.name = "lines", .ambient = 1, .power = 1, .colour = {1, .95, .3}},
     {.name = "box", .ambient = 1, .power = 1, .colour = {.45, .5, .55}}};
 
-/* Sets INDEX to the material with the name of LOOK, or to LOOK itself,
- * added. */
+/* Sets INDEX to the scene's material with the name of LOOK; adds LOOK if
+ * there is none. */
 static bool set_material(struct glint_describer *d,
                          const struct glint_described_material *look,
                          struct glint_text_place place, int *index)
@@ -63,11 +65,13 @@ static bool set_material(struct glint_describer *d,
     return true;
 }
 
-/* Appends a ball of RADIUS at AT, called NAME and, unless KIND is NULL, that
- * and NUMBER. Where it is first sets FIRST. */
-static bool put_ball(struct glint_describer *d, const char *kind, int number,
-                     const double at[3], double radius, int material,
-                     struct glint_text_place place, int *first)
+/* Appends a sphere of RADIUS at AT. Its name is the motion's name, followed
+ * by KIND and NUMBER unless KIND is NULL. If it is the first of its kind,
+ * sets FIRST to its index. */
+static bool append_sphere(struct glint_describer *d, const char *kind,
+                          int number, const double at[3], double radius,
+                          int material, struct glint_text_place place,
+                          int *first)
 {
     const char *const name = d->scene->motion.name;
     char full[GLINT_DESCRIPTION_NAME_BYTES];
@@ -88,9 +92,10 @@ static bool put_ball(struct glint_describer *d, const char *kind, int number,
     return true;
 }
 
-/* Appends body, sensors and foods, where they are in frame 0. */
-static bool put_things(struct glint_describer *d, struct glint_motion *motion,
-                       struct glint_text_place place)
+/* Appends body, sensors and foods at their positions in frame 0. */
+static bool append_objects(struct glint_describer *d,
+                           struct glint_motion *motion,
+                           struct glint_text_place place)
 {
     struct glint_described_motion *m = &d->scene->motion;
     const struct glint_motion_header *h = &motion->header;
@@ -106,27 +111,27 @@ static bool put_things(struct glint_describer *d, struct glint_motion *motion,
         !set_material(d, &looks[4], place, &m->line_material) ||
         !set_material(d, &looks[5], place, &m->box_material))
         return false;
-    if (m->size > 0 &&
-        !put_ball(d, NULL, 0, middle, m->size, material[0], place, &m->body))
+    if (m->size > 0 && !append_sphere(d, NULL, 0, middle, m->size, material[0],
+                                      place, &m->body))
         return false;
     for (uint32_t i = 0; m->sensors > 0 && i < h->n_sensors; i++) {
         double at[3];
 
         for (int k = 0; k < 3; k++)
             at[k] = m->size * ldexp(motion->sensor[i].axis_q30[k], -30);
-        if (!put_ball(d, "sensor", (int)i + 1, at, m->sensors, material[1],
-                      place, &m->sensor))
+        if (!append_sphere(d, "sensor", (int)i + 1, at, m->sensors, material[1],
+                           place, &m->sensor))
             return false;
     }
     if (glint_motion_frame(motion, 0, &frame) != GLINT_OK)
-        return false; /* it was checked when it was opened */
+        return false; /* cannot fail: the file was checked when it was opened */
     for (uint32_t i = 0; m->foods > 0 && i < h->n_foods; i++) {
         double at[3];
 
         for (int k = 0; k < 3; k++)
             at[k] = step * frame.food[i][k];
-        if (!put_ball(d, "food", (int)i + 1, at, m->foods, material[2], place,
-                      &m->food))
+        if (!append_sphere(d, "food", (int)i + 1, at, m->foods, material[2],
+                           place, &m->food))
             return false;
     }
     for (int k = 0; k < 3; k++)
@@ -135,7 +140,7 @@ static bool put_things(struct glint_describer *d, struct glint_motion *motion,
     return true;
 }
 
-/* Reads the file and its header. */
+/* Reads the motion file and checks its header. */
 static bool open_motion(struct glint_describer *d,
                         const struct glint_word *file, bool has_size)
 {
@@ -157,7 +162,7 @@ static bool open_motion(struct glint_describer *d,
         return glint_text_fail(&d->text, file->place, "%s", reason);
     if (!has_size)
         m->size = ldexp(motion.header.size, -motion.header.unit_log2);
-    if (m->size > REACH || !put_things(d, &motion, file->place))
+    if (m->size > REACH || !append_objects(d, &motion, file->place))
         return m->size <= REACH ||
                glint_text_fail(&d->text, file->place, "the body is too large");
     return true;

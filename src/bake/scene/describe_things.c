@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines on objects: where they are, and of which material. */
+ * Parses lines on objects: shape, position and material.
+ */
 #include "bake/scene/describe.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@
 
 #define REACH GLINT_DESCRIPTION_REACH
 #define LEAST GLINT_DESCRIPTION_LEAST
-/* Max repetitions of a texture over a triangle. */
+/* Max number of repetitions of a texture across a triangle. */
 #define REPEATS 250.0
 #define NO_AXIS "the axis of a rotation must not be 0 0 0"
 
@@ -48,10 +49,11 @@ glint_describe_thing(struct glint_describer *d, enum glint_described_kind kind,
     return o;
 }
 
-/* Begins an object of KIND: reads its name. Returns NULL if that is wrong. */
-static struct glint_described_object *begin(struct glint_describer *d,
-                                            enum glint_described_kind kind,
-                                            const char *what)
+/* Starts an object of KIND by parsing its name. Returns NULL if the name is
+ * invalid. */
+static struct glint_described_object *
+begin_object(struct glint_describer *d, enum glint_described_kind kind,
+             const char *what)
 {
     struct glint_text at = d->text;
     const struct glint_text_place place = glint_text_next_word(&at).place;
@@ -62,8 +64,8 @@ static struct glint_described_object *begin(struct glint_describer *d,
                : NULL;
 }
 
-/* Returns whether the texture of T repeats more often than may be. */
-static bool repeats(const struct glint_described_triangle *t)
+/* Returns whether the texture coordinates of T span more than REPEATS. */
+static bool repeats_too_often(const struct glint_described_triangle *t)
 {
     for (int i = 0; t->has_uv && i < 2; i++) {
         const double low = fmin(t->uv[0][i], fmin(t->uv[1][i], t->uv[2][i]));
@@ -75,7 +77,8 @@ static bool repeats(const struct glint_described_triangle *t)
     return false;
 }
 
-/* Sets TURN to the quaternion of AXIS and ANGLE in degrees. */
+/* Sets TURN to the quaternion of a rotation about AXIS by ANGLE, degrees.
+ * Returns false if AXIS is 0. */
 static bool set_turn(double turn[4], double axis[3], double angle_deg)
 {
     const double half = angle_deg * GLINT_PI / 360;
@@ -91,7 +94,7 @@ static bool set_turn(double turn[4], double axis[3], double angle_deg)
 bool glint_describe_sphere(struct glint_describer *d)
 {
     struct glint_described_object *o =
-        begin(d, GLINT_DESCRIBED_SPHERE, "sphere");
+        begin_object(d, GLINT_DESCRIBED_SPHERE, "sphere");
     double turn[4] = {0, 1, 0, 0};
     struct glint_word material;
     struct glint_clause clause[] = {
@@ -109,9 +112,11 @@ bool glint_describe_sphere(struct glint_describer *d)
             glint_text_fail(&d->text, clause[3].place, NO_AXIS));
 }
 
-/* Returns room for N more triangles, or NULL. */
-static struct glint_described_triangle *more(struct glint_describer *d, int n,
-                                             struct glint_text_place place)
+/* Allocates N more triangles. Returns NULL if there are too many, or no
+ * memory. */
+static struct glint_described_triangle *
+allocate_triangles(struct glint_describer *d, int n,
+                   struct glint_text_place place)
 {
     struct glint_description *s = d->scene;
 
@@ -139,7 +144,7 @@ static struct glint_described_triangle *more(struct glint_describer *d, int n,
 bool glint_describe_triangle(struct glint_describer *d)
 {
     struct glint_described_object *o =
-        begin(d, GLINT_DESCRIBED_TRIANGLE, "triangle");
+        begin_object(d, GLINT_DESCRIBED_TRIANGLE, "triangle");
     struct glint_described_triangle t = {.has_uv = false}, *to;
     struct glint_word material;
     struct glint_clause clause[] = {
@@ -159,11 +164,12 @@ bool glint_describe_triangle(struct glint_describer *d)
     if (d->scene->material[t.material].texture >= 0 && !t.has_uv)
         return glint_text_fail(&d->text, clause[1].place,
                                "a material with a texture needs 'uv'");
-    if (repeats(&t))
-        return glint_text_fail(
-            &d->text, clause[0].place,
-            "a texture may repeat at most %g times over a triangle", REPEATS);
-    to = more(d, 1, clause[1].place);
+    if (repeats_too_often(&t))
+        return glint_text_fail(&d->text, clause[0].place,
+                               "a texture repeats at most %g times over a "
+                               "triangle",
+                               REPEATS);
+    to = allocate_triangles(d, 1, clause[1].place);
     if (!to)
         return false;
     *to = t;
@@ -173,7 +179,8 @@ bool glint_describe_triangle(struct glint_describer *d)
 
 bool glint_describe_plane(struct glint_describer *d)
 {
-    struct glint_described_object *o = begin(d, GLINT_DESCRIBED_PLANE, "plane");
+    struct glint_described_object *o =
+        begin_object(d, GLINT_DESCRIBED_PLANE, "plane");
     struct glint_word material;
     struct glint_clause clause[] = {
         {"at", 3, -REACH, REACH, .value = o ? o->at : NULL, .required = true},
@@ -200,7 +207,8 @@ bool glint_describe_plane(struct glint_describer *d)
 
 /* -------------------------------------------------------------------- mesh */
 
-/* Sets OF to the materials of the scene that MESH names, or to the object's. */
+/* Sets OF to the scene's materials that MESH names; names that are not
+ * defined get the material of the object. */
 static bool find_materials(struct glint_describer *d,
                            const struct glint_described_object *o,
                            const struct glint_mesh *mesh, const char *file,
@@ -223,14 +231,15 @@ static bool find_materials(struct glint_describer *d,
     return true;
 }
 
-/* Appends the triangles of MESH to the scene, SCALE times as large. */
-static bool put_mesh(struct glint_describer *d,
-                     struct glint_described_object *o,
-                     const struct glint_mesh *mesh, const int *of, double scale,
-                     struct glint_text_place place)
+/* Appends the triangles of MESH to the scene, scaled by SCALE. */
+static bool append_mesh(struct glint_describer *d,
+                        struct glint_described_object *o,
+                        const struct glint_mesh *mesh, const int *of,
+                        double scale, struct glint_text_place place)
 {
     const struct glint_description *s = d->scene;
-    struct glint_described_triangle *to = more(d, mesh->n_triangles, place);
+    struct glint_described_triangle *to =
+        allocate_triangles(d, mesh->n_triangles, place);
 
     if (!to)
         return false;
@@ -250,12 +259,11 @@ static bool put_mesh(struct glint_describer *d,
                                    "material %s has a texture, but faces of "
                                    "the mesh have no texture coordinates (vt)",
                                    s->material[t->material].name);
-        if (repeats(t))
-            return glint_text_fail(
-                &d->text, place,
-                "a texture may repeat at most %g times over a triangle, but "
-                "repeats more often on this mesh",
-                REPEATS);
+        if (repeats_too_often(t))
+            return glint_text_fail(&d->text, place,
+                                   "a texture repeats at most %g times over a "
+                                   "triangle, and more on the mesh",
+                                   REPEATS);
         for (int k = 0; k < 3; k++) {
             if (t->has_normals && !glint_describe_unit(t->normal[k]))
                 t->has_normals = false;
@@ -295,7 +303,7 @@ static bool read_mesh(struct glint_describer *d,
         d->status = status == GLINT_OK ? d->status : status;
         good = status == GLINT_OK &&
                find_materials(d, o, mesh, name, word->place, of) &&
-               put_mesh(d, o, mesh, of, scale, word->place) &&
+               append_mesh(d, o, mesh, of, scale, word->place) &&
                glint_describe_skin(d, o, word->place);
         if (status == GLINT_OK)
             free(mesh->triangle);
@@ -307,7 +315,8 @@ static bool read_mesh(struct glint_describer *d,
 
 bool glint_describe_mesh(struct glint_describer *d)
 {
-    struct glint_described_object *o = begin(d, GLINT_DESCRIBED_MESH, "mesh");
+    struct glint_described_object *o =
+        begin_object(d, GLINT_DESCRIBED_MESH, "mesh");
     struct glint_word material, file;
     double scale = 1, turn[4] = {0, 1, 0, 0};
     struct glint_clause clause[] = {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines for handedness, camera, background, shadow and flare. */
+ * Parses lines on handedness, camera, background, shadow and flare.
+ */
 #include "bake/scene/describe.h"
 
 #include <math.h>
@@ -9,23 +10,24 @@
 #include "glint/view.h"
 
 #define REACH     GLINT_DESCRIPTION_REACH
-#define MAX_LIGHT 32768.0 /* of a background */
-/* Sine of the angle between forward and up below which there is no right. */
+#define MAX_LIGHT 32768.0 /* max light of a background */
+/* Min sine of the angle between viewing direction and up vector; below, the
+ * right vector is undefined. */
 #define LEAST_RIGHT 1e-6
 
-static double dot(const double a[3], const double b[3])
+static double compute_dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void cross(const double a[3], const double b[3], double c[3])
+static void compute_cross(const double a[3], const double b[3], double c[3])
 {
     c[0] = a[1] * b[2] - a[2] * b[1];
     c[1] = a[2] * b[0] - a[0] * b[2];
     c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Reads one of the words that LINE accepts and sets INDEX to its index. */
+/* Parses one of the WORDS that LINE accepts and sets INDEX to its index. */
 static bool read_word(struct glint_describer *d, const char *line,
                       const char *list, const char *const *words, int *index)
 {
@@ -104,8 +106,8 @@ bool glint_describe_flare(struct glint_describer *d)
                            "'highlights' must be a whole number");
 }
 
-/* Reads the first words of a camera: its field. Returns false on failure, and
- * sets ALL if nothing may follow. */
+/* Parses the first words of a camera, its field of view. Returns false on
+ * errors. Sets ALL if no further words may follow. */
 static bool read_field(struct glint_describer *d, bool *all)
 {
     struct glint_described_camera *c = &d->scene->camera;
@@ -186,7 +188,8 @@ static void set_orbit(struct glint_describer *d)
     struct glint_described_camera *c = &d->scene->camera;
     const double yaw = d->yaw_deg * GLINT_PI / 180;
     const double pitch = d->pitch_deg * GLINT_PI / 180;
-    /* With yaw 0 the camera looks along the axis that runs into the picture. */
+    /* with yaw 0 the camera looks along the axis that points into the
+     * picture */
     const double from[3] = {cos(pitch) * sin(yaw), sin(pitch),
                             (d->scene->left_handed ? -1 : 1) * cos(pitch) *
                                 cos(yaw)};
@@ -204,7 +207,8 @@ bool glint_describe_axes(struct glint_describer *d)
 
     if (c->field == GLINT_DESCRIBED_CORNERS || !d->camera.line ||
         d->sensor.line) {
-        /* Row A6 looks along +z; a scene without a camera into the picture. */
+        /* A camera with GLINT_DESCRIBED_CORNERS looks along +z; a scene
+         * without a camera line looks into the picture. */
         c->forward[2] = c->field == GLINT_DESCRIBED_CORNERS ? 1 : hand;
     } else if (d->has_orbit) {
         set_orbit(d);
@@ -218,12 +222,12 @@ bool glint_describe_axes(struct glint_describer *d)
             "the camera's position equals the point that it looks at");
     if (!glint_describe_unit(d->up))
         return glint_text_fail(&d->text, d->camera, "'up' has no direction");
-    cross(c->forward, d->up, c->right);
-    if (!(dot(c->right, c->right) > LEAST_RIGHT * LEAST_RIGHT))
+    compute_cross(c->forward, d->up, c->right);
+    if (!(compute_dot(c->right, c->right) > LEAST_RIGHT * LEAST_RIGHT))
         return glint_text_fail(&d->text, d->camera,
                                "the camera's direction is parallel to 'up'");
     glint_describe_unit(c->right);
-    cross(c->right, c->forward, c->up);
+    compute_cross(c->right, c->forward, c->up);
     glint_describe_unit(c->up);
     if (d->scene->left_handed)
         for (int i = 0; i < 3; i++)

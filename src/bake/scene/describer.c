@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What all readers of a scene's lines call: directions, names of files, and the
- * errors of files. */
+ * Shared by the parsers of scene lines: unit vectors, file names, and errors of
+ * files.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -10,8 +11,8 @@
 bool glint_describe_unit(double x[3])
 {
     const double largest =
-        fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2]))); /* as squares may
-                                                           vanish */
+        /* scales X, as squares of small numbers would underflow */
+        fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2])));
     double length;
 
     if (!(largest > 0.0))

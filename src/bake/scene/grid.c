@@ -6,22 +6,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Limits of a grid: max cells per triangle; max list entries per triangle, or
- * in total if that is more. Cells grow until both hold, so that N triangles
- * cost O(N) even if they coincide. */
+/* Limits of a grid: max cells per triangle; max list entries per triangle,
+ * and in total if that is more. Cells are enlarged until both hold, so that
+ * N triangles cost O(N) even if they coincide. */
 #define CELLS_EACH 2
 #define REFS_EACH  64
 #define FEW_REFS   (1 << 22)
-/* Triangles in a cell, on average, that are refused: a ray tests all of them.
- * Meshes that are not made to cost have a few. */
+/* Max number of triangles per cell, on average; a mesh with more is
+ * rejected, as a ray tests all triangles of a cell. Ordinary meshes have a
+ * few. */
 #define MOST_IN_CELL 4096
 
-/* A corner as the file has it; members that the mesh does not use are 0. */
+/* A vertex as stored in the file; members that the mesh does not use are 0. */
 struct corner {
     int32_t place[3], uv_q16[2], normal_q30[3];
 };
 
-/* Triangles of an object as they become a mesh. */
+/* State while the triangles of an object are converted to a mesh. */
 struct mesher {
     const struct glint_description *scene;
     const struct glint_described_object *object;
@@ -29,13 +30,14 @@ struct mesher {
     bool has_uv, has_normals;
     struct corner *corner;
     struct glint_scene_triangle *triangle;
-    uint32_t *slot; /* [n_slots] vertices by their contents, + 1; 0: free */
+    uint32_t *slot; /* [n_slots]: hash table of vertices by content: index + 1;
+                       0: free */
     uint32_t n_slots, n_corners, n_triangles;
 };
 
 /* ----------------------------------------------------------------- corners */
 
-static uint32_t hash(const struct corner *c)
+static uint32_t compute_hash(const struct corner *c)
 {
     const unsigned char *byte = (const unsigned char *)c;
     uint32_t h = 2166136261u;
@@ -45,10 +47,10 @@ static uint32_t hash(const struct corner *c)
     return h ^ h >> 15;
 }
 
-/* Returns the index of the vertex equal to C; adds it if there is none yet. */
-static uint32_t vertex_of(struct mesher *m, const struct corner *c)
+/* Returns the index of the vertex equal to C; adds C if there is none. */
+static uint32_t add_vertex(struct mesher *m, const struct corner *c)
 {
-    uint32_t at = hash(c) & (m->n_slots - 1);
+    uint32_t at = compute_hash(c) & (m->n_slots - 1);
 
     while (m->slot[at]) {
         if (memcmp(&m->corner[m->slot[at] - 1], c, sizeof *c) == 0)
@@ -60,9 +62,10 @@ static uint32_t vertex_of(struct mesher *m, const struct corner *c)
     return m->n_corners - 1;
 }
 
-/* Sets N to the unit normal of the triangle's plane. Leaves N unchanged if the
- * triangle has no area, which can happen by rounding. */
-static void face_of(const struct glint_described_triangle *t, double n[3])
+/* Sets N to the unit normal of the triangle's plane. Leaves N unchanged if
+ * the triangle has no area, which rounding can cause. */
+static void compute_normal(const struct glint_described_triangle *t,
+                           double n[3])
 {
     double a[3], b[3], across[3], length;
 
@@ -92,15 +95,15 @@ static bool has_area(const struct corner c[3])
            a[0] * b[1] != a[1] * b[0];
 }
 
-/* Sets C to the corners of T. Integers are subtracted from large U and V, as
- * textures repeat. The file's V runs down. */
-static void corners_of(const struct mesher *m,
-                       const struct glint_described_triangle *t,
-                       struct corner c[3])
+/* Sets C to the vertices of T. Subtracts integers from large texture
+ * coordinates, as textures repeat. In the file, v points down. */
+static void set_corners(const struct mesher *m,
+                        const struct glint_described_triangle *t,
+                        struct corner c[3])
 {
     double face[3] = {0, 1, 0};
 
-    face_of(t, face);
+    compute_normal(t, face);
     memset(c, 0, 3 * sizeof *c);
     for (int k = 0; k < 3; k++) {
         glint_steps_place(m->steps, t->place[k], c[k].place);
@@ -117,30 +120,32 @@ static void corners_of(const struct mesher *m,
     }
 }
 
-static void put_triangle(struct mesher *m,
+static void add_triangle(struct mesher *m,
                          const struct glint_described_triangle *t,
                          struct glint_scene_bake_report *report)
 {
     struct glint_scene_triangle *to = &m->triangle[m->n_triangles];
     struct corner c[3];
-    /* Corners are clockwise from outside; a mirror changes their order. */
+    /* Vertices are clockwise seen from outside; a mirrored axis reverses
+     * their order. */
     const int second = m->steps->hand > 0 ? 1 : 2;
 
-    corners_of(m, t, c);
+    set_corners(m, t, c);
     if (!has_area(c)) {
         report->flat++;
         return;
     }
-    to->vertex[0] = vertex_of(m, &c[0]);
-    to->vertex[1] = vertex_of(m, &c[second]);
-    to->vertex[2] = vertex_of(m, &c[3 - second]);
+    to->vertex[0] = add_vertex(m, &c[0]);
+    to->vertex[1] = add_vertex(m, &c[second]);
+    to->vertex[2] = add_vertex(m, &c[3 - second]);
     to->material = t->material == m->object->material ? GLINT_SCENE_NONE
                                                       : (uint32_t)t->material;
     m->n_triangles++;
 }
 
-/* Reads the triangles of the object. Returns false without memory. */
-static bool gather(struct mesher *m, struct glint_scene_bake_report *report)
+/* Converts the triangles of the object. Returns false if there is no memory. */
+static bool add_triangles(struct mesher *m,
+                          struct glint_scene_bake_report *report)
 {
     const struct glint_described_triangle *t =
         m->scene->triangle + m->object->first_triangle;
@@ -161,14 +166,14 @@ static bool gather(struct mesher *m, struct glint_scene_bake_report *report)
     if (!m->corner || !m->triangle || !m->slot)
         return false;
     for (uint32_t i = 0; i < n; i++)
-        put_triangle(m, &t[i], report);
+        add_triangle(m, &t[i], report);
     return true;
 }
 
 /* -------------------------------------------------------------------- ball */
 
-/* Sets LOW and HIGH to the bounding box of all vertices, and the ball of MESH
- * to a sphere that contains them. */
+/* Sets LOW and HIGH to the bounding box of all vertices, and the bounding
+ * sphere of MESH. */
 static void set_bounds(const struct mesher *m, struct glint_scene_mesh *mesh,
                        int32_t low[3], int32_t high[3])
 {
@@ -199,12 +204,12 @@ static void set_bounds(const struct mesher *m, struct glint_scene_mesh *mesh,
 
 /* -------------------------------------------------------------------- grid */
 
-/* The cells that triangle T touches, with the margin, FROM .. TO along each
- * axis. */
-static void cells_of(const struct mesher *m,
-                     const struct glint_scene_mesh *mesh,
-                     const struct glint_scene_triangle *t, int32_t from[3],
-                     int32_t to[3])
+/* Sets FROM .. TO to the range of cells along each axis that triangle T
+ * touches, with the margin. */
+static void find_cells(const struct mesher *m,
+                       const struct glint_scene_mesh *mesh,
+                       const struct glint_scene_triangle *t, int32_t from[3],
+                       int32_t to[3])
 {
     for (int i = 0; i < 3; i++) {
         const int32_t last = (int32_t)mesh->cells[i] - 1;
@@ -225,8 +230,8 @@ static void cells_of(const struct mesher *m,
     }
 }
 
-/* Sets the cells of MESH over the box from LOW to HIGH. Returns their number, 0
- * if there are too many along an axis. */
+/* Sets the cells of MESH for the box from LOW to HIGH. Returns their number;
+ * 0 if there are too many along an axis. */
 static uint64_t set_cells(struct glint_scene_mesh *mesh, const int32_t low[3],
                           const int32_t high[3])
 {
@@ -241,7 +246,7 @@ static uint64_t set_cells(struct glint_scene_mesh *mesh, const int32_t low[3],
     return n;
 }
 
-/* Returns how often triangles are listed in the cells of MESH. */
+/* Returns the number of list entries of all cells of MESH. */
 static uint64_t count_refs(const struct mesher *m,
                            const struct glint_scene_mesh *mesh)
 {
@@ -251,7 +256,7 @@ static uint64_t count_refs(const struct mesher *m,
         int32_t from[3], to[3];
         uint64_t n = 1;
 
-        cells_of(m, mesh, &m->triangle[k], from, to);
+        find_cells(m, mesh, &m->triangle[k], from, to);
         for (int i = 0; i < 3; i++)
             n *= (uint64_t)(to[i] - from[i] + 1);
         sum += n;
@@ -259,9 +264,9 @@ static uint64_t count_refs(const struct mesher *m,
     return sum;
 }
 
-/* Chooses the cells of MESH over the box from LOW to HIGH: the smallest whose
- * number and list entries are within the limits. Returns the number of cells
- * and sets REFS to the number of list entries. */
+/* Chooses the smallest cells of MESH for the box from LOW to HIGH whose
+ * number and list entries are within the limits. Returns the number of
+ * cells; sets REFS to the number of list entries. */
 static uint64_t choose_cells(const struct mesher *m,
                              struct glint_scene_mesh *mesh,
                              const int32_t low[3], const int32_t high[3],
@@ -280,8 +285,8 @@ static uint64_t choose_cells(const struct mesher *m,
     }
 }
 
-/* Counts the triangles that touch each cell in START, or, if REF is not NULL,
- * writes each triangle to REF at its cells' START and advances that. */
+/* If REF is NULL, counts the triangles of each cell in START. Otherwise
+ * writes each triangle to REF at the START of its cells and advances START. */
 static void list_triangles(const struct mesher *m,
                            const struct glint_scene_mesh *mesh, uint32_t *start,
                            uint32_t *ref)
@@ -289,7 +294,7 @@ static void list_triangles(const struct mesher *m,
     for (uint32_t i = 0; i < m->n_triangles; i++) {
         int32_t from[3], to[3];
 
-        cells_of(m, mesh, &m->triangle[i], from, to);
+        find_cells(m, mesh, &m->triangle[i], from, to);
         for (int32_t z = from[2]; z <= to[2]; z++)
             for (int32_t y = from[1]; y <= to[1]; y++)
                 for (int32_t x = from[0]; x <= to[0]; x++) {
@@ -342,9 +347,9 @@ static bool write_grid(struct glint_draft *draft, const struct mesher *m,
 
 /* ------------------------------------------------------------------ tables */
 
-/* Appends the N numbers at OFFSET of each corner. */
-static uint32_t put_corners(struct glint_draft *draft, const struct mesher *m,
-                            size_t offset, size_t n)
+/* Appends N numbers of each vertex, at OFFSET in struct corner. */
+static uint32_t append_corners(struct glint_draft *draft,
+                               const struct mesher *m, size_t offset, size_t n)
 {
     const uint32_t at = (uint32_t)draft->bytes;
 
@@ -364,7 +369,7 @@ bool glint_grid_write(struct glint_draft *draft,
 {
     struct mesher m = {.scene = scene, .object = object, .steps = steps};
     int32_t low[3], high[3];
-    bool good = gather(&m, report);
+    bool good = add_triangles(&m, report);
 
     *mesh = (struct glint_scene_mesh){0};
     if (good) {
@@ -372,13 +377,13 @@ bool glint_grid_write(struct glint_draft *draft,
         mesh->n_triangles = m.n_triangles;
         set_bounds(&m, mesh, low, high);
         mesh->vertex_at =
-            put_corners(draft, &m, offsetof(struct corner, place), 3);
+            append_corners(draft, &m, offsetof(struct corner, place), 3);
         if (m.has_uv)
             mesh->uv_at =
-                put_corners(draft, &m, offsetof(struct corner, uv_q16), 2);
+                append_corners(draft, &m, offsetof(struct corner, uv_q16), 2);
         if (m.has_normals)
-            mesh->normal_at =
-                put_corners(draft, &m, offsetof(struct corner, normal_q30), 3);
+            mesh->normal_at = append_corners(
+                draft, &m, offsetof(struct corner, normal_q30), 3);
         mesh->triangle_at = glint_draft_put(draft, m.triangle,
                                             m.n_triangles * sizeof *m.triangle);
         good = write_grid(draft, &m, mesh, low, high, report, error);

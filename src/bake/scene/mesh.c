@@ -7,14 +7,14 @@
 
 #include "bake/table/text.h"
 
-/* A list of numbers, WIDTH together, that grows. */
+/* A growing list of items of WIDTH numbers each. */
 struct list {
     double *at;
     int n, room, width;
 };
 
-/* A corner of a face: indices of position, texture coordinates and normal, from
- * 0; -1: absent. */
+/* A corner of a face: indices of position, texture coordinates and normal,
+ * from 0; -1: absent. */
 struct corner {
     int place, uv, normal;
 };
@@ -23,12 +23,12 @@ struct reader {
     struct glint_text text;
     struct list place, uv, normal;
     struct glint_mesh *mesh;
-    int room;     /* triangles that there is memory for */
-    int material; /* name of the material now, or -1 */
+    int room;     /* number of triangles that memory is allocated for */
+    int material; /* index of the current material's name; -1: none */
     bool out_of_memory;
 };
 
-/* Returns memory for one more item of LIST, or NULL. */
+/* Appends an item to LIST and returns it; NULL if there is no memory. */
 static double *append_item(struct reader *r, struct list *list)
 {
     if (list->n == list->room) {
@@ -46,8 +46,8 @@ static double *append_item(struct reader *r, struct list *list)
     return list->at + (ptrdiff_t)list->n++ * list->width;
 }
 
-/* Returns the next word, which is on the next line if the current line ends in
- * a backslash. */
+/* Returns the next word. Continues on the next line if the current line ends
+ * in a backslash. */
 static struct glint_word next_word(struct reader *r)
 {
     struct glint_word word = glint_text_next_word(&r->text);
@@ -58,8 +58,8 @@ static struct glint_word next_word(struct reader *r)
     return word;
 }
 
-/* Reads an item of LIST. Missing last numbers become 0; further numbers,
- * weights and colours, are skipped. */
+/* Parses an item of LIST with at least LEAST numbers; missing numbers become
+ * 0. Skips further numbers, such as weights and colours. */
 static bool read_item(struct reader *r, struct list *list, int least,
                       const char *what)
 {
@@ -87,8 +87,8 @@ static bool read_item(struct reader *r, struct list *list, int least,
     return item != NULL;
 }
 
-/* Reads digits of WORD from *AT on, up to a slash, as an index into LIST.
- * Nothing before the slash is -1. */
+/* Parses the digits of WORD from *AT up to a slash as an index into LIST.
+ * The index is -1 if there are none. */
 static bool read_index(struct reader *r, const struct glint_word *word, int *at,
                        const struct list *list, const char *what, int *index)
 {
@@ -135,7 +135,7 @@ static bool read_corner(struct reader *r, const struct glint_word *word,
     if (corner->place < 0)
         return glint_text_fail(&r->text, word->place, "corner has no place");
     if (at < word->length) {
-        at++; /* the slash */
+        at++; /* skips the slash */
         if (!read_index(r, word, &at, &r->uv, "texture place", &corner->uv))
             return false;
     }
@@ -148,8 +148,8 @@ static bool read_corner(struct reader *r, const struct glint_word *word,
            glint_text_fail(&r->text, word->place, "corner has more than V/T/N");
 }
 
-static bool put_triangle(struct reader *r, const struct corner *const c[3],
-                         struct glint_text_place place)
+static bool append_triangle(struct reader *r, const struct corner *const c[3],
+                            struct glint_text_place place)
 {
     struct glint_mesh *mesh = r->mesh;
     struct glint_described_triangle *t;
@@ -200,7 +200,7 @@ static bool read_face(struct reader *r, struct glint_text_place place)
         if (!word.length)
             break;
         if (!read_corner(r, &word, &now) ||
-            (n >= 2 && !put_triangle(r, c, word.place)))
+            (n >= 2 && !append_triangle(r, c, word.place)))
             return false;
         if (n == 0)
             first = now;

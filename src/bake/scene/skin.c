@@ -9,7 +9,8 @@
 #include "glint/scene/translucent.h"
 #include "glint/view.h"
 
-/* Max fraction of texels whose centres lie inside two triangles. */
+/* Max fraction of texels whose centre lies inside two triangles; a mesh with
+ * more is rejected. */
 #define MOST_SHARED .02
 
 int glint_skin_material(const struct glint_description *scene,
@@ -27,35 +28,38 @@ int glint_skin_material(const struct glint_description *scene,
     return -1;
 }
 
-/* The map of a mesh while it is painted. */
+/* State while the texels of a mesh are assigned to triangles. */
 struct painter {
     const struct glint_draft *draft;
     const struct glint_scene_mesh *mesh;
     int side;
-    uint32_t own;      /* material of the object */
-    uint32_t material; /* that is painted */
-    uint32_t *texel;   /* [side][side] */
-    uint8_t *inside;   /* [side][side] 1: wholly inside its triangle */
+    uint32_t own; /* material of the object, for triangles without their own */
+    uint32_t material; /* material whose triangles are drawn */
+    /* [side][side]: index of the triangle, or GLINT_SCENE_NONE */
+    uint32_t *texel;
+    uint8_t *inside; /* [side][side]: 1: the texel's centre is strictly inside
+                        its triangle */
     int shared, painted;
 };
 
-static const void *table_at(const struct painter *p, uint32_t at)
+static const void *get_table(const struct painter *p, uint32_t at)
 {
     return p->draft->data + at;
 }
 
-static const struct glint_scene_triangle *triangle_of(const struct painter *p,
-                                                      uint32_t i)
+static const struct glint_scene_triangle *get_triangle(const struct painter *p,
+                                                       uint32_t i)
 {
-    return (const struct glint_scene_triangle *)table_at(p,
-                                                         p->mesh->triangle_at) +
+    return (const struct glint_scene_triangle *)get_table(
+               p, p->mesh->triangle_at) +
            i;
 }
 
 /* ----------------------------------------------------------------- painting */
 
-/* Returns twice the area of A, B and (U, V). */
-static int64_t edge_of(const int32_t *a, const int32_t *b, int64_t u, int64_t v)
+/* Returns twice the signed area of the triangle A, B, (U, V). */
+static int64_t compute_edge(const int32_t *a, const int32_t *b, int64_t u,
+                            int64_t v)
 {
     return (a[0] - u) * (b[1] - v) - (a[1] - v) * (b[0] - u);
 }
@@ -69,7 +73,7 @@ static void paint_texel(struct painter *p, uint32_t triangle,
     int holds = 1, inside = 1;
 
     for (int k = 0; k < 3; k++) {
-        int64_t e = edge_of(uv[(k + 1) % 3], uv[(k + 2) % 3], u, v);
+        int64_t e = compute_edge(uv[(k + 1) % 3], uv[(k + 2) % 3], u, v);
 
         e = all < 0 ? -e : e;
         holds &= e >= 0;
@@ -86,17 +90,17 @@ static void paint_texel(struct painter *p, uint32_t triangle,
     }
 }
 
-static int texel_of(const struct painter *p, int32_t uv_q16)
+static int find_texel(const struct painter *p, int32_t uv_q16)
 {
     const double x = floor(uv_q16 * (p->side / 65536.));
 
     return (int)fmin(fmax(x, 0), p->side - 1);
 }
 
-static void paint(struct painter *p, uint32_t triangle)
+static void paint_triangle(struct painter *p, uint32_t triangle)
 {
-    const struct glint_scene_triangle *t = triangle_of(p, triangle);
-    const int32_t *uv_q16 = table_at(p, p->mesh->uv_at), *uv[3];
+    const struct glint_scene_triangle *t = get_triangle(p, triangle);
+    const int32_t *uv_q16 = get_table(p, p->mesh->uv_at), *uv[3];
     int lo[2], hi[2];
     int64_t all;
 
@@ -106,15 +110,15 @@ static void paint(struct painter *p, uint32_t triangle)
     for (int k = 0; k < 3; k++)
         uv[k] = uv_q16 + 2 * (size_t)t->vertex[k];
     for (int i = 0; i < 2; i++) {
-        lo[i] = hi[i] = texel_of(p, uv[0][i]);
+        lo[i] = hi[i] = find_texel(p, uv[0][i]);
         for (int k = 1; k < 3; k++) {
-            const int at = texel_of(p, uv[k][i]);
+            const int at = find_texel(p, uv[k][i]);
 
             lo[i] = at < lo[i] ? at : lo[i];
             hi[i] = at > hi[i] ? at : hi[i];
         }
     }
-    all = edge_of(uv[0], uv[1], uv[2][0], uv[2][1]);
+    all = compute_edge(uv[0], uv[1], uv[2][0], uv[2][1]);
     for (int y = lo[1]; all && y <= hi[1]; y++)
         for (int x = lo[0]; x <= hi[0]; x++)
             paint_texel(p, triangle, uv, all, x, y);
@@ -123,7 +127,7 @@ static void paint(struct painter *p, uint32_t triangle)
 /* ------------------------------------------------------------------- gutters
  */
 
-/* Assigns texel (X, Y), if it has no triangle, the triangle of a neighbour in
+/* If texel (X, Y) has no triangle, assigns it the triangle of a neighbour in
  * BEFORE. */
 static void spread_texel(struct painter *p, const uint32_t *before, int x,
                          int y)
@@ -138,10 +142,10 @@ static void spread_texel(struct painter *p, const uint32_t *before, int x,
     }
 }
 
-/* Outside the edges of charts, within the reach of kernels, texels get the
- * light of the nearest point, so that light crosses from one chart to the next.
- * Returns false if there is no memory. */
-static bool spill_over(struct painter *p, int rings)
+/* Assigns the texels within RINGS texels of the charts' edges to the nearest
+ * triangle, so that convolution kernels carry light from one chart to the
+ * next. Returns false if there is no memory. */
+static bool dilate_charts(struct painter *p, int rings)
 {
     const size_t bytes = (size_t)p->side * (size_t)p->side * sizeof *p->texel;
     uint32_t *before = malloc(bytes);
@@ -159,12 +163,12 @@ static bool spill_over(struct painter *p, int rings)
 /* -------------------------------------------------------------------- closed
  */
 
-/* An edge between two positions, the smaller first. */
+/* An edge between two vertex positions, the smaller position first. */
 struct edge {
     int32_t place[2][3];
 };
 
-static int compare(const void *a, const void *b)
+static int compare_edges(const void *a, const void *b)
 {
     const int32_t *x = a, *y = b;
 
@@ -178,7 +182,7 @@ static void set_edge(const struct painter *p,
                      const struct glint_scene_triangle *t, int k,
                      struct edge *e)
 {
-    const int32_t *vertex = table_at(p, p->mesh->vertex_at);
+    const int32_t *vertex = get_table(p, p->mesh->vertex_at);
     const int32_t *a = vertex + 3 * (size_t)t->vertex[k];
     const int32_t *b = vertex + 3 * (size_t)t->vertex[(k + 1) % 3];
     int first = 0;
@@ -189,9 +193,9 @@ static void set_edge(const struct painter *p,
     memcpy(e->place[1 - first], b, sizeof e->place[0]);
 }
 
-/* Sets CLOSED to 1 if each edge has two triangles, else 0. Returns false if
- * there is no memory. */
-static bool find_closed(const struct painter *p, uint32_t *closed)
+/* Sets CLOSED to 1 if every edge belongs to two triangles, else to 0.
+ * Returns false if there is no memory. */
+static bool check_closed(const struct painter *p, uint32_t *closed)
 {
     const size_t n = 3 * (size_t)p->mesh->n_triangles;
     struct edge *edge = malloc((n ? n : 1) * sizeof *edge);
@@ -201,10 +205,11 @@ static bool find_closed(const struct painter *p, uint32_t *closed)
         return false;
     for (uint32_t i = 0; i < p->mesh->n_triangles; i++)
         for (int k = 0; k < 3; k++)
-            set_edge(p, triangle_of(p, i), k, &edge[3 * i + (uint32_t)k]);
-    qsort(edge, n, sizeof *edge, compare);
+            set_edge(p, get_triangle(p, i), k, &edge[3 * i + (uint32_t)k]);
+    qsort(edge, n, sizeof *edge, compare_edges);
     for (size_t i = 0, same; is && i < n; i += same) {
-        for (same = 1; i + same < n && compare(&edge[i], &edge[i + same]) == 0;)
+        for (same = 1;
+             i + same < n && compare_edges(&edge[i], &edge[i + same]) == 0;)
             same++;
         is = same == 2;
     }
@@ -242,14 +247,15 @@ static bool paint_mesh(struct painter *p, const char *name, int kernel,
         return false;
     memset(p->texel, 0xff, n * sizeof *p->texel);
     for (uint32_t i = 0; i < p->mesh->n_triangles; i++)
-        paint(p, i);
-    return check_painted(p, name, error) && spill_over(p, kernel / 2 + 2) &&
-           find_closed(p, &skin->closed);
+        paint_triangle(p, i);
+    return check_painted(p, name, error) && dilate_charts(p, kernel / 2 + 2) &&
+           check_closed(p, &skin->closed);
 }
 
-/* Writes cosine and sine of columns and rows of a ball's map. */
-static void write_ball(struct glint_draft *draft, int side,
-                       struct glint_scene_skin *skin)
+/* Writes cosine and sine of the angles of columns and rows of a sphere's
+ * map. */
+static void write_sphere(struct glint_draft *draft, int side,
+                         struct glint_scene_skin *skin)
 {
     int32_t turn_q30[3 << GLINT_TRANSLUCENT_MOST_LOG2][2];
 
@@ -287,7 +293,7 @@ bool glint_skin_write(struct glint_draft *draft,
         return false;
     p.side = 1 << t.header->side_log2;
     if (!mesh) {
-        write_ball(draft, p.side, skin);
+        write_sphere(draft, p.side, skin);
         return true;
     }
     good = paint_mesh(&p, object->name, (int)t.header->kernel, skin, error);

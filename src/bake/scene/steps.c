@@ -5,35 +5,38 @@
 
 #include "glint/scene/model.h"
 
-/* log2 of the run time's range / the extent of the scene: the rest is for
- * poses, and for planes, which end there: a plane then begins a pixel below its
- * horizon. */
+/* log2 of (coordinate range of the run time / extent of the scene). The
+ * remaining range is reserved for moved objects, and for planes, which end
+ * at the range: with PLANE_SHARE_LOG2 a plane ends less than a pixel below
+ * its horizon. */
 #define SHARE_LOG2       2
 #define PLANE_SHARE_LOG2 6
 
-static double largest(const double x[3])
+static double max_magnitude(const double x[3])
 {
     return fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2])));
 }
 
-static double length(const double x[3])
+static double compute_length(const double x[3])
 {
     return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-/* Returns how far object O reaches from its own origin, in any direction. */
-static double reach_of(const struct glint_description *scene,
-                       const struct glint_described_object *o)
+/* Returns the max distance of any point of object O from the object's
+ * origin. */
+static double compute_reach(const struct glint_description *scene,
+                            const struct glint_described_object *o)
 {
     double reach = o->radius;
 
-    /* Twice, as a ball about the middle of the box reaches past its corners,
-     * and its middle lies off the origin. */
+    /* Twice the distance, as a sphere around the centre of the bounding box
+     * reaches beyond its corners, and its centre differs from the origin. */
     for (int i = 0; i < o->n_triangles; i++)
         for (int k = 0; k < 3; k++)
-            reach = fmax(
-                reach,
-                2 * length(scene->triangle[o->first_triangle + i].place[k]));
+            reach =
+                fmax(reach,
+                     2 * compute_length(
+                             scene->triangle[o->first_triangle + i].place[k]));
     return reach;
 }
 
@@ -43,14 +46,14 @@ struct glint_steps glint_steps_of(const struct glint_description *scene,
     struct glint_steps steps = {.hand = scene->left_handed ? 1 : -1};
     int exponent, share_log2 = SHARE_LOG2;
 
-    *reach = largest(scene->camera.at);
+    *reach = max_magnitude(scene->camera.at);
     for (int i = 0; i < scene->n_lights; i++)
         if (scene->light[i].kind == GLINT_DESCRIBED_LAMP)
-            *reach = fmax(*reach, fmax(largest(scene->light[i].at),
+            *reach = fmax(*reach, fmax(max_magnitude(scene->light[i].at),
                                        scene->light[i].radius));
     for (int i = 0; i < scene->n_objects; i++) {
-        *reach = fmax(*reach, largest(scene->object[i].at) +
-                                  reach_of(scene, &scene->object[i]));
+        *reach = fmax(*reach, max_magnitude(scene->object[i].at) +
+                                  compute_reach(scene, &scene->object[i]));
         if (scene->object[i].kind == GLINT_DESCRIBED_PLANE)
             share_log2 = PLANE_SHARE_LOG2;
     }
@@ -60,7 +63,7 @@ struct glint_steps glint_steps_of(const struct glint_description *scene,
                           scene->motion.foods * fmax(1, scene->motion.shells));
     if (*reach < GLINT_DESCRIPTION_LEAST)
         *reach = GLINT_DESCRIPTION_LEAST;
-    frexp(*reach, &exponent); /* reach < 2^exponent */
+    frexp(*reach, &exponent); /* now reach < 2^exponent */
     steps.unit_log2 = 28 - share_log2 - exponent;
     steps.scale = ldexp(1, steps.unit_log2);
     return steps;
@@ -84,7 +87,7 @@ void glint_steps_unit(const struct glint_steps *steps, const double x[3],
 void glint_steps_turn(const struct glint_steps *steps, const double turn[4],
                       int32_t to_q30[4])
 {
-    /* A mirror turns the other way, about the axis that it mirrors. */
+    /* mirroring an axis reverses the rotation about both other axes */
     for (int i = 0; i < 4; i++)
         to_q30[i] = (int32_t)lrint(turn[i] * 0x1p30 *
                                    (i == 1 || i == 2 ? steps->hand : 1));
@@ -100,8 +103,8 @@ void glint_turn_after(const double a[4], const double b[4], double turn[4])
 
 void glint_described_upright(const double normal[3], double turn[4])
 {
-    /* 1 + y.n and y x n: twice the cosine and sine of half the angle, times a
-     * length that is divided out. */
+    /* (1 + y.n, y x n) is the quaternion (cos, sin) of half the angle, times
+     * a length that is divided out */
     const double w = 1 + normal[1];
     const double size =
         sqrt(w * w + normal[0] * normal[0] + normal[2] * normal[2]);

@@ -5,14 +5,14 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static double decode(uint8_t code)
+static double decode_srgb(uint8_t code)
 {
     const double x = code / 255.0;
 
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
-static uint8_t encode(double light)
+static uint8_t encode_srgb(double light)
 {
     const double x = light <= 0.0031308 ? 12.92 * light
                                         : 1.055 * pow(light, 1 / 2.4) - 0.055;
@@ -20,8 +20,8 @@ static uint8_t encode(double light)
     return (uint8_t)lrint(255 * fmin(fmax(x, 0.0), 1.0));
 }
 
-/* Sets each of N texels of DST to the mean of the SRC_N texels of SRC that it
- * covers. STEP and SRC_STEP are the distances between texels, in numbers. */
+/* Sets each of N texels of DST to the mean of the texels of SRC that it
+ * covers. STEP and SRC_STEP are the distances between texels, in doubles. */
 static void resize_row(double *dst, int n, ptrdiff_t step, const double *src,
                        int src_n, ptrdiff_t src_step)
 {
@@ -56,7 +56,7 @@ enum glint_status glint_texels_resize(uint8_t *dst, int width, int height,
     double table[256];
 
     for (int code = 0; code < 256; code++)
-        table[code] = decode((uint8_t)code);
+        table[code] = decode_srgb((uint8_t)code);
     for (size_t i = 0; good && i < n_src; i++)
         light[i] = table[src[i]];
     for (ptrdiff_t y = 0; good && y < src_height; y++)
@@ -66,15 +66,15 @@ enum glint_status glint_texels_resize(uint8_t *dst, int width, int height,
         resize_row(out + 3 * x, height, 3 * (ptrdiff_t)width, half + 3 * x,
                    src_height, 3 * (ptrdiff_t)width);
     for (size_t i = 0; good && i < n_dst; i++)
-        dst[i] = encode(out[i]);
+        dst[i] = encode_srgb(out[i]);
     free(light);
     free(half);
     free(out);
     return good ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-/* Returns the power of two nearest to SIDE, at most MOST. */
-static int nearest_power(int side, int most)
+/* Returns the power of two with the smallest ratio to SIDE, at most MOST. */
+static int find_nearest_power(int side, int most)
 {
     int power = 1;
 
@@ -85,8 +85,8 @@ static int nearest_power(int side, int most)
 
 enum glint_status glint_texels_fit(struct glint_image *image, int most)
 {
-    const int width = nearest_power(image->width, most);
-    const int height = nearest_power(image->height, most);
+    const int width = find_nearest_power(image->width, most);
+    const int height = find_nearest_power(image->height, most);
     enum glint_status status;
     uint8_t *mem;
 

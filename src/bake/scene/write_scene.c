@@ -23,14 +23,14 @@ struct writer {
     struct glint_scene_header header;
     struct glint_scene_bake_report *report;
     struct glint_error *error;
-    struct glint_scene_mesh *mesh; /* malloc'ed: one for each object that has
-                                      triangles */
+    /* one for each object with triangles; owned */
+    struct glint_scene_mesh *mesh;
 };
 
 /* ------------------------------------------------------------------ lights */
 
 static struct glint_scene_light
-light_of(const struct writer *w, const struct glint_described_light *light)
+convert_light(const struct writer *w, const struct glint_described_light *light)
 {
     struct glint_scene_light l = {.kind = GLINT_LIGHT_LAMP};
     double scale = 1;
@@ -57,7 +57,8 @@ static void write_lights(struct writer *w)
     w->header.n_lights = (uint32_t)w->scene->n_lights;
     w->header.light_at = (uint32_t)w->draft.bytes;
     for (int i = 0; i < w->scene->n_lights; i++) {
-        const struct glint_scene_light l = light_of(w, &w->scene->light[i]);
+        const struct glint_scene_light l =
+            convert_light(w, &w->scene->light[i]);
 
         glint_draft_put(&w->draft, &l, sizeof l);
     }
@@ -65,7 +66,7 @@ static void write_lights(struct writer *w)
 
 /* ---------------------------------------------------------------- textures */
 
-static int log2_of(int power)
+static int compute_log2(int power)
 {
     int n = 0;
 
@@ -74,8 +75,8 @@ static int log2_of(int power)
     return n;
 }
 
-/* Writes all levels of IMAGE; each is the mean of the first. Returns false
- * without memory. */
+/* Writes all mipmap levels of IMAGE, each averaged from level 0. Returns
+ * false if there is no memory. */
 static bool write_levels(struct writer *w, const struct glint_image *image)
 {
     int width = image->width, height = image->height;
@@ -112,9 +113,9 @@ static bool write_textures(struct writer *w)
     for (int i = 0; i < n; i++) {
         const struct glint_image *image = &w->scene->texture[i].image;
 
-        t[i] = (struct glint_scene_texture){(uint32_t)log2_of(image->width),
-                                            (uint32_t)log2_of(image->height),
-                                            (uint32_t)w->draft.bytes};
+        t[i] = (struct glint_scene_texture){
+            (uint32_t)compute_log2(image->width),
+            (uint32_t)compute_log2(image->height), (uint32_t)w->draft.bytes};
         if (!write_levels(w, image))
             return false;
     }
@@ -125,14 +126,14 @@ static bool write_textures(struct writer *w)
 
 /* --------------------------------------------------------------- materials */
 
-static int32_t to_q15(double x)
+static int32_t convert_to_q15(double x)
 {
     return (int32_t)lrint(x * ONE_Q15);
 }
 
-/* Reduces the largest of WEIGHT_Q15[N] so that their rounded sum is at most 1.
- * */
-static void hold_sum(int32_t *const weight_q15[], int n)
+/* Decreases the largest of WEIGHT_Q15[N] until their sum is at most 1, which
+ * rounding may have exceeded. */
+static void limit_sum(int32_t *const weight_q15[], int n)
 {
     int32_t sum = 0;
     int most = 0;
@@ -146,16 +147,17 @@ static void hold_sum(int32_t *const weight_q15[], int n)
 }
 
 static struct glint_scene_material
-material_of(const struct glint_described_material *from)
+convert_material(const struct glint_described_material *from)
 {
     struct glint_scene_material m = {
-        .ambient_q15 = to_q15(from->ambient),
-        .diffuse_q15 = to_q15(from->diffuse),
-        .specular_q15 = to_q15(from->specular),
-        .reflect_q15 = to_q15(from->reflect),
-        .pass_q15 = to_q15(from->pass),
-        .rgb_q15 = {to_q15(from->colour[0]), to_q15(from->colour[1]),
-                    to_q15(from->colour[2])},
+        .ambient_q15 = convert_to_q15(from->ambient),
+        .diffuse_q15 = convert_to_q15(from->diffuse),
+        .specular_q15 = convert_to_q15(from->specular),
+        .reflect_q15 = convert_to_q15(from->reflect),
+        .pass_q15 = convert_to_q15(from->pass),
+        .rgb_q15 = {convert_to_q15(from->colour[0]),
+                    convert_to_q15(from->colour[1]),
+                    convert_to_q15(from->colour[2])},
         .power_q8 = (int32_t)lrint(256 * from->power),
         .index_q16 = (int32_t)lrint(0x1p16 * from->index),
         .texture =
@@ -165,20 +167,20 @@ material_of(const struct glint_described_material *from)
     int32_t *const next[] = {&m.reflect_q15, &m.pass_q15};
 
     memcpy(m.name, from->name, sizeof m.name);
-    hold_sum(phong, 3);
-    hold_sum(next, 2);
+    limit_sum(phong, 3);
+    limit_sum(next, 2);
     return m;
 }
 
 static struct glint_scene_ward
-ward_of(const struct glint_described_material *from)
+convert_ward(const struct glint_described_material *from)
 {
     struct glint_scene_ward w = {.norm = from->norm == GLINT_DESCRIBED_1992
                                              ? GLINT_WARD_1992
                                              : GLINT_WARD_BOUNDED};
 
     for (int c = 0; c < 3; c++)
-        w.specular_q15[c] = to_q15(from->metal[c]);
+        w.specular_q15[c] = convert_to_q15(from->metal[c]);
     for (int k = 0; k < 2; k++)
         w.alpha_q24[k] = (int32_t)ceil(0x1p24 * from->alpha[k]);
     return w;
@@ -186,7 +188,7 @@ ward_of(const struct glint_described_material *from)
 
 static void write_materials(struct writer *w)
 {
-    /* Default material of catchers. */
+    /* material of objects that only catch shadows */
     const struct glint_scene_material none = {.name = "none",
                                               .power_q8 = 256,
                                               .index_q16 = 1 << 16,
@@ -198,7 +200,8 @@ static void write_materials(struct writer *w)
     w->header.n_materials = (uint32_t)(n ? n : 1);
     w->header.material_at = (uint32_t)w->draft.bytes;
     for (int i = 0; i < n; i++) {
-        struct glint_scene_material m = material_of(&w->scene->material[i]);
+        struct glint_scene_material m =
+            convert_material(&w->scene->material[i]);
 
         if (w->scene->material[i].is_metal)
             m.ward = n_wards++;
@@ -211,7 +214,7 @@ static void write_materials(struct writer *w)
     for (int i = 0; i < n; i++)
         if (w->scene->material[i].is_metal) {
             const struct glint_scene_ward ward =
-                ward_of(&w->scene->material[i]);
+                convert_ward(&w->scene->material[i]);
 
             glint_draft_put(&w->draft, &ward, sizeof ward);
         }
@@ -236,7 +239,7 @@ static bool write_meshes(struct writer *w)
     return good;
 }
 
-/* Sets O to object FROM, with MESH if it is a mesh. */
+/* Sets O to the object FROM; MESH is the index of its mesh, if it has one. */
 static bool set_object(const struct writer *w,
                        const struct glint_described_object *from, uint32_t mesh,
                        struct glint_scene_object *o)
@@ -261,14 +264,15 @@ static bool set_object(const struct writer *w,
         break;
     case GLINT_DESCRIBED_PLANE:
         o->kind = GLINT_OBJECT_PLANE;
-        o->catcher_q15 = to_q15(from->catcher);
+        o->catcher_q15 = convert_to_q15(from->catcher);
         glint_described_upright(from->normal, upright);
         glint_turn_after(from->turn, upright, turn);
         break;
     default:
         o->kind = GLINT_OBJECT_MESH;
         o->mesh = mesh;
-        if (from->material < 0) /* each triangle has its own material */
+        if (from->material < 0) /* the object has no material of its own: uses
+                                   that of its first triangle */
             o->material =
                 (uint32_t)w->scene->triangle[from->first_triangle].material;
     }
@@ -296,7 +300,7 @@ static bool write_objects(struct writer *w)
 /* -------------------------------------------------------------------
  * translucent media */
 
-/* Writes translucent media, and the maps of objects that are of them. */
+/* Writes translucent media, and the maps of objects made of them. */
 static bool write_stones(struct writer *w)
 {
     const struct glint_description *s = w->scene;
@@ -346,7 +350,7 @@ static bool write_stones(struct writer *w)
 
 /* ------------------------------------------------------------------ header */
 
-static struct glint_scene_camera camera_of(const struct writer *w)
+static struct glint_scene_camera convert_camera(const struct writer *w)
 {
     const struct glint_described_camera *from = &w->scene->camera;
     struct glint_scene_camera c = {.kind = GLINT_CAMERA_LENS};
@@ -361,7 +365,8 @@ static struct glint_scene_camera camera_of(const struct writer *w)
             (int32_t)lrint(0x1p24 * tan(from->fov_deg * GLINT_PI / 360));
     } else if (from->field == GLINT_DESCRIBED_CORNERS) {
         c.kind = GLINT_CAMERA_CORNERS;
-        c.tan_x_q24 = (int32_t)lrint(0x1p24 * .8); /* 8, 4.5 at 10: row A6 */
+        /* GLINT_DESCRIBED_CORNERS: half of 16 x 9 units at a distance of 10 */
+        c.tan_x_q24 = (int32_t)lrint(0x1p24 * .8);
         c.tan_y_q24 = (int32_t)lrint(0x1p24 * .45);
     }
     return c;
@@ -390,12 +395,12 @@ static void write_environments(struct writer *w)
         glint_draft_put(&w->draft, to, (size_t)n * sizeof *to);
 }
 
-static uint32_t first_of(int object)
+static uint32_t convert_index(int object)
 {
     return object < 0 ? GLINT_SCENE_NONE : (uint32_t)object;
 }
 
-static int32_t steps_of(const struct writer *w, double length)
+static int32_t convert_length(const struct writer *w, double length)
 {
     return length > 0 ? (int32_t)fmax(1, rint(length * w->steps.scale)) : 0;
 }
@@ -404,19 +409,19 @@ static void set_motion(struct writer *w)
 {
     const struct glint_described_motion *from = &w->scene->motion;
     struct glint_scene_motion m = {
-        .body = first_of(from->body),
-        .sensor = first_of(from->sensor),
-        .food = first_of(from->food),
+        .body = convert_index(from->body),
+        .sensor = convert_index(from->sensor),
+        .food = convert_index(from->food),
         .size = (int32_t)lrint(from->size * w->steps.scale),
-        .shell = steps_of(w, from->shells * from->foods),
-        .line = steps_of(w, from->lines),
-        .box = steps_of(w, from->box),
+        .shell = convert_length(w, from->shells * from->foods),
+        .line = convert_length(w, from->lines),
+        .box = convert_length(w, from->box),
         .shell_material = (uint32_t)from->shell_material,
         .line_material = (uint32_t)from->line_material,
         .box_material = (uint32_t)from->box_material,
         .detect = from->both ? GLINT_DETECT_BOTH : GLINT_DETECT_ANGLE,
         .least = (uint32_t)lrint(255 * from->least),
-        .camera = first_of(from->camera),
+        .camera = convert_index(from->camera),
         .riders = from->riders,
         .bytes = (uint32_t)from->bytes};
 
@@ -447,9 +452,9 @@ static void set_header(struct writer *w, const char *name, uint64_t key)
     if (s->background == GLINT_BEHIND_COLOUR) {
         h->background = GLINT_BACKGROUND_COLOUR;
         for (int c = 0; c < 3; c++)
-            h->background_q15[c] = to_q15(s->background_colour[c]);
+            h->background_q15[c] = convert_to_q15(s->background_colour[c]);
     }
-    h->camera = camera_of(w);
+    h->camera = convert_camera(w);
     h->flare = s->flare != GLINT_DESCRIBED_FLARE_OFF;
     h->highlights = (uint32_t)s->n_highlights;
 }
