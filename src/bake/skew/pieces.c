@@ -5,8 +5,9 @@
 
 /* ------------------------------------------------------------------- halves */
 
-/* Replaces s, p or w in SIDE by AT + x / 2. */
-static void substitute(double side[GLINT_BOX_TERMS], int variable, double at)
+/* Substitutes s, p or w in SIDE by AT + x / 2. */
+static void substitute_variable(double side[GLINT_BOX_TERMS], int variable,
+                                double at)
 {
     double *const c = side;
 
@@ -32,9 +33,10 @@ static void substitute(double side[GLINT_BOX_TERMS], int variable, double at)
     }
 }
 
-/* Cuts a box to LOW .. HIGH of its width or height. */
-static void cut(double middle[GLINT_BOX_TERMS], double half[GLINT_BOX_TERMS],
-                double low, double high)
+/* Cuts a box to LOW .. HIGH of its width or height, where -1 .. 1 is the
+ * whole. */
+static void cut_box(double middle[GLINT_BOX_TERMS],
+                    double half[GLINT_BOX_TERMS], double low, double high)
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
         middle[k] += 0.5 * (low + high) * half[k];
@@ -42,8 +44,8 @@ static void cut(double middle[GLINT_BOX_TERMS], double half[GLINT_BOX_TERMS],
     }
 }
 
-/* Takes the half of P at -1 or 1 of VARIABLE. */
-static void take(struct glint_skew_piece *p, int variable, int side)
+/* Reduces P to one half in VARIABLE; SIDE is -1 or 1. */
+static void reduce_to_half(struct glint_skew_piece *p, int variable, int side)
 {
     struct glint_zone *const z = &p->zone;
     double *const all[] = {z->middle, z->half_x, z->half_y, z->middle_y};
@@ -55,14 +57,14 @@ static void take(struct glint_skew_piece *p, int variable, int side)
     if (variable == GLINT_U || variable == GLINT_V) {
         p->parts++;
         if (variable == GLINT_U)
-            cut(z->middle, z->half_x, fmin(0, side), fmax(0, side));
+            cut_box(z->middle, z->half_x, fmin(0, side), fmax(0, side));
         else
-            cut(z->middle_y, z->half_y, fmin(0, side), fmax(0, side));
+            cut_box(z->middle_y, z->half_y, fmin(0, side), fmax(0, side));
         return;
     }
     *ends[variable][side < 0] = 0.5 * (*ends[variable][0] + *ends[variable][1]);
     for (int k = 0; k < GLINT_LENS_SIDES; k++)
-        substitute(all[k], variable, 0.5 * side);
+        substitute_variable(all[k], variable, 0.5 * side);
 }
 
 void glint_piece_halve(const struct glint_skew_piece *p, int variable,
@@ -70,8 +72,8 @@ void glint_piece_halve(const struct glint_skew_piece *p, int variable,
                        struct glint_skew_piece *second)
 {
     *first = *second = *p;
-    take(first, variable, -1);
-    take(second, variable, 1);
+    reduce_to_half(first, variable, -1);
+    reduce_to_half(second, variable, 1);
 }
 
 /* --------------------------------------------------------------------- crop */
@@ -109,15 +111,15 @@ void glint_piece_crop(struct glint_skew_piece *p,
     }
     if (low[0] > high[0])
         return;
-    cut(p->zone.middle, p->zone.half_x, fmax(-1, low[0] - margin[0]),
-        fmin(1, high[0] + margin[0]));
-    cut(p->zone.middle_y, p->zone.half_y, fmax(-1, low[1] - margin[1]),
-        fmin(1, high[1] + margin[1]));
+    cut_box(p->zone.middle, p->zone.half_x, fmax(-1, low[0] - margin[0]),
+            fmin(1, high[0] + margin[0]));
+    cut_box(p->zone.middle_y, p->zone.half_y, fmax(-1, low[1] - margin[1]),
+            fmin(1, high[1] + margin[1]));
 }
 
 /* ------------------------------------------------------------------- choice */
 
-static int degree_of(const uint8_t power[GLINT_VARIABLES])
+static int compute_degree(const uint8_t power[GLINT_VARIABLES])
 {
     int sum = 0;
 
@@ -132,10 +134,11 @@ static void add_shares(const struct glint_fitted_output *o,
     int most = 0;
 
     for (int k = 0; k < o->n_terms; k++)
-        most = degree_of(o->power[k]) > most ? degree_of(o->power[k]) : most;
+        most = compute_degree(o->power[k]) > most ? compute_degree(o->power[k])
+                                                  : most;
     for (int k = 0; k < o->n_terms; k++)
         for (int i = 0; i < GLINT_VARIABLES; i++)
-            if (2 * degree_of(o->power[k]) > most && o->grain > 0)
+            if (2 * compute_degree(o->power[k]) > most && o->grain > 0)
                 share[i] += fabs(o->coef[k]) / o->grain *
                             (1 - pow(0.5, o->power[k][i]));
 }

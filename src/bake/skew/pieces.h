@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * A piece of the light of a ghost of a lens that is not round: a patch of
- * directions, a band of wavelengths, a part of the box.
+ * A piece of the light of one ghost of a lens that is not round: a patch of
+ * directions, a band of wavelengths, a part of the pupil box.
  *
- *   in   a piece, the polynomials that were fitted to it
- *   out  in which variable to halve it, and its halves
+ *   in   a piece, and the polynomials that were fitted to it
+ *   out  the variable in which to halve it, and its halves
  *
- * Where rays fold, polynomials in u and v need many terms, and those of half a
- * box far fewer; elsewhere boxes move, and halving directions helps. High
- * powers decide: halving reduces the error most in the variable whose high
- * powers hold most of the polynomial. */
+ * Where rays fold, polynomials in u and v need many terms; half of a box needs
+ * far fewer. Where boxes move, halving directions helps. The choice depends on
+ * high powers: halving reduces the error most in the variable whose high powers
+ * hold most of the polynomial.
+ */
 #ifndef GLINT_BAKE_SKEW_PIECES_H
 #define GLINT_BAKE_SKEW_PIECES_H
 
@@ -17,13 +18,14 @@
 #include "bake/fit/zone.h"
 
 struct glint_skew_piece {
-    struct glint_zone zone; /* its patch; its box if that is KNOWN or a part */
-    double w0, w1;          /* its band, -1 .. 1 */
-    double before;          /* error of the piece that was halved into it, in
-                               tolerances */
-    int depth;              /* number of halvings that led to it */
-    int parts;              /* of these, of the box */
-    bool known;             /* true: the box holds all light of the patch */
+    /* its patch; its box if KNOWN is set or it is a part of a box */
+    struct glint_zone zone;
+    double w0, w1; /* its band, in w, -1 .. 1 */
+    double before; /* error, in tolerances, of the piece that was halved to give
+                      this one */
+    int depth;     /* number of halvings that led to it */
+    int parts;     /* number of halvings of the box among them */
+    bool known;    /* true: the box contains all light of the patch */
 };
 
 /* Halves P in VARIABLE. */
@@ -31,18 +33,18 @@ void glint_piece_halve(const struct glint_skew_piece *p, int variable,
                        struct glint_skew_piece *first,
                        struct glint_skew_piece *second);
 
-/* Crops the box of P, a part, to its visible region, with a margin. */
+/* Crops the box of P, a part of a box, to its visible region, with a margin. */
 void glint_piece_crop(struct glint_skew_piece *p,
                       const struct glint_visible *visible);
 
 /* Sets SHARE to the fraction of the high powers of SYSTEM's polynomials that
- * halving each variable would remove. If some polynomials missed their
+ * halving each variable would remove. If some polynomials miss their
  * tolerance, only these count. */
 void glint_piece_shares(const struct glint_fitted_system *system,
                         double share[GLINT_VARIABLES]);
 
-/* Returns the smallest part number not used by a system of GHOST whose
- * directions and wavelengths overlap SYSTEM. */
+/* Returns the smallest part number that no system of GHOST uses whose
+ * directions and wavelengths overlap those of SYSTEM. */
 int glint_piece_number(const struct glint_fitted_ghost *ghost,
                        const struct glint_fitted_system *system);
 

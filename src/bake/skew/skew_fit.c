@@ -11,46 +11,49 @@
 #include "bake/skew/pieces.h"
 #include "engine/setup/degrees.h"
 
-/* Largest side of a patch, as a difference of sines. */
+/* Max side of a patch, as a difference of sines. */
 #define MOST_SIDE 0.22
-/* A smaller patch is not halved. */
+/* Patches with smaller sides are not halved. */
 #define LEAST_SIDE 0.04
-/* A smaller patch is accepted if halving gained nothing and its error is
- * endured. */
+/* Patches with smaller sides are accepted if halving did not help and the
+ * error is bearable. */
 #define STUCK_SIDE 0.12
-/* Fraction of the error of the whole patch: see fit.c. */
+/* If a half still has more than this fraction of the whole patch's error,
+ * halving did not help. */
 #define STUCK 0.75
-/* Least fraction of a box that a ghost must fill, in patches wider than
- * FILL_SIDE.
- */
+/* Min fraction of a box that a ghost must fill, in patches wider than
+ * FILL_SIDE. */
 #define LEAST_FILL 0.25
 #define FILL_SIDE  0.05
-/* Tolerances: the fit of a patch with a larger error is given up. */
+/* Error, in tolerances, above which the fit of a patch is abandoned. */
 #define HOPELESS 10.0
-/* Width of a band in w, 0 .. 2: narrower ones are not halved. */
+/* Min width in w, of 0 .. 2, of a band that is halved. */
 #define LEAST_BAND 0.6
-/* Fill of a box in which grids miss nothing that they would find elsewhere. */
+/* Fill from which halves are searched only inside the box of the whole
+ * patch, as its grids then miss no light. */
 #define SOLID 0.08
-/* Tolerances: as in next.c, errors up to which a box is not divided, more if
- * the ghost is so faint that it hides them. */
+/* Error, in tolerances, above which a box is divided into parts (see
+ * next.c); up to MOST_HIDDEN times as large for ghosts so faint that errors
+ * are hidden. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
-/* Fraction of that up to which a part is kept. */
+/* Fraction of the bearable error up to which a part is accepted. */
 #define PART_KEPT 0.4
-/* Multiples of that: boxes with a larger error are divided at once. */
+/* Error, in units of the bearable error, above which a box is divided at
+ * once. */
 #define PART_HOPELESS 20.0
-/* Most times that a box is halved. */
+/* Max number of halvings of a box. */
 #define MOST_PARTS 5
-/* A box is divided rather than directions if that removes this many times as
- * much of the error: all parts are drawn, but only one patch. */
+/* Divides the box rather than directions if that removes this many times as
+ * much of the error: the run time draws all parts, but only one patch. */
 #define RATHER 1.5
-/* Tolerance ease up to which every attempt to reduce errors is made, and from
+/* Ease of ghosts up to which every means to reduce errors is tried, and from
  * which any bearable error is accepted. */
 #define NOT_FAINT 1.5
 #define FAINT     6.0
-/* Degrees of angles, fits a ghost and direction, and fits a ghost, surface and
- * area of directions, in sines; of anamorphic-schneider within 4 and 8 degrees.
- */
+/* Estimates, measured with anamorphic-schneider within 4 and 8 degrees:
+ * angle beyond which few ghosts have light; fits per ghost and direction;
+ * fits per ghost, surface and area of directions (in sines). */
 #define SEEN_DEG 25.0
 #define HEAD     0.16
 #define PER_AREA 175.0
@@ -68,14 +71,16 @@ struct fitter {
     struct glint_sights sights;
     glint_fit_told_fn *told;
     void *told_ctx;
-    double work, share, area; /* area: of all patches */
+    /* arguments of told(), and the area of all patches */
+    double work, share, area;
 };
 
-/* What became of a patch. */
+/* The result of an attempt to fit a patch. */
 struct attempt {
-    struct glint_zone_errors errors; /* worst: HUGE_VAL if nothing was fitted */
-    double bearable; /* error up to which a box is not divided */
-    double kept;     /* max error at which the patch is accepted at once */
+    /* errors.worst is HUGE_VAL if nothing was fitted */
+    struct glint_zone_errors errors;
+    double bearable; /* error above which the box is divided */
+    double kept;     /* error up to which the patch is accepted at once */
     bool dark;
 };
 
@@ -86,40 +91,41 @@ void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
     const uint32_t mirrors = glint_skew_mirrors(lens);
     const int quarters = (mirrors & GLINT_MIRRORS_X ? 1 : 2) *
                          (mirrors & GLINT_MIRRORS_Y ? 1 : 2);
-    /* Beyond SEEN few ghosts have light. */
+    /* beyond SEEN_DEG few ghosts have light */
     const double side = glint_sin_deg(fmin(max_deg, SEEN_DEG));
 
-    /* Brightness is looked for at up to 30 directions. */
+    /* brightness is measured at up to 30 directions */
     *head = HEAD * n_ghosts * fmin(30, 3 + 2 * max_deg / 3);
     *typical = 1 + PER_AREA * lens->n_surfaces * quarters * side * side *
                        pow(tolerance, -0.7);
 }
 
-static struct glint_directions patch_of(const struct glint_skew_piece *p)
+static struct glint_directions get_patch(const struct glint_skew_piece *p)
 {
     const struct glint_zone *const z = &p->zone;
 
     return (struct glint_directions){z->lo, z->hi, z->y_lo, z->y_hi};
 }
 
-static double wide(const struct glint_skew_piece *p)
+static double patch_width(const struct glint_skew_piece *p)
 {
     return p->zone.hi - p->zone.lo;
 }
 
-static double high(const struct glint_skew_piece *p)
+static double patch_height(const struct glint_skew_piece *p)
 {
     return p->zone.y_hi - p->zone.y_lo;
 }
 
 static double larger_side(const struct glint_skew_piece *p)
 {
-    return fmax(wide(p), high(p));
+    return fmax(patch_width(p), patch_height(p));
 }
 
-static double area_of(const struct glint_skew_piece *p)
+static double compute_area(const struct glint_skew_piece *p)
 {
-    return ldexp(wide(p) * high(p) * 0.5 * (p->w1 - p->w0), -p->parts);
+    return ldexp(patch_width(p) * patch_height(p) * 0.5 * (p->w1 - p->w0),
+                 -p->parts);
 }
 
 static enum glint_status set_box(struct glint_fitted_system *system,
@@ -148,7 +154,7 @@ static bool may_part(const struct glint_skew_piece *p)
     return p->parts < MOST_PARTS && p->depth < DEEP - 2;
 }
 
-/* Sets which errors of A may stay. */
+/* Sets the acceptable errors of A. */
 static void set_limits(const struct glint_skew_piece *p,
                        const struct glint_zone_aim *aim, struct attempt *a)
 {
@@ -181,7 +187,8 @@ static enum glint_status fit_zone(struct fitter *f,
     glint_zone_choose_barrels(&p->zone, band, f->tolerance->escape,
                               &f->sampling, &b->rays);
     glint_zone_trace(&p->zone, band, &b->rays, &b->energies);
-    /* A sliver at the rim of the patch is seen by its halves. */
+    /* if only a sliver at the rim of the patch is visible, its halves are
+     * fitted */
     if (glint_zone_rays_dark(&b->rays))
         return GLINT_OK;
     status = set_box(system, &p->zone);
@@ -197,11 +204,11 @@ static enum glint_status fit_zone(struct fitter *f,
     return status;
 }
 
-/* Sets the box of P. Returns whether it is worth a fit. */
+/* Sets the box of P. Returns whether P is worth a fit. */
 static bool find_box(struct fitter *f, struct glint_skew_piece *p,
                      const struct glint_visible *band, struct attempt *a)
 {
-    const struct glint_directions patch = patch_of(p);
+    const struct glint_directions patch = get_patch(p);
     const struct glint_zone within = p->zone;
 
     if (p->parts > 0) {
@@ -245,9 +252,10 @@ static enum glint_status try_piece(struct fitter *f, struct glint_skew_piece *p,
 
 enum { KEEP = -1 };
 
-/* Returns how much the box moves and grows with terms FIRST and SQUARE, divided
- * by its half sizes. */
-static double motion_of_box(const struct glint_zone *z, int first, int square)
+/* Returns the change of the box by its terms FIRST and SQUARE, relative to
+ * its half sizes. */
+static double compute_box_motion(const struct glint_zone *z, int first,
+                                 int square)
 {
     return (fabs(z->middle[first]) + fabs(z->middle[square]) +
             fabs(z->half_x[first])) /
@@ -257,20 +265,23 @@ static double motion_of_box(const struct glint_zone *z, int first, int square)
                fmax(1e-9, z->half_y[0]);
 }
 
-/* Returns the component of the direction along which to halve P. SHARE states
- * how much that would gain. */
-static int component(const struct glint_skew_piece *p,
-                     const double share[GLINT_VARIABLES])
+/* Returns the direction component in which to halve P. SHARE states how much
+ * of the error each variable would remove. */
+static int choose_component(const struct glint_skew_piece *p,
+                            const double share[GLINT_VARIABLES])
 {
     const double times = 2;
 
-    if (wide(p) > 3 * high(p) || high(p) > 3 * wide(p))
-        return high(p) > wide(p) ? GLINT_P : GLINT_S;
+    if (patch_width(p) > 3 * patch_height(p) ||
+        patch_height(p) > 3 * patch_width(p))
+        return patch_height(p) > patch_width(p) ? GLINT_P : GLINT_S;
     if (share[GLINT_S] > times * share[GLINT_P] ||
         share[GLINT_P] > times * share[GLINT_S])
         return share[GLINT_P] > share[GLINT_S] ? GLINT_P : GLINT_S;
-    return high(p) > wide(p) || (high(p) == wide(p) && p->depth % 2) ? GLINT_P
-                                                                     : GLINT_S;
+    return patch_height(p) > patch_width(p) ||
+                   (patch_height(p) == patch_width(p) && p->depth % 2)
+               ? GLINT_P
+               : GLINT_S;
 }
 
 /* Returns the max of the errors of positions and outlines, in tolerances. */
@@ -280,8 +291,9 @@ static double placing_error(const struct attempt *a)
 }
 
 /* Returns the variable in which to halve P after attempt A, or KEEP. */
-static int choose(const struct glint_skew_piece *p, const struct attempt *a,
-                  const struct glint_fitted_system *system)
+static int choose_variable(const struct glint_skew_piece *p,
+                           const struct attempt *a,
+                           const struct glint_fitted_system *system)
 {
     const bool parts =
         may_part(p) && placing_error(a) > a->bearable && system->n_outputs > 0;
@@ -291,25 +303,26 @@ static int choose(const struct glint_skew_piece *p, const struct attempt *a,
     glint_piece_shares(system, share);
     across = share[GLINT_V] > share[GLINT_U] ? GLINT_V : GLINT_U;
     if (system->n_outputs == 0) {
-        share[GLINT_S] = motion_of_box(&p->zone, 1, 2);
-        share[GLINT_P] = motion_of_box(&p->zone, 3, 5);
+        share[GLINT_S] = compute_box_motion(&p->zone, 1, 2);
+        share[GLINT_P] = compute_box_motion(&p->zone, 3, 5);
     }
-    along = component(p, share);
+    along = choose_component(p, share);
     if (parts && (!may_halve(p) || share[across] > RATHER * share[along]))
         return across;
     return may_halve(p) ? along : KEEP;
 }
 
-static int next_step(const struct glint_skew_piece *p, const struct attempt *a,
-                     const struct glint_fitted_system *system)
+static int choose_next_step(const struct glint_skew_piece *p,
+                            const struct attempt *a,
+                            const struct glint_fitted_system *system)
 {
     const double left = placing_error(a);
     const bool helped = left <= STUCK * p->before;
 
     if (a->dark || (p->parts > 0 && system->n_outputs == 0))
         return KEEP;
-    /* Coatings make energies swing with the wavelength. Parts of the band
-     * follow that with a fifth of the terms; smaller patches do not. */
+    /* Coatings make energies oscillate with the wavelength. Dividing the
+     * band helps with a fifth of the terms; smaller patches do not help. */
     if (left <= a->kept)
         return a->errors.energy > 1 && p->parts == 0 &&
                        p->w1 - p->w0 > LEAST_BAND
@@ -318,10 +331,10 @@ static int next_step(const struct glint_skew_piece *p, const struct attempt *a,
     if (!helped && larger_side(p) < STUCK_SIDE &&
         left <= fmin(HOPELESS, a->bearable))
         return KEEP;
-    return choose(p, a, system);
+    return choose_variable(p, a, system);
 }
 
-/* Fits PATCH or, if necessary, its halves. */
+/* Fits PATCH; halves it as often as necessary. */
 static enum glint_status fit_patch(struct fitter *f,
                                    const struct glint_directions *patch)
 {
@@ -337,7 +350,7 @@ static enum glint_status fit_patch(struct fitter *f,
 
     for (int n = 1; n > 0 && status == GLINT_OK;) {
         struct glint_skew_piece p = stack[--n];
-        const struct glint_directions at = patch_of(&p);
+        const struct glint_directions at = get_patch(&p);
         struct glint_fitted_system system = {.ghost = f->visible->ghost};
         struct attempt a = {.dark = true};
         int next = KEEP;
@@ -345,9 +358,9 @@ static enum glint_status fit_patch(struct fitter *f,
         if (glint_directions_nearest(&at) < f->sine_hi)
             status = try_piece(f, &p, &system, &a);
         if (status == GLINT_OK)
-            next = next_step(&p, &a, &system);
+            next = choose_next_step(&p, &a, &system);
         f->work++;
-        f->share += next == KEEP ? area_of(&p) / f->area : 0;
+        f->share += next == KEEP ? compute_area(&p) / f->area : 0;
         if (f->told)
             f->told(f->told_ctx, f->work, f->share);
         if (status == GLINT_OK && next == KEEP && system.n_outputs > 0) {
@@ -366,8 +379,8 @@ static enum glint_status fit_patch(struct fitter *f,
     return status;
 }
 
-/* Fits all patches, beginning with squares as large as they may be. */
-static enum glint_status fit_all(struct fitter *f, uint32_t mirrors)
+/* Fits all patches, starting with squares of the max side. */
+static enum glint_status fit_patches(struct fitter *f, uint32_t mirrors)
 {
     const int half = (int)ceil(f->sine_hi / MOST_SIDE);
     const double side = f->sine_hi / half;
@@ -407,7 +420,7 @@ enum glint_status glint_skew_fit(const struct glint_visible *visible,
     f->buffers.scratch =
         malloc(GLINT_ZONE_SCRATCH * sizeof *f->buffers.scratch);
     if (f->buffers.scratch)
-        status = fit_all(f, glint_skew_mirrors(visible->setup->lens));
+        status = fit_patches(f, glint_skew_mirrors(visible->setup->lens));
     free(f->buffers.scratch);
     free(f);
     return status;

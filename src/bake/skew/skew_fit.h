@@ -5,23 +5,24 @@
  *   in   a ghost, tolerances
  *   out  systems, each for a patch of directions and a band of wavelengths
  *
- * Method: directions are divided into squares of their x and y components, in
- * the lens's own frame. One through which no light comes is dropped; one whose
- * polynomials are not good enough is halved, along the component with which
- * boxes move more. */
+ * Method: the x and y components of directions, in the lens's own frame, are
+ * divided into squares. A square through which no light passes is dropped. A
+ * square whose polynomials are not accurate enough is halved along the
+ * component with which boxes move more.
+ */
 #ifndef GLINT_BAKE_SKEW_SKEW_FIT_H
 #define GLINT_BAKE_SKEW_SKEW_FIT_H
 
 #include "bake/fit/fit.h"
 
-/* Estimates the work of a bake, in fits: HEAD before any ghost, TYPICAL per
- * ghost, by the area of directions and the number of surfaces. Limits: ghosts
- * that fold cost ten times as much as others. */
+/* Estimates the work of a bake, in fits, from the area of directions and the
+ * number of surfaces: HEAD before the first ghost, TYPICAL per ghost.
+ * Limits: ghosts whose light folds cost ten times as much as others. */
 void glint_skew_work(const struct glint_prescription *lens, int n_ghosts,
                      double max_deg, double tolerance, double *head,
                      double *typical);
 
-/* glint_fit_ghost() for a lens that is not round. */
+/* Like glint_fit_ghost(), for a lens that is not round. */
 enum glint_status glint_skew_fit(const struct glint_visible *visible,
                                  double max_deg,
                                  const struct glint_tolerance *tolerance,
