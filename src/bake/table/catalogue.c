@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Glasses by the names that makers sell them under.
+ * Catalogue of optical glasses, by the manufacturers' names.
  *
- * Coefficients are those of the makers' own catalogues, for wavelengths in
- * micrometres, as the database refractiveindex.info passes them on (CC0):
- * Schott 2017-01-20, Ohara 2017-11-30, CDGM 2022-06. Hoya and Sumita publish
- * another formula; theirs are fits to it, within 1e-5 over 365 .. 1014 nm. */
+ * Coefficients are those of the manufacturers' catalogues, for wavelengths in
+ * micrometres, as published by the database refractiveindex.info (CC0): Schott
+ * 2017-01-20, Ohara 2017-11-30, CDGM 2022-06. Hoya and Sumita publish another
+ * formula; their coefficients were fitted to it, with an error below 1e-5 over
+ * 365 .. 1014 nm.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -245,9 +247,9 @@ const struct glint_glass *glint_glass_find(const char *name, size_t bytes)
     return NULL;
 }
 
-/* Returns the edit distance between A[N] and the terminated B, both without
- * '-'. */
-static int letters_apart(const char *a, size_t n, const char *b)
+/* Returns the edit distance between A[N] and the zero-terminated B, both
+ * without '-'. */
+static int compute_edit_distance(const char *a, size_t n, const char *b)
 {
     enum { LONGEST = 24 };
     int row[LONGEST + 1], m = 0, corner, above;
@@ -281,7 +283,7 @@ const struct glint_glass *glint_glass_near(const char *name, size_t bytes)
     int least = bytes > 4 ? 3 : 2;
 
     for (int k = 0; k < N_GLASSES && bytes <= 24; k++) {
-        const int apart = letters_apart(name, bytes, catalogue[k].name);
+        const int apart = compute_edit_distance(name, bytes, catalogue[k].name);
 
         if (apart < least) {
             least = apart;

@@ -8,28 +8,29 @@
 #include "bake/table/elements.h"
 #include "engine/setup/degrees.h"
 
-/* largest relative error of a stated focal length */
+/* max relative error of a stated focal length */
 #define STATED_TOLERANCE 1e-3
-/* fraction of the smaller semi-diameter, the height at which neighbours are
- * compared */
+/* height at which neighbouring elements are compared, as a fraction of the
+ * smaller semi-diameter */
 #define CLEAR_SHARE 0.9
-#define CONTACT_MM  1e-6 /* mm of overlap that rounding may make */
+#define CONTACT_MM  1e-6 /* mm: overlap that rounding may cause */
 #define MIN_STOP_MM 1e-6
-/* relative error of the stop radius that rounding may make */
+/* relative error of the stop radius that rounding may cause */
 #define STOP_SLACK 1e-9
 
-/* Heights, fractions of the smaller semi-diameter, at which neighbours are
- * compared if one of them is not a sphere, and directions about the axis. */
+/* Numbers of heights, and of directions about the axis, at which neighbours
+ * are compared if one of them is not a sphere. */
 enum { HEIGHTS = 12, TURNS = 8 };
-/* Most mm that aspheric terms may add at the rim, semi-diameters. */
+/* Max sum of the aspheric terms at the rim, in semi-diameters. */
 #define MOST_TERMS 4.0
-/* An anamorphic lens's squeeze lies between this and its inverse. */
+/* The squeeze of an anamorphic lens lies between 1 / MOST_SQUEEZE and
+ * MOST_SQUEEZE. */
 #define MOST_SQUEEZE 16.0
 
-/* Returns the sag of element E at (X, Y) from the axis of the lens. Of a tilt
- * only the change in sag counts. */
-static double sag_mm(const struct glint_prescription *lens, int e, double x,
-                     double y)
+/* Returns the sag of element E at (X, Y) from the axis of the lens. A tilt
+ * counts only by its change of the sag. */
+static double compute_sag_mm(const struct glint_prescription *lens, int e,
+                             double x, double y)
 {
     const int k = element_surface(lens, e);
     const double c = element_curvature(lens, e);
@@ -46,38 +47,42 @@ static double sag_mm(const struct glint_prescription *lens, int e, double x,
            form.turn[2][2];
 }
 
-static bool is_shaped(const struct glint_prescription *lens, int e)
+static bool is_shaped_element(const struct glint_prescription *lens, int e)
 {
     const int k = element_surface(lens, e);
 
     return k >= 0 && glint_surface_is_shaped(&lens->surface[k]);
 }
 
-/* Returns the min gap between element E and the next element, and sets AT to
- * its height. A stop in front of the lens may lie behind the front vertex, with
- * the glass reaching through its opening: only its rim has to be free. */
-static double least_gap_mm(const struct glint_prescription *lens, int e,
-                           double *at)
+/* Returns the min gap between element E and the next element and sets AT to
+ * its height. A stop in front of the lens may lie behind the front vertex,
+ * with the glass reaching through its opening; then only its rim is
+ * compared. */
+static double compute_min_gap_mm(const struct glint_prescription *lens, int e,
+                                 double *at)
 {
     const bool through = e == 0 && element_gap_mm(lens, e) < 0.0;
     const double height =
         (through ? 1.0 : CLEAR_SHARE) *
         fmin(element_semi_mm(lens, e), element_semi_mm(lens, e + 1));
-    const bool shaped = is_shaped(lens, e) || is_shaped(lens, e + 1);
+    const bool shaped =
+        is_shaped_element(lens, e) || is_shaped_element(lens, e + 1);
     double least = HUGE_VAL;
 
     *at = height;
     if (!shaped)
-        return element_gap_mm(lens, e) + sag_mm(lens, e + 1, height, 0) -
-               sag_mm(lens, e, height, 0);
+        return element_gap_mm(lens, e) +
+               compute_sag_mm(lens, e + 1, height, 0) -
+               compute_sag_mm(lens, e, height, 0);
     for (int k = through ? (HEIGHTS - 1) * TURNS : 0; k < HEIGHTS * TURNS;
          k++) {
         const int ring = 1 + k / TURNS;
         const double h = height * ring / HEIGHTS;
         const double x = h * glint_cos_deg(360.0 / TURNS * (k % TURNS));
         const double y = h * glint_sin_deg(360.0 / TURNS * (k % TURNS));
-        const double gap = element_gap_mm(lens, e) + sag_mm(lens, e + 1, x, y) -
-                           sag_mm(lens, e, x, y);
+        const double gap = element_gap_mm(lens, e) +
+                           compute_sag_mm(lens, e + 1, x, y) -
+                           compute_sag_mm(lens, e, x, y);
 
         if (gap < least) {
             least = gap;
@@ -87,8 +92,8 @@ static double least_gap_mm(const struct glint_prescription *lens, int e,
     return least;
 }
 
-/* Checks that surface K is a function of its height up to its rim, and that its
- * aspheric terms stay small; those of a misprint are large. */
+/* Checks that surface S is defined up to its rim, and that its aspheric
+ * terms are small; large terms indicate a misprint. */
 static bool check_surface(const struct glint_surface *s,
                           const struct glint_text *text,
                           struct glint_text_place place)
@@ -120,12 +125,11 @@ static bool check_surface(const struct glint_surface *s,
                            "the aspheric terms add %.4g mm at the rim", terms);
 }
 
-/* Checks that each element ends before the next begins. The distance between
- * two spheres only rises or only falls from the axis to the rim, and vertices
- * are in order, so one height decides. That height is somewhat below the rim,
- * as published semi-diameters are often estimates: surfaces of the Canon zoom
- * meet at 0.92 of their semi-diameter. Other surfaces are compared at many
- * heights up to it. */
+/* Checks that elements do not overlap. The distance between two spheres is
+ * monotone from the axis to the rim, and vertices are in order, so one
+ * height is sufficient. That height lies below the rim, as published
+ * semi-diameters are often estimates: two surfaces of the Canon zoom meet at
+ * 0.92 of their semi-diameter. Other surfaces are compared at many heights. */
 static bool check_rims(const struct glint_prescription *lens,
                        const struct glint_text *text,
                        const struct glint_places *places)
@@ -134,7 +138,7 @@ static bool check_rims(const struct glint_prescription *lens,
 
     for (int e = 0; e < last; e++) {
         double height;
-        const double gap = least_gap_mm(lens, e, &height);
+        const double gap = compute_min_gap_mm(lens, e, &height);
 
         if (!(gap >= -CONTACT_MM))
             return glint_text_fail(text, places->thickness[e],
@@ -143,13 +147,14 @@ static bool check_rims(const struct glint_prescription *lens,
                                    -gap, height);
     }
     if (element_gap_mm(lens, last) <=
-        fmax(0.0, sag_mm(lens, last, element_semi_mm(lens, last), 0)))
+        fmax(0.0, compute_sag_mm(lens, last, element_semi_mm(lens, last), 0)))
         return glint_text_fail(text, places->thickness[last],
                                "the sensor must lie behind the last element");
     return true;
 }
 
-/* Checks that FOUND agrees with STATED, if the table states it, at PLACE. */
+/* Checks that FOUND agrees with STATED. A table without this value (PLACE is
+ * line 0) passes. */
 static bool check_stated(const struct glint_text *text,
                          struct glint_text_place place, const char *name,
                          double stated, double found)
@@ -159,7 +164,8 @@ static bool check_stated(const struct glint_text *text,
                            name, found, stated);
 }
 
-/* Checks focal lengths and stop. Comparisons are such that a NaN fails. */
+/* Checks focal lengths and stop. Comparisons are written such that NaN
+ * fails. */
 static bool check_optics(const struct glint_prescription *lens,
                          const struct glint_text *text,
                          const struct glint_places *places)
@@ -219,7 +225,7 @@ enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
     double height;
 
     for (int e = 0; e < last; e++) {
-        const double gap = least_gap_mm(lens, e, &height);
+        const double gap = compute_min_gap_mm(lens, e, &height);
 
         if (gap >= -CONTACT_MM &&
             (element_gap_mm(lens, e) >= 0.0 || (e == 0 && !lens->stop_after)))
@@ -232,7 +238,8 @@ enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
     glint_optics_of(lens, &optics);
     if (optics.focal_mm > 0.0 && optics.focal_mm <= GLINT_MAX_FOCAL_MM &&
         element_gap_mm(lens, last) >
-            fmax(0.0, sag_mm(lens, last, element_semi_mm(lens, last), 0)) &&
+            fmax(0.0,
+                 compute_sag_mm(lens, last, element_semi_mm(lens, last), 0)) &&
         optics.stop_radius_mm <= lens->stop_semi_mm * (1.0 + STOP_SLACK))
         return GLINT_OK;
     snprintf(

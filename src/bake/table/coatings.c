@@ -12,14 +12,14 @@ static const struct glint_text_range quarters_range = {"coating thickness",
 
 /* ------------------------------------------------------------------- names */
 
-/* Indices are those of magnesium fluoride 1.38, aluminium oxide 1.63 to 1.69,
- * evaporated, and zirconium oxide 2.1. The single layer of 1.38 and two
- * quarters are in every textbook; three layers of a quarter, a half and a
- * quarter are those of Cox, Hass and Thelen, Triple-layer antireflection
- * coatings on glass for the visible and near infrared, JOSA 52(9), 1962. Four
- * layers have two materials, the half wave's inner neighbour being a thin pair
- * of both; a search found the thicknesses that reflect least from 420 to 680 nm
- * on glasses of 1.52 to 1.7. */
+/* Indices are those of magnesium fluoride (1.38), aluminium oxide (1.63 to
+ * 1.69, evaporated) and zirconium oxide (2.1). The single layer of 1.38 and
+ * the two quarter waves are textbook designs. The three layers of a quarter,
+ * a half and a quarter wave follow Cox, Hass and Thelen, Triple-layer
+ * antireflection coatings on glass for the visible and near infrared, JOSA
+ * 52(9), 1962. The four layers use two materials; their thicknesses were
+ * found by a search for the smallest reflectance from 420 to 680 nm on
+ * glasses of 1.52 to 1.7. */
 static const struct {
     const char *name;
     struct glint_coating coating;
@@ -50,8 +50,8 @@ void glint_coating_single(struct glint_coating *coating, double nm)
 
 /* ----------------------------------------------------------------- reading */
 
-/* Cuts WORD before the first SIGN; returns what follows it, of length 0 if
- * there is no sign and negative if nothing follows. */
+/* Cuts WORD at the first SIGN. Returns the rest behind it; its length is 0
+ * if there is no sign, and negative if nothing follows the sign. */
 static struct glint_word split_word(struct glint_word *word, char sign)
 {
     const char *found = word->length > 0
@@ -74,7 +74,8 @@ static struct glint_word split_word(struct glint_word *word, char sign)
     return rest;
 }
 
-/* Reads WORD as a number in RANGE; a word of length -1 is missing. */
+/* Reads WORD as a number in RANGE. A word of length -1 is reported as
+ * missing. */
 static bool read_value(const struct glint_text *text, struct glint_word word,
                        const struct glint_text_range *range, double *value)
 {
@@ -83,8 +84,8 @@ static bool read_value(const struct glint_text *text, struct glint_word word,
     return glint_text_value_of(text, &word, range, value);
 }
 
-/* Reads "none", a name or a wavelength. TAKES: the max number of words that may
- * follow. */
+/* Reads "none", a name or a wavelength. TAKES receives the max number of
+ * words that may follow. */
 static bool read_kind(const struct glint_text *text,
                       const struct glint_word *word,
                       struct glint_coating *coating, int *takes)
@@ -115,7 +116,7 @@ static bool read_kind(const struct glint_text *text,
     return true;
 }
 
-/* Reads word number AT after the kind of COATING. */
+/* Reads word number AT after the first word of COATING. */
 static bool read_more(const struct glint_text *text, struct glint_word word,
                       bool is_named, int at, struct glint_coating *coating)
 {
@@ -132,12 +133,12 @@ static bool read_more(const struct glint_text *text, struct glint_word word,
             read_value(text, quarters, &quarters_range, &film->quarters));
 }
 
-/* The parts of a coating: the words of the line, or the parts of one word that
- * slashes divide. */
+/* Source of the words of a coating: the rest of a line, or a single word
+ * divided by slashes. */
 struct parts {
     struct glint_text *text;
     bool in_word;
-    struct glint_word rest; /* unread rest of the word */
+    struct glint_word rest; /* unread rest of the single word */
 };
 
 static struct glint_word next_part(struct parts *parts)
@@ -254,7 +255,7 @@ glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
 
 int glint_coatings_mixed(struct glint_coating coatings[GLINT_MAX_COATINGS])
 {
-    /* 1080 is a half wave in the middle of the band, which reflects green */
+    /* 1080: a half wave in the middle of the band, which reflects green */
     static const double nm[] = {450, 620, 1080, 520, 680, 490, 560};
     enum { N = sizeof nm / sizeof *nm };
 

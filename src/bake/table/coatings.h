@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads coatings of a lens table: the words of a `coating` and of a
- * `mixed-coating`, one word per coating. */
+ * Parses the coatings of a lens table: lines `coating` and `mixed-coating`.
+ */
 #ifndef GLINT_BAKE_TABLE_COATINGS_H
 #define GLINT_BAKE_TABLE_COATINGS_H
 
@@ -10,16 +10,16 @@
 
 #define GLINT_MGF2_INDEX 1.38
 
-/* Sets COATING to a layer of magnesium fluoride, a quarter of wavelength NM
- * thick. */
+/* Sets COATING to a quarter-wave layer of magnesium fluoride for wavelength
+ * NM. */
 void glint_coating_single(struct glint_coating *coating, double nm);
 
 /* Reads a coating from the rest of the line: "none", NAME [NM] or NM
- * [INDEX[:QUARTERS]]... Leaves a word that fits none of these unread. Returns
- * false with the error written. */
+ * [INDEX[:QUARTERS]]... Does not consume a word that does not belong to it.
+ * On errors, sets the error of TEXT and returns false. */
 bool glint_coating_read(struct glint_text *text, struct glint_coating *coating);
 
-/* Reads coatings from the rest of the line, at least one word, to its end. */
+/* Reads coatings, one word each and at least one, up to the end of the line. */
 bool glint_coatings_read(struct glint_text *text,
                          struct glint_coating coatings[GLINT_MAX_COATINGS],
                          int *n);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * A lens seen as a row of elements: its surfaces and the stop among them, in
- * the order of the table. Element E is the stop if E == lens->stop_after. */
+ * Access to a lens as a sequence of elements: surfaces and the stop, in the
+ * order of the table. Element E is the stop if E == lens->stop_after.
+ */
 #ifndef GLINT_BAKE_TABLE_ELEMENTS_H
 #define GLINT_BAKE_TABLE_ELEMENTS_H
 
@@ -14,13 +15,13 @@ static inline int element_count(const struct glint_prescription *lens)
     return lens->n_surfaces + 1;
 }
 
-/* Returns the surface of element E, -1 for the stop. */
+/* Returns the index of the surface that is element E; -1 for the stop. */
 static inline int element_surface(const struct glint_prescription *lens, int e)
 {
     return e == lens->stop_after ? -1 : e - (e > lens->stop_after);
 }
 
-/* Returns the element of surface K. */
+/* Returns the index of the element that is surface K. */
 static inline int surface_element(const struct glint_prescription *lens, int k)
 {
     return k + (k >= lens->stop_after);
@@ -43,7 +44,7 @@ static inline double element_semi_mm(const struct glint_prescription *lens,
     return k < 0 ? lens->stop_semi_mm : lens->surface[k].semi_mm;
 }
 
-/* Returns 1 / radius of element E, 0 for a plane and the stop. */
+/* Returns 1 / radius of element E; 0 for a plane and the stop. */
 static inline double element_curvature(const struct glint_prescription *lens,
                                        int e)
 {
@@ -54,7 +55,7 @@ static inline double element_curvature(const struct glint_prescription *lens,
                : 1.0 / lens->surface[k].radius_mm;
 }
 
-/* Returns where that gap is stored. */
+/* Returns the address of the gap behind element E. */
 static inline double *glint_gap_of(struct glint_prescription *lens, int e)
 {
     const int k = element_surface(lens, e);
@@ -62,12 +63,12 @@ static inline double *glint_gap_of(struct glint_prescription *lens, int e)
     return k < 0 ? &lens->stop_thickness_mm : &lens->surface[k].thickness_mm;
 }
 
-/* Returns the distance behind the last surface at which paraxial rays from the
- * axis point OBJECT_MM before the front vertex meet. */
+/* Returns the distance behind the last surface of the paraxial image of the
+ * axis point OBJECT_MM before the front vertex. */
 double glint_image_mm(const struct glint_prescription *lens, double object_mm);
 
-/* Checks that elements do not collide and that the stop opens wide enough.
- * GLINT_E_ARGUMENT: they do, or it does not; ERROR states where. */
+/* Checks that elements do not collide and that the stop is large enough for
+ * the f-number. Returns GLINT_E_ARGUMENT if not; ERROR states the place. */
 enum glint_status glint_prescription_fits(const struct glint_prescription *lens,
                                           struct glint_error *error);
 

@@ -1,30 +1,30 @@
 /* SPDX-License-Identifier: MIT
  *
- * Focuses a lens at a distance.
+ * Focuses a lens at a distance: finds the displacement of the focusing group,
+ * or of the whole lens.
  *
- * With the group moved by d towards the light, or all of the lens, the image of
- * a point at that distance from the sensor lies behind or before the place of
- * focus. It is there for the least d at which that changes sign. */
+ * As the group moves by d towards the light, the distance of the image from the
+ * sensor changes. The lens is focused at the smallest d at which this distance
+ * changes its sign.
+ */
 #include <math.h>
 #include <stdio.h>
 
 #include "bake/table/elements.h"
 
-/* Fraction of the focal length that the group is moved in one step of the
- * search.
- */
+/* Step of the search for d, as a fraction of the focal length. */
 #define STEP 2e-3
 enum { STEPS = 2000, HALVINGS = 60 };
 
-/* A lens to be focused, and how far behind its paraxial focus at infinity the
- * sensor lies. */
+/* The lens to focus, the distance of the object from the sensor, and the
+ * distance of the sensor behind the paraxial focus at infinity. */
 struct search {
     const struct glint_prescription *lens;
     double object_mm, defocus_mm;
 };
 
-/* Moves the group, or all, by D towards the light. */
-static void advance(struct glint_prescription *lens, double d)
+/* Moves the focusing group, or the whole lens, by D towards the light. */
+static void move_group(struct glint_prescription *lens, double d)
 {
     const int n = lens->n_focus, last = element_count(lens) - 1;
     const int first = surface_element(lens, lens->focus_first);
@@ -38,15 +38,15 @@ static void advance(struct glint_prescription *lens, double d)
     *glint_gap_of(lens, first + n - 1) += d;
 }
 
-/* Returns how far the image lies behind where it is to be; NaN if the lens does
- * not fit any more. */
-static double off(const struct search *s, double d)
+/* Returns the distance of the image behind the sensor after a displacement
+ * by D; NaN if elements of the lens would collide. */
+static double compute_defocus(const struct search *s, double d)
 {
     struct glint_prescription lens = *s->lens;
     struct glint_error error;
     struct glint_optics optics;
 
-    advance(&lens, d);
+    move_group(&lens, d);
     if (glint_prescription_fits(&lens, &error) != GLINT_OK)
         return (double)NAN;
     glint_optics_of(&lens, &optics);
@@ -56,16 +56,16 @@ static double off(const struct search *s, double d)
            s->defocus_mm - element_gap_mm(&lens, element_count(&lens) - 1);
 }
 
-/* Finds D in the direction of SIDE. */
-static bool find(const struct search *s, double side, double *d)
+/* Finds D, whose sign is that of SIDE. Returns false if there is none. */
+static bool find_displacement(const struct search *s, double side, double *d)
 {
     struct glint_optics optics;
-    double at = off(s, 0.0), step;
+    double at = compute_defocus(s, 0.0), step;
 
     glint_optics_of(s->lens, &optics);
     step = side * STEP * optics.focal_mm;
     for (int k = 1; k <= STEPS; k++) {
-        const double now = off(s, k * step);
+        const double now = compute_defocus(s, k * step);
 
         if (!isfinite(now) || !isfinite(at))
             return false;
@@ -75,7 +75,7 @@ static bool find(const struct search *s, double side, double *d)
             for (int i = 0; i < HALVINGS; i++) {
                 const double middle = 0.5 * (low + high);
 
-                if ((off(s, middle) < 0.0) == (at < 0.0))
+                if ((compute_defocus(s, middle) < 0.0) == (at < 0.0))
                     low = middle;
                 else
                     high = middle;
@@ -87,8 +87,8 @@ static bool find(const struct search *s, double side, double *d)
     return false;
 }
 
-static bool solve(const struct glint_prescription *lens, double metres,
-                  double *d)
+static bool solve_displacement(const struct glint_prescription *lens,
+                               double metres, double *d)
 {
     struct glint_optics optics;
     struct search s = {lens, 1000.0 * metres, 0.0};
@@ -96,18 +96,19 @@ static bool solve(const struct glint_prescription *lens, double metres,
     glint_optics_of(lens, &optics);
     s.defocus_mm =
         element_gap_mm(lens, element_count(lens) - 1) - optics.back_focal_mm;
-    return find(&s, 1.0, d) || (lens->n_focus && find(&s, -1.0, d));
+    return find_displacement(&s, 1.0, d) ||
+           (lens->n_focus && find_displacement(&s, -1.0, d));
 }
 
-/* Returns the nearest distance, metres. */
-static double nearest(const struct glint_prescription *lens)
+/* Returns the nearest distance at which the lens can focus, metres. */
+static double find_nearest_distance(const struct glint_prescription *lens)
 {
     double low = 0.0, high = 1e6, d;
 
     for (int k = 0; k < HALVINGS; k++) {
         const double middle = low > 0.0 ? sqrt(low * high) : 1e-3;
 
-        if (solve(lens, middle, &d))
+        if (solve_displacement(lens, middle, &d))
             high = middle;
         else
             low = middle;
@@ -127,13 +128,13 @@ enum glint_status glint_prescription_focus(struct glint_prescription *lens,
                  metres);
         return GLINT_E_ARGUMENT;
     }
-    if (!solve(lens, metres, &d)) {
+    if (!solve_displacement(lens, metres, &d)) {
         snprintf(error->text, sizeof error->text,
                  "%s cannot focus at %g m, only down to %.3g m from the sensor",
-                 lens->name, metres, nearest(lens));
+                 lens->name, metres, find_nearest_distance(lens));
         return GLINT_E_ARGUMENT;
     }
-    advance(lens, d);
+    move_group(lens, d);
     lens->focus_m = metres;
     lens->check_focal_mm = lens->check_back_mm = 0;
     return GLINT_OK;

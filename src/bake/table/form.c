@@ -6,12 +6,13 @@
 
 #include "engine/setup/degrees.h"
 
-/* Fraction of the semi-diameter up to which a profile follows the table. */
+/* Height, in semi-diameters, up to which a profile follows the table. */
 #define GLASS_ENDS 1.1
-/* Curvature fades over this fraction of END2 behind END2. */
+/* Beyond END2 the curvature fades over this fraction of END2. */
 #define FADES 0.25
 
-/* Factor on the squares of slopes, a margin for slopes between the samples. */
+/* Factor on the squares of sampled slopes, as slopes between samples may be
+ * larger. */
 #define STEEPER 1.1
 
 enum { MOST_STEPS = 80, MOST_HALVINGS = 60, SLOPES = 64 };
@@ -43,9 +44,10 @@ bool glint_prescription_is_round(const struct glint_prescription *lens)
 
 /* --------------------------------------------------------------------- sag */
 
-/* Sets AT to the profile at the height whose square is H2, and to its first and
- * second derivatives by H2, by the table. */
-static void profile_inside(const struct glint_form *f, double h2, double at[3])
+/* Sets AT to the value of the table's profile at the height whose square is
+ * H2, and to its first and second derivative by H2. */
+static void evaluate_table_profile(const struct glint_form *f, double h2,
+                                   double at[3])
 {
     const double c = f->curvature, a = (1.0 + f->conic) * c * c;
     const double root = sqrt(1.0 - a * h2);
@@ -62,14 +64,15 @@ static void profile_inside(const struct glint_form *f, double h2, double at[3])
             h2 * (4.0 * p[1] + h2 * p[2]);
 }
 
-/* Returns the profile at H2, and its derivative by H2 in SLOPE. */
-static double profile(const struct glint_form *f, double h2, double *slope)
+/* Returns the profile at H2. SLOPE receives its derivative by H2. */
+static double evaluate_profile(const struct glint_form *f, double h2,
+                               double *slope)
 {
     const double beyond = h2 - f->end2;
     double at[3], fade;
 
     if (!(beyond > 0.0)) {
-        profile_inside(f, h2, at);
+        evaluate_table_profile(f, h2, at);
         *slope = at[1];
         return at[0];
     }
@@ -89,13 +92,13 @@ double glint_form_sag(const struct glint_form *f, double x, double y,
     double by_h2, q, free, root;
 
     if (f->bend == GLINT_BEND_ROUND) {
-        q = profile(f, x * x + y * y, &by_h2);
+        q = evaluate_profile(f, x * x + y * y, &by_h2);
         slope[0] = 2.0 * x * by_h2;
         slope[1] = 2.0 * y * by_h2;
         return q;
     }
-    /* (R - z)^2 + aside^2 = (R - q)^2, solved without dividing by 1 / R. */
-    q = profile(f, along * along, &by_h2);
+    /* solves (R - z)^2 + aside^2 = (R - q)^2 without dividing by 1 / R */
+    q = evaluate_profile(f, along * along, &by_h2);
     free = 1.0 - f->across * q;
     root = free * free - f->across * f->across * aside * aside;
     if (!(free > 0.0 && root > 0.0))
@@ -108,15 +111,16 @@ double glint_form_sag(const struct glint_form *f, double x, double y,
 
 /* -------------------------------------------------------------------- rays */
 
-/* A ray in the form's frame. */
+/* A ray in the frame of the form. */
 struct line {
     const double *at, *direction;
 };
 
-/* Returns how far the ray is behind the form after T; RATE receives how fast
- * that changes. */
-static double behind(const struct glint_form *f, const struct line *line,
-                     double t, double *rate, double slope[2])
+/* Returns z - sag at parameter T of the ray. RATE receives its derivative by
+ * T. */
+static double compute_height_above(const struct glint_form *f,
+                                   const struct line *line, double t,
+                                   double *rate, double slope[2])
 {
     const double *const d = line->direction;
     const double sag = glint_form_sag(f, line->at[0] + t * d[0],
@@ -126,12 +130,14 @@ static double behind(const struct glint_form *f, const struct line *line,
     return t * d[2] - sag;
 }
 
-/* Sets BRACKET to two positions on the ray, the nearer first, with the form
- * between them. Returns false if there are none near the barrel. */
+/* Sets BRACKET to two parameters of the ray, the nearer first, between which
+ * it crosses the form. Returns false if there is no crossing near the
+ * barrel. */
 static bool bracket_root(const struct glint_form *f, const struct line *line,
                          double bracket[2])
 {
-    double slope[2] = {0, 0}, rate, g = behind(f, line, 0.0, &rate, slope);
+    double slope[2] = {0, 0}, rate,
+           g = compute_height_above(f, line, 0.0, &rate, slope);
     const double first = g, side = line->direction[2] < 0.0 ? -g : g;
     const double reach =
         8.0 * (f->semi_mm + fabs(line->at[0]) + fabs(line->at[1]));
@@ -143,7 +149,7 @@ static bool bracket_root(const struct glint_form *f, const struct line *line,
     for (int k = 0; k < MOST_STEPS && fabs(bracket[1]) < reach; k++) {
         bracket[0] = bracket[1];
         bracket[1] += step;
-        g = behind(f, line, bracket[1], &rate, slope);
+        g = compute_height_above(f, line, bracket[1], &rate, slope);
         if (!isfinite(g))
             return false;
         if ((g < 0.0) != (first < 0.0) || g == 0.0)
@@ -153,24 +159,24 @@ static bool bracket_root(const struct glint_form *f, const struct line *line,
     return false;
 }
 
-/* Returns the position on the ray, between LOW and HIGH, where it meets the
+/* Returns the parameter between LOW and HIGH at which the ray meets the
  * form. */
-static double refine(const struct glint_form *f, const struct line *line,
-                     double low, double high)
+static double refine_root(const struct glint_form *f, const struct line *line,
+                          double low, double high)
 {
     double slope[2] = {0, 0}, rate;
-    const bool rises = behind(f, line, low, &rate, slope) < 0.0;
+    const bool rises = compute_height_above(f, line, low, &rate, slope) < 0.0;
     double t = 0.5 * (low + high);
 
     for (int k = 0; k < MOST_HALVINGS; k++) {
-        const double g = behind(f, line, t, &rate, slope);
+        const double g = compute_height_above(f, line, t, &rate, slope);
         double next = t - g / rate;
 
         if ((g < 0.0) == rises)
             low = t;
         else
             high = t;
-        /* A step that leaves the bracket, or a NaN, is replaced. */
+        /* replaces a step that leaves the bracket, or is NaN, by a bisection */
         if (!((next > low && next < high) || (next < low && next > high)))
             next = g == 0.0 ? t : 0.5 * (low + high);
         if (fabs(next - t) <= 2e-16 * (fabs(t) + 0.01 * f->semi_mm))
@@ -191,8 +197,8 @@ bool glint_form_meet(const struct glint_form *f, double at[3],
     normal[2] = *cosine = 1.0;
     if (!bracket_root(f, &line, bracket))
         return false;
-    t = refine(f, &line, bracket[0], bracket[1]);
-    behind(f, &line, t, &rate, slope);
+    t = refine_root(f, &line, bracket[0], bracket[1]);
+    compute_height_above(f, &line, t, &rate, slope);
     for (int k = 0; k < 2; k++)
         at[k] += t * direction[k];
     at[2] = t * direction[2];
@@ -201,7 +207,7 @@ bool glint_form_meet(const struct glint_form *f, double at[3],
     normal[1] = -slope[1] / size;
     normal[2] = 1.0 / size;
     if (!(rate * direction[2] > 0.0))
-        return false; /* it comes from the wrong side */
+        return false; /* the ray comes from the wrong side */
     *cosine = rate / size;
     return true;
 }
@@ -242,29 +248,29 @@ void glint_form_leave(const struct glint_form *f, double at[3],
     }
 }
 
-/* Returns the height, squared, at which the profile's glass ends. */
-static double end_of(const struct glint_form *f)
+/* Returns the squared height at which the profile ends. */
+static double compute_end(const struct glint_form *f)
 {
     const double c = f->curvature, a = (1.0 + f->conic) * c * c;
     const double semi2 = f->semi_mm * f->semi_mm;
     const double end2 = GLASS_ENDS * GLASS_ENDS * semi2;
 
-    /* A conic ends at its equator, where it is vertical. */
+    /* a conic is vertical at its equator, so it ends before */
     return a * end2 < 0.5 * (1.0 + a * semi2) ? end2 : 0.5 * (1.0 / a + semi2);
 }
 
-/* Sets the frame: shift, tilt about x and then y at the pivot, and the light's
- * plane turned to x-z. */
-static void place(struct glint_form *f, const struct glint_shape *s,
-                  double phi_deg)
+/* Sets the transform to the surface's frame: shift, tilts about x and then y
+ * at the pivot, and the rotation of the light's plane to x-z. */
+static void set_transform(struct glint_form *f, const struct glint_shape *s,
+                          double phi_deg)
 {
     const double cx = glint_cos_deg(s->tilt_deg[0]);
     const double sx = glint_sin_deg(s->tilt_deg[0]);
     const double cy = glint_cos_deg(s->tilt_deg[1]);
     const double sy = glint_sin_deg(s->tilt_deg[1]);
     const double cp = glint_cos_deg(phi_deg), sp = glint_sin_deg(phi_deg);
-    /* Columns of the surface's axes in the lens are rows here: Ry Rx,
-     * transposed. */
+    /* rows are the axes of the surface in the lens's frame: (Ry Rx)
+     * transposed */
     const double lens[3][3] = {
         {cy, 0, -sy}, {sx * sy, cx, sx * cy}, {cx * sy, -sx, cx * cy}};
     const double from[3] = {-s->decentre_mm[0], -s->decentre_mm[1],
@@ -281,7 +287,7 @@ static void place(struct glint_form *f, const struct glint_shape *s,
     f->shift[2] += s->pivot_mm;
 }
 
-/* Sets the members that intersection with level forms needs. */
+/* Sets the members that glint_beam_meet_form() needs. */
 static void set_level(struct glint_form *f, const struct glint_shape *s)
 {
     const double *const along = f->turn[f->bend == GLINT_BEND_Y];
@@ -298,7 +304,7 @@ static void set_level(struct glint_form *f, const struct glint_shape *s)
         const double h2 = f->end2 * k * k / (SLOPES * SLOPES);
         double at[3];
 
-        profile_inside(f, h2, at);
+        evaluate_table_profile(f, h2, at);
         f->steepest2 = fmax(f->steepest2, STEEPER * 4.0 * h2 * at[1] * at[1]);
     }
 }
@@ -315,9 +321,9 @@ void glint_form_init(struct glint_form *form, const struct glint_surface *s,
         .across = shape->across_mm != 0.0 ? 1.0 / shape->across_mm : 0.0,
         .semi_mm = s->semi_mm};
     memcpy(form->term, shape->term, sizeof form->term);
-    form->end2 = end_of(form);
-    profile_inside(form, form->end2, form->end_at);
-    place(form, shape, phi_deg);
+    form->end2 = compute_end(form);
+    evaluate_table_profile(form, form->end2, form->end_at);
+    set_transform(form, shape, phi_deg);
     set_level(form, shape);
 }
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lists the pairs of surfaces whose reflections reach the sensor through the
- * stop once. Light of pairs across the stop would cross it three times and
- * hardly gets through. */
+ * Lists the pairs of surfaces on the same side of the stop. Light reflected by
+ * pairs on both sides would cross the stop three times; hardly any of it
+ * reaches the sensor.
+ */
 #include "glint/prescription.h"
 
 int glint_ghost_list(const struct glint_prescription *lens,

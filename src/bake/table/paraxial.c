@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: MIT
  *
- * First-order optics: lens -> focal lengths, pupil and stop, at the d line.
+ * First-order optics: computes focal lengths, pupil and stop of a lens at the d
+ * line.
  *
- * Paraxial rays (y, n u) meet all elements in turn: n u loses y times the power
- * of a surface, y gains n u times the reduced gap. A lens without power has
- * infinite focal lengths; glint_prescription_parse() accepts none of these. */
+ * Paraxial rays (y, n u) pass all elements in turn: a surface reduces n u by y
+ * times its power, a gap increases y by n u times the reduced gap. A lens
+ * without power has infinite focal lengths; glint_prescription_parse() rejects
+ * it.
+ */
 #include "bake/table/elements.h"
 
 #include <stddef.h>
 
-/* A ray at one element: its height, and its slope times the index there. */
+/* A ray at one element: height, and slope times index of refraction. */
 struct paraxial_ray {
     double y_mm, nu;
 };
 
-/* Returns the curvature of element E in the plane of the bend PLANE, of a light
- * far from the tilts and shifts that a surface may have. */
-static double curvature_in(const struct glint_prescription *lens, int e,
-                           int plane)
+/* Returns the curvature of element E in PLANE (enum glint_bend), ignoring
+ * tilts and shifts. */
+static double compute_curvature(const struct glint_prescription *lens, int e,
+                                int plane)
 {
     const int k = element_surface(lens, e);
     const struct glint_shape *const s = &lens->surface[k < 0 ? 0 : k].shape;
@@ -35,7 +38,7 @@ static void trace_through(struct paraxial_ray *ray,
 {
     double n = 1.0;
 
-    /* a stop before the first surface is reached backwards through air. */
+    /* a stop in front of the first surface is reached backwards through air */
     if (lens->stop_after == 0)
         ray->y_mm -= ray->nu * element_gap_mm(lens, 0);
     for (int e = 0; e <= last; e++) {
@@ -45,7 +48,7 @@ static void trace_through(struct paraxial_ray *ray,
             ray->y_mm += ray->nu / n * element_gap_mm(lens, e - 1);
         if (k >= 0) {
             ray->nu -= ray->y_mm * (lens->surface[k].nd - n) *
-                       curvature_in(lens, e, plane);
+                       compute_curvature(lens, e, plane);
             n = lens->surface[k].nd;
         }
     }
@@ -60,10 +63,10 @@ double glint_image_mm(const struct glint_prescription *lens, double object_mm)
     return -ray.y_mm / ray.nu;
 }
 
-/* Returns the distance from the axis at which light through the middle of the
- * entrance pupil meets the sensor / the tangent of the light's angle. */
-static double scale_of(const struct glint_prescription *lens,
-                       const struct glint_optics *optics)
+/* Returns the distance from the axis at which light through the centre of
+ * the entrance pupil hits the sensor / the tangent of the light's angle. */
+static double compute_scale(const struct glint_prescription *lens,
+                            const struct glint_optics *optics)
 {
     struct paraxial_ray chief = {-optics->entrance_z_mm, 1.0};
 
@@ -93,12 +96,13 @@ void glint_optics_of(const struct glint_prescription *lens,
     optics->stop_radius_mm = optics->entrance_radius_mm * to_stop.y_mm;
     if (optics->stop_radius_mm < 0.0)
         optics->stop_radius_mm = -optics->stop_radius_mm;
-    /* A ray of height h and slope u meets the axis at -h / u, and the stop at h
-     * to_stop.y + u slanted.y, which is 0 at its centre. */
+    /* A ray of height h and slope u crosses the axis at -h / u, and the stop
+     * at the height h to_stop.y + u slanted.y, which is 0 at the stop's
+     * centre. */
     optics->entrance_z_mm = slanted.y_mm / to_stop.y_mm;
     optics->length_mm = 0.0;
     for (int e = lens->stop_after == 0; e < element_count(lens); e++)
         optics->length_mm += element_gap_mm(lens, e);
     optics->scale_mm =
-        lens->focus_m > 0.0 ? scale_of(lens, optics) : optics->focal_mm;
+        lens->focus_m > 0.0 ? compute_scale(lens, optics) : optics->focal_mm;
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads the text of a lens table into a struct glint_prescription, or finds the
- * first mistake and its place. lenses/README.md is the manual of the format.
+ * Parses the text of a lens table into a struct glint_prescription, or reports
+ * the first mistake and its position. lenses/README.md describes the format.
  *
- * Reading stores values that are in range, one word at a time; the lens as a
- * whole is checked by check.h when all is read. */
+ * The parser stores values that are in range, one word at a time. After the
+ * last line, check.h checks the lens as a whole.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -24,7 +25,7 @@ static const struct glint_text_range term_range = {"aspheric term", -1e18,
 static const struct glint_text_range shift_range = {"decentre", -1e3, 1e3};
 static const struct glint_text_range tilt_range = {"tilt", -45, 45};
 
-/* Reads a radius, or "flat" as 0. */
+/* Reads a radius; "flat" becomes 0. */
 static bool read_radius(struct glint_text *text, double *radius_mm)
 {
     const struct glint_word word = glint_text_next_word(text);
@@ -42,8 +43,8 @@ static bool read_radius(struct glint_text *text, double *radius_mm)
                                fabs(*radius_mm));
 }
 
-/* Returns the number of the term that WORD names, A4 being 0, or -1. */
-static int term_of(const struct glint_word *word)
+/* Returns the index of the aspheric term that WORD names, 0 for A4, or -1. */
+static int find_term(const struct glint_word *word)
 {
     char name[8];
 
@@ -55,7 +56,8 @@ static int term_of(const struct glint_word *word)
     return -1;
 }
 
-static bool is_twice(struct glint_text *text, const struct glint_word *word)
+static bool reject_repetition(struct glint_text *text,
+                              const struct glint_word *word)
 {
     char quote[GLINT_QUOTE_BYTES];
 
@@ -63,7 +65,7 @@ static bool is_twice(struct glint_text *text, const struct glint_word *word)
                            glint_word_quote(word, quote));
 }
 
-/* Reads x or y, and the radius across unless CYLINDER. */
+/* Reads the axis, x or y, and, if CYLINDER is false, the radius across. */
 static bool read_bend(struct glint_text *text, struct glint_shape *shape,
                       bool cylinder)
 {
@@ -76,25 +78,25 @@ static bool read_bend(struct glint_text *text, struct glint_shape *shape,
     return cylinder || read_radius(text, &shape->across_mm);
 }
 
-/* Reads the part of a shape that begins with WORD. */
-static bool read_word(struct glint_text *text, struct glint_shape *shape,
-                      const struct glint_word *word)
+/* Reads the item of a shape that begins with WORD. */
+static bool read_shape_item(struct glint_text *text, struct glint_shape *shape,
+                            const struct glint_word *word)
 {
     const bool cylinder = glint_word_is(word, "cylinder");
-    const int term = term_of(word);
+    const int term = find_term(word);
     char quote[GLINT_QUOTE_BYTES];
 
     if (cylinder || glint_word_is(word, "toric"))
         return shape->bend != GLINT_BEND_ROUND
-                   ? is_twice(text, word)
+                   ? reject_repetition(text, word)
                    : read_bend(text, shape, cylinder);
     if (glint_word_is(word, "conic"))
         return shape->conic != 0.0
-                   ? is_twice(text, word)
+                   ? reject_repetition(text, word)
                    : glint_text_value(text, &conic_range, &shape->conic, NULL);
     if (term >= 0)
         return shape->term[term] != 0.0
-                   ? is_twice(text, word)
+                   ? reject_repetition(text, word)
                    : glint_text_value(text, &term_range, &shape->term[term],
                                       NULL);
     return glint_text_fail(
@@ -103,9 +105,9 @@ static bool read_word(struct glint_text *text, struct glint_shape *shape,
         glint_word_quote(word, quote));
 }
 
-/* Reads the rest of a line "shape [conic K] [A4 V] .. [A20 V] [cylinder AXIS |
- * toric AXIS RADIUS]" into SHAPE; its other members do not change. Returns
- * false with the error of TEXT set on errors, also if a part is given twice. */
+/* Reads the rest of a line "shape [conic K] [A4 V] .. [A20 V] [cylinder AXIS
+ * | toric AXIS RADIUS]" into SHAPE; its other members do not change. Sets
+ * the error of TEXT and returns false on mistakes, such as repeated items. */
 static bool read_shape_words(struct glint_text *text, struct glint_shape *shape)
 {
     struct glint_word word = glint_text_next_word(text);
@@ -113,12 +115,12 @@ static bool read_shape_words(struct glint_text *text, struct glint_shape *shape)
     if (!word.length)
         return glint_text_fail(text, word.place, "shape is missing");
     for (; word.length; word = glint_text_next_word(text))
-        if (!read_word(text, shape, &word))
+        if (!read_shape_item(text, shape, &word))
             return false;
     return true;
 }
 
-/* Reads the rest of a line "group [decentre X Y] [tilt X Y]" likewise. */
+/* Reads the rest of a line "group [decentre X Y] [tilt X Y]" into SHAPE. */
 static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
 {
     struct glint_word word = glint_text_next_word(text);
@@ -137,7 +139,7 @@ static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
                                    "'%s' is neither decentre nor tilt",
                                    glint_word_quote(&word, quote));
         if (to[0] != 0.0 || to[1] != 0.0)
-            return is_twice(text, &word);
+            return reject_repetition(text, &word);
         if (!glint_text_value(text, range, &to[0], NULL) ||
             !glint_text_value(text, range, &to[1], NULL))
             return false;
@@ -145,12 +147,11 @@ static bool read_group_words(struct glint_text *text, struct glint_shape *shape)
     return true;
 }
 
-/* Least change of a zoom's focal length from column to column, as a fraction.
- */
+/* Min relative change of a zoom's focal length from column to column. */
 #define LEAST_ZOOM 1e-3
 
-/* Removes the text before the next slash, and the slash, from REST; returns the
- * text. */
+/* Removes the text up to the first slash, and the slash, from REST. Returns
+ * the text. */
 static struct glint_word cut_before_slash(struct glint_word *rest)
 {
     const char *slash = memchr(rest->start, '/', (size_t)rest->length);
@@ -163,7 +164,7 @@ static struct glint_word cut_before_slash(struct glint_word *rest)
     return word;
 }
 
-static int slashes(const struct glint_word *word)
+static int count_slashes(const struct glint_word *word)
 {
     int n = 0;
 
@@ -172,14 +173,16 @@ static int slashes(const struct glint_word *word)
     return n;
 }
 
-/* Reads as read_columns() does; sets N to how many numbers there are. */
-static bool read(struct glint_text *text, const struct glint_text_range *range,
-                 struct glint_zoom *zoom, double column[GLINT_MAX_POSITIONS],
-                 struct glint_text_place *place, int *n)
+/* Like read_columns(); also sets N to the count of numbers. */
+static bool read_counted_columns(struct glint_text *text,
+                                 const struct glint_text_range *range,
+                                 struct glint_zoom *zoom,
+                                 double column[GLINT_MAX_POSITIONS],
+                                 struct glint_text_place *place, int *n)
 {
     struct glint_word word = glint_text_next_word(text);
 
-    *n = slashes(&word) + 1;
+    *n = count_slashes(&word) + 1;
     if (place)
         *place = word.place;
     if (*n > GLINT_MAX_POSITIONS)
@@ -203,10 +206,10 @@ static bool read(struct glint_text *text, const struct glint_text_range *range,
     return true;
 }
 
-/* Reads a number in RANGE, or one for each position of ZOOM, into COLUMN; a
- * single number holds for all positions. PLACE receives its position in the
- * text. Returns false, with the error written, if there is no valid number, or
- * a different count than before. */
+/* Reads a number in RANGE, or one per zoom position, separated by slashes,
+ * into COLUMN; a single number holds for all positions. PLACE receives its
+ * position in the text. Returns false, with the error set, if there is no
+ * valid number or if the count differs from earlier ones. */
 static bool read_columns(struct glint_text *text,
                          const struct glint_text_range *range,
                          struct glint_zoom *zoom,
@@ -215,10 +218,11 @@ static bool read_columns(struct glint_text *text,
 {
     int n;
 
-    return read(text, range, zoom, column, place, &n);
+    return read_counted_columns(text, range, zoom, column, place, &n);
 }
 
-/* The same for the gap behind ELEMENT. GAP_MM receives the first. */
+/* Reads the gap behind ELEMENT like read_columns(). GAP_MM receives the
+ * first number. */
 static bool read_gap(struct glint_text *text,
                      const struct glint_text_range *range,
                      struct glint_zoom *zoom, int element, double *gap_mm,
@@ -228,7 +232,7 @@ static bool read_gap(struct glint_text *text,
     const int k = zoom->n_moves;
     int n;
 
-    if (!read(text, range, zoom, column, place, &n))
+    if (!read_counted_columns(text, range, zoom, column, place, &n))
         return false;
     *gap_mm = column[0];
     if (n == 1)
@@ -245,7 +249,7 @@ static bool read_gap(struct glint_text *text,
 
 /* ------------------------------------------------------------------- check */
 
-/* Sets LENS to the zoom position of column K, with the values of the table. */
+/* Sets LENS to the zoom position of column K. */
 static void set_position(struct glint_prescription *lens, int k)
 {
     const struct glint_zoom *const z = &lens->zoom;
@@ -257,10 +261,11 @@ static void set_position(struct glint_prescription *lens, int k)
     lens->check_back_mm = z->check_back_mm[k];
 }
 
-/* Checks that focal lengths only rise or only fall, and states how far along
- * the zoom each column is. */
-static bool set_along(struct glint_zoom *z, const struct glint_text *text,
-                      const struct glint_places *places)
+/* Checks that focal lengths are monotone and sets the zoom parameter of each
+ * column. */
+static bool set_zoom_parameters(struct glint_zoom *z,
+                                const struct glint_text *text,
+                                const struct glint_places *places)
 {
     const int last = z->n_positions - 1;
     const double whole = log(z->focal_mm[last] / z->focal_mm[0]);
@@ -280,9 +285,8 @@ static bool set_along(struct glint_zoom *z, const struct glint_text *text,
     return true;
 }
 
-/* Checks LENS at each of its positions, and leaves it at the first. Its
- * surfaces and values are read; returns false if not all are good, with the
- * error written. */
+/* Checks LENS at each zoom position and leaves it at the first. All lines
+ * must have been read. Returns false, with the error set, if a check fails. */
 static bool check_columns(struct glint_prescription *lens,
                           const struct glint_text *text,
                           const struct glint_places *places)
@@ -306,7 +310,7 @@ static bool check_columns(struct glint_prescription *lens,
         z->last_gap_mm[k] = element_gap_mm(lens, element_count(lens) - 1);
     }
     set_position(lens, 0);
-    return !z->n_positions || set_along(z, text, places);
+    return !z->n_positions || set_zoom_parameters(z, text, places);
 }
 
 #define MAX_GLASSES      64
@@ -317,7 +321,7 @@ STATIC_ASSERT(sizeof(((struct glint_prescription *)0)->source) >
 
 struct medium {
     double nd, vd;
-    double sellmeier[6]; /* all 0 unless of the catalogue */
+    double sellmeier[6]; /* all 0 unless the glass is from the catalogue */
 };
 
 static const struct glint_text_range f_number_range = {
@@ -359,14 +363,15 @@ struct parser {
     struct glint_text text;
     struct glint_prescription lens;
     struct glint_text_place word[N_FIELDS]; /* position of the last line of each
-                                               kind; line 0: no such line */
+                                               type; line 0: no such line */
     struct glint_places places;
-    struct glint_coating coating; /* coating of surfaces without their own */
+    struct glint_coating coating; /* default coating of surfaces */
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
-    bool in_group;   /* GROUP holds where the group's surfaces lie */
-    bool in_focus;   /* surfaces are those that move to focus */
-    bool is_surface; /* the last element is a surface */
+    bool in_group; /* true: within a group, whose decentre and tilt are in GROUP
+                    */
+    bool in_focus; /* true: within the focusing group */
+    bool is_surface; /* true: the last element is a surface, not the stop */
     struct glint_shape group;
     int n_glasses;
     struct {
@@ -472,8 +477,7 @@ static bool read_mixed(struct parser *p)
 
 /* ------------------------------------------------------------------- glass */
 
-/* Returns the index of WORD in p->glass, -1 if there is no glass of that name.
- */
+/* Returns the index of WORD in p->glass; -1 if the name is unknown. */
 static int find_glass(const struct parser *p, const struct glint_word *word)
 {
     int i = p->n_glasses - 1;
@@ -520,7 +524,7 @@ static bool read_glass(struct parser *p)
            glint_text_value(&p->text, &vd_range, &p->glass[n].medium.vd, NULL);
 }
 
-/* Sets MEDIUM to the glass of the catalogue that WORD names. */
+/* Sets MEDIUM to the catalogue glass with the name WORD. */
 static bool read_catalogue(struct parser *p, const struct glint_word *word,
                            struct medium *medium)
 {
@@ -545,7 +549,7 @@ static bool read_catalogue(struct parser *p, const struct glint_word *word,
     return true;
 }
 
-/* Reads "air", ND VD or the name of a glass. */
+/* Reads "air", ND VD, or the name of a glass. */
 static bool read_medium(struct parser *p, struct medium *medium)
 {
     const struct glint_word word = glint_text_next_word(&p->text);
@@ -570,7 +574,7 @@ static bool read_medium(struct parser *p, struct medium *medium)
 
 /* ---------------------------------------------------------------- elements */
 
-/* Reads thickness and semi-diameter of an element. */
+/* Reads thickness and semi-diameter of the next element. */
 static bool read_gap_and_semi(struct parser *p,
                               const struct glint_text_range *gap,
                               double *thickness_mm, double *semi_mm,
@@ -583,8 +587,8 @@ static bool read_gap_and_semi(struct parser *p,
            glint_text_value(&p->text, &semi_range, semi_mm, semi);
 }
 
-/* Reads the coating of surface K, if it has its own. CEMENTED: glass on both
- * sides. */
+/* Reads the coating of surface K if the line states one. CEMENTED: there is
+ * glass on both sides. */
 static bool read_surface_coating(struct parser *p, int k, bool cemented)
 {
     struct glint_surface *s = &p->lens.surface[k];
@@ -635,7 +639,7 @@ static bool read_surface(struct parser *p)
     return read_surface_coating(p, k, before.vd > 0.0 && medium.vd > 0.0);
 }
 
-/* Reads a shape of the surface above. */
+/* Reads the shape of the last surface. */
 static bool read_shape(struct parser *p)
 {
     if (!p->is_surface)
@@ -768,7 +772,7 @@ static bool read_lines(struct parser *p)
 
 /* ---------------------------------------------------------------- the lens */
 
-static void coat(struct parser *p)
+static void set_default_coatings(struct parser *p)
 {
     for (int k = 0; k < p->lens.n_surfaces; k++)
         if (!p->has_coating[k])
@@ -787,7 +791,7 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
     if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
         !read_lines(&p) || !check_columns(&p.lens, &p.text, &p.places))
         return GLINT_E_LENS;
-    coat(&p);
+    set_default_coatings(&p);
     *lens = p.lens;
     return GLINT_OK;
 }

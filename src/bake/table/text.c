@@ -13,7 +13,8 @@
 
 STATIC_ASSERT(GLINT_TEXT_BYTES < INT_MAX);
 
-#define FILE_NAME_SHOWN 100 /* bytes; the cause must fit behind it */
+/* bytes of the file name in an error; leaves space for the cause */
+#define FILE_NAME_SHOWN 100
 
 static bool is_blank(char c)
 {
@@ -25,8 +26,8 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Returns the bytes of the character at AT, or 0 if it is a control character
- * or no well-formed UTF-8. */
+/* Returns the length in bytes of the character at AT; 0 if it is a control
+ * character or malformed UTF-8. */
 static int character_length(const char *at, const char *end)
 {
     static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
@@ -56,7 +57,8 @@ static int character_length(const char *at, const char *end)
     return length;
 }
 
-/* Returns the bytes of the line end at AT: 0, 1 (LF) or 2 (CRLF). */
+/* Returns the length in bytes of the line end at AT: 0 (none), 1 (LF) or 2
+ * (CRLF). */
 static int line_end_length(const char *at, const char *end)
 {
     if (at < end && *at == '\n')
@@ -91,14 +93,13 @@ static bool check_characters(struct glint_text *text)
     return true;
 }
 
-/* Sets TEXT to the start of DATA[BYTES], behind the mark that some editors put
- * before UTF-8. */
-static void begin(struct glint_text *text, const char *data, size_t bytes,
-                  const char *file_name, struct glint_error *error)
+/* Sets TEXT to the start of DATA[BYTES], behind the byte order mark, if any. */
+static void set_start(struct glint_text *text, const char *data, size_t bytes,
+                      const char *file_name, struct glint_error *error)
 {
     static const char mark[] = {'\xef', '\xbb', '\xbf'};
 
-    if (!bytes) /* DATA may be NULL then. */
+    if (!bytes) /* DATA may be NULL */
         data = "";
     if (bytes >= sizeof(mark) && memcmp(data, mark, sizeof(mark)) == 0) {
         data += sizeof(mark);
@@ -112,7 +113,7 @@ static void begin(struct glint_text *text, const char *data, size_t bytes,
 bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
                      const char *file_name, struct glint_error *error)
 {
-    begin(text, data, bytes, file_name, error);
+    set_start(text, data, bytes, file_name, error);
     if (bytes > GLINT_TEXT_BYTES)
         return glint_text_fail(text, (struct glint_text_place){1, 1},
                                "text is longer than %d bytes",
@@ -124,7 +125,7 @@ void glint_text_open_data(struct glint_text *text, const char *data,
                           size_t bytes, const char *file_name,
                           struct glint_error *error)
 {
-    begin(text, data, bytes, file_name, error);
+    set_start(text, data, bytes, file_name, error);
 }
 
 bool glint_text_next_line(struct glint_text *text)
@@ -224,7 +225,8 @@ bool glint_word_is(const struct glint_word *word, const char *string)
 const char *glint_word_quote(const struct glint_word *word,
                              char quote[GLINT_QUOTE_BYTES])
 {
-    const int most = GLINT_QUOTE_BYTES - 4; /* room for the dots and the 0 */
+    /* leaves space for the dots and the terminating 0 */
+    const int most = GLINT_QUOTE_BYTES - 4;
     const int n = word->length < most ? word->length : most;
 
     for (int i = 0; i < n; i++) {
@@ -236,14 +238,15 @@ const char *glint_word_quote(const struct glint_word *word,
     return quote;
 }
 
-/* The unread part of a number, and the value read so far. */
+/* A number while it is read: unread rest, and value so far. */
 struct digits {
     const char *at, *end;
     uint64_t value; /* value of the significant digits */
     int significant, n;
 };
 
-/* Reads digits up to GLINT_NUMBER_DIGITS significant ones, and counts all. */
+/* Reads digits and counts them; only the first GLINT_NUMBER_DIGITS
+ * significant ones enter the value. */
 static void read_digits(struct digits *digits)
 {
     digits->n = 0;
@@ -256,7 +259,7 @@ static void read_digits(struct digits *digits)
     }
 }
 
-/* Skips the next character if it is C1 or C2; returns whether it was. */
+/* Skips the next character if it is C1 or C2. Returns whether it was. */
 static bool skip_char(struct digits *digits, char c1, char c2)
 {
     if (digits->at == digits->end || (*digits->at != c1 && *digits->at != c2))
@@ -273,8 +276,8 @@ static bool read_sign(struct digits *digits)
     return negative;
 }
 
-/* Reads the power of ten after the e, clamped to +-1000; returns false if there
- * is no number. */
+/* Reads the power of ten after the e, clamped to +-1000. Returns false if
+ * there is no number. */
 static bool read_exponent(struct digits *mantissa, int *exponent)
 {
     struct digits power = {mantissa->at, mantissa->end, 0, 0, 0};
@@ -299,8 +302,8 @@ static double power_of_ten(int n)
     return power;
 }
 
-/* Parses WORD into DIGITS and a power of ten; their product is the number if no
- * digits were dropped. Returns false if WORD is not a number. */
+/* Splits WORD into DIGITS and a power of ten, whose product is the number if
+ * no digits were dropped. Returns false if WORD is not a number. */
 static bool split_number(const struct glint_word *word, struct digits *digits,
                          bool *negative, int *exponent)
 {
@@ -324,10 +327,9 @@ static bool split_number(const struct glint_word *word, struct digits *digits,
     return true;
 }
 
-/* Returns the nearest double to all digits of WORD, of a line, times
- * 10^EXPONENT. Without a decimal point strtod() does not depend on the locale.
- */
-static double nearest_of(const struct glint_word *word, int exponent)
+/* Returns the double nearest to the digits of WORD times 10^EXPONENT. The
+ * text given to strtod() has no decimal point, so the locale has no effect. */
+static double find_nearest_double(const struct glint_word *word, int exponent)
 {
     char text[GLINT_LINE_BYTES + 16];
     const char *at = word->start, *const end = at + word->length;
@@ -352,12 +354,13 @@ const char *glint_word_number(const struct glint_word *word, double *value)
     more = digits.significant > GLINT_NUMBER_DIGITS
                ? digits.significant - GLINT_NUMBER_DIGITS
                : 0;
-    /* Terms of h^20 are small: 1e-25 is a tenth of a millimetre at 14 mm. */
+    /* the range includes coefficients of h^20, such as 1e-25: 0.1 mm at h =
+     * 14 mm */
     if (exponent + more < -60 || exponent + more > 22)
         return "is too large or too small";
-    /* With so few digits both operands are exact, so one rounding gives the
-     * nearest double. */
-    magnitude = more > 0 || exponent < -22 ? nearest_of(word, exponent)
+    /* With at most 15 digits and 10^22 both operands are exact, so a single
+     * rounding gives the nearest double. */
+    magnitude = more > 0 || exponent < -22 ? find_nearest_double(word, exponent)
                 : exponent < 0 ? (double)digits.value / power_of_ten(-exponent)
                                : (double)digits.value * power_of_ten(exponent);
     *value = negative ? -magnitude : magnitude;

@@ -4,16 +4,16 @@
 
 #include "bake/table/elements.h"
 
-/* Fraction by which a focal length may exceed the ends of the zoom range, as
- * lens barrels state rounded values. */
+/* Relative excess of a focal length beyond the zoom range that is accepted,
+ * as lens barrels state rounded values. */
 #define BEYOND 2e-3
 
 /* ---------------------------------------------------------------- cubic */
 
-/* Returns the slope at column K: 0 at a turn, else a mean of the slopes of both
- * sides, weighted so that the curve only rises or only falls between columns.
- */
-static double slope_at(const struct glint_zoom *z, const double *value, int k)
+/* Returns the slope at column K of a monotone cubic interpolation: 0 at an
+ * extremum, else a weighted mean of the slopes on both sides. */
+static double compute_slope(const struct glint_zoom *z, const double *value,
+                            int k)
 {
     const double *const x = z->along;
     const int last = z->n_positions - 1;
@@ -31,8 +31,8 @@ static double slope_at(const struct glint_zoom *z, const double *value, int k)
                    : 3.0 * (h0 + h1) /
                          ((2.0 * h1 + h0) / d0 + (h1 + 2.0 * h0) / d1);
     }
-    /* At an end: the parabola through three columns, clamped so that it does
-     * not overshoot. */
+    /* At an end: the slope of the parabola through three columns, limited so
+     * that the curve does not overshoot. */
     h0 = k ? x[last] - x[last - 1] : x[1] - x[0];
     h1 = k ? x[last - 1] - x[last - 2] : x[2] - x[1];
     d0 = (k ? value[last] - value[last - 1] : value[1] - value[0]) / h0;
@@ -43,7 +43,7 @@ static double slope_at(const struct glint_zoom *z, const double *value, int k)
     return d0 * d1 <= 0.0 && fabs(slope) > 3.0 * fabs(d0) ? 3.0 * d0 : slope;
 }
 
-/* Interpolates VALUE, given for each column, at ALONG. */
+/* Interpolates VALUE, given per column, at ALONG. */
 static double interpolate(const struct glint_zoom *z, const double *value,
                           double along)
 {
@@ -54,10 +54,11 @@ static double interpolate(const struct glint_zoom *z, const double *value,
         k++;
     h = z->along[k + 1] - z->along[k];
     t = (along - z->along[k]) / h;
-    if (t <= 0.0 || t >= 1.0) /* a column is as it stands in the table */
+    /* at a column, the table's value is returned exactly */
+    if (t <= 0.0 || t >= 1.0)
         return value[t <= 0.0 ? k : k + 1];
-    a = h * slope_at(z, value, k);
-    b = h * slope_at(z, value, k + 1);
+    a = h * compute_slope(z, value, k);
+    b = h * compute_slope(z, value, k + 1);
     return value[k] +
            t * (a + t * (3.0 * (value[k + 1] - value[k]) - 2.0 * a - b +
                          t * (a + b - 2.0 * (value[k + 1] - value[k]))));
@@ -65,8 +66,8 @@ static double interpolate(const struct glint_zoom *z, const double *value,
 
 /* ----------------------------------------------------------------- zoom */
 
-/* Sets gaps and f-number for ALONG. */
-static void move(struct glint_prescription *lens, double along)
+/* Sets gaps and f-number for the zoom parameter ALONG. */
+static void set_zoom(struct glint_prescription *lens, double along)
 {
     const struct glint_zoom *const z = &lens->zoom;
     const int last = element_count(lens) - 1;
@@ -89,8 +90,8 @@ static void move(struct glint_prescription *lens, double along)
         optics.back_focal_mm + interpolate(z, defocus, along);
 }
 
-static enum glint_status no_zoom(const struct glint_prescription *lens,
-                                 struct glint_error *error)
+static enum glint_status fail_no_zoom(const struct glint_prescription *lens,
+                                      struct glint_error *error)
 {
     snprintf(error->text, sizeof error->text,
              "%s does not zoom: its table has one position", lens->name);
@@ -105,13 +106,13 @@ enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
     enum glint_status status;
 
     if (!lens->zoom.n_positions)
-        return no_zoom(lens, error);
+        return fail_no_zoom(lens, error);
     if (!(along >= 0.0 && along <= 1.0)) {
         snprintf(error->text, sizeof error->text, "zoom must be 0 to 1, not %g",
                  along);
         return GLINT_E_ARGUMENT;
     }
-    move(&moved, along);
+    set_zoom(&moved, along);
     moved.zoom_along = along;
     moved.check_focal_mm = moved.check_back_mm = 0;
     status = glint_prescription_fits(&moved, error);
@@ -120,11 +121,11 @@ enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
     return status;
 }
 
-static double focal_at(struct glint_prescription *lens, double along)
+static double compute_focal(struct glint_prescription *lens, double along)
 {
     struct glint_optics optics;
 
-    move(lens, along);
+    set_zoom(lens, along);
     glint_optics_of(lens, &optics);
     return optics.focal_mm;
 }
@@ -142,7 +143,7 @@ glint_prescription_zoom_to(const struct glint_prescription *lens,
     bool rises;
 
     if (!z->n_positions)
-        return no_zoom(lens, error);
+        return fail_no_zoom(lens, error);
     rises = z->focal_mm[last] > z->focal_mm[0];
     for (int end = 0; end < 2; end++) {
         const double f = z->focal_mm[end ? last : 0];
@@ -167,7 +168,7 @@ glint_prescription_zoom_to(const struct glint_prescription *lens,
     for (int k = 0; k < HALVINGS; k++) {
         const double middle = 0.5 * (low + high);
 
-        if ((focal_at(&moved, middle) < focal_mm) == rises)
+        if ((compute_focal(&moved, middle) < focal_mm) == rises)
             low = middle;
         else
             high = middle;
