@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * A dense grid of exact rays over a ghost's pupil, cut exactly.
+ * A dense grid of exact rays over a ghost's pupil, clipped exactly.
  *
- *   in   a path, a light in the x-z plane, the part of the pupil that counts
- *   out  triangles of the grid, clipped by the stop and by every barrel that
- *        limits this path, each barrel by its own circle
+ *   in   a path, a light in the x-z plane, the visible part of the pupil
+ *   out  triangles of the grid, clipped by the stop and by the circle of every
+ *        barrel that limits this path
  *
- * Between rays all channels are linear. A curved edge becomes a chord in each
- * triangle, so errors fall with the square of the cell size. */
+ * All channels are interpolated linearly between rays. In each triangle a
+ * curved edge becomes a chord, so errors decrease with the square of the cell
+ * size.
+ */
 #ifndef GLINT_BAKE_TRACE_CELLS_H
 #define GLINT_BAKE_TRACE_CELLS_H
 
@@ -17,11 +19,11 @@
 enum { GLINT_MAX_CUTS = 48, GLINT_MAX_PIECE = 192 };
 
 /* Channels of a node. From NODE_CUT on: x and y at each barrel that may cut,
- * divided by its semi-diameter. */
+ * in semi-diameters. */
 enum {
     NODE_STATE, /* 0: invalid ray; 1: traced; 2: traced and inside every cut */
-    NODE_X, /* position on the sensor: mm in the camera's frame, or as the owner
-               maps it */
+    NODE_X, /* position on the sensor: mm in the camera's frame; users of the
+               cells may map it to other units */
     NODE_Y,
     NODE_STOP_X, /* stop radii, in the camera's frame */
     NODE_STOP_Y,
@@ -36,31 +38,31 @@ struct glint_cells {
     double direction[3];
     /* rotation from the light's frame to the camera's */
     double cos_phi, sin_phi;
-    int n; /* cells per side, even */
+    int n; /* number of cells per side, even */
     int n_cuts;
     int cut_event[GLINT_MAX_CUTS];
-    int stride;   /* number of doubles of a node */
+    int stride;   /* doubles per node */
     double *node; /* [n + 1][n + 1][stride] */
 };
 
-/* Sets all members but NODE for a light at THETA, PHI, and finds the barrels
- * that cut. Returns false if nothing gets through. */
+/* Sets all members except NODE for a light at THETA, PHI, and finds the
+ * barrels that cut. Returns false if no light passes. */
 bool glint_cells_init(struct glint_cells *cells,
                       const struct glint_setup *setup,
                       const struct glint_path *path, double theta_deg,
                       double phi_deg, int n);
 
-/* Returns the bytes that NODE needs. */
+/* Returns the size of NODE in bytes. */
 size_t glint_cells_bytes(const struct glint_cells *cells);
 
-/* Returns how many rows of nodes are to be traced. */
+/* Returns the number of rows of nodes that must be traced. */
 int glint_cells_rows(const struct glint_cells *cells);
 
-/* Traces row ROW of the nodes and, of a round lens, mirrors it into row
- * n - ROW. */
+/* Traces row ROW of the nodes; for a round lens also mirrors it to row n -
+ * ROW. */
 void glint_cells_trace(const struct glint_cells *cells, int row);
 
-/* The visible part of a triangle: convex, in NODE_X and NODE_Y. */
+/* The visible part of a triangle: a convex polygon in NODE_X and NODE_Y. */
 struct glint_piece {
     int n; /* number of corners; 0: nothing is visible */
     double xy[GLINT_MAX_PIECE][2];
@@ -68,7 +70,7 @@ struct glint_piece {
     double energy; /* mean energy over the piece */
 };
 
-/* Clips triangle HALF (0 or 1) of cell (I, J). */
+/* Clips triangle HALF (0 or 1) of cell (I, J) and sets PIECE. */
 void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
                       struct glint_piece *piece);
 
@@ -79,8 +81,8 @@ bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
 /* Returns the area of a cell on the pupil, mm^2. */
 double glint_cells_area(const struct glint_cells *cells);
 
-/* Returns the flux of the direct image at angle 0 for irradiance 1, mm^2, or -1
- * if memory is short. */
+/* Returns the flux of the direct image at angle 0 for irradiance 1, mm^2; -1
+ * if there is no memory. */
 double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm);
 
 #endif

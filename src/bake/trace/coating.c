@@ -7,21 +7,22 @@ int glint_coating_at(const struct glint_coating *coating, double wavelength_nm,
                      struct glint_film_at film[GLINT_MAX_FILMS])
 {
     for (int k = 0; k < coating->n_films; k++)
-        /* 4 pi n d / wavelength, where n d = quarters of NM */
+        /* 4 pi n d / wavelength, where n d is a number of quarters of NM */
         film[k] = (struct glint_film_at){coating->film[k].index,
                                          GLINT_PI * coating->film[k].quarters *
                                              coating->nm / wavelength_nm};
     return coating->n_films;
 }
 
-/* The characteristic matrix (m11, i m12; i m21, m22) for one polarisation. */
+/* Characteristic matrix (m11, i m12; i m21, m22) for one polarisation. */
 struct matrix {
     double m11, m12, m21, m22;
 };
 
-/* Multiplies M from the right by a film's (C, i S / F; i SIGN S F, C). */
-static void multiply(struct matrix *m, double c, double s, double f,
-                     double sign)
+/* Multiplies M from the right by the matrix of a film (C, i S / F; i SIGN S
+ * F, C). */
+static void multiply_by_film(struct matrix *m, double c, double s, double f,
+                             double sign)
 {
     const struct matrix old = *m;
     const double upper = s / f, lower = sign * s * f;
@@ -32,8 +33,9 @@ static void multiply(struct matrix *m, double c, double s, double f,
     m->m22 = old.m22 * c - old.m21 * upper;
 }
 
-/* Returns the reflectance of M between media of the admittances A and B. */
-static double reflected(const struct matrix *m, double a, double b)
+/* Returns the reflectance of the stack M between media of admittances A and
+ * B. */
+static double compute_reflectance(const struct matrix *m, double a, double b)
 {
     const double minus = a * m->m11 - b * m->m22,
                  plus = a * m->m11 + b * m->m22;
@@ -56,24 +58,24 @@ void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
         const double nf = f->n, inside = film_inside(n1, c1, nf);
         const double size = sqrt(fabs(inside)), half = 0.5 * f->phase * size;
         const double sign = inside < 0.0 ? -1.0 : 1.0;
-        /* sinh(30) in each of 8 layers is far from overflow, and as good as
-         * nothing passes. */
+        /* clamped: sinh(30) in each of 8 layers does not overflow, and
+         * hardly any light passes */
         const double sine = inside < 0.0 ? sinh(fmin(half, 30.0)) : sin(half);
         const double cosine = inside < 0.0 ? cosh(fmin(half, 30.0)) : cos(half);
 
-        /* f is nf cos(t) for s and nf / cos(t) for p: of imaginary cos(t), i
-         * size, the first is i nf size and the second -i nf / size, and sin D
-         * is i sinh |D|. */
-        multiply(&s_all, cosine, sine, nf * size, sign);
-        multiply(&p_all, cosine, sign * sine, nf / size, sign);
+        /* f is nf cos(t) for s and nf / cos(t) for p. If cos(t) is
+         * imaginary, i size, these become i nf size and -i nf / size, and
+         * sin D becomes i sinh |D|. */
+        multiply_by_film(&s_all, cosine, sine, nf * size, sign);
+        multiply_by_film(&p_all, cosine, sign * sine, nf / size, sign);
     }
-    *s = reflected(&s_all, n1 * c1, n2 * c2);
-    *p = reflected(&p_all, n1 / c1, n2 / c2);
+    *s = compute_reflectance(&s_all, n1 * c1, n2 * c2);
+    *p = compute_reflectance(&p_all, n1 / c1, n2 / c2);
 }
 
-/* Returns the cosine behind a boundary that is met at COS_FROM, or 0 where
- * nothing passes. */
-static double cosine_behind(double n_from, double n_to, double cos_from)
+/* Returns the cosine of the refracted ray for incidence at COS_FROM; 0 if no
+ * light is transmitted. */
+static double refract_cosine(double n_from, double n_to, double cos_from)
 {
     const double ratio = n_from / n_to;
     const double cos2 = 1.0 - ratio * ratio * (1.0 - cos_from * cos_from);
@@ -84,7 +86,7 @@ static double cosine_behind(double n_from, double n_to, double cos_from)
 double glint_reflectance(double n_from, double n_to, double cos_from,
                          const struct glint_film_at *film, int n_films)
 {
-    const double c2 = cosine_behind(n_from, n_to, cos_from);
+    const double c2 = refract_cosine(n_from, n_to, cos_from);
 
     if (!(c2 > 0.0))
         return 1.0; /* grazing incidence, or total reflection */
@@ -103,7 +105,7 @@ void glint_reflectance_sp(double n_from, double n_to, double cos_from,
                           const struct glint_film_at *film, int n_films,
                           double *s, double *p)
 {
-    const double c2 = cosine_behind(n_from, n_to, cos_from);
+    const double c2 = refract_cosine(n_from, n_to, cos_from);
 
     *s = *p = 1.0;
     if (c2 > 0.0)

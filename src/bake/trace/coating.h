@@ -1,20 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reflectance of a boundary between two media, bare or coated, from cosines
- * that are known.
+ * Reflectance of a boundary between two media, bare or coated, from given
+ * cosines.
  *
- * Inline, because the tracer asks once per surface and has the cosines. With
- * one film the reflectance of the stack is Airy's sum over all orders, written
- * for real numbers as in a characteristic matrix: with the admittances a, f, b
- * of the sides and the film (n cos for s, n / cos for p) and D half the phase,
+ * Functions are inline, as the tracer calls them once per surface and has the
+ * cosines. With one film, the reflectance is Airy's sum over all orders,
+ * written for real numbers as in a characteristic matrix. With the admittances
+ * a, f, b of first medium, film and second medium (n cos for s, n / cos for p)
+ * and D half the phase,
  *
  *     R = (a - b)^2 C + (a b / f - f)^2 S     C = cos^2 D
  *         -------------------------------  ,
  *         (a + b)^2 C + (a b / f + f)^2 S     S = sin^2 D
  *
- * multiplied through so that each polarisation takes one division. Beyond the
- * critical angle inside the film f becomes imaginary, C and S turn into cosh^2
- * and sinh^2, and one sign changes in each of the inner sums. [Hullin11] */
+ * multiplied through so that both polarisations need one division. Beyond the
+ * critical angle inside the film, f is imaginary, C and S become cosh^2 and
+ * sinh^2, and one sign changes in each of the inner sums. [Hullin11]
+ */
 #ifndef GLINT_BAKE_TRACE_COATING_H
 #define GLINT_BAKE_TRACE_COATING_H
 
@@ -22,7 +24,7 @@
 
 #include "glint/trace.h"
 
-/* Returns (s / s_all + p / p_all) / 2, at most 1, with one division. */
+/* Returns the mean of s / s_all and p / p_all, at most 1, with one division. */
 static inline double mean_ratio(double s, double s_all, double p, double p_all)
 {
     const double mean = 0.5 * (s * p_all + p * s_all) / (s_all * p_all);
@@ -30,8 +32,8 @@ static inline double mean_ratio(double s, double s_all, double p, double p_all)
     return mean < 1.0 ? mean : 1.0;
 }
 
-/* Returns the reflectance of a bare boundary met at the cosine C1 and left at
- * C2, both > 0. */
+/* Returns the reflectance of a bare boundary for the cosines C1 of incidence
+ * and C2 of refraction, both > 0. */
 static inline double bare_reflectance(double n1, double c1, double n2,
                                       double c2)
 {
@@ -41,8 +43,8 @@ static inline double bare_reflectance(double n1, double c1, double n2,
     return mean_ratio(s * s, s_all * s_all, p * p, p_all * p_all);
 }
 
-/* Returns the square of the cosine inside a film of index NF, negative beyond
- * the critical angle; values near 0 are replaced by 1e-60. */
+/* Returns the squared cosine inside a film of index NF, negative beyond the
+ * critical angle. Replaces values near 0 by 1e-60. */
 static inline double film_inside(double n1, double c1, double nf)
 {
     const double ratio = n1 / nf;
@@ -56,24 +58,25 @@ static inline double film_inside(double n1, double c1, double nf)
 static inline double film_sine2(double inside, double phase)
 {
     const double half = 0.5 * phase * sqrt(fabs(inside)); /* |D| */
-    /* sinh(100) stands for a film that nothing passes, far from overflow. */
+    /* clamped: sinh(100) does not overflow, and no light passes such a film */
     const double root = inside < 0.0 ? sinh(fmin(half, 100.0)) : sin(half);
 
     return root * root;
 }
 
-/* Returns the reflectance of a boundary with a film of index NF; INSIDE is
- * film_inside(), SIN2 film_sine2(), the rest as for bare_reflectance(). */
+/* Returns the reflectance of a boundary with a film of index NF. INSIDE is
+ * film_inside(), SIN2 film_sine2(); the other arguments are as for
+ * bare_reflectance(). */
 static inline double film_reflectance(double n1, double c1, double n2,
                                       double c2, double nf, double inside,
                                       double sin2)
 {
     const double size = fabs(inside), sign = inside < 0.0 ? -1.0 : 1.0;
     const double cos2 = 1.0 - sign * sin2;
-    /* s is multiplied by f, p by f cos(t1) cos(t2); f^2 carries SIGN */
+    /* s is multiplied by f, p by f cos(t1) cos(t2); f^2 includes SIGN */
     const double f2_s = nf * nf * size, f2_p = nf * nf;
     const double a_s = n1 * c1, b_s = n2 * c2;
-    const double a_p = n1 * c2, b_p = n2 * c1; /* n / c, times c1 c2 */
+    const double a_p = n1 * c2, b_p = n2 * c1; /* n / c, multiplied by c1 c2 */
     const double ab_s = a_s * b_s, ab_p = n1 * n2 * size;
     const double g_s = sign * f2_s, g_p = sign * f2_p * c1 * c2;
     const double minus_s = (a_s - b_s) * (a_s - b_s) * f2_s * cos2 +
@@ -88,17 +91,18 @@ static inline double film_reflectance(double n1, double c1, double n2,
     return mean_ratio(minus_s, plus_s, minus_p, plus_p);
 }
 
-/* Sets S and P to the reflectance of FILM[N] for the two polarisations, the
- * product of characteristic matrices. FILM starts at the medium of the smaller
- * index. Each is (cos D, i sin D / f; i f sin D, cos D), with D half the phase
- * of the film and its admittance f as above. Off-diagonal elements stay
- * imaginary, and in a film with total reflection both f and D are imaginary, so
- * real numbers suffice. [Macleod, Thin-Film Optical Filters, ch. 2] */
+/* Sets S and P to the reflectance of FILM[N] per polarisation, from the
+ * product of characteristic matrices. FILM[0] is next to the medium of lower
+ * index. The matrix of a film is (cos D, i sin D / f; i f sin D, cos D),
+ * where D is half the phase of the film and f its admittance. Off-diagonal
+ * elements stay imaginary, and in a film with total reflection both f and D
+ * are imaginary, so real numbers are sufficient. [Macleod, Thin-Film Optical
+ * Filters, ch. 2] */
 void glint_stack_reflectance_sp(double n1, double c1, double n2, double c2,
                                 const struct glint_film_at *film, int n,
                                 double *s, double *p);
 
-/* Returns their mean. */
+/* Returns the mean of both polarisations of glint_stack_reflectance_sp(). */
 static inline double stack_reflectance(double n1, double c1, double n2,
                                        double c2,
                                        const struct glint_film_at *film, int n)

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rays at surfaces that are not centred spheres.
+ * Traces rays at surfaces that are not centred spheres.
  *
- * Round forms and cylinders on the axis are met by Newton's method from the
- * vertex plane, all lanes at once, where that is sure to find the nearest
- * place: where the ray is steeper than the profile anywhere on its glass, and
- * stays over the glass, z less the sag only rises or only falls along it. All
- * other rays are met one by one (bake/table/form.h). */
+ * For round forms and cylinders on the axis, Newton's method starts at the
+ * vertex plane, for all lanes at once, where it is certain to find the nearest
+ * intersection: where the ray is steeper than the profile anywhere on its glass
+ * and stays over the glass, z - sag is monotone along the ray. All other rays
+ * are intersected one by one (bake/table/form.h).
+ */
 #include "bake/trace/beam.h"
 
 #include <math.h>
@@ -14,9 +15,10 @@
 #include "bake/table/form.h"
 
 enum { MOST_STEPS = 10 };
-/* Fraction of a length: a last step below it leaves an error of its square. */
+/* Max relative length of the last step of Newton's method; its square is the
+ * error. */
 #define LAST_STEP 1e-7
-/* Terms of a short profile, up to A14. */
+/* Max number of terms of a short profile, up to A14. */
 #define SHORT 6
 
 static void set_ray(struct beam *b, int k, const double at[3],
@@ -30,8 +32,7 @@ static void set_ray(struct beam *b, int k, const double at[3],
     b->n[k] = way[2];
 }
 
-/* Rays and the profile of a form: the height's square along ray K after T is q0
- * + 2 q1 T + q2 T^2. */
+/* Squared heights along rays: at parameter T of ray K, q0 + 2 q1 T + q2 T^2. */
 struct heights {
     double q0[LANES], q1[LANES], q2[LANES];
 };
@@ -54,12 +55,12 @@ static WHOLLY_INLINE void set_heights(const struct beam *b, int n,
     }
 }
 
-/* Sets SAG to the profile of F at the heights whose squares are Q, and SLOPE to
- * its derivative by them, by the table. TERMS, a constant, must be at least the
- * number of terms of F; a ray's sums then stay in registers. */
-static WHOLLY_INLINE void profiles_of(const struct glint_form *f, int n,
-                                      int terms, const double *q, double *sag,
-                                      double *slope)
+/* Sets SAG to the table's profile of F at the squared heights Q, and SLOPE
+ * to its derivative by Q. TERMS, a constant, must be at least the number of
+ * terms of F; the sums of a ray then stay in registers. */
+static WHOLLY_INLINE void evaluate_profiles_n(const struct glint_form *f, int n,
+                                              int terms, const double *q,
+                                              double *sag, double *slope)
 {
     const double c = f->curvature, a = (1.0 + f->conic) * c * c;
 
@@ -78,23 +79,24 @@ static WHOLLY_INLINE void profiles_of(const struct glint_form *f, int n,
     }
 }
 
-static WHOLLY_INLINE void profiles(const struct glint_form *f, int n,
-                                   const double *q, double *sag, double *slope)
+static WHOLLY_INLINE void evaluate_profiles(const struct glint_form *f, int n,
+                                            const double *q, double *sag,
+                                            double *slope)
 {
     if (f->n_terms <= SHORT)
-        profiles_of(f, n, SHORT, q, sag, slope);
+        evaluate_profiles_n(f, n, SHORT, q, sag, slope);
     else
-        profiles_of(f, n, GLINT_SHAPE_TERMS, q, sag, slope);
+        evaluate_profiles_n(f, n, GLINT_SHAPE_TERMS, q, sag, slope);
 }
 
-static WHOLLY_INLINE void heights_at(const struct heights *h, int n,
-                                     const double *t, double *q)
+static WHOLLY_INLINE void compute_heights(const struct heights *h, int n,
+                                          const double *t, double *q)
 {
     for (int k = 0; k < n; k++)
         q[k] = h->q0[k] + t[k] * (2.0 * h->q1[k] + t[k] * h->q2[k]);
 }
 
-static WHOLLY_INLINE double least_of(int n, const double *x)
+static WHOLLY_INLINE double find_min(int n, const double *x)
 {
     double least = x[0];
 
@@ -103,19 +105,20 @@ static WHOLLY_INLINE double least_of(int n, const double *x)
     return least;
 }
 
-/* Sets T to where rays meet the form, and SURE to 1 where that is certain, else
- * to 0. */
-static WHOLLY_INLINE void find(const struct beam *b, int n,
-                               const struct glint_form *f,
-                               const struct heights *h, double *t, double *sure)
+/* Sets T to the parameters where rays meet the form. SURE becomes 1 where
+ * the result is certain, else 0. */
+static WHOLLY_INLINE void find_intersections(const struct beam *b, int n,
+                                             const struct glint_form *f,
+                                             const struct heights *h, double *t,
+                                             double *sure)
 {
     double q[LANES], sag[LANES], slope[LANES], done[LANES] = {0};
 
     for (int k = 0; k < n; k++)
         t[k] = 0.0;
-    for (int step = 0; step < MOST_STEPS && least_of(n, done) < 1.0; step++) {
-        heights_at(h, n, t, q);
-        profiles(f, n, q, sag, slope);
+    for (int step = 0; step < MOST_STEPS && find_min(n, done) < 1.0; step++) {
+        compute_heights(h, n, t, q);
+        evaluate_profiles(f, n, q, sag, slope);
         for (int k = 0; k < n; k++) {
             const double rate =
                 b->n[k] - 2.0 * slope[k] * (h->q1[k] + t[k] * h->q2[k]);
@@ -128,7 +131,7 @@ static WHOLLY_INLINE void find(const struct beam *b, int n,
                           : done[k];
         }
     }
-    heights_at(h, n, t, q);
+    compute_heights(h, n, t, q);
     for (int k = 0; k < n; k++) {
         const double aside2 = b->l[k] * b->l[k] + b->m[k] * b->m[k];
         const double over = h->q0[k] > q[k] ? h->q0[k] : q[k];
@@ -138,8 +141,9 @@ static WHOLLY_INLINE void find(const struct beam *b, int n,
     }
 }
 
-/* Moves ray K on to FORM, and into its frame. */
-static void meet_alone(struct beam *b, int k, const struct glint_form *form)
+/* Moves ray K to FORM and into its frame. */
+static void meet_form_alone(struct beam *b, int k,
+                            const struct glint_form *form)
 {
     double at[3] = {b->x[k], b->y[k], b->z[k]};
     double way[3] = {b->l[k], b->m[k], b->n[k]};
@@ -154,7 +158,7 @@ static void meet_alone(struct beam *b, int k, const struct glint_form *form)
         b->normal[i][k] = normal[i];
 }
 
-/* Moves ray K from where it was BEFORE on to FORM, by way of its frame. */
+/* Moves ray K from its position in BEFORE to FORM, via the form's frame. */
 static void meet_and_leave(struct beam *b, int k, const struct beam *before,
                            const struct glint_form *form)
 {
@@ -163,7 +167,7 @@ static void meet_and_leave(struct beam *b, int k, const struct beam *before,
     double way[3] = {before->l[k], before->m[k], before->n[k]};
 
     set_ray(b, k, at, way);
-    meet_alone(b, k, form);
+    meet_form_alone(b, k, form);
     for (int i = 0; i < 3; i++) {
         normal[i] = 0.0;
         for (int j = 0; j < 3; j++)
@@ -177,11 +181,11 @@ static void meet_and_leave(struct beam *b, int k, const struct beam *before,
         b->normal[i][k] = normal[i];
 }
 
-/* Moves rays by T to where the profile's derivative by the height's square is
- * SLOPE. */
-static WHOLLY_INLINE void move_to(struct beam *b, int n,
-                                  const struct glint_form *f, const double *t,
-                                  const double *slope)
+/* Moves rays by T to the form and sets their normals; SLOPE is the
+ * derivative of the profile by the squared height. */
+static WHOLLY_INLINE void move_rays(struct beam *b, int n,
+                                    const struct glint_form *f, const double *t,
+                                    const double *slope)
 {
     const double ax = f->along[0], ay = f->along[1];
 
@@ -211,10 +215,10 @@ static WHOLLY_INLINE void meet_level(struct beam *b, int n,
     const struct beam before = *b;
 
     set_heights(b, n, form, &heights);
-    find(b, n, form, &heights, t, sure);
-    heights_at(&heights, n, t, q);
-    profiles(form, n, q, sag, slope);
-    move_to(b, n, form, t, slope);
+    find_intersections(b, n, form, &heights, t, sure);
+    compute_heights(&heights, n, t, q);
+    evaluate_profiles(form, n, q, sag, slope);
+    move_rays(b, n, form, t, slope);
     for (int k = 0; k < n; k++)
         if (!(sure[k] > 0.0 || b->status[k] > GLINT_RAY_OK))
             meet_and_leave(b, k, &before, form);
@@ -225,7 +229,7 @@ void glint_beam_meet_form(struct beam *b, int n, const struct glint_form *form)
 {
     if (!form->level)
         for (int k = 0; k < n; k++)
-            meet_alone(b, k, form);
+            meet_form_alone(b, k, form);
     else if (n == LANES)
         meet_level(b, LANES, form);
     else
@@ -244,9 +248,10 @@ void glint_beam_leave_form(struct beam *b, int n, const struct glint_form *form)
     }
 }
 
-/* Refracts or reflects at a form, like turn(). */
-static WHOLLY_INLINE void turn_at_form(struct beam *b, int k, double s,
-                                       double part, double way)
+/* Refracts or reflects ray K at a form: direction = S direction + PART
+ * normal. */
+static WHOLLY_INLINE void deflect_at_form(struct beam *b, int k, double s,
+                                          double part, double way)
 {
     const double before = b->n[k];
 
@@ -261,13 +266,13 @@ static WHOLLY_INLINE void cross_form(struct beam *b, int n, bool reflects,
                                      double ratio, const double *out)
 {
     for (int k = 0; k < n && reflects; k++)
-        turn_at_form(b, k, 1.0, -2.0 * b->cosine[k], -1.0);
+        deflect_at_form(b, k, 1.0, -2.0 * b->cosine[k], -1.0);
     for (int k = 0; k < n && !reflects; k++) {
         b->status[k] =
             judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
-        turn_at_form(b, k, ratio,
-                     (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k],
-                     1.0);
+        deflect_at_form(
+            b, k, ratio,
+            (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k], 1.0);
     }
 }
 

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Index of refraction of a glass at any wavelength: by Sellmeier's formula if
- * it is one of the catalogue, else from nd and Vd.
+ * Index of refraction of a glass at any wavelength: Sellmeier's formula for
+ * catalogue glasses, else from nd and Vd.
  *
- * Two-term Cauchy, n = A + B / wavelength^2, through the index at the d line
- * and the dispersion n_F - n_C = (nd - 1) / Vd. Exact at the d line and in that
- * difference; a real glass bends a little more towards the violet. */
+ * The latter uses the two-term Cauchy formula n = A + B / wavelength^2 through
+ * the index at the d line and the dispersion n_F - n_C = (nd - 1) / Vd. It is
+ * exact for these values; a real glass refracts violet light slightly more.
+ */
 #include "bake/table/catalogue.h"
 #include "glint/trace.h"
 
-/* Rounding the lines to 587.56, 486.13 and 656.27 nm would move rays by some
- * 1e-5 mm. */
+/* Uses unrounded wavelengths of the lines: 587.56, 486.13 and 656.27 nm
+ * would displace rays by about 1e-5 mm. */
 
 double glint_index(double nd, double vd, double wavelength_nm)
 {

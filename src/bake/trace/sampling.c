@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Weight of a pair of rays that shows a cut; rays that only suggest one count
- * 1. */
+/* Weight of a pair of rays that proves a cut; rays that only suggest a cut
+ * have weight 1. */
 enum { SHOWN = 1000 };
 
 /* A sampled ray. */
@@ -13,7 +13,7 @@ struct probe {
     bool traced, inside;
     double x_mm, y_mm; /* position on the sensor */
     double stop_x, stop_y, stop_r2;
-    /* relative radius at each event, squared */
+    /* squared relative radius at each event */
     double r2[GLINT_MAX_EVENTS + 1];
 };
 
@@ -44,10 +44,9 @@ static void probe_ray(struct probe *p, const struct glint_path *path, double x,
     }
 }
 
-/* Adds weight to a barrel that stops a ray which all other barrels and the stop
- * let pass, with a margin for what lies between rays. If many barrels stop a
- * ray that the stop lets pass, as beyond a fold, the tightest gets the weight.
- */
+/* Adds weight to a barrel that alone blocks a ray, with a margin for the
+ * gaps between rays. If several barrels block a ray that passes the stop, as
+ * beyond a fold, the tightest one gets the weight. */
 static void mark_alone(const struct probe *p, int n, int *weight)
 {
     const double margin = 1.1;
@@ -71,14 +70,14 @@ static void mark_alone(const struct probe *p, int n, int *weight)
 }
 
 /* Returns the fraction of the way from IN (below 1) to OUT at which 1 is
- * reached; 2 if it is not. */
-static double crossing(double in, double out)
+ * reached; 2 if it is not reached. */
+static double compute_crossing(double in, double out)
 {
     return out > 1 ? (1 - in) / (out - in) : 2;
 }
 
-/* Adds weight to the barrel that is reached first between a ray that passes and
- * one that does not, and a little to those reached shortly after. */
+/* Adds weight to the barrel whose rim is crossed first between a visible and
+ * a blocked ray, and a small weight to barrels crossed soon after. */
 static void mark_between(const struct probe *a, const struct probe *b, int n,
                          int *weight)
 {
@@ -91,11 +90,11 @@ static void mark_between(const struct probe *a, const struct probe *b, int n,
         in = b;
         out = a;
     }
-    first = crossing(in->stop_r2, out->stop_r2);
+    first = compute_crossing(in->stop_r2, out->stop_r2);
     for (int k = 0; k < n; k++)
-        first = fmin(first, crossing(in->r2[k], out->r2[k]));
+        first = fmin(first, compute_crossing(in->r2[k], out->r2[k]));
     for (int k = 0; k < n; k++) {
-        const double at = crossing(in->r2[k], out->r2[k]);
+        const double at = compute_crossing(in->r2[k], out->r2[k]);
 
         if (at <= first)
             weight[k] += SHOWN;
@@ -106,8 +105,8 @@ static void mark_between(const struct probe *a, const struct probe *b, int n,
 
 /* -------------------------------------------------------------------- bend */
 
-/* Sums of squares of the first and second differences of a quantity along the
- * grid's lines. */
+/* Sums of the squared first and second differences of a quantity along the
+ * lines of the grid. */
 struct change {
     double first, second;
 };
@@ -116,8 +115,8 @@ struct bend {
     int n;
     struct change sensor; /* mm */
     struct change stop;
-    struct change barrel[GLINT_MAX_EVENTS + 1]; /* changes of r^2 / 2 */
-    int up, down; /* numbers of cells turned one way and the other */
+    struct change barrel[GLINT_MAX_EVENTS + 1]; /* differences of r^2 / 2 */
+    int up, down; /* numbers of cells of either orientation */
     int n_steps;
     double thick; /* sum of rays per stop radius */
 };
@@ -128,7 +127,7 @@ static void add_change(struct change *change, double a, double b, double c)
     change->second += (a - 2 * b + c) * (a - 2 * b + c);
 }
 
-/* Adds the differences at B, between its neighbours A and C. */
+/* Adds the differences at ray B, whose neighbours are A and C. */
 static void add_bend(struct bend *bend, const struct probe *a,
                      const struct probe *b, const struct probe *c, int n_events)
 {
@@ -144,29 +143,31 @@ static void add_bend(struct bend *bend, const struct probe *a,
     bend->n++;
 }
 
-/* Returns the bend of CUT over one step of the grid, converted to mm on the
- * sensor. */
-static double on_sensor_mm(const struct bend *bend, const struct change *cut)
+/* Returns the RMS second difference of CUT over one step of the grid,
+ * converted to mm on the sensor. */
+static double convert_to_sensor_mm(const struct bend *bend,
+                                   const struct change *cut)
 {
     return cut->first > 0
                ? sqrt(cut->second / bend->n * bend->sensor.first / cut->first)
                : 0;
 }
 
-static double outline_bend_mm(const struct bend *bend, const int *weight,
-                              int n_events)
+static double compute_outline_bend_mm(const struct bend *bend,
+                                      const int *weight, int n_events)
 {
-    double most = on_sensor_mm(bend, &bend->stop);
+    double most = convert_to_sensor_mm(bend, &bend->stop);
 
     for (int k = 0; k < n_events; k++)
         if (weight[k] >= SHOWN)
-            most = fmax(most, on_sensor_mm(bend, &bend->barrel[k]));
+            most = fmax(most, convert_to_sensor_mm(bend, &bend->barrel[k]));
     return most;
 }
 
-/* Adds the step from A to B on the stop, if the opening may lie between them:
- * it is no farther away than they are apart. Where rays lie close together more
- * light gets through, so the mean is taken of rays per radius. */
+/* Adds the step from A to B in the stop if the opening may lie between them,
+ * that is, if it is no farther away than the length of the step. Averages
+ * rays per radius instead of radii per ray, as more light passes where rays
+ * are dense. */
 static void add_step(struct bend *bend, const struct probe *a,
                      const struct probe *b)
 {
@@ -181,7 +182,7 @@ static void add_step(struct bend *bend, const struct probe *a,
     bend->thick += 1 / step;
 }
 
-/* Adds the orientation of a cell with first corner A, B beside it and C below
+/* Adds the orientation of the cell with corner A, B next to it and C below
  * it. */
 static void add_turn(struct bend *bend, const struct probe *a,
                      const struct probe *b, const struct probe *c)
@@ -200,11 +201,12 @@ static void add_turn(struct bend *bend, const struct probe *a,
 /* ---------------------------------------------------------------- sampling */
 
 struct rows {
-    struct probe row[3][GLINT_MAX_SAMPLING + 1]; /* the last three, in turn */
+    struct probe row[3][GLINT_MAX_SAMPLING + 1]; /* the last three rows of the
+                                                    grid, used cyclically */
 };
 
-static void look_back(const struct rows *r, int i, int j, int n_events,
-                      int *weight, struct bend *bend)
+static void process_ray(const struct rows *r, int i, int j, int n_events,
+                        int *weight, struct bend *bend)
 {
     const struct probe *here = &r->row[j % 3][i];
     const struct probe *above = &r->row[(j + 2) % 3][i];
@@ -233,7 +235,7 @@ void glint_sampling_run(struct glint_sampling *sampling,
 {
     int weight[GLINT_MAX_EVENTS + 1] = {0};
     struct bend bend = {.n = 0};
-    struct rows r; /* 460 KB: the offline half has the stack for it */
+    struct rows r; /* 460 KB; see GLINT_BAKE_STACK_BYTES */
 
     for (int j = 0; j <= (path->round ? side / 2 : side); j++)
         for (int i = 0; i <= side; i++) {
@@ -242,7 +244,7 @@ void glint_sampling_run(struct glint_sampling *sampling,
                       path->round ? p->y1_mm * 2 * j / side
                                   : p->y0_mm + (p->y1_mm - p->y0_mm) * j / side,
                       direction, stop_radius_mm);
-            look_back(&r, i, j, path->n_events, weight, &bend);
+            process_ray(&r, i, j, path->n_events, weight, &bend);
         }
     sampling->bend_mm = sampling->outline_mm = sampling->round_mm = 0;
     sampling->n_inside = bend.n;
@@ -250,9 +252,11 @@ void glint_sampling_run(struct glint_sampling *sampling,
     if (bend.n) {
         sampling->bend_mm = sqrt(bend.sensor.second / bend.n) * side * side;
         sampling->outline_mm =
-            outline_bend_mm(&bend, weight, path->n_events) * side * side;
-        /* r^2 / 2 changes as fast as the stop position s does at its outline,
-         * and bends by the square of the derivative of s. */
+            compute_outline_bend_mm(&bend, weight, path->n_events) * side *
+            side;
+        /* At the stop's outline the first difference of r^2 / 2 equals that
+         * of the stop position s, and its second difference is the square of
+         * the derivative of s. */
         sampling->round_mm =
             sqrt(bend.stop.first * bend.sensor.first) / bend.n * side * side;
     }

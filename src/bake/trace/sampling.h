@@ -2,12 +2,14 @@
  *
  * Samples a ghost by a sparse grid of rays.
  *
- *   in   a path, a light in the x-z plane, the part of the pupil that counts
- *   out  the barrels that cut, how much the light bends, whether it folds
+ *   in   a path, a light in the x-z plane, the visible part of the pupil
+ *   out  the barrels that cut, the nonlinearity of positions, whether light
+ * folds
  *
- * Most surfaces are wider than the beam through the stop: of dozens, none, one
- * or two vignette it. A barrel cuts if it is the first obstacle between a ray
- * that passes and one that does not, with a margin for the gaps between rays.
+ * Most surfaces are wider than the beam through the stop. Of dozens of
+ * surfaces, at most a few vignette the beam. A barrel cuts if it is the first
+ * obstacle between a visible and a blocked ray, with a margin for the gaps
+ * between rays.
  */
 #ifndef GLINT_BAKE_TRACE_SAMPLING_H
 #define GLINT_BAKE_TRACE_SAMPLING_H
@@ -18,26 +20,30 @@ enum { GLINT_MAX_SAMPLING = 96 };
 
 struct glint_sampling {
     int n_cuts;
-    int cut_event[GLINT_MAX_EVENTS];  /* index into the path, rising */
-    int cut_weight[GLINT_MAX_EVENTS]; /* a larger weight: the barrel makes up
-                                         more of the outline */
-    double bend_mm; /* second difference of the sensor position over the pupil's
-                       box, RMS over the rays that pass: a grid of n cells per
-                       side has an error of bend_mm / (8 n^2) */
-    double outline_mm; /* the largest such bend of the stop position or of a
-                          barrel that cuts, converted to mm on the sensor */
-    double round_mm;   /* such a bend of a round stop's outline */
-    int n_inside; /* number of rays that pass and have both neighbours along a
-                     line of the grid, across and down counted apart */
-    /* Distance in the stop, in stop radii, that rays cover over the pupil's
-     * box: harmonic mean over neighbouring rays between which the opening may
-     * lie. */
+    int cut_event[GLINT_MAX_EVENTS]; /* indices of events of the path, ascending
+                                      */
+    int cut_weight[GLINT_MAX_EVENTS]; /* number that grows with the barrel's
+                                         part of the outline */
+    double bend_mm; /* second difference of the sensor position over the pupil
+                       box, RMS over visible rays: a grid of n cells per side
+                       has the error bend_mm / (8 n^2) */
+    /* max of the second differences of the stop position and of the barrels
+     * that cut, converted to mm on the sensor */
+    double outline_mm;
+    double round_mm; /* second difference of the outline of a round stop,
+                        converted likewise */
+    int n_inside; /* number of visible rays with both neighbours along a line of
+                     the grid; counted once per direction of lines */
+    /* Distance in the stop, in stop radii, that rays cover over the pupil
+     * box: harmonic mean over neighbouring rays between which the opening
+     * may lie. */
     double step;
-    bool folds; /* true: some of the light arrives mirrored, some does not */
+    bool folds; /* true: a part of the light arrives mirrored, another does not
+                 */
 };
 
-/* Traces a grid of SIDE x SIDE cells (SIDE even, up to GLINT_MAX_SAMPLING) over
- * PUPIL. */
+/* Traces a grid of SIDE x SIDE cells over PUPIL; SIDE is even, at most
+ * GLINT_MAX_SAMPLING. */
 void glint_sampling_run(struct glint_sampling *sampling,
                         const struct glint_path *path,
                         const struct glint_pupil *pupil,

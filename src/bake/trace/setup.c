@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Makes a setup from a lens table: traces its direct light. */
+ * Initialises a setup from a lens table, including the flux of its direct
+ * light.
+ */
 #include "engine/setup/setup.h"
 
 #include <stdio.h>
@@ -21,7 +23,7 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
         return status;
     setup->lens = lens;
     glint_optics_of(lens, &setup->optics);
-    /* Places in the picture follow from it. */
+    /* positions in the picture are computed from focal_mm */
     setup->optics.focal_mm = setup->optics.scale_mm;
     setup->n_ghosts = glint_ghost_list(lens, setup->ghost, GLINT_MAX_GHOSTS);
     setup->n_parts = 0;
