@@ -94,9 +94,10 @@ struct glint_form {
     int bend;      /* enum glint_bend */
     double across; /* 1 / across_mm; 0: a cylinder */
     double semi_mm;
-    /* end2: square of the height at which the glass ends. end_at: value, slope
-     * and curvature of the profile there; beyond, the profile continues from
-     * them without its powers. */
+    /* end2: square of the height up to which the profile follows the table.
+     * end_at: value, first and second derivative of the profile by the squared
+     * height at end2; they continue the profile, with a curvature that fades
+     * out. */
     double end2, end_at[3];
     /* Rigid transform of a point p from the frame of the light at the vertex
      * to the frame of the surface: turn p + shift; rows of TURN are unit
