@@ -4,34 +4,36 @@
 #include <math.h>
 
 enum {
-    LINE = 64,   /* cells of a stretch of the line */
-    LINES = 4,   /* stretches of the whole line */
-    CLOSER = 6,  /* times that a stretch is looked at, each one closer */
-    BORDER = 64, /* cells along a border */
-    SHORT = 32,  /* of one across the rows */
-    GROWTHS = 12 /* times that a side is moved out */
+    LINE = 64,   /* number of cells of a stretch of the line */
+    LINES = 4,   /* number of stretches that the line is divided into */
+    CLOSER = 6,  /* number of times that a stretch is searched, each time a
+                    narrower one */
+    BORDER = 64, /* number of cells along a border, parallel to the rows */
+    SHORT = 32,  /* number of cells along a border across the rows */
+    GROWTHS = 12 /* max number of times that a side is moved outwards */
 };
 
-/* Ranges of what is signed may be so many times as wide between two rays. */
+/* Margin of signed quantities between two rays, as a fraction of their
+ * difference. */
 #define BENDS 0.5
-/* Of two rays, one of which is lost, others between may get through if they are
- * so many semi-diameters apart where both were last. */
+/* If one of two rays is invalid, rays between them may pass if the two are
+ * at least this far apart, in semi-diameters, at the last event that both
+ * reached. */
 #define APART 0.25
-/* Fraction of a box by which a side is moved out at a time: as little as a tip
- * is shorter than what holds the rest. */
+/* Fraction of a box by which a side is moved outwards at a time. A tip that
+ * extends less than this beyond the box is found. */
 #define STEP 0.125
 
-/* Neighbouring rays on the light's plane. */
+/* Neighbouring rays in the light's plane. */
 struct line {
     double x0_mm, step_mm;
     struct glint_ray ray[LINE + 1];
     enum glint_ray_status status[LINE + 1];
-    double hits[(LINE + 1) * (GLINT_MAX_EVENTS + 1)][2]; /* 200 KB, and two
-                                                lines are looked at: the offline
-                                                half has the stack for it */
+    /* 200 KB, of which two are in use; see GLINT_BAKE_STACK_BYTES */
+    double hits[(LINE + 1) * (GLINT_MAX_EVENTS + 1)][2];
 };
 
-/* Returns whether RAY passes all of O. */
+/* Returns whether RAY passes stop, barrels and field. */
 static bool ray_passes(const struct glint_openings *o,
                        const struct glint_ray *ray)
 {
@@ -54,9 +56,9 @@ static void trace_line(const struct glint_openings *o, double x0_mm,
     glint_trace_row(o->path, &row, line->ray, line->status, line->hits);
 }
 
-/* Returns the least distance from 0 of what is at A and at B, and may bend
- * between them. */
-static double nearest(double a, double b)
+/* Returns the distance from 0 of the interval that A and B span, extended by
+ * the margin BENDS. */
+static double distance_to_zero(double a, double b)
 {
     const double more = BENDS * fabs(a - b);
     const double low = fmin(a, b) - more, high = fmax(a, b) + more;
@@ -64,8 +66,8 @@ static double nearest(double a, double b)
     return low > 0 ? low : high < 0 ? -high : 0;
 }
 
-/* Returns how many events ray I of LINE has reached. */
-static int reached(const struct line *line, int i, int n_events)
+/* Returns the number of events that ray I of LINE reached. */
+static int count_reached(const struct line *line, int i, int n_events)
 {
     int n = 0;
 
@@ -74,14 +76,15 @@ static int reached(const struct line *line, int i, int n_events)
     return n;
 }
 
-/* Returns whether a ray between rays I and I + 1 may get through. Where one of
- * these is lost, that is because light fans out from a spot. */
+/* Returns whether a ray between rays I and I + 1 may pass. An invalid ray
+ * often lies next to a spot from which light fans out. */
 static bool may_pass(const struct glint_openings *o, const struct line *line,
                      int i)
 {
     const struct glint_ray *a = &line->ray[i], *b = &line->ray[i + 1];
     const int all = o->path->n_events;
-    const int n = (int)fmin(reached(line, i, all), reached(line, i + 1, all));
+    const int n =
+        (int)fmin(count_reached(line, i, all), count_reached(line, i + 1, all));
     double apart = 0;
 
     for (int k = 0; k < n; k++) {
@@ -90,20 +93,22 @@ static bool may_pass(const struct glint_openings *o, const struct line *line,
         const double *q = line->hits[(i + 1) * all + k];
         const double semi = e->kind == GLINT_STOP ? o->stop_mm : e->semi_mm;
 
-        if (hypot(nearest(p[0], q[0]), nearest(p[1], q[1])) > semi)
+        if (hypot(distance_to_zero(p[0], q[0]), distance_to_zero(p[1], q[1])) >
+            semi)
             return false;
         apart = fabs(p[0] - q[0]) / semi;
     }
     if (line->status[i] != GLINT_RAY_OK || line->status[i + 1] != GLINT_RAY_OK)
         return apart > APART;
-    return hypot(nearest(a->sensor_x_mm, b->sensor_x_mm),
-                 nearest(a->sensor_y_mm, b->sensor_y_mm)) <= o->field_mm;
+    return hypot(distance_to_zero(a->sensor_x_mm, b->sensor_x_mm),
+                 distance_to_zero(a->sensor_y_mm, b->sensor_y_mm)) <=
+           o->field_mm;
 }
 
-/* Sets X_MM to the rays of LINE that get through, and to their neighbours;
- * returns whether there are any. */
-static bool seen_on(const struct glint_openings *o, const struct line *line,
-                    double x_mm[2])
+/* Extends X_MM by the rays of LINE that pass, and their neighbours. Returns
+ * whether there are any. */
+static bool find_visible(const struct glint_openings *o,
+                         const struct line *line, double x_mm[2])
 {
     bool seen = false;
 
@@ -117,9 +122,9 @@ static bool seen_on(const struct glint_openings *o, const struct line *line,
     return seen;
 }
 
-/* Shrinks X_MM, a stretch in which rays may get through, to those that do;
- * returns whether there are any. */
-static bool look_closer(const struct glint_openings *o, double x_mm[2])
+/* Shrinks X_MM, a stretch in which rays may pass, to the rays that do.
+ * Returns whether there are any. */
+static bool refine_stretch(const struct glint_openings *o, double x_mm[2])
 {
     struct line line;
 
@@ -127,7 +132,7 @@ static bool look_closer(const struct glint_openings *o, double x_mm[2])
         int first = LINE, last = -1;
 
         trace_line(o, x_mm[0], x_mm[1], &line);
-        if (seen_on(o, &line, x_mm))
+        if (find_visible(o, &line, x_mm))
             return true;
         for (int i = 0; i < LINE; i++)
             if (may_pass(o, &line, i)) {
@@ -142,10 +147,10 @@ static bool look_closer(const struct glint_openings *o, double x_mm[2])
     return false;
 }
 
-/* Looks at each run of cells of LINE in which rays may get through; *X_MM
- * becomes the widest range in which they do, if that is wider than it. */
-static void look_at_runs(const struct glint_openings *o,
-                         const struct line *line, double x_mm[2])
+/* Searches each run of cells of LINE in which rays may pass. If the range in
+ * which they do is wider than *X_MM, it replaces *X_MM. */
+static void refine_runs(const struct glint_openings *o, const struct line *line,
+                        double x_mm[2])
 {
     int first = -1;
 
@@ -158,7 +163,7 @@ static void look_at_runs(const struct glint_openings *o,
             double run[2] = {line->x0_mm + first * line->step_mm,
                              line->x0_mm + i * line->step_mm};
 
-            if (look_closer(o, run) && run[1] - run[0] > x_mm[1] - x_mm[0]) {
+            if (refine_stretch(o, run) && run[1] - run[0] > x_mm[1] - x_mm[0]) {
                 x_mm[0] = run[0];
                 x_mm[1] = run[1];
             }
@@ -177,14 +182,15 @@ bool glint_spot_find(const struct glint_openings *o,
     for (int k = 0; k < LINES; k++) {
         trace_line(o, front->x0_mm + k * length,
                    front->x0_mm + (k + 1) * length, &line);
-        look_at_runs(o, &line, x_mm);
+        refine_runs(o, &line, x_mm);
     }
     return x_mm[1] > x_mm[0];
 }
 
-/* Returns whether one of N + 1 rays from (X0, Y0) to (X1, Y1) gets through. */
-static bool crosses(const struct glint_openings *o, double x0, double y0,
-                    double x1, double y1, int n)
+/* Returns whether one of N + 1 rays that start between (X0, Y0) and (X1, Y1)
+ * passes. */
+static bool passes_along(const struct glint_openings *o, double x0, double y0,
+                         double x1, double y1, int n)
 {
     struct glint_launch from[BORDER + 1] = {{0, 0, {0, 0, 0}}};
     struct glint_ray ray[BORDER + 1];
@@ -210,13 +216,13 @@ bool glint_spot_grow(const struct glint_openings *o, struct glint_pupil *p)
         const double x0 = p->x0_mm, x1 = p->x1_mm, y0 = p->y0_mm, y1 = p->y1_mm;
         const double wide = STEP * (x1 - x0), high = STEP * (y1 - y0);
 
-        if (crosses(o, x0, y0, x0, y1, SHORT))
+        if (passes_along(o, x0, y0, x0, y1, SHORT))
             p->x0_mm -= wide;
-        if (crosses(o, x1, y0, x1, y1, SHORT))
+        if (passes_along(o, x1, y0, x1, y1, SHORT))
             p->x1_mm += wide;
-        if (crosses(o, x0, y1, x1, y1, BORDER))
+        if (passes_along(o, x0, y1, x1, y1, BORDER))
             p->y1_mm += high;
-        if (!p->mirrored && crosses(o, x0, y0, x1, y0, BORDER))
+        if (!p->mirrored && passes_along(o, x0, y0, x1, y0, BORDER))
             p->y0_mm -= high;
         if (p->x0_mm == x0 && p->x1_mm == x1 && p->y0_mm == y0 &&
             p->y1_mm == y1)

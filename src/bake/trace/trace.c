@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Exact sequential rays: path, start -> stop, sensor, energy, relative radius.
+ * Exact sequential ray tracing: from path and start point to positions in the
+ * stop and on the sensor, energy, and relative radius.
  *
- * Every intersection is worked out about the vertex plane of its surface,
- * where nothing cancels however large the radius: with the curvature c, the
- * point (X, Y) where the ray meets that plane and its direction (l, m, n),
+ * Every intersection is computed relative to the vertex plane of its surface,
+ * which avoids cancellation for any radius. With the curvature c, the point (X,
+ * Y) where the ray meets that plane and its direction (l, m, n),
  *
  *     F = c (X^2 + Y^2),  G = n - c (X l + Y m),  W = +-sqrt(G^2 - c F),
- *     t = F / (G + W), the sign of W that of n.
+ *     t = F / (G + W), where W has the sign of n.
  *
- * W is also the cosine between ray and normal. A plane is c = 0. Planes, huge
- * and small radii keep about 1e-14 of the coordinates. [Hullin11] section 4
+ * W is also the cosine between ray and normal. A plane has c = 0. The relative
+ * error of coordinates is about 1e-14 for planes and for large and small radii.
+ * [Hullin11] section 4
  */
 #include <math.h>
 #include <string.h>
@@ -26,17 +28,17 @@
 
 /* ------------------------------------------------------------------- paths */
 
-/* A path that is being made, and how far it has come. */
+/* A path under construction. */
 struct route {
     const struct glint_prescription *lens;
     struct glint_path *path;
     double wavelength_nm, phi_deg;
-    int at; /* last element met; -1: none yet */
+    int at; /* index of the last element appended; -1: none yet */
 };
 
-/* Sets the indices before surface K and after it. */
-static void media_of(const struct route *route, int k, double *front,
-                     double *behind)
+/* Sets the indices of refraction in front of and behind surface K. */
+static void find_indices(const struct route *route, int k, double *front,
+                         double *behind)
 {
     const struct glint_surface *s = &route->lens->surface[k];
 
@@ -44,21 +46,21 @@ static void media_of(const struct route *route, int k, double *front,
     *behind = glint_surface_index(s, route->wavelength_nm);
 }
 
-/* Returns z from the last event to element E, a neighbour of it. */
-static double step_mm(const struct route *route, int e)
+/* Returns the difference in z from the last event to element E, its
+ * neighbour. */
+static double compute_step_mm(const struct route *route, int e)
 {
-    if (route->at < 0) /* A ray that has met nothing yet starts at the vertex
-                          plane of the first surface. */
+    /* a ray starts at the vertex plane of the first surface */
+    if (route->at < 0)
         return route->lens->stop_after == 0 ? -element_gap_mm(route->lens, 0)
                                             : 0.0;
     return e > route->at ? element_gap_mm(route->lens, route->at)
                          : -element_gap_mm(route->lens, e);
 }
 
-/* Appends the meeting with element E; FORWARD: the ray runs towards the sensor.
- */
-static void append(struct route *route, int e, enum glint_event_kind kind,
-                   bool forward)
+/* Appends an event at element E. FORWARD: the ray runs towards the sensor. */
+static void append_event(struct route *route, int e, enum glint_event_kind kind,
+                         bool forward)
 {
     const int k = element_surface(route->lens, e);
     struct glint_event *event = &route->path->event[route->path->n_events++];
@@ -67,14 +69,14 @@ static void append(struct route *route, int e, enum glint_event_kind kind,
     event->kind = k < 0 ? GLINT_STOP : kind;
     event->surface = k;
     event->curvature = element_curvature(route->lens, e);
-    event->advance_mm = step_mm(route, e);
+    event->advance_mm = compute_step_mm(route, e);
     event->semi_mm = element_semi_mm(route->lens, e);
     event->n_from = event->n_to = 1.0;
     route->at = e;
     if (k < 0)
         return;
-    media_of(route, k, forward ? &event->n_from : &event->n_to,
-             forward ? &event->n_to : &event->n_from);
+    find_indices(route, k, forward ? &event->n_from : &event->n_to,
+                 forward ? &event->n_to : &event->n_from);
     event->n_films =
         glint_coating_at(&route->lens->surface[k].coating, route->wavelength_nm,
                          route->path->film[k]);
@@ -84,7 +86,7 @@ static void append(struct route *route, int e, enum glint_event_kind kind,
                         route->phi_deg);
 }
 
-/* Sets how the picture is wider than the sensor, for light at PHI_DEG. */
+/* Sets the matrix from sensor to picture coordinates for light at PHI_DEG. */
 static void set_widening(struct glint_path *path,
                          const struct glint_prescription *lens, double phi_deg)
 {
@@ -122,22 +124,23 @@ void glint_path_init_at(struct glint_path *path,
         const int far = surface_element(lens, ghost->j);
 
         for (; e < far; e++)
-            append(&route, e, GLINT_REFRACT, true);
-        append(&route, far, GLINT_REFLECT, true);
+            append_event(&route, e, GLINT_REFRACT, true);
+        append_event(&route, far, GLINT_REFLECT, true);
         for (e = far - 1; e > near; e--)
-            append(&route, e, GLINT_REFRACT, false);
-        append(&route, near, GLINT_REFLECT, false);
+            append_event(&route, e, GLINT_REFRACT, false);
+        append_event(&route, near, GLINT_REFLECT, false);
         e = near + 1;
     }
     for (; e < n; e++)
-        append(&route, e, GLINT_REFRACT, true);
+        append_event(&route, e, GLINT_REFRACT, true);
     path->to_sensor_mm = element_gap_mm(lens, n - 1);
 }
 
 /* -------------------------------------------------------------------- rays */
 
-/* Moves rays straight to the plane ADVANCE away. */
-static WHOLLY_INLINE void go(struct beam *b, int n, double advance_mm)
+/* Moves rays along straight lines to the plane ADVANCE away. */
+static WHOLLY_INLINE void move_to_plane(struct beam *b, int n,
+                                        double advance_mm)
 {
     for (int k = 0; k < n; k++) {
         const double s = (advance_mm - b->z[k]) / b->n[k];
@@ -148,9 +151,10 @@ static WHOLLY_INLINE void go(struct beam *b, int n, double advance_mm)
     }
 }
 
-/* Moves rays from the vertex plane to the surface; its normal there is (-c x,
- * -c y, 1 - c z). Comparisons are such that a NaN misses. */
-static WHOLLY_INLINE void meet(struct beam *b, int n, double c)
+/* Moves rays from the vertex plane to a sphere of curvature C, whose normal
+ * there is (-c x, -c y, 1 - c z). Comparisons are written such that NaN
+ * counts as a miss. */
+static WHOLLY_INLINE void meet_sphere(struct beam *b, int n, double c)
 {
     for (int k = 0; k < n; k++) {
         const double x = b->x[k], y = b->y[k];
@@ -171,11 +175,11 @@ static WHOLLY_INLINE void meet(struct beam *b, int n, double c)
     }
 }
 
-/* Sets the direction to S times itself plus PART times the normal. Rays whose z
- * direction then does not follow WAY, 1 for forwards as before, -1 for
- * reversed, become invalid. */
-static WHOLLY_INLINE void turn(struct beam *b, int k, double c, double s,
-                               double part, double way)
+/* Sets the direction of ray K to S direction + PART normal. Marks the ray as
+ * invalid if the sign of its z direction is not that of before, times WAY
+ * (1: refraction, -1: reflection). */
+static WHOLLY_INLINE void deflect(struct beam *b, int k, double c, double s,
+                                  double part, double way)
 {
     const double before = b->n[k];
 
@@ -186,12 +190,12 @@ static WHOLLY_INLINE void turn(struct beam *b, int k, double c, double s,
         judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
-/* Sets PART to the fraction that E, coated with FILM, reflects of rays that
- * leave it at the cosine OUT; 1 where OUT is 0. */
-static WHOLLY_INLINE void reflectances(const struct beam *b, int n,
-                                       const struct glint_event *e,
-                                       const struct glint_film_at *film,
-                                       const double *out, double *part)
+/* Sets PART to the reflectance of E, coated with FILM, for rays that are
+ * refracted to the cosine OUT; 1 where OUT is 0. */
+static WHOLLY_INLINE void compute_reflectances(const struct beam *b, int n,
+                                               const struct glint_event *e,
+                                               const struct glint_film_at *film,
+                                               const double *out, double *part)
 {
     const double n1 = e->n_from, n2 = e->n_to;
     const bool bare = e->n_films == 0, single = e->n_films == 1;
@@ -213,10 +217,11 @@ static WHOLLY_INLINE void reflectances(const struct beam *b, int n,
         part[k] = out[k] > 0.0 ? part[k] : 1.0;
 }
 
-/* Refracts or reflects the rays at the surface of E. */
-static WHOLLY_INLINE void cross(struct beam *b, int n,
-                                const struct glint_event *e,
-                                const struct glint_film_at *film, bool energies)
+/* Refracts or reflects rays at the surface of E. */
+static WHOLLY_INLINE void cross_surface(struct beam *b, int n,
+                                        const struct glint_event *e,
+                                        const struct glint_film_at *film,
+                                        bool energies)
 {
     const double ratio = e->n_from / e->n_to, c = e->curvature;
     const bool reflects = e->kind == GLINT_REFLECT;
@@ -229,7 +234,7 @@ static WHOLLY_INLINE void cross(struct beam *b, int n,
         out[k] = sqrt(out2 > 0.0 ? out2 : 0.0);
     }
     if (energies)
-        reflectances(b, n, e, film, out, part);
+        compute_reflectances(b, n, e, film, out, part);
     for (int k = 0; k < n && energies; k++)
         b->energy[k] *= reflects ? part[k] : 1.0 - part[k];
     if (e->shaped) {
@@ -237,16 +242,17 @@ static WHOLLY_INLINE void cross(struct beam *b, int n,
         return;
     }
     for (int k = 0; k < n && reflects; k++)
-        turn(b, k, c, 1.0, -2.0 * b->cosine[k], -1.0);
+        deflect(b, k, c, 1.0, -2.0 * b->cosine[k], -1.0);
     for (int k = 0; k < n && !reflects; k++) {
         b->status[k] =
             judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
-        turn(b, k, c, ratio,
-             (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k], 1.0);
+        deflect(b, k, c, ratio,
+                (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k], 1.0);
     }
 }
 
-static WHOLLY_INLINE void widen(struct beam *b, int n, double semi_mm)
+static WHOLLY_INLINE void update_rel_radius(struct beam *b, int n,
+                                            double semi_mm)
 {
     const double semi2 = semi_mm * semi_mm;
 
@@ -259,7 +265,7 @@ static WHOLLY_INLINE void widen(struct beam *b, int n, double semi_mm)
     }
 }
 
-static WHOLLY_INLINE bool all_lost(const struct beam *b, int n)
+static WHOLLY_INLINE bool are_all_invalid(const struct beam *b, int n)
 {
     double least = b->status[0];
 
@@ -268,8 +274,8 @@ static WHOLLY_INLINE bool all_lost(const struct beam *b, int n)
     return least > GLINT_RAY_OK;
 }
 
-static WHOLLY_INLINE void start(struct beam *b, int k,
-                                const struct glint_launch *from)
+static WHOLLY_INLINE void start_ray(struct beam *b, int k,
+                                    const struct glint_launch *from)
 {
     b->x[k] = from->x_mm;
     b->y[k] = from->y_mm;
@@ -281,9 +287,10 @@ static WHOLLY_INLINE void start(struct beam *b, int k,
     b->status[k] = judge(GLINT_RAY_OK, b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
-/* Sets HIT to the position of ray K, in the surface's own frame. */
-static WHOLLY_INLINE void note_hit(const struct beam *b, int k,
-                                   const struct glint_form *form, double hit[2])
+/* Sets HIT to the position of ray K in the surface's own frame. */
+static WHOLLY_INLINE void record_hit(const struct beam *b, int k,
+                                     const struct glint_form *form,
+                                     double hit[2])
 {
     hit[0] = b->x[k];
     hit[1] = b->y[k];
@@ -293,12 +300,12 @@ static WHOLLY_INLINE void note_hit(const struct beam *b, int k,
 
 /* Traces rays through one event. HITS[k * n_events] receives the position of
  * lane K, for K below ASKED. */
-static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
-                               const struct glint_path *path,
-                               const struct glint_event *e, bool energies,
-                               double (*hits)[2])
+static WHOLLY_INLINE void trace_event(struct beam *b, int n, int asked,
+                                      const struct glint_path *path,
+                                      const struct glint_event *e,
+                                      bool energies, double (*hits)[2])
 {
-    go(b, n, e->advance_mm);
+    move_to_plane(b, n, e->advance_mm);
     if (e->kind == GLINT_STOP)
         for (int k = 0; k < n; k++) {
             b->stop_x[k] = b->x[k];
@@ -307,20 +314,20 @@ static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
     else if (e->shaped)
         glint_beam_meet_form(b, n, &path->form[e->surface]);
     else
-        meet(b, n, e->curvature);
+        meet_sphere(b, n, e->curvature);
     for (int k = 0; k < asked && hits; k++)
         if (!(b->status[k] > GLINT_RAY_OK))
-            note_hit(b, k, e->shaped ? &path->form[e->surface] : NULL,
-                     hits[k * path->n_events]);
+            record_hit(b, k, e->shaped ? &path->form[e->surface] : NULL,
+                       hits[k * path->n_events]);
     if (e->kind == GLINT_STOP)
         return;
-    widen(b, n, e->semi_mm);
-    cross(b, n, e, path->film[e->surface], energies);
+    update_rel_radius(b, n, e->semi_mm);
+    cross_surface(b, n, e, path->film[e->surface], energies);
     if (e->shaped)
         glint_beam_leave_form(b, n, &path->form[e->surface]);
 }
 
-/* Moves rays from the sensor to the picture of an anamorphic lens. */
+/* Converts positions on the sensor to the picture of an anamorphic lens. */
 static void widen_picture(struct beam *b, int n, const double widen_by[2][2])
 {
     for (int k = 0; k < n; k++) {
@@ -331,38 +338,38 @@ static void widen_picture(struct beam *b, int n, const double widen_by[2][2])
     }
 }
 
-static inline enum glint_ray_status arrive(const struct beam *b, int k,
-                                           struct glint_ray *ray)
+static inline enum glint_ray_status finish_ray(const struct beam *b, int k,
+                                               struct glint_ray *ray)
 {
     if (b->status[k] > GLINT_RAY_OK)
         return (enum glint_ray_status)b->status[k];
     if (!isfinite(b->x[k]) || !isfinite(b->y[k]))
-        return GLINT_RAY_MISSED; /* the ray runs almost along the sensor */
+        return GLINT_RAY_MISSED; /* the ray is almost parallel to the sensor */
     *ray = (struct glint_ray){b->stop_x[k], b->stop_y[k],
                               b->x[k],      b->y[k],
                               b->energy[k], sqrt(b->height2[k] / b->semi2[k])};
     return GLINT_RAY_OK;
 }
 
-/* Traces LANES lanes, of which the first N are real rays. */
-static WHOLLY_INLINE void trace(const struct glint_path *path, int lanes, int n,
-                                bool energies, const struct glint_launch *from,
-                                struct glint_ray *ray,
-                                enum glint_ray_status *status,
-                                double (*hits)[2])
+/* Traces LANES lanes; only the first N are valid rays, the others repeat the
+ * first one. */
+static WHOLLY_INLINE void
+trace_lanes(const struct glint_path *path, int lanes, int n, bool energies,
+            const struct glint_launch *from, struct glint_ray *ray,
+            enum glint_ray_status *status, double (*hits)[2])
 {
     struct beam b;
 
     for (int k = 0; k < lanes; k++)
-        start(&b, k, &from[k < n ? k : 0]);
-    for (int i = 0; i < path->n_events && !all_lost(&b, lanes); i++)
-        pass(&b, lanes, n, path, &path->event[i], energies,
-             hits ? hits + i : NULL);
-    go(&b, lanes, path->to_sensor_mm);
+        start_ray(&b, k, &from[k < n ? k : 0]);
+    for (int i = 0; i < path->n_events && !are_all_invalid(&b, lanes); i++)
+        trace_event(&b, lanes, n, path, &path->event[i], energies,
+                    hits ? hits + i : NULL);
+    move_to_plane(&b, lanes, path->to_sensor_mm);
     if (!path->round)
         widen_picture(&b, n, path->widen);
     for (int k = 0; k < n; k++)
-        status[k] = arrive(&b, k, &ray[k]);
+        status[k] = finish_ray(&b, k, &ray[k]);
 }
 
 WIDE_VECTORS
@@ -375,9 +382,11 @@ void glint_trace_many(const struct glint_path *path, int n,
         double(*h)[2] = hits ? hits + at * path->n_events : NULL;
 
         if (path->places_only)
-            trace(path, LANES, now, false, from + at, ray + at, status + at, h);
+            trace_lanes(path, LANES, now, false, from + at, ray + at,
+                        status + at, h);
         else
-            trace(path, LANES, now, true, from + at, ray + at, status + at, h);
+            trace_lanes(path, LANES, now, true, from + at, ray + at,
+                        status + at, h);
     }
 }
 
@@ -408,6 +417,6 @@ enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
         px_mm, py_mm, {direction[0], direction[1], direction[2]}};
     enum glint_ray_status status;
 
-    trace(path, 1, 1, !path->places_only, &from, ray, &status, hits);
+    trace_lanes(path, 1, 1, !path->places_only, &from, ray, &status, hits);
     return status;
 }
