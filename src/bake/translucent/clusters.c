@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows as few kernels, times factors where light enters and leaves.
+ * Fits the rows of a scattering matrix by a few kernels, one per cluster of
+ * texels, times factors per texel where light enters and leaves.
  *
- * Alternating least squares: kernels, in and out scales in turn, then each
- * texel goes to the kernel that leaves the least of its row. Clusters begin by
- * how much of material 0 is about a texel, where rows are measured by how much
- * light they scatter: left to themselves they would part the rim from the rest.
+ * Alternating least squares updates kernels, in factors and out factors in
+ * turn; then each texel is assigned to the kernel with the smallest residual of
+ * its row. Initial clusters follow the fraction of material 0 around a texel,
+ * or, for measured rows, the amount of light that a row scatters. Random
+ * initial clusters would separate the rim from the interior.
  */
 #include "bake/translucent/rows.h"
 
@@ -14,34 +16,36 @@
 #include <string.h>
 
 enum {
-    ROUNDS = 8, /* errors fall by less than 1 % from there on */
-    ABOUT = 2   /* radius, in texels, of the neighbourhood whose materials
-                   count */
+    ROUNDS = 8, /* errors decrease by less than 1 % in further rounds */
+    ABOUT = 2   /* radius, in texels, of the neighbourhood in which fractions of
+                   materials are averaged */
 };
 
 struct clusters {
     const struct glint_scatter_rows *rows;
     struct glint_scatter_fit *fit;
-    double *above, *below; /* sums of least squares, per texel or per entry */
+    double *above, *below; /* numerators and denominators of least squares, per
+                              texel or per entry of a kernel */
 };
 
-/* Values common to the entries of one row of a kernel, U_FROM .. U_TO - 1. */
+/* Data of one line of the row of texel X: entries U_FROM .. U_TO - 1. */
 struct span {
     int x, c, u_from, u_to;
     const float *data;
-    double *kernel, *in; /* in of the texels that entries lead to, 3 apart */
+    double *kernel, *in; /* in factors of the texels that the entries lead to, 3
+                            doubles apart */
 };
 
-static double *kernel_of(const struct glint_scatter_fit *fit, int j, int c)
+static double *get_kernel(const struct glint_scatter_fit *fit, int j, int c)
 {
     return fit->h +
            (size_t)(j * 3 + c) * (size_t)glint_scatter_kernel2(fit->kernel);
 }
 
-/* The span of line V of the row of texel X, with kernel J. */
-static struct span span_of(const struct clusters *p,
-                           const struct glint_scatter_inside *in, int x, int c,
-                           int j, int v)
+/* Returns the span of line V of the row of texel X, for kernel J. */
+static struct span make_span(const struct clusters *p,
+                             const struct glint_scatter_inside *in, int x,
+                             int c, int j, int v)
 {
     const int n = p->fit->kernel, side = p->fit->side;
 
@@ -51,24 +55,24 @@ static struct span span_of(const struct clusters *p,
         .u_from = in->u_from,
         .u_to = in->u_to,
         .data = glint_scatter_row(p->rows, x, c) + v * n,
-        .kernel = kernel_of(p->fit, j, c) + v * n,
-        /* entries that count lie inside the square */
+        .kernel = get_kernel(p->fit, j, c) + v * n,
+        /* only entries inside the square are accessed */
         .in =
             p->fit->in + c + 3 * (x + (v - n / 2) * side + in->u_from - n / 2),
     };
 }
 
-/* Sets PRODUCT and SQUARE to the sums of data times kernel and in, and of the
- * square of these. */
-static void compare(const struct clusters *p, int x, int c, int j,
-                    double *product, double *square)
+/* Sets PRODUCT to the sum over a row of data * kernel * in, and SQUARE to
+ * the sum of (kernel * in)^2. */
+static void compute_sums(const struct clusters *p, int x, int c, int j,
+                         double *product, double *square)
 {
     const struct glint_scatter_inside in =
         glint_scatter_inside(p->fit->side, p->fit->kernel, x);
 
     *product = *square = 0;
     for (int v = in.v_from; v < in.v_to; v++) {
-        const struct span s = span_of(p, &in, x, c, j, v);
+        const struct span s = make_span(p, &in, x, c, j, v);
 
         for (int u = s.u_from; u < s.u_to; u++) {
             const double b = s.kernel[u] * s.in[3 * (u - s.u_from)];
@@ -79,25 +83,25 @@ static void compare(const struct clusters *p, int x, int c, int j,
     }
 }
 
-static double ratio(double above, double below)
+static double safe_ratio(double above, double below)
 {
     return below > 0 ? above / below : 0;
 }
 
-static void set_out(const struct clusters *p)
+static void fit_out(const struct clusters *p)
 {
     for (int x = 0; x < p->fit->side * p->fit->side; x++)
         for (int c = 0; c < 3; c++) {
             double product, square;
 
-            compare(p, x, c, p->fit->cluster[x], &product, &square);
-            p->fit->out[3 * x + c] = ratio(product, square);
+            compute_sums(p, x, c, p->fit->cluster[x], &product, &square);
+            p->fit->out[3 * x + c] = safe_ratio(product, square);
         }
 }
 
-/* Sets N scales, of kernel entries or, if IN_SCALES, of the light that gets in,
- * to the ratios of their sums of least squares. */
-static void set_scales(const struct clusters *p, bool in_scales, double *scale,
+/* Sets N scales to their least-squares solutions: kernel entries or, if
+ * IN_SCALES, in factors. */
+static void fit_scales(const struct clusters *p, bool in_scales, double *scale,
                        size_t n)
 {
     const int side = p->fit->side;
@@ -110,7 +114,8 @@ static void set_scales(const struct clusters *p, bool in_scales, double *scale,
             glint_scatter_inside(side, p->fit->kernel, x);
 
         for (int v = in.v_from; v < in.v_to; v++) {
-            const struct span s = span_of(p, &in, x, c, p->fit->cluster[x], v);
+            const struct span s =
+                make_span(p, &in, x, c, p->fit->cluster[x], v);
 
             for (int u = s.u_from; u < s.u_to; u++) {
                 const double *lit = s.in + 3 * (ptrdiff_t)(u - s.u_from);
@@ -124,24 +129,24 @@ static void set_scales(const struct clusters *p, bool in_scales, double *scale,
         }
     }
     for (size_t i = 0; i < n; i++)
-        scale[i] = ratio(p->above[i], p->below[i]);
+        scale[i] = safe_ratio(p->above[i], p->below[i]);
 }
 
-static void set_in(const struct clusters *p)
+static void fit_in(const struct clusters *p)
 {
-    set_scales(p, true, p->fit->in,
+    fit_scales(p, true, p->fit->in,
                3 * (size_t)p->fit->side * (size_t)p->fit->side);
 }
 
-static void set_kernels(const struct clusters *p)
+static void fit_kernels(const struct clusters *p)
 {
-    set_scales(p, false, p->fit->h,
+    fit_scales(p, false, p->fit->h,
                3 * (size_t)p->fit->kernels *
                    (size_t)glint_scatter_kernel2(p->fit->kernel));
 }
 
-/* Gives each texel the kernel that explains most of its row. */
-static void assign(const struct clusters *p)
+/* Assigns each texel to the kernel that explains most of its row. */
+static void assign_kernels(const struct clusters *p)
 {
     for (int x = 0; x < p->fit->side * p->fit->side; x++) {
         double best = -1;
@@ -153,8 +158,8 @@ static void assign(const struct clusters *p)
             for (int c = 0; c < 3; c++) {
                 double product, square;
 
-                compare(p, x, c, j, &product, &square);
-                explained += ratio(product * product, square);
+                compute_sums(p, x, c, j, &product, &square);
+                explained += safe_ratio(product * product, square);
             }
             if (explained > best) {
                 best = explained;
@@ -165,8 +170,9 @@ static void assign(const struct clusters *p)
     }
 }
 
-/* What a texel is ordered by at first, 0 .. 1. */
-static double place(const struct clusters *p, int x, double most)
+/* Returns the value by which texels are initially sorted into clusters, 0 ..
+ * 1. */
+static double initial_position(const struct clusters *p, int x, double most)
 {
     const int side = p->fit->side, window = 2 * ABOUT + 1;
     const double *a = p->fit->albedo + 3 * (size_t)x;
@@ -186,7 +192,7 @@ static double place(const struct clusters *p, int x, double most)
     return sum / n;
 }
 
-static void begin(const struct clusters *p)
+static void set_initial_clusters(const struct clusters *p)
 {
     const int texels = p->fit->side * p->fit->side, k = p->fit->kernels;
     double most = 0;
@@ -197,7 +203,7 @@ static void begin(const struct clusters *p)
         most = fmax(most, a[0] + a[1] + a[2]);
     }
     for (int x = 0; x < texels; x++) {
-        const int j = (int)(place(p, x, most) * k);
+        const int j = (int)(initial_position(p, x, most) * k);
 
         p->fit->cluster[x] = (uint8_t)(j < k ? j : k - 1);
         for (int c = 0; c < 3; c++) {
@@ -207,8 +213,9 @@ static void begin(const struct clusters *p)
     }
 }
 
-/* Makes the sum of each kernel 1: out and in scales are near albedo and 1. */
-static void normalise(const struct clusters *p)
+/* Normalises the sum of each kernel to 1, so that out factors are near the
+ * albedo, and in factors near 1. */
+static void normalise_kernels(const struct clusters *p)
 {
     const int texels = p->fit->side * p->fit->side;
     const int k2 = glint_scatter_kernel2(p->fit->kernel);
@@ -221,7 +228,7 @@ static void normalise(const struct clusters *p)
         for (int x = 0; x < texels && mean > 0; x++)
             p->fit->in[3 * x + c] /= mean;
         for (int j = 0; j < p->fit->kernels; j++) {
-            double *h = kernel_of(p->fit, j, c), sum = 0;
+            double *h = get_kernel(p->fit, j, c), sum = 0;
 
             for (int d = 0; d < k2; d++)
                 sum += h[d];
@@ -231,22 +238,22 @@ static void normalise(const struct clusters *p)
     }
 }
 
-static enum glint_status run(struct clusters *p,
-                             const struct glint_watch *watch)
+static enum glint_status fit_clusters(struct clusters *p,
+                                      const struct glint_watch *watch)
 {
-    begin(p);
-    set_kernels(p);
+    set_initial_clusters(p);
+    fit_kernels(p);
     for (int i = 0; i < ROUNDS; i++) {
         if (glint_watch_ends(watch, (double)i / ROUNDS))
             return GLINT_E_CLOSED;
         if (i > 0)
-            assign(p);
-        set_out(p);
-        set_in(p);
-        set_kernels(p);
+            assign_kernels(p);
+        fit_out(p);
+        fit_in(p);
+        fit_kernels(p);
     }
-    normalise(p);
-    set_out(p);
+    normalise_kernels(p);
+    fit_out(p);
     return GLINT_OK;
 }
 
@@ -268,7 +275,7 @@ enum glint_status glint_scatter_clusters(const struct glint_scatter_rows *rows,
     p.above = malloc(2 * sums * sizeof *p.above);
     p.below = p.above + sums;
     if (fit->h && fit->out && fit->in && fit->cluster && p.above)
-        status = run(&p, watch);
+        status = fit_clusters(&p, watch);
     free(p.above);
     return status;
 }

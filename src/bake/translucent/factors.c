@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows as sums of a few kernels, each of a low rank.
+ * Fits the rows of a scattering matrix by sums of a few kernels of low rank,
+ * times weights per texel.
  *
- * The singular value decomposition of the rows that are whole begins; weights
- * and kernels then follow in turn by least squares, kernels cut to their rank
- * each time, so that weights make up for what that takes away.
+ * The singular value decomposition of the complete rows gives initial kernels.
+ * Weights and kernels are then updated in turn by least squares. Kernels are
+ * truncated to their rank in each round, so that the weights compensate for the
+ * truncation.
  */
 #include "bake/translucent/rows.h"
 
@@ -20,28 +22,30 @@ struct factors {
     const struct glint_scatter_rows *rows;
     struct glint_scatter_fit *fit;
     int c;
-    double *h, *f, *column, *row; /* of channel C: first of kernels, 3 apart */
-    int *whole;                   /* texels whose rows are complete */
-    double *gram, *side;          /* normal equations, one system for each
-                                     entry */
+    double *h, *f, *column, *row; /* arrays of channel C for kernel 0; those of
+                                     other kernels follow at distances of 3 */
+    int *whole; /* indices of texels whose rows lie completely inside the square
+                 */
+    /* normal equations, one system per entry of a kernel */
+    double *gram, *side;
 };
 
-static double *term(double *all, int j, size_t n)
+static double *get_term(double *all, int j, size_t n)
 {
     return all + (size_t)j * 3 * n;
 }
 
-static double *kernel_of(const struct factors *p, int j)
+static double *get_kernel(const struct factors *p, int j)
 {
-    return term(p->h, j, (size_t)glint_scatter_kernel2(p->fit->kernel));
+    return get_term(p->h, j, (size_t)glint_scatter_kernel2(p->fit->kernel));
 }
 
-static double *weights_of(const struct factors *p, int j)
+static double *get_weights(const struct factors *p, int j)
 {
-    return term(p->f, j, (size_t)p->fit->side * (size_t)p->fit->side);
+    return get_term(p->f, j, (size_t)p->fit->side * (size_t)p->fit->side);
 }
 
-static void whole_row(const void *ctx, int i, double *to)
+static void read_complete_row(const void *ctx, int i, double *to)
 {
     const struct factors *p = ctx;
     const float *row = glint_scatter_row(p->rows, p->whole[i], p->c);
@@ -50,12 +54,12 @@ static void whole_row(const void *ctx, int i, double *to)
         to[d] = (double)row[d];
 }
 
-/* Initialises the kernels from the complete rows, or from all rows if none is
+/* Sets initial kernels from the complete rows, or from all rows if none is
  * complete. */
-static bool begin(struct factors *p)
+static bool set_initial_kernels(struct factors *p)
 {
     const int side = p->fit->side, n = p->fit->kernel, k2 = n * n;
-    struct glint_tall a = {0, k2, whole_row, p};
+    struct glint_tall a = {0, k2, read_complete_row, p};
     struct glint_terms terms;
 
     for (int some = 0; some < 2 && a.rows == 0; some++)
@@ -69,19 +73,19 @@ static bool begin(struct factors *p)
     if (!glint_terms_of(&a, p->fit->kernels, &terms))
         return false;
     for (int j = 0; j < terms.n; j++)
-        memcpy(kernel_of(p, j), terms.right + (size_t)j * (size_t)k2,
+        memcpy(get_kernel(p, j), terms.right + (size_t)j * (size_t)k2,
                (size_t)k2 * sizeof *terms.right);
     glint_terms_close(&terms);
     return true;
 }
 
-/* Cuts kernel J to its rank. */
-static void cut(const struct factors *p, int j)
+/* Truncates kernel J to its rank. */
+static void truncate_kernel(const struct factors *p, int j)
 {
     const int n = p->fit->kernel, rank = p->fit->rank;
-    double *h = kernel_of(p, j), *a = p->gram, *turn = p->gram + n * n;
-    double *column = term(p->column, j, (size_t)rank * (size_t)n);
-    double *row = term(p->row, j, (size_t)rank * (size_t)n);
+    double *h = get_kernel(p, j), *a = p->gram, *turn = p->gram + n * n;
+    double *column = get_term(p->column, j, (size_t)rank * (size_t)n);
+    double *row = get_term(p->row, j, (size_t)rank * (size_t)n);
 
     for (int u = 0; u < n; u++)
         for (int v = 0; v < n; v++) {
@@ -97,8 +101,8 @@ static void cut(const struct factors *p, int j)
 
         for (int v = 0; v < n; v++)
             length += a[q * n + v] * a[q * n + v];
-        root = sqrt(sqrt(length)); /* the length is split between both
-                                      factors */
+        /* distributes the length equally over both factors */
+        root = sqrt(sqrt(length));
         for (int v = 0; v < n && root > 0; v++) {
             column[q * n + v] = a[q * n + v] / root;
             row[q * n + v] = turn[q * n + v] * root;
@@ -109,9 +113,10 @@ static void cut(const struct factors *p, int j)
     }
 }
 
-/* Sets GRAM, [kernels][kernels], and SUMS of the kernels with the row of X. */
-static void equations(const struct factors *p, int x, double *gram,
-                      double *sums)
+/* Sets GRAM[kernels][kernels] and SUMS to the normal equations for the
+ * weights of texel X. */
+static void set_equations(const struct factors *p, int x, double *gram,
+                          double *sums)
 {
     const int n = p->fit->kernel, k = p->fit->kernels;
     const struct glint_scatter_inside in =
@@ -122,12 +127,12 @@ static void equations(const struct factors *p, int x, double *gram,
     memset(sums, 0, (size_t)k * sizeof *sums);
     for (int j = 0; j < k; j++)
         for (int v = in.v_from; v < in.v_to; v++) {
-            const double *h = kernel_of(p, j) + v * n;
+            const double *h = get_kernel(p, j) + v * n;
 
             for (int u = in.u_from; u < in.u_to; u++)
                 sums[j] += h[u] * (double)data[v * n + u];
             for (int i = 0; i <= j; i++) {
-                const double *other = kernel_of(p, i) + v * n;
+                const double *other = get_kernel(p, i) + v * n;
 
                 for (int u = in.u_from; u < in.u_to; u++)
                     gram[j * k + i] += h[u] * other[u];
@@ -135,30 +140,30 @@ static void equations(const struct factors *p, int x, double *gram,
         }
 }
 
-static void mirror(double *a, int n)
+static void mirror_triangle(double *a, int n)
 {
     for (int i = 0; i < n; i++)
         for (int k = 0; k < i; k++)
             a[k * n + i] = a[i * n + k];
 }
 
-/* Sets the weights by least squares for the current kernels. */
-static void set_weights(const struct factors *p)
+/* Fits the weights of all texels by least squares for the current kernels. */
+static void fit_weights(const struct factors *p)
 {
     double gram[GLINT_SCATTER_MAX_TERMS * GLINT_SCATTER_MAX_TERMS];
     double sums[GLINT_SCATTER_MAX_TERMS];
     const int k = p->fit->kernels;
 
     for (int x = 0; x < p->fit->side * p->fit->side; x++) {
-        equations(p, x, gram, sums);
-        mirror(gram, k);
+        set_equations(p, x, gram, sums);
+        mirror_triangle(gram, k);
         glint_solve(gram, k, sums);
         for (int j = 0; j < k; j++)
-            weights_of(p, j)[x] = sums[j];
+            get_weights(p, j)[x] = sums[j];
     }
 }
 
-/* Adds the row of X to the equations of its entries. */
+/* Adds the row of X to the normal equations of all kernel entries. */
 static void add_entries(const struct factors *p, int x)
 {
     const int n = p->fit->kernel, k = p->fit->kernels;
@@ -168,7 +173,7 @@ static void add_entries(const struct factors *p, int x)
     double f[GLINT_SCATTER_MAX_TERMS];
 
     for (int j = 0; j < k; j++)
-        f[j] = weights_of(p, j)[x];
+        f[j] = get_weights(p, j)[x];
     for (int v = in.v_from; v < in.v_to; v++)
         for (int d = v * n + in.u_from; d < v * n + in.u_to; d++) {
             double *gram = p->gram + (size_t)d * (size_t)(k * k);
@@ -181,8 +186,8 @@ static void add_entries(const struct factors *p, int x)
         }
 }
 
-/* Sets the kernels by least squares for the current weights. */
-static void set_kernels(const struct factors *p)
+/* Fits the kernels by least squares for the current weights. */
+static void fit_kernels(const struct factors *p)
 {
     const int k2 = glint_scatter_kernel2(p->fit->kernel), k = p->fit->kernels;
 
@@ -193,14 +198,15 @@ static void set_kernels(const struct factors *p)
     for (int d = 0; d < k2; d++) {
         double *gram = p->gram + (size_t)d * (size_t)(k * k);
 
-        mirror(gram, k);
+        mirror_triangle(gram, k);
         glint_solve(gram, k, p->side + d * k);
         for (int j = 0; j < k; j++)
-            kernel_of(p, j)[d] = p->side[d * k + j];
+            get_kernel(p, j)[d] = p->side[d * k + j];
     }
 }
 
-static enum glint_status run(struct factors *p, const struct glint_watch *watch)
+static enum glint_status fit_factors(struct factors *p,
+                                     const struct glint_watch *watch)
 {
     const size_t texels = (size_t)p->fit->side * (size_t)p->fit->side;
     const size_t k2 = (size_t)glint_scatter_kernel2(p->fit->kernel);
@@ -211,16 +217,16 @@ static enum glint_status run(struct factors *p, const struct glint_watch *watch)
         p->f = p->fit->f + (size_t)p->c * texels;
         p->column = p->fit->column + (size_t)p->c * line;
         p->row = p->fit->row + (size_t)p->c * line;
-        if (!begin(p))
+        if (!set_initial_kernels(p))
             return GLINT_E_MEMORY;
         for (int i = 0; i < ROUNDS; i++) {
             if (glint_watch_ends(watch, (p->c + (i + 1.0) / (ROUNDS + 1)) / 3))
                 return GLINT_E_CLOSED;
             if (i > 0)
-                set_kernels(p);
+                fit_kernels(p);
             for (int j = 0; j < p->fit->kernels; j++)
-                cut(p, j);
-            set_weights(p);
+                truncate_kernel(p, j);
+            fit_weights(p);
         }
     }
     return GLINT_OK;
@@ -242,11 +248,11 @@ enum glint_status glint_scatter_factors(const struct glint_scatter_rows *rows,
     fit->column = calloc(3 * k * line, sizeof *fit->column);
     fit->row = calloc(3 * k * line, sizeof *fit->row);
     p.whole = malloc(texels * sizeof *p.whole);
-    /* cut() has two kernels there */
+    /* truncate_kernel() stores two kernels there */
     p.gram = malloc(k2 * (k * k + k + 2) * sizeof *p.gram);
     p.side = p.gram + k2 * (k * k + 2);
     if (fit->h && fit->f && fit->column && fit->row && p.whole && p.gram)
-        status = run(&p, watch);
+        status = fit_factors(&p, watch);
     free(p.whole);
     free(p.gram);
     return status;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fits of rows, and how far they are from them.
+ * Fits models to the rows of a scattering matrix and measures their errors.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -21,17 +21,17 @@ void glint_scatter_fit_close(struct glint_scatter_fit *fit)
     memset(fit, 0, sizeof *fit);
 }
 
-/* Kernel J of channel C: [kernel * kernel]. */
-static const double *kernel_of(const struct glint_scatter_fit *fit, int j,
-                               int c)
+/* Returns kernel J of channel C, [kernel * kernel]. */
+static const double *get_kernel(const struct glint_scatter_fit *fit, int j,
+                                int c)
 {
     return fit->h +
            (size_t)(j * 3 + c) * (size_t)glint_scatter_kernel2(fit->kernel);
 }
 
-/* Returns the weight of kernel J in the light that leaves texel X. */
-static double weight_of(const struct glint_scatter_fit *fit, int j, int c,
-                        int x)
+/* Returns the factor of kernel J for light that leaves texel X. */
+static double get_weight(const struct glint_scatter_fit *fit, int j, int c,
+                         int x)
 {
     if (fit->model == GLINT_SCATTER_FACTORED && fit->f)
         return fit->f[(size_t)(j * 3 + c) * (size_t)(fit->side * fit->side) +
@@ -50,14 +50,14 @@ double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
     if (to < 0)
         return 0;
     for (int j = 0; j < fit->kernels; j++)
-        sum += weight_of(fit, j, c, to) * kernel_of(fit, j, c)[d];
+        sum += get_weight(fit, j, c, to) * get_kernel(fit, j, c)[d];
     return fit->in ? sum * fit->in[3 * x + c] : sum;
 }
 
 /* Returns the light that texel X receives from channel C of LIGHT through
  * kernel H, whose offsets lead to X. */
-static double gather(const struct glint_scatter_fit *fit, int x,
-                     const double *h, const double *light, int c)
+static double gather_light(const struct glint_scatter_fit *fit, int x,
+                           const double *h, const double *light, int c)
 {
     const int side = fit->side, n = fit->kernel, half = n / 2;
     const struct glint_scatter_inside in = glint_scatter_inside(side, n, x);
@@ -82,20 +82,21 @@ void glint_scatter_light(const struct glint_scatter_fit *fit,
             double sum = 0;
 
             for (int j = 0; j < fit->kernels; j++) {
-                const double weight = weight_of(fit, j, c, x);
+                const double weight = get_weight(fit, j, c, x);
 
                 if (weight != 0)
-                    sum += weight *
-                           gather(fit, x, kernel_of(fit, j, c), irradiance, c);
+                    sum += weight * gather_light(fit, x, get_kernel(fit, j, c),
+                                                 irradiance, c);
             }
             radiosity[3 * x + c] = sum;
         }
 }
 
-/* A ramp with a shadow's edge across it, and three lamps: sharp and wide. */
+/* Sets a test illumination: a ramp crossed by the edge of a shadow, and
+ * three lamps, small and large. */
 void glint_scatter_test_light(int side, double *irradiance)
 {
-    static const double lamp[3][4] = {/* position, radius, light */
+    static const double lamp[3][4] = {/* position x, y; radius; light */
                                       {0.3, 0.35, 0.03, 4},
                                       {0.7, 0.25, 0.12, 1.5},
                                       {0.55, 0.75, 0.008, 8}};
@@ -134,7 +135,7 @@ void glint_scatter_defaults(struct glint_scatter_options *options,
     };
 }
 
-/* Sums of the rows of the data. */
+/* Sets ALBEDO to the sums of the rows. */
 static void set_albedo(const struct glint_scatter_rows *rows, double *albedo)
 {
     const int k2 = glint_scatter_kernel2(rows->kernel);
@@ -150,8 +151,9 @@ static void set_albedo(const struct glint_scatter_rows *rows, double *albedo)
         }
 }
 
-/* Sets SUM to how much texel X shows of even light, by terms. */
-static double even_light(const struct glint_scatter_fit *fit, int x, int c)
+/* Returns the light that leaves texel X under uniform illumination 1. */
+static double compute_uniform_response(const struct glint_scatter_fit *fit,
+                                       int x, int c)
 {
     const int n = fit->kernel;
     const struct glint_scatter_inside in =
@@ -169,17 +171,17 @@ static double even_light(const struct glint_scatter_fit *fit, int x, int c)
     return sum;
 }
 
-/* Scales the light that leaves each texel so that under even light it equals
- * the data's albedo. */
-static void keep_albedo(struct glint_scatter_fit *fit)
+/* Scales the light that leaves each texel so that under uniform illumination
+ * it equals the albedo of the data. */
+static void scale_to_albedo(struct glint_scatter_fit *fit)
 {
     const int texels = fit->side * fit->side;
 
     for (int x = 0; x < texels; x++)
         for (int c = 0; c < 3; c++) {
-            const double sum = even_light(fit, x, c);
+            const double sum = compute_uniform_response(fit, x, c);
             const double want = fit->albedo[3 * x + c];
-            /* A fit with almost no light cannot be scaled. */
+            /* a fit with almost no light cannot be scaled */
             const double scale = sum > 0.1 * want && want > 0 ? want / sum : 1;
 
             for (int j = 0; fit->f && j < fit->kernels; j++)
@@ -190,7 +192,7 @@ static void keep_albedo(struct glint_scatter_fit *fit)
         }
 }
 
-static void reverse(double *a, int n)
+static void reverse_order(double *a, int n)
 {
     for (int i = 0; i < n / 2; i++) {
         const double x = a[i];
@@ -202,21 +204,21 @@ static void reverse(double *a, int n)
 
 /* Mirrors the kernels: offsets to the source of light become offsets to its
  * destination. */
-static void turn_kernels(struct glint_scatter_fit *fit)
+static void mirror_kernels(struct glint_scatter_fit *fit)
 {
     const int n = fit->kernel;
 
     for (int i = 0; i < 3 * fit->kernels; i++)
-        reverse(fit->h + (size_t)i * (size_t)(n * n), n * n);
+        reverse_order(fit->h + (size_t)i * (size_t)(n * n), n * n);
     for (int i = 0; fit->row && i < 3 * fit->kernels * fit->rank; i++) {
-        reverse(fit->column + (size_t)i * (size_t)n, n);
-        reverse(fit->row + (size_t)i * (size_t)n, n);
+        reverse_order(fit->column + (size_t)i * (size_t)n, n);
+        reverse_order(fit->row + (size_t)i * (size_t)n, n);
     }
 }
 
-/* Fraction of kernel H that is inside the square from texel X. */
-static double share_inside(const struct glint_scatter_fit *fit, int x,
-                           const double *h)
+/* Returns the sum of the entries of kernel H inside the square, for texel X. */
+static double sum_inside(const struct glint_scatter_fit *fit, int x,
+                         const double *h)
 {
     const int n = fit->kernel;
     const struct glint_scatter_inside in =
@@ -229,11 +231,11 @@ static double share_inside(const struct glint_scatter_fit *fit, int x,
     return sum;
 }
 
-/* Sets H to the mean of the rows of channel C, each as much as OUT has of it.
- * SQUARE is scratch. */
-static void set_mean(const struct glint_scatter_rows *rows,
-                     const struct glint_scatter_fit *fit, int c, double *h,
-                     double *square)
+/* Sets H to the mean of the rows of channel C, weighted by OUT, normalised
+ * to the sum 1. SQUARE is scratch. */
+static void set_mean_kernel(const struct glint_scatter_rows *rows,
+                            const struct glint_scatter_fit *fit, int c,
+                            double *h, double *square)
 {
     const int side = fit->side, n = fit->kernel, k2 = n * n;
     double sum = 0;
@@ -259,9 +261,10 @@ static void set_mean(const struct glint_scatter_rows *rows,
         h[d] /= sum;
 }
 
-/* The square contains only a part of the rows at the rim: their full scatter
- * follows from h, and h from their scatter. */
-static enum glint_status albedo_fit(const struct glint_scatter_rows *rows,
+/* Fits one kernel h and the albedo. Rows at the rim are only partly inside
+ * the square; their complete sums follow from h, and h from these sums, so
+ * both are iterated. */
+static enum glint_status fit_albedo(const struct glint_scatter_rows *rows,
                                     struct glint_scatter_fit *fit)
 {
     const int n = 3 * fit->side * fit->side;
@@ -277,10 +280,10 @@ static enum glint_status albedo_fit(const struct glint_scatter_rows *rows,
     memcpy(fit->out, fit->albedo, (size_t)n * sizeof *fit->out);
     for (int i = 0; i < RIM_ROUNDS; i++) {
         for (int c = 0; c < 3; c++)
-            set_mean(rows, fit, c, fit->h + (size_t)c * k2, square);
+            set_mean_kernel(rows, fit, c, fit->h + (size_t)c * k2, square);
         for (int x = 0; x < n; x++) {
             const double share =
-                share_inside(fit, x / 3, fit->h + (size_t)(x % 3) * k2);
+                sum_inside(fit, x / 3, fit->h + (size_t)(x % 3) * k2);
 
             fit->out[x] = share > 0 ? fit->albedo[x] / share : 0;
         }
@@ -289,13 +292,13 @@ static enum glint_status albedo_fit(const struct glint_scatter_rows *rows,
     return GLINT_OK;
 }
 
-static double decibels(double square, double peak)
+static double compute_psnr_db(double square, double peak)
 {
     return square > 0 && peak > 0 ? 10 * log10(peak * peak / square)
                                   : NO_ERROR_DB;
 }
 
-/* Errors of entries, and of sums of rows. */
+/* Measures the errors of entries and of row sums. */
 static void measure_entries(const struct glint_scatter_rows *rows,
                             struct glint_scatter_fit *fit)
 {
@@ -319,11 +322,11 @@ static void measure_entries(const struct glint_scatter_rows *rows,
         }
     square /= 3.0 * fit->side * fit->side * k2;
     fit->error.rmse = peak > 0 ? sqrt(square) / peak : 0;
-    fit->error.entry_db = decibels(square, peak);
+    fit->error.entry_db = compute_psnr_db(square, peak);
 }
 
-static enum glint_status measure(const struct glint_scatter_rows *rows,
-                                 struct glint_scatter_fit *fit)
+static enum glint_status measure_errors(const struct glint_scatter_rows *rows,
+                                        struct glint_scatter_fit *fit)
 {
     const int n = 3 * fit->side * fit->side;
     double *light = malloc(3 * (size_t)n * sizeof *light);
@@ -341,7 +344,7 @@ static enum glint_status measure(const struct glint_scatter_rows *rows,
         square += (got[i] - want[i]) * (got[i] - want[i]) / n;
         peak = fmax(peak, want[i]);
     }
-    fit->error.light_db = decibels(square, peak);
+    fit->error.light_db = compute_psnr_db(square, peak);
     free(light);
     return GLINT_OK;
 }
@@ -366,7 +369,7 @@ static enum glint_status fit_model(const struct glint_scatter_rows *rows,
         return glint_scatter_factors(rows, watch, fit);
     case GLINT_SCATTER_ALBEDO:
     default:
-        return albedo_fit(rows, fit);
+        return fit_albedo(rows, fit);
     }
 }
 
@@ -389,16 +392,17 @@ enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
     fit->albedo = calloc(3 * texels, sizeof *fit->albedo);
     status = fit->albedo ? GLINT_OK : GLINT_E_MEMORY;
     if (status == GLINT_OK) {
-        /* What a person sees is where light leaves. */
+        /* Fits the transposed rows, as errors are visible where light
+         * leaves. */
         glint_scatter_turn(rows);
         set_albedo(rows, fit->albedo);
         status = fit_model(rows, watch, fit);
         glint_scatter_turn(rows);
     }
     if (status == GLINT_OK) {
-        turn_kernels(fit);
-        keep_albedo(fit);
-        status = measure(rows, fit);
+        mirror_kernels(fit);
+        scale_to_albedo(fit);
+        status = measure_errors(rows, fit);
     }
     if (status != GLINT_OK)
         glint_scatter_fit_close(fit);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the run time makes of a light, for those who compare. */
+ * Scatters light with the integer code of the run time, for comparison with
+ * fits in doubles.
+ */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,7 +11,7 @@
 
 enum { CHANNELS = 3, FULL = 32767 };
 
-/* Sets the light of SPREAD; returns how much 1 is of it. */
+/* Sets the light of S. Returns the integer that stands for irradiance 1. */
 static double set_light(const struct glint_spread *s, const double *irradiance)
 {
     const size_t n = (size_t)s->width * (size_t)s->height;

@@ -9,17 +9,20 @@
 #include "glint/scene/translucent_bake.h"
 
 enum {
-    SPARE = 8, /* extra vectors, which make the error of the last wanted vector
-                  fall faster */
+    SPARE = 8, /* number of additional vectors, which accelerate the convergence
+                  of the last wanted one */
     ROUNDS = 300,
     SWEEPS = 60
 };
 
-#define SAME    1e-15 /* cosine of columns that count as orthogonal */
-#define NOTHING 1e-13 /* shorter vectors, relative to before, count as 0 */
-#define STILL   1e-15 /* relative change of a sum at which iteration stops */
+/* cosine below which columns count as orthogonal */
+#define SAME 1e-15
+/* ratio to the previous length below which vectors count as 0 */
+#define NOTHING 1e-13
+/* relative change of the sum of eigenvalues at which iteration stops */
+#define STILL 1e-15
 
-static double dot(const double *a, const double *b, int n)
+static double compute_dot(const double *a, const double *b, int n)
 {
     double sum = 0;
 
@@ -48,12 +51,14 @@ static void swap_rows(double *a, double *b, int n)
     }
 }
 
-/* Returns true if columns I, K were not at right angles. */
-static bool turn_pair(double *a, int rows, int i, int k, double *turn, int m)
+/* Jacobi rotation: makes columns I and K orthogonal. Returns false if they
+ * were orthogonal already. */
+static bool orthogonalise_columns(double *a, int rows, int i, int k,
+                                  double *turn, int m)
 {
     double *x = a + (size_t)i * (size_t)rows, *y = a + (size_t)k * (size_t)rows;
-    const double xx = dot(x, x, rows), yy = dot(y, y, rows);
-    const double xy = dot(x, y, rows);
+    const double xx = compute_dot(x, x, rows), yy = compute_dot(y, y, rows);
+    const double xy = compute_dot(x, y, rows);
     double ratio, t, cosine;
 
     if (yy > xx) {
@@ -82,7 +87,7 @@ void glint_jacobi(double *a, int rows, int n, double *turn, int m)
         turned = false;
         for (int i = 0; i < n; i++)
             for (int k = i + 1; k < n; k++)
-                turned |= turn_pair(a, rows, i, k, turn, m);
+                turned |= orthogonalise_columns(a, rows, i, k, turn, m);
     }
 }
 
@@ -92,7 +97,8 @@ void glint_solve(double *a, int n, double *b)
 
     for (int i = 0; i < n; i++)
         most = fmax(most, a[i * n + i]);
-    for (int i = 0; i < n; i++) { /* A = L D L', D on its diagonal */
+    /* factorises A = L D L', with D on the diagonal */
+    for (int i = 0; i < n; i++) {
         double *row = a + (size_t)i * (size_t)n;
 
         for (int k = 0; k <= i; k++) {
@@ -104,7 +110,7 @@ void glint_solve(double *a, int n, double *b)
                 row[k] = other[k] > 0 ? row[k] / other[k] : 0;
         }
         row[i] = row[i] > NOTHING * most ? row[i] : 0;
-        b[i] -= dot(row, b, i);
+        b[i] -= compute_dot(row, b, i);
     }
     for (int i = n - 1; i >= 0; i--) {
         b[i] = a[i * n + i] > 0 ? b[i] / a[i * n + i] : 0;
@@ -115,30 +121,31 @@ void glint_solve(double *a, int n, double *b)
     }
 }
 
-/* Makes N rows of V orthonormal; rows that depend on earlier rows become 0. */
-static void orthonormal(double *v, int n, int m)
+/* Orthonormalises N rows of V; rows that depend on earlier rows become 0. */
+static void orthonormalise(double *v, int n, int m)
 {
     for (int i = 0; i < n; i++) {
         double *x = v + (size_t)i * (size_t)m;
-        const double before = sqrt(dot(x, x, m));
+        const double before = sqrt(compute_dot(x, x, m));
         double length;
 
         for (int twice = 0; twice < 2; twice++)
             for (int k = 0; k < i; k++) {
                 const double *y = v + (size_t)k * (size_t)m;
-                const double share = dot(x, y, m);
+                const double share = compute_dot(x, y, m);
 
                 for (int j = 0; j < m; j++)
                     x[j] -= share * y[j];
             }
-        length = sqrt(dot(x, x, m));
+        length = sqrt(compute_dot(x, x, m));
         for (int j = 0; j < m; j++)
             x[j] = length > NOTHING * before ? x[j] / length : 0;
     }
 }
 
-/* Sets TO[n][m] to V[n][m] times symmetric G[m][m]. */
-static void times(const double *g, const double *v, int n, int m, double *to)
+/* Sets TO[n][m] to V[n][m] times the symmetric G[m][m]. */
+static void multiply_symmetric(const double *g, const double *v, int n, int m,
+                               double *to)
 {
     memset(to, 0, (size_t)n * (size_t)m * sizeof *to);
     for (int j = 0; j < m; j++)
@@ -152,10 +159,10 @@ static void times(const double *g, const double *v, int n, int m, double *to)
         }
 }
 
-/* Sets V[n][m] to a basis of the space of the N largest eigenvalues of G; only
- * the first WANTED vectors need to converge. */
-static void subspace(const double *g, int m, double *v, int n, int wanted,
-                     double *scratch)
+/* Sets V[n][m] to a basis of the eigenspace of the N largest eigenvalues of
+ * G, by subspace iteration. Only the first WANTED vectors need to converge. */
+static void find_subspace(const double *g, int m, double *v, int n, int wanted,
+                          double *scratch)
 {
     uint32_t seed = 1;
     double before = -1;
@@ -164,24 +171,24 @@ static void subspace(const double *g, int m, double *v, int n, int wanted,
         seed = seed * UINT32_C(1664525) + UINT32_C(1013904223);
         v[i] = (double)seed / 2147483648.0 - 1;
     }
-    orthonormal(v, n, m);
+    orthonormalise(v, n, m);
     for (int round = 0; round < ROUNDS; round++) {
         double sum = 0;
 
-        times(g, v, n, m, scratch);
+        multiply_symmetric(g, v, n, m, scratch);
         for (int i = 0; i < wanted; i++)
-            sum += dot(v + (size_t)i * (size_t)m,
-                       scratch + (size_t)i * (size_t)m, m);
+            sum += compute_dot(v + (size_t)i * (size_t)m,
+                               scratch + (size_t)i * (size_t)m, m);
         memcpy(v, scratch, (size_t)n * (size_t)m * sizeof *v);
-        orthonormal(v, n, m);
+        orthonormalise(v, n, m);
         if (fabs(sum - before) <= STILL * sum)
             return;
         before = sum;
     }
 }
 
-/* Sets G to the products of all columns; ROW is scratch. */
-static void gram(const struct glint_tall *a, double *g, double *row)
+/* Sets G to the dot products of all pairs of columns. ROW is scratch. */
+static void compute_gram(const struct glint_tall *a, double *g, double *row)
 {
     const int m = a->columns;
 
@@ -202,16 +209,16 @@ static void gram(const struct glint_tall *a, double *g, double *row)
             g[j * m + k] = g[k * m + j];
 }
 
-/* Moves the N leading terms of Y[][rows], whose rows must be orthogonal, and of
- * V[][columns] into TERMS. */
-static void take_terms(const double *y, const double *v,
-                       const struct glint_tall *a, struct glint_terms *terms)
+/* Writes the N leading terms of Y[][rows], whose rows must be orthogonal,
+ * and of V[][columns] to TERMS. */
+static void set_terms(const double *y, const double *v,
+                      const struct glint_tall *a, struct glint_terms *terms)
 {
     for (int i = 0; i < terms->n; i++) {
         const double *from = y + (size_t)i * (size_t)a->rows;
         double *left = terms->left + (size_t)i * (size_t)a->rows;
 
-        terms->value[i] = sqrt(dot(from, from, a->rows));
+        terms->value[i] = sqrt(compute_dot(from, from, a->rows));
         for (int x = 0; x < a->rows; x++)
             left[x] = terms->value[i] > 0 ? from[x] / terms->value[i] : 0;
         memcpy(terms->right + (size_t)i * (size_t)a->columns,
@@ -239,16 +246,16 @@ bool glint_terms_of(const struct glint_tall *a, int n,
     good = g && v && y && terms->value && terms->left && terms->right;
     if (good) {
         row = g + columns * columns;
-        gram(a, g, row);
-        subspace(g, m, v, wide, wanted, v + (size_t)wide * columns);
+        compute_gram(a, g, row);
+        find_subspace(g, m, v, wide, wanted, v + (size_t)wide * columns);
         for (int x = 0; x < a->rows; x++) {
             a->row(a->ctx, x, row);
             for (int i = 0; i < wide; i++)
                 y[(size_t)i * rows + (size_t)x] =
-                    dot(row, v + (size_t)i * columns, m);
+                    compute_dot(row, v + (size_t)i * columns, m);
         }
         glint_jacobi(y, a->rows, wide, v, m);
-        take_terms(y, v, a, terms);
+        set_terms(y, v, a, terms);
     } else {
         glint_terms_close(terms);
     }
@@ -272,23 +279,23 @@ void glint_terms_close(struct glint_terms *terms)
 enum { MOST = GLINT_SCATTER_MAX_KERNEL, FEW_SWEEPS = 30 };
 
 /* Correlation of the light on neighbouring texels. From .5 to .99 the PSNR
- * under lamps is the same within .3 dB; at 0 it is 1 to 10 dB lower. */
+ * under lamps differs by less than .3 dB; at 0 it is 1 to 10 dB lower. */
 static const double correlation = 0.8;
 
-/* Transposed: A[i] and V[i] are columns. V begins as the unit matrix; A = K V
- * at all times. */
+/* State of a singular value decomposition. Transposed: A[i] and V[i] are
+ * columns. V is initially the unit matrix; A = K V holds at all times. */
 struct work {
     int n;
     double a[MOST][MOST], v[MOST][MOST];
 };
 
-/* Rotates columns I and J until they are orthogonal (a Jacobi step). Returns 0
- * if they were orthogonal before, else 1. */
-static int part(struct work *w, int i, int j)
+/* Jacobi rotation: makes columns I and J orthogonal. Returns 0 if they were
+ * orthogonal already, else 1. */
+static int separate_columns(struct work *w, int i, int j)
 {
-    const double p = dot(w->a[i], w->a[i], w->n);
-    const double q = dot(w->a[j], w->a[j], w->n);
-    const double r = dot(w->a[i], w->a[j], w->n);
+    const double p = compute_dot(w->a[i], w->a[i], w->n);
+    const double q = compute_dot(w->a[j], w->a[j], w->n);
+    const double r = compute_dot(w->a[i], w->a[j], w->n);
     double zeta, tangent, cosine;
 
     if (!(fabs(r) > 1e-15 * sqrt(p * q)))
@@ -301,9 +308,9 @@ static int part(struct work *w, int i, int j)
     return 1;
 }
 
-/* Sets every STEP-th number of X[N] to L' X, where L L' = C is the correlation
- * of light, which falls by the same fraction from texel to texel. */
-static void weigh(double *x, int n, int step)
+/* Multiplies every STEP-th number of X[N] by L', where L L' = C is the
+ * correlation matrix of light, which decreases by the same factor per texel. */
+static void weigh_by_correlation(double *x, int n, int step)
 {
     const double own = sqrt(1 - correlation * correlation);
     double sum = 0;
@@ -314,8 +321,8 @@ static void weigh(double *x, int n, int step)
     }
 }
 
-/* Undoes that. */
-static void unweigh(double *x, int n)
+/* Inverts weigh_by_correlation(). */
+static void unweigh_by_correlation(double *x, int n)
 {
     const double own = sqrt(1 - correlation * correlation);
 
@@ -334,15 +341,15 @@ static void decompose(struct work *w, const double *kernel)
         w->v[i][i] = 1;
         for (int k = 0; k < w->n; k++)
             w->a[i][k] = kernel[k * w->n + i];
-        weigh(w->a[i], w->n, 1);
+        weigh_by_correlation(w->a[i], w->n, 1);
     }
     for (int k = 0; k < w->n; k++)
-        weigh(&w->a[0][k], w->n, MOST);
+        weigh_by_correlation(&w->a[0][k], w->n, MOST);
     for (int sweep = 0; any && sweep < FEW_SWEEPS; sweep++) {
         any = 0;
         for (int i = 0; i < w->n; i++)
             for (int j = i + 1; j < w->n; j++)
-                any |= part(w, i, j);
+                any |= separate_columns(w, i, j);
     }
 }
 
@@ -356,7 +363,7 @@ void glint_separate(const double *kernel, int n, int rank,
     decompose(&w, kernel);
     to->all = 0;
     for (int i = 0; i < n; i++) {
-        square[i] = dot(w.a[i], w.a[i], n);
+        square[i] = compute_dot(w.a[i], w.a[i], n);
         to->all += square[i];
     }
     to->lost = to->all;
@@ -373,8 +380,8 @@ void glint_separate(const double *kernel, int n, int rank,
             to->column[r * n + k] = w.a[best][k];
             to->row[r * n + k] = w.v[best][k];
         }
-        unweigh(to->column + r * n, n);
-        unweigh(to->row + r * n, n);
+        unweigh_by_correlation(to->column + r * n, n);
+        unweigh_by_correlation(to->row + r * n, n);
         to->lost -= square[best];
         square[best] = 0;
     }

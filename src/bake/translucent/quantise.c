@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * A fit in doubles becomes a baked translucent medium: codes, taps, shifts and
- * gains.
+ * Converts a fit in doubles to a baked translucent medium: codes, filter taps,
+ * shifts and gains.
  *
- * Of a plane with the largest factor F, f = F code, and rows r and columns k of
- * one of its ranks, the integers make
+ * For a plane with the largest factor F, f = F code, and rows r and columns k
+ * of one of its ranks, the run time computes
  *
- *     light -> row taps, over 2^shift -> column taps -> code -> gain
+ *     light -> row taps / 2^shift -> column taps -> code -> gain
  *
- * Rows have taps R r, as many bits as they may have; columns V w, w = k F
- * 2^shift / R, with one V for all of a channel, as their sums are added up. The
- * gain is 1 / V. */
+ * Row taps are R r, with as many bits as possible. Column taps are V w, w = k F
+ * 2^shift / R, with one V for all kernels of a channel, as their sums are
+ * added. The gain is 1 / V.
+ */
 #include "glint/scene/stone_bake.h"
 
 #include <math.h>
@@ -31,21 +32,20 @@ struct writer {
     struct glint_draft draft;
     struct glint_translucent_header header;
     int rank, texels;
-    double *column, *row; /* [kernels][3][rank][kernel] */
-    double *largest;      /* [3][kernels] of factors */
-    double in[CHANNELS];  /* max of the light that gets in if clustered, else
-                             1 */
+    double *column, *row;       /* [kernels][3][rank][kernel] */
+    double *largest; /* [3][kernels]: largest factor of each plane */
+    double in[CHANNELS];        /* max of the in factors if clustered, else 1 */
 };
 
 /* ----------------------------------------------------------------- kernels */
 
-static size_t kernel_at(int p, int c)
+static size_t kernel_index(int p, int c)
 {
     return (size_t)p * CHANNELS + (size_t)c;
 }
 
 /* Sets rows and columns of all kernels. */
-static bool separate(struct writer *w)
+static bool separate_kernels(struct writer *w)
 {
     const struct glint_scatter_fit *fit = w->fit;
     const size_t k = (size_t)fit->kernel, n = (size_t)fit->kernels * CHANNELS;
@@ -76,22 +76,22 @@ static bool separate(struct writer *w)
 
 /* ------------------------------------------------------------------- codes */
 
-/* Returns factor of texel X in plane P, channel C. */
-static double factor_of(const struct writer *w, int p, int c, int x)
+/* Returns the factor of texel X in plane P, channel C. */
+static double get_factor(const struct writer *w, int p, int c, int x)
 {
     const struct glint_scatter_fit *fit = w->fit;
 
     if (fit->model == GLINT_SCATTER_FACTORED)
-        return fit->f[kernel_at(p, c) * (size_t)w->texels + (size_t)x];
+        return fit->f[kernel_index(p, c) * (size_t)w->texels + (size_t)x];
     if (fit->cluster && fit->cluster[x] != p)
         return 0;
     return fit->out[CHANNELS * (size_t)x + (size_t)c];
 }
 
-/* Appends N codes of BITS bits without the sign; VALUE[i] = MOST becomes the
+/* Appends N codes of BITS bits without sign; VALUE[i] = MOST becomes the
  * largest code. */
-static bool put_codes(struct writer *w, const double *value, int n, double most,
-                      int bits)
+static bool append_codes(struct writer *w, const double *value, int n,
+                         double most, int bits)
 {
     const double full = most > 0 ? (double)((1L << bits) - 1) / most : 0;
     uint8_t *code = malloc((size_t)n);
@@ -104,9 +104,9 @@ static bool put_codes(struct writer *w, const double *value, int n, double most,
     return code != NULL;
 }
 
-/* Writes the factors of channel C; with clusters each texel has the factor of
- * its cluster. */
-static bool put_factors(struct writer *w, int c, double *value)
+/* Writes the factors of channel C. With clusters each texel has the factor
+ * of its cluster. */
+static bool append_factors(struct writer *w, int c, double *value)
 {
     const bool is_factored = w->fit->model == GLINT_SCATTER_FACTORED;
     const int bits = GLINT_TRANSLUCENT_CODE_BITS - is_factored;
@@ -114,11 +114,11 @@ static bool put_factors(struct writer *w, int c, double *value)
 
     for (int p = 0; p < w->fit->kernels; p++) {
         for (int x = 0; x < w->texels; x++) {
-            value[x] = factor_of(w, p, c, x);
+            value[x] = get_factor(w, p, c, x);
             most[p] = fmax(most[p], fabs(value[x]));
         }
         w->largest[c * w->fit->kernels + p] = most[p];
-        if (is_factored && !put_codes(w, value, w->texels, most[p], bits))
+        if (is_factored && !append_codes(w, value, w->texels, most[p], bits))
             return false;
     }
     if (is_factored)
@@ -126,12 +126,12 @@ static bool put_factors(struct writer *w, int c, double *value)
     for (int x = 0; x < w->texels; x++) {
         const int p = w->fit->cluster ? w->fit->cluster[x] : 0;
 
-        value[x] = most[p] > 0 ? factor_of(w, p, c, x) / most[p] : 0;
+        value[x] = most[p] > 0 ? get_factor(w, p, c, x) / most[p] : 0;
     }
-    return put_codes(w, value, w->texels, 1, bits);
+    return append_codes(w, value, w->texels, 1, bits);
 }
 
-static bool put_in(struct writer *w, int c, double *value)
+static bool append_in_factors(struct writer *w, int c, double *value)
 {
     double most = 0;
 
@@ -141,7 +141,7 @@ static bool put_in(struct writer *w, int c, double *value)
     }
     w->in[c] = most * ldexp(1, GLINT_TRANSLUCENT_CODE_BITS) /
                ((1 << GLINT_TRANSLUCENT_CODE_BITS) - 1);
-    return put_codes(w, value, w->texels, most, GLINT_TRANSLUCENT_CODE_BITS);
+    return append_codes(w, value, w->texels, most, GLINT_TRANSLUCENT_CODE_BITS);
 }
 
 static bool write_codes(struct writer *w)
@@ -151,11 +151,11 @@ static bool write_codes(struct writer *w)
 
     w->header.code_at = (uint32_t)w->draft.bytes;
     for (int c = 0; good && c < CHANNELS; c++)
-        good = put_factors(w, c, value);
+        good = append_factors(w, c, value);
     for (int c = 0; good && c < CHANNELS; c++) {
         w->in[c] = 1;
         if (w->fit->model == GLINT_SCATTER_CLUSTERED)
-            good = put_in(w, c, value);
+            good = append_in_factors(w, c, value);
     }
     free(value);
     if (w->fit->model == GLINT_SCATTER_CLUSTERED)
@@ -166,7 +166,7 @@ static bool write_codes(struct writer *w)
 
 /* -------------------------------------------------------------------- taps */
 
-static double largest(const double *x, int n)
+static double find_max_magnitude(const double *x, int n)
 {
     double most = 0;
 
@@ -175,7 +175,7 @@ static double largest(const double *x, int n)
     return most;
 }
 
-static double sum(const double *x, int n)
+static double sum_magnitudes(const double *x, int n)
 {
     double all = 0;
 
@@ -184,10 +184,10 @@ static double sum(const double *x, int n)
     return all;
 }
 
-/* Returns the largest factor for N taps, with max MOST and sum ALL, such that
- * the rounded taps sum to at most GLINT_TRANSLUCENT_MOST_TAPS. Returns 0 if all
- * taps are 0. */
-static double scale_of(double most, double all, int n)
+/* Returns the largest factor for N taps, with max magnitude MOST and sum of
+ * magnitudes ALL, such that the rounded taps sum to at most
+ * GLINT_TRANSLUCENT_MOST_TAPS. Returns 0 if all taps are 0. */
+static double choose_scale(double most, double all, int n)
 {
     const double tap = (1 << (GLINT_TRANSLUCENT_TAP_BITS - 1)) - 1;
 
@@ -196,7 +196,7 @@ static double scale_of(double most, double all, int n)
                     : 0;
 }
 
-/* Rounds TAP[N] times SCALE; returns the sum of their magnitudes. */
+/* Rounds TAP[N] times SCALE. Returns the sum of their magnitudes. */
 static long round_taps(const double *tap, int n, double scale, int16_t *to)
 {
     long all = 0;
@@ -208,7 +208,7 @@ static long round_taps(const double *tap, int n, double scale, int16_t *to)
     return all;
 }
 
-/* Sets the taps TO[kernels][rank][2][kernel] and shifts of channel C. */
+/* Sets the taps TO[kernels][rank][2][kernel] and the shifts of channel C. */
 static bool set_taps(struct writer *w, int c, int16_t *to, uint32_t *shift)
 {
     const struct glint_scatter_fit *fit = w->fit;
@@ -218,26 +218,27 @@ static bool set_taps(struct writer *w, int c, int16_t *to, uint32_t *shift)
     double most = 0, all = 0, scale;
 
     for (int i = 0; i < n; i++) {
-        const size_t at = (kernel_at(i / w->rank, c) * (size_t)w->rank +
+        const size_t at = (kernel_index(i / w->rank, c) * (size_t)w->rank +
                            (size_t)(i % w->rank)) *
                           (size_t)k;
         const double *row = w->row + at;
         double *column = w->column + at;
         const double factor = w->largest[c * fit->kernels + i / w->rank] *
                               ldexp(1, bits) / (double)((1L << bits) - 1);
-        const double rows = scale_of(largest(row, k), sum(row, k), k);
+        const double rows =
+            choose_scale(find_max_magnitude(row, k), sum_magnitudes(row, k), k);
         const long taps = round_taps(row, k, rows, to + 2 * (ptrdiff_t)i * k);
 
         while (1L << shift[i] < taps)
             shift[i]++;
         for (int j = 0; j < k; j++)
             column[j] *= rows > 0 ? factor * ldexp(1, (int)shift[i]) / rows : 0;
-        most = fmax(most, largest(column, k));
-        all += sum(column, k);
+        most = fmax(most, find_max_magnitude(column, k));
+        all += sum_magnitudes(column, k);
     }
-    scale = scale_of(most, all, n * k);
+    scale = choose_scale(most, all, n * k);
     for (int i = 0; i < n; i++)
-        round_taps(w->column + (kernel_at(i / w->rank, c) * (size_t)w->rank +
+        round_taps(w->column + (kernel_index(i / w->rank, c) * (size_t)w->rank +
                                 (size_t)(i % w->rank)) *
                                    (size_t)k,
                    k, scale, to + (2 * (ptrdiff_t)i + 1) * k);
@@ -275,9 +276,9 @@ static bool write_taps(struct writer *w)
 
 /* ----------------------------------------------------------------- surface */
 
-/* Returns the fraction of light that passes a surface of INDEX: unpolarised, as
- * Fresnel has it. */
-static double transmit(double index, double cosine)
+/* Returns the fraction of unpolarised light that a surface of INDEX
+ * transmits (Fresnel). */
+static double compute_transmittance(double index, double cosine)
 {
     const double g = sqrt(index * index - 1 + cosine * cosine);
     const double across = (cosine - g) / (cosine + g);
@@ -296,11 +297,13 @@ static void write_surface(struct writer *w)
     double mean = 0;
 
     for (int i = 0; i <= N; i++)
-        table_q15[i] = (uint16_t)lrint(
-            0x1p15 * transmit(w->text->stone.index, (double)i / N));
+        table_q15[i] =
+            (uint16_t)lrint(0x1p15 * compute_transmittance(w->text->stone.index,
+                                                           (double)i / N));
     for (int i = 0; i < FINE; i++)
         mean += 2 * (i + .5) / FINE *
-                transmit(w->text->stone.index, (i + .5) / FINE) / FINE;
+                compute_transmittance(w->text->stone.index, (i + .5) / FINE) /
+                FINE;
     w->header.transmit_at =
         glint_draft_put(&w->draft, table_q15, sizeof table_q15);
     w->header.mean_transmit_q15 = (int32_t)lrint(0x1p15 * mean);
@@ -373,7 +376,7 @@ enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
         return GLINT_E_ARGUMENT;
     w.largest = malloc(CHANNELS * (size_t)fit->kernels * sizeof *w.largest);
     glint_draft_put(&w.draft, NULL, sizeof w.header);
-    good = w.largest && set_header(&w, name, key) && separate(&w) &&
+    good = w.largest && set_header(&w, name, key) && separate_kernels(&w) &&
            write_codes(&w) && write_taps(&w);
     write_surface(&w);
     free(w.column);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of a translucent medium: their memory, measured ones, what they make of
- * light.
+ * Rows of a scattering matrix: allocation, import of measured rows, scattering
+ * of light.
  */
 #include "bake/translucent/rows.h"
 
@@ -33,12 +33,12 @@ void glint_scatter_close(struct glint_scatter_rows *rows)
     memset(rows, 0, sizeof *rows);
 }
 
-static int least(int a, int b)
+static int min_int(int a, int b)
 {
     return a < b ? a : b;
 }
 
-static int most(int a, int b)
+static int max_int(int a, int b)
 {
     return a > b ? a : b;
 }
@@ -48,10 +48,10 @@ struct glint_scatter_inside glint_scatter_inside(int side, int kernel, int x)
     const int half = kernel / 2, i = x % side, j = x / side;
 
     return (struct glint_scatter_inside){
-        .u_from = most(0, half - i),
-        .u_to = least(kernel, side + half - i),
-        .v_from = most(0, half - j),
-        .v_to = least(kernel, side + half - j),
+        .u_from = max_int(0, half - i),
+        .u_to = min_int(kernel, side + half - i),
+        .v_from = max_int(0, half - j),
+        .v_to = min_int(kernel, side + half - j),
     };
 }
 
@@ -91,7 +91,7 @@ bool glint_watch_ends(const struct glint_watch *watch, double done)
     return watch->stop && watch->stop(watch->ctx);
 }
 
-static void part_progress(void *ctx, double done)
+static void report_part_progress(void *ctx, double done)
 {
     const struct glint_watch_part *part = ctx;
 
@@ -100,7 +100,7 @@ static void part_progress(void *ctx, double done)
                               part->from + done * part->length);
 }
 
-static bool part_stop(void *ctx)
+static bool is_part_stopped(void *ctx)
 {
     const struct glint_watch_part *part = ctx;
 
@@ -110,11 +110,11 @@ static bool part_stop(void *ctx)
 
 struct glint_watch glint_watch_of(struct glint_watch_part *part)
 {
-    return (struct glint_watch){part_progress, part_stop, part};
+    return (struct glint_watch){report_part_progress, is_part_stopped, part};
 }
 
-/* Sets the row of texel X from its tile of PICTURE; returns how many invalid
- * numbers were set to 0. */
+/* Sets the row of texel X from its tile of PICTURE. Returns the number of
+ * invalid values that were replaced by 0. */
 static long long read_row(const struct glint_float_image *picture,
                           const struct glint_scatter_rows *rows, int x)
 {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shared by all that work on rows: places of entries, progress. */
+ * Shared by all code that works on rows of a scattering matrix: indices of
+ * entries, progress.
+ */
 #ifndef GLINT_BAKE_TRANSLUCENT_ROWS_H
 #define GLINT_BAKE_TRANSLUCENT_ROWS_H
 
@@ -9,13 +11,13 @@
 
 #include "glint/scene/translucent_bake.h"
 
-/* Entries of a kernel. */
+/* Returns the number of entries of a kernel. */
 static inline int glint_scatter_kernel2(int kernel)
 {
     return kernel * kernel;
 }
 
-/* Row of texel X, channel C: [kernel * kernel]. */
+/* Returns the row of texel X, channel C: [kernel * kernel]. */
 static inline float *glint_scatter_row(const struct glint_scatter_rows *rows,
                                        int x, int c)
 {
@@ -24,17 +26,21 @@ static inline float *glint_scatter_row(const struct glint_scatter_rows *rows,
     return rows->r + ((size_t)x * 3 + (size_t)c) * k2;
 }
 
-/* The offsets of a kernel that stay within the square from texel X. */
+/* Range of the offsets of a kernel around texel X that stay inside the
+ * square. */
 struct glint_scatter_inside {
-    int u_from, u_to, v_from, v_to; /* the _to members are one past the last */
+    /* one past the last offset in the _to members */
+    int u_from, u_to, v_from, v_to;
 };
 struct glint_scatter_inside glint_scatter_inside(int side, int kernel, int x);
 
-/* Index of the texel that entry D of texel X leads to, or -1. */
+/* Returns the index of the texel that entry D of texel X leads to; -1 if it
+ * is outside the square. */
 int glint_scatter_target(int side, int kernel, int x, int d);
 
-/* Allocates ROWS for SIDE and KERNEL, all 0, with shares if SHARED. Returns
- * false if there is no memory; ROWS is then empty. */
+/* Allocates ROWS for SIDE and KERNEL, initialised with 0, with fractions of
+ * materials if SHARED. Returns false if there is no memory; ROWS is then
+ * empty. */
 bool glint_scatter_open(struct glint_scatter_rows *rows, int side, int kernel,
                         bool shared);
 
@@ -42,24 +48,24 @@ bool glint_scatter_open(struct glint_scatter_rows *rows, int side, int kernel,
  * where light leaves, and vice versa. */
 void glint_scatter_turn(struct glint_scatter_rows *rows);
 
-/* Returns true if the work is to end; DONE is its fraction, 0 .. 1. */
+/* Reports the progress DONE, 0 .. 1. Returns true if the work must stop. */
 bool glint_watch_ends(const struct glint_watch *watch, double done);
 
-/* A part of the work of WATCH: the fractions FROM .. FROM + LENGTH. */
+/* A part of the work of WATCH: its progress runs from FROM to FROM + LENGTH. */
 struct glint_watch_part {
     const struct glint_watch *whole;
     double from, length;
 };
 
-/* Returns a watch of PART, which must outlive it. */
+/* Returns a watch for PART, which must outlive it. */
 struct glint_watch glint_watch_of(struct glint_watch_part *part);
 
-/* The fits that a run time can draw, beside albedo: least squares over the
- * entries inside the square. Light outside is lost anyway, and would make rows
- * at the rim differ from all others. Each function fills the members of FIT
- * that its model uses, except the energy; FIT must be all 0 but for albedo. In
- * ROWS, and in the h that these functions set, light leaves at texel x, and
- * offsets lead to where the light came from. */
+/* Fits that the run time can draw (apart from the albedo model): least
+ * squares over the entries inside the square. Light outside is lost anyway,
+ * and would make rows at the rim differ from all others. Each function sets
+ * the members of FIT that its model uses, except the energy; FIT must be 0
+ * apart from the albedo. In ROWS, and in the h that these functions set,
+ * light leaves at texel x, and offsets lead to the texel where it entered. */
 enum glint_status glint_scatter_clusters(const struct glint_scatter_rows *rows,
                                          const struct glint_watch *watch,
                                          struct glint_scatter_fit *fit);
