@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of a translucent medium whose texels differ.
+ * Computes the rows of the scattering matrix of a heterogeneous translucent
+ * slab, whose texels have different materials.
  *
- * The modes of a lattice tell how materials share their light. What eight modes
- * and whole texels cannot resolve, the next two or three texels, is added from
- * the closed form: how far it is from the same modes in a translucent medium
- * that is the same all over, the mean of that of both texels. Entries are the
- * mean of both directions, which are one in a real translucent medium.
+ * Diffusion modes on a lattice of texels describe the exchange of light between
+ * materials. Eight modes and whole texels cannot resolve offsets below two or
+ * three texels. There the difference between the closed form and the same modes
+ * in a homogeneous medium is added, averaged over the materials of both texels.
+ * An entry is the mean of both directions, which are equal in a real
+ * translucent medium (reciprocity).
  */
 #include "bake/translucent/slab.h"
 
@@ -17,27 +19,28 @@
 
 /* ------------------------------------------------------------------- blocks */
 
-/* The middle of a grid's inverse, without the rest.
+/* Computes the band of blocks around the diagonal of a grid's inverse.
  *
- * With S_j the blocks that elimination from the top leaves on the diagonal and
- * E_j the joints downwards, T_j = S_j^-1 E_j carries columns of the inverse
- * upwards: G(j, l) = T_j G(j + 1, l) for l > j, and G(j, j) = S_j^-1 + T_j G(j
- * + 1, j). Only blocks up to REACH below the diagonal are stored. Entries of T
- * fall exponentially away from the diagonal; entries below SMALL times the
- * largest are dropped. */
+ * S_j are the diagonal blocks after elimination from the top, E_j the
+ * couplings to the next block. T_j = S_j^-1 E_j transfers columns of the
+ * inverse upwards: G(j, l) = T_j G(j + 1, l) for l > j, and G(j, j) = S_j^-1
+ * + T_j G(j + 1, j). Only blocks up to REACH below the diagonal are stored.
+ * Entries of T decrease exponentially away from the diagonal; entries below
+ * SMALL times the largest are dropped. */
 #define SMALL 1e-11
 
-/* A symmetric positive matrix of BLOCKS x BLOCKS blocks of SIDE x SIDE, where
- * diagonal blocks are tridiagonal and the blocks next to them diagonal: a grid
- * whose nodes are joined to four neighbours. */
+/* A symmetric positive definite matrix of SIDE x SIDE blocks of SIDE x SIDE
+ * entries. Diagonal blocks are tridiagonal, the blocks next to them
+ * diagonal: a grid of nodes coupled to four neighbours. */
 struct blocks {
-    int side;            /* and number of blocks */
-    const double *own;   /* [side][side] diagonal, by block */
-    const double *right; /* joint of a node with the next one, >= 0 */
-    const double *down;  /* with that in the next block, >= 0 */
+    int side;            /* nodes per block, and number of blocks */
+    const double *own;   /* [side][side]: diagonal, block by block */
+    const double *right; /* coupling of a node with the next one, >= 0 */
+    const double *down;  /* coupling of a node with the same node of the next
+                            block, >= 0 */
 };
 
-/* Takes block (J, L), L = J .. J + reach, of the inverse: [side][side]. */
+/* Receives block (J, L), L = J .. J + reach, of the inverse: [side][side]. */
 typedef void blocks_fn(void *ctx, int j, int l, const double *block);
 
 struct inverse {
@@ -45,12 +48,13 @@ struct inverse {
     int reach;
     double *eliminated; /* [side] S_j^-1, each [side][side] */
     double *t, *scratch;
-    double **ring;  /* [reach + 1] G(j + 1, j + 1 + i) */
-    int *from, *to; /* [side] entries of a row of T that count */
+    double **ring; /* [reach + 1] blocks G(j, j + i) of the current row j */
+    /* [side]: range of the non-negligible entries of each row of T */
+    int *from, *to;
 };
 
-/* Makes U of the upper half of A, A = U' U. */
-static void cholesky(double *a, int n)
+/* Replaces the upper half of A by U of its Cholesky factorisation A = U' U. */
+static void factorise_cholesky(double *a, int n)
 {
     for (int k = 0; k < n; k++) {
         double *row = a + (size_t)k * (size_t)n;
@@ -67,12 +71,12 @@ static void cholesky(double *a, int n)
     }
 }
 
-/* Makes A, symmetric and positive, its inverse. TO is scratch of the same size.
- */
+/* Replaces A, symmetric and positive definite, by its inverse. TO is scratch
+ * of the same size. */
 static void invert(double *a, double *to, int n)
 {
-    cholesky(a, n);
-    /* Rows of TO become those of U'^-1 from the top. */
+    factorise_cholesky(a, n);
+    /* from the top, the rows of TO become those of U'^-1 */
     memset(to, 0, (size_t)n * (size_t)n * sizeof *to);
     for (int i = 0; i < n; i++) {
         double *row = to + (size_t)i * (size_t)n;
@@ -101,24 +105,25 @@ static void invert(double *a, double *to, int n)
             a[k * n + i] = a[i * n + k];
 }
 
-static double *eliminated(const struct inverse *v, int j)
+static double *get_eliminated(const struct inverse *v, int j)
 {
     const size_t n = (size_t)v->b->side;
 
     return v->eliminated + (size_t)j * n * n;
 }
 
-/* Sets S_j^-1 from the block above. */
+/* Computes S_j^-1 from the block above. */
 static void eliminate(struct inverse *v, int j)
 {
     const struct blocks *b = v->b;
     const int n = b->side;
     const double *own = b->own + j * n, *right = b->right + j * n;
-    double *s = eliminated(v, j);
+    double *s = get_eliminated(v, j);
 
     memset(s, 0, (size_t)n * (size_t)n * sizeof *s);
     if (j > 0) {
-        const double *above = eliminated(v, j - 1), *e = b->down + (j - 1) * n;
+        const double *above = get_eliminated(v, j - 1),
+                     *e = b->down + (j - 1) * n;
 
         for (int i = 0; i < n; i++)
             for (int k = i; k < n; k++)
@@ -132,11 +137,11 @@ static void eliminate(struct inverse *v, int j)
     invert(s, v->scratch, n);
 }
 
-/* Sets T of row J and the range of its entries that are not negligible. */
+/* Computes T of row J, and the ranges of its non-negligible entries. */
 static void set_transfer(struct inverse *v, int j)
 {
     const int n = v->b->side;
-    const double *s = eliminated(v, j), *e = v->b->down + j * n;
+    const double *s = get_eliminated(v, j), *e = v->b->down + j * n;
     double most = 0;
 
     for (int i = 0; i < n * n; i++) {
@@ -155,7 +160,7 @@ static void set_transfer(struct inverse *v, int j)
     }
 }
 
-/* TO += T G. */
+/* Adds T G to TO. */
 static void multiply_add(const struct inverse *v, const double *g, double *to)
 {
     const int n = v->b->side;
@@ -173,24 +178,23 @@ static void multiply_add(const struct inverse *v, const double *g, double *to)
     }
 }
 
-/* Sets the block that is free to G(j, j), S_j^-1 where nothing is below; G of
- * (J, J + 1) is BELOW. */
-static void close_row(const struct inverse *v, int j, const double *below,
-                      double *to)
+/* Sets TO to G(j, j); BELOW is G(j, j + 1), or NULL for the last row. */
+static void compute_diagonal_block(const struct inverse *v, int j,
+                                   const double *below, double *to)
 {
     const int n = v->b->side;
 
-    memcpy(to, eliminated(v, j), (size_t)n * (size_t)n * sizeof *to);
+    memcpy(to, get_eliminated(v, j), (size_t)n * (size_t)n * sizeof *to);
     if (!below)
         return;
-    /* G(j + 1, j) is its transpose. */
+    /* G(j + 1, j) is the transpose of BELOW */
     for (int i = 0; i < n; i++)
         for (int k = 0; k < n; k++)
             v->scratch[i * n + k] = below[k * n + i];
     multiply_add(v, v->scratch, to);
 }
 
-/* Moves the ring from row J + 1 to row J. */
+/* Computes the blocks of row J from those of row J + 1. */
 static void move_ring_up(struct inverse *v, int j)
 {
     const int below = v->b->side - 1 - j;
@@ -209,16 +213,16 @@ static void move_ring_up(struct inverse *v, int j)
     }
     memmove(v->ring + 1, v->ring, (size_t)v->reach * sizeof *v->ring);
     v->ring[0] = free_block;
-    close_row(v, j, kept ? v->ring[1] : NULL, free_block);
+    compute_diagonal_block(v, j, kept ? v->ring[1] : NULL, free_block);
 }
 
-static enum glint_status walk(struct inverse *v, int reach,
-                              const struct glint_watch *watch, blocks_fn *take,
-                              void *ctx)
+static enum glint_status compute_blocks(struct inverse *v, int reach,
+                                        const struct glint_watch *watch,
+                                        blocks_fn *add_block, void *ctx)
 {
     const int n = v->b->side;
-    /* A row of REACH + 1 blocks costs half of that eliminations, as measured.
-     */
+    /* Fraction of the time until all blocks are eliminated: a row of REACH +
+     * 1 blocks costs half of REACH + 1 eliminations, as measured. */
     const double first = 2.0 / (reach + 2.0);
 
     for (int j = 0; j < n; j++) {
@@ -231,7 +235,7 @@ static enum glint_status walk(struct inverse *v, int reach,
 
         move_ring_up(v, j);
         for (int l = j; l < n && l <= j + reach; l++)
-            take(ctx, j, l, v->ring[l - j]);
+            add_block(ctx, j, l, v->ring[l - j]);
         if (glint_watch_ends(watch, first + (1.0 - first) * done / n))
             return GLINT_E_CLOSED;
     }
@@ -239,10 +243,11 @@ static enum glint_status walk(struct inverse *v, int reach,
 }
 
 /* Calls TAKE for all blocks of the inverse of BLOCKS that are at most REACH
- * apart. Takes side^3 doubles. GLINT_E_MEMORY, GLINT_E_CLOSED. */
-static enum glint_status inverse_of(const struct blocks *blocks, int reach,
-                                    const struct glint_watch *watch,
-                                    blocks_fn *take, void *ctx)
+ * from the diagonal. Needs about side^3 doubles. May return GLINT_E_MEMORY
+ * or GLINT_E_CLOSED. */
+static enum glint_status compute_inverse(const struct blocks *blocks, int reach,
+                                         const struct glint_watch *watch,
+                                         blocks_fn *add_block, void *ctx)
 {
     const size_t n = (size_t)blocks->side, block = n * n;
     struct inverse v = {.b = blocks, .reach = reach > 0 ? reach : 1};
@@ -259,7 +264,7 @@ static enum glint_status inverse_of(const struct blocks *blocks, int reach,
         v.scratch = v.t + block;
         for (size_t i = 0; i < in_ring; i++)
             v.ring[i] = v.scratch + (i + 1) * block;
-        status = walk(&v, reach, watch, take, ctx);
+        status = compute_blocks(&v, reach, watch, add_block, ctx);
     }
     free(memory);
     free(v.ring);
@@ -272,7 +277,7 @@ static enum glint_status inverse_of(const struct blocks *blocks, int reach,
 enum { OCTAVES = 4 };
 
 /* Returns a pseudo-random number, 0 .. 1, for a lattice point. */
-static double hashed(uint32_t seed, int x, int y)
+static double hash_point(uint32_t seed, int x, int y)
 {
     uint32_t h = seed * UINT32_C(0x9e3779b1) ^
                  (uint32_t)x * UINT32_C(0x85ebca6b) ^
@@ -283,37 +288,40 @@ static double hashed(uint32_t seed, int x, int y)
     return (h ^ h >> 15) / 4294967295.0;
 }
 
-static double smooth(double t)
+static double smoothstep(double t)
 {
     return t * t * (3 - 2 * t);
 }
 
-/* Returns periodic noise, 0 .. 1, of CELLS x CELLS cells at (U, V), 0 .. 1. */
-static double noise(uint32_t seed, int cells, double u, double v)
+/* Returns periodic value noise, 0 .. 1, of CELLS x CELLS cells at (U, V), 0
+ * .. 1. */
+static double compute_noise(uint32_t seed, int cells, double u, double v)
 {
     const int x = (int)floor(u * cells), y = (int)floor(v * cells);
     const int right = (x + 1) % cells, below = (y + 1) % cells;
-    const double s = smooth(u * cells - x), t = smooth(v * cells - y);
+    const double s = smoothstep(u * cells - x), t = smoothstep(v * cells - y);
     const double top =
-        (1 - s) * hashed(seed, x, y) + s * hashed(seed, right, y);
-    const double bottom =
-        (1 - s) * hashed(seed, x, below) + s * hashed(seed, right, below);
+        (1 - s) * hash_point(seed, x, y) + s * hash_point(seed, right, y);
+    const double bottom = (1 - s) * hash_point(seed, x, below) +
+                          s * hash_point(seed, right, below);
 
     return (1 - t) * top + t * bottom;
 }
 
-/* Veins run where a wave across the translucent medium, bent by noise, is near
- * 0. The pattern is periodic, since its edges meet around a ball: the wave has
- * a whole number of half periods along both axes. */
-static double vein(uint32_t seed, double u, double v)
+/* Returns the intensity of a vein pattern at (U, V): veins lie where a wave,
+ * distorted by noise, is near 0. The pattern is periodic, since its edges
+ * meet on a sphere: the wave has a whole number of half periods along both
+ * axes. */
+static double compute_vein(uint32_t seed, double u, double v)
 {
     enum { CELLS = 3, ALONG_U = 3, ALONG_V = 2 };
     double bent = 0, wave;
 
     for (int i = 0; i < OCTAVES; i++)
-        bent += ldexp(noise(seed + (uint32_t)i, CELLS << i, u, v) - 0.5, -i);
+        bent += ldexp(compute_noise(seed + (uint32_t)i, CELLS << i, u, v) - 0.5,
+                      -i);
     wave = fabs(sin((ALONG_U * u + ALONG_V * v) * 3.14159265358979 + 5 * bent));
-    return wave >= 0.4 ? 1 : smooth(fmax(0, (wave - 0.1) / 0.3));
+    return wave >= 0.4 ? 1 : smoothstep(fmax(0, (wave - 0.1) / 0.3));
 }
 
 void glint_stone_shares(const struct glint_stone *stone, double *share)
@@ -331,7 +339,8 @@ void glint_stone_shares(const struct glint_stone *stone, double *share)
                     0;
                 break;
             case GLINT_STONE_VEINS:
-                *to = vein(stone->seed, (x + 0.5) / side, (y + 0.5) / side);
+                *to = compute_vein(stone->seed, (x + 0.5) / side,
+                                   (y + 0.5) / side);
                 break;
             case GLINT_STONE_MASK:
                 *to = stone->mask[y * side + x];
@@ -344,23 +353,24 @@ void glint_stone_shares(const struct glint_stone *stone, double *share)
 }
 
 enum {
-    MARGIN =
-        8, /* texels by which a translucent medium continues, as its rim is */
-    LEVELS = 8 /* number of steps between both materials at which the closed
-                  form is computed */
+    MARGIN = 8, /* texels of lattice added at each side, which repeat the texels
+                   at the rim */
+    LEVELS = 8  /* number of steps in the mix of both materials at which the
+                   closed form is computed */
 };
 
 struct compute {
     const struct glint_stone *stone;
     struct glint_scatter_rows *rows;
-    int wide; /* texels of the lattice, each way */
+    int wide; /* texels of the lattice along each side */
     int channel;
-    double *share;                              /* [wide][wide] */
-    double *diffusion, *absorb;                 /* [wide][wide] */
-    double *own, *right, *down, *source, *exit; /* of a mode */
-    double *closed[LEVELS + 1]; /* [kernel * kernel] correction to add, or
-                                   NULL */
-    double beyond;              /* z_b of all, mm */
+    double *share;              /* [wide][wide]: fraction of material 0 */
+    double *diffusion, *absorb; /* [wide][wide] of the current channel */
+    /* matrix, sources and exit factors of the current mode */
+    double *own, *right, *down, *source, *exit;
+    double *closed[LEVELS + 1]; /* [kernel * kernel]: closed form minus modes,
+                                   per mix; NULL: not computed yet */
+    double beyond;              /* z_b of the slab, mm */
 };
 
 void glint_stone_defaults(struct glint_stone *stone)
@@ -379,8 +389,8 @@ void glint_stone_defaults(struct glint_stone *stone)
     };
 }
 
-/* Returns the valid range, as text, of a parameter that is out of range, or
- * NULL. */
+/* Returns an error text with the valid range of the first parameter that is
+ * out of range; NULL if there is none. */
 static const char *find_invalid(const struct glint_stone *s)
 {
     if (!(s->side >= 1 && s->side <= GLINT_SCATTER_MAX_SIDE))
@@ -416,12 +426,12 @@ static const char *find_invalid(const struct glint_stone *s)
     return NULL;
 }
 
-static int held(int x, int most)
+static int clamp_index(int x, int most)
 {
     return x < 0 ? 0 : x > most ? most : x;
 }
 
-/* Sets the material of each texel for channel C. */
+/* Sets diffusion and absorption of each texel for channel C. */
 static void set_channel(struct compute *p, int c)
 {
     const int n = p->wide * p->wide;
@@ -438,13 +448,13 @@ static void set_channel(struct compute *p, int c)
     p->beyond = sum / n;
 }
 
-static double joint(double a, double b)
+static double harmonic_mean(double a, double b)
 {
     return 2 * a * b / (a + b);
 }
 
-/* Sets the matrix of mode N, and how much light each texel puts into the mode
- * and lets out of it. */
+/* Sets the matrix of mode N, the source of each texel, and the light that
+ * leaves each texel per unit of the mode. */
 static void set_mode(struct compute *p, int n)
 {
     const int w = p->wide;
@@ -460,17 +470,17 @@ static void set_mode(struct compute *p, int n)
         k = glint_slab_wave(&slab, n);
         p->source[i] = glint_slab_source(&slab, n) * area;
         p->exit[i] = glint_slab_exit(&slab, n);
-        p->right[i] = i % w < w - 1 ? joint(d[0], d[1]) : 0;
-        p->down[i] = i / w < w - 1 ? joint(d[0], d[w]) : 0;
+        p->right[i] = i % w < w - 1 ? harmonic_mean(d[0], d[1]) : 0;
+        p->down[i] = i / w < w - 1 ? harmonic_mean(d[0], d[w]) : 0;
         p->own[i] = (d[0] * k * k + p->absorb[i]) * area + p->right[i] +
                     p->down[i] + (i % w > 0 ? p->right[i - 1] : 0) +
                     (i / w > 0 ? p->down[i - w] : 0);
     }
 }
 
-/* Adds a block of a mode's inverse to the rows, both directions of each pair.
- */
-static void take(void *ctx, int j, int l, const double *block)
+/* Adds a block of the inverse of a mode's matrix to the rows, in both
+ * directions of each pair of texels. */
+static void add_block(void *ctx, int j, int l, const double *block)
 {
     const struct compute *p = ctx;
     const int w = p->wide, side = p->rows->side, n = p->rows->kernel;
@@ -481,9 +491,9 @@ static void take(void *ctx, int j, int l, const double *block)
         return;
     for (int x = 0; x < side; x++) {
         const int a = j * w + x + MARGIN;
-        const int first = below ? held(x - half, x) : x;
+        const int first = below ? clamp_index(x - half, x) : x;
 
-        for (int to = first; to <= held(x + half, side - 1); to++) {
+        for (int to = first; to <= clamp_index(x + half, side - 1); to++) {
             const int b = l * w + to + MARGIN, d = below * n + to - x;
             const double g = block[(x + MARGIN) * w + to + MARGIN];
             const double r =
@@ -499,8 +509,7 @@ static void take(void *ctx, int j, int l, const double *block)
     }
 }
 
-/* Computes the closed form minus the modes for level LEVEL, once per
- * channel. */
+/* Computes the closed form minus the modes for mix LEVEL, once per channel. */
 static bool set_closed(struct compute *p, int level)
 {
     const int k2 = glint_scatter_kernel2(p->rows->kernel);
@@ -522,7 +531,7 @@ static bool set_closed(struct compute *p, int level)
     return true;
 }
 
-static void drop_closed(struct compute *p)
+static void free_closed(struct compute *p)
 {
     for (int i = 0; i <= LEVELS; i++) {
         free(p->closed[i]);
@@ -530,11 +539,11 @@ static void drop_closed(struct compute *p)
     }
 }
 
-/* What is added to entry D for texel X. */
-static double lacks(const struct compute *p, int x, int d)
+/* Returns the correction of entry D for the mix of texel X. */
+static double compute_correction(const struct compute *p, int x, int d)
 {
     const double at = p->rows->share[x] * LEVELS;
-    const int level = held((int)at, LEVELS - 1);
+    const int level = clamp_index((int)at, LEVELS - 1);
     const double *low = p->closed[level], *high = p->closed[level + 1];
     const double t = at - level;
 
@@ -550,7 +559,7 @@ static bool add_closed(struct compute *p)
 
     for (int x = 0; x < side * side; x++) {
         const double at = p->rows->share[x] * LEVELS;
-        const int level = held((int)at, LEVELS - 1);
+        const int level = clamp_index((int)at, LEVELS - 1);
 
         if ((at < level + 1 && !set_closed(p, level)) ||
             (at > level && !set_closed(p, level + 1)))
@@ -563,21 +572,21 @@ static bool add_closed(struct compute *p)
             const int to = glint_scatter_target(side, n, x, d);
 
             if (to >= 0)
-                row[d] =
-                    (float)fmax(0, (double)row[d] + 0.5 * (lacks(p, x, d) +
-                                                           lacks(p, to, d)));
+                row[d] = (float)fmax(
+                    0, (double)row[d] + 0.5 * (compute_correction(p, x, d) +
+                                               compute_correction(p, to, d)));
         }
     }
     return true;
 }
 
-/* Scales down rows whose sums exceed 1, and the entries that lead to their
- * texels by the same factors. */
+/* Scales rows whose sum exceeds 1, and the entries that lead to their
+ * texels, by the same factors. */
 static void limit_rows(const struct compute *p)
 {
     const int side = p->rows->side, n = p->rows->kernel;
-    double *scale = p->own; /* large enough: the lattice has at least as many
-                               texels */
+    /* large enough: the lattice has at least as many texels */
+    double *scale = p->own;
 
     for (int x = 0; x < side * side; x++) {
         const float *row = glint_scatter_row(p->rows, x, p->channel);
@@ -606,8 +615,8 @@ static enum glint_status compute_channel(struct compute *p, int c,
     double all = 0, done = 0;
 
     set_channel(p, c);
-    /* Light of higher modes spreads less far, which costs less: as 1 / sqrt(n),
-     * as measured. */
+    /* Higher modes spread less far and cost less: proportional to 1 /
+     * sqrt(n), as measured. */
     for (int n = 1; n <= GLINT_SLAB_MODES; n++)
         all += 3.0 * sqrt(1.0 / n);
     for (int n = 1; n <= GLINT_SLAB_MODES; n++) {
@@ -617,20 +626,21 @@ static enum glint_status compute_channel(struct compute *p, int c,
         enum glint_status status;
 
         set_mode(p, n);
-        status = inverse_of(&blocks, p->rows->kernel / 2, &mode, take, p);
+        status =
+            compute_inverse(&blocks, p->rows->kernel / 2, &mode, add_block, p);
         if (status != GLINT_OK)
             return status;
         done += sqrt(1.0 / n);
     }
     if (!add_closed(p))
         return GLINT_E_MEMORY;
-    drop_closed(p);
+    free_closed(p);
     limit_rows(p);
     return GLINT_OK;
 }
 
-static enum glint_status compute(struct compute *p,
-                                 const struct glint_watch *watch)
+static enum glint_status compute_rows(struct compute *p,
+                                      const struct glint_watch *watch)
 {
     const size_t n = (size_t)p->wide * (size_t)p->wide;
     double *memory = malloc(8 * n * sizeof *memory);
@@ -645,12 +655,13 @@ static enum glint_status compute(struct compute *p,
     glint_stone_shares(p->stone, p->rows->share);
     for (int i = 0; i < p->wide * p->wide; i++)
         p->share[i] =
-            p->rows->share[held(i / p->wide - MARGIN, p->rows->side - 1) *
-                               p->rows->side +
-                           held(i % p->wide - MARGIN, p->rows->side - 1)];
+            p->rows
+                ->share[clamp_index(i / p->wide - MARGIN, p->rows->side - 1) *
+                            p->rows->side +
+                        clamp_index(i % p->wide - MARGIN, p->rows->side - 1)];
     for (int c = 0; c < 3 && status == GLINT_OK; c++)
         status = compute_channel(p, c, watch);
-    drop_closed(p);
+    free_closed(p);
     free(memory);
     return status;
 }
@@ -671,7 +682,7 @@ enum glint_status glint_scatter_compute(const struct glint_stone *stone,
         return GLINT_E_ARGUMENT;
     }
     if (glint_scatter_open(rows, stone->side, stone->kernel, true))
-        status = compute(&p, watch);
+        status = compute_rows(&p, watch);
     if (status != GLINT_OK) {
         glint_scatter_close(rows);
         snprintf(error->text, sizeof error->text, "%s",

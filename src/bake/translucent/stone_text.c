@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads the text of a translucent medium line by line. */
+ * Parses the text that describes a translucent medium, line by line.
+ */
 #include <string.h>
 
 #include "bake/scene/clauses.h"
@@ -13,8 +14,7 @@ struct reader {
     struct glint_stone_text *to;
     char name[MOST_STONES][32];
     int n_stones;
-    bool is_turned; /* true: the pattern names its second translucent medium
-                       first */
+    bool is_turned; /* true: the pattern names its second medium first */
     struct glint_text_place pattern;
 };
 
@@ -71,7 +71,7 @@ static bool read_kernel(struct reader *r)
                             "kernel must be an odd number, not %d", *kernel));
 }
 
-/* Sets INDEX to the translucent medium that WORD names. */
+/* Sets INDEX to the index of the medium with the name WORD. */
 static bool find_stone(struct reader *r, const struct glint_word *word,
                        int *index)
 {
@@ -120,7 +120,7 @@ static bool read_file(struct reader *r, const char *what,
     return true;
 }
 
-/* Reads the two translucent media at the end of a pattern's line. */
+/* Reads the names of two media at the end of a pattern's line. */
 static bool read_pair(struct reader *r)
 {
     int index[2] = {0, 0};
@@ -220,7 +220,7 @@ static bool (*const read[N_LINES])(struct reader *) = {
     read_size,  read_texel,   read_kernel, read_slab, read_index,
     read_stone, read_pattern, read_data,   read_model};
 
-/* Checks that the lines are consistent. */
+/* Checks that the lines are consistent with each other. */
 static bool check_lines(struct reader *r)
 {
     struct glint_stone_text *t = r->to;

@@ -10,7 +10,7 @@
 const int glint_visible_colour[GLINT_VISIBLE_COLOURS] = {
     GLINT_VISIBLE_WAVES / 2, 0, GLINT_VISIBLE_WAVES - 1};
 
-static double wave_of(const struct glint_visible *visible, double w)
+static double compute_wave(const struct glint_visible *visible, double w)
 {
     return 0.5 * (visible->wave_lo + visible->wave_hi) +
            0.5 * w * (visible->wave_hi - visible->wave_lo);
@@ -21,7 +21,7 @@ void glint_visible_path(const struct glint_visible *visible, double w,
 {
     glint_path_init(path, visible->setup->lens,
                     &visible->setup->ghost[visible->ghost],
-                    1e3 / sqrt(wave_of(visible, w)));
+                    1e3 / sqrt(compute_wave(visible, w)));
 }
 
 static void set_paths(struct glint_visible *visible)
@@ -71,8 +71,8 @@ void glint_visible_narrow(struct glint_visible *visible,
     visible->wide = whole->wide;
     visible->far = whole->far;
     visible->shaped = whole->shaped;
-    visible->wave_lo = wave_of(whole, w0);
-    visible->wave_hi = wave_of(whole, w1);
+    visible->wave_lo = compute_wave(whole, w0);
+    visible->wave_hi = compute_wave(whole, w1);
     set_paths(visible);
     visible->n_beside = whole->n_beside;
     for (int k = 0; k < whole->n_beside; k++)
@@ -97,9 +97,9 @@ void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b)
 
 /* -------------------------------------------------------------------- boxes */
 
-enum { ACROSS = 64 /* cells of the finest grid */ };
+enum { ACROSS = 64 /* number of columns of the finest grid */ };
 
-/* Columns and rows of a grid that hold rays which get through. */
+/* Range of columns and rows of a grid that contain unblocked rays. */
 struct extent {
     int i0, i1, j1;
 };
@@ -132,10 +132,11 @@ static bool sample_box(const struct glint_visible *h,
     return extent->i1 >= 0;
 }
 
-/* Shrinks BOX to the rays of a grid that get through, and a cell around them.
- * Returns false if no ray gets through. */
-static bool shrink(const struct glint_visible *h, const struct glint_path *path,
-                   double sine, int across, int down, struct glint_pupil *box)
+/* Shrinks BOX to the unblocked rays of a grid, with a margin of one cell.
+ * Returns false if all rays are blocked. */
+static bool shrink_box(const struct glint_visible *h,
+                       const struct glint_path *path, double sine, int across,
+                       int down, struct glint_pupil *box)
 {
     const double dx = (box->x1_mm - box->x0_mm) / across;
     const double dy = box->y1_mm / down, x0 = box->x0_mm;
@@ -149,8 +150,7 @@ static bool shrink(const struct glint_visible *h, const struct glint_path *path,
     return true;
 }
 
-/* Grows BOX on every side where light still gets through, until no light
- * does. */
+/* Grows BOX on each side where light still passes, until no light does. */
 static bool grow_box(const struct glint_visible *h,
                      const struct glint_path *path, double sine,
                      struct glint_pupil *box)
@@ -172,10 +172,11 @@ static bool grow_box(const struct glint_visible *h,
     return false;
 }
 
-/* Moves the sides of BOX past which rays get through, as tips of crescents that
- * are thinner than its cells do. */
-static void grow(const struct glint_visible *h, const struct glint_path *path,
-                 double sine, struct glint_pupil *box)
+/* Moves the sides of BOX beyond which rays pass, which happens at tips of
+ * crescents thinner than the cells of its grid. */
+static void grow_tips(const struct glint_visible *h,
+                      const struct glint_path *path, double sine,
+                      struct glint_pupil *box)
 {
     const struct glint_openings openings = {
         .path = path,
@@ -188,29 +189,31 @@ static void grow(const struct glint_visible *h, const struct glint_path *path,
     glint_spot_grow(&openings, box);
 }
 
-/* Shrinks BOX, which holds all rays that get through, to the box of these. */
-static bool tighten(const struct glint_visible *h,
-                    const struct glint_path *path, double sine,
-                    struct glint_pupil *box)
+/* Shrinks BOX, which contains all unblocked rays, to their bounding box.
+ * Returns false if there are none. */
+static bool find_tight_box(const struct glint_visible *h,
+                           const struct glint_path *path, double sine,
+                           struct glint_pupil *box)
 {
-    bool found = shrink(h, path, sine, 24, 12, box) ||
-                 shrink(h, path, sine, ACROSS, 32, box);
+    bool found = shrink_box(h, path, sine, 24, 12, box) ||
+                 shrink_box(h, path, sine, ACROSS, 32, box);
 
     for (int round = 0; round < 5 && found; round++) {
         const double before = (box->x1_mm - box->x0_mm) * box->y1_mm;
 
-        if (!shrink(h, path, sine, 24, 12, box) ||
+        if (!shrink_box(h, path, sine, 24, 12, box) ||
             (box->x1_mm - box->x0_mm) * box->y1_mm > 0.8 * before)
             break;
     }
     if (found && h->far)
-        grow(h, path, sine, box);
+        grow_tips(h, path, sine, box);
     return found;
 }
 
-/* Returns by how much RAY misses: 1 or less is visible. */
-static double miss_of(const struct glint_visible *h,
-                      const struct glint_ray *ray)
+/* Returns the ratio by which RAY exceeds the stop, a barrel or the field; 1
+ * or less: the ray is visible. */
+static double compute_miss(const struct glint_visible *h,
+                           const struct glint_ray *ray)
 {
     const double stop =
         hypot(ray->stop_x_mm, ray->stop_y_mm) / h->setup->optics.stop_radius_mm;
@@ -220,11 +223,11 @@ static double miss_of(const struct glint_visible *h,
     return fmax(ray->rel_radius, fmax(stop, field));
 }
 
-/* Shrinks BOX to a cell and a half around the ray of a grid that misses by the
- * smallest distance. Returns its miss; HUGE_VAL if all rays are invalid. */
-static double close_in(const struct glint_visible *h,
-                       const struct glint_path *path, double sine,
-                       struct glint_pupil *box)
+/* Shrinks BOX to 1.5 cells around the ray of a grid with the smallest miss.
+ * Returns this miss; HUGE_VAL if all rays are invalid. */
+static double approach_ray(const struct glint_visible *h,
+                           const struct glint_path *path, double sine,
+                           struct glint_pupil *box)
 {
     enum { DOWN = 32 };
     const double dx = (box->x1_mm - box->x0_mm) / ACROSS;
@@ -239,9 +242,9 @@ static double close_in(const struct glint_visible *h,
         row.y_mm = dy * j;
         glint_trace_row(path, &row, ray, status, NULL);
         for (int i = 0; i <= ACROSS; i++) {
-            if (status[i] != GLINT_RAY_OK || miss_of(h, &ray[i]) >= least)
+            if (status[i] != GLINT_RAY_OK || compute_miss(h, &ray[i]) >= least)
                 continue;
-            least = miss_of(h, &ray[i]);
+            least = compute_miss(h, &ray[i]);
             box->x0_mm = x0 + (i - 1.5) * dx;
             box->x1_mm = x0 + (i + 1.5) * dx;
             box->y1_mm = (j + 1.5) * dy;
@@ -250,9 +253,9 @@ static double close_in(const struct glint_visible *h,
     return least;
 }
 
-/* Finds a part of the pupil that a grid over BOX misses: if the field is far
- * smaller than the front, so is the part of the pupil through which it is seen.
- */
+/* Finds a part of the pupil that the grid over BOX misses. If the field is
+ * much smaller than the front, so is the part of the pupil through which it
+ * is visible. */
 static bool search_hidden_part(const struct glint_visible *h,
                                const struct glint_path *path, double sine,
                                struct glint_pupil *box)
@@ -262,38 +265,37 @@ static bool search_hidden_part(const struct glint_visible *h,
     if (h->field_mm > 0.1 * h->setup->lens->surface[0].semi_mm)
         return false;
     for (int round = 0; round < ROUNDS; round++)
-        if (close_in(h, path, sine, box) <= 1)
+        if (approach_ray(h, path, sine, box) <= 1)
             return grow_box(h, path, sine, box);
     return false;
 }
 
-static double degrees_of(double sine)
+static double convert_to_degrees(double sine)
 {
     return asin(sine) * (180 / GLINT_PI);
 }
 
-/* Finds the box at SINE anywhere in the pupil; returns false if there is
- * none. */
+/* Finds the box at SINE in the whole pupil. Returns false if there is none. */
 static bool find_box(const struct glint_visible *h,
                      const struct glint_path *path, double sine,
                      struct glint_pupil *box)
 {
     struct glint_pupil spot;
 
-    if (!glint_pupil_find_within(box, path, degrees_of(sine),
+    if (!glint_pupil_find_within(box, path, convert_to_degrees(sine),
                                  h->setup->optics.stop_radius_mm, h->field_mm,
                                  NULL))
         return false;
     spot = *box;
-    if (tighten(h, path, sine, box))
+    if (find_tight_box(h, path, sine, box))
         return true;
     *box = spot;
     return search_hidden_part(h, path, sine, box) &&
-           tighten(h, path, sine, box);
+           find_tight_box(h, path, sine, box);
 }
 
-/* Returns NEAR grown by a margin. */
-static struct glint_pupil grown(const struct glint_pupil *near)
+/* Returns NEAR with a margin of 20 % on each side. */
+static struct glint_pupil add_margin(const struct glint_pupil *near)
 {
     const double more = 0.2 * (near->x1_mm - near->x0_mm);
     struct glint_pupil box = *near;
@@ -304,29 +306,32 @@ static struct glint_pupil grown(const struct glint_pupil *near)
     return box;
 }
 
-/* Finds the box at SINE, looking around NEAR first. */
+/* Finds the box at SINE. Searches around NEAR first. */
 static bool find_box_near(const struct glint_visible *h,
                           const struct glint_path *path, double sine,
                           const struct glint_pupil *near,
                           struct glint_pupil *box)
 {
-    *box = grown(near);
-    return (grow_box(h, path, sine, box) && tighten(h, path, sine, box)) ||
+    *box = add_margin(near);
+    return (grow_box(h, path, sine, box) &&
+            find_tight_box(h, path, sine, box)) ||
            find_box(h, path, sine, box);
 }
 
 /* ------------------------------------------------------------------ profile */
 
 enum {
-    AFRESH = 4, /* number of angles after which boxes are searched everywhere
-                   again */
-    AFRESH_SHAPED = 12 /* the same for shaped lenses, whose rays are slow to
-                          trace */
+    AFRESH = 4, /* number of angles after which boxes are searched in the whole
+                   pupil again */
+    AFRESH_SHAPED = 12 /* the same for lenses with surfaces that are not
+                          spheres, whose rays are slow to trace */
 };
 
-/* Returns BOX moved on by RATIO times the way from BEFORE to BOX. */
-static struct glint_pupil predict(const struct glint_pupil *before,
-                                  const struct glint_pupil *box, double ratio)
+/* Extrapolates the box of the next angle: BOX, moved by RATIO times its
+ * displacement from BEFORE. */
+static struct glint_pupil extrapolate_box(const struct glint_pupil *before,
+                                          const struct glint_pupil *box,
+                                          double ratio)
 {
     const double step =
         0.5 * ratio * (box->x0_mm + box->x1_mm - before->x0_mm - before->x1_mm);
@@ -343,14 +348,14 @@ struct box_samples {
     struct glint_pupil box[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
 };
 
-/* Finds the boxes of one wavelength at the angles that WANTED marks. */
+/* Finds the boxes of one wavelength at the angles marked in WANTED. */
 static void find_boxes_of_wave(const struct glint_visible *h,
                                const double *sine, const bool *wanted, int wave,
                                struct box_samples *g)
 {
     const struct glint_path *path = &h->position_path[wave];
     struct glint_pupil box = {.y1_mm = 0}, before = box;
-    int have = 0; /* number of angles in a row with a box */
+    int have = 0; /* number of consecutive angles with a box */
 
     for (int k = 0; k < GLINT_PROFILE; k++) {
         const double *s = sine + k;
@@ -362,7 +367,8 @@ static void find_boxes_of_wave(const struct glint_visible *h,
             continue;
         }
         if (have > 1)
-            near = predict(&before, &box, (s[0] - s[-1]) / (s[-1] - s[-2]));
+            near = extrapolate_box(&before, &box,
+                                   (s[0] - s[-1]) / (s[-1] - s[-2]));
         before = box;
         now = have ? find_box_near(h, path, *s, &near, &box)
                    : find_box(h, path, *s, &box);
@@ -398,9 +404,10 @@ static void add_angle(struct glint_visible_profile *p, double sine,
     p->n++;
 }
 
-/* Finds the boxes of one ghost at the angles SINE. A ghost that is ALONE is
- * visible at every angle in some colour, so all wavelengths are tried where
- * three see nothing. One of several ghosts beside each other may be dark. */
+/* Finds the boxes of one ghost at the angles SINE. ALONE: there are no
+ * neighbouring zoom positions, so the ghost is visible at every angle at
+ * some wavelength, and all wavelengths are tried where the first three find
+ * nothing. With neighbouring positions it may be invisible. */
 static void find_boxes(const struct glint_visible *h, bool alone,
                        const double *sine, struct box_samples *g)
 {
@@ -411,8 +418,8 @@ static void find_boxes(const struct glint_visible *h, bool alone,
         wanted[k] = true;
     for (int i = 0; i < 3; i++)
         find_boxes_of_wave(h, sine, wanted, glint_visible_colour[i], g);
-    /* Where only some of the three colours get through, boxes of others may lie
-     * between them. */
+    /* Where light passes at only some of the three wavelengths, boxes of
+     * further wavelengths may lie between them. */
     for (int k = 0; k < GLINT_PROFILE; k++) {
         const int n = g->seen[k][glint_visible_colour[0]] +
                       g->seen[k][glint_visible_colour[1]] +
@@ -425,7 +432,7 @@ static void find_boxes(const struct glint_visible *h, bool alone,
             find_boxes_of_wave(h, sine, wanted, wave, g);
 }
 
-/* Widens the boxes A to contain B. */
+/* Extends the boxes A to contain B. */
 static void join_boxes(struct box_samples *a, const struct box_samples *b)
 {
     for (int k = 0; k < GLINT_PROFILE; k++)
@@ -465,15 +472,15 @@ void glint_visible_profile_find(const struct glint_visible *visible,
 enum {
     SCAN_DEG = 1,
     BISECTIONS = 8,
-    /* steps of the scan by which a range of angles is widened at most, on each
-     * side, where only the ends of the band get through */
+    /* max number of scan steps by which each end of a range of angles is
+     * extended, where light passes only at the ends of the band */
     FARTHER = 4
 };
 
-/* Returns whether light gets through at one of the first N wavelengths of
- * glint_visible_colour, and sets BOX to its box. */
-static bool passes_in(const struct glint_visible *h, double sine, int n,
-                      struct glint_pupil *box)
+/* Returns whether light passes at one of the first N wavelengths of
+ * glint_visible_colour. Sets BOX to its box. */
+static bool find_first_box(const struct glint_visible *h, double sine, int n,
+                           struct glint_pupil *box)
 {
     for (int k = 0; k < n; k++)
         if (find_box(h, &h->position_path[glint_visible_colour[k]], sine, box))
@@ -481,40 +488,41 @@ static bool passes_in(const struct glint_visible *h, double sine, int n,
     return false;
 }
 
-static bool passes(const struct glint_visible *h, double sine, int n)
+static bool light_passes(const struct glint_visible *h, double sine, int n)
 {
     struct glint_pupil box;
 
-    return passes_in(h, sine, n, &box);
+    return find_first_box(h, sine, n, &box);
 }
 
-/* Returns whether light of the middle of the band gets through; for shaped
- * lenses, whose rays are slow to trace, searches near the box of the previous
- * step first. If INSIDE, BOX must be that box. BOX receives the new box. */
+/* Returns whether light in the middle of the band passes, and sets BOX. For
+ * lenses with surfaces that are not spheres, whose rays are slow to trace,
+ * first searches around BOX, the box of the previous step, if INSIDE is set. */
 static bool still_passes(const struct glint_visible *h, double sine,
                          bool inside, struct glint_pupil *box)
 {
     if (h->shaped && inside) {
-        struct glint_pupil near = grown(box);
+        struct glint_pupil near = add_margin(box);
 
-        if (shrink(h, &h->position_path[glint_visible_colour[0]], sine, 24, 12,
-                   &near)) {
+        if (shrink_box(h, &h->position_path[glint_visible_colour[0]], sine, 24,
+                       12, &near)) {
             *box = near;
             return true;
         }
     }
-    return passes_in(h, sine, 1, box);
+    return find_first_box(h, sine, 1, box);
 }
 
-/* Returns the last sine at which light of any of the three wavelengths gets
- * through, from WITH, where it does in the middle of the band, towards WITHOUT,
- * where it does not. */
-static double edge(const struct glint_visible *h, double with, double without)
+/* Returns the last sine, from WITH towards WITHOUT, at which light of any of
+ * the three wavelengths passes. In the middle of the band light passes at
+ * WITH, but not at WITHOUT. */
+static double find_range_edge(const struct glint_visible *h, double with,
+                              double without)
 {
     for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
         const double next = without + (without - with);
 
-        if (!passes(h, without, 3))
+        if (!light_passes(h, without, 3))
             break;
         with = without;
         without = fmin(1, fmax(0, next));
@@ -522,7 +530,7 @@ static double edge(const struct glint_visible *h, double with, double without)
     for (int k = 0; k < BISECTIONS; k++) {
         const double middle = 0.5 * (with + without);
 
-        if (passes(h, middle, 3))
+        if (light_passes(h, middle, 3))
             with = middle;
         else
             without = middle;
@@ -530,9 +538,8 @@ static double edge(const struct glint_visible *h, double with, double without)
     return with;
 }
 
-/* Ends range N - 1 of N at HI. Returns the new number of ranges: an empty range
- * is dropped, and a range that begins before the previous range ends is merged
- * with it. */
+/* Ends range N - 1 of N at HI. Drops an empty range and merges a range that
+ * begins before the previous one ends. Returns the new number of ranges. */
 static int end_range(double (*range)[2], int n, double hi)
 {
     double *last = range[n - 1];
@@ -546,8 +553,8 @@ static int end_range(double (*range)[2], int n, double hi)
     return n - 1;
 }
 
-static int ranges_of(const struct glint_visible *visible, double max_deg,
-                     double (*range)[2])
+static int find_ranges(const struct glint_visible *visible, double max_deg,
+                       double (*range)[2])
 {
     const int steps = (int)ceil(max_deg / SCAN_DEG);
     struct glint_pupil box;
@@ -562,9 +569,9 @@ static int ranges_of(const struct glint_visible *visible, double max_deg,
         if (now && !inside && n == GLINT_MAX_RANGES)
             break;
         if (now && !inside)
-            range[n++][0] = k ? edge(visible, sine, before) : 0;
+            range[n++][0] = k ? find_range_edge(visible, sine, before) : 0;
         if (!now && inside)
-            n = end_range(range, n, edge(visible, before, sine));
+            n = end_range(range, n, find_range_edge(visible, before, sine));
         inside = now;
         before = sine;
     }
@@ -601,11 +608,11 @@ int glint_visible_add_range(double (*range)[2], int n, const double more[2])
 int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
                          double (*range)[2])
 {
-    int n = ranges_of(visible, max_deg, range);
+    int n = find_ranges(visible, max_deg, range);
 
     for (int k = 0; k < visible->n_beside; k++) {
         double other[GLINT_MAX_RANGES][2];
-        const int n_other = ranges_of(&visible->beside[k], max_deg, other);
+        const int n_other = find_ranges(&visible->beside[k], max_deg, other);
 
         for (int i = 0; i < n_other; i++)
             n = glint_visible_add_range(range, n, other[i]);

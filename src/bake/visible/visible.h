@@ -3,17 +3,17 @@
  * Finds where a ghost is visible: at which angles of the light, and through
  * which part of the pupil.
  *
- *   in   a ghost of a lens, the band of wavelengths, the field that counts
+ *   in   a ghost of a lens, the band of wavelengths, the field
  *   out  ranges of angles, and boxes on the pupil at many angles of a range
  *
- * A ghost may appear, vanish and appear again. Limits: a range can be missed
- * that is narrower than the step of the scan, or has no light at the middle of
- * the band. A visible part can be missed that is smaller than a thirtieth of
- * its own box (unless the field is so small that the search closes in on it),
- * or that is there for less than four angles and apart from the one that is
- * followed. Beside other positions of a zoom, angles at which a ghost gets
- * through at other wavelengths than the middle and the ends of the band alone
- * are missed. */
+ * A ghost may appear, vanish and appear again. Limits: misses a range that is
+ * narrower than the step of the scan, or has no light in the middle of the
+ * band. Misses a visible part smaller than 1/30 of its box (unless the field is
+ * so small that the search closes in on it), and a part that exists for less
+ * than four angles and is separate from the one that is followed. With
+ * neighbouring zoom positions, misses angles at which light passes only at
+ * wavelengths other than the middle and the ends of the band.
+ */
 #ifndef GLINT_BAKE_VISIBLE_VISIBLE_H
 #define GLINT_BAKE_VISIBLE_VISIBLE_H
 
@@ -24,52 +24,51 @@ enum {
     GLINT_VISIBLE_WAVES = 11,
     GLINT_VISIBLE_COLOURS = 3,
     GLINT_MAX_RANGES = 8,
-    /* number of angles per range at which boxes are found */
+    /* number of angles per range at which boxes are determined */
     GLINT_PROFILE = 49,
     GLINT_MAX_BESIDE = 2
 };
 
-/* Numbers of the wavelengths in the middle and at the ends of the band. */
+/* Indices of the wavelengths in the middle and at the ends of the band. */
 extern const int glint_visible_colour[GLINT_VISIBLE_COLOURS];
 
-/* The f-number that fits were tuned for; lenses that open wider use additional
+/* F-number for which fits were tuned. Lenses that open wider use additional
  * sampling and weights. */
 #define GLINT_WIDE 10
 
-/* Degrees: rays of fisheyes from lights farther off the axis come near the
- * equators of surfaces at any stop, as rays of wide stops do. */
+/* Degrees. Rays of lights farther off the axis pass near the equators of
+ * surfaces, as in lenses that open wide. */
 #define GLINT_FAR 60
 
-/* One ghost, and the data common to all its ranges. */
+/* A ghost, and the data common to all its ranges of angles. */
 struct glint_visible {
     const struct glint_setup *setup;
     int ghost;
-    double field_mm; /* radius about the sensor's centre outside which light
-                        does not count */
-    bool wide; /* whether the lens opens wider than GLINT_WIDE: its rays come
-                  near singularities, and the model is used with much narrower
-                  stops */
-    bool far;  /* true: lights beyond GLINT_FAR are requested and the lens is
-                  round; it then counts as wide */
-    /* Whether the lens is round, opens wider than GLINT_WIDE and has surfaces
-     * that are not spheres, whose powers grow steeply: zones that cannot be
-     * fitted are accepted where errors are invisible instead of being halved
-     * without end. */
+    double field_mm; /* radius of the field around the sensor's centre */
+    bool wide; /* true: the lens opens wider than GLINT_WIDE. Its rays pass near
+                  singularities, and the model is used with much narrower stops
+                */
+    bool far;  /* true: the lens is round and lights beyond GLINT_FAR are
+                  requested; WIDE is then set, too */
+    /* true: the lens is round, opens wider than GLINT_WIDE and has surfaces
+     * that are not spheres, whose powers grow steeply. Zones that cannot be
+     * fitted are accepted where errors are invisible, instead of being
+     * halved without end. */
     bool shaped;
-    double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
-    struct glint_path path[GLINT_VISIBLE_WAVES]; /* paths at wavelengths from
-                                                    wave_lo to wave_hi */
-    struct glint_path position_path[GLINT_VISIBLE_WAVES]; /* the same paths, for
-                                                             positions only */
-    /* The ghost of the same lens at nearby positions of a zoom: light that is
-     * visible or cut there counts here too, so that models can be interpolated.
-     * */
+    double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
+    /* paths at GLINT_VISIBLE_WAVES wavelengths from wave_lo to wave_hi */
+    struct glint_path path[GLINT_VISIBLE_WAVES];
+    /* the same paths, which compute positions only */
+    struct glint_path position_path[GLINT_VISIBLE_WAVES];
+    /* The same ghost at neighbouring zoom positions. Light that is visible
+     * or cut there counts here as well, so that models of several positions
+     * can be interpolated. */
     int n_beside;
     struct glint_visible *beside; /* [n_beside]; their own n_beside is 0 */
 };
 
-/* Returns the ghost itself for K = 0, and the ghost beside it number K - 1 for
- * larger K. */
+/* Returns the ghost itself for K = 0, the ghost at neighbouring zoom
+ * position K - 1 for larger K. */
 static inline const struct glint_visible *
 glint_visible_member(const struct glint_visible *visible, int k)
 {
@@ -83,24 +82,24 @@ void glint_visible_init(struct glint_visible *visible,
 /* Sets the max angle of lights, MAX_DEG. */
 void glint_visible_reach(struct glint_visible *visible, double max_deg);
 
-/* Sets VISIBLE to WHOLE with its band narrowed to W0 .. W1, -1 .. 1. VISIBLE
- * must have memory for as many ghosts beside it as WHOLE. */
+/* Sets VISIBLE to WHOLE with its band narrowed to W0 .. W1, of -1 .. 1.
+ * VISIBLE->beside must have memory for WHOLE->n_beside entries. */
 void glint_visible_narrow(struct glint_visible *visible,
                           const struct glint_visible *whole, double w0,
                           double w1);
 
-/* Sets PATH for W, -1 .. 1 over the band. */
+/* Sets PATH for the wavelength at W, -1 .. 1 over the band. */
 void glint_visible_path(const struct glint_visible *visible, double w,
                         struct glint_path *path);
 
-/* Finds the ranges of sines, up to MAX_DEG, at which light gets through.
- * Returns how many. */
+/* Finds the ranges of sines, up to MAX_DEG, at which light passes. Returns
+ * their number. */
 int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
                          double (*range)[2]);
 
-/* Inserts the range MORE into N disjoint ranges in rising order and merges it
- * with ranges that it touches. Drops MORE if GLINT_MAX_RANGES other ranges
- * remain. Returns the new number of ranges. */
+/* Inserts the range MORE into N disjoint ascending ranges and merges it with
+ * ranges that it touches. Drops MORE if the result would have more than
+ * GLINT_MAX_RANGES ranges. Returns the new number of ranges. */
 int glint_visible_add_range(double (*range)[2], int n, const double more[2]);
 
 /* The box of visible light at one angle and wavelength. */
@@ -110,8 +109,8 @@ struct glint_box_sample {
 };
 
 /* Boxes over a range of angles: for each angle, the box that contains the
- * visible light of the whole band, and the boxes of single wavelengths, by
- * rising angle. */
+ * visible light of the whole band, and the boxes at single wavelengths, by
+ * ascending angle. */
 struct glint_visible_profile {
     int n, n_samples;
     double sine[GLINT_PROFILE];
@@ -123,11 +122,11 @@ void glint_visible_profile_find(const struct glint_visible *visible,
                                 const double range[2],
                                 struct glint_visible_profile *profile);
 
-/* Returns whether the stop, the barrels and the field let RAY through. */
+/* Returns whether RAY passes the stop, the barrels and the field. */
 bool glint_visible_passes(const struct glint_visible *visible,
                           const struct glint_ray *ray);
 
-/* Widens A to contain B. */
+/* Extends A to contain B. */
 void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b);
 
 #endif
