@@ -19,65 +19,70 @@ void four_init(struct four *four, enum four_fit fit,
         four->chain[k][k] = 1;
 }
 
-/* A place has weights in four points that are not plane, which sum
- * to 1 and are the same wherever these move. */
+/* A point has weights with respect to four points that are not in a plane.
+ * The weights sum to 1 and do not change when all points move. */
 struct base {
     enum four_arithmetic arithmetic;
-    double edge[3][3], normal[3][3], det; /* normal i is of the other edges */
+    /* normal[i]: cross product of the other two edges */
+    double edge[3][3], normal[3][3], det;
 };
 
-static double keep(const struct base *b, double x)
+static double round_value(const struct base *b, double x)
 {
     return four_rounded(b->arithmetic, x);
 }
 
-static double dot(const struct base *b, const double x[3], const double y[3])
+static double compute_dot(const struct base *b, const double x[3],
+                          const double y[3])
 {
-    return keep(b, keep(b, keep(b, x[0] * y[0]) + keep(b, x[1] * y[1])) +
-                       keep(b, x[2] * y[2]));
+    return round_value(b, round_value(b, round_value(b, x[0] * y[0]) +
+                                             round_value(b, x[1] * y[1])) +
+                              round_value(b, x[2] * y[2]));
 }
 
 static void set_base(struct base *b, const double (*const from[4])[3])
 {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            b->edge[i][k] = keep(b, (*from[i])[k] - (*from[3])[k]);
+            b->edge[i][k] = round_value(b, (*from[i])[k] - (*from[3])[k]);
     for (int i = 0; i < 3; i++) {
         const double *x = b->edge[(i + 1) % 3], *y = b->edge[(i + 2) % 3];
 
         for (int k = 0; k < 3; k++) {
             const int l = (k + 1) % 3, m = (k + 2) % 3;
 
-            b->normal[i][k] =
-                keep(b, keep(b, x[l] * y[m]) - keep(b, x[m] * y[l]));
+            b->normal[i][k] = round_value(b, round_value(b, x[l] * y[m]) -
+                                                 round_value(b, x[m] * y[l]));
         }
     }
-    b->det = dot(b, b->edge[0], b->normal[0]);
+    b->det = compute_dot(b, b->edge[0], b->normal[0]);
 }
 
-/* Sets PLACE to where POINT goes, from the base of FROM to TO. */
-static void carry(const struct base *b, const double (*const from[4])[3],
-                  const double (*const to[4])[3], const double point[3],
-                  double place[3])
+/* Sets PLACE to the image of POINT under the motion from the points FROM to
+ * the points TO. */
+static void map_point(const struct base *b, const double (*const from[4])[3],
+                      const double (*const to[4])[3], const double point[3],
+                      double place[3])
 {
     double off[3], weight[4], sum = 0;
 
     for (int k = 0; k < 3; k++)
-        off[k] = keep(b, point[k] - (*from[3])[k]);
+        off[k] = round_value(b, point[k] - (*from[3])[k]);
     for (int i = 0; i < 3; i++) {
-        weight[i] = keep(b, dot(b, off, b->normal[i]) / b->det);
-        sum = keep(b, sum + weight[i]);
+        weight[i] = round_value(b, compute_dot(b, off, b->normal[i]) / b->det);
+        sum = round_value(b, sum + weight[i]);
     }
-    weight[3] = keep(b, 1 - sum);
+    weight[3] = round_value(b, 1 - sum);
     for (int k = 0; k < 3; k++) {
         place[k] = 0;
         for (int i = 0; i < 4; i++)
-            place[k] = keep(b, place[k] + keep(b, weight[i] * (*to[i])[k]));
+            place[k] = round_value(
+                b, place[k] + round_value(b, weight[i] * (*to[i])[k]));
     }
 }
 
-/* Returns the determinant of FROM[4] as edges from the last, over the product
- * of their lengths, in double precision: 0 .. 1. */
+/* Returns the volume that the four points FROM span, relative to its upper
+ * bound: 0 .. 1, in double precision. */
 static double four_spans(const double (*const from[4])[3])
 {
     struct base b = {.arithmetic = FOUR_DOUBLE};
@@ -85,12 +90,12 @@ static double four_spans(const double (*const from[4])[3])
 
     set_base(&b, from);
     for (int i = 0; i < 3; i++)
-        bound *= sqrt(dot(&b, b.edge[i], b.edge[i]));
+        bound *= sqrt(compute_dot(&b, b.edge[i], b.edge[i]));
     return bound > 0 ? fabs(b.det) / bound : 0;
 }
 
-/* Sets MAP to how points move if FROM[4] move to TO[4]: the columns of a 3 x 4
- * matrix, where the axes go and where the origin. Returns false if
+/* Sets MAP to the affine map that moves FROM[4] to TO[4], a 3 x 4 matrix by
+ * columns: images of the axes, then of the origin. Returns false if
  * four_spans() is below 2^-20. */
 static bool four_map(enum four_arithmetic arithmetic,
                      const double (*const from[4])[3],
@@ -106,17 +111,17 @@ static bool four_map(enum four_arithmetic arithmetic,
     if (b.det == 0)
         return false;
     for (int i = 0; i < 4; i++)
-        carry(&b, from, to, point[i], map[i]);
+        map_point(&b, from, to, point[i], map[i]);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            map[i][k] = keep(&b, map[i][k] - map[3][k]);
+            map[i][k] = round_value(&b, map[i][k] - map[3][k]);
     return true;
 }
 
-/* Sets FOUR to the known foods that FIT uses; returns false if there are fewer.
- * */
-static bool choose(const struct four *l, int n, const double (*seen)[3],
-                   const bool *is_new, int four[4])
+/* Sets FOUR to the indices of the known foods that FIT uses. Returns false
+ * if there are fewer than four. */
+static bool choose_foods(const struct four *l, int n, const double (*seen)[3],
+                         const bool *is_new, int four[4])
 {
     int known[MOST], m = 0;
     double best = -1;
@@ -147,8 +152,9 @@ static bool choose(const struct four *l, int n, const double (*seen)[3],
     return true;
 }
 
-/* Multiplies the chain by MAP, from this frame to the last. */
-static void lengthen(struct four *l, double map[4][3])
+/* Multiplies the chain of motions by MAP, from this frame to the previous
+ * one. */
+static void extend_chain(struct four *l, double map[4][3])
 {
     double next[4][3];
 
@@ -167,7 +173,7 @@ static void lengthen(struct four *l, double map[4][3])
     memcpy(map, next, sizeof next);
 }
 
-/* Sets MAP to where points of the body go. */
+/* Sets MAP to the motion of the body. Returns NULL or an error text. */
 static const char *map_four(struct four *l, int n, const double (*seen)[3],
                             const bool *is_new, double map[4][3])
 {
@@ -177,7 +183,7 @@ static const char *map_four(struct four *l, int n, const double (*seen)[3],
     const double(*from[4])[3], (*to[4])[3];
     int four[4];
 
-    if (!choose(l, n, seen, is_new, four))
+    if (!choose_foods(l, n, seen, is_new, four))
         return "fewer than four foods are known, which this fit takes";
     for (int i = 0; i < 4; i++) {
         from[i] = &seen[four[i]];
@@ -186,13 +192,13 @@ static const char *map_four(struct four *l, int n, const double (*seen)[3],
     if (!four_map(l->arithmetic, from, to, map))
         return "the four foods lie in a plane, or out of range";
     if (l->fit == FOUR_CHAIN)
-        lengthen(l, map);
+        extend_chain(l, map);
     return NULL;
 }
 
-/* Sets TO to where MAP takes POINT. */
-static void take(const struct four *l, double map[4][3], const double point[3],
-                 double to[3])
+/* Sets TO to the image of POINT under MAP. */
+static void apply_map(const struct four *l, double map[4][3],
+                      const double point[3], double to[3])
 {
     for (int k = 0; k < 3; k++) {
         to[k] = map[3][k];
@@ -203,8 +209,8 @@ static void take(const struct four *l, double map[4][3], const double point[3],
     }
 }
 
-static void begin(struct four *l, int n, const double (*seen)[3],
-                  struct glint_located *located)
+static void begin_localiser(struct four *l, int n, const double (*seen)[3],
+                            struct glint_located *located)
 {
     located->pose = (struct glint_rigid){
         {0, 0, 0}, {1, 0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -227,7 +233,7 @@ static const char *locate(struct four *l, int n, const double (*seen)[3],
     memcpy(located->pose.at, map[3], sizeof located->pose.at);
     for (int i = 0; i < n; i++)
         if (is_new[i])
-            take(l, map, seen[i], l->place[i]);
+            apply_map(l, map, seen[i], l->place[i]);
     return NULL;
 }
 
@@ -243,7 +249,7 @@ const char *four_localise(struct four *four, int n, const double (*seen)[3],
     if (four->has_begun)
         wrong = locate(four, n, (const double(*)[3])rounded, is_new, located);
     else
-        begin(four, n, (const double(*)[3])rounded, located);
+        begin_localiser(four, n, (const double(*)[3])rounded, located);
     memcpy(four->last, rounded, sizeof four->last);
     return wrong;
 }

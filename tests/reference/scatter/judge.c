@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models of scattering against the rows that they are made of.
+ * Measures the errors of models of subsurface scattering against the rows that
+ * they were fitted to.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -42,7 +43,8 @@ glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
     const double line = sqrt(entries);
 
     switch (candidate->kind) {
-    case GLINT_CANDIDATE_CLUSTERED: /* and a byte for the cluster */
+    case GLINT_CANDIDATE_CLUSTERED: /* plus one byte per texel for the cluster
+                                     */
         return 8 * 3 * (2 * texels + candidate->terms * entries) + texels;
     case GLINT_CANDIDATE_FACTORED:
         return 8 * 3 * candidate->terms * (texels + 2 * candidate->rank * line);
@@ -88,9 +90,9 @@ glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
                     : (terms + 3) * texels * entries;
     case GLINT_CANDIDATE_TUCKER:
         return (candidate->terms + 3.0 * candidate->degree) * texels * entries;
-    case GLINT_CANDIDATE_SUBEDIT: /* two interpolations and a root */
+    case GLINT_CANDIDATE_SUBEDIT: /* two interpolations and a square root */
         return 3 * 4 * texels * entries;
-    case GLINT_CANDIDATE_LOG_SVD: /* and an exponential */
+    case GLINT_CANDIDATE_LOG_SVD: /* plus an exponential */
     default:
         return (terms + 3) * texels * entries;
     }
@@ -118,11 +120,10 @@ void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
                     : (float)row[d];
 }
 
-/* One of the fits that a run time draws. */
-static enum glint_status drawn(struct glint_scatter_rows *rows,
-                               const struct glint_scatter_candidate *o,
-                               const struct glint_watch *watch,
-                               struct glint_scatter_rows *rebuilt)
+/* Rebuilds ROWS by one of the fits that the run time can draw. */
+static enum glint_status rebuild_drawable(
+    struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o,
+    const struct glint_watch *watch, struct glint_scatter_rows *rebuilt)
 {
     static const enum glint_scatter_model model[] = {
         GLINT_SCATTER_CLUSTERED, GLINT_SCATTER_FACTORED, GLINT_SCATTER_ALBEDO};
@@ -144,10 +145,10 @@ static enum glint_status drawn(struct glint_scatter_rows *rows,
     return GLINT_OK;
 }
 
-static enum glint_status rebuild(struct glint_scatter_rows *rows,
-                                 struct glint_scatter_candidate *o,
-                                 const struct glint_watch *watch,
-                                 struct glint_scatter_rows *rebuilt)
+static enum glint_status rebuild_rows(struct glint_scatter_rows *rows,
+                                      struct glint_scatter_candidate *o,
+                                      const struct glint_watch *watch,
+                                      struct glint_scatter_rows *rebuilt)
 {
     static glint_rebuild_fn *const published[] = {
         [GLINT_CANDIDATE_SVD] = glint_rebuild_svd,
@@ -159,20 +160,21 @@ static enum glint_status rebuild(struct glint_scatter_rows *rows,
     };
 
     return published[o->kind] ? published[o->kind](rows, o, watch, rebuilt)
-                              : drawn(rows, o, watch, rebuilt);
+                              : rebuild_drawable(rows, o, watch, rebuilt);
 }
 
-static int rising(const void *a, const void *b)
+static int compare_doubles(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
 
     return (x > y) - (x < y);
 }
 
-/* Squared error of the row of texel X, and what is wrong with it. */
-static double judge_row(const struct glint_scatter_rows *rows,
-                        const struct glint_scatter_rows *rebuilt, int x,
-                        struct glint_scatter_judgement *j, double *one_way)
+/* Returns the squared error of the row of texel X. Adds its negative
+ * entries, its asymmetry and its sum to J and ONE_WAY. */
+static double measure_row(const struct glint_scatter_rows *rows,
+                          const struct glint_scatter_rows *rebuilt, int x,
+                          struct glint_scatter_judgement *j, double *one_way)
 {
     const int k2 = glint_scatter_kernel2(rows->kernel);
     double square = 0;
@@ -199,8 +201,8 @@ static double judge_row(const struct glint_scatter_rows *rows,
     return square;
 }
 
-/* Entries of all rows that are inside the square. */
-static double inside(const struct glint_scatter_rows *rows)
+/* Returns the number of entries of all rows that lie inside the square. */
+static double count_inside(const struct glint_scatter_rows *rows)
 {
     double n = 0;
 
@@ -213,42 +215,43 @@ static double inside(const struct glint_scatter_rows *rows)
     return 3 * n;
 }
 
-static double decibels(double square, double peak)
+static double compute_psnr_db(double square, double peak)
 {
     return square > 0 && peak > 0 ? 10 * log10(peak * peak / square)
                                   : NO_ERROR_DB;
 }
 
-/* Errors of entries; SORTED[texels] is scratch. */
-static void judge_entries(const struct glint_scatter_rows *rows,
-                          const struct glint_scatter_rows *rebuilt,
-                          double *sorted, struct glint_scatter_judgement *j)
+/* Measures the errors of entries. SORTED[texels] is scratch. */
+static void measure_entries(const struct glint_scatter_rows *rows,
+                            const struct glint_scatter_rows *rebuilt,
+                            double *sorted, struct glint_scatter_judgement *j)
 {
     const int texels = rows->side * rows->side;
-    const double peak = glint_scatter_peak(rows), all = inside(rows);
+    const double peak = glint_scatter_peak(rows), all = count_inside(rows);
     const double unit = peak > 0 ? peak : 1;
     double square = 0, one_way = 0;
 
     for (int x = 0; x < texels; x++) {
-        const double row = judge_row(rows, rebuilt, x, j, &one_way);
+        const double row = measure_row(rows, rebuilt, x, j, &one_way);
 
         square += row;
         j->error[x] = sqrt(row / (all / texels)) / unit;
         sorted[x] = j->error[x];
     }
-    qsort(sorted, (size_t)texels, sizeof *sorted, rising);
+    qsort(sorted, (size_t)texels, sizeof *sorted, compare_doubles);
     j->p50 = sorted[texels / 2];
     j->p95 = sorted[(int)(0.95 * (texels - 1))];
     j->largest = sorted[texels - 1];
     j->rmse = sqrt(square / all) / unit;
-    j->entry_db = decibels(square / all, peak);
+    j->entry_db = compute_psnr_db(square / all, peak);
     j->negative /= all;
     j->one_way = sqrt(one_way / all) / unit;
 }
 
-static enum glint_status judge(const struct glint_scatter_rows *rows,
-                               const struct glint_scatter_rows *rebuilt,
-                               struct glint_scatter_judgement *j)
+static enum glint_status
+measure_errors(const struct glint_scatter_rows *rows,
+               const struct glint_scatter_rows *rebuilt,
+               struct glint_scatter_judgement *j)
 {
     const size_t texels = (size_t)rows->side * (size_t)rows->side;
     double *light = malloc(7 * texels * sizeof *light);
@@ -262,7 +265,7 @@ static enum glint_status judge(const struct glint_scatter_rows *rows,
     }
     want = light + 3 * texels;
     sorted = want + 3 * texels;
-    judge_entries(rows, rebuilt, sorted, j);
+    measure_entries(rows, rebuilt, sorted, j);
     glint_scatter_test_light(rows->side, light);
     glint_scatter_light_rows(rows, light, want);
     glint_scatter_light_rows(rebuilt, light, j->light);
@@ -270,7 +273,7 @@ static enum glint_status judge(const struct glint_scatter_rows *rows,
         square += pow(j->light[i] - want[i], 2) / (3.0 * (double)texels);
         peak = fmax(peak, want[i]);
     }
-    j->light_db = decibels(square, peak);
+    j->light_db = compute_psnr_db(square, peak);
     free(light);
     return GLINT_OK;
 }
@@ -292,13 +295,13 @@ glint_scatter_judge(struct glint_scatter_rows *rows,
         return GLINT_E_ARGUMENT;
     if (!glint_scatter_open(&rebuilt, rows->side, rows->kernel, false))
         return GLINT_E_MEMORY;
-    status = rebuild(rows, &judgement->candidate, watch, &rebuilt);
+    status = rebuild_rows(rows, &judgement->candidate, watch, &rebuilt);
     judgement->seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
     judgement->bytes =
         glint_scatter_candidate_bytes(candidate, texels, entries);
     judgement->compression = 24 * texels * entries / judgement->bytes;
     if (status == GLINT_OK)
-        status = judge(rows, &rebuilt, judgement);
+        status = measure_errors(rows, &rebuilt, judgement);
     glint_scatter_close(&rebuilt);
     if (status != GLINT_OK)
         glint_scatter_judgement_close(judgement);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Non-negative factors: of rows, and of rows over a mean row, weighted
- * [Peers06].
+ * Non-negative factorisation of rows, and of rows relative to a mean row, with
+ * weights [Peers06].
  */
 #include "reference/scatter/rebuild.h"
 
@@ -11,11 +11,11 @@
 
 enum {
     ROUNDS = 30,
-    SWEEPS = 2,         /* through the terms, in a round */
-    CLUSTER_ROUNDS = 20 /* of k-means */
+    SWEEPS = 2,         /* passes over all terms per round */
+    CLUSTER_ROUNDS = 20 /* rounds of k-means */
 };
 
-/* What a row is, by the factors. */
+/* Sets ROW to the sum of the terms for row X. */
 static void model_row(const struct glint_positive *p, int x, double *row)
 {
     memset(row, 0, (size_t)p->m * sizeof *row);
@@ -28,14 +28,15 @@ static void model_row(const struct glint_positive *p, int x, double *row)
     }
 }
 
-/* Sums of one round of h: [terms][m] of weights times values, [terms][terms][m]
- * of weights alone, and three rows of scratch. */
+/* Sums for one update of h: [terms][m] of weights times values,
+ * [terms][terms][m] of weights, and three rows of scratch. */
 struct sums {
     double *up, *gram, *value, *weight, *left;
 };
 
-/* Weights of row X by least squares, one after the other, clamped to 0. */
-static void set_weights(const struct glint_positive *p, int x,
+/* Fits the factors of row X by least squares, one after the other, clamped
+ * to 0. */
+static void fit_factors(const struct glint_positive *p, int x,
                         const struct sums *s)
 {
     model_row(p, x, s->left);
@@ -77,8 +78,8 @@ static void add_row(const struct glint_positive *p, int x, const struct sums *s)
     }
 }
 
-/* h by least squares, one after the other, clamped to 0. */
-static void set_h(const struct glint_positive *p, const struct sums *s)
+/* Fits h by least squares, one term after the other, clamped to 0. */
+static void fit_h(const struct glint_positive *p, const struct sums *s)
 {
     const size_t m = (size_t)p->m, terms = (size_t)p->terms;
 
@@ -99,8 +100,9 @@ static void set_h(const struct glint_positive *p, const struct sums *s)
     }
 }
 
-/* Two sequences that are not alike, so that terms part. */
-static void begin(const struct glint_positive *p)
+/* Sets initial factors from two different sequences, so that the terms
+ * differ. */
+static void set_initial_factors(const struct glint_positive *p)
 {
     for (int i = 0; i < p->terms * p->n; i++)
         p->f[i] = 0.5 + (double)(i * 7919LL % 1009) / 1009;
@@ -118,15 +120,15 @@ enum glint_status glint_positive_fit(const struct glint_positive *p, int rounds,
                            memory + all + m, memory + all + 2 * m};
     enum glint_status status = memory ? GLINT_OK : GLINT_E_MEMORY;
 
-    begin(p);
+    set_initial_factors(p);
     for (int i = 0; i < rounds && status == GLINT_OK; i++) {
         memset(memory, 0, all * sizeof *memory);
         for (int x = 0; x < p->n; x++) {
             p->row(p->ctx, x, s.value, s.weight);
-            set_weights(p, x, &s);
+            fit_factors(p, x, &s);
             add_row(p, x, &s);
         }
-        set_h(p, &s);
+        fit_h(p, &s);
         if (glint_watch_ends(watch, (double)i / rounds))
             status = GLINT_E_CLOSED;
     }
@@ -134,16 +136,18 @@ enum glint_status glint_positive_fit(const struct glint_positive *p, int rounds,
     return status;
 }
 
-/* Rows over the means of clusters; of one of 1 they are the rows. */
+/* Rows relative to the mean row of their cluster; if PLAIN, the rows
+ * themselves. */
 struct over {
     const struct glint_scatter_rows *rows;
     int c, clusters;
     bool plain;
-    double *mean; /* [clusters][kernel * kernel] of the channel */
-    int *cluster; /* [texels] */
+    double *mean; /* [clusters][kernel * kernel]: mean rows of the channel */
+    int *cluster; /* [texels]: index of the cluster */
 };
 
-static void over_row(const void *ctx, int x, double *value, double *weight)
+static void read_relative_row(const void *ctx, int x, double *value,
+                              double *weight)
 {
     const struct over *p = ctx;
     const int k2 = glint_scatter_kernel2(p->rows->kernel);
@@ -158,7 +162,7 @@ static void over_row(const void *ctx, int x, double *value, double *weight)
     }
 }
 
-static double distance(const struct over *p, int x, const double *g)
+static double compute_distance(const struct over *p, int x, const double *g)
 {
     const float *row = glint_scatter_row(p->rows, x, p->c);
     double sum = 0;
@@ -186,7 +190,8 @@ static void set_means(struct over *p)
             p->mean[(size_t)i * k2 + d] /= n[i];
 }
 
-/* k-means of rows, begun with rows that are far apart in the square. */
+/* Clusters the rows by k-means. Initial clusters are consecutive ranges of
+ * texels. */
 static void set_clusters(struct over *p)
 {
     const int texels = p->rows->side * p->rows->side;
@@ -199,12 +204,12 @@ static void set_clusters(struct over *p)
 
         set_means(p);
         for (int x = 0; x < texels && p->clusters > 1; x++) {
-            double best =
-                distance(p, x, p->mean + (size_t)p->cluster[x] * (size_t)k2);
+            double best = compute_distance(
+                p, x, p->mean + (size_t)p->cluster[x] * (size_t)k2);
 
             for (int i = 0; i < p->clusters; i++) {
                 const double far =
-                    distance(p, x, p->mean + (size_t)i * (size_t)k2);
+                    compute_distance(p, x, p->mean + (size_t)i * (size_t)k2);
 
                 if (far < best) {
                     best = far;
@@ -218,10 +223,10 @@ static void set_clusters(struct over *p)
     }
 }
 
-static enum glint_status channel_of(struct over *p, struct glint_positive *q,
-                                    double *row,
-                                    const struct glint_watch *watch,
-                                    struct glint_scatter_rows *rebuilt)
+static enum glint_status rebuild_channel(struct over *p,
+                                         struct glint_positive *q, double *row,
+                                         const struct glint_watch *watch,
+                                         struct glint_scatter_rows *rebuilt)
 {
     enum glint_status status;
 
@@ -239,13 +244,14 @@ static enum glint_status channel_of(struct over *p, struct glint_positive *q,
     return status;
 }
 
-static enum glint_status rebuild(struct over *p, int terms,
-                                 const struct glint_watch *watch,
-                                 struct glint_scatter_rows *rebuilt)
+static enum glint_status rebuild_rows(struct over *p, int terms,
+                                      const struct glint_watch *watch,
+                                      struct glint_scatter_rows *rebuilt)
 {
     const int texels = p->rows->side * p->rows->side;
     const int k2 = glint_scatter_kernel2(p->rows->kernel);
-    struct glint_positive q = {texels, k2, terms, over_row, p, NULL, NULL};
+    struct glint_positive q = {texels, k2,   terms, read_relative_row,
+                               p,      NULL, NULL};
     double *row = malloc((size_t)k2 * sizeof *row);
     enum glint_status status = GLINT_E_MEMORY;
 
@@ -259,7 +265,7 @@ static enum glint_status rebuild(struct over *p, int terms,
         struct glint_watch_part part = {watch, p->c / 3.0, 1 / 3.0};
         const struct glint_watch share = glint_watch_of(&part);
 
-        status = channel_of(p, &q, row, &share, rebuilt);
+        status = rebuild_channel(p, &q, row, &share, rebuilt);
     }
     free(row);
     free(q.f);
@@ -276,7 +282,7 @@ enum glint_status glint_rebuild_als(const struct glint_scatter_rows *rows,
 {
     struct over p = {.rows = rows, .clusters = 1, .plain = true};
 
-    return rebuild(&p, o->terms, watch, rebuilt);
+    return rebuild_rows(&p, o->terms, watch, rebuilt);
 }
 
 enum glint_status glint_rebuild_peers(const struct glint_scatter_rows *rows,
@@ -286,5 +292,5 @@ enum glint_status glint_rebuild_peers(const struct glint_scatter_rows *rows,
 {
     struct over p = {.rows = rows, .clusters = o->clusters};
 
-    return rebuild(&p, o->terms, watch, rebuilt);
+    return rebuild_rows(&p, o->terms, watch, rebuilt);
 }

@@ -1,18 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * Published models of scattering, each as the rows that it makes of rows.
+ * Published models of subsurface scattering. Each function fits a model to the
+ * rows of a scattering matrix and rebuilds the rows from it.
  *
- * Entries outside the square are data as any other for all of them but the
- * profiles of [Song09], as published: they are 0. What a model makes of them is
- * dropped. */
+ * Entries outside the square are 0. As in the publications, all models fit them
+ * like other entries, except the profiles of [Song09]. Rebuilt entries outside
+ * the square are dropped.
+ */
 #ifndef REFERENCE_SCATTER_REBUILD_H
 #define REFERENCE_SCATTER_REBUILD_H
 
 #include "bake/translucent/rows.h"
 #include "reference/scatter/translucent_report.h"
 
-/* Sets REBUILT, which is open and 0, to what a model of O makes of ROWS.
- * GLINT_E_MEMORY, GLINT_E_CLOSED. */
+/* Fits the model with the parameters O to ROWS and sets REBUILT, which is
+ * open and 0, to the rebuilt rows. May return GLINT_E_MEMORY or
+ * GLINT_E_CLOSED. */
 typedef enum glint_status glint_rebuild_fn(
     const struct glint_scatter_rows *rows, struct glint_scatter_candidate *o,
     const struct glint_watch *watch, struct glint_scatter_rows *rebuilt);
@@ -20,20 +23,21 @@ typedef enum glint_status glint_rebuild_fn(
 glint_rebuild_fn glint_rebuild_svd, glint_rebuild_log_svd, glint_rebuild_tucker,
     glint_rebuild_als, glint_rebuild_peers, glint_rebuild_subedit;
 
-/* The largest entry. */
+/* Returns the largest entry. */
 double glint_scatter_peak(const struct glint_scatter_rows *rows);
 
-/* Sets channel C of the row of texel X of REBUILT, 0 outside the square. */
+/* Sets channel C of the row of texel X of REBUILT to ROW, with 0 outside the
+ * square. */
 void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
                        const double *row);
 
-/* Sets F[n] and H[k2] to the Tucker(1, 1) fit of LEFT[n][k2] and takes it off;
- * returns the square of its singular value. */
+/* Sets F[n] and H[k2] to the Tucker(1, 1) fit of LEFT[n][k2] and subtracts
+ * it from LEFT. Returns the square of its singular value. */
 double glint_tucker_term(float *left, int n, int k2, double *f, double *h);
 
-/* Non-negative F[terms][n] and H[terms][m] of V, n rows of m, by alternating
- * least squares, one term after the other and clamped to 0 [Cichocki09]; ROUNDS
- * of them, of which none raises the weighted error. */
+/* Non-negative factors F[terms][n] and H[terms][m] of V, n rows of m
+ * entries, by alternating least squares, one term after the other, clamped
+ * to 0 [Cichocki09]. No round increases the weighted error. */
 struct glint_positive {
     int n, m, terms;
     void (*row)(const void *ctx, int i, double *value, double *weight);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Scattering as the geometric mean of two radial profiles [Song09].
+ * Models scattering as the geometric mean of two radial profiles [Song09].
  *
- * Logarithms make it a sum: ln R'(i, o) = (ln P_i(r) + ln P_o(r)) / 2. Profiles
- * are solved for in turns, each texel given the others as they were, half of
- * the way at a time. Between their values they are linear in r.
+ * Logarithms make it a sum: ln R'(i, o) = (ln P_i(r) + ln P_o(r)) / 2. In each
+ * round every profile is solved for with all others fixed, and moved half of
+ * the way to the solution. Profiles are interpolated linearly in r.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -14,17 +14,19 @@
 
 enum { VALUES = 12, ROUNDS = 8 };
 
-#define FLOOR 1e-7 /* of the peak: what a logarithm takes 0 for */
+/* smallest argument of a logarithm, as a fraction of the peak */
+#define FLOOR 1e-7
 
 struct subedit {
     const struct glint_scatter_rows *rows;
     int c;
     double floor;
-    double *profile, *next; /* [texels][VALUES] logarithms */
-    double *radius;         /* [kernel * kernel] 0 .. VALUES - 1 */
+    double *profile, *next; /* [texels][VALUES]: logarithms of the profiles */
+    /* [kernel * kernel]: radius of each entry, 0 .. VALUES - 1 */
+    double *radius;
 };
 
-static double at(const double *profile, double radius)
+static double interpolate_profile(const double *profile, double radius)
 {
     const int low = radius < VALUES - 1 ? (int)radius : VALUES - 2;
     const double t = radius - low;
@@ -32,7 +34,7 @@ static double at(const double *profile, double radius)
     return (1 - t) * profile[low] + t * profile[low + 1];
 }
 
-/* Radii by entries: 0 in the middle, VALUES - 1 in the corners. */
+/* Sets the radius of each entry: 0 at the centre, VALUES - 1 in the corners. */
 static void set_radii(const struct subedit *p)
 {
     const int n = p->rows->kernel, half = n / 2;
@@ -45,9 +47,9 @@ static void set_radii(const struct subedit *p)
     }
 }
 
-/* Sets the profile of X to the mean, by radius, of what its row and the other
- * profiles leave to it. */
-static void solve(const struct subedit *p, int x, bool alone)
+/* Sets the next profile of X to the mean, per radius, of the values that its
+ * row and the other profiles require. ALONE: ignores the other profiles. */
+static void solve_profile(const struct subedit *p, int x, bool alone)
 {
     const float *row = glint_scatter_row(p->rows, x, p->c);
     double sum[VALUES] = {0}, weight[VALUES] = {0};
@@ -63,7 +65,8 @@ static void solve(const struct subedit *p, int x, bool alone)
             continue;
         value = log(fmax((double)row[d], p->floor));
         if (!alone)
-            value = 2 * value - at(p->profile + VALUES * to, p->radius[d]);
+            value = 2 * value -
+                    interpolate_profile(p->profile + VALUES * to, p->radius[d]);
         sum[low] += (1 - t) * value;
         weight[low] += 1 - t;
         sum[low + 1] += t * value;
@@ -88,17 +91,19 @@ static void rebuild_channel(const struct subedit *p, double *row,
                 glint_scatter_target(p->rows->side, p->rows->kernel, x, d);
 
             row[d] = to < 0 ? 0
-                            : exp((at(p->profile + VALUES * x, p->radius[d]) +
-                                   at(p->profile + VALUES * to, p->radius[d])) /
+                            : exp((interpolate_profile(p->profile + VALUES * x,
+                                                       p->radius[d]) +
+                                   interpolate_profile(p->profile + VALUES * to,
+                                                       p->radius[d])) /
                                   2);
         }
         glint_rebuilt_row(rebuilt, x, p->c, row);
     }
 }
 
-static enum glint_status run(struct subedit *p, double *row,
-                             const struct glint_watch *watch,
-                             struct glint_scatter_rows *rebuilt)
+static enum glint_status rebuild_channels(struct subedit *p, double *row,
+                                          const struct glint_watch *watch,
+                                          struct glint_scatter_rows *rebuilt)
 {
     const int texels = p->rows->side * p->rows->side;
 
@@ -110,7 +115,7 @@ static enum glint_status run(struct subedit *p, double *row,
             if (glint_watch_ends(watch, (p->c + (double)i / ROUNDS) / 3))
                 return GLINT_E_CLOSED;
             for (int x = 0; x < texels; x++)
-                solve(p, x, i == 0);
+                solve_profile(p, x, i == 0);
             other = p->profile;
             p->profile = p->next;
             p->next = other;
@@ -135,13 +140,13 @@ enum glint_status glint_rebuild_subedit(const struct glint_scatter_rows *rows,
     (void)o;
     if (!(p.floor > 0)) {
         free(memory);
-        return GLINT_OK; /* a black translucent medium is 0 */
+        return GLINT_OK; /* the model of a black medium is 0 */
     }
     if (memory) {
         p.profile = memory;
         p.next = memory + values;
         p.radius = p.next + values;
-        status = run(&p, p.radius + k2, watch, rebuilt);
+        status = rebuild_channels(&p, p.radius + k2, watch, rebuilt);
     }
     free(memory);
     return status;

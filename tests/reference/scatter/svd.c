@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Truncated singular value decompositions of rows, and of their logarithms
- * [Kurt14].
+ * Models rows by truncated singular value decompositions, of their values or of
+ * their logarithms [Kurt14].
  */
 #include "reference/scatter/rebuild.h"
 
@@ -10,16 +10,16 @@
 
 #include "bake/translucent/linear.h"
 
-enum { SEARCHED = 256 /* rows of which a and b are found */ };
+enum { SEARCHED = 256 /* number of rows by which a and b are chosen */ };
 
 struct channel {
     const struct glint_scatter_rows *rows;
-    int c, step; /* each STEPth row */
-    bool logs;   /* ln(R' / a + b) */
+    int c, step; /* only every STEPth row is used */
+    bool logs;   /* true: decomposes ln(R' / a + b) */
     double a, b;
 };
 
-static void fetch(const void *ctx, int i, double *to)
+static void read_row(const void *ctx, int i, double *to)
 {
     const struct channel *p = ctx;
     const float *row = glint_scatter_row(p->rows, i * p->step, p->c);
@@ -28,7 +28,7 @@ static void fetch(const void *ctx, int i, double *to)
         to[d] = p->logs ? log((double)row[d] / p->a + p->b) : (double)row[d];
 }
 
-static double back(const struct channel *p, double value)
+static double invert_logarithm(const struct channel *p, double value)
 {
     return p->logs ? p->a * (exp(value) - p->b) : value;
 }
@@ -48,19 +48,19 @@ static void term_row(const struct glint_terms *t, int rows, int k2, int x,
     }
 }
 
-static struct glint_tall matrix_of(const struct channel *p)
+static struct glint_tall make_matrix(const struct channel *p)
 {
     const int texels = p->rows->side * p->rows->side;
 
     return (struct glint_tall){(texels + p->step - 1) / p->step,
-                               glint_scatter_kernel2(p->rows->kernel), fetch,
+                               glint_scatter_kernel2(p->rows->kernel), read_row,
                                p};
 }
 
 static enum glint_status rebuild_channel(const struct channel *p, int n,
                                          struct glint_scatter_rows *rebuilt)
 {
-    const struct glint_tall m = matrix_of(p);
+    const struct glint_tall m = make_matrix(p);
     double *row = malloc((size_t)m.columns * sizeof *row);
     struct glint_terms terms;
 
@@ -71,7 +71,7 @@ static enum glint_status rebuild_channel(const struct channel *p, int n,
     for (int x = 0; x < m.rows; x++) {
         term_row(&terms, m.rows, m.columns, x, row);
         for (int d = 0; d < m.columns; d++)
-            row[d] = back(p, row[d]);
+            row[d] = invert_logarithm(p, row[d]);
         glint_rebuilt_row(rebuilt, x, p->c, row);
     }
     free(row);
@@ -79,9 +79,9 @@ static enum glint_status rebuild_channel(const struct channel *p, int n,
     return GLINT_OK;
 }
 
-static enum glint_status rebuild(struct channel *p, int n,
-                                 const struct glint_watch *watch,
-                                 struct glint_scatter_rows *rebuilt)
+static enum glint_status rebuild_channels(struct channel *p, int n,
+                                          const struct glint_watch *watch,
+                                          struct glint_scatter_rows *rebuilt)
 {
     enum glint_status status = GLINT_OK;
 
@@ -100,13 +100,13 @@ enum glint_status glint_rebuild_svd(const struct glint_scatter_rows *rows,
 {
     struct channel p = {.rows = rows};
 
-    return rebuild(&p, o->terms, watch, rebuilt);
+    return rebuild_channels(&p, o->terms, watch, rebuilt);
 }
 
-/* Sets SQUARE to the squared error of some rows of green. */
-static bool try_logs(const struct channel *p, int n, double *square)
+/* Sets SQUARE to the squared error of the sampled rows of the green channel. */
+static bool measure_logarithms(const struct channel *p, int n, double *square)
 {
-    const struct glint_tall m = matrix_of(p);
+    const struct glint_tall m = make_matrix(p);
     double *row = malloc((size_t)m.columns * sizeof *row);
     struct glint_terms terms;
 
@@ -120,17 +120,18 @@ static bool try_logs(const struct channel *p, int n, double *square)
 
         term_row(&terms, m.rows, m.columns, x, row);
         for (int d = 0; d < m.columns; d++)
-            *square += pow(back(p, row[d]) - (double)data[d], 2);
+            *square += pow(invert_logarithm(p, row[d]) - (double)data[d], 2);
     }
     free(row);
     glint_terms_close(&terms);
     return true;
 }
 
-/* Sets O's a and b to the best of a grid. */
-static enum glint_status search(const struct glint_scatter_rows *rows,
-                                struct glint_scatter_candidate *o,
-                                const struct glint_watch *watch)
+/* Sets A and B of O to the best values of a grid. */
+static enum glint_status
+search_parameters(const struct glint_scatter_rows *rows,
+                  struct glint_scatter_candidate *o,
+                  const struct glint_watch *watch)
 {
     static const double as[] = {1e-4, 1e-3, 1e-2, 1e-1, 1, 10, 100, 1000};
     static const double bs[] = {1e-2, 0.1, 1};
@@ -149,7 +150,7 @@ static enum glint_status search(const struct glint_scatter_rows *rows,
         p.b = bs[i / 8];
         if (glint_watch_ends(watch, i / 24.0))
             return GLINT_E_CLOSED;
-        if (!try_logs(&p, o->terms, &square))
+        if (!measure_logarithms(&p, o->terms, &square))
             return GLINT_E_MEMORY;
         if (square < best) {
             best = square;
@@ -173,10 +174,11 @@ enum glint_status glint_rebuild_log_svd(const struct glint_scatter_rows *rows,
     enum glint_status status = GLINT_OK;
 
     if (!(peak > 0))
-        return GLINT_OK; /* a black translucent medium is 0 */
+        return GLINT_OK; /* the model of a black medium is 0 */
     if (!(o->a > 0))
-        status = search(rows, o, &early);
+        status = search_parameters(rows, o, &early);
     p.a = o->a * peak;
     p.b = o->b;
-    return status == GLINT_OK ? rebuild(&p, o->terms, &late, rebuilt) : status;
+    return status == GLINT_OK ? rebuild_channels(&p, o->terms, &late, rebuilt)
+                              : status;
 }

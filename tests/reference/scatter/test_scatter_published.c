@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Published models of scattering, on small translucent media: C1 and C3 to C13
- * of what the scene half has to show (src/README.md has the sources).
+ * Tests published models of subsurface scattering on small translucent media:
+ * claims C1 and C3 to C13 of the sources listed in src/README.md.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,8 +15,8 @@
 
 enum { SIDE = 24, KERNEL = 11, K2 = KERNEL * KERNEL, TEXELS = SIDE * SIDE };
 
-/* Translucent media that all tests read. */
-static struct glint_scatter_rows stone[2]; /* chess, veins */
+/* Rows of the media that all tests read. */
+static struct glint_scatter_rows stone[2]; /* checkerboard, veins */
 
 TEST_OPEN
 {
@@ -41,7 +41,7 @@ TEST_CLOSE
 }
 
 static struct glint_scatter_candidate
-candidate_of(enum glint_scatter_candidate_kind kind, int terms)
+make_candidate(enum glint_scatter_candidate_kind kind, int terms)
 {
     struct glint_scatter_candidate o;
 
@@ -51,9 +51,10 @@ candidate_of(enum glint_scatter_candidate_kind kind, int terms)
     return o;
 }
 
-/* Prints JUDGEMENT of ROWS but for its maps. */
+/* Returns the judgement of candidate O for ROWS, without its maps. */
 static struct glint_scatter_judgement
-judged(struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o)
+judge_rows(struct glint_scatter_rows *rows,
+           const struct glint_scatter_candidate *o)
 {
     struct glint_scatter_judgement j, kept;
 
@@ -63,23 +64,23 @@ judged(struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o)
     return kept;
 }
 
-static double rmse_of(struct glint_scatter_rows *rows,
-                      enum glint_scatter_candidate_kind kind, int terms)
+static double compute_rmse(struct glint_scatter_rows *rows,
+                           enum glint_scatter_candidate_kind kind, int terms)
 {
-    const struct glint_scatter_candidate o = candidate_of(kind, terms);
+    const struct glint_scatter_candidate o = make_candidate(kind, terms);
 
-    return judged(rows, &o).rmse;
+    return judge_rows(rows, &o).rmse;
 }
 
-/* C1: what models break. Those that cannot be below 0 are not; profiles alone
- * go both ways alike; none makes light of its own. */
+/* C1: violations of physics. Non-negative models have no negative entries;
+ * only profiles are reciprocal; no model creates energy. */
 TEST(c1_physics)
 {
     for (int i = 0; i < 2; i++)
         for (int kind = 0; kind < GLINT_CANDIDATES; kind++) {
             const struct glint_scatter_candidate o =
-                candidate_of((enum glint_scatter_candidate_kind)kind, 0);
-            const struct glint_scatter_judgement j = judged(&stone[i], &o);
+                make_candidate((enum glint_scatter_candidate_kind)kind, 0);
+            const struct glint_scatter_judgement j = judge_rows(&stone[i], &o);
 
             assert_true(j.rmse < 0.05 && j.energy > 0.2 && j.energy < 1);
             if (kind == GLINT_CANDIDATE_ALS || kind == GLINT_CANDIDATE_PEERS ||
@@ -94,19 +95,20 @@ TEST(c1_physics)
         }
 }
 
-/* C3: rows of which 30 % are off by a texel are another kind of rows to one
- * term, unless they are turned to begin with their maximum. On clean rows that
- * changes little. A second term mends it by itself. */
+/* C3: one term cannot fit rows of which 30 % are shifted by a texel, unless
+ * rows are rotated to begin with their maximum. Rotation hardly changes the
+ * error of clean rows. A second term fits shifted rows without rotation. */
 TEST(c3_turned)
 {
     struct glint_scatter_rows off;
-    struct glint_scatter_candidate o = candidate_of(GLINT_CANDIDATE_TUCKER, 1);
+    struct glint_scatter_candidate o =
+        make_candidate(GLINT_CANDIDATE_TUCKER, 1);
     double plain, turned;
     uint32_t seed = 3;
 
-    plain = judged(&stone[0], &o).rmse;
+    plain = judge_rows(&stone[0], &o).rmse;
     o.turned = true;
-    turned = judged(&stone[0], &o).rmse;
+    turned = judge_rows(&stone[0], &o).rmse;
     assert_true(turned < 1.05 * plain);
 
     assert_true(glint_scatter_open(&off, SIDE, KERNEL, false));
@@ -123,9 +125,9 @@ TEST(c3_turned)
             }
     }
     o.turned = false;
-    plain = judged(&off, &o).rmse;
+    plain = judge_rows(&off, &o).rmse;
     o.turned = true;
-    turned = judged(&off, &o).rmse;
+    turned = judge_rows(&off, &o).rmse;
     assert_true(turned < 0.4 * plain);
     glint_scatter_close(&off);
 }
@@ -134,7 +136,7 @@ struct greens {
     const struct glint_scatter_rows *rows;
 };
 
-static void green_row(const void *ctx, int i, double *to)
+static void read_green_row(const void *ctx, int i, double *to)
 {
     const struct greens *g = ctx;
 
@@ -142,12 +144,12 @@ static void green_row(const void *ctx, int i, double *to)
         to[d] = (double)glint_scatter_row(g->rows, i, 1)[d];
 }
 
-/* C4: rank-1 fits of the running error are the truncated decomposition, to five
- * digits. */
+/* C4: rank-1 fits of the running error equal the truncated singular value
+ * decomposition to five digits. */
 TEST(c4_tucker)
 {
     const struct greens g = {&stone[1]};
-    const struct glint_tall m = {TEXELS, K2, green_row, &g};
+    const struct glint_tall m = {TEXELS, K2, read_green_row, &g};
     float *left = malloc(TEXELS * K2 * sizeof *left);
     double f[TEXELS], h[K2];
     struct glint_terms terms;
@@ -164,68 +166,72 @@ TEST(c4_tucker)
     glint_terms_close(&terms);
 }
 
-/* C5: higher degrees are nearer, and many terms than one; the size is T and 3
- * (P + 1) numbers a texel, and T rows. */
+/* C5: the error decreases with the degree, and with the number of terms. The
+ * size is T + 3 (P + 1) numbers per texel, plus T rows. */
 TEST(c5_polynomials)
 {
     double by_degree[5];
 
     for (int degree = 1; degree <= 5; degree++) {
         struct glint_scatter_candidate o =
-            candidate_of(GLINT_CANDIDATE_TUCKER, 8);
+            make_candidate(GLINT_CANDIDATE_TUCKER, 8);
 
         o.degree = degree;
-        by_degree[degree - 1] = judged(&stone[0], &o).rmse;
+        by_degree[degree - 1] = judge_rows(&stone[0], &o).rmse;
         assert_near(glint_scatter_candidate_bytes(&o, TEXELS, K2),
                     8 * ((8 + 3 * (degree + 1)) * TEXELS + 8 * K2), 0);
         if (degree > 1)
             assert_true(by_degree[degree - 1] <= by_degree[degree - 2]);
     }
     assert_true(by_degree[3] < 0.7 * by_degree[0]);
-    assert_true(rmse_of(&stone[0], GLINT_CANDIDATE_TUCKER, 16) <
-                0.6 * rmse_of(&stone[0], GLINT_CANDIDATE_TUCKER, 1));
+    assert_true(compute_rmse(&stone[0], GLINT_CANDIDATE_TUCKER, 16) <
+                0.6 * compute_rmse(&stone[0], GLINT_CANDIDATE_TUCKER, 1));
 }
 
-/* C6: with a large, the logarithm is a line and the fit the linear one, which
- * is the optimum; with a small and b = 1 entries below 0 come back: "never
- * negative" does not hold. The search does not do worse than either. */
+/* C6: with large a the logarithm is linear and its fit equals the linear
+ * one, which is the optimum. With small a and b = 1 negative entries occur,
+ * so the claim "never negative" is wrong. The search is at least as good as
+ * both. */
 TEST(c6_logarithms)
 {
-    const double linear = rmse_of(&stone[0], GLINT_CANDIDATE_SVD, 3);
-    struct glint_scatter_candidate o = candidate_of(GLINT_CANDIDATE_LOG_SVD, 3);
+    const double linear = compute_rmse(&stone[0], GLINT_CANDIDATE_SVD, 3);
+    struct glint_scatter_candidate o =
+        make_candidate(GLINT_CANDIDATE_LOG_SVD, 3);
     struct glint_scatter_judgement found, j;
 
-    found = judged(&stone[0], &o);
+    found = judge_rows(&stone[0], &o);
     assert_true(found.candidate.a > 0);
     o.a = 1000;
-    assert_near(judged(&stone[0], &o).rmse, linear, 1e-3 * linear);
+    assert_near(judge_rows(&stone[0], &o).rmse, linear, 1e-3 * linear);
     o.a = 0.01;
-    j = judged(&stone[0], &o);
+    j = judge_rows(&stone[0], &o);
     assert_true(j.rmse > linear);
     assert_true(j.negative > 0);
     assert_true(found.rmse < 1.05 * linear && found.rmse < j.rmse);
 }
 
-/* C7: what is held above 0 or fitted by logarithms is further off, or as far:
- * the decomposition spends a little on entries outside the square. */
+/* C7: models that are clamped to 0 or use logarithms have at least the error
+ * of the linear model, except for the small error that it spends on entries
+ * outside the square. */
 TEST(c7_held)
 {
     for (int i = 0; i < 2; i++)
         for (int terms = 2; terms <= 8; terms *= 2) {
             const double linear =
-                rmse_of(&stone[i], GLINT_CANDIDATE_SVD, terms);
+                compute_rmse(&stone[i], GLINT_CANDIDATE_SVD, terms);
             struct glint_scatter_candidate o =
-                candidate_of(GLINT_CANDIDATE_LOG_SVD, terms);
+                make_candidate(GLINT_CANDIDATE_LOG_SVD, terms);
 
             o.a = 0.1;
-            assert_true(rmse_of(&stone[i], GLINT_CANDIDATE_ALS, terms) >
+            assert_true(compute_rmse(&stone[i], GLINT_CANDIDATE_ALS, terms) >
                         0.98 * linear);
-            assert_true(judged(&stone[i], &o).rmse > linear);
+            assert_true(judge_rows(&stone[i], &o).rmse > linear);
         }
 }
 
-/* C8: sizes that the source prints in MiB, where one square of texels fits two
- * of its laws; 3.60 takes 39 numbers a texel. */
+/* C8: sizes equal those that the source prints, in MiB; squares of 110 and
+ * 260 texels match two printed sizes each. 3.60 MiB corresponds to 39
+ * numbers per texel. */
 TEST(c8_sizes)
 {
     static const struct {
@@ -240,8 +246,8 @@ TEST(c8_sizes)
 
     for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
         const struct glint_scatter_candidate o =
-            size[i].terms ? candidate_of(GLINT_CANDIDATE_SVD, size[i].terms)
-                          : candidate_of(GLINT_CANDIDATE_SUBEDIT, 0);
+            size[i].terms ? make_candidate(GLINT_CANDIDATE_SVD, size[i].terms)
+                          : make_candidate(GLINT_CANDIDATE_SUBEDIT, 0);
         const double bytes = glint_scatter_candidate_bytes(
             &o, size[i].side * size[i].side, size[i].kernel * size[i].kernel);
 
@@ -252,42 +258,42 @@ TEST(c8_sizes)
     assert_string_equal(text, "3.60");
 }
 
-/* C9: with ten terms the decomposition is nearer than profiles, by less memory.
- */
+/* C9: with ten terms the decomposition has a smaller error than profiles,
+ * with less memory. */
 TEST(c9_profiles)
 {
     for (int i = 0; i < 2; i++)
-        assert_true(rmse_of(&stone[i], GLINT_CANDIDATE_SVD, 10) <
-                    rmse_of(&stone[i], GLINT_CANDIDATE_SUBEDIT, 0));
+        assert_true(compute_rmse(&stone[i], GLINT_CANDIDATE_SVD, 10) <
+                    compute_rmse(&stone[i], GLINT_CANDIDATE_SUBEDIT, 0));
 }
 
-/* C10: at equal size, ten terms and more are nearer than clusters with as many
- * non-negative ones. */
+/* C10: at equal size, ten or more terms have a smaller error than clusters
+ * with as many non-negative terms. */
 TEST(c10_clusters)
 {
     for (int i = 0; i < 2; i++) {
         struct glint_scatter_candidate peers =
-            candidate_of(GLINT_CANDIDATE_PEERS, 10);
+            make_candidate(GLINT_CANDIDATE_PEERS, 10);
         struct glint_scatter_candidate svd =
-            candidate_of(GLINT_CANDIDATE_SVD, 11);
+            make_candidate(GLINT_CANDIDATE_SVD, 11);
 
         peers.clusters = 5;
         assert_near(glint_scatter_candidate_bytes(&peers, TEXELS, K2) /
                         glint_scatter_candidate_bytes(&svd, TEXELS, K2),
                     1, 0.05);
-        assert_true(judged(&stone[i], &svd).rmse <
-                    judged(&stone[i], &peers).rmse);
+        assert_true(judge_rows(&stone[i], &svd).rmse <
+                    judge_rows(&stone[i], &peers).rmse);
     }
 }
 
-/* C11: sums of rows by kept sums of h are those of all entries, in 800 times
- * less multiplications. */
+/* C11: row sums computed from stored sums of h equal the sums of all
+ * entries, with 800 times fewer multiplications. */
 TEST(c11_albedo)
 {
     const struct glint_scatter_candidate o =
-        candidate_of(GLINT_CANDIDATE_SVD, 5);
+        make_candidate(GLINT_CANDIDATE_SVD, 5);
     const struct greens g = {&stone[0]};
-    const struct glint_tall m = {TEXELS, K2, green_row, &g};
+    const struct glint_tall m = {TEXELS, K2, read_green_row, &g};
     struct glint_terms terms;
 
     assert_near(glint_scatter_candidate_sums(&o, 16384, 841, false) /
@@ -311,10 +317,11 @@ TEST(c11_albedo)
     glint_terms_close(&terms);
 }
 
-/* C13: the map of errors adds up to the whole, and percentiles are its own. */
+/* C13: the error map sums to the total error, and the percentiles are those
+ * of the map. */
 TEST(c13_spread)
 {
-    struct glint_scatter_candidate o = candidate_of(GLINT_CANDIDATE_SVD, 3);
+    struct glint_scatter_candidate o = make_candidate(GLINT_CANDIDATE_SVD, 3);
     struct glint_scatter_judgement j;
     double square = 0, largest = 0;
     int below = 0;
@@ -332,12 +339,13 @@ TEST(c13_spread)
     glint_scatter_judgement_close(&j);
 }
 
-/* A black translucent medium, one of one texel: all models, finite. What is out
- * of range is refused. */
+/* All models give finite results for a black medium and for a medium of one
+ * texel. Parameters out of range are rejected. */
 TEST(extremes)
 {
     struct glint_scatter_rows black, one;
-    struct glint_scatter_candidate bad = candidate_of(GLINT_CANDIDATE_SVD, 21);
+    struct glint_scatter_candidate bad =
+        make_candidate(GLINT_CANDIDATE_SVD, 21);
     struct glint_scatter_judgement j;
 
     assert_true(glint_scatter_open(&black, 4, 9, false));
@@ -345,33 +353,33 @@ TEST(extremes)
     one.r[4] = one.r[13] = one.r[22] = 0.25f;
     for (int kind = 0; kind < GLINT_CANDIDATES; kind++) {
         const struct glint_scatter_candidate o =
-            candidate_of((enum glint_scatter_candidate_kind)kind, 0);
+            make_candidate((enum glint_scatter_candidate_kind)kind, 0);
 
-        assert_true(judged(&black, &o).rmse < 1e-9);
-        assert_true(judged(&one, &o).rmse < 1e-3);
+        assert_true(judge_rows(&black, &o).rmse < 1e-9);
+        assert_true(judge_rows(&one, &o).rmse < 1e-3);
     }
     assert_int_equal(glint_scatter_judge(&one, &bad, NULL, &j),
                      GLINT_E_ARGUMENT);
     assert_null(j.error);
-    bad = candidate_of(GLINT_CANDIDATES, 1);
+    bad = make_candidate(GLINT_CANDIDATES, 1);
     assert_int_equal(glint_scatter_judge(&one, &bad, NULL, &j),
                      GLINT_E_ARGUMENT);
     glint_scatter_close(&black);
     glint_scatter_close(&one);
 }
 
-static bool at_once(void *ctx)
+static bool stop_second(void *ctx)
 {
     return ++*(int *)ctx > 1;
 }
 
-TEST(ended)
+TEST(stops_when_requested)
 {
     for (int kind = GLINT_CANDIDATE_SVD; kind < GLINT_CANDIDATES; kind++) {
         const struct glint_scatter_candidate o =
-            candidate_of((enum glint_scatter_candidate_kind)kind, 0);
+            make_candidate((enum glint_scatter_candidate_kind)kind, 0);
         int asked = 0;
-        const struct glint_watch watch = {NULL, at_once, &asked};
+        const struct glint_watch watch = {NULL, stop_second, &asked};
         struct glint_scatter_judgement j;
 
         assert_int_equal(glint_scatter_judge(&stone[0], &o, &watch, &j),

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models of scattering side by side: those
- * that a run time can draw and those that were published, all rebuilt from the
- * same rows, in double precision.
+ * Compares models of subsurface scattering: fits that the run time can draw,
+ * and published models, all rebuilt from the same rows, in double precision.
  *
  *     glint_scatter_judge(&rows, &candidate, &watch, &judgement);
  *     glint_scatter_judgement_close(&judgement);
  *
- * Sizes are what the sources count: 8 bytes a number. */
+ * Sizes are computed as in the publications: 8 bytes per number.
+ */
 #ifndef REFERENCE_SCATTER_TRANSLUCENT_REPORT_H
 #define REFERENCE_SCATTER_TRANSLUCENT_REPORT_H
 
@@ -18,68 +18,75 @@ extern "C" {
 #endif
 
 enum glint_scatter_candidate_kind {
-    GLINT_CANDIDATE_CLUSTERED, /* as glint_scatter_fit() */
+    GLINT_CANDIDATE_CLUSTERED, /* these three: models of glint_scatter_fit() */
     GLINT_CANDIDATE_FACTORED,
     GLINT_CANDIDATE_ALBEDO,
-    GLINT_CANDIDATE_SVD,     /* R' = sum of f_j h_j, each channel by itself */
-    GLINT_CANDIDATE_LOG_SVD, /* ln(R' / a + b) = such a sum [Kurt14] */
-    GLINT_CANDIDATE_TUCKER,  /* mean of R, G, B by rank-1 fits of what is left,
-                                and a polynomial of it for each row and channel
-                                [Kurt14] */
-    GLINT_CANDIDATE_ALS,     /* as svd, f and h not below 0 */
-    GLINT_CANDIDATE_PEERS,   /* R' = G sum of f_j h_j, G the mean of a cluster,
-                                f and h not below 0, weighted by G^2 [Peers06] */
-    GLINT_CANDIDATE_SUBEDIT, /* R' = sqrt(P_i(r) P_o(r)), P of 12 values for
-                                each texel and channel [Song09] */
+    GLINT_CANDIDATE_SVD,     /* R' = sum of f_j h_j, per channel */
+    GLINT_CANDIDATE_LOG_SVD, /* ln(R' / a + b) = sum of f_j h_j [Kurt14] */
+    GLINT_CANDIDATE_TUCKER,  /* mean of R, G, B by successive rank-1 fits of the
+                                residual, and a polynomial of it per row and
+                                channel [Kurt14] */
+    GLINT_CANDIDATE_ALS,     /* like SVD, with f and h non-negative */
+    GLINT_CANDIDATE_PEERS,   /* R' = G sum of f_j h_j, with G the mean row of a
+                                cluster, f and h non-negative, weighted by G^2
+                                [Peers06] */
+    GLINT_CANDIDATE_SUBEDIT, /* R' = sqrt(P_i(r) P_o(r)), with a profile P of 12
+                                values per texel and channel [Song09] */
     GLINT_CANDIDATES
 };
 
 struct glint_scatter_candidate {
     enum glint_scatter_candidate_kind kind;
-    int terms;    /* T, S or kernels, 1 .. GLINT_SCATTER_MAX_TERMS */
-    int rank;     /* of factored, 1 .. GLINT_SCATTER_MAX_RANK */
-    int degree;   /* P of Tucker, 0 .. 5 */
-    bool turned;  /* Tucker: rows begin with their maximum, over it */
-    int clusters; /* of Peers, 1 .. GLINT_SCATTER_MAX_TERMS */
-    double a, b;  /* of log_svd, a times the largest entry, both > 0; a = 0:
-                     searched for, and set */
+    int terms;   /* number of terms, or of kernels, 1 .. GLINT_SCATTER_MAX_TERMS
+                  */
+    int rank;    /* rank of FACTORED, 1 .. GLINT_SCATTER_MAX_RANK */
+    int degree;  /* degree P of TUCKER's polynomial, 0 .. 5 */
+    bool turned; /* TUCKER: rows are rotated to begin with their maximum, and
+                    divided by it */
+    int clusters; /* number of clusters of PEERS, 1 .. GLINT_SCATTER_MAX_TERMS
+                   */
+    double a, b;  /* parameters of LOG_SVD, both > 0; a is relative to the
+                     largest entry. a = 0: both are searched for and set */
 };
 
 /* Sets CANDIDATE to KIND with 5 terms, rank 3, degree 4, one cluster. */
 void glint_scatter_candidate_defaults(struct glint_scatter_candidate *candidate,
                                       enum glint_scatter_candidate_kind kind);
 
-/* Bytes of CANDIDATE for TEXELS rows of ENTRIES each, three channels. */
+/* Returns the size of CANDIDATE in bytes, for TEXELS rows of ENTRIES each in
+ * three channels. */
 double
 glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
                               double texels, double entries);
 
-/* Multiplications, or roots and exponentials, that the sums of all rows take:
- * plainly, and with sums of h kept where the model is linear. */
+/* Returns the number of multiplications, or roots and exponentials, for the
+ * sums of all rows. KEPT: uses stored sums of h if the model is linear. */
 double
 glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
                              double texels, double entries, bool kept);
 
-/* Owned: pointers are malloc'ed. Shares are of all entries inside the
- * square, the largest entry of the data is 1. */
+/* Errors of a model. Owns ERROR and LIGHT. Fractions refer to all entries
+ * inside the square; the largest entry of the data is 1. */
 struct glint_scatter_judgement {
-    struct glint_scatter_candidate candidate; /* with what was searched for */
-    double bytes, compression;                /* of 8-byte rows over bytes */
-    double seconds;                           /* processor time of the fit */
+    /* including parameters that were searched for */
+    struct glint_scatter_candidate candidate;
+    double bytes, compression; /* size in bytes; size of the rows (8 bytes per
+                                  number) / BYTES */
+    double seconds;            /* processor time of the fit */
     double rmse, entry_db, light_db;
-    double p50, p95, largest; /* of the errors of texels in ERROR */
+    double p50, p95, largest; /* percentiles and max of ERROR */
     double negative;          /* fraction of entries below 0 */
-    double one_way;           /* rms of R'(x, y) - R'(y, x) */
+    double one_way;           /* RMS of R'(x, y) - R'(y, x) */
     double energy;            /* largest sum of a row */
-    double *error;            /* [side * side] rms of the row's error */
+    double *error;            /* [side * side]: RMS error of each row */
     double *light;            /* [side * side][3] radiosity under
                                  glint_scatter_test_light() */
 };
 
-/* Rebuilds ROWS by CANDIDATE and measures how far it is off. Takes as much
- * memory as ROWS again, and half as much for Tucker. ROWS are the same
- * afterwards. GLINT_E_ARGUMENT: CANDIDATE is out of range. GLINT_E_MEMORY,
- * GLINT_E_CLOSED: JUDGEMENT is empty. */
+/* Rebuilds ROWS by CANDIDATE and measures the errors. Needs as much memory
+ * as ROWS, and half as much more for Tucker. ROWS are unchanged afterwards.
+ * Returns GLINT_E_ARGUMENT if CANDIDATE is out of range; may return
+ * GLINT_E_MEMORY or GLINT_E_CLOSED; JUDGEMENT is then empty. */
 enum glint_status
 glint_scatter_judge(struct glint_scatter_rows *rows,
                     const struct glint_scatter_candidate *candidate,
