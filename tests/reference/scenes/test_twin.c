@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The reference renderer of scenes: rows A1 to A15 of the rows a scene must
- * hold, with values written by hand. */
+ * Tests the reference renderer of scenes: requirements A1 to A15 of scenes,
+ * with expected values computed by hand.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -18,10 +19,10 @@ struct stage {
     struct twin twin;
 };
 
-/* Two by one texels: black on the left, white on the right. */
-static enum glint_status picture(void *ctx, const char *name,
-                                 struct glint_image *image,
-                                 struct glint_error *error)
+/* Returns a picture of two texels: black on the left, white on the right. */
+static enum glint_status make_picture(void *ctx, const char *name,
+                                      struct glint_image *image,
+                                      struct glint_error *error)
 {
     uint8_t *mem = calloc(1, 6);
 
@@ -34,10 +35,10 @@ static enum glint_status picture(void *ctx, const char *name,
     return GLINT_OK;
 }
 
-/* Opens the scene of TEXT. */
+/* Parses TEXT and opens the reference renderer for its scene. */
 static struct stage *open_text(const char *text)
 {
-    const struct glint_description_files files = {NULL, NULL, picture,
+    const struct glint_description_files files = {NULL, NULL, make_picture,
                                                   NULL, NULL, NULL};
     struct stage *stage = malloc(sizeof *stage);
     struct glint_error error = {""};
@@ -57,8 +58,8 @@ static void close_stage(struct stage *stage)
     free(stage);
 }
 
-static struct twin_ray ray_of(double x, double y, double z, double dx,
-                              double dy, double dz)
+static struct twin_ray make_ray(double x, double y, double z, double dx,
+                                double dy, double dz)
 {
     struct twin_ray ray = {
         {x, y, z}, {dx, dy, dz}, .skip_object = -1, .skip_triangle = -1};
@@ -67,7 +68,8 @@ static struct twin_ray ray_of(double x, double y, double z, double dx,
     return ray;
 }
 
-static void about(const double *a, double x, double y, double z, double most)
+static void assert_vec_near(const double *a, double x, double y, double z,
+                            double most)
 {
     if (fabs(a[0] - x) > most || fabs(a[1] - y) > most || fabs(a[2] - z) > most)
         fail_msg("%.12g %.12g %.12g, not %g %g %g", a[0], a[1], a[2], x, y, z);
@@ -85,27 +87,28 @@ TEST(a1_length)
     double a[3] = {0, 6, 8};
 
     assert_true(vec_unit(a) == 10);
-    about(a, 0, .6, .8, 1e-15);
+    assert_vec_near(a, 0, .6, .8, 1e-15);
 }
 
-/* A2, A3: the normal and the hit of the tutorial's triangle. */
+/* A2, A3: normal of the tutorial's triangle, and where a ray hits it. */
 TEST(a2_a3_triangle)
 {
     struct stage *s = open_text(
         TUTORIAL "triangle t 0 40 120 30 -40 60 -30 -40 60 material m\n");
-    const struct twin_ray ray = ray_of(0, 0, 0, 0, 0, 1);
+    const struct twin_ray ray = make_ray(0, 0, 0, 0, 0, 1);
     struct twin_hit hit;
 
     assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
-    about(hit.normal, 0, .6, -.8, 1e-15);
+    assert_vec_near(hit.normal, 0, .6, -.8, 1e-15);
     assert_true(fabs(hit.t - 90) < 1e-12);
-    about(hit.place, 0, 0, 90, 1e-12);
+    assert_vec_near(hit.place, 0, 0, 90, 1e-12);
     close_stage(s);
 }
 
-/* A4: a ray through a place in the plane of the tutorial's triangle meets it if
- * that is inside, however small the triangle is: where the area test, of which
- * test_scene_rays has the baseline, fails for most. */
+/* A4: a ray through a point in the plane of the tutorial's triangle hits it
+ * if and only if the point is inside, however small the triangle is. A test
+ * by comparing areas fails for most small triangles (baseline in
+ * test_scene_rays). */
 TEST(a4_inside)
 {
     static const double corner[3][3] = {
@@ -130,22 +133,22 @@ TEST(a4_inside)
             for (int k = 0; k < 3; k++)
                 p[k] = corner[0][k] + u * (corner[1][k] - corner[0][k]) +
                        w * (corner[2][k] - corner[0][k]);
-            ray = ray_of(0, 0, 0, p[0], p[1], p[2]);
+            ray = make_ray(0, 0, 0, p[0], p[1], p[2]);
             if (fabs(u) < 1e-9 || fabs(w) < 1e-9 || fabs(u + w - 1) < 1e-9)
                 continue;
             assert_int_equal(twin_meet_object(&s->twin, 0, &ray, 1e9, &hit),
                              is_in);
             if (is_in)
-                about(hit.place, size * p[0], size * p[1], size * p[2],
-                      1e-12 * size * 150);
+                assert_vec_near(hit.place, size * p[0], size * p[1],
+                                size * p[2], 1e-12 * size * 150);
             met += is_in;
         }
-        assert_in_range(met, 2000, 3000); /* an eighth */
+        assert_in_range(met, 2000, 3000); /* an eighth of the points */
         close_stage(s);
     }
 }
 
-/* A5: of three triangles in a row the nearest is seen. */
+/* A5: of three triangles behind each other the nearest is visible. */
 TEST(a5_nearest)
 {
     struct stage *s = open_text(
@@ -153,7 +156,7 @@ TEST(a5_nearest)
                  "triangle y -50 30 124 50 30 124 0 -30 44 material y\n"
                  "triangle z -30 0 37 30 40 117 30 -40 117 material z\n");
     static const double t[3] = {80, 84, 77};
-    const struct twin_ray ray = ray_of(0, 0, 0, 0, 0, 1);
+    const struct twin_ray ray = make_ray(0, 0, 0, 0, 0, 1);
     struct twin_pixel pixel;
     struct twin_hit hit;
 
@@ -166,7 +169,8 @@ TEST(a5_nearest)
     close_stage(s);
 }
 
-/* A6: corner pixels look at (-8, 4.5, 10) and (8, -4.5, 10). */
+/* A6: rays of corner pixels have the directions (-8, 4.5, 10) and (8, -4.5,
+ * 10). */
 TEST(a6_corners)
 {
     const struct twin_view view = {160, 90, 0, 1};
@@ -176,66 +180,72 @@ TEST(a6_corners)
 
     twin_camera_ray(&s->twin, &view, 0, 0, &ray);
     vec_add(ray.from, 10 / ray.toward[2], ray.toward, ray.toward);
-    about(ray.toward, -8, 4.5, 10, 1e-12);
+    assert_vec_near(ray.toward, -8, 4.5, 10, 1e-12);
     twin_camera_ray(&s->twin, &view, 159, 89, &ray);
     vec_add(ray.from, 10 / ray.toward[2], ray.toward, ray.toward);
-    about(ray.toward, 8, -4.5, 10, 1e-12);
+    assert_vec_near(ray.toward, 8, -4.5, 10, 1e-12);
     close_stage(s);
 }
 
-/* Light in the middle of what a camera at X Y Z sees, by TEXT. */
-static struct twin_pixel look(const char *text, double x, double y, double z,
-                              double dx, double dy, double dz)
+/* Returns the pixel that a ray from (X, Y, Z) along (DX, DY, DZ) sees in the
+ * scene of TEXT. */
+static struct twin_pixel see_text(const char *text, double x, double y,
+                                  double z, double dx, double dy, double dz)
 {
     struct stage *s = open_text(text);
-    const struct twin_ray ray = ray_of(x, y, z, dx, dy, dz);
+    const struct twin_ray ray = make_ray(x, y, z, dx, dy, dz);
     const struct twin_pixel pixel = twin_see(&s->twin, &ray);
 
     close_stage(s);
     return pixel;
 }
 
-static void shows(struct twin_pixel p, double r, double g, double b)
+static void assert_light(struct twin_pixel p, double r, double g, double b)
 {
     const double rgb[3] = {(double)p.rgb[0], (double)p.rgb[1],
                            (double)p.rgb[2]};
 
-    about(rgb, r, g, b, 1e-6);
+    assert_vec_near(rgb, r, g, b, 1e-6);
 }
 
-/* A7: a light at (0, 40, 0), a point at (0, 0, 30) of a floor: .8 of 255 is
- * 204. The lamp has 1 at its distance of 50. */
+/* A7: diffuse light at (0, 0, 30) of a floor under a lamp at (0, 40, 0): .8,
+ * code 204 of 255. The lamp's irradiance at its distance of 50 is 1. */
 TEST(a7_diffuse)
 {
     const struct twin_pixel p =
-        look("hand left\nmaterial m phong 0 1 0 colour 1 0 0\n"
-             "light lamp at 0 40 0 colour 2500 2500 2500\n"
-             "plane floor at 0 0 0 normal 0 1 0 material m\n",
-             0, 30, 0, 0, -1, 1);
+        see_text("hand left\nmaterial m phong 0 1 0 colour 1 0 0\n"
+                 "light lamp at 0 40 0 colour 2500 2500 2500\n"
+                 "plane floor at 0 0 0 normal 0 1 0 material m\n",
+                 0, 30, 0, 0, -1, 1);
 
-    shows(p, .8, 0, 0);
+    assert_light(p, .8, 0, 0);
     assert_int_equal((int)(255 * (double)p.rgb[0] + .5), 204);
 }
 
-/* A8: along the normal all terms are whole: .1 + .6 of the colour, .3 of the
- * light's. Away from it the specular term falls by its power. */
+/* A8: seen along the normal, all of Phong's terms are at their max: .1 + .6
+ * times the material's colour, .3 times the light's colour. Away from it the
+ * specular term decreases with its power. */
 TEST(a8_phong)
 {
     static const char text[] =
         "hand left\nmaterial m phong .1 .6 .3 colour 1 .5 0 power 2\n"
-        "light sun direction 0 1 0 colour 1 1 2 radius 30\n" /* x .25 */
+        "light sun direction 0 1 0 colour 1 1 2 radius 30\n" /* radius 30
+                                                                degrees:
+                                                                irradiance is
+                                                                colour x .25 */
         "plane floor at 0 0 0 normal 0 1 0 material m\n";
 
-    shows(look(text, 0, 1, 0, 0, -1, 0), .1 + .15 + .075, .05 + .075 + .075,
-          .15);
+    assert_light(see_text(text, 0, 1, 0, 0, -1, 0), .1 + .15 + .075,
+                 .05 + .075 + .075, .15);
     /* at 45 degrees (R.V)^2 is 1/2 */
-    shows(look(text, 0, 1, 0, 0, -1, 1), .1 + .15 + .0375, .05 + .075 + .0375,
-          .075);
-    /* from below it is the ambient light alone */
-    shows(look(text, 0, -1, 0, 0, 1, 0), .1, .05, 0);
+    assert_light(see_text(text, 0, 1, 0, 0, -1, 1), .1 + .15 + .0375,
+                 .05 + .075 + .0375, .075);
+    /* from below only ambient light is visible */
+    assert_light(see_text(text, 0, -1, 0, 0, 1, 0), .1, .05, 0);
 }
 
-/* A9: mirrored twice is the identity, and a mirror shows what is there. */
+/* A9: mirroring twice is the identity; a mirror shows objects in the
+ * mirrored direction. */
 TEST(a9_mirror)
 {
     static const char text[] = "hand left\nmaterial m phong 0 0 0 reflect .5\n"
@@ -243,14 +253,16 @@ TEST(a9_mirror)
                                "plane floor at 0 0 0 normal 0 1 0 material m\n"
                                "sphere ball at 0 8 9 radius .01 material w\n";
 
-    shows(look(text, 0, 1, 0, 0, -1, 1), .1, .2, .4);
-    /* upwards there is nothing, and mirrors do not show the picture behind */
-    assert_true(look(text, 0, 1, 0, 0, -1, -1).cover == 1);
-    shows(look(text, 0, 1, 0, 0, -1, -1), 0, 0, 0);
+    assert_light(see_text(text, 0, 1, 0, 0, -1, 1), .1, .2, .4);
+    /* the mirrored direction has no object, and mirrors do not show the
+     * picture behind */
+    assert_true(see_text(text, 0, 1, 0, 0, -1, -1).cover == 1);
+    assert_light(see_text(text, 0, 1, 0, 0, -1, -1), 0, 0, 0);
 }
 
-/* A10: a ball at height Y over a point that a lamp at height 5 lights: before
- * it, behind, just short of and just beyond the lamp. */
+/* A10: a point is shadowed by a ball between it and a lamp at height 5, but
+ * not by a ball below the point or beyond the lamp; includes balls that
+ * nearly reach the lamp. */
 TEST(a10_shadow)
 {
     static const struct {
@@ -258,7 +270,7 @@ TEST(a10_shadow)
         bool dark;
     } row[] = {{"at 0 3 0 radius .5", true},   {"at 0 -2 0 radius .5", false},
                {"at 0 4.4 0 radius .5", true}, {"at 0 5.6 0 radius .5", false},
-               {"at 0 5.4 0 radius .5", true}, /* the lamp is inside */
+               {"at 0 5.4 0 radius .5", true}, /* the lamp is inside the ball */
                {"at 3 3 0 radius .5", false}};
 
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
@@ -271,12 +283,13 @@ TEST(a10_shadow)
                  "plane floor at 0 0 0 normal 0 1 0 material m\n"
                  "sphere b %s material m\nshadow on\n",
                  row[i].ball);
-        p = look(text, 1, 1, 0, -1, -1, 0);
-        shows(p, !row[i].dark, !row[i].dark, !row[i].dark);
+        p = see_text(text, 1, 1, 0, -1, -1, 0);
+        assert_light(p, !row[i].dark, !row[i].dark, !row[i].dark);
     }
 }
 
-/* No acne: a ball lit from where it is seen has no dark pixel. */
+/* A10: no shadow acne. A ball lit from the camera's position has no dark
+ * pixel. */
 TEST(a10_acne)
 {
     struct stage *s =
@@ -287,7 +300,7 @@ TEST(a10_acne)
 
     for (int i = 0; i < 20000; i++) {
         const double a = .24 * rng_signed(&seed), b = .24 * rng_signed(&seed);
-        const struct twin_ray ray = ray_of(0, 0, -4, a, b, 1);
+        const struct twin_ray ray = make_ray(0, 0, -4, a, b, 1);
         struct twin_hit hit;
 
         if (twin_meet(&s->twin, &ray, 1e9, &hit) &&
@@ -302,8 +315,9 @@ TEST(a10_acne)
     "material w phong 1 0 0 colour .2 .4 .8\n"                \
     "sphere b at 0 0 0 radius 1 material g\n"
 
-/* A11: what is behind a ball is seen straight through it, by its fraction; with
- * the index 1 the same to the bit. Where there is no object the picture is. */
+/* A11: an object behind a transparent ball of index 1 is visible straight
+ * through it, scaled by the transmitted fraction, bit-identical with and
+ * without "refract 1". Elsewhere the picture is visible. */
 TEST(a11_pass)
 {
     static const char plain[] = GLASS("") "sphere w at 1 0 6 radius .5 "
@@ -313,97 +327,103 @@ TEST(a11_pass)
     int seen = 0;
 
     for (int k = 0; k < 40; k++) {
-        const struct twin_pixel a = look(plain, 0, 0, -5, k * .005, 0, 1);
-        const struct twin_pixel b = look(one, 0, 0, -5, k * .005, 0, 1);
-        /* the ball behind is met within .5 of (1, 6) */
+        const struct twin_pixel a = see_text(plain, 0, 0, -5, k * .005, 0, 1);
+        const struct twin_pixel b = see_text(one, 0, 0, -5, k * .005, 0, 1);
+        /* the ray hits the ball behind if it passes (1, 6) within .5 */
         const double off = fabs(11 * (k * .005) - 1) / hypot(k * .005, 1);
 
         assert_memory_equal(&a, &b, sizeof a);
-        shows(a, off < .5 ? .1 : 0, off < .5 ? .2 : 0, off < .5 ? .4 : 0);
+        assert_light(a, off < .5 ? .1 : 0, off < .5 ? .2 : 0,
+                     off < .5 ? .4 : 0);
         assert_true(a.cover == (off < .5 ? 1 : .5F));
         seen += off < .5;
     }
     assert_true(seen > 10 && seen < 35);
 }
 
-/* A12: a ray half a radius off the middle of a ball of index 1.5 enters at 30
- * degrees and continues at asin(1/3) = 19.4712; it is turned by twice the
- * difference and crosses the axis .8949 behind the ball's rim. */
+/* A12: a ray half a radius off the centre of a ball of index 1.5 enters at
+ * 30 degrees and continues at asin(1/3) = 19.4712 degrees. It is deflected
+ * by twice the difference and crosses the axis .8949 behind the ball. */
 TEST(a12_refract)
 {
     struct stage *s = open_text(
         GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material w\n");
-    const struct twin_ray ray = ray_of(.5, 0, -5, 0, 0, 1);
+    const struct twin_ray ray = make_ray(.5, 0, -5, 0, 0, 1);
     const double a = asin(.5), b = asin(.5 / 1.5);
-    /* at the rim, ROUND from the axis, it goes towards the axis by TURN */
+    /* leaves the ball at the angle ROUND from the axis, at TURN degrees to
+     * the axis */
     const double round = 2 * b - a, turn = 2 * (a - b);
     const double cross = cos(round) + sin(round) / tan(turn);
     struct glint_described_object *w = &s->scene.object[1];
 
-    /* A small ball there is seen, and one beside it is not. */
+    /* A small ball at the crossing is visible; a ball next to it is not. */
     w->kind = GLINT_DESCRIBED_SPHERE;
     w->radius = 1e-6;
     w->at[0] = 0;
     w->at[2] = cross;
-    shows(twin_see(&s->twin, &ray), .1, .2, .4);
+    assert_light(twin_see(&s->twin, &ray), .1, .2, .4);
     w->at[0] = 2e-6;
-    shows(twin_see(&s->twin, &ray), 0, 0, 0);
+    assert_light(twin_see(&s->twin, &ray), 0, 0, 0);
     close_stage(s);
-    /* From inside, beyond the critical angle of 41.8 degrees, nothing comes. */
-    shows(look(GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
-                                    "w\n",
-               .9, 0, 0, 0, 0, 1),
-          0, 0, 0);
-    shows(look(GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
-                                    "w\n",
-               .5, 0, 0, 0, 0, 1),
-          .1, .2, .4);
+    /* Inside, beyond the critical angle of 41.8 degrees, no light leaves. */
+    assert_light(
+        see_text(GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
+                                      "w\n",
+                 .9, 0, 0, 0, 0, 1),
+        0, 0, 0);
+    assert_light(
+        see_text(GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
+                                      "w\n",
+                 .5, 0, 0, 0, 0, 1),
+        .1, .2, .4);
 }
 
-/* A12: a ball of less index mirrors what comes at more than 14.48 degrees. */
+/* A12: a ball of lower index reflects all light beyond an incidence of 14.48
+ * degrees. */
 TEST(a12_outside)
 {
     static const char text[] =
         GLASS("refract .25") "sphere w at 4 0 -5 radius .5 material w\n";
     int seen = 0;
 
-    /* A mirror of the ball's shape: the normal at X is half way between back
-     * and the ball beside. */
+    /* Total reflection at the ball's outside: the normal at X bisects the
+     * directions back to the camera and to the other ball. */
     for (int i = 0; i < 200; i++) {
         const double x = .3 + i * .003, z = -sqrt(1 - x * x);
         const double d[3] = {2 * x * -z, 0, -(1 - 2 * x * x)};
-        /* how far the mirrored ray passes from the middle of W */
+        /* distance of the mirrored ray from the centre of W */
         const double a[3] = {4 - x, 0, -5 - z};
         const double along = a[0] * d[0] + a[2] * d[2];
         const double off = fabs(a[0] * d[2] - a[2] * d[0]);
-        const struct twin_pixel p = look(text, x, 0, -9, 0, 0, 1);
+        const struct twin_pixel p = see_text(text, x, 0, -9, 0, 0, 1);
 
         const double share = off < .5 && along > 0 ? .5 : 0;
 
         if (fabs(off - .5) > .01)
-            shows(p, .2 * share, .4 * share, .8 * share);
+            assert_light(p, .2 * share, .4 * share, .8 * share);
         seen += share > 0;
     }
     assert_in_range(seen, 20, 180);
 }
 
-/* A13: corners of a triangle have their texels; between texels' middles it is
- * a straight line, in light; beyond the picture it repeats. */
+/* A13: the corners of a triangle show their texels. Between texel centres
+ * light is interpolated linearly; outside the picture the texture repeats. */
 TEST(a13_texture)
 {
     static const char text[] =
         "hand left\ntexture t x\nmaterial w phong 1 0 0 texture t\n"
         "triangle w 0 0 4 1 0 4 0 1 4 uv 0 0 2 0 0 1 material w\n";
 
-    shows(look(text, .125, .5, 0, 0, 0, 1), 0, 0, 0);
-    shows(look(text, .375, .5, 0, 0, 0, 1), 1, 1, 1);
-    shows(look(text, .25, .5, 0, 0, 0, 1), .5, .5, .5);
-    shows(look(text, .3125, .5, 0, 0, 0, 1), .75, .75, .75);
-    shows(look(text, .75, .1, 0, 0, 0, 1), .5, .5, .5);
-    shows(look(text, 0, 0, 0, 0, 0, 1), .5, .5, .5);
+    assert_light(see_text(text, .125, .5, 0, 0, 0, 1), 0, 0, 0);
+    assert_light(see_text(text, .375, .5, 0, 0, 0, 1), 1, 1, 1);
+    assert_light(see_text(text, .25, .5, 0, 0, 0, 1), .5, .5, .5);
+    assert_light(see_text(text, .3125, .5, 0, 0, 0, 1), .75, .75, .75);
+    assert_light(see_text(text, .75, .1, 0, 0, 0, 1), .5, .5, .5);
+    assert_light(see_text(text, 0, 0, 0, 0, 0, 1), .5, .5, .5);
 }
 
-/* A14: what has no area and what the ray lies in is missed. */
+/* A14: a ray misses a triangle without area, and an object in whose plane it
+ * lies. */
 TEST(a14_misses)
 {
     static const struct {
@@ -426,37 +446,38 @@ TEST(a14_misses)
 
         snprintf(text, sizeof text, "hand left\nmaterial m phong 1 0 0\n%s",
                  row[i].text);
-        p = look(text, 0, 0, 0, row[i].toward[0], row[i].toward[1],
-                 row[i].toward[2]);
+        p = see_text(text, 0, 0, 0, row[i].toward[0], row[i].toward[1],
+                     row[i].toward[2]);
         if (p.cover != 0)
             fail_msg("%s", row[i].text);
     }
 }
 
-/* A15: both roots of a ball, from before and from inside; a ray that grazes. */
+/* A15: a ray finds both intersections with a ball, from outside and from
+ * inside; a grazing ray. */
 TEST(a15_sphere)
 {
     struct stage *s = open_text("hand left\nmaterial m phong 1 0 0\n"
                                 "sphere s at 0 0 5 radius 3 material m\n");
-    struct twin_ray ray = ray_of(0, 0, 0, 0, 0, 1);
+    struct twin_ray ray = make_ray(0, 0, 0, 0, 0, 1);
     struct twin_hit hit;
 
     assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
     assert_true(hit.t == 2 && !hit.inside);
-    about(hit.normal, 0, 0, -1, 0);
+    assert_vec_near(hit.normal, 0, 0, -1, 0);
     ray.from[2] = 4;
     assert_true(twin_meet(&s->twin, &ray, 1e9, &hit));
     assert_true(hit.t == 4 && hit.inside);
-    about(hit.normal, 0, 0, -1, 0);
-    ray = ray_of(3, 0, 0, 0, 0, 1);
+    assert_vec_near(hit.normal, 0, 0, -1, 0);
+    ray = make_ray(3, 0, 0, 0, 0, 1);
     assert_true(twin_meet(&s->twin, &ray, 1e9, &hit) && hit.t == 5);
     ray.from[0] = 3.0000001;
     assert_false(twin_meet(&s->twin, &ray, 1e9, &hit));
     close_stage(s);
 }
 
-/* A catcher has the shadow alone: .6 of what the light does not reach is taken
- * from the picture, and where it does nothing is changed. */
+/* A shadow catcher darkens the picture by .6 of the light that does not
+ * reach it, and leaves it unchanged where all light arrives. */
 TEST(catcher)
 {
     static const char text[] =
@@ -465,13 +486,14 @@ TEST(catcher)
         "plane floor at 0 0 0 normal 0 1 0 catcher .6\n"
         "sphere b at 0 3 0 radius .5 material m\nshadow on\n";
 
-    assert_true(fabs((double)look(text, 1, 1, 0, -1, -1, 0).cover - .6) < 1e-6);
-    assert_true(look(text, 3, 1, 0, 0, -1, 0).cover == 0);
+    assert_true(fabs((double)see_text(text, 1, 1, 0, -1, -1, 0).cover - .6) <
+                1e-6);
+    assert_true(see_text(text, 3, 1, 0, 0, -1, 0).cover == 0);
 }
 
-/* Rays through a closed mesh of triangles that share edges and corners meet
- * it as those through all of its triangles do. */
-TEST(tree)
+/* Rays through the tree of a closed mesh, whose triangles share edges and
+ * corners, hit it like rays that are tested against all triangles. */
+TEST(tree_matches_brute_force)
 {
     char text[16000] = "hand left\nmaterial m phong 1 0 0\n";
     struct stage *s;
@@ -487,15 +509,15 @@ TEST(tree)
                  y + rng_signed(&seed));
     }
     s = open_text(text);
-    /* All as one object: a mesh. */
+    /* merge all triangles into one mesh object */
     s->scene.n_objects = 1;
     s->scene.object[0].kind = GLINT_DESCRIBED_MESH;
     s->scene.object[0].n_triangles = 100;
     twin_close(&s->twin);
     assert_ok(twin_open(&s->twin, &s->scene));
     for (int i = 0; i < 2000; i++) {
-        const struct twin_ray ray =
-            ray_of(0, 0, 0, .5 * rng_signed(&seed), .5 * rng_signed(&seed), 1);
+        const struct twin_ray ray = make_ray(0, 0, 0, .5 * rng_signed(&seed),
+                                             .5 * rng_signed(&seed), 1);
         struct twin_hit hit;
         double nearest = 1e9;
 

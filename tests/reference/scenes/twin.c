@@ -10,7 +10,7 @@
 
 /* ----------------------------------------------------------------- opening */
 
-static float decode(uint8_t code)
+static float decode_srgb(uint8_t code)
 {
     const double x = code / 255.0;
 
@@ -28,7 +28,7 @@ static enum glint_status open_texels(struct twin_texels *texels,
     if (!texels->rgb)
         return GLINT_E_MEMORY;
     for (size_t i = 0; i < n; i++)
-        texels->rgb[i] = decode(image->plane[0][i]);
+        texels->rgb[i] = decode_srgb(image->plane[0][i]);
     return GLINT_OK;
 }
 
@@ -67,10 +67,11 @@ void twin_close(struct twin *twin)
 
 /* ------------------------------------------------------------------ lights */
 
-/* Sets TOWARD to the direction of LIGHT from PLACE and RGB to what a white
- * surface shows there that faces it. Returns the distance. */
-static double light_from(const struct glint_described_light *light,
-                         const double place[3], double toward[3], double rgb[3])
+/* Sets TOWARD to the direction from PLACE to LIGHT, and RGB to the light
+ * that a white surface facing it reflects. Returns the distance. */
+static double compute_light(const struct glint_described_light *light,
+                            const double place[3], double toward[3],
+                            double rgb[3])
 {
     double distance = HUGE_VAL, scale;
 
@@ -89,9 +90,9 @@ static double light_from(const struct glint_described_light *light,
     return distance;
 }
 
-/* Returns the sine of the angular radius of LIGHT from PLACE. */
-static double radius_of(const struct glint_described_light *light,
-                        const double place[3])
+/* Returns the sine of the angular radius of LIGHT seen from PLACE. */
+static double compute_radius(const struct glint_described_light *light,
+                             const double place[3])
 {
     double off[3];
 
@@ -101,7 +102,8 @@ static double radius_of(const struct glint_described_light *light,
                : fmin(light->radius / vec_unit(off), .5);
 }
 
-/* Points of a light's disc that shadows request, as the run time has them. */
+/* Points on the disc of a light to which shadow rays are traced; the same as
+ * in the run time. */
 static const double four[4][2] = {
     {.66446, .24185}, {-.24185, .66446}, {-.66446, -.24185}, {.24185, -.66446}};
 static const double sixteen[16][2] = {
@@ -112,11 +114,12 @@ static const double sixteen[16][2] = {
     {-.76474, -.44318}, {.89713, -.19724},  {-.54752, .77878},
     {-.12650, -.97610}};
 
-/* Turns TOWARD, to the middle of a light DISTANCE away, to point I of N. The
- * axes of its disc are those of the run time, whose z runs into the picture. */
-static void aim(const struct glint_description *scene,
-                const struct glint_described_light *light, double toward[3],
-                double distance, int i, int n)
+/* Changes TOWARD, the direction to the centre of a light at DISTANCE, to
+ * point I of N of its disc. The axes of the disc are those of the run time,
+ * whose z points into the picture. */
+static void aim_at_disc(const struct glint_description *scene,
+                        const struct glint_described_light *light,
+                        double toward[3], double distance, int i, int n)
 {
     const double *at = n == 4 ? four[i] : sixteen[i];
     const bool is_sun = light->kind == GLINT_DESCRIBED_SUN;
@@ -139,11 +142,12 @@ static void aim(const struct glint_description *scene,
     vec_unit(toward);
 }
 
-/* Returns the fraction of the light, DISTANCE away, that reaches HIT. A10: what
- * is farther away than the light hides nothing. */
-static double reaches(const struct twin *twin, const struct twin_hit *hit,
-                      const struct glint_described_light *light,
-                      const double toward[3], double distance)
+/* Returns the fraction of the light at DISTANCE that reaches HIT. Objects
+ * beyond the light do not occlude it (A10). */
+static double compute_visibility(const struct twin *twin,
+                                 const struct twin_hit *hit,
+                                 const struct glint_described_light *light,
+                                 const double toward[3], double distance)
 {
     const bool has_extent =
         light->kind == GLINT_DESCRIBED_SUN || light->radius > 0;
@@ -158,7 +162,7 @@ static double reaches(const struct twin *twin, const struct twin_hit *hit,
 
         memcpy(ray.from, hit->place, sizeof ray.from);
         memcpy(ray.toward, toward, sizeof ray.toward);
-        aim(twin->scene, light, ray.toward, distance, i, n);
+        aim_at_disc(twin->scene, light, ray.toward, distance, i, n);
         reached += vec_dot(hit->normal, ray.toward) > 0 &&
                    !twin_is_hidden(twin, &ray, distance);
     }
@@ -169,17 +173,18 @@ double twin_light(const struct twin *twin, const struct twin_hit *hit,
                   const struct glint_described_light *light, double toward[3],
                   double rgb[3], double *share)
 {
-    const double distance = light_from(light, hit->place, toward, rgb);
+    const double distance = compute_light(light, hit->place, toward, rgb);
     const double facing = vec_dot(hit->shading, toward);
 
-    *share = facing > 0 ? reaches(twin, hit, light, toward, distance) : 0;
+    *share =
+        facing > 0 ? compute_visibility(twin, hit, light, toward, distance) : 0;
     return facing;
 }
 
 /* ---------------------------------------------------------------- surfaces */
 
-static void texel_at(const struct twin_texels *t, const double uv[2],
-                     double rgb[3])
+static void interpolate_texels(const struct twin_texels *t, const double uv[2],
+                               double rgb[3])
 {
     const double x = uv[0] * t->width - 0.5;
     const double y = (1 - uv[1]) * t->height - 0.5;
@@ -189,7 +194,7 @@ static void texel_at(const struct twin_texels *t, const double uv[2],
     for (int k = 0; k < 4; k++) {
         const double share =
             (k & 1 ? x - left : 1 - x + left) * (k & 2 ? y - top : 1 - y + top);
-        /* Sides are powers of two: what is beyond repeats. */
+        /* sides are powers of two; outside, the texture repeats */
         const int i = (int)fmod(left + (k & 1), t->width);
         const int j = (int)fmod(top + (k >> 1), t->height);
         const float *texel =
@@ -201,16 +206,16 @@ static void texel_at(const struct twin_texels *t, const double uv[2],
     }
 }
 
-/* Sets RGB to Phong's terms at HIT, seen along TOWARD. A7, A8. */
-static void light_of(const struct twin *twin, const struct twin_hit *hit,
-                     const double toward[3], double rgb[3])
+/* Sets RGB to Phong's terms at HIT, seen along TOWARD (A7, A8). */
+static void compute_phong(const struct twin *twin, const struct twin_hit *hit,
+                          const double toward[3], double rgb[3])
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_material *m = &s->material[hit->material];
     double colour[3] = {1, 1, 1};
 
     if (m->texture >= 0)
-        texel_at(&twin->texels[m->texture], hit->uv, colour);
+        interpolate_texels(&twin->texels[m->texture], hit->uv, colour);
     for (int c = 0; c < 3; c++) {
         colour[c] *= m->colour[c];
         rgb[c] = m->ambient * colour[c];
@@ -223,12 +228,12 @@ static void light_of(const struct twin *twin, const struct twin_hit *hit,
 
         if (facing <= 0)
             continue;
-        /* R.V with R = 2 (N.L) N - L and V against the ray. */
+        /* R.V, where R = 2 (N.L) N - L, and V is opposite to the ray */
         glint = vec_dot(l, toward) - 2 * facing * vec_dot(hit->shading, toward);
         glint = glint > 0 ? pow(glint, m->power) : 0;
         if (m->is_metal)
             shine = twin_shine(twin, hit, toward, l,
-                               radius_of(&s->light[i], hit->place));
+                               compute_radius(&s->light[i], hit->place));
         for (int c = 0; c < 3; c++)
             rgb[c] += share * light[c] *
                       (m->diffuse * facing * colour[c] + m->specular * glint +
@@ -240,9 +245,11 @@ static void light_of(const struct twin *twin, const struct twin_hit *hit,
 
 /* ------------------------------------------------------------ rays sent on */
 
-/* A12, Snell: turns D at a surface whose normal N points back; ETA is the index
- * before over that behind. Returns false where all light is reflected. */
-static bool bend(const double d[3], const double n[3], double eta, double to[3])
+/* Refracts D at a surface by Snell's law (A12). The normal N points back;
+ * ETA is the index before / the index behind. Returns false at total
+ * reflection. */
+static bool refract(const double d[3], const double n[3], double eta,
+                    double to[3])
 {
     const double cosine = -vec_dot(d, n);
     const double rest = 1 - eta * eta * (1 - cosine * cosine);
@@ -255,33 +262,35 @@ static bool bend(const double d[3], const double n[3], double eta, double to[3])
     return true;
 }
 
-/* A9: R - 2 (R.N) N. */
-static void mirror(const double d[3], const double n[3], double to[3])
+/* Mirrors D at a surface with normal N: D - 2 (D.N) N (A9). */
+static void reflect(const double d[3], const double n[3], double to[3])
 {
     vec_add(d, -2 * vec_dot(d, n), n, to);
 }
 
-/* A ray on its way through objects. */
+/* A ray that passes through transparent objects. */
 struct passing {
     struct twin_ray ray;
-    double weight; /* of what it meets */
-    bool is_bent;  /* it no longer goes where the picture's ray goes */
+    double weight; /* factor on the light of the next object */
+    bool is_bent;  /* true: refraction has changed the ray's direction */
 };
 
-/* Bends RAY at a surface, or mirrors it where no light passes; returns whether
- * it is mirrored. */
-static bool bend_at(struct twin_ray *ray, const double normal[3], double eta)
+/* Refracts RAY at a surface, or mirrors it at total reflection. Returns
+ * whether it was mirrored. */
+static bool refract_or_reflect(struct twin_ray *ray, const double normal[3],
+                               double eta)
 {
     const double d[3] = {ray->toward[0], ray->toward[1], ray->toward[2]};
 
-    if (bend(d, normal, eta, ray->toward))
+    if (refract(d, normal, eta, ray->toward))
         return false;
-    mirror(d, normal, ray->toward);
+    reflect(d, normal, ray->toward);
     return true;
 }
 
-/* Takes P, which enters a ball at HIT, to where it leaves. */
-static void cross_ball(const struct twin *twin, const struct twin_hit *hit,
+/* Moves P, which enters a ball at HIT, to the point where it leaves the
+ * ball. */
+static void leave_ball(const struct twin *twin, const struct twin_hit *hit,
                        double index, struct passing *p)
 {
     const struct glint_described_object *o = &twin->scene->object[hit->object];
@@ -292,13 +301,13 @@ static void cross_ball(const struct twin *twin, const struct twin_hit *hit,
     vec_add(o->at, -1, p->ray.from, back);
     vec_unit(back);
     if (index != 1)
-        bend_at(&p->ray, back, index);
+        refract_or_reflect(&p->ray, back, index);
 }
 
-/* Takes P through the surface of HIT: a ball is left where the ray leaves it
- * (A11), of other objects each surface counts. */
-static void go_through(const struct twin *twin, const struct twin_hit *hit,
-                       struct passing *p)
+/* Moves P through the surface at HIT. In a ball, P continues to the point
+ * where it leaves (A11); for other objects each surface counts separately. */
+static void pass_surface(const struct twin *twin, const struct twin_hit *hit,
+                         struct passing *p)
 {
     const struct glint_described_material *m =
         &twin->scene->material[hit->material];
@@ -307,17 +316,18 @@ static void go_through(const struct twin *twin, const struct twin_hit *hit,
     p->weight *= m->pass;
     p->is_bent = p->is_bent || m->index != 1;
     if (m->index != 1)
-        is_mirrored = bend_at(&p->ray, hit->shading,
-                              hit->inside ? m->index : 1 / m->index);
+        is_mirrored = refract_or_reflect(&p->ray, hit->shading,
+                                         hit->inside ? m->index : 1 / m->index);
     memcpy(p->ray.from, hit->place, sizeof p->ray.from);
     p->ray.skip_object = hit->object;
     p->ray.skip_triangle = hit->triangle;
     if (twin->scene->object[hit->object].kind != GLINT_DESCRIBED_SPHERE)
         return;
-    if (is_mirrored && hit->inside) /* such light never leaves a ball */
+    if (is_mirrored && hit->inside) /* light that is totally reflected inside a
+                                       ball never leaves it */
         p->weight = 0;
     else if (!is_mirrored && !hit->inside)
-        cross_ball(twin, hit, m->index, p);
+        leave_ball(twin, hit, m->index, p);
 }
 
 static void add_light(struct twin_pixel *pixel, double share,
@@ -327,8 +337,8 @@ static void add_light(struct twin_pixel *pixel, double share,
         pixel->rgb[c] += (float)(share * rgb[c]);
 }
 
-/* Adds what HIT mirrors of RAY; of a picture behind, which is not what is
- * beside it, nothing. */
+/* Adds the mirrored light at HIT. Mirrors do not show the picture behind the
+ * scene, as it does not contain the mirrored direction. */
 static void add_mirrored(const struct twin *twin, const struct twin_ray *ray,
                          const struct twin_hit *hit, struct twin_pixel *pixel)
 {
@@ -338,9 +348,9 @@ static void add_mirrored(const struct twin *twin, const struct twin_ray *ray,
     double rgb[3];
 
     memcpy(next.from, hit->place, sizeof next.from);
-    mirror(ray->toward, hit->shading, next.toward);
+    reflect(ray->toward, hit->shading, next.toward);
     if (twin_meet(twin, &next, HUGE_VAL, &met))
-        light_of(twin, &met, next.toward, rgb);
+        compute_phong(twin, &met, next.toward, rgb);
     else
         twin_behind(twin, next.toward,
                     twin->pixel_tan * twin->pixel_tan / 4 +
@@ -349,7 +359,8 @@ static void add_mirrored(const struct twin *twin, const struct twin_ray *ray,
     add_light(pixel, twin->scene->material[hit->material].reflect, rgb);
 }
 
-/* Adds what is seen through HIT: surfaces behind each other, at most eight. */
+/* Adds light that is visible through HIT: at most eight surfaces behind each
+ * other. */
 static void add_behind(const struct twin *twin, const struct twin_ray *ray,
                        const struct twin_hit *hit, struct twin_pixel *pixel)
 {
@@ -360,7 +371,7 @@ static void add_behind(const struct twin *twin, const struct twin_ray *ray,
     for (int i = 0; i < 8 && s->material[at.material].pass > 0; i++) {
         double rgb[3];
 
-        go_through(twin, &at, &p);
+        pass_surface(twin, &at, &p);
         if (!twin_meet(twin, &p.ray, HUGE_VAL, &at)) {
             if (s->background == GLINT_BEHIND_CAMERA && !p.is_bent)
                 pixel->cover -= (float)p.weight;
@@ -369,36 +380,38 @@ static void add_behind(const struct twin *twin, const struct twin_ray *ray,
             add_light(pixel, p.weight, rgb);
             return;
         }
-        light_of(twin, &at, p.ray.toward, rgb);
+        compute_phong(twin, &at, p.ray.toward, rgb);
         add_light(pixel, p.weight, rgb);
     }
 }
 
 /* ---------------------------------------------------------- primary rays */
 
-/* Returns the fraction of the light at HIT, on a catcher, that objects hide. */
-static double shadow_at(const struct twin *twin, const struct twin_hit *hit)
+/* Returns the fraction of the light that objects occlude at HIT, on a shadow
+ * catcher. */
+static double compute_shadow(const struct twin *twin,
+                             const struct twin_hit *hit)
 {
     const struct glint_description *s = twin->scene;
     double all = 0, hidden = 0;
 
     for (int i = 0; i < s->n_lights; i++) {
         double l[3], rgb[3], light;
-        const double distance = light_from(&s->light[i], hit->place, l, rgb);
+        const double distance = compute_light(&s->light[i], hit->place, l, rgb);
 
         light =
             fmax(0, vec_dot(hit->normal, l)) * (rgb[0] + 2 * rgb[1] + rgb[2]);
         all += light;
         if (light > 0)
-            hidden +=
-                light * (1 - reaches(twin, hit, &s->light[i], l, distance));
+            hidden += light * (1 - compute_visibility(twin, hit, &s->light[i],
+                                                      l, distance));
     }
     return all > 0 ? hidden / all : 0;
 }
 
-/* Finds what RAY sees first, catchers among it. */
-static bool see_first(const struct twin *twin, const struct twin_ray *ray,
-                      struct twin_hit *hit)
+/* Finds the first object that RAY hits, including shadow catchers. */
+static bool find_first(const struct twin *twin, const struct twin_ray *ray,
+                       struct twin_hit *hit)
 {
     bool is_met = twin_meet(twin, ray, HUGE_VAL, hit);
     struct twin_hit on;
@@ -419,7 +432,7 @@ struct twin_pixel twin_see(const struct twin *twin, const struct twin_ray *ray)
     struct twin_hit hit;
     double rgb[3];
 
-    if (!see_first(twin, ray, &hit)) {
+    if (!find_first(twin, ray, &hit)) {
         pixel.cover = s->background != GLINT_BEHIND_CAMERA;
         twin_behind(twin, ray->toward, twin->pixel_tan * twin->pixel_tan / 4,
                     rgb);
@@ -428,10 +441,10 @@ struct twin_pixel twin_see(const struct twin *twin, const struct twin_ray *ray)
     }
     if (s->object[hit.object].catcher > 0) {
         pixel.cover =
-            (float)(s->object[hit.object].catcher * shadow_at(twin, &hit));
+            (float)(s->object[hit.object].catcher * compute_shadow(twin, &hit));
         return pixel;
     }
-    light_of(twin, &hit, ray->toward, rgb);
+    compute_phong(twin, &hit, ray->toward, rgb);
     add_light(&pixel, 1, rgb);
     if (s->material[hit.material].reflect > 0)
         add_mirrored(twin, ray, &hit, &pixel);
@@ -452,7 +465,7 @@ static void draw_row(void *ctx, int y, int worker)
 {
     const struct drawing *d = ctx;
     const int n = d->view->samples;
-    /* Corners of pixels are what is sampled there. */
+    /* with GLINT_DESCRIBED_CORNERS rays pass through the corners of pixels */
     const double first =
         d->twin->scene->camera.field == GLINT_DESCRIBED_CORNERS ? -0.5 : 0;
 

@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * The reference renderer of scenes, in double precision: the same light along
- * the same paths, ray by ray, for comparison with pictures of the integer
- * scene.
+ * Reference renderer of scenes, in double precision. It follows the same light
+ * paths as the integer renderer, ray by ray, and serves as its reference.
  *
  *     twin_open(&twin, &scene);
  *     twin_render(&twin, &view, workers, pixels);
  *     twin_close(&twin);
  *
  *   in   a description; the size of the picture
- *   out  of each pixel the light of objects, and the fraction of what is behind
- *        that they hide
+ *   out  for each pixel the light of objects, and the fraction of the
+ * background that they cover
  *
- * Method: primary rays at points of each pixel; at a hit Phong's terms of all
- * lights that no object hides, then one ray that is mirrored, and one straight
- * on or refracted through eight surfaces at most. What these meet is lit
- * likewise, but mirrors nothing; twin_around.c has environment light.
- * Triangles by [Moller97] in a tree of boxes, spheres and planes by their
- * equations. A ray skips the object it starts from, or of a mesh the triangle.
+ * Method: several primary rays per pixel. At a hit, Phong's terms of all lights
+ * that are not occluded, then one mirrored ray, and one transmitted ray through
+ * at most eight surfaces. Hits of these rays are lit likewise, but do not
+ * mirror. twin_around.c adds environment light. Triangles are intersected by
+ * [Moller97] in a tree of bounding boxes, spheres and planes by their
+ * equations. A ray skips the object that it starts from, or for a mesh the
+ * triangle.
  */
 #ifndef GLINT_TOOLS_SCENES_TWIN_H
 #define GLINT_TOOLS_SCENES_TWIN_H
@@ -30,7 +30,7 @@
 struct twin_node;
 struct twin_map;
 
-/* Light of the texels of a texture. */
+/* The texels of a texture, in linear light. */
 struct twin_texels {
     int width, height;
     float *rgb; /* [height][width][3], linear */
@@ -38,39 +38,47 @@ struct twin_texels {
 
 struct twin {
     const struct glint_description *scene;
-    int shadow_points; /* 1, 4 or 16 of a light's disc; twin_open() sets 1 */
-    /* 1 to 32 of brushed metal's lobe, as the run time takes them; it sets 8.
-     * More: so many of the whole lobe, turned again for each ray, from the
-     * finest level. */
+    int shadow_points; /* shadow rays per light: 1, 4 or 16; twin_open() sets 1
+                        */
+    /* Samples of a Ward lobe. 1 to 32: the samples of the run time;
+     * twin_open() sets 8. More: this number of samples of the whole lobe
+     * from the finest mipmap level, shifted for each ray. */
     int ward_samples;
-    double pixel_tan; /* tangent of a pixel; twin_render() sets it */
+    /* tangent of the angle of a pixel; twin_render() sets it */
+    double pixel_tan;
     struct glint_environment around;
     struct twin_texels texels[GLINT_DESCRIPTION_MAX_TEXTURES];
-    /* Trees over the triangles of each object, one after the other. */
+    /* Trees of bounding boxes over the triangles of each object,
+     * consecutively. */
     struct twin_node *node;
-    int *root;            /* of each object; -1: it has no triangles */
-    int *order;           /* triangles in the order of the leaves */
-    struct twin_map *map; /* [n_objects] of what is translucent; or NULL */
-    /* [n_stones] what light on meshes spreads by, instead of what was baked of
-     * them, as many texels each way; NULL: as baked. twin_open() sets NULL. */
+    int *root; /* index of the root node of each object; -1: it has no triangles
+                */
+    int *order;           /* indices of triangles, in the order of the leaves */
+    struct twin_map *map; /* [n_objects]: maps of translucent objects; NULL:
+                             there are none */
+    /* [n_stones]: scattering rows for meshes, used instead of the baked
+     * fits, at the same resolution. NULL, set by twin_open(): uses the baked
+     * fits. */
     const struct glint_scatter_rows *rows;
 };
 
 struct twin_ray {
-    double from[3], toward[3]; /* unit */
-    int skip_object;           /* -1: none; of meshes only skip_triangle */
+    double from[3], toward[3]; /* unit vector */
+    int skip_object; /* index of an object to skip, -1: none; of a mesh only
+                        skip_triangle is skipped */
     int skip_triangle;
 };
 
-/* Where a ray meets an object. */
+/* The point where a ray hits an object. */
 struct twin_hit {
     double t;
     double place[3];
-    double normal[3];  /* unit, on the side that the ray comes from */
-    double shading[3]; /* the same, rounded off by the normals of a mesh */
-    double uv[2];      /* V runs up */
-    int object, triangle, material; /* triangle and material may be -1 */
-    bool inside;                    /* of a sphere or mesh: the ray leaves it */
+    double normal[3];  /* unit vector, on the side of the ray's origin */
+    double shading[3]; /* normal interpolated from the vertices of a mesh */
+    double uv[2];      /* texture coordinates; V points up */
+    /* indices; triangle and material may be -1 */
+    int object, triangle, material;
+    bool inside; /* true: the ray leaves a sphere or mesh */
 };
 
 /* A pixel: rgb + (1 - cover) * background. */
@@ -80,58 +88,62 @@ struct twin_pixel {
 
 struct twin_view {
     int width, height;
-    double focal_px; /* focal length of a camera that has the lens's field */
-    int samples;     /* points of a pixel along each side, 1 .. 64 */
+    double focal_px; /* focal length in pixels of a camera with the lens's field
+                        of view */
+    int samples;     /* rays per pixel along each side, 1 .. 64 */
 };
 
-/* Prepares SCENE, which is kept. GLINT_E_MEMORY. */
+/* Prepares SCENE, which must outlive TWIN. May return GLINT_E_MEMORY. */
 enum glint_status twin_open(struct twin *twin,
                             const struct glint_description *scene);
 void twin_close(struct twin *twin);
 
-/* Sets RAY to that of the point X, Y of the picture, in pixels from its upper
- * left corner (of `camera corners` pixel I is at I, else at I + 1/2). */
+/* Sets RAY to the ray through the point (X, Y) of the picture, in pixels
+ * from its upper left corner. The centre of pixel I is at I + 1/2, with
+ * `camera corners` at I. */
 void twin_camera_ray(const struct twin *twin, const struct twin_view *view,
                      double x, double y, struct twin_ray *ray);
 
-/* Finds the nearest thing but catchers that RAY meets before MOST; returns
- * whether there is one. */
+/* Finds the nearest object, except shadow catchers, that RAY hits before the
+ * distance MOST. Returns whether there is one. */
 bool twin_meet(const struct twin *twin, const struct twin_ray *ray, double most,
                struct twin_hit *hit);
 
-/* Returns whether RAY meets any object but catchers before MOST. */
+/* Returns whether RAY hits any object, except shadow catchers, before the
+ * distance MOST. */
 bool twin_is_hidden(const struct twin *twin, const struct twin_ray *ray,
                     double most);
 
-/* The same of one object alone, catchers too. */
+/* Like twin_meet(), for a single object, which may be a shadow catcher. */
 bool twin_meet_object(const struct twin *twin, int object,
                       const struct twin_ray *ray, double most,
                       struct twin_hit *hit);
 
-/* Sets what is left of a HIT of object O whose triangle is known, and whose uv
- * are the fractions of its second and third corner. */
+/* Completes HIT on object O, of which the triangle is set, and uv holds the
+ * barycentric coordinates of its second and third corner. */
 void twin_finish_triangle(const struct twin *twin,
                           const struct glint_described_object *o,
                           struct twin_hit *hit);
 
-/* Sets TOWARD to the direction of LIGHT from HIT, RGB to what a white surface
- * shows there that faces it, SHARE to how much of it reaches HIT; returns the
- * cosine from the shading normal. */
+/* Sets TOWARD to the direction from HIT to LIGHT, RGB to the light that a
+ * white surface facing it would reflect, SHARE to the visible fraction of
+ * LIGHT. Returns the cosine between TOWARD and the shading normal. */
 double twin_light(const struct twin *twin, const struct twin_hit *hit,
                   const struct glint_described_light *light, double toward[3],
                   double rgb[3], double *share);
 
-/* Returns what RAY, a primary one, sees. twin_render() has worked out maps. */
+/* Returns the light that the primary ray RAY sees. Requires the maps of
+ * translucent objects, which twin_render() computes. */
 struct twin_pixel twin_see(const struct twin *twin, const struct twin_ray *ray);
 
-/* Tells TWIN how wide pixels of VIEW are, as twin_render() does. */
+/* Sets the pixel size of TWIN from VIEW, as twin_render() does. */
 void twin_aim(struct twin *twin, const struct twin_view *view);
 
 /* Draws PIXELS[height][width]. */
 void twin_render(const struct twin *twin, const struct twin_view *view,
                  struct glint_workers *workers, struct twin_pixel *pixels);
 
-/* twin_tree.c: trees of boxes. */
+/* twin_tree.c: trees of bounding boxes. */
 enum glint_status twin_grow(struct twin *twin);
 bool twin_meet_mesh(const struct twin *twin, int object,
                     const struct twin_ray *local, double most,

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reference renderer of environment light: lookups in the baked environment,
- * and Ward's lobe over it and under lights, in double precision, along the
- * paths of the run time. All that is in the axes of baked scenes, whose z runs
- * away. */
+ * Environment light in the reference renderer: lookups in the baked
+ * environment, and Ward's lobe under the environment and under lights, in
+ * double precision, along the same paths as the run time. Directions are in the
+ * axes of baked scenes, whose z points away from the viewer.
+ */
 #include "reference/scenes/twin_around.h"
 
 #include <string.h>
@@ -26,14 +27,15 @@ static double decode_9e5(const struct glint_environment *e, uint32_t word,
                  (int)(word >> 27) - 12 + e->header->unit_log2);
 }
 
-static double texel_of(const struct glint_environment *e, int level, int i,
-                       int c)
+static double decode_texel(const struct glint_environment *e, int level, int i,
+                           int c)
 {
     return decode_9e5(e, ((const uint32_t *)e->texel[level])[i], c);
 }
 
-/* Sets PLACE, 0 .. 1 each, to that of TOWARD in the unfolded octahedron. */
-static void place_of(const double toward[3], double place[2])
+/* Sets PLACE to the position of TOWARD in the octahedron map, each
+ * coordinate 0 .. 1. */
+static void compute_place(const double toward[3], double place[2])
 {
     const double sum = fabs(toward[0]) + fabs(toward[1]) + fabs(toward[2]);
     double p = fabs(toward[0]) / sum, q = fabs(toward[2]) / sum;
@@ -48,9 +50,9 @@ static void place_of(const double toward[3], double place[2])
     place[1] = .5 + .5 * (toward[2] < 0 ? -q : q);
 }
 
-/* Returns the index of texel (X, Y) of a square of SIDE, past whose edges it
- * continues as the octahedron does. */
-static int index_of(int x, int y, int side)
+/* Returns the index of texel (X, Y) of a square of SIDE texels. Texels
+ * outside the square are replaced by their neighbours on the octahedron. */
+static int wrap_index(int x, int y, int side)
 {
     if (x < 0 || x >= side) {
         x = x < 0 ? 0 : side - 1;
@@ -63,49 +65,53 @@ static int index_of(int x, int y, int side)
     return y * side + x;
 }
 
-/* Sets RGB to texels of LEVEL, -1: of the irradiance map, in TOWARD. */
-static void look_level(const struct glint_environment *e, int level,
-                       const double toward[3], double rgb[3])
+/* Interpolates RGB from the texels of LEVEL in direction TOWARD; LEVEL -1 is
+ * the irradiance map. */
+static void interpolate_level(const struct glint_environment *e, int level,
+                              const double toward[3], double rgb[3])
 {
     const int side = 1 << (level < 0 ? GLINT_ENVIRONMENT_IRRADIANCE_LOG2
                                      : (int)e->level[level].side_log2);
     double place[2], x, y;
 
-    place_of(toward, place);
+    compute_place(toward, place);
     x = place[0] * side - .5;
     y = place[1] * side - .5;
     rgb[0] = rgb[1] = rgb[2] = 0;
     for (int k = 0; k < 4; k++) {
         const int i = (int)floor(x) + (k & 1), j = (int)floor(y) + (k >> 1);
         const double share = (1 - fabs(x - i)) * (1 - fabs(y - j));
-        const int at = index_of(i, j, side);
+        const int at = wrap_index(i, j, side);
 
         for (int c = 0; c < 3; c++)
             rgb[c] += share * (level < 0 ? decode_9e5(e, e->irradiance[at], c)
-                                         : texel_of(e, level, at, c));
+                                         : decode_texel(e, level, at, c));
     }
 }
 
-/* Levels are blended to the variance between theirs, which are 1 to 4. */
-static void look(const struct glint_environment *e, const double toward[3],
-                 double level, double rgb[3])
+/* Sets RGB to the light at a fractional LEVEL, by blending two levels such
+ * that the variances, whose ratio is 4, are interpolated. */
+static void interpolate_levels(const struct glint_environment *e,
+                               const double toward[3], double level,
+                               double rgb[3])
 {
     const double last = e->header->n_levels - 1;
     const double held = fmin(fmax(level, 0), last);
     const int k = (int)held;
     double next[3];
 
-    look_level(e, k, toward, rgb);
+    interpolate_level(e, k, toward, rgb);
     if (held <= k)
         return;
-    look_level(e, k + 1, toward, next);
+    interpolate_level(e, k + 1, toward, next);
     for (int c = 0; c < 3; c++)
         rgb[c] += (pow(4, held - k) - 1) / 3 * (next[c] - rgb[c]);
 }
 
-/* Sets TO, which may be V, to direction V of the text in the axes of the
- * environment. */
-static void turn(const struct twin *twin, const double v[3], double to[3])
+/* Rotates direction V of the text to the axes of the environment. TO may be
+ * V. */
+static void rotate_to_environment(const struct twin *twin, const double v[3],
+                                  double to[3])
 {
     const struct glint_description *s = twin->scene;
     const double angle = s->environment[0].turn_deg * GLINT_PI / 180;
@@ -118,8 +124,10 @@ static void turn(const struct twin *twin, const double v[3], double to[3])
 
 /* -------------------------------------------------------------------- metal */
 
-/* Returns how fast the normal turns at HIT, per unit of the scene. */
-static double curvature(const struct twin *twin, const struct twin_hit *hit)
+/* Returns the curvature of the normals at HIT, radians per unit of the
+ * scene. */
+static double compute_curvature(const struct twin *twin,
+                                const struct twin_hit *hit)
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_object *o = &s->object[hit->object];
@@ -146,7 +154,7 @@ double twin_spread(const struct twin *twin, const struct twin_hit *hit,
 {
     const double no = fmax(-vec_dot(hit->shading, toward), LEAST_COSINE);
     const double bend =
-        fmin(curvature(twin, hit) * hit->t * twin->pixel_tan, 1);
+        fmin(compute_curvature(twin, hit) * hit->t * twin->pixel_tan, 1);
     const double turns = fmin(bend / no + twin->pixel_tan, 1);
 
     return turns * turns / 2;
@@ -184,9 +192,10 @@ void twin_lie(const struct twin *twin, const struct twin_hit *hit,
     vec_cross(frame[2], frame[0], frame[1]);
 }
 
-/* Returns what a direction counts by the norm, before the lobe's density. */
-static double weight_of(const struct glint_described_material *m, double ho,
-                        double hn, double ni, double no)
+/* Returns the weight of a direction by the material's norm, before division
+ * by the density of the lobe. */
+static double compute_weight(const struct glint_described_material *m,
+                             double ho, double hn, double ni, double no)
 {
     const double weight = m->norm == GLINT_DESCRIBED_1992
                               ? ho * hn * hn * hn * sqrt(ni / no)
@@ -224,12 +233,12 @@ double twin_shine(const struct twin *twin, const struct twin_hit *hit,
     }
     if (slope > MOST_SLOPE)
         return 0;
-    return exp(-slope) * weight_of(m, vec_dot(h, o), hn, ni, no) /
+    return exp(-slope) * compute_weight(m, vec_dot(h, o), hn, ni, no) /
            (area * vec_dot(h, o) * hn * hn * hn);
 }
 
-/* Returns f of N samples, as scene/ward/ward_lobe.c says. */
-static double footprint(int n)
+/* Returns the footprint factor of N samples, as in scene/ward/ward_lobe.c. */
+static double compute_footprint(int n)
 {
     static const int at[5] = {1, 4, 8, 16, 32};
     static const double kappa[5] = {1, 1.4, 2, 2, 3};
@@ -242,8 +251,9 @@ static double footprint(int n)
            n;
 }
 
-/* Returns the first N bits of I, the last first, as a fraction. */
-static double radical(unsigned i, int n)
+/* Returns the first N bits of I in reversed order, as a fraction (radical
+ * inverse). */
+static double radical_inverse(unsigned i, int n)
 {
     double v = 0;
 
@@ -252,12 +262,13 @@ static double radical(unsigned i, int n)
     return v;
 }
 
-/* Slopes of alpha 1 whose squares have the means SPREAD / 2. */
-static void draw(int n, const double spread[2],
-                 double slope[GLINT_WARD_SAMPLES][2])
+/* Draws N slopes for alpha 1 whose mean squares along both axes are SPREAD /
+ * 2. */
+static void draw_slopes(int n, const double spread[2],
+                        double slope[GLINT_WARD_SAMPLES][2])
 {
     for (int k = 0; k < n; k++) {
-        const double v = radical((unsigned)k, 5);
+        const double v = radical_inverse((unsigned)k, 5);
 
         slope[k][0] = sqrt(-log((k + .5) / n)) * cos(2 * GLINT_PI * v);
         slope[k][1] = sqrt(-log((k + .5) / n)) * sin(2 * GLINT_PI * v);
@@ -277,7 +288,8 @@ static void draw(int n, const double spread[2],
     }
 }
 
-/* Adds what SLOPE of N reads, at level LEVEL but for the angle to the eye. */
+/* Adds the light of one of N samples, with slope SLOPE, from LEVEL corrected
+ * by the angle to the eye. */
 static void add_sample(const struct twin *twin, const double slope[2],
                        const struct glint_described_material *m,
                        const double frame[3][3], const double out[3],
@@ -292,16 +304,16 @@ static void add_sample(const struct twin *twin, const double slope[2],
         in[k] = 2 * ho * h[k] - out[k];
     if (ho <= 0 || in[2] <= 0)
         return;
-    weight = weight_of(m, ho, h[2], fmin(in[2], 1), out[2]);
+    weight = compute_weight(m, ho, h[2], fmin(in[2], 1), out[2]);
     for (int k = 0; k < 3; k++)
         vec_add(toward, in[k], frame[k], toward);
-    look(&twin->around, toward, level + .5 * log2(ho), light);
+    interpolate_levels(&twin->around, toward, level + .5 * log2(ho), light);
     for (int c = 0; c < 3; c++)
         rgb[c] += weight * light[c];
 }
 
-/* Adds N samples of the whole lobe from the finest level. The ray TOWARD shifts
- * them, so that rays of one pixel differ. */
+/* Adds N samples of the whole lobe from the finest level. The direction
+ * TOWARD shifts the samples, so that rays of one pixel use different ones. */
 static void add_lobe(const struct twin *twin, const double toward[3],
                      const struct glint_described_material *m,
                      const double frame[3][3], const double out[3],
@@ -313,7 +325,7 @@ static void add_lobe(const struct twin *twin, const double toward[3],
 
     for (int k = 0; k < n; k++) {
         const double u = fmod((k + .5) / n + off[0], 1);
-        const double v = fmod(radical((unsigned)k, 16) + off[1], 1);
+        const double v = fmod(radical_inverse((unsigned)k, 16) + off[1], 1);
         const double r = sqrt(-log(fmax(u, 1e-9)));
         const double slope[2] = {r * cos(2 * GLINT_PI * v),
                                  r * sin(2 * GLINT_PI * v)};
@@ -334,21 +346,21 @@ static void add_metal(const struct twin *twin, const struct twin_hit *hit,
     double frame[3][3] = {{0}}, out[3] = {0};
     double sum[3] = {0, 0, 0};
     const bool is_whole = n > GLINT_WARD_SAMPLES;
-    const double f = footprint(is_whole ? GLINT_WARD_SAMPLES : n);
+    const double f = compute_footprint(is_whole ? GLINT_WARD_SAMPLES : n);
     const double blur = fmin(f * a * b, .75 * fmin(a * a, b * b));
     const double spread[2] = {(1 - f + fmax(1 - blur / (a * a), 0)) / 2,
                               (1 - f + fmax(1 - blur / (b * b), 0)) / 2};
     const double back[3] = {-toward[0], -toward[1], -hand * toward[2]};
 
     if (!is_whole)
-        draw(n, spread, slope);
+        draw_slopes(n, spread, slope);
     level = log2(2 * sqrt(2 * blur) / sqrt(4 * GLINT_PI) *
                  (1 << twin->around.header->side_log2));
     twin_lie(twin, hit, frame);
     for (int k = 0; k < 3; k++) {
         out[k] = vec_dot(frame[k], back);
-        frame[k][2] *= hand; /* as of the text */
-        turn(twin, frame[k], frame[k]);
+        frame[k][2] *= hand; /* in the axes of the text */
+        rotate_to_environment(twin, frame[k], frame[k]);
     }
     if (is_whole && out[2] > 0)
         add_lobe(twin, toward, m, (const double(*)[3])frame, out, sum);
@@ -369,8 +381,8 @@ void twin_irradiance(const struct twin *twin, const double shading[3],
 
     if (!s->n_environments)
         return;
-    turn(twin, shading, normal);
-    look_level(&twin->around, -1, normal, light);
+    rotate_to_environment(twin, shading, normal);
+    interpolate_level(&twin->around, -1, normal, light);
     for (int c = 0; c < 3; c++)
         rgb[c] += s->environment[0].scale * light[c];
 }
@@ -404,10 +416,11 @@ void twin_behind(const struct twin *twin, const double toward[3], double spread,
     memcpy(rgb, s->background_colour, 3 * sizeof *rgb);
     if (s->background != GLINT_BEHIND_ENVIRONMENT)
         return;
-    turn(twin, toward, to);
-    look(e, to,
-         .5 * log2(seen * ldexp(1, 2 * (int)e->header->side_log2) / GLINT_PI),
-         rgb);
+    rotate_to_environment(twin, toward, to);
+    interpolate_levels(
+        e, to,
+        .5 * log2(seen * ldexp(1, 2 * (int)e->header->side_log2) / GLINT_PI),
+        rgb);
     for (uint32_t i = 0; i < e->header->n_lights; i++) {
         const double r = fmax(e->light[i].radius_q30 * 0x1p-30, width);
         double off[3], share;

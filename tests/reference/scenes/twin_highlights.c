@@ -6,9 +6,10 @@
 #include <stdlib.h>
 
 #define SIDE 8
-#define NEAR 12 /* pixels */
+#define NEAR 12 /* pixels: highlights nearer than this are merged */
 
-/* Sums over a square, or a highlight: light, times places and their squares. */
+/* Sums over a square of pixels, or over a highlight: light, light times
+ * position, light times squared position. */
 struct sums {
     double flux, at[2], square, rgb[3];
     int n;
@@ -35,7 +36,8 @@ static void add_sums(struct sums *to, const struct sums *from)
         to->rgb[c] += from->rgb[c];
 }
 
-/* Adds what RAY, of share SHARE of pixel (X, Y), sees of objects. */
+/* Adds the light of objects that RAY sees. RAY counts with weight SHARE of
+ * pixel (X, Y). */
 static void add_ray(const struct twin *twin, const struct twin_ray *ray, int x,
                     int y, double share, struct sums *to)
 {
@@ -59,8 +61,8 @@ static void add_ray(const struct twin *twin, const struct twin_ray *ray, int x,
         to->rgb[c] += weight * (double)seen.rgb[c];
 }
 
-static void look(const struct twin *twin, const struct twin_view *view,
-                 struct squares *q)
+static void sum_squares(const struct twin *twin, const struct twin_view *view,
+                        struct squares *q)
 {
     const int n = view->samples;
 
@@ -78,8 +80,8 @@ static void look(const struct twin *twin, const struct twin_view *view,
             }
 }
 
-/* Adds square (X, Y), and those that touch it, to TO. */
-static void gather(struct squares *q, int x, int y, struct sums *to)
+/* Adds square (X, Y), and all squares connected to it, to TO. */
+static void flood_fill(struct squares *q, int x, int y, struct sums *to)
 {
     struct square *s;
 
@@ -91,7 +93,7 @@ static void gather(struct squares *q, int x, int y, struct sums *to)
     s->is_taken = true;
     add_sums(to, &s->sums);
     for (int k = 0; k < 9; k++)
-        gather(q, x + k % 3 - 1, y + k / 3 - 1, to);
+        flood_fill(q, x + k % 3 - 1, y + k / 3 - 1, to);
 }
 
 static bool is_near(const struct sums *a, const struct sums *b)
@@ -100,7 +102,7 @@ static bool is_near(const struct sums *a, const struct sums *b)
                  a->at[1] / a->flux - b->at[1] / b->flux) < NEAR;
 }
 
-static int by_flux(const void *a, const void *b)
+static int compare_flux(const void *a, const void *b)
 {
     const double p = ((const struct sums *)a)->flux;
     const double q = ((const struct sums *)b)->flux;
@@ -108,22 +110,22 @@ static int by_flux(const void *a, const void *b)
     return p < q ? 1 : p > q ? -1 : 0;
 }
 
-/* Makes one of those of S[N] that are near, the brightest first; returns how
- * many are left. */
-static int join_near(struct sums *s, int n)
+/* Merges those of S[N] that are near each other into the brighter one. S is
+ * sorted by descending brightness. Returns the new number. */
+static int merge_near(struct sums *s, int n)
 {
     for (int i = 0; i < n; i++)
         for (int k = i + 1; k < n; k++)
             if (is_near(&s[i], &s[k])) {
                 add_sums(&s[i], &s[k]);
                 s[k] = s[n - 1];
-                qsort(s, (size_t)(n - 1), sizeof *s, by_flux);
-                return join_near(s, n - 1);
+                qsort(s, (size_t)(n - 1), sizeof *s, compare_flux);
+                return merge_near(s, n - 1);
             }
     return n;
 }
 
-static struct twin_highlight highlight_of(const struct sums *s)
+static struct twin_highlight make_highlight(const struct sums *s)
 {
     struct twin_highlight h = {
         s->at[0] / s->flux, s->at[1] / s->flux, s->flux, {0}, 0, s->n};
@@ -134,7 +136,7 @@ static struct twin_highlight highlight_of(const struct sums *s)
     return h;
 }
 
-static int find(struct squares *q, struct twin_highlight *found)
+static int find_highlights(struct squares *q, struct twin_highlight *found)
 {
     struct sums s[TWIN_HIGHLIGHTS + 1];
     int n = 0;
@@ -143,16 +145,16 @@ static int find(struct squares *q, struct twin_highlight *found)
         for (int x = 0; x < q->across; x++) {
             struct sums next = {0};
 
-            gather(q, x, y, &next);
+            flood_fill(q, x, y, &next);
             if (!(next.flux > 0))
                 continue;
             s[n++] = next;
-            qsort(s, (size_t)n, sizeof *s, by_flux);
+            qsort(s, (size_t)n, sizeof *s, compare_flux);
             n = n > TWIN_HIGHLIGHTS ? TWIN_HIGHLIGHTS : n;
         }
-    n = join_near(s, n);
+    n = merge_near(s, n);
     for (int i = 0; i < n; i++)
-        found[i] = highlight_of(&s[i]);
+        found[i] = make_highlight(&s[i]);
     return n;
 }
 
@@ -168,8 +170,8 @@ int twin_highlights(const struct twin *twin, const struct twin_view *view,
     if (!q.of)
         return -1;
     twin_aim(&seen, view);
-    look(&seen, view, &q);
-    n = find(&q, found);
+    sum_squares(&seen, view, &q);
+    n = find_highlights(&q, found);
     free(q.of);
     return n;
 }

@@ -1,18 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where rays meet objects. */
+ * Ray intersections of the reference renderer (twin.h).
+ */
 #include "reference/scenes/twin.h"
 
 #include "glint/view.h"
 #include "reference/scenes/vec.h"
 
-/* Parts of its distance that a ray from a mesh's triangle must go before it may
- * meet another of the mesh: neighbours share corners. */
+/* Min distance, relative to the length of the ray so far, from a triangle of
+ * a mesh to another triangle of the same mesh; avoids hits at shared
+ * corners. */
 #define ACNE 1e-9
 
 /* ------------------------------------------------------ spheres and planes */
 
-/* A15: with L from the ray to the middle, s = L.d; q^2 = |L - s d|^2 <= r^2. */
+/* A15: L is the vector from the ray's origin to the centre, s = L.d; the ray
+ * hits if |L - s d|^2 <= r^2. */
 static bool meet_sphere(const struct glint_described_object *o,
                         const struct twin_ray *ray, double most,
                         struct twin_hit *hit)
@@ -36,11 +39,12 @@ static bool meet_sphere(const struct glint_described_object *o,
     return true;
 }
 
-/* U goes round the y axis of a ball, 1/2 where a camera that is not turned sees
- * its middle; V up from its lowest point. */
-static void place_on_ball(const struct glint_description *scene,
-                          const struct glint_described_object *o,
-                          struct twin_hit *hit)
+/* Sets texture coordinates on a ball: U is the longitude about the y axis,
+ * 1/2 at the point facing a camera that is not rotated; V is the latitude,
+ * from the lowest point upwards. */
+static void set_ball_uv(const struct glint_description *scene,
+                        const struct glint_described_object *o,
+                        struct twin_hit *hit)
 {
     double n[3];
 
@@ -50,11 +54,11 @@ static void place_on_ball(const struct glint_description *scene,
     hit->uv[1] = 1 - acos(fmax(-1, fmin(1, n[1]))) / GLINT_PI;
 }
 
-/* On a plane U and V are units of the scene, along x and away, before it is
- * turned from lying flat. */
-static void place_on_plane(const struct glint_description *scene,
-                           const struct glint_described_object *o,
-                           struct twin_hit *hit)
+/* Sets texture coordinates on a plane: U and V are in units of the scene,
+ * along x and away from the viewer when the plane lies flat. */
+static void set_plane_uv(const struct glint_description *scene,
+                         const struct glint_described_object *o,
+                         struct twin_hit *hit)
 {
     double upright[4], away[3], flat[3];
 
@@ -108,7 +112,8 @@ void twin_finish_triangle(const struct twin *twin,
         for (int i = 0; t->has_uv && i < 2; i++)
             hit->uv[i] += share[k] * t->uv[k][i];
     }
-    /* The normals of the file say what is outside, not the corners' order. */
+    /* the normals in the file, not the order of corners, determine the
+     * outside */
     if (!t->has_normals || !(vec_unit(smooth) > 0))
         for (int i = 0; i < 3; i++)
             smooth[i] = n[i];
@@ -166,7 +171,7 @@ bool twin_meet_object(const struct twin *twin, int object,
             return false;
         if (o->material >= 0 && (s->material[o->material].texture >= 0 ||
                                  s->material[o->material].is_stone))
-            (is_ball ? place_on_ball : place_on_plane)(s, o, hit);
+            (is_ball ? set_ball_uv : set_plane_uv)(s, o, hit);
         for (int i = 0; i < 3; i++)
             hit->shading[i] = hit->normal[i];
     }

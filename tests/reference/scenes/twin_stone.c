@@ -11,20 +11,23 @@
 enum { CHANNELS = 3 };
 
 struct twin_map {
-    int material; /* -1: the object is of no translucent medium */
-    int of;       /* which translucent medium it is */
+    int material; /* index of the translucent material; -1: the object is not
+                     translucent */
+    int of;       /* index of the translucent medium */
     bool is_ball;
     int width, height;
     struct glint_translucent stone;
-    int *triangle; /* mesh: [height][width] of the scene, or -1 */
-    double *light; /* [height][width][3]; what gets in, then what comes out */
-    double *work;  /* [3][height][width] */
+    int *triangle; /* meshes: [height][width] indices of triangles of the scene,
+                      or -1 */
+    double *light; /* [height][width][3]: light that enters, then light that
+                      leaves */
+    double *work;  /* [3][height][width]: scratch */
 };
 
 /* ------------------------------------------------------------------ opening */
 
-static int material_of(const struct glint_description *s,
-                       const struct glint_described_object *o)
+static int find_material(const struct glint_description *s,
+                         const struct glint_described_object *o)
 {
     if (o->n_triangles == 0)
         return o->material >= 0 && s->material[o->material].is_stone
@@ -36,26 +39,27 @@ static int material_of(const struct glint_description *s,
     return -1;
 }
 
-/* Returns twice the area of corners I and J of T and (U, V). */
-static double edge_of(const struct glint_described_triangle *t, int i, int j,
-                      double u, double v)
+/* Returns twice the signed area of the triangle of corners I and J of T and
+ * (U, V). */
+static double compute_edge(const struct glint_described_triangle *t, int i,
+                           int j, double u, double v)
 {
     return (t->uv[i][0] - u) * (t->uv[j][1] - v) -
            (t->uv[i][1] - v) * (t->uv[j][0] - u);
 }
 
-/* Sets SHARE to the weights of T's corners at texel (X, Y); returns whether
- * that is inside. */
-static bool weigh(const struct twin_map *m,
-                  const struct glint_described_triangle *t, int x, int y,
-                  double share[3])
+/* Sets SHARE to the barycentric coordinates of texel (X, Y) in T. Returns
+ * whether the texel's centre is inside. */
+static bool compute_barycentric(const struct twin_map *m,
+                                const struct glint_described_triangle *t, int x,
+                                int y, double share[3])
 {
     const double u = (x + .5) / m->width, v = 1 - (y + .5) / m->height;
     bool inside = true;
     double sum = 0;
 
     for (int k = 0; k < 3; k++) {
-        share[k] = edge_of(t, (k + 1) % 3, (k + 2) % 3, u, v);
+        share[k] = compute_edge(t, (k + 1) % 3, (k + 2) % 3, u, v);
         sum += share[k];
     }
     for (int k = 0; k < 3; k++) {
@@ -69,9 +73,11 @@ static bool weigh(const struct twin_map *m,
     return inside;
 }
 
-/* Finds the triangle of each texel, and of those around them. */
-static void paint(const struct glint_description *s,
-                  const struct glint_described_object *o, struct twin_map *m)
+/* Assigns each texel its triangle, and texels around charts the triangle of
+ * a neighbour. */
+static void assign_triangles(const struct glint_description *s,
+                             const struct glint_described_object *o,
+                             struct twin_map *m)
 {
     const int n = m->width * m->height,
               rings = (int)m->stone.header->kernel / 2 + 2;
@@ -83,7 +89,8 @@ static void paint(const struct glint_description *s,
         for (int i = o->first_triangle;
              i < o->first_triangle + o->n_triangles && m->triangle[x] < 0; i++)
             if (s->triangle[i].material == m->material &&
-                weigh(m, &s->triangle[i], x % m->width, x / m->width, share))
+                compute_barycentric(m, &s->triangle[i], x % m->width,
+                                    x / m->width, share))
                 m->triangle[x] = i;
     }
     for (int r = 0; before && r < rings; r++) {
@@ -122,7 +129,7 @@ static bool open_map(const struct glint_description *s,
     if (!m->light || !m->work || !m->triangle)
         return false;
     if (!m->is_ball)
-        paint(s, o, m);
+        assign_triangles(s, o, m);
     return true;
 }
 
@@ -136,7 +143,7 @@ enum glint_status twin_open_stones(struct twin *twin)
     if (!twin->map)
         return GLINT_E_MEMORY;
     for (int i = 0; i < s->n_objects; i++) {
-        twin->map[i].material = material_of(s, &s->object[i]);
+        twin->map[i].material = find_material(s, &s->object[i]);
         if (twin->map[i].material >= 0 &&
             !open_map(s, &s->object[i], &twin->map[i]))
             return GLINT_E_MEMORY;
@@ -157,9 +164,10 @@ void twin_close_stones(struct twin *twin)
 
 /* -------------------------------------------------------------------- light */
 
-/* Returns the fraction of light that passes a surface of INDEX: [Fresnel]. */
-static double passes(const struct glint_described_material *m,
-                     const struct twin_map *map, double cosine)
+/* Returns the fraction of light that the surface transmits at COSINE
+ * (Fresnel); 1 if the material has no Fresnel reflection. */
+static double compute_transmittance(const struct glint_described_material *m,
+                                    const struct twin_map *map, double cosine)
 {
     const double n = map->stone.header->index_q16 / 65536.;
     const double g = sqrt(n * n - 1 + cosine * cosine);
@@ -171,7 +179,8 @@ static double passes(const struct glint_described_material *m,
     return cosine > 0 ? 1 - (across * across + along * along) / 2 : 0;
 }
 
-/* Sets HIT to texel (X, Y); returns false if it is no place of the object. */
+/* Sets HIT to the surface point of texel (X, Y). Returns false if the texel
+ * is outside the object. */
 static bool texel_hit(const struct twin *twin, int object, int x, int y,
                       struct twin_hit *hit)
 {
@@ -197,7 +206,7 @@ static bool texel_hit(const struct twin *twin, int object, int x, int y,
 
         if (i < 0)
             return false;
-        weigh(m, &s->triangle[i], x, y, share);
+        compute_barycentric(m, &s->triangle[i], x, y, share);
         for (int k = 0; k < 3; k++)
             vec_add(at, share[k], s->triangle[i].place[k], at);
         vec_turn(o->turn, 1, at, hit->place);
@@ -212,15 +221,17 @@ static bool texel_hit(const struct twin *twin, int object, int x, int y,
     return true;
 }
 
-/* The mean of what passes from all directions, by the cosine. */
-static double mean_passes(const struct glint_described_material *m,
-                          const struct twin_map *map)
+/* Returns the cosine-weighted mean transmittance over all directions. */
+static double
+compute_mean_transmittance(const struct glint_described_material *m,
+                           const struct twin_map *map)
 {
     enum { N = 1000 };
     double sum = 0;
 
     for (int i = 0; i < N; i++)
-        sum += 2 * (i + .5) / N * passes(m, map, (i + .5) / N) / N;
+        sum +=
+            2 * (i + .5) / N * compute_transmittance(m, map, (i + .5) / N) / N;
     return sum;
 }
 
@@ -229,7 +240,7 @@ static void light_map(const struct twin *twin, int object)
     const struct glint_description *s = twin->scene;
     struct twin_map *m = &twin->map[object];
     const struct glint_described_material *of = &s->material[m->material];
-    const double mean = mean_passes(of, m);
+    const double mean = compute_mean_transmittance(of, m);
 
     for (int i = 0; i < m->width * m->height; i++) {
         double *rgb = m->light + CHANNELS * (ptrdiff_t)i;
@@ -247,14 +258,15 @@ static void light_map(const struct twin *twin, int object)
                 twin_light(twin, &hit, &s->light[k], to, light, &share);
 
             for (int c = 0; c < CHANNELS && facing > 0; c++)
-                rgb[c] += share * facing * passes(of, m, facing) * light[c];
+                rgb[c] += share * facing *
+                          compute_transmittance(of, m, facing) * light[c];
         }
     }
 }
 
 /* ------------------------------------------------------------------- spread */
 
-static double code_at(const struct twin_map *m, int table, int x)
+static double get_code(const struct twin_map *m, int table, int x)
 {
     const struct glint_translucent_header *h = m->stone.header;
     const int side = 1 << h->side_log2;
@@ -266,9 +278,10 @@ static double code_at(const struct twin_map *m, int table, int x)
     return is_signed ? (int8_t)code / 128. : code / 256.;
 }
 
-/* Returns the place of FROM, moved by STEP along rows or columns; -1 outside.
- */
-static int beside(const struct twin_map *m, int from, int across, int down)
+/* Returns the index of the texel ACROSS columns and DOWN rows from texel
+ * FROM; -1 outside the map. */
+static int find_neighbour(const struct twin_map *m, int from, int across,
+                          int down)
 {
     int x = from % m->width + across, y = from / m->width + down;
 
@@ -283,7 +296,7 @@ static int beside(const struct twin_map *m, int from, int across, int down)
                                                              : y * m->width + x;
 }
 
-/* Adds FROM, convolved by TAP along one way, times SCALE, to TO. */
+/* Adds FROM, convolved with TAP along rows or columns, times SCALE, to TO. */
 static void convolve(const struct twin_map *m, const double *from,
                      const int16_t *tap, bool down, double scale, double *to)
 {
@@ -291,14 +304,16 @@ static void convolve(const struct twin_map *m, const double *from,
 
     for (int i = 0; i < m->width * m->height; i++)
         for (int k = 0; k < kernel; k++) {
-            const int at = beside(m, i, down ? 0 : r - k, down ? r - k : 0);
+            const int at =
+                find_neighbour(m, i, down ? 0 : r - k, down ? r - k : 0);
 
             if (at >= 0)
                 to[i] += scale * tap[k] * from[at];
         }
 }
 
-/* Adds plane P of channel C of the light in WORK[0] to the map. */
+/* Adds the contribution of plane P, channel C, of the light in WORK[0] to
+ * OUT. */
 static void add_plane(struct twin_map *m, int c, int p, double *out)
 {
     const struct glint_translucent_header *h = m->stone.header;
@@ -323,11 +338,11 @@ static void add_plane(struct twin_map *m, int c, int p, double *out)
         if (m->stone.cluster && m->stone.cluster[x / m->width % side * side +
                                                  x % m->width % side] != p)
             continue;
-        out[CHANNELS * (ptrdiff_t)x] += code_at(m, table, x) * sum[x];
+        out[CHANNELS * (ptrdiff_t)x] += get_code(m, table, x) * sum[x];
     }
 }
 
-static void spread_map(struct twin_map *m)
+static void scatter_by_planes(struct twin_map *m)
 {
     const struct glint_translucent_header *h = m->stone.header;
     const int n = m->width * m->height;
@@ -336,7 +351,7 @@ static void spread_map(struct twin_map *m)
         for (int x = 0; x < n; x++) {
             m->work[x] = m->light[CHANNELS * (ptrdiff_t)x + c];
             if (m->stone.cluster)
-                m->work[x] *= code_at(m, CHANNELS + c, x);
+                m->work[x] *= get_code(m, CHANNELS + c, x);
             m->light[CHANNELS * (ptrdiff_t)x + c] = 0;
         }
         for (uint32_t p = 0; p < h->n_planes; p++)
@@ -349,8 +364,8 @@ static void spread_map(struct twin_map *m)
     }
 }
 
-static void spread_rows(const struct glint_scatter_rows *rows,
-                        struct twin_map *m)
+static void scatter_by_rows(const struct glint_scatter_rows *rows,
+                            struct twin_map *m)
 {
     const size_t n = CHANNELS * (size_t)m->width * (size_t)m->height;
 
@@ -367,20 +382,23 @@ void twin_fill_maps(const struct twin *twin)
             continue;
         light_map(twin, i);
         if (twin->rows && !m->is_ball)
-            spread_rows(&twin->rows[m->of], m);
+            scatter_by_rows(&twin->rows[m->of], m);
         else
-            spread_map(m);
+            scatter_by_planes(m);
     }
 }
 
 /* ------------------------------------------------------------------- showing
  */
 
-/* What does not pass is mirrored. */
-static double coat_of(const struct glint_described_material *m,
-                      const struct twin_map *map, double passed)
+/* Returns the reflectance of the coat relative to that at normal incidence,
+ * where PASSED is the transmittance. Light that is not transmitted is
+ * reflected; the result is limited such that no channel reflects more than
+ * 1. */
+static double compute_coat(const struct glint_described_material *m,
+                           const struct twin_map *map, double passed)
 {
-    const double ahead = 1 - passes(m, map, 1);
+    const double ahead = 1 - compute_transmittance(m, map, 1);
     const double most = fmax(m->metal[0], fmax(m->metal[1], m->metal[2]));
 
     if (!m->is_metal || ahead <= 0)
@@ -396,10 +414,11 @@ void twin_add_stone(const struct twin *twin, const struct twin_hit *hit,
         &twin->scene->material[hit->material];
     const double x = hit->uv[0] * m->width - .5;
     const double y = (1 - hit->uv[1]) * m->height - .5;
-    const double out = passes(of, m, -vec_dot(toward, hit->shading));
+    const double out =
+        compute_transmittance(of, m, -vec_dot(toward, hit->shading));
 
     for (int c = 0; c < CHANNELS; c++)
-        rgb[c] *= coat_of(of, m, out);
+        rgb[c] *= compute_coat(of, m, out);
     for (int k = 0; k < 4; k++) {
         const double left = floor(x), top = floor(y);
         const double share =

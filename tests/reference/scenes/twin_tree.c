@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * A tree of boxes over the triangles of each object, halved at the middle of
- * the longest side, and rays through it. */
+ * Trees of bounding boxes over the triangles of each object, halved at the
+ * middle of the longest side, and ray intersections with them.
+ */
 #include "reference/scenes/twin.h"
 
 #include <stdlib.h>
@@ -12,11 +13,11 @@ enum { LEAF = 4, DEPTH = 64 };
 
 struct twin_node {
     double low[3], high[3];
-    int first, n;    /* a leaf: triangles order[first .. first + n - 1] */
-    int left, right; /* else its halves; n is 0 then */
+    int first, n;    /* leaf: triangles order[first .. first + n - 1] */
+    int left, right; /* inner node: indices of its halves; n is 0 */
 };
 
-static void bound(const struct twin *twin, struct twin_node *node)
+static void compute_bounds(const struct twin *twin, struct twin_node *node)
 {
     for (int i = 0; i < 3; i++) {
         node->low[i] = HUGE_VAL;
@@ -34,10 +35,11 @@ static void bound(const struct twin *twin, struct twin_node *node)
     }
 }
 
-/* Moves the triangles of NODE whose middle is below AT along AXIS to its front.
- * Returns how many these are. */
-static int part(const struct twin *twin, const struct twin_node *node, int axis,
-                double at)
+/* Moves the triangles of NODE whose centre is below AT along AXIS to its
+ * front. Returns their number. */
+static int partition_triangles(const struct twin *twin,
+                               const struct twin_node *node, int axis,
+                               double at)
 {
     int n = 0;
 
@@ -57,19 +59,20 @@ static int part(const struct twin *twin, const struct twin_node *node, int axis,
     return n;
 }
 
-/* Halves the node I and its halves; N_NODES are there. */
-static void halve(struct twin *twin, int i, int *n_nodes, int depth)
+/* Halves node I recursively. *N_NODES is the number of nodes in use. */
+static void halve_node(struct twin *twin, int i, int *n_nodes, int depth)
 {
     struct twin_node *const node = &twin->node[i];
     int axis = 0, n;
 
-    bound(twin, node);
+    compute_bounds(twin, node);
     if (node->n <= LEAF || depth == DEPTH - 2)
         return;
     for (int k = 1; k < 3; k++)
         if (node->high[k] - node->low[k] > node->high[axis] - node->low[axis])
             axis = k;
-    n = part(twin, node, axis, (node->low[axis] + node->high[axis]) / 2);
+    n = partition_triangles(twin, node, axis,
+                            (node->low[axis] + node->high[axis]) / 2);
     if (n == 0 || n == node->n)
         n = node->n / 2;
     node->left = (*n_nodes)++;
@@ -78,8 +81,8 @@ static void halve(struct twin *twin, int i, int *n_nodes, int depth)
     twin->node[node->right] =
         (struct twin_node){.first = node->first + n, .n = node->n - n};
     node->n = 0;
-    halve(twin, node->left, n_nodes, depth + 1);
-    halve(twin, node->right, n_nodes, depth + 1);
+    halve_node(twin, node->left, n_nodes, depth + 1);
+    halve_node(twin, node->right, n_nodes, depth + 1);
 }
 
 enum glint_status twin_grow(struct twin *twin)
@@ -88,7 +91,7 @@ enum glint_status twin_grow(struct twin *twin)
     const size_t n = (size_t)s->n_triangles;
     int n_nodes = 0;
 
-    /* A tree has fewer nodes than twice its triangles. */
+    /* a tree has fewer nodes than twice its triangles */
     twin->node = malloc((2 * n + 1) * sizeof *twin->node);
     twin->order = malloc((n + 1) * sizeof *twin->order);
     twin->root = malloc(((size_t)s->n_objects + 1) * sizeof *twin->root);
@@ -105,14 +108,14 @@ enum glint_status twin_grow(struct twin *twin)
         twin->root[i] = n_nodes++;
         twin->node[twin->root[i]] =
             (struct twin_node){.first = o->first_triangle, .n = o->n_triangles};
-        halve(twin, twin->root[i], &n_nodes, 0);
+        halve_node(twin, twin->root[i], &n_nodes, 0);
     }
     return GLINT_OK;
 }
 
-/* Returns whether RAY passes the box of NODE before MOST. */
-static bool passes(const struct twin_node *node, const struct twin_ray *ray,
-                   double most)
+/* Returns whether RAY passes the box of NODE before the distance MOST. */
+static bool passes_box(const struct twin_node *node, const struct twin_ray *ray,
+                       double most)
 {
     double from = 0, to = most;
 
@@ -121,7 +124,7 @@ static bool passes(const struct twin_node *node, const struct twin_ray *ray,
         const double a = (node->low[i] - ray->from[i]) * inverse;
         const double b = (node->high[i] - ray->from[i]) * inverse;
 
-        if (isnan(a) || isnan(b)) /* along the side of a box */
+        if (isnan(a) || isnan(b)) /* the ray lies in the plane of a side */
             continue;
         from = fmax(from, fmin(a, b));
         to = fmin(to, fmax(a, b));
@@ -129,10 +132,10 @@ static bool passes(const struct twin_node *node, const struct twin_ray *ray,
     return from <= to * (1 + 1e-9);
 }
 
-/* Finds where RAY meets triangle I before hit->t; [Moller97]. A13: the place is
- * V0 + u (V1 - V0) + v (V2 - V0). */
-static bool meet(const struct twin *twin, int i, const struct twin_ray *ray,
-                 struct twin_hit *hit)
+/* Finds the intersection of RAY with triangle I before hit->t, by
+ * [Moller97]. The point is V0 + u (V1 - V0) + v (V2 - V0) (A13). */
+static bool meet_triangle(const struct twin *twin, int i,
+                          const struct twin_ray *ray, struct twin_hit *hit)
 {
     const struct glint_described_triangle *tri = &twin->scene->triangle[i];
     double a[3], b[3], p[3], q[3], s[3], det, u, v, t;
@@ -151,7 +154,8 @@ static bool meet(const struct twin *twin, int i, const struct twin_ray *ray,
         v = -v;
         t = -t;
     }
-    /* A14: of a ray in the plane or a triangle without area all is 0. */
+    /* A14: for a ray in the plane, or a triangle without area, all terms are
+     * 0 */
     if (!(fabs(det) > 0) || u < 0 || v < 0 || u + v > fabs(det) || t <= 0 ||
         t >= hit->t * fabs(det))
         return false;
@@ -175,7 +179,7 @@ bool twin_meet_mesh(const struct twin *twin, int object,
     while (n) {
         const struct twin_node *node = &twin->node[stack[--n]];
 
-        if (!passes(node, ray, hit->t))
+        if (!passes_box(node, ray, hit->t))
             continue;
         if (!node->n) {
             stack[n++] = node->left;
@@ -183,7 +187,7 @@ bool twin_meet_mesh(const struct twin *twin, int object,
         }
         for (int m = node->first; m < node->first + node->n; m++)
             if (twin->order[m] != ray->skip_triangle &&
-                meet(twin, twin->order[m], ray, hit))
+                meet_triangle(twin, twin->order[m], ray, hit))
                 found = true;
     }
     return found;

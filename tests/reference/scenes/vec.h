@@ -29,7 +29,7 @@ static inline void vec_add(const double a[3], double s, const double b[3],
         c[i] = a[i] + s * b[i];
 }
 
-/* Divides A by its length, which it returns; 0 is left as it is. */
+/* Divides A by its length and returns the length; leaves A = 0 unchanged. */
 static inline double vec_unit(double a[3])
 {
     const double length = sqrt(vec_dot(a, a));
@@ -39,7 +39,8 @@ static inline double vec_unit(double a[3])
     return length;
 }
 
-/* Turns A by the unit quaternion Q, or with SIGN -1 back. */
+/* Sets B to A rotated by the unit quaternion Q, or by its inverse if SIGN is
+ * -1. */
 static inline void vec_turn(const double q[4], double sign, const double a[3],
                             double b[3])
 {
