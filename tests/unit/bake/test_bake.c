@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Whole baked models: their bytes must not depend on workers, order or
- * repetition, no visible ghost may be missing, and errors must be as the file
- * says.
+ * Tests whole baked models: their bytes do not depend on workers, order or
+ * repetition; they contain every visible ghost; the errors that they state are
+ * true.
  */
 #include <math.h>
 #include <stdio.h>
@@ -69,7 +69,7 @@ static void parse(struct glint_prescription *lens, const char *text)
         fail_msg("%s", error.text);
 }
 
-/* Makes a lens of one pair of surfaces. */
+/* Parses a lens with one pair of surfaces. */
 static void make_singlet(struct glint_prescription *lens)
 {
     parse(lens, "name singlet\n"
@@ -90,7 +90,7 @@ static void make_singlet(struct glint_prescription *lens)
     "surface flat 2 17 air\n"         \
     "stop 46 17\n"
 
-/* Bakes TEXT, or LENS if there is none. */
+/* Bakes the lens of TEXT, or LENS if TEXT is NULL. */
 static void bake_fast(struct baked *b, struct glint_prescription *lens,
                       const char *text, double tolerance, double max_deg)
 {
@@ -117,9 +117,10 @@ static void make_doublet(struct glint_prescription *lens)
 
 /* -------------------------------------------------------------------- bytes */
 
-static void same_bytes(const struct glint_prescription *lens,
-                       const struct glint_bake_options *o,
-                       const struct baked *expected, int workers, uint32_t seed)
+static void check_same_bytes(const struct glint_prescription *lens,
+                             const struct glint_bake_options *o,
+                             const struct baked *expected, int workers,
+                             uint32_t seed)
 {
     struct glint_bake_options shuffled = *o;
     struct shuffle shuffle;
@@ -136,10 +137,10 @@ static void same_bytes(const struct glint_prescription *lens,
 
 TEST(workers)
 {
-    same_bytes(&heliar, &options, &model, 3, 11);
+    check_same_bytes(&heliar, &options, &model, 3, 11);
 }
 
-TEST(twice)
+TEST(repeated_bake_is_identical)
 {
     static struct glint_prescription lens;
     struct baked b;
@@ -148,7 +149,7 @@ TEST(twice)
     bake(&b, &lens, &options);
     assert_int_equal(b.lens.header->n_ghosts, 1);
     assert_true(b.lens.header->n_systems >= 1);
-    same_bytes(&lens, &options, &b, 0, 5);
+    check_same_bytes(&lens, &options, &b, 0, 5);
     free(b.data);
 }
 
@@ -179,8 +180,8 @@ TEST(header)
     }
 }
 
-/* The polynomial of the direct image's flux must be within 5e-5 of that
- * flux. */
+/* The polynomial of the direct image's flux deviates from traced flux by at
+ * most 5e-5. */
 TEST(flux)
 {
     static const double nm[] = {400, 450, 532, 650, 700};
@@ -202,8 +203,8 @@ TEST(flux)
 
 /* ------------------------------------------------------------------- ghosts */
 
-static bool covered(const struct glint_lens *lens, int ghost, double theta_deg,
-                    double nm)
+static bool is_covered(const struct glint_lens *lens, int ghost,
+                       double theta_deg, double nm)
 {
     static struct glint_transfer t;
     const double sine = sin(theta_deg * 3.14159265358979323846 / 180);
@@ -212,7 +213,7 @@ static bool covered(const struct glint_lens *lens, int ghost, double theta_deg,
                                (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
 }
 
-/* Each ghost that the search for pictures finds must be in the model. */
+/* The model contains each ghost that the pupil search finds. */
 TEST(nothing_missing)
 {
     static const double deg[] = {0, 3, 7, 11};
@@ -229,22 +230,22 @@ TEST(nothing_missing)
                                          NULL))
                 continue;
             seen++;
-            if (!covered(&model.lens, g, deg[k], 532)) {
+            if (!is_covered(&model.lens, g, deg[k], 532)) {
                 print_error("ghost %d at %g degrees is missing\n", g, deg[k]);
                 lost_in_field++;
             }
         }
     assert_in_range(seen, 45, 52);
     assert_int_equal(lost_in_field, 0);
-    assert_false(covered(&model.lens, 0, MAX_DEG + 0.01, 532));
+    assert_false(is_covered(&model.lens, 0, MAX_DEG + 0.01, 532));
 }
 
 /* -------------------------------------------------------------------- parts */
 
-/* Sets UV to the place of a ray in the box of a part. Returns whether the part
- * contains it. */
-static bool is_in(const struct glint_transfer *t, double x_mm, double y_mm,
-                  double uv[2])
+/* Sets UV to the coordinates of a ray in the box of part T. Returns whether
+ * the part contains the ray. */
+static bool is_in_part(const struct glint_transfer *t, double x_mm, double y_mm,
+                       double uv[2])
 {
     const double unit = ldexp(1, t->box_exponent);
 
@@ -254,10 +255,11 @@ static bool is_in(const struct glint_transfer *t, double x_mm, double y_mm,
            fabs(uv[1]) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
-/* Returns how many of N parts contain the ray from (X, Y), and sets *OFF to the
- * distance, mm, from where the last of them takes it to where RAY lands. */
-static int parts_of(const struct glint_transfer *part, int n, double x_mm,
-                    double y_mm, const struct glint_ray *ray, double *off)
+/* Returns the number of N parts that contain the ray from (X, Y). Sets *OFF
+ * to the distance, mm, between the sensor position from the last of them and
+ * that of RAY. */
+static int count_parts(const struct glint_transfer *part, int n, double x_mm,
+                       double y_mm, const struct glint_ray *ray, double *off)
 {
     int found = 0;
 
@@ -265,7 +267,7 @@ static int parts_of(const struct glint_transfer *part, int n, double x_mm,
         struct glint_outputs out;
         double uv[2];
 
-        if (!is_in(&part[k], x_mm, y_mm, uv))
+        if (!is_in_part(&part[k], x_mm, y_mm, uv))
             continue;
         found++;
         glint_transfer_ray(&part[k], (int32_t)lrint(ldexp(uv[0], 30)),
@@ -280,9 +282,9 @@ static int parts_of(const struct glint_transfer *part, int n, double x_mm,
     return found;
 }
 
-/* In the stop, rays of a triplet's ghost of surfaces 0 and 3 turn around: its
- * pupil is divided. Each ray that comes through must be in exactly one part,
- * but for rays on the lines where parts meet; and each part must have rays. */
+/* In the stop, rays of a triplet's ghost of surfaces 0 and 3 fold, so its
+ * pupil is divided into parts. Each unblocked ray lies in exactly one part,
+ * except rays on borders between parts; each part has rays. */
 TEST(parts)
 {
     enum { GHOST = 2, MOST = 32, ANGLES = 8, SIDE = 61 };
@@ -295,7 +297,8 @@ TEST(parts)
     struct baked b;
 
     if (getenv("GLINT_QUICK") && *getenv("GLINT_QUICK"))
-        skip(); /* Half a minute under sanitizers, in code that others run. */
+        skip(); /* takes half a minute under sanitizers, and other tests run the
+                   same code */
     load_lens(&lens, "../tests/lenses/cooke-triplet");
     bake_fast(&b, &lens, NULL, 1, 0.5);
     assert_ok(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error));
@@ -327,7 +330,7 @@ TEST(parts)
                 hypot(ray.sensor_x_mm, ray.sensor_y_mm) > 0.99 * 0.55 * 43.2666)
                 continue;
             n_rays++;
-            assert_int_equal(parts_of(part, n, x, y, &ray, &off), 1);
+            assert_int_equal(count_parts(part, n, x, y, &ray, &off), 1);
             assert_true(off < 0.1 * 36 / 1920);
         }
     }
@@ -336,8 +339,8 @@ TEST(parts)
     free(b.data);
 }
 
-/* Two barrels cut this ghost within 0.0008 radii of each other: the second one
- * must be used only where a smaller error is requested. */
+/* Two barrels cut this ghost within 0.0008 radii of each other. The second
+ * one is used only at a smaller tolerance. */
 TEST(near_barrels)
 {
     static const double band_nm[2] = {400, 700};
@@ -364,7 +367,7 @@ TEST(near_barrels)
     assert_true(rays.missed_cut <= 2.5e-4);
 }
 
-/* A box that is cut must be the same box in the coordinates of the part. */
+/* A zone cut to a part has the same box, in the coordinates of the part. */
 TEST(cut)
 {
     struct glint_zone zone = {.lo = 0.1, .hi = 0.2}, cut;
@@ -394,8 +397,8 @@ TEST(cut)
     }
 }
 
-/* Cropping a zone that is wider than its ghost and its colours must take away
- * dark places only. */
+/* Cropping a zone that is wider than its ghost, in position and wavelength,
+ * removes only invisible regions. */
 TEST(crop)
 {
     const double range[2] = {sin(0.1), sin(0.2)};
@@ -455,7 +458,7 @@ struct tally {
         energy[BUNDLES * PER_BUNDLE], most;
 };
 
-static bool passes(const struct glint_ray *ray)
+static bool ray_passes(const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <=
@@ -463,9 +466,9 @@ static bool passes(const struct glint_ray *ray)
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= field_mm;
 }
 
-static void try_ray(struct tally *tally, const struct glint_transfer *t,
-                    const struct glint_path *path, const double direction[3],
-                    uint32_t *seed)
+static void measure_ray(struct tally *tally, const struct glint_transfer *t,
+                        const struct glint_path *path,
+                        const double direction[3], uint32_t *seed)
 {
     const int32_t u_q30 = (int32_t)rng_xorshift(seed) / 2;
     const int32_t v_q30 = (int32_t)rng_xorshift(seed) / 2;
@@ -476,7 +479,7 @@ static void try_ray(struct tally *tally, const struct glint_transfer *t,
     struct glint_outputs out;
     struct glint_ray ray;
 
-    if (glint_trace(path, x, y, direction, &ray, NULL) || !passes(&ray))
+    if (glint_trace(path, x, y, direction, &ray, NULL) || !ray_passes(&ray))
         return;
     glint_transfer_ray(t, u_q30, v_q30, &out);
     {
@@ -498,11 +501,11 @@ static void try_ray(struct tally *tally, const struct glint_transfer *t,
     }
 }
 
-/* Sets RMS to the root mean square errors of SYSTEM of GHOST in the file's
- * units, measured without functions of the bake. Returns how many rays were
- * measured. */
-static long measure(const struct glint_lens *lens, int ghost, int system,
-                    double rms[TRIED])
+/* Sets RMS to the root mean square errors of SYSTEM of GHOST, in the units
+ * of the file, measured without functions of src/bake/measure_model.c.
+ * Returns the number of rays measured. */
+static long measure_system(const struct glint_lens *lens, int ghost, int system,
+                           double rms[TRIED])
 {
     static struct glint_transfer t;
     static struct tally tally;
@@ -527,7 +530,7 @@ static long measure(const struct glint_lens *lens, int ghost, int system,
         glint_path_init(&path, &heliar, &setup.ghost[ghost],
                         1e3 / sqrt(wave_q24 * 0x1p-24));
         for (int i = 0; i < PER_BUNDLE; i++)
-            try_ray(&tally, &t, &path, direction, &seed);
+            measure_ray(&tally, &t, &path, direction, &seed);
     }
     tally.sum2[GLINT_OUT_ENERGY] = 0;
     for (long k = 0; k < tally.n; k++) {
@@ -541,30 +544,29 @@ static long measure(const struct glint_lens *lens, int ghost, int system,
     return tally.n;
 }
 
-static const struct glint_model_output *outputs_of(const struct baked *b,
-                                                   int system)
+static const struct glint_model_output *get_outputs(const struct baked *b,
+                                                    int system)
 {
     return (const void *)(b->data + b->lens.system[system].output_at);
 }
 
-static double error_of(uint16_t stored)
+static double decode_error(uint16_t stored)
 {
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
 
-/* The errors that the file states must be within 30 % of those measured
- * here. */
+/* The errors in the file are within 30 % of those measured here. */
 TEST(errors_are_true)
 {
     for (int g = 0; g < setup.n_ghosts; g++)
         for (uint32_t k = 0; k < model.lens.ghost[g].n_systems; k++) {
             const int system = (int)(model.lens.ghost[g].first_system + k);
-            const struct glint_model_output *o = outputs_of(&model, system);
+            const struct glint_model_output *o = get_outputs(&model, system);
             double rms[TRIED];
 
-            assert_true(measure(&model.lens, g, system, rms) > 300);
+            assert_true(measure_system(&model.lens, g, system, rms) > 300);
             for (int kind = 0; kind < TRIED; kind++) {
-                const double said = error_of(o[kind].rms);
+                const double said = decode_error(o[kind].rms);
 
                 if (fabs(rms[kind] - said) > 0.3 * said)
                     fail_msg("system %d: output %d is off by %g, the file says "
@@ -577,7 +579,7 @@ TEST(errors_are_true)
         }
 }
 
-/* The errors must be at most 1.6 times those that the tolerance stands for. */
+/* The errors are at most 1.6 times the tolerances. */
 TEST(errors_are_small)
 {
     static const double aim[TRIED] = {0.08, 0.08, 4.5e-4, 4.5e-4, 1.2e-2};
@@ -586,15 +588,16 @@ TEST(errors_are_small)
     assert_true(model.report.rays > 300 * (int)model.lens.header->n_systems);
     assert_true(model.report.intruders < model.report.rays / 1000);
     for (uint32_t k = 0; k < model.lens.header->n_systems; k++) {
-        const struct glint_model_output *o = outputs_of(&model, (int)k);
+        const struct glint_model_output *o = get_outputs(&model, (int)k);
 
         for (int kind = 0; kind < TRIED; kind++)
-            assert_true(error_of(o[kind].rms) <= 1.6 * TOLERANCE * aim[kind]);
+            assert_true(decode_error(o[kind].rms) <=
+                        1.6 * TOLERANCE * aim[kind]);
     }
 }
 
-/* Near the axis, where light folds into rings, errors must fall with the square
- * of the tolerance. */
+/* Near the axis, where light folds into rings, errors decrease with the
+ * square of the tolerance. */
 TEST(axis_is_finer)
 {
     const double tolerance = 0.25, aim_px = 0.04;
@@ -603,13 +606,13 @@ TEST(axis_is_finer)
 
     bake_fast(&b, &lens, FAST_SINGLET, tolerance, 4);
     assert_int_equal(b.lens.system[0].sine_lo_q30, 0);
-    assert_true(error_of(outputs_of(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
+    assert_true(decode_error(get_outputs(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
                 1.6 * tolerance * tolerance * aim_px);
     free(b.data);
 }
 
-/* A film as good as this one reflects nothing at its wavelength, so the energy
- * of a ghost has a zero there, which the fit must follow. */
+/* A film with this index reflects nothing at its wavelength, so the energy
+ * of a ghost has a zero there, which the fit follows. */
 TEST(energy_has_zeros)
 {
     struct glint_prescription lens;
@@ -617,13 +620,13 @@ TEST(energy_has_zeros)
 
     bake_fast(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1, 0.5);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++) {
-        assert_true(error_of(outputs_of(&b, (int)k)[GLINT_OUT_ENERGY].rms) <
-                    1e-3);
+        assert_true(
+            decode_error(get_outputs(&b, (int)k)[GLINT_OUT_ENERGY].rms) < 1e-3);
     }
     free(b.data);
 }
 
-/* With one coefficient planted wrong, both measurements must show it: else they
+/* Both measurements of errors detect a wrong coefficient; otherwise they
  * could not fail. */
 TEST(planted_error)
 {
@@ -645,25 +648,25 @@ TEST(planted_error)
     b.lens.system = (const void *)(b.data + b.lens.header->system_at);
     glint_visible_init(&visible, &setup, 0, field_mm, band_nm);
     glint_measure_system(&visible, &b.lens, 0, &no_barrels, &before);
-    o = outputs_of(&b, 0);
-    assert_near(error_of(o->rms) / before.of[0].rms, 1, 1e-3);
+    o = get_outputs(&b, 0);
+    assert_near(decode_error(o->rms) / before.of[0].rms, 1, 1e-3);
     coef = (void *)(b.data + o->coef_at);
     for (uint32_t k = 1; k < o->n_terms; k++)
         largest = labs(coef[k]) > labs(coef[largest]) ? k : largest;
     coef[largest] = -coef[largest];
     glint_measure_system(&visible, &b.lens, 0, &no_barrels, &after);
-    measure(&b.lens, 0, 0, rms);
+    measure_system(&b.lens, 0, 0, rms);
     assert_true(after.of[0].rms > 50 * before.of[0].rms);
     assert_true(after.of[0].max > 50 * before.of[0].max);
     assert_true(rms[0] > 50 * before.of[0].rms);
-    assert_near(after.of[1].rms, before.of[1].rms, 0); /* for x alone */
+    assert_near(after.of[1].rms, before.of[1].rms, 0); /* only x is wrong */
     free(b.data);
 }
 
 /* ----------------------------------------------------------- key, refusals */
 
-static void other_key(const struct glint_prescription *lens,
-                      const struct glint_bake_options *o)
+static void check_key_differs(const struct glint_prescription *lens,
+                              const struct glint_bake_options *o)
 {
     assert_true(glint_bake_key(lens, o) != glint_bake_key(&heliar, &options));
 }
@@ -681,7 +684,7 @@ TEST(key)
     for (size_t k = 0; k < sizeof of_lens / sizeof *of_lens; k++) {
         lens = heliar;
         *of_lens[k] = nextafter(*of_lens[k], 1000);
-        other_key(&lens, &o);
+        check_key_differs(&lens, &o);
     }
     for (int s = 0; s < heliar.n_surfaces; s++)
         for (int k = 0; k < 7; k++) {
@@ -692,21 +695,21 @@ TEST(key)
             double *const x = k < 4 ? form[k] : rest[k - 4];
             lens = heliar;
             *x = nextafter(*x, 1000);
-            other_key(&lens, &o);
+            check_key_differs(&lens, &o);
         }
     lens = heliar;
     lens.stop_after--;
-    other_key(&lens, &o);
+    check_key_differs(&lens, &o);
     lens = heliar;
     lens.name[0]++;
-    other_key(&lens, &o);
+    check_key_differs(&lens, &o);
     lens = heliar;
     for (size_t k = 0; k < sizeof of_options / sizeof *of_options; k++) {
         o = options;
         *of_options[k] = nextafter(*of_options[k], 1000);
-        other_key(&lens, &o);
+        check_key_differs(&lens, &o);
     }
-    /* The key ignores what never changes the model. */
+    /* the key does not depend on fields that never change the model */
     o = options;
     o.workers = (void *)&lens;
     o.progress_ctx = &lens;
@@ -751,7 +754,7 @@ TEST(no_ghosts)
     struct baked b;
 
     make_singlet(&lens);
-    lens.n_surfaces = 1; /* The sensor lies in the glass. */
+    lens.n_surfaces = 1; /* the sensor lies in the glass */
     lens.stop_after = 1;
     bake(&b, &lens, &options);
     assert_int_equal(b.lens.header->n_ghosts, 0);
@@ -760,7 +763,7 @@ TEST(no_ghosts)
     free(b.data);
 }
 
-/* However loose the tolerance, each polynomial must keep a term. */
+/* With the loosest tolerance each polynomial still has a term. */
 TEST(loosest)
 {
     static struct glint_prescription lens;
@@ -771,13 +774,13 @@ TEST(loosest)
     o.tolerance = 100;
     bake(&b, &lens, &o);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++)
-        assert_in_range(outputs_of(&b, (int)k)->n_terms, 1,
+        assert_in_range(get_outputs(&b, (int)k)->n_terms, 1,
                         GLINT_MAX_MODEL_TERMS);
     free(b.data);
 }
 
-/* With a field of only 1e-3 mm a ghost may show at angle 0 alone; each range
- * must still have a width. */
+/* With a field of only 1e-3 mm a ghost may be visible at angle 0 only; each
+ * range still has a width. */
 TEST(ranges_have_width)
 {
     static const double band_nm[2] = {400, 700};
@@ -799,9 +802,8 @@ TEST(ranges_have_width)
     }
 }
 
-/* Through these ghosts the stop looks so small that all light enters by a
- * twentieth of a millimetre of the front. Their ranges must still reach to
- * where the ghosts end. */
+/* Ghosts whose light enters through a spot of 1/20 mm of the front: their
+ * ranges extend to the angles at which the ghosts vanish. */
 TEST(ranges_of_spots)
 {
     static const struct {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Baked scenes: that the run time accepts what is written, and that it states
- * what the text said, in steps. */
+ * Tests baked scenes: the run time accepts them, and they state the values of
+ * the text, in steps.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -51,7 +52,7 @@ struct baked {
     struct glint_scene_model model;
 };
 
-/* Bakes TEXT; on failure the reason is in ERROR. */
+/* Bakes the scene of TEXT. On failure ERROR states the reason. */
 static enum glint_status bake(struct baked *b, const char *text,
                               struct glint_error *error)
 {
@@ -84,12 +85,13 @@ static void bake_good(struct baked *b, const char *text)
         fail_msg("%s", error.text);
 }
 
-static const void *table(const struct baked *b, uint32_t at)
+static const void *get_table(const struct baked *b, uint32_t at)
 {
     return b->data + at;
 }
 
-static void is(const int32_t *v, double x, double y, double z, double scale)
+static void check_vector(const int32_t *v, double x, double y, double z,
+                         double scale)
 {
     assert_true(fabs(v[0] - x * scale) <= .5001);
     assert_true(fabs(v[1] - y * scale) <= .5001);
@@ -108,8 +110,8 @@ static void is(const int32_t *v, double x, double y, double z, double scale)
     "triangle t 0 0 1 1 0 1 0 1 1 material glass\n"                   \
     "shadow on\nflare lights highlights 3\n"
 
-/* Header, lights, materials and objects of a right-handed scene: z is mirrored.
- */
+/* Header, lights, materials and objects of a right-handed scene, whose z is
+ * mirrored. */
 TEST(plain)
 {
     struct baked b;
@@ -121,26 +123,26 @@ TEST(plain)
     unit = ldexp(1, h->unit_log2);
     assert_string_equal(h->name, "ashop");
     assert_true(h->key[0] == 0x23456789 && h->key[1] == 1);
-    /* the camera, 4 away, is within a 64th of 2^28 steps: there is a plane */
+    /* with a plane, the camera's distance of 4 is less than 2^28 steps / 64 */
     assert_int_equal(h->unit_log2, 19);
     assert_true(b.report.step == ldexp(1, -19) && b.report.reach == 4);
     assert_true(h->shadow == 1 && h->flare == 1 && h->highlights == 3);
     assert_int_equal(h->background_q15[0], 16384);
     assert_int_equal(h->background_q15[2], 65536);
-    is(h->camera.at, 0, 1, -4, unit);
-    is(h->camera.axis_q30[0], 1, 0, 0, 0x1p30);
-    is(h->camera.axis_q30[1], 0, 1, 0, 0x1p30);
-    is(h->camera.axis_q30[2], 0, 0, 1, 0x1p30);
+    check_vector(h->camera.at, 0, 1, -4, unit);
+    check_vector(h->camera.axis_q30[0], 1, 0, 0, 0x1p30);
+    check_vector(h->camera.axis_q30[1], 0, 1, 0, 0x1p30);
+    check_vector(h->camera.axis_q30[2], 0, 0, 1, 0x1p30);
     assert_int_equal(h->camera.tan_x_q24, 1 << 24);
     assert_int_equal(h->n_lights, 2);
-    is(b.model.light[0].toward_q30, .6, 0, -.8, 0x1p30);
+    check_vector(b.model.light[0].toward_q30, .6, 0, -.8, 0x1p30);
     assert_int_equal(b.model.light[0].radius, 1 << 29);
     assert_true(fabs(glint_real_value(b.model.light[0].rgb[0]) - 1) < 1e-9);
     assert_true(glint_real_value(b.model.light[0].rgb[2]) == 0);
-    is(b.model.light[1].at, 1, 2, -3, unit);
+    check_vector(b.model.light[1].at, 1, 2, -3, unit);
     assert_int_equal(b.model.light[1].radius, 1 << 17);
     assert_true(glint_real_value(b.model.light[1].rgb[1]) == 7);
-    /* .1, .7 and .2 round up; together they stay 1 */
+    /* .1, .7 and .2 are rounded up, but their sum stays 1 */
     assert_int_equal(b.model.material[0].ambient_q15, 3277);
     assert_int_equal(b.model.material[0].diffuse_q15, 22937);
     assert_int_equal(b.model.material[0].specular_q15, 6554);
@@ -148,19 +150,19 @@ TEST(plain)
     assert_int_equal(b.model.material[0].power_q8, 20 << 8);
     assert_int_equal(b.model.material[1].index_q16, 3 << 15);
     assert_int_equal(b.model.object[0].kind, GLINT_OBJECT_SPHERE);
-    is(b.model.object[0].at, 0, .5, -1, unit);
+    check_vector(b.model.object[0].at, 0, .5, -1, unit);
     assert_int_equal(b.model.object[0].radius, 1 << 18);
-    /* from y to +z of the text, -z here: -90 degrees about x */
-    is(b.model.object[1].turn_q30, sqrt(.5), -sqrt(.5), 0, 0x1p30);
+    /* rotates y to +z of the text, which is -z here: -90 degrees about x */
+    check_vector(b.model.object[1].turn_q30, sqrt(.5), -sqrt(.5), 0, 0x1p30);
     assert_int_equal(b.model.object[2].catcher_q15, 16384);
     assert_int_equal(glint_scene_find(&b.model, "t"), 3);
     free(b.data);
 }
 
-/* Corners are clockwise from outside, in either hand; left-handed numbers stay.
- */
-/* Glass of index 1 is baked as what light goes straight through, which is drawn
- * by A11; other glass is not. */
+/* Corners are clockwise seen from outside for both hands; left-handed
+ * coordinates are unchanged. */
+/* Transparent objects of index 1 are baked as such, and drawn without
+ * refraction (A11); other indices are not. */
 TEST(a12_index_1)
 {
     static const char *const refract[3] = {"", " refract 1", " refract 1.001"};
@@ -201,20 +203,20 @@ TEST(hands)
         bake_good(&b, text);
         unit = ldexp(1, b.model.header->unit_log2);
         m = &b.model.mesh[0];
-        t = table(&b, m->triangle_at);
-        v = table(&b, m->vertex_at);
+        t = get_table(&b, m->triangle_at);
+        v = get_table(&b, m->vertex_at);
         assert_int_equal(m->n_vertices, 3);
         assert_true(m->uv_at == 0 && m->normal_at == 0);
-        is(v + 3 * t->vertex[0], 0, 0, left ? 1 : -1, unit);
-        is(v + 3 * t->vertex[1], left, !left, left ? 1 : -1, unit);
-        is(v + 3 * t->vertex[2], !left, left, left ? 1 : -1, unit);
+        check_vector(v + 3 * t->vertex[0], 0, 0, left ? 1 : -1, unit);
+        check_vector(v + 3 * t->vertex[1], left, !left, left ? 1 : -1, unit);
+        check_vector(v + 3 * t->vertex[2], !left, left, left ? 1 : -1, unit);
         assert_true(t->material == GLINT_SCENE_NONE);
         free(b.data);
     }
 }
 
-/* Textures: levels down to one texel, each the mean of the light; V runs down,
- * and whole numbers are taken off where U and V are large. */
+/* Textures have mipmap levels down to one texel, averaged in linear light. V
+ * points down; integers are subtracted from large U and V. */
 TEST(textures)
 {
     struct baked b;
@@ -229,26 +231,26 @@ TEST(textures)
     assert_int_equal(b.model.header->n_textures, 1);
     t = b.model.texture;
     assert_true(t->width_log2 == 3 && t->height_log2 == 1);
-    texel = table(&b, t->texel_at);
+    texel = get_table(&b, t->texel_at);
     assert_true(texel[0] == 0 && texel[23] == 255);
-    texel += 3 * 16; /* 4 x 1 */
+    texel += 3 * 16; /* level of 4 x 1 */
     assert_true(texel[0] == 0 && texel[5] == 0 && texel[6] == 255);
-    texel += 3 * 4; /* 2 x 1 */
+    texel += 3 * 4; /* level of 2 x 1 */
     assert_true(texel[0] == 0 && texel[5] == 255);
-    texel += 3 * 2; /* half of the light is code 188 */
+    texel += 3 * 2; /* code 188: half of the light */
     assert_true(texel[0] == 188 && texel[2] == 188);
-    uv = table(&b, b.model.mesh[0].uv_at);
-    tri = table(&b, b.model.mesh[0].triangle_at);
+    uv = get_table(&b, b.model.mesh[0].uv_at);
+    tri = get_table(&b, b.model.mesh[0].triangle_at);
     assert_int_equal(uv[2 * tri->vertex[0]], 0);
     assert_int_equal(uv[2 * tri->vertex[0] + 1], 1 << 16);
-    /* the second corner comes last */
+    /* the order of the second and third corner is swapped */
     assert_int_equal(uv[2 * tri->vertex[2]], 1 << 15);
     assert_int_equal(uv[2 * tri->vertex[1] + 1], 1 << 15);
     free(b.data);
 }
 
-/* Writes a bumpy sheet of N x N quads as an OBJ, and a corner that repeats, a
- * triangle without area. */
+/* Writes a bumpy sheet of N x N quads as an OBJ file, with a repeated corner
+ * and a triangle without area. */
 static void write_sheet(int n)
 {
     char *at = mesh_text;
@@ -265,14 +267,15 @@ static void write_sheet(int n)
     sprintf(at, "f 1 2 1\n");
 }
 
-/* Checks that every triangle of the first mesh is listed in all cells that its
- * box touches with the margin, and in no other. */
+/* Checks that every triangle of the first mesh is listed in exactly those
+ * cells that its bounding box touches, with the margin. */
 static void check_lists(const struct baked *b)
 {
     const struct glint_scene_mesh *m = b->model.mesh;
-    const uint32_t *start = table(b, m->start_at), *ref = table(b, m->ref_at);
-    const int32_t *v = table(b, m->vertex_at);
-    const struct glint_scene_triangle *t = table(b, m->triangle_at);
+    const uint32_t *start = get_table(b, m->start_at),
+                   *ref = get_table(b, m->ref_at);
+    const int32_t *v = get_table(b, m->vertex_at);
+    const struct glint_scene_triangle *t = get_table(b, m->triangle_at);
 
     for (uint32_t cell = 0; cell < m->cells[0] * m->cells[1] * m->cells[2];
          cell++) {
@@ -308,7 +311,7 @@ static void check_lists(const struct baked *b)
     }
 }
 
-/* Vertices are kept once, and what has no area is left out. */
+/* Each vertex is stored once, and triangles without area are omitted. */
 TEST(grid)
 {
     enum { N = 20 };
@@ -328,8 +331,9 @@ TEST(grid)
     free(b.data);
 }
 
-/* The lowest vertex, and so the grid, lies such that all others are 10 steps
- * beside the sides of cells, on this side of them or on that. */
+/* The grid's origin is chosen such that vertices lie 10 steps inside or
+ * outside the sides of cells. Triangles are listed in all cells that they
+ * touch with the margin. */
 TEST(margin)
 {
     for (int k = -10; k <= 10; k += 20) {
@@ -350,8 +354,8 @@ TEST(margin)
     }
 }
 
-/* The same text gives the same bytes; what is too small beside the rest is
- * reported; extremes open. */
+/* The same text gives the same bytes. Objects that are too small for the
+ * scene's extent are reported. Extreme scenes can be opened. */
 TEST(extremes)
 {
     static const char *const texts[] = {

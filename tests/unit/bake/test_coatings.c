@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Coatings of a lens table and of --coating: which surface gets which, what it
- * reflects, which key a model gets, and what is refused.
+ * Tests coatings of lens tables and of --coating: which surface gets which
+ * coating, reflectances, keys of models, and rejected texts.
  */
 #include <math.h>
 #include <stdint.h>
@@ -10,8 +10,8 @@
 #include "glint/bake.h"
 #include "support/test.h"
 
-/* A cemented doublet and a single lens: surface 1 is cemented, surfaces 0, 2, 3
- * and 4 meet air. */
+/* A cemented doublet and a single lens: surface 1 is cemented; surfaces 0,
+ * 2, 3 and 4 are in air. */
 static const char table[] = "name films\n"
                             "f-number 10\n"
                             "film 36 24\n"
@@ -22,8 +22,8 @@ static const char table[] = "name films\n"
                             "surface 80 3 12 1.5168 64.17\n"
                             "surface -400 60 12 air\n";
 
-static enum glint_status read(struct glint_prescription *lens, const char *line,
-                              struct glint_error *error)
+static enum glint_status read_table(struct glint_prescription *lens,
+                                    const char *line, struct glint_error *error)
 {
     char text[1024] = "";
 
@@ -32,15 +32,15 @@ static enum glint_status read(struct glint_prescription *lens, const char *line,
     return glint_prescription_parse(lens, text, strlen(text), "x.lens", error);
 }
 
-static void good(struct glint_prescription *lens, const char *line)
+static void read_good_table(struct glint_prescription *lens, const char *line)
 {
     struct glint_error error;
 
-    if (read(lens, line, &error) != GLINT_OK)
+    if (read_table(lens, line, &error) != GLINT_OK)
         fail_msg("%s", error.text);
 }
 
-static void coat(struct glint_prescription *lens, const char *films)
+static void apply_coatings(struct glint_prescription *lens, const char *films)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     struct glint_error error;
@@ -51,8 +51,8 @@ static void coat(struct glint_prescription *lens, const char *films)
     glint_prescription_coat(lens, coating, n);
 }
 
-static void expect(const struct glint_prescription *lens, const double nm[5],
-                   const double index[5])
+static void check_coatings(const struct glint_prescription *lens,
+                           const double nm[5], const double index[5])
 {
     for (int k = 0; k < 5; k++) {
         assert_true(lens->surface[k].coating.nm == nm[k]);
@@ -68,14 +68,14 @@ TEST(mixed_line)
     const double all[5] = {550, 0, 550, 550, 550};
     const double mgf2[5] = {1.38, 0, 1.38, 1.38, 1.38};
 
-    good(&lens, "");
+    read_good_table(&lens, "");
     assert_int_equal(lens.n_mixed, 0);
-    good(&lens, "mixed-coating 450 none 620/1.46\n");
+    read_good_table(&lens, "mixed-coating 450 none 620/1.46\n");
     assert_int_equal(lens.n_mixed, 3);
     assert_true(lens.mixed[0].nm == 450 && lens.mixed[0].film[0].index == 1.38);
     assert_true(lens.mixed[1].nm == 0 && lens.mixed[1].n_films == 0);
     assert_true(lens.mixed[2].nm == 620 && lens.mixed[2].film[0].index == 1.46);
-    expect(&lens, all, mgf2); /* The mixed coating is not applied yet. */
+    check_coatings(&lens, all, mgf2); /* the mixed coating is not applied yet */
 }
 
 TEST(mistakes)
@@ -97,30 +97,30 @@ TEST(mistakes)
         static struct glint_prescription lens;
         struct glint_error error = {""};
 
-        assert_int_equal(read(&lens, bad[i][0], &error), GLINT_E_LENS);
+        assert_int_equal(read_table(&lens, bad[i][0], &error), GLINT_E_LENS);
         assert_string_equal(error.text, bad[i][1]);
     }
 }
 
 /* --------------------------------------------------------------- --coating */
 
-TEST(dealt_out)
+TEST(coatings_are_assigned_in_turn)
 {
     static struct glint_prescription lens;
     const double zero[5] = {0};
 
-    good(&lens, "coating 600 1.5\n");
-    coat(&lens, "450,500/1.6,none");
-    expect(&lens, (const double[]){450, 0, 500, 0, 450},
-           (const double[]){1.38, 0, 1.6, 0, 1.38});
-    coat(&lens, "none");
-    expect(&lens, zero, zero);
-    coat(&lens, "480");
-    expect(&lens, (const double[]){480, 0, 480, 480, 480},
-           (const double[]){1.38, 0, 1.38, 1.38, 1.38});
+    read_good_table(&lens, "coating 600 1.5\n");
+    apply_coatings(&lens, "450,500/1.6,none");
+    check_coatings(&lens, (const double[]){450, 0, 500, 0, 450},
+                   (const double[]){1.38, 0, 1.6, 0, 1.38});
+    apply_coatings(&lens, "none");
+    check_coatings(&lens, zero, zero);
+    apply_coatings(&lens, "480");
+    check_coatings(&lens, (const double[]){480, 0, 480, 480, 480},
+                   (const double[]){1.38, 0, 1.38, 1.38, 1.38});
 }
 
-TEST(refused)
+TEST(rejects_invalid_coatings)
 {
     static const char *const bad[][2] = {
         {"", "there is no coating"},
@@ -167,9 +167,9 @@ TEST(too_many)
                         "the text of a coating has at most 200 characters");
 }
 
-/* Reads TEXT as one coating and compares its films, index and quarters. */
-static void expect_films(const char *text, double nm, int n,
-                         const double film[][2])
+/* Parses TEXT as one coating and compares its films, {index, quarters}. */
+static void check_films(const char *text, double nm, int n,
+                        const double film[][2])
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     struct glint_error error = {""};
@@ -195,19 +195,19 @@ TEST(films)
     static const double own[][2] = {{1.46, 1}, {2.3, 0.25}, {1.46, 1.5}};
     static struct glint_prescription lens, other;
 
-    expect_films("v-coat", 550, 2, v);
-    expect_films("v-coat/600", 600, 2, v);
-    expect_films("broadband-3", 520, 3, b3);
-    expect_films("broadband-4/510", 510, 4, b4);
-    expect_films("510/1.46/2.3:.25/1.46:1.5", 510, 3, own);
-    /* The same words, divided by blanks, stand in a table. */
-    good(&lens, "coating 510 1.46 2.3:.25 1.46:1.5\n");
-    good(&other, "");
-    coat(&other, "510/1.46/2.3:.25/1.46:1.5");
+    check_films("v-coat", 550, 2, v);
+    check_films("v-coat/600", 600, 2, v);
+    check_films("broadband-3", 520, 3, b3);
+    check_films("broadband-4/510", 510, 4, b4);
+    check_films("510/1.46/2.3:.25/1.46:1.5", 510, 3, own);
+    /* In a table the same words are separated by blanks. */
+    read_good_table(&lens, "coating 510 1.46 2.3:.25 1.46:1.5\n");
+    read_good_table(&other, "");
+    apply_coatings(&other, "510/1.46/2.3:.25/1.46:1.5");
     assert_memory_equal(&lens.surface[0].coating, &other.surface[0].coating,
                         sizeof lens.surface[0].coating);
-    good(&lens, "coating broadband-3 # as is\n");
-    coat(&other, "broadband-3");
+    read_good_table(&lens, "coating broadband-3 # as is\n");
+    apply_coatings(&other, "broadband-3");
     assert_memory_equal(&lens.surface[4].coating, &other.surface[4].coating,
                         sizeof lens.surface[4].coating);
     assert_int_equal(lens.surface[1].coating.n_films, 0); /* cemented */
@@ -226,17 +226,17 @@ static double reflectance(const struct glint_prescription *lens, int k,
                              glint_coating_at(&s->coating, nm, film));
 }
 
-/* A quarter-wave film must reflect least at its own wavelength (surfaces 0, 2
- * and 4). A half-wave film for 550 nm (surface 3) must reflect there as if it
- * were not there, and less on either side. */
+/* A quarter-wave film reflects least at its own wavelength (surfaces 0, 2
+ * and 4). A half-wave film for 550 nm (surface 3) has no effect at 550 nm,
+ * and reduces the reflectance on either side. */
 TEST(reflects)
 {
     static struct glint_prescription lens, bare;
 
-    good(&lens, "");
+    read_good_table(&lens, "");
     bare = lens;
-    coat(&bare, "none");
-    coat(&lens, "450,650,1100,550"); /* nm, for surfaces 0, 2, 3, 4 */
+    apply_coatings(&bare, "none");
+    apply_coatings(&lens, "450,650,1100,550"); /* nm, for surfaces 0, 2, 3, 4 */
     assert_true(reflectance(&lens, 0, 650) > 1.2 * reflectance(&lens, 0, 450));
     assert_true(reflectance(&lens, 2, 450) > 1.2 * reflectance(&lens, 2, 650));
     assert_true(reflectance(&lens, 4, 550) < reflectance(&lens, 4, 450));
@@ -255,29 +255,29 @@ TEST(key)
     uint64_t key;
 
     glint_bake_defaults(&options);
-    good(&lens, "");
+    read_good_table(&lens, "");
     key = glint_bake_key(&lens, &options);
-    good(&other, "mixed-coating 450 620\n");
-    /* A mixed coating must not change the key until it is applied. */
+    read_good_table(&other, "mixed-coating 450 620\n");
+    /* a mixed coating does not change the key until it is applied */
     assert_true(glint_bake_key(&other, &options) == key);
     glint_prescription_coat(&other, other.mixed, other.n_mixed);
     assert_true(glint_bake_key(&other, &options) != key);
     other = lens;
-    coat(&other, "550");
+    apply_coatings(&other, "550");
     assert_true(glint_bake_key(&other, &options) == key);
-    coat(&other, "550/1.39");
+    apply_coatings(&other, "550/1.39");
     assert_true(glint_bake_key(&other, &options) != key);
-    coat(&other, "550,550,550,551");
+    apply_coatings(&other, "550,550,550,551");
     assert_true(glint_bake_key(&other, &options) != key);
-    coat(&other, "550/1.38:1");
+    apply_coatings(&other, "550/1.38:1");
     assert_true(glint_bake_key(&other, &options) == key);
-    coat(&other, "550/1.38:1.01");
+    apply_coatings(&other, "550/1.38:1.01");
     assert_true(glint_bake_key(&other, &options) != key);
-    coat(&other, "550/1.38/1.7");
+    apply_coatings(&other, "550/1.38/1.7");
     assert_true(glint_bake_key(&other, &options) != key);
 }
 
-TEST(standard)
+TEST(default_mixed_coatings)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     const int n = glint_coatings_mixed(coating);

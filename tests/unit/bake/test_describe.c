@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Scene texts: what the parser reads from a good one, and which place and cause
- * it names for each mistake. */
+ * Tests the parser of scene texts: what it reads from a valid text, and the
+ * position and cause that it reports for each mistake.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -12,7 +13,7 @@
 #include "bake/scene/mesh.h"
 #include "support/test.h"
 
-/* This text is good. Each mistake below replaces one line of it. */
+/* A valid text. Each mistake below replaces one of its lines. */
 static const char *const good[] = {
     "hand left   # as the tutorial",                            /* line 1 */
     "camera fov 60 at 0 1 -4 toward 0 1 0",                     /* line 2 */
@@ -59,7 +60,7 @@ static enum glint_status read_file(void *ctx, const char *name, uint8_t **data,
     return GLINT_OK;
 }
 
-/* A picture of 6 x 2 pixels: a third is black, the rest white. */
+/* Returns a picture of 6 x 2 pixels: one third is black, the rest white. */
 static enum glint_status read_picture(void *ctx, const char *name,
                                       struct glint_image *image,
                                       struct glint_error *error)
@@ -79,7 +80,8 @@ static enum glint_status read_picture(void *ctx, const char *name,
 static const struct glint_description_files files = {
     NULL, read_file, read_picture, NULL, NULL, NULL};
 
-/* Parses the good text with LINE in place of line NUMBER (from 1; 0: none). */
+/* Parses the valid text, with LINE in place of line NUMBER (from 1; 0: no
+ * replacement). */
 static enum glint_status parse(struct glint_description *scene, int number,
                                const char *line, struct glint_error *error)
 {
@@ -91,8 +93,8 @@ static enum glint_status parse(struct glint_description *scene, int number,
         strcat(text, i + 1 == number ? line : good[i]);
         strcat(text, "\n");
     }
-    /* The copy ends where the text does, so that the address sanitizer sees
-     * reads beyond it. */
+    /* The copy has the exact size of the text, so that the address sanitizer
+     * detects reads beyond its end. */
     bytes = strlen(text);
     copy = malloc(bytes);
     assert_non_null(copy);
@@ -104,7 +106,7 @@ static enum glint_status parse(struct glint_description *scene, int number,
     return status;
 }
 
-static void near_to(const double *a, double x, double y, double z)
+static void check_near(const double *a, double x, double y, double z)
 {
     assert_true(fabs(a[0] - x) < 1e-12);
     assert_true(fabs(a[1] - y) < 1e-12);
@@ -120,20 +122,20 @@ TEST(good)
     if (parse(s, 0, NULL, &error) != GLINT_OK)
         fail_msg("%s", error.text);
     assert_true(s->left_handed && s->has_shadows);
-    near_to(s->camera.right, 1, 0, 0);
-    near_to(s->camera.up, 0, 1, 0);
-    near_to(s->camera.forward, 0, 0, 1);
+    check_near(s->camera.right, 1, 0, 0);
+    check_near(s->camera.up, 0, 1, 0);
+    check_near(s->camera.forward, 0, 0, 1);
     assert_true(s->camera.fov_deg == 60);
-    near_to(s->background_colour, .1, .2, .3);
+    check_near(s->background_colour, .1, .2, .3);
     assert_int_equal(s->n_lights, 2);
-    near_to(s->light[0].at, 0, .6, -.8);
+    check_near(s->light[0].at, 0, .6, -.8);
     assert_string_equal(s->light[1].name, "lamp");
     assert_int_equal(s->n_materials, 3);
     assert_true(s->material[0].power == 20 && s->material[1].power == 32);
     assert_int_equal(s->material[1].texture, 0);
     assert_true(s->material[2].pass == .9 && s->material[2].index == 1.5);
     assert_int_equal(s->n_objects, 4);
-    near_to(s->object[2].normal, 0, 1, 0);
+    check_near(s->object[2].normal, 0, 1, 0);
     assert_true(s->object[2].catcher == .6 && s->object[2].material == -1);
     assert_int_equal(s->flare, GLINT_DESCRIBED_FLARE_HIGHLIGHTS);
     assert_int_equal(s->n_highlights, 3);
@@ -142,8 +144,8 @@ TEST(good)
     free(s);
 }
 
-/* The quad becomes two triangles, half as large as the file has it; what oak is
- * in the file is oak in the scene. */
+/* The quad becomes two triangles, scaled by 1/2. The material "oak" in the
+ * file is that of the scene. */
 TEST(mesh)
 {
     struct glint_description *s = malloc(sizeof *s);
@@ -157,10 +159,10 @@ TEST(mesh)
     assert_int_equal(o->n_triangles, 3);
     assert_true(fabs(o->turn[0] - sqrt(.5)) < 1e-12 &&
                 fabs(o->turn[2] - sqrt(.5)) < 1e-12);
-    near_to(s->triangle[2].place[1], 1, 1, 0);
-    near_to(s->triangle[2].place[2], 0, 1, 0);
+    check_near(s->triangle[2].place[1], 1, 1, 0);
+    check_near(s->triangle[2].place[2], 0, 1, 0);
     assert_true(s->triangle[2].has_normals && s->triangle[2].has_uv);
-    near_to(s->triangle[2].normal[0], 0, 0, -1);
+    check_near(s->triangle[2].normal[0], 0, 0, -1);
     assert_int_equal(s->triangle[2].material, 0);
     assert_int_equal(s->triangle[3].material, 1);
     assert_false(s->triangle[3].has_normals);
@@ -168,7 +170,8 @@ TEST(mesh)
     free(s);
 }
 
-/* Six texels across become eight (nearest by ratio); light is kept. */
+/* Six texels across become eight (nearest power of two by ratio); the mean
+ * light is preserved. */
 TEST(texture)
 {
     struct glint_description *s = malloc(sizeof *s);
@@ -181,7 +184,7 @@ TEST(texture)
     assert_int_equal(s->texture[0].image.height, 2);
     row = s->texture[0].image.plane[0];
     assert_int_equal(row[3 * 1], 0);
-    assert_int_equal(row[3 * 2], 156); /* a third of the light */
+    assert_int_equal(row[3 * 2], 156); /* code 156: a third of the light */
     assert_int_equal(row[3 * 3], 255);
     glint_description_free(s);
     free(s);
@@ -334,7 +337,8 @@ TEST(mistakes)
     free(s);
 }
 
-/* Hands: the same numbers are mirrored pictures, so x runs the other way. */
+/* Handedness: the same numbers describe mirrored scenes, so the x axis of
+ * the camera is reversed. */
 TEST(hands)
 {
     struct glint_description *s = malloc(sizeof *s);
@@ -342,24 +346,25 @@ TEST(hands)
 
     assert_non_null(s);
     assert_ok(parse(s, 1, "hand right", &error));
-    near_to(s->camera.right, -1, 0, 0);
-    near_to(s->camera.up, 0, 1, 0);
+    check_near(s->camera.right, -1, 0, 0);
+    check_near(s->camera.up, 0, 1, 0);
     glint_description_free(s);
     assert_ok(
         parse(s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0", &error));
-    near_to(s->camera.at, 2, 1, 0);
-    near_to(s->camera.right, 0, 0, 1); /* x is to the right, z away */
+    check_near(s->camera.at, 2, 1, 0);
+    /* x points right, z away from the viewer */
+    check_near(s->camera.right, 0, 0, 1);
     glint_description_free(s);
     assert_ok(parse(s, 2, "camera corners", &error));
-    near_to(s->camera.forward, 0, 0, 1);
-    near_to(s->camera.right, 1, 0, 0);
+    check_near(s->camera.forward, 0, 0, 1);
+    check_near(s->camera.right, 1, 0, 0);
     glint_description_free(s);
     free(s);
 }
 
 static const struct mesh_text {
     const char *text;
-    int n; /* triangles; 0: refused with ERROR */
+    int n; /* number of triangles; 0: rejected with ERROR */
     const char *error;
 } mesh_texts[] = {
     {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", 1, ""},
@@ -417,8 +422,8 @@ TEST(mesh_texts)
     free(mesh);
 }
 
-/* A sun that no code would show, and weights that leave objects dark, must be
- * warned of, and what is as it should be must not. */
+/* Warns of a sun too faint for any code, and of weights that leave objects
+ * dark; does not warn of usual values. */
 TEST(warnings)
 {
     static const struct {

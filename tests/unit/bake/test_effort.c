@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Progress reports of a bake, tested with ghosts of known work and a simulated
+ * Tests progress reports of a bake, with ghosts of known work and a simulated
  * clock.
  */
 #include <math.h>
@@ -10,12 +10,12 @@
 #include "support/lens_check.h"
 #include "support/rng.h"
 
-enum { HEAD = 32 }; /* fits before the first ghost, see effort.c */
+enum { HEAD = 32 }; /* work before the first ghost, in fits; see effort.c */
 
-/* Bakes N ghosts of WORK[] fits each on one worker, EXPECTED if that is not 0;
- * the fraction told of each grows as its work does. Sets SAID to the time left
- * that is reported at a quarter, half and three quarters of the time, over that
- * which is. */
+/* Simulates the bake of N ghosts of WORK[] fits each on one worker.
+ * EXPECTED: typical work of a ghost passed to glint_effort_expect(); 0: not
+ * called. Sets SAID to reported / true remaining time at 1/4, 1/2 and 3/4 of
+ * the time. */
 static void bake(const double *work, int n, bool wide, double expected,
                  double said[3])
 {
@@ -46,8 +46,9 @@ static void bake(const double *work, int n, bool wide, double expected,
     assert_true(glint_effort_done(&e) > 0.999);
 }
 
-/* Ghosts that take alike: what is reported is true within a quarter. */
-TEST(alike)
+/* Ghosts of equal work: the reported remaining time is within 25 % of the
+ * true one. */
+TEST(equal_ghosts)
 {
     double work[100], said[3];
 
@@ -58,9 +59,10 @@ TEST(alike)
         assert_true(said[k] > 0.8 && said[k] < 1.25);
 }
 
-/* Ghosts that differ a hundredfold, in any order: within three times at half
- * time, nearly always. By their number alone it was off by ten. */
-TEST(random)
+/* Ghosts whose work differs by factors up to 100, in any order: the estimate
+ * at half time is nearly always within a factor of three. An estimate by
+ * number of ghosts was wrong by a factor of ten. */
+TEST(random_ghosts)
 {
     uint32_t seed = 7;
     int off = 0;
@@ -76,7 +78,8 @@ TEST(random)
     assert_in_range(off, 0, 10);
 }
 
-/* The last ghost takes nearly all: its angles tell. */
+/* The last ghost takes most of the time: its angles are used for the
+ * estimate. */
 TEST(long_ghost)
 {
     double work[20], said[3];
@@ -88,8 +91,9 @@ TEST(long_ghost)
     assert_true(said[2] > 0.5 && said[2] < 2);
 }
 
-/* Several workers share what nobody began, but not what one is at. */
-TEST(workers)
+/* Several workers share ghosts that were not begun, but not a ghost in
+ * progress. */
+TEST(workers_share_ghosts)
 {
     double done[2];
 
@@ -113,9 +117,10 @@ TEST(workers)
     }
 }
 
-/* The last ghosts take nearly all, as was expected: what is reported is true
- * within a factor of two from the first quarter on. */
-TEST(late)
+/* The last ghosts take most of the time, and glint_effort_expect() announced
+ * the total work: the estimate is within a factor of two from the first
+ * quarter on. */
+TEST(late_ghosts_expected)
 {
     double work[100], said[3];
 
@@ -131,7 +136,7 @@ struct log {
     double last, most_step;
 };
 
-static void note_done(void *ctx, double done)
+static void record_progress(void *ctx, double done)
 {
     struct log *log = ctx;
 
@@ -141,7 +146,7 @@ static void note_done(void *ctx, double done)
     log->n++;
 }
 
-/* A bake tells of each zone, and ends at all. */
+/* A real bake reports each zone, and ends with progress 1. */
 TEST(bake)
 {
     static struct glint_setup setup;
@@ -157,7 +162,7 @@ TEST(bake)
     glint_bake_defaults(&o);
     o.tolerance = 5;
     o.max_deg = 12;
-    o.progress = note_done;
+    o.progress = record_progress;
     o.progress_ctx = &log;
     assert_ok(glint_bake(&heliar, &o, &model, &bytes, &report, &error));
     free(model);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Environments: the octahedron, what is held and counted, blurs against sums
- * over all texels, lights that are known, codes, and files that are refused. */
+ * Tests environment maps: the octahedron mapping, clamped and counted samples,
+ * blurs compared with sums over all texels, extraction of known lights, codes,
+ * and rejected files.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,7 +18,7 @@
 
 enum { WIDTH = 128, HEIGHT = 64, SIDE_LOG2 = 5, SIDE = 1 << SIDE_LOG2 };
 
-static double dot(const double a[3], const double b[3])
+static double compute_dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -28,7 +30,7 @@ static void random_unit(uint32_t *seed, double d[3])
     do {
         for (int k = 0; k < 3; k++)
             d[k] = rng_signed(seed);
-        length = sqrt(dot(d, d));
+        length = sqrt(compute_dot(d, d));
     } while (length > 1 || length < .1);
     for (int k = 0; k < 3; k++)
         d[k] /= length;
@@ -48,7 +50,7 @@ TEST(octahedron)
         glint_sphere_place(d, &u, &v);
         assert_true(u >= 0 && u <= 1 && v >= 0 && v <= 1);
         glint_sphere_toward(u, v, back);
-        assert_true(dot(d, back) > 1 - 1e-12);
+        assert_true(compute_dot(d, back) > 1 - 1e-12);
     }
     for (int i = 0; i < 128 * 128; i++) {
         double d[3];
@@ -59,7 +61,7 @@ TEST(octahedron)
     assert_true(fabs(sum / (128 * 128) / (4 * GLINT_PI) - 1) < 1e-3);
 }
 
-/* What lies beyond an edge is near what lies before it. */
+/* Texels outside an edge map to neighbours of the texels inside. */
 TEST(edges_meet)
 {
     struct glint_sphere s;
@@ -79,7 +81,7 @@ TEST(edges_meet)
 
             assert_true(a < SIDE * SIDE && b < SIDE * SIDE);
             /* at most the diagonal of the largest texels */
-            assert_true(dot(s.texel[a].toward, s.texel[b].toward) >
+            assert_true(compute_dot(s.texel[a].toward, s.texel[b].toward) >
                         cos(2 * sqrt(6) / SIDE));
         }
     }
@@ -98,9 +100,9 @@ struct baked {
 static float picture[HEIGHT][WIDTH][3];
 static const struct glint_float_image image = {WIDTH, HEIGHT, (float *)picture};
 
-/* Fills the picture by LIGHT(direction), its R, G and B 1, 1/2 and 1/4 of it.
- */
-static void paint(double (*light)(const double d[3]))
+/* Fills the picture with LIGHT(direction); R, G and B are 1, 1/2 and 1/4 of
+ * it. */
+static void paint_picture(double (*light)(const double d[3]))
 {
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
@@ -128,7 +130,7 @@ static void bake(struct baked *b, const struct glint_environment_options *o)
         fail_msg("%s", reason);
 }
 
-static struct glint_environment_options options_of(void)
+static struct glint_environment_options make_options(void)
 {
     struct glint_environment_options o;
 
@@ -145,24 +147,25 @@ static double decode_9e5(const struct glint_environment *e, uint32_t word,
 }
 
 /* Returns channel C of texel I of level K. */
-static double decode(const struct glint_environment *e, int k, size_t i, int c)
+static double decode_texel(const struct glint_environment *e, int k, size_t i,
+                           int c)
 {
     return decode_9e5(e, ((const uint32_t *)e->texel[k])[i], c);
 }
 
-static double even(const double d[3])
+static double uniform_light(const double d[3])
 {
     (void)d;
     return 12.5;
 }
 
-/* Even light stays even. */
-TEST(even)
+/* Uniform light stays uniform at all levels. */
+TEST(uniform_light)
 {
-    const struct glint_environment_options o = options_of();
+    const struct glint_environment_options o = make_options();
     struct baked b;
 
-    paint(even);
+    paint_picture(uniform_light);
     bake(&b, &o);
     assert_string_equal(b.environment.header->name, "anight");
     assert_int_equal(b.environment.header->key[1], 1);
@@ -171,7 +174,7 @@ TEST(even)
     for (int k = 0; k <= SIDE_LOG2; k++)
         for (size_t i = 0; i >> (2 * b.environment.level[k].side_log2) == 0;
              i++)
-            assert_true(fabs(decode(&b.environment, k, i, 0) - 12.5) <
+            assert_true(fabs(decode_texel(&b.environment, k, i, 0) - 12.5) <
                         12.5 / 1000);
     for (int i = 0; i < 1024; i++)
         assert_true(
@@ -185,8 +188,8 @@ static double slope(const double d[3])
     return 1 + d[1];
 }
 
-/* Light 1 + y shows a white surface 1 + 2/3 y; turning by 90 degrees to the
- * right moves what is ahead there. */
+/* Irradiance of light 1 + y on a white surface is 1 + 2/3 y. Rotation by 90
+ * degrees to the right moves the light that was ahead to the right. */
 static double ahead(const double d[3])
 {
     return 1 + d[2];
@@ -194,7 +197,7 @@ static double ahead(const double d[3])
 
 TEST(irradiance)
 {
-    struct glint_environment_options o = options_of();
+    struct glint_environment_options o = make_options();
     double worst = 0;
 
     for (int turned = 0; turned < 2; turned++) {
@@ -202,7 +205,7 @@ TEST(irradiance)
 
         o.turn_deg = 90 * turned;
         o.scale = 1 + turned;
-        paint(turned ? ahead : slope);
+        paint_picture(turned ? ahead : slope);
         bake(&b, &o);
         for (int i = 0; i < 1024; i++) {
             double n[3], want;
@@ -228,17 +231,17 @@ static double patches(const double d[3])
            (d[0] > .3 && d[1] > .2 ? 5 : 0);
 }
 
-/* Every level is the sum over all texels, none of them left out, to what lies
- * beyond four sigma. */
+/* Every level equals the sum over all texels without skipped blocks, except
+ * for the weight beyond four sigma. */
 TEST(blur)
 {
-    struct glint_environment_options o = options_of();
+    struct glint_environment_options o = make_options();
     struct glint_environment_report report = {0};
     struct glint_sphere s;
     struct baked b;
     double worst = 0;
 
-    paint(patches);
+    paint_picture(patches);
     o.max_lights = 0;
     bake(&b, &o);
     assert_true(glint_sphere_open(&s, 2 * SIDE));
@@ -253,16 +256,17 @@ TEST(blur)
             glint_sphere_toward((i % side + .5) / side,
                                 ((double)(i / side) + .5) / side, d);
             for (int j = 0; j < 4 * SIDE * SIDE; j++) {
-                const double w =
-                    s.texel[j].weight *
-                    exp((dot(d, s.texel[j].toward) - 1) / (sigma * sigma));
+                const double w = s.texel[j].weight *
+                                 exp((compute_dot(d, s.texel[j].toward) - 1) /
+                                     (sigma * sigma));
 
                 sum += w * s.texel[j].light[0];
                 weight += w;
             }
-            worst = fmax(worst, fabs(decode(&b.environment, k, (size_t)i, 0) /
-                                         (sum / weight) -
-                                     1));
+            worst =
+                fmax(worst, fabs(decode_texel(&b.environment, k, (size_t)i, 0) /
+                                     (sum / weight) -
+                                 1));
         }
     }
     print_message("blur: off by %.3f %% at most\n", 100 * worst);
@@ -271,7 +275,8 @@ TEST(blur)
     free(b.data);
 }
 
-/* Row B5: texels of a side of 256, and that a level's side is twice a mip's. */
+/* B5: numbers of texels for a side of 256; the side of a Gaussian level is
+ * twice that of a mipmap level. */
 TEST(b5_texels)
 {
     long mip = 0, full = 0, ours = 0;
@@ -288,10 +293,10 @@ TEST(b5_texels)
 
 TEST(mips)
 {
-    struct glint_environment_options o = options_of();
+    struct glint_environment_options o = make_options();
     struct baked b;
 
-    paint(patches);
+    paint_picture(patches);
     o.max_lights = 0;
     o.levels = GLINT_ENVIRONMENT_MIP;
     bake(&b, &o);
@@ -301,13 +306,13 @@ TEST(mips)
         for (size_t i = 0; i < side * side; i++) {
             const size_t at = 4 * side * (i / side) + 2 * (i % side);
             const double mean =
-                (decode(&b.environment, k - 1, at, 0) +
-                 decode(&b.environment, k - 1, at + 1, 0) +
-                 decode(&b.environment, k - 1, at + 2 * side, 0) +
-                 decode(&b.environment, k - 1, at + 2 * side + 1, 0)) /
+                (decode_texel(&b.environment, k - 1, at, 0) +
+                 decode_texel(&b.environment, k - 1, at + 1, 0) +
+                 decode_texel(&b.environment, k - 1, at + 2 * side, 0) +
+                 decode_texel(&b.environment, k - 1, at + 2 * side + 1, 0)) /
                 4;
 
-            assert_true(fabs(decode(&b.environment, k, i, 0) / mean - 1) <
+            assert_true(fabs(decode_texel(&b.environment, k, i, 0) / mean - 1) <
                         .004);
         }
     }
@@ -320,20 +325,21 @@ static const double sun[3] = {.48, .6, .64};
 
 static double day(const double d[3])
 {
-    return (dot(d, sun) > cos(4 * GLINT_PI / 180) ? 4000 : 0) + 1 + .5 * d[1];
+    return (compute_dot(d, sun) > cos(4 * GLINT_PI / 180) ? 4000 : 0) + 1 +
+           .5 * d[1];
 }
 
-/* A disc of 4 degrees is found where it is, with its light and size; what is
- * left there is as around. */
+/* A disc of 4 degrees is found with its direction, light and size; the hole
+ * is filled with the surrounding light. */
 TEST(light)
 {
-    struct glint_environment_options o = options_of();
+    struct glint_environment_options o = make_options();
     const struct glint_environment_light *l;
-    double solid = 0; /* of the pixels that are the disc */
+    double solid = 0; /* solid angle of the pixels of the disc */
     struct baked b;
     double d[3], power, u, v;
 
-    paint(day);
+    paint_picture(day);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
             if (picture[y][x][0] > 100)
@@ -347,10 +353,10 @@ TEST(light)
     power = glint_real_value(l->rgb[0]) / (4000 * solid / GLINT_PI);
     print_message("light: %.3f deg off, %.4f of its power, %.2f deg, share "
                   "%.4f, rest %.3f\n",
-                  180 / GLINT_PI * acos(dot(d, sun)), power,
+                  180 / GLINT_PI * acos(compute_dot(d, sun)), power,
                   180 / GLINT_PI * asin(ldexp(l->radius_q30, -30)),
                   b.report.light_share, b.report.residual_largest);
-    assert_true(dot(d, sun) > cos(.5 * GLINT_PI / 180));
+    assert_true(compute_dot(d, sun) > cos(.5 * GLINT_PI / 180));
     assert_true(fabs(power - 1) < .002);
     assert_true(fabs(asin(ldexp(l->radius_q30, -30)) * 180 / GLINT_PI - 4) <
                 .8);
@@ -358,12 +364,12 @@ TEST(light)
                      .5) < 1e-6);
     assert_true(b.report.residual_largest < 1.6);
     glint_sphere_place(sun, &u, &v);
-    assert_true(
-        fabs(decode(&b.environment, 0,
-                    glint_sphere_index(SIDE, (int)(SIDE * u), (int)(SIDE * v)),
-                    0) -
-             1.3) < .08);
-    /* None of it is lost: levels and lights have what the picture has. */
+    assert_true(fabs(decode_texel(&b.environment, 0,
+                                  glint_sphere_index(SIDE, (int)(SIDE * u),
+                                                     (int)(SIDE * v)),
+                                  0) -
+                     1.3) < .08);
+    /* levels and lights together have the picture's light */
     assert_true(fabs(b.report.light_share -
                      (power * 4000 * solid) /
                          (power * 4000 * solid + 4 * GLINT_PI)) < .002);
@@ -380,13 +386,13 @@ static double window(const double d[3])
     return (d[2] > .9 ? 500 : 0) + 1;
 }
 
-/* Wide light stays where it is, and of two discs that touch none is lost. */
+/* Wide lights stay in the map, and two touching discs lose no light. */
 TEST(areas_stay)
 {
-    const struct glint_environment_options o = options_of();
+    const struct glint_environment_options o = make_options();
     struct baked b;
 
-    paint(window);
+    paint_picture(window);
     bake(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 0);
     assert_true(b.report.residual_largest > 250);
@@ -395,15 +401,15 @@ TEST(areas_stay)
 
 /* ------------------------------------------------------------------- held */
 
-TEST(held)
+TEST(clamps_invalid_samples)
 {
-    const struct glint_environment_options o = options_of();
+    const struct glint_environment_options o = make_options();
     struct glint_environment_options odd;
     struct glint_error error;
     struct glint_float_image narrow = image;
     struct baked b;
 
-    paint(even);
+    paint_picture(uniform_light);
     picture[3][4][1] = -1;
     picture[5][6][0] = -2e30f;
     picture[10][8][2] = NAN;
@@ -427,18 +433,19 @@ TEST(held)
                                                 &b.bytes, &b.report, &error),
                          GLINT_E_ARGUMENT);
     }
-    memset(picture, 0, sizeof picture); /* darkness is light, too */
+    memset(picture, 0, sizeof picture); /* a black picture is valid */
     bake(&b, &o);
-    assert_true(decode(&b.environment, 2, 3, 0) == 0);
+    assert_true(decode_texel(&b.environment, 2, 3, 0) == 0);
     free(b.data);
 }
 
-/* Six faces, each of one light, lie where they are named. */
+/* The six faces of a cube map, each of a single light, are in their
+ * directions. */
 TEST(cube)
 {
     static const double middle[6][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},
                                         {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-    struct glint_environment_options o = options_of();
+    struct glint_environment_options o = make_options();
     struct glint_environment_report report = {0};
     float faces[16][24][3];
     const struct glint_float_image cube = {24, 16, (float *)faces};
@@ -452,7 +459,7 @@ TEST(cube)
     assert_true(glint_sphere_project(&s, &cube, &o, &report));
     for (int i = 0; i < SIDE * SIDE; i++)
         for (int f = 0; f < 6; f++)
-            if (dot(s.texel[i].toward, middle[f]) > .82)
+            if (compute_dot(s.texel[i].toward, middle[f]) > .82)
                 assert_true(fabs(s.texel[i].light[0] - (1 + f)) < 1e-9);
     glint_sphere_close(&s);
 }
@@ -484,8 +491,8 @@ TEST(codes)
 
 /* ------------------------------------------------------------------- files */
 
-static void refuse(const struct baked *b, size_t at, uint32_t value,
-                   const char *why)
+static void check_refused(const struct baked *b, size_t at, uint32_t value,
+                          const char *why)
 {
     unsigned char *copy = malloc(b->bytes);
     struct glint_environment e;
@@ -505,36 +512,36 @@ static void refuse(const struct baked *b, size_t at, uint32_t value,
 
 #define AT(field) offsetof(struct glint_environment_header, field)
 
-TEST(refused)
+TEST(rejects_damaged_files)
 {
-    const struct glint_environment_options o = options_of();
+    const struct glint_environment_options o = make_options();
     struct baked b;
     const struct glint_environment_header *h;
 
-    paint(day);
+    paint_picture(day);
     bake(&b, &o);
     h = b.environment.header;
-    refuse(&b, AT(magic), 0, "no baked environment");
-    refuse(&b, AT(version), 9, "newer");
-    refuse(&b, AT(crc32), 0, "checksum");
-    refuse(&b, AT(variant), 2, "unknown");
-    refuse(&b, AT(code), 2, "unknown");
-    refuse(&b, AT(name), 0, "name is empty");
-    refuse(&b, AT(side_log2), 11, "too many");
-    refuse(&b, AT(side_log2), 6, "too many");
-    refuse(&b, AT(unit_log2), 101, "unit");
-    refuse(&b, AT(n_levels), 5, "too many");
-    refuse(&b, AT(n_lights), 17, "too many");
-    refuse(&b, AT(level_at), (uint32_t)b.bytes, "outside");
-    refuse(&b, AT(irradiance_at), 8, "outside");
-    refuse(&b, AT(light_at), (uint32_t)b.bytes - 4, "outside");
-    refuse(&b, h->level_at, 4, "side");
-    refuse(&b, h->level_at + 4, 2, "outside");
-    refuse(&b, h->level_at + 8, (1u << 28) + 1, "side");
-    refuse(&b, h->level_at + 12, 1, "side");
-    refuse(&b, h->light_at, 0, "unit vector");
-    refuse(&b, h->light_at + 12, 1u << 30, "too large");
-    refuse(&b, h->light_at + 16, 5, "normalised");
+    check_refused(&b, AT(magic), 0, "no baked environment");
+    check_refused(&b, AT(version), 9, "newer");
+    check_refused(&b, AT(crc32), 0, "checksum");
+    check_refused(&b, AT(variant), 2, "unknown");
+    check_refused(&b, AT(code), 2, "unknown");
+    check_refused(&b, AT(name), 0, "name is empty");
+    check_refused(&b, AT(side_log2), 11, "too many");
+    check_refused(&b, AT(side_log2), 6, "too many");
+    check_refused(&b, AT(unit_log2), 101, "unit");
+    check_refused(&b, AT(n_levels), 5, "too many");
+    check_refused(&b, AT(n_lights), 17, "too many");
+    check_refused(&b, AT(level_at), (uint32_t)b.bytes, "outside");
+    check_refused(&b, AT(irradiance_at), 8, "outside");
+    check_refused(&b, AT(light_at), (uint32_t)b.bytes - 4, "outside");
+    check_refused(&b, h->level_at, 4, "side");
+    check_refused(&b, h->level_at + 4, 2, "outside");
+    check_refused(&b, h->level_at + 8, (1u << 28) + 1, "side");
+    check_refused(&b, h->level_at + 12, 1, "side");
+    check_refused(&b, h->light_at, 0, "unit vector");
+    check_refused(&b, h->light_at + 12, 1u << 30, "too large");
+    check_refused(&b, h->light_at + 16, 5, "normalised");
     free(b.data);
 }
 
@@ -548,7 +555,7 @@ static enum glint_status parse(const char *text,
                                    "n.environment", error);
 }
 
-static void wrong(const char *text, const char *why)
+static void check_wrong_text(const char *text, const char *why)
 {
     struct glint_environment_options o;
     char source[GLINT_ENVIRONMENT_FILE_BYTES];
@@ -572,16 +579,19 @@ TEST(text)
     assert_string_equal(source, "a night.exr");
     assert_true(o.side_log2 == 7 && o.turn_deg == -90 && o.scale == .5 &&
                 o.max_lights == 3 && o.light_deg == 2.5 && o.light_above == 20);
-    wrong("size 128\n", "n.environment:2:1: the line 'source FILE' is missing");
-    wrong("source\n", "n.environment:1:7: the name of the picture is missing");
-    wrong("source x\nsize 100\n",
-          "2:6: size takes 16, 32, 64, 128, 256, 512 or "
-          "1024, not '100'");
-    wrong("source x\nturn 400\n", "turn");
-    wrong("source x\nlights 17\n", "lights");
-    wrong("source x\nlights 3 radios 2\n", "did you mean 'radius'?");
-    wrong("source x\nsize 64 64\n", "'64' is one value too many for size");
-    wrong("source x\nsource y\n",
-          "2:1: a second source; the first is on line 1");
-    wrong("sources x\n", "unknown word 'sources'; did you mean 'source'?");
+    check_wrong_text("size 128\n",
+                     "n.environment:2:1: there is no picture: source FILE");
+    check_wrong_text("source\n",
+                     "n.environment:1:7: the name of the picture is missing");
+    check_wrong_text("source x\nsize 100\n",
+                     "2:6: size takes 16, 32, 64, 128, 256, 512 or "
+                     "1024, not '100'");
+    check_wrong_text("source x\nturn 400\n", "turn");
+    check_wrong_text("source x\nlights 17\n", "lights");
+    check_wrong_text("source x\nlights 3 radios 2\n", "did you mean 'radius'?");
+    check_wrong_text("source x\nsize 64 64\n", "'64' is more than size takes");
+    check_wrong_text("source x\nsource y\n",
+                     "2:1: a second source; the first is on line 1");
+    check_wrong_text("sources x\n",
+                     "unknown word 'sources'; did you mean 'source'?");
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The exact picture against an independent program, against itself with another
- * grid, and against the symmetries of optics; then the integer engine, fed by
- * exact rays, against the exact picture.
+ * Tests the exact reference picture against an independent program, against a
+ * finer grid, and against symmetries of optics; then the integer engine with
+ * exact rays against the exact picture.
  */
 #include <math.h>
 #include <stdio.h>
@@ -54,18 +54,19 @@ static struct glint_lamp lamp_at(double theta, double phi)
     return (struct glint_lamp){theta, phi, 1, {1, 1, 1}, {0, 0}, 0};
 }
 
-static struct glint_float_image as_floats(const double *from, int slot,
-                                          struct glint_view view)
+static struct glint_float_image convert_to_floats(const double *from, int slot,
+                                                  struct glint_view view)
 {
     for (int i = 0; i < 3 * view.width * view.height; i++)
         floats[slot][i] = (float)from[i];
     return (struct glint_float_image){view.width, view.height, floats[slot]};
 }
 
-static double psnr(const double *a, const double *b, struct glint_view view)
+static double compute_psnr(const double *a, const double *b,
+                           struct glint_view view)
 {
-    const struct glint_float_image x = as_floats(a, 0, view);
-    const struct glint_float_image y = as_floats(b, 1, view);
+    const struct glint_float_image x = convert_to_floats(a, 0, view);
+    const struct glint_float_image y = convert_to_floats(b, 1, view);
     struct glint_measure m;
 
     assert_true(glint_measure_compare(&x, &y, false, &m));
@@ -80,8 +81,8 @@ struct golden {
     int grid;
 };
 
-/* Loads the picture NAME of an independent program from ../shared, or from the
- * folder that GLINT_SHARED names. Returns whether it is there. */
+/* Loads the picture NAME, rendered by an independent program, from ../shared
+ * or from the folder in GLINT_SHARED. Returns whether the file exists. */
 static bool load_golden(const char *name, struct glint_float_image *image)
 {
     const char *shared = getenv("GLINT_SHARED");
@@ -113,7 +114,7 @@ static void compare_golden(const struct golden *g)
     }
     load_setup(&setup, &lens, g->name);
     render(rgb, view, &lamp, 1, g->grid);
-    got = as_floats(rgb, 0, view);
+    got = convert_to_floats(rgb, 0, view);
     assert_true(glint_measure_compare(&want, &got, true, &m));
     print_message("%s: %.1f dB\n", g->name, m.psnr_db);
     free(want.rgb);
@@ -133,7 +134,7 @@ TEST(golden_angenieux)
 TEST(golden_canon)
 {
     if (getenv("GLINT_QUICK") &&
-        *getenv("GLINT_QUICK")) /* Sanitizers take minutes. */
+        *getenv("GLINT_QUICK")) /* takes minutes under sanitizers */
         skip();
     compare_golden(&(struct golden){"canon-zoom-mid", 5.06, 10.2, 64});
 }
@@ -160,13 +161,13 @@ TEST(axis_light_is_symmetric)
                 peak = fmax(peak, v);
             }
     assert_true(peak > 0);
-    /* Up and down agree to the last bits, left and right as far as the grid
-     * allows. */
+    /* Up and down are equal to the last bits, left and right as far as the
+     * grid allows. */
     assert_true(worst < 2e-3 * peak);
 }
 
-/* Turning the light by 90 degrees must turn the picture: a quarter turn leaves
- * an octagonal stop and a square picture as they are. */
+/* Rotating the light by 90 degrees rotates the picture: a quarter turn does
+ * not change an octagonal stop and a square picture. */
 TEST(quarter_turn)
 {
     const struct glint_view view = {
@@ -176,14 +177,14 @@ TEST(quarter_turn)
     load_setup(&setup, &lens, "double-gauss-angenieux");
     render(rgb, view, &lamp, 1, 96);
     render(other, view, &turned, 1, 96);
-    for (int y = 0; y < 160; y++) /* (x, y) is at (y, 159 - x) */
+    for (int y = 0; y < 160; y++) /* (x, y) becomes (y, 159 - x) */
         for (int x = 0; x < 160; x++)
             for (int c = 0; c < 3; c++)
                 floats[0][3 * (y * 160 + x) + c] =
                     (float)other[3 * ((159 - x) * 160 + y) + c];
     for (int i = 0; i < 3 * 160 * 160; i++)
         other[i] = (double)floats[0][i];
-    assert_true(psnr(rgb, other, view) > 80);
+    assert_true(compute_psnr(rgb, other, view) > 80);
 }
 
 /* ---------------------------------------------------------------- accuracy */
@@ -198,14 +199,13 @@ TEST(doubling_the_grid)
     load_setup(&setup, &lens, "heliar-tronnier");
     render(rgb, view, &lamp, 1, 256);
     render(other, view, &lamp, 1, 512);
-    db = psnr(other, rgb, view);
+    db = compute_psnr(other, rgb, view);
     print_message("256 against 512: %.1f dB\n", db);
     assert_true(db > 60);
 }
 
-/* 13 pairs of surfaces reflect at most 5 % each time, so that all ghosts
- * together must have less than 13 * 0.05^2 of the light that enters the
- * front. */
+/* 13 pairs of surfaces reflect at most 5 % at each reflection, so all ghosts
+ * together have less than 13 * 0.05^2 of the light that enters the front. */
 TEST(flux_is_bounded)
 {
     const struct glint_view view = {
@@ -246,9 +246,9 @@ TEST(threads_do_not_matter)
 
 /* ----------------------------------------------------- integers against it */
 
-static void integers(struct glint_view view, const struct glint_lamp *lamps,
-                     int n_lamps, double *out,
-                     struct glint_engine_report *report)
+static void render_integers(struct glint_view view,
+                            const struct glint_lamp *lamps, int n_lamps,
+                            double *out, struct glint_engine_report *report)
 {
     static float linear[3 * MAX_PIXELS];
     struct glint_frame frame;
@@ -277,8 +277,8 @@ TEST(integers_match)
 
         load_setup(&setup, &lens, names[i]);
         render(rgb, view, lamps, 1 + i, 192);
-        integers(view, lamps, 1 + i, other, &report);
-        db = psnr(rgb, other, view);
+        render_integers(view, lamps, 1 + i, other, &report);
+        db = compute_psnr(rgb, other, view);
         print_message("%s, %d light(s): %.1f dB\n", names[i], 1 + i, db);
         assert_true(db >= 45);
         assert_true(report.arena_bytes >= report.peak_bytes);
@@ -286,8 +286,8 @@ TEST(integers_match)
     }
 }
 
-/* A frame whose fields and edges find no room must be drawn in parts, to the
- * same bits. */
+/* A frame whose fields and edges do not fit into memory is drawn in several
+ * parts, bit-identical. */
 TEST(memory_does_not_matter)
 {
     const struct glint_view view = {
@@ -317,9 +317,9 @@ TEST(memory_does_not_matter)
     assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
 }
 
-/* A lamp with a hundredth of green must give the same green light as a green
- * lamp alone of that power: a faint colour has steps of its own. The hot spot
- * of this lens is far fainter than the size of its box suggests. */
+/* A lamp with a hundredth of green gives the same green light as a green
+ * lamp of that power: quantisation steps are per colour. The hot spot of
+ * this lens is much fainter than the size of its box suggests. */
 TEST(faint_colour_keeps_steps)
 {
     const struct glint_view view = {
@@ -330,8 +330,8 @@ TEST(faint_colour_keeps_steps)
     double apart = 0, sum = 0;
 
     load_setup(&setup, &lens, "itoh-zoom-short");
-    integers(view, &green, 1, rgb, &report);
-    integers(view, &reddish, 1, other, &report);
+    render_integers(view, &green, 1, rgb, &report);
+    render_integers(view, &reddish, 1, other, &report);
     for (int i = 1; i < 3 * view.width * view.height; i += 3) {
         apart += fabs(rgb[i] - other[i]);
         sum += rgb[i];
@@ -342,8 +342,8 @@ TEST(faint_colour_keeps_steps)
 
 /* -------------------------------------------------------- not round lenses */
 
-/* Loads a triplet of which the surfaces of the first element have the lines
- * FIRST and SECOND after them. */
+/* Loads a triplet. The lines FIRST and SECOND follow the surfaces of its
+ * first element. */
 static void load_shaped(const char *before, const char *first,
                         const char *second)
 {
@@ -363,8 +363,8 @@ static void load_shaped(const char *before, const char *first,
         fail_msg("%s", error.text);
 }
 
-/* A toric of two equal radii is a sphere; its lens is traced as one that is not
- * round: over the whole pupil, turned by the light's azimuth. */
+/* A toric with two equal radii is a sphere. Its lens is traced like one that
+ * is not round: over the whole pupil, rotated by the light's azimuth. */
 TEST(torics_that_are_spheres)
 {
     const struct glint_view view = {
@@ -380,17 +380,17 @@ TEST(torics_that_are_spheres)
     assert_false(glint_prescription_is_round(&lens));
     assert_true(fabs(setup.direct_flux[1] / flux - 1) < 1e-5);
     render(other, view, &lamp, 1, 128);
-    db = psnr(rgb, other, view);
+    db = compute_psnr(rgb, other, view);
     print_message("spheres and torics: %.1f dB\n", db);
     assert_true(db > 60);
-    integers(view, &lamp, 1, rgb, &report);
-    db = psnr(other, rgb, view);
+    render_integers(view, &lamp, 1, rgb, &report);
+    db = compute_psnr(other, rgb, view);
     print_message("torics in integers: %.1f dB\n", db);
     assert_true(db >= 50);
 }
 
-/* A decentre in x seen at 30 degrees is one in y at 60, mirrored at the
- * diagonal; and not what the centred lens makes. */
+/* A decentre in x for light at azimuth 30 equals a decentre in y at 60,
+ * mirrored at the diagonal, and differs from the centred lens. */
 TEST(decentred_at_the_diagonal)
 {
     const struct glint_view view = {
@@ -405,15 +405,15 @@ TEST(decentred_at_the_diagonal)
     for (int y = 0; y < 120; y++)
         for (int x = 0; x < 120; x++)
             for (int c = 0; c < 3; c++) {
-                /* Up in one picture is right in the other. */
+                /* up in one picture is right in the other */
                 const int to = ((119 - x) * 120 + 119 - y) * 3 + c;
 
                 swapped[to] = other[(y * 120 + x) * 3 + c];
             }
-    db = psnr(rgb, swapped, view);
+    db = compute_psnr(rgb, swapped, view);
     print_message("decentred, mirrored: %.1f dB\n", db);
     assert_true(db > 55);
     load_shaped("", "", "");
     render(other, view, &at[0], 1, 64);
-    assert_true(psnr(rgb, other, view) < 40);
+    assert_true(compute_psnr(rgb, other, view) < 40);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The flux of the direct image, by which all light is measured: what a model
- * says of it against rays through the stop of each f-number.
+ * Tests the flux of the direct image, the unit of all light: the value in a
+ * model against rays through the stop at each f-number.
  */
 #include <math.h>
 #include <stdint.h>
@@ -12,8 +12,8 @@
 
 static const double nm[3] = {650, 532, 450};
 
-/* Sets MODEL to what the header of the lens NAME's model says, stopped down
- * to F_NUMBER, and EXACT to what rays say. */
+/* Sets MODEL from the header of the model of lens NAME, stopped down to
+ * F_NUMBER, and EXACT from traced rays. */
 static void set_up(const char *name, double f_number, struct glint_setup *model,
                    struct glint_setup *exact)
 {
@@ -35,9 +35,10 @@ static void set_up(const char *name, double f_number, struct glint_setup *model,
     assert_ok(glint_setup_init(exact, &lens, 8, 0, nm, 3, &error));
 }
 
-/* Barrels cut the rim of these lenses' widest stops: of the circle's flux they
- * leave 1 / 1.027 and 1 / 1.10. Where they cease to cut, a quarter of a stop
- * further down, the flux has a corner that three openings do not show. */
+/* Barrels cut the rim of the widest stops of these lenses, which leaves 1 /
+ * 1.027 and 1 / 1.10 of the flux through a full circle. A quarter of a stop
+ * further down they cease to cut; there the flux has a kink that its
+ * interpolation over three openings cannot reproduce. */
 TEST(fast_lenses)
 {
     static const struct {

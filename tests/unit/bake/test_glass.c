@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Glasses of the catalogue: their indices, their names in tables. */
+ * Tests glasses of the catalogue: their indices, and their names in lens
+ * tables.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -9,8 +11,8 @@
 #include "glint/bake.h"
 #include "support/test.h"
 
-/* Indices at the d, C and F lines as makers print them, to 5 decimals; not
- * computed from what glint has. */
+/* Indices at the d, C and F lines as printed by the manufacturers, to 5
+ * decimals; independent of glint's coefficients. */
 static const struct {
     const char *name;
     double nd, nc, nf;
@@ -45,7 +47,7 @@ static const struct {
     {"TAFD37", 1.90043, 1.89333, 1.91742},
 };
 
-/* nd and Vd to the six decimals of CDGM's catalogue of 2022-06. */
+/* nd and Vd as printed in CDGM's catalogue of 2022-06, to six decimals. */
 static const struct {
     const char *name;
     double nd, vd;
@@ -90,8 +92,8 @@ static enum glint_status read_medium(const char *medium,
     return glint_prescription_parse(&lens, text, strlen(text), "t.lens", error);
 }
 
-/* 1e-5, and half of the last decimal that is printed. */
-static void near(double got, double want)
+/* tolerance: 1e-5, plus half of the last printed decimal */
+static void check_near(double got, double want)
 {
     assert_true(fabs(got - want) < 1.5e-5);
 }
@@ -103,10 +105,13 @@ TEST(printed_indices)
     for (size_t i = 0; i < sizeof printed / sizeof *printed; i++) {
         if (read_medium(printed[i].name, &error) != GLINT_OK)
             fail_msg("%s", error.text);
-        near(lens.surface[0].nd, printed[i].nd);
-        near(glint_surface_index(&lens.surface[0], 587.5618), printed[i].nd);
-        near(glint_surface_index(&lens.surface[0], 656.2725), printed[i].nc);
-        near(glint_surface_index(&lens.surface[0], 486.1327), printed[i].nf);
+        check_near(lens.surface[0].nd, printed[i].nd);
+        check_near(glint_surface_index(&lens.surface[0], 587.5618),
+                   printed[i].nd);
+        check_near(glint_surface_index(&lens.surface[0], 656.2725),
+                   printed[i].nc);
+        check_near(glint_surface_index(&lens.surface[0], 486.1327),
+                   printed[i].nf);
         assert_true(fabs(lens.surface[0].vd * (printed[i].nf - printed[i].nc) /
                              (printed[i].nd - 1) -
                          1) < 2e-3);
@@ -124,7 +129,7 @@ TEST(printed_dispersions)
 
         if (read_medium(printed_vd[i].name, &error) != GLINT_OK)
             fail_msg("%s", error.text);
-        near(glint_surface_index(&lens.surface[0], 587.5618), nd);
+        check_near(glint_surface_index(&lens.surface[0], 587.5618), nd);
         apart = glint_surface_index(&lens.surface[0], 486.1327) -
                 glint_surface_index(&lens.surface[0], 656.2725);
         assert_true(fabs(apart - (nd - 1) / printed_vd[i].vd) < 1e-6);
@@ -132,7 +137,8 @@ TEST(printed_dispersions)
     }
 }
 
-/* Every row is a glass: none is a slip of the hand. */
+/* Every row of the catalogue is a plausible glass, so that no coefficient is
+ * misprinted. */
 TEST(all_rows_are_glasses)
 {
     struct glint_error error = {""};
@@ -160,7 +166,8 @@ TEST(all_rows_are_glasses)
     assert_null(glint_glass_at(-1));
 }
 
-/* What a real glass does and two numbers cannot say: the violet of a flint. */
+/* The violet dispersion of a flint differs from that of the two-number
+ * formula. */
 TEST(beyond_two_terms)
 {
     struct glint_error error = {""};
@@ -194,14 +201,14 @@ TEST(names)
         assert_non_null(strstr(error.text, cases[i].meant));
     }
     assert_null(strstr(error.text, "did you mean"));
-    /* A glass of the table's own goes before the catalogue's. */
+    /* a glass defined in the table takes precedence over the catalogue */
     assert_ok(
         glint_prescription_parse(&lens, own, sizeof own - 1, "t", &error));
     assert_true(lens.surface[0].nd == 1.6);
     assert_true(lens.surface[0].sellmeier[0] == 0);
 }
 
-/* Two glasses of the same nd and Vd are two models. */
+/* Two glasses with equal nd and Vd give different keys. */
 TEST(key)
 {
     struct glint_bake_options options;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Glass, coatings, first-order optics and lists of ghosts against textbook
- * values and the published ones of the tables in lenses/.
+ * Tests glass, coatings, first-order optics and lists of ghosts against
+ * textbook values, and against published values of the tables in lenses/.
  */
 #include <complex.h>
 #include <math.h>
@@ -15,9 +15,9 @@ static const double pi = 3.14159265358979323846;
 
 /* ------------------------------------------------------------------- glass */
 
-/* N-BK7 by its catalogue: nd 1.5168, Vd 64.17, nF - nC 0.008054, nF 1.52238, nC
- * 1.51432, ng (435.83 nm) 1.52668. Cauchy's two terms are less exact in the
- * violet. */
+/* N-BK7 in its catalogue: nd 1.5168, Vd 64.17, nF - nC 0.008054, nF 1.52238,
+ * nC 1.51432, ng (435.83 nm) 1.52668. Cauchy's two terms are less exact in
+ * the violet. */
 TEST(glass)
 {
     assert_near(glint_index(1.5168, 64.17, 587.5618), 1.5168, 1e-15);
@@ -33,75 +33,81 @@ TEST(glass)
 
 /* -------------------------------------------------------------- boundaries */
 
-/* Returns the reflectance with a film of index NF, none if it is 0. */
-static double with_film(double n1, double n2, double cosine, double nf,
-                        double phase)
+/* Returns the reflectance of a boundary with a film of index NF; NF 0: bare. */
+static double compute_reflectance(double n1, double n2, double cosine,
+                                  double nf, double phase)
 {
     const struct glint_film_at film = {nf, phase};
 
     return glint_reflectance(n1, n2, cosine, &film, nf > 0);
 }
 
-static double bare(double n1, double n2, double cosine)
+static double compute_bare_reflectance(double n1, double n2, double cosine)
 {
     return glint_reflectance(n1, n2, cosine, NULL, 0);
 }
 
 TEST(bare_boundary)
 {
-    assert_near(bare(1.0, 1.5, 1.0), 0.04, 1e-16);
-    assert_near(bare(1.5, 1.0, 1.0), 0.04, 1e-16);
-    assert_near(bare(1.0, 2.0, 1.0), 1.0 / 9.0, 1e-16);
-    assert_near(bare(1.5, 1.6, 1.0), 1.0 / 961.0, 1e-16);
+    assert_near(compute_bare_reflectance(1.0, 1.5, 1.0), 0.04, 1e-16);
+    assert_near(compute_bare_reflectance(1.5, 1.0, 1.0), 0.04, 1e-16);
+    assert_near(compute_bare_reflectance(1.0, 2.0, 1.0), 1.0 / 9.0, 1e-16);
+    assert_near(compute_bare_reflectance(1.5, 1.6, 1.0), 1.0 / 961.0, 1e-16);
     /* At Brewster's angle, tan = 1.5, p is 0 and s is (1.25 / 3.25)^2. */
-    assert_near(bare(1.0, 1.5, 1.0 / sqrt(3.25)), 0.5 * 25.0 / 169.0, 1e-16);
+    assert_near(compute_bare_reflectance(1.0, 1.5, 1.0 / sqrt(3.25)),
+                0.5 * 25.0 / 169.0, 1e-16);
     /* At 45 degrees Rp = Rs^2, and Rs is the square of (1 - sqrt(3.5)) / (1 +
      * sqrt(3.5)). */
-    assert_near(bare(1.0, 1.5, sqrt(0.5)),
+    assert_near(compute_bare_reflectance(1.0, 1.5, sqrt(0.5)),
                 0.5 * (0.0920134 + 0.0920134 * 0.0920134), 1e-7);
-    assert_near(bare(1.0, 1.5, 1e-9), 1.0, 1e-8);
-    assert_true(bare(1.0, 1.5, 0.0) == 1.0);
+    assert_near(compute_bare_reflectance(1.0, 1.5, 1e-9), 1.0, 1e-8);
+    assert_true(compute_bare_reflectance(1.0, 1.5, 0.0) == 1.0);
 }
 
 /* From index 1.5 to 1 the critical angle has the cosine sqrt(5) / 3; smaller
- * cosines must give total reflection. */
+ * cosines give total reflection. */
 TEST(total_reflection)
 {
     static const double film[] = {0.0, 1.38};
 
     for (int f = 0; f < 2; f++) {
-        assert_true(with_film(1.5, 1.0, 0.3, film[f], pi) == 1.0);
-        assert_true(with_film(1.5, 1.0, sqrt(5.0) / 3.0 - 1e-9, film[f], pi) ==
-                    1.0);
-        assert_true(with_film(1.5, 1.0, sqrt(5.0) / 3.0 + 1e-9, film[f], pi) <
-                    1.0);
+        assert_true(compute_reflectance(1.5, 1.0, 0.3, film[f], pi) == 1.0);
+        assert_true(compute_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 - 1e-9,
+                                        film[f], pi) == 1.0);
+        assert_true(compute_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 + 1e-9,
+                                        film[f], pi) < 1.0);
     }
 }
 
-/* At normal incidence a quarter-wave film of index f reflects ((n1 n2 - f^2) /
- * (n1 n2 + f^2))^2, so nothing where f^2 = n1 n2. A half-wave film acts as if
- * it were not there. */
+/* At normal incidence a quarter-wave film of index f reflects ((n1 n2 - f^2)
+ * / (n1 n2 + f^2))^2, so nothing if f^2 = n1 n2. A half-wave film has no
+ * effect. */
 TEST(film_by_hand)
 {
     const double quarter = pi, half = 2.0 * pi;
 
-    assert_near(with_film(1.0, 2.25, 1.0, 1.5, quarter), 0.0, 1e-30);
-    assert_near(with_film(2.25, 1.0, 1.0, 1.5, quarter), 0.0, 1e-30);
-    assert_near(with_film(1.0, 1.52, 1.0, 1.38, quarter), 0.0126008, 5e-8);
-    assert_near(with_film(1.0, 1.5, 1.0, 1.38, half), 0.04, 1e-15);
-    assert_near(with_film(1.0, 1.5, 1.0, 1.38, 0.0), 0.04, 1e-15);
-    for (int i = 1; i <= 20; i++) { /* a film of the index of one side */
+    assert_near(compute_reflectance(1.0, 2.25, 1.0, 1.5, quarter), 0.0, 1e-30);
+    assert_near(compute_reflectance(2.25, 1.0, 1.0, 1.5, quarter), 0.0, 1e-30);
+    assert_near(compute_reflectance(1.0, 1.52, 1.0, 1.38, quarter), 0.0126008,
+                5e-8);
+    assert_near(compute_reflectance(1.0, 1.5, 1.0, 1.38, half), 0.04, 1e-15);
+    assert_near(compute_reflectance(1.0, 1.5, 1.0, 1.38, 0.0), 0.04, 1e-15);
+    /* a film with the index of one of the media has no effect */
+    for (int i = 1; i <= 20; i++) {
         const double c = 0.05 * i;
 
-        assert_near(with_film(1.0, 1.5, c, 1.5, 2.0), bare(1, 1.5, c), 1e-14);
-        assert_near(with_film(1.0, 1.5, c, 1.0, 2.0), bare(1, 1.5, c), 1e-14);
+        assert_near(compute_reflectance(1.0, 1.5, c, 1.5, 2.0),
+                    compute_bare_reflectance(1, 1.5, c), 1e-14);
+        assert_near(compute_reflectance(1.0, 1.5, c, 1.0, 2.0),
+                    compute_bare_reflectance(1, 1.5, c), 1e-14);
     }
 }
 
-/* Returns the reflectance of a film by Airy's sum in complex numbers, as
- * textbooks write it: cosines in all three media, amplitudes at both faces of
- * the film. */
-static double airy(double n1, double n2, double c1, double nf, double phase)
+/* Returns the reflectance of a film by Airy's sum in complex numbers, as in
+ * textbooks: cosines in all three media, amplitudes at both faces of the
+ * film. */
+static double compute_airy(double n1, double n2, double c1, double nf,
+                           double phase)
 {
     const double complex cf = csqrt(1 - n1 * n1 / (nf * nf) * (1 - c1 * c1));
     const double complex c2 = csqrt(1 - n1 * n1 / (n2 * n2) * (1 - c1 * c1));
@@ -118,8 +124,8 @@ static double airy(double n1, double n2, double c1, double nf, double phase)
 
 TEST(film_against_airy)
 {
-    /* Indices before, of and behind the film. In the last three, light at
-     * grazing angles passes only by frustrated total reflection. */
+    /* Indices before, inside and behind the film. In the last three cases,
+     * light at grazing angles passes only by frustrated total reflection. */
     static const double n[][3] = {
         {1, 1.38, 1.5},   {1.8, 1.38, 1},   {1, 2.3, 1.6},   {1.5, 1.7, 1.6},
         {1.7, 1.2, 1.65}, {1.9, 1.01, 1.5}, {1.5, 1.38, 1.9}};
@@ -132,24 +138,25 @@ TEST(film_against_airy)
                 const double sine = n[k][0] * sqrt(1 - c * c);
 
                 frustrated += sine > n[k][1] && sine < n[k][2];
-                assert_near(with_film(n[k][0], n[k][2], c, n[k][1], phase),
-                            airy(n[k][0], n[k][2], c, n[k][1], phase), 1e-11);
+                assert_near(
+                    compute_reflectance(n[k][0], n[k][2], c, n[k][1], phase),
+                    compute_airy(n[k][0], n[k][2], c, n[k][1], phase), 1e-11);
             }
     assert_true(frustrated > 1000);
 }
 
-/* A thin gap must pass light that a thick one reflects totally. */
+/* A thin gap transmits light that a thick one reflects totally. */
 TEST(frustrated_reflection)
 {
-    assert_true(with_film(1.7, 1.7, 0.6, 1.01, 1e-3) < 1e-4);
-    assert_near(with_film(1.7, 1.7, 0.6, 1.01, 60.0), 1.0, 1e-12);
-    assert_near(with_film(1.7, 1.7, 0.6, 1.01, 1e300), 1.0, 1e-12);
+    assert_true(compute_reflectance(1.7, 1.7, 0.6, 1.01, 1e-3) < 1e-4);
+    assert_near(compute_reflectance(1.7, 1.7, 0.6, 1.01, 60.0), 1.0, 1e-12);
+    assert_near(compute_reflectance(1.7, 1.7, 0.6, 1.01, 1e300), 1.0, 1e-12);
     /* 1.7 times the sine 0.8 is 1.36, so the angle is critical for the film. */
-    assert_near(with_film(1.7, 1.7, 0.6, 1.36, 3.0),
-                with_film(1.7, 1.7, 0.6, 1.36 - 1e-9, 3.0), 1e-7);
+    assert_near(compute_reflectance(1.7, 1.7, 0.6, 1.36, 3.0),
+                compute_reflectance(1.7, 1.7, 0.6, 1.36 - 1e-9, 3.0), 1e-7);
 }
 
-/* The reflectance must be 0 .. 1 and the same from both sides of a boundary. */
+/* The reflectance is 0 .. 1 and the same from both sides of a boundary. */
 TEST(reciprocity)
 {
     static const double film[] = {0.0, 1.38, 1.2, 2.4};
@@ -159,22 +166,23 @@ TEST(reciprocity)
             for (int i = 0; i <= 1000; i++) {
                 const double c1 = 1e-3 * i, s1 = sqrt(1 - c1 * c1);
                 const double s2 = s1 / n2, c2 = sqrt(1 - s2 * s2);
-                const double into = with_film(1, n2, c1, film[f], 2.6);
-                const double out = with_film(n2, 1, c2, film[f], 2.6);
+                const double into =
+                    compute_reflectance(1, n2, c1, film[f], 2.6);
+                const double out = compute_reflectance(n2, 1, c2, film[f], 2.6);
 
                 assert_true(into >= 0.0 && into <= 1.0);
                 assert_true(out >= 0.0 && out <= 1.0);
-                /* The cosine of a grazing angle is less exact, as it follows
-                 * from the sine. */
+                /* cosines of grazing angles are less exact, as they are
+                 * computed from sines */
                 assert_near(into, out, 1e-14 / fmax(c1, 1e-8));
             }
 }
 
 /* ------------------------------------------------------------- first order */
 
-/* Returns a biconvex lens, R = 50, d = 6, n = 1.5. The constants below follow
- * from the lensmaker's equation by hand. */
-static struct glint_prescription biconvex(void)
+/* Returns a biconvex lens, R = 50, d = 6, n = 1.5. The constants below were
+ * computed by hand from the lensmaker's equation. */
+static struct glint_prescription make_biconvex(void)
 {
     struct glint_prescription lens;
 
@@ -196,14 +204,14 @@ static struct glint_prescription biconvex(void)
 
 TEST(biconvex_with_stop_behind)
 {
-    const struct glint_prescription lens = biconvex();
+    const struct glint_prescription lens = make_biconvex();
     struct glint_optics optics;
 
     glint_optics_of(&lens, &optics);
     assert_near(optics.focal_mm, BICONVEX_F, 1e-12);
     assert_near(optics.back_focal_mm, BICONVEX_BACK, 1e-12);
     assert_near(optics.entrance_radius_mm, BICONVEX_F / 16.0, 1e-12);
-    /* The stop cuts the cone to the focus 10 mm behind the lens. */
+    /* the stop limits the cone to the focus at a plane 10 mm behind the lens */
     assert_near(optics.stop_radius_mm, (BICONVEX_BACK - 10.0) / 16.0, 1e-12);
     assert_near(optics.length_mm, 54.0, 1e-12);
     /* Newton: the stop is BACK - 10 before the rear focus, so its image is
@@ -217,7 +225,7 @@ TEST(biconvex_with_stop_behind)
 
 TEST(biconvex_with_stop_in_front)
 {
-    struct glint_prescription lens = biconvex();
+    struct glint_prescription lens = make_biconvex();
     struct glint_optics optics;
 
     lens.stop_after = 0;
@@ -232,9 +240,9 @@ TEST(biconvex_with_stop_in_front)
 
 /* ------------------------------------------------------- the eleven tables */
 
-/* Values that were published with the tables: focal length, back focal length
- * and stop radius in mm at the d line, f-number, surfaces before and after the
- * stop, and number of ghosts. */
+/* Values published with the tables: focal length, back focal length and stop
+ * radius in mm at the d line, f-number, numbers of surfaces before and after
+ * the stop, and number of ghosts. */
 static const struct {
     const char *name;
     double focal, back_focal, stop_radius, f_number;
@@ -272,7 +280,7 @@ TEST(published_values)
         assert_near(optics.stop_radius_mm, tables[i].stop_radius, 5.1e-5);
         assert_near(lens.check_focal_mm, tables[i].focal, 0.0);
         assert_near(lens.check_back_mm, tables[i].back_focal, 0.0);
-        /* The lens is focused at infinity. */
+        /* the lens is focused at infinity */
         assert_near(lens.surface[lens.n_surfaces - 1].thickness_mm,
                     optics.back_focal_mm, 1e-6);
         assert_int_equal(lens.stop_after, tables[i].before);
@@ -284,8 +292,8 @@ TEST(published_values)
 
 /* ------------------------------------------------------------------ ghosts */
 
-/* Pairs must be listed in this order and not across the stop: five surfaces lie
- * before it, three after it. */
+/* Pairs are listed in this order, and not across the stop: five surfaces lie
+ * before it, three behind it. */
 TEST(ghost_order)
 {
     static const struct glint_ghost expected[] = {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lens tables: what the parser reads from a good one, and which place and cause
- * it names for each mistake.
+ * Tests the parser of lens tables: what it reads from a valid table, and the
+ * position and cause that it reports for each mistake.
  */
 #include <dirent.h>
 #include <math.h>
@@ -16,7 +16,7 @@
 
 #define CORPUS "tests/fuzz/corpus/lens"
 
-/* This table is good. Each mistake below replaces one line of it. */
+/* A valid table. Each mistake below replaces one of its lines. */
 static const char *const good[] = {
     "name tiny-4",                       /* line 1 */
     "source Tiny, US 1,234",             /* line 2 */
@@ -32,8 +32,8 @@ static const char *const good[] = {
 
 #define N_GOOD 10
 
-/* Writes the good table to TEXT, with LINE in place of line NUMBER (from 1; 0:
- * none) and END after each line. Returns its bytes. */
+/* Writes the valid table to TEXT, with LINE in place of line NUMBER (from 1;
+ * 0: no replacement) and END after each line. Returns its size in bytes. */
 static size_t compose(char text[4096], int number, const char *line,
                       const char *end)
 {
@@ -49,8 +49,8 @@ static enum glint_status parse(struct glint_prescription *lens,
                                const char *text, size_t bytes,
                                struct glint_error *error)
 {
-    /* The copy ends where the text does, so that the address sanitizer sees
-     * reads beyond it. */
+    /* The copy has the exact size of the text, so that the address sanitizer
+     * detects reads beyond its end. */
     char *copy = malloc(bytes ? bytes : 1);
     enum glint_status status;
 
@@ -127,7 +127,7 @@ TEST(good_table)
     expect_tiny(&lens);
     expect_good(&lens, text, compose(text, 0, NULL, " \t \n\n"));
     expect_tiny(&lens);
-    /* The last line may lack its end. */
+    /* the last line may have no line end */
     expect_good(&lens, text, compose(text, 0, NULL, "\n") - 1);
     expect_tiny(&lens);
     expect_good(&lens, text,
@@ -164,8 +164,7 @@ TEST(coatings)
     expect_coatings(7, "surface -50 3 12 air coating none",
                     (const double[]){550, 0, 550, 550},
                     (const double[]){1.38, 0, 1.38, 1.38});
-    /* Surface 1 becomes cemented, and so has no coating whatever coating the
-     * others get. */
+    /* Surface 1 becomes cemented, so it gets no coating. */
     expect_coatings(7,
                     "surface -50 3 12 1.7 30\nsurface -90 3 12 air\ncoating "
                     "500 1.4",
@@ -210,7 +209,7 @@ TEST(round_stops)
     assert_true(lens.stop_thickness_mm == 40 && lens.stop_semi_mm == 8);
 }
 
-/* The parser must round decimals as the compiler does. */
+/* The parser rounds decimals like the compiler. */
 TEST(numbers_are_exact)
 {
     static const struct {
@@ -240,7 +239,7 @@ TEST(numbers_are_exact)
 /* ---------------------------------------------------------------- mistakes */
 
 static const struct {
-    int number; /* line of the table that is replaced, from 1 */
+    int number; /* number of the line that is replaced, from 1 */
     const char *line, *error;
 } mistakes[] = {
     /* mistakes in names and words */
@@ -278,7 +277,7 @@ static const struct {
     {4, "film 36", "x.lens:4:8: film height is missing"},
     {4, "film 0 24", "x.lens:4:6: film width must be 0.1 .. 1000, not 0"},
     {4, "film 36 x24", "x.lens:4:9: film height 'x24' is not a number"},
-    /* words that are not numbers of a table, though C may read them as some */
+    /* words that strtod() would accept, but lens tables do not */
     {3, "f-number inf", "x.lens:3:10: f-number 'inf' is not a number"},
     {3, "f-number nan", "x.lens:3:10: f-number 'nan' is not a number"},
     {3, "f-number 0x8", "x.lens:3:10: f-number '0x8' is not a number"},
@@ -375,9 +374,9 @@ static const struct {
     {8, "stop 5 8\nstop 5 8",
      "x.lens:9:1: a second stop; the first is on line 8"},
     {8, "stop 5", "x.lens:8:7: semi-diameter is missing"},
-    {8, "stop 5 8 circle 9", "x.lens:8:17: '9' is one value too many for stop"},
-    {8, "stop 5 8 9", "x.lens:8:10: unexpected '9'; expected circle"},
-    /* mistakes that only the lens as a whole shows */
+    {8, "stop 5 8 circle 9", "x.lens:8:17: '9' is more than stop takes"},
+    {8, "stop 5 8 9", "x.lens:8:10: '9' stands where only circle may follow"},
+    /* mistakes that are detected only in the complete lens */
     {6, "surface 50 2.3 12 N-BK7",
      "x.lens:6:12: overlaps the next element by 0.06066 mm at 10.8 mm from "
      "the axis"},
@@ -399,7 +398,7 @@ static const struct {
      "x.lens:2:19: back-focal-length is 29.4328 mm, not the stated 40 mm"},
     {2, "focal-length -40",
      "x.lens:2:14: focal length must be 0.01 .. 1000000, not -40"},
-    /* bytes that are not text */
+    /* bytes that are not valid text */
     {2, "source a\rb", "x.lens:2:9: byte 0x0d is not text (UTF-8)"},
     {2, "# bell \a", "x.lens:2:8: byte 0x07 is not text (UTF-8)"},
     {2, "# \x7f", "x.lens:2:3: byte 0x7f is not text (UTF-8)"},
@@ -435,7 +434,7 @@ TEST(bytes)
     bytes = compose(text, 0, NULL, "\n");
     text[5] = 0;
     expect_error(text, bytes, "x.lens:1:6: byte 0x00 is not text (UTF-8)");
-    /* The last byte of the text begins a character of several bytes. */
+    /* the last byte of the text is the first byte of a multi-byte character */
     bytes = compose(text, 0, NULL, "\n");
     text[bytes - 1] = '\xe2';
     expect_error(text, bytes, "x.lens:10:34: byte 0xe2 is not text (UTF-8)");
@@ -460,7 +459,8 @@ TEST(longest_line_and_text)
     expect_error(big, 65537, "x.lens:1:1: text is longer than 65536 bytes");
 }
 
-/* A comment may have any text in UTF-8; a # inside a word begins none. */
+/* A comment may contain any UTF-8 text; a # inside a word does not begin a
+ * comment. */
 TEST(utf8_and_comments)
 {
     static struct glint_prescription lens;
@@ -503,9 +503,9 @@ TEST(power)
 {
     expect_whole_lens_error("stop 1 20\nsurface flat 3 9 1.5 60\n"
                             "surface flat 9 9 air\n",
-                            "x.lens:7:1: the lens has no refractive power");
-    /* With R1 - R2 = d (n - 1) / n, which these decimals fulfil exactly, the
-     * lens is afocal. */
+                            "x.lens:7:1: the lens has no power");
+    /* With R1 - R2 = d (n - 1) / n, which these decimals satisfy exactly,
+     * the lens is afocal. */
     expect_whole_lens_error("stop 1 20\nsurface 40 60 9 1.5 60\n"
                             "surface 20 9 9 air\n",
                             "x.lens:7:1: the lens has no refractive power");
@@ -514,8 +514,8 @@ TEST(power)
                             "x.lens:7:1: the lens has no focus behind it: "
                             "focal length -49.505 mm, back focal length "
                             "-50.495 mm");
-    /* The stop lies in the focus of a thick plano-convex rod, which is R n / (n
-     * - 1) long; two relays pass on its image. */
+    /* The stop lies in the focus of a thick plano-convex rod of length R n /
+     * (n - 1); two relays image it. */
     expect_whole_lens_error("surface 20 60 9 1.5 60\nsurface flat 0 9 air\n"
                             "stop 100 5\n"
                             "surface 50 3 9 1.5 60\nsurface -50 200 9 air\n"
@@ -524,7 +524,7 @@ TEST(power)
                             "the surfaces before it");
 }
 
-/* The focal lengths that a table states may be 0.1 % off. */
+/* Stated focal lengths may deviate by 0.1 %. */
 TEST(stated_values)
 {
     static struct glint_prescription lens;
@@ -540,7 +540,7 @@ TEST(stated_values)
                  "38.08 mm");
 }
 
-/* The message must keep the cause however long the file's name is. */
+/* Errors contain the cause, however long the file name is. */
 TEST(long_file_name)
 {
     static struct glint_prescription lens;
@@ -555,7 +555,8 @@ TEST(long_file_name)
     assert_memory_equal(error.text, "...ddd", 6);
 }
 
-/* Nearest roundings of these are too small. */
+/* Lenses whose smallest f-number, rounded to nearest, would be rejected.
+ * glint_prescription_widest() returns one that is accepted. */
 TEST(printed_widest)
 {
     static const char *const names[] = {"heliar-tronnier", "canon-zoom-long",
@@ -587,7 +588,8 @@ TEST(set_f_number)
     load_lens(&lens, "heliar-tronnier");
     assert_ok(glint_prescription_set_f_number(&lens, 8.0, &error));
     assert_true(lens.f_number == 8.0);
-    glint_optics_of(&lens, &optics); /* twice the stop radius at f/16 */
+    /* at f/8 the stop radius is twice that at f/16 */
+    glint_optics_of(&lens, &optics);
     assert_near(optics.stop_radius_mm, 2.0 * 2.4868, 1e-4);
     assert_int_equal(glint_prescription_set_f_number(&lens, 2.0, &error),
                      GLINT_E_ARGUMENT);
@@ -607,7 +609,7 @@ TEST(set_f_number)
     assert_true(lens.f_number == 8.0);
 }
 
-/* The example table of the manual must be good. */
+/* The example table of the manual is valid. */
 TEST(manual)
 {
     static const char fence[] = "```lens\n";
@@ -625,8 +627,8 @@ TEST(manual)
     assert_string_equal(lens.name, "achromat");
 }
 
-/* Tables of the fuzzer's corpus must fit their names: good-* parse, bad-* do
- * not, others may do either. */
+/* Tables in the fuzzer's corpus match their names: good-* parse, bad-* are
+ * rejected, others may do either. */
 TEST(corpus)
 {
     static struct glint_prescription lens;
@@ -654,7 +656,8 @@ TEST(corpus)
     assert_true(n >= 20);
 }
 
-/* Numbers of any number of digits are the nearest doubles: the compiler's. */
+/* Numbers with any number of digits become the nearest double, like the
+ * compiler's. */
 TEST(digits)
 {
     static const struct {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pupil box must hold each ray that gets through, as a dense scan of the
- * whole front element finds them.
+ * Tests that the pupil box contains every unblocked ray that a dense scan of
+ * the whole front element finds.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,19 +15,21 @@ static struct glint_prescription lens;
 static struct glint_optics optics;
 static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
 
-/* Returns whether a ray passes, by the ray's own record alone. */
-static bool passes(const struct glint_path *path, double x, double y,
-                   const double direction[3], struct glint_ray *ray)
+/* Returns whether a ray passes all openings, judged from its own record
+ * only. */
+static bool ray_passes(const struct glint_path *path, double x, double y,
+                       const double direction[3], struct glint_ray *ray)
 {
     return glint_trace(path, x, y, direction, ray, NULL) == GLINT_RAY_OK &&
            ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <= optics.stop_radius_mm;
 }
 
-/* Checks the pupil box of GHOST at an angle and wavelength against a scan, and
- * adds the rays that passed to *N_SEEN. With NEAR the search for the box starts
- * from that at 532 nm, as in a frame. */
-static void scan(int ghost, double theta_deg, double nm, bool near, int *n_seen)
+/* Checks the pupil box of GHOST at an angle and wavelength against a scan.
+ * Adds the number of unblocked rays to *N_SEEN. NEAR: the search for the box
+ * starts from the box at 532 nm, as in a frame. */
+static void check_box(int ghost, double theta_deg, double nm, bool near,
+                      int *n_seen)
 {
     const double t = theta_deg * 3.14159265358979 / 180;
     const double direction[3] = {sin(t), 0, cos(t)};
@@ -48,7 +50,7 @@ static void scan(int ghost, double theta_deg, double nm, bool near, int *n_seen)
             const double y = semi * 2.0 * j / SCAN;
             struct glint_ray ray;
 
-            if (!passes(&path, x, y, direction, &ray))
+            if (!ray_passes(&path, x, y, direction, &ray))
                 continue;
             ++*n_seen;
             if (!found || x < box.x0_mm || x > box.x1_mm || y > box.y1_mm)
@@ -61,7 +63,7 @@ static void scan(int ghost, double theta_deg, double nm, bool near, int *n_seen)
         }
 }
 
-static void scan_lens(const char *name, int step)
+static void check_lens(const char *name, int step)
 {
     static const double angles[] = {0, 3, 7.5, 12, 25};
     int n_ghosts, n_seen = 0;
@@ -71,27 +73,26 @@ static void scan_lens(const char *name, int step)
     n_ghosts = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
     for (int ghost = 0; ghost < n_ghosts; ghost += step)
         for (int a = 0; a < 5; a++)
-            scan(ghost, angles[a], a & 1 ? 450 : 650, a != 2, &n_seen);
+            check_box(ghost, angles[a], a & 1 ? 450 : 650, a != 2, &n_seen);
     assert_true(n_seen > 1000);
 }
 
 TEST(heliar)
 {
-    scan_lens("heliar-tronnier", 1);
+    check_lens("heliar-tronnier", 1);
 }
 
 TEST(angenieux)
 {
-    scan_lens("double-gauss-angenieux", 3);
+    check_lens("double-gauss-angenieux", 3);
 }
 
 TEST(itoh)
 {
-    scan_lens("itoh-zoom-long", 7);
+    check_lens("itoh-zoom-long", 7);
 }
 
-/* Through this ghost the stop looks so small that all light enters by a spot of
- * a twentieth of a millimetre. */
+/* A ghost whose light enters through a spot of 1/20 mm. */
 TEST(spot)
 {
     load_lens(&lens, "nikon-zoom-short");
@@ -108,8 +109,8 @@ TEST(spot)
         assert_true(glint_pupil_find(&box, &path, 0.5 * k,
                                      optics.stop_radius_mm, NULL));
         assert_true(box.x1_mm - box.x0_mm < 0.1 && box.y1_mm < 0.1);
-        assert_true(
-            passes(&path, 0.5 * (box.x0_mm + box.x1_mm), 0, direction, &ray));
+        assert_true(ray_passes(&path, 0.5 * (box.x0_mm + box.x1_mm), 0,
+                               direction, &ray));
     }
 }
 
@@ -124,9 +125,9 @@ static void load_fisheye(struct glint_path *path, int ghost, double nm)
     glint_path_init(path, &lens, &ghosts[ghost], nm);
 }
 
-/* Ghosts of a fisheye enter by spots of a twentieth of a millimetre in a front
- * of 80, about which all rays are invalid. Every colour has one, beside that of
- * the colour before. */
+/* Ghosts of a fisheye enter through spots of 1/20 mm in a front of 80 mm,
+ * around which all rays are invalid. Every wavelength has a spot, next to
+ * that of the previous wavelength. */
 TEST(spots_of_fisheye)
 {
     static const struct {
@@ -150,9 +151,9 @@ TEST(spots_of_fisheye)
                                          optics.stop_radius_mm, NULL));
             assert_true(box.x1_mm - box.x0_mm < 0.3 && box.y1_mm < 0.1);
             for (int i = 0; i <= SCAN; i++)
-                n += passes(&path,
-                            box.x0_mm + (box.x1_mm - box.x0_mm) * i / SCAN, 0,
-                            direction, &ray);
+                n += ray_passes(&path,
+                                box.x0_mm + (box.x1_mm - box.x0_mm) * i / SCAN,
+                                0, direction, &ray);
             assert_true(n > SCAN / 2);
             assert_true(nm == 400 || fabs(box.x0_mm - before) < 1);
             before = box.x0_mm;
@@ -160,7 +161,7 @@ TEST(spots_of_fisheye)
     }
 }
 
-/* A crescent whose tips are thinner than the cells of the search. */
+/* A crescent with tips thinner than the cells of the search. */
 TEST(tips)
 {
     const double t = 12.74 * 3.14159265358979 / 180;
@@ -179,7 +180,7 @@ TEST(tips)
             for (int i = 0; i <= SCAN; i++) {
                 const double x = -9 + 7.0 * i / SCAN, y = 3.0 * j / SCAN;
 
-                if (!passes(&path, x, y, direction, &ray))
+                if (!ray_passes(&path, x, y, direction, &ray))
                     continue;
                 n++;
                 assert_true(x >= box.x0_mm && x <= box.x1_mm && y <= box.y1_mm);
@@ -202,10 +203,11 @@ TEST(nothing_gets_through)
         glint_pupil_find(&box, &path, 85, optics.stop_radius_mm, NULL));
 }
 
-/* A box whose side K was moved in by a fifth is grown past all rays that get
- * through, and no other side is moved in. */
-static void grow_side(const struct glint_path *path, const double direction[3],
-                      const struct glint_pupil *whole, int k)
+/* Checks that a box whose side K was moved inwards by a fifth grows to
+ * contain all unblocked rays, and that no other side moves inwards. */
+static void check_growth(const struct glint_path *path,
+                         const double direction[3],
+                         const struct glint_pupil *whole, int k)
 {
     const struct glint_openings openings = {
         .path = path,
@@ -228,7 +230,7 @@ static void grow_side(const struct glint_path *path, const double direction[3],
             const double x = whole->x0_mm + wide * i * 4 / SCAN;
             const double y = high * j * 8 / SCAN;
 
-            if (passes(path, x, y, direction, &ray) &&
+            if (ray_passes(path, x, y, direction, &ray) &&
                 (x < p.x0_mm || x > p.x1_mm || y < p.y0_mm || y > p.y1_mm))
                 fail_msg("side %d: %g, %g mm is outside", k, x, y);
         }
@@ -245,5 +247,5 @@ TEST(sides)
     assert_true(
         glint_pupil_find(&whole, &path, 12.74, optics.stop_radius_mm, NULL));
     for (int k = 0; k < 4; k++)
-        grow_side(&path, direction, &whole, k);
+        check_growth(&path, direction, &whole, k);
 }

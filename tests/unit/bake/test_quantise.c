@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Integers of a model against the polynomials that they stand for: what is
- * proven of the integers must hold for every input that is tried.
+ * Tests the integers of a model against the polynomials that they approximate:
+ * the proven bounds hold for every input tried.
  */
 #include <math.h>
 #include <stdio.h>
@@ -20,7 +20,7 @@ enum { ONE_Q30 = 1 << 30, KINDS = GLINT_OUT_BARREL_0 + 1 };
 
 static uint32_t seed = 1;
 
-/* Returns -1 .. 1. */
+/* Returns a random number, -1 .. 1. */
 static double random_unit(void)
 {
     return 2.0 * rng_xorshift(&seed) / UINT32_MAX - 1;
@@ -31,8 +31,8 @@ static int random_int(int lo, int hi)
     return lo + (int)(rng_xorshift(&seed) % (uint32_t)(hi - lo + 1));
 }
 
-/* Returns a number within +-2^30; one in four is an end, 0, or next to
- * these. */
+/* Returns a random number within +-2^30; one in four is an end, 0, or
+ * adjacent to these. */
 static int32_t random_q30(void)
 {
     static const int32_t corner[] = {-ONE_Q30, 1 - ONE_Q30, -1,     0,
@@ -45,7 +45,7 @@ static int32_t random_q30(void)
 
 /* ------------------------------------------------------------------ systems */
 
-/* A fitted ghost of one system, its lens, and the model of it. */
+/* A fitted ghost of one system, and its model. */
 struct made {
     struct glint_fitted_ghost fitted;
     struct glint_quantised_system quantised;
@@ -78,7 +78,7 @@ static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
     for (int k = 0; k < o->n_terms; k++) {
         const double unit = random_unit();
 
-        /* Coefficients of one sign take some sums to the bound. */
+        /* coefficients of one sign bring some sums near the bound */
         o->coef[k] = ldexp(most % 3 ? unit : fabs(unit),
                            scale - random_int(0, most % 5 ? 3 : 20));
     }
@@ -113,7 +113,7 @@ static void make_system(struct made *m)
         make_output(s, (enum glint_channel)kind);
 }
 
-/* Quantises M, writes its model, and opens the model as a program does. */
+/* Quantises M, writes its model, and opens the model like a program. */
 static void make_model(struct made *m)
 {
     static struct glint_setup setup;
@@ -149,7 +149,7 @@ static void make_model(struct made *m)
         fail_msg("%s", reason);
 }
 
-static void finish(struct made *m)
+static void free_made(struct made *m)
 {
     glint_quantised_finish(&m->quantised);
     glint_fitted_finish(&m->fitted);
@@ -158,23 +158,22 @@ static void finish(struct made *m)
 
 /* -------------------------------------------------------------------- proof */
 
-static double to_one(int32_t x_q30)
+static double convert_from_q30(int32_t x_q30)
 {
     return ldexp(x_q30, -30);
 }
 
-/* Returns where X lies between LO and HI, as -1 .. 1 _q30, rounded as the run
- * time rounds it. */
-static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
+/* Maps X from LO .. HI to -1 .. 1 _q30, rounded like the run time. */
+static int32_t map_to_q30(int32_t x, int32_t lo, int32_t hi)
 {
     const int64_t twice = 2 * (int64_t)x - lo - hi;
 
     return (int32_t)(twice * ONE_Q30 / ((int64_t)hi - lo));
 }
 
-/* Returns the value of the fitted polynomial O at POWER. */
-static double polynomial(const struct glint_fitted_output *o,
-                         double power[4][16])
+/* Returns the value of the fitted polynomial O at the powers POWER. */
+static double evaluate_polynomial(const struct glint_fitted_output *o,
+                                  double power[4][16])
 {
     double sum = 0;
 
@@ -197,16 +196,16 @@ static void set_powers(double power[4][16], const double x[4])
     }
 }
 
-/* The largest parts of the proven bounds that were used, 0 .. 1: by values, by
- * rounding errors. */
+/* Largest observed value / proven bound, and largest observed rounding error
+ * / proven bound, each 0 .. 1. */
 struct used {
     double bound, rounding;
     long n;
 };
 
-/* Returns what the run time must make of VALUE, a polynomial of energy: limited
- * by HEAD, then squared ROOTS times. */
-static double energy_of(int head, int roots, double value)
+/* Returns the value that the run time computes from VALUE, a polynomial of
+ * the energy: limited according to HEAD, then squared ROOTS times. */
+static double compute_energy(int head, int roots, double value)
 {
     if (head || roots)
         value = ldexp(fmin(fmax(value, 0), ldexp(1, 29 - head)), head);
@@ -215,10 +214,11 @@ static double energy_of(int head, int roots, double value)
     return value;
 }
 
-/* Compares the run time's outputs OUT with the fitted polynomials. X holds the
- * variables that the run time has, exactly. */
-static void compare(const struct made *m, const struct glint_outputs *out,
-                    const double x[4], struct used *used)
+/* Compares the run time's outputs OUT with the fitted polynomials. X are the
+ * exact variables of the run time. */
+static void compare_outputs(const struct made *m,
+                            const struct glint_outputs *out, const double x[4],
+                            struct used *used)
 {
     double power[4][16];
 
@@ -226,12 +226,14 @@ static void compare(const struct made *m, const struct glint_outputs *out,
     for (int k = 0; k < m->fitted.system->n_outputs; k++) {
         const struct glint_fitted_output *o = &m->fitted.system->output[k];
         const struct glint_quantised_output *q = &m->quantised.output[k];
-        const double truth = energy_of(
-            q->head, o->roots, ldexp(polynomial(o, power), -q->exponent));
+        const double truth =
+            compute_energy(q->head, o->roots,
+                           ldexp(evaluate_polynomial(o, power), -q->exponent));
         const double error = fabs(out->at[o->kind] - truth);
         const double most = ldexp(q->rounding_q8, -8) + 1e-6;
 
-        if (q->head || o->roots) { /* limited to 2^29 and not by the bound */
+        /* limited to 2^29 rather than by the bound */
+        if (q->head || o->roots) {
             assert_true(error <= most && out->at[o->kind] <= 1 << 29);
             continue;
         }
@@ -257,14 +259,15 @@ static void compare_rays(const struct made *m, int32_t sine_q30,
     for (int k = 0; k < rays; k++) {
         const int32_t u_q30 = random_q30(), v_q30 = random_q30();
         const struct glint_model_system *s = t.system;
-        const double x[4] = {
-            to_one(u_q30), to_one(v_q30),
-            to_one(within_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30)),
-            to_one(within_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24))};
+        const double x[4] = {convert_from_q30(u_q30), convert_from_q30(v_q30),
+                             convert_from_q30(map_to_q30(
+                                 sine_q30, s->sine_lo_q30, s->sine_hi_q30)),
+                             convert_from_q30(map_to_q30(
+                                 wave_q24, s->wave_lo_q24, s->wave_hi_q24))};
         struct glint_outputs out;
 
         glint_transfer_ray(&t, u_q30, v_q30, &out);
-        compare(m, &out, x, used);
+        compare_outputs(m, &out, x, used);
     }
 }
 
@@ -282,8 +285,8 @@ static struct used check_proofs(int systems)
         make_model(&m);
         s = m.lens.system;
         for (int i = 0; i < BUNDLES; i++) {
-            const double a = 0.5 + 0.5 * to_one(random_q30());
-            const double b = 0.5 + 0.5 * to_one(random_q30());
+            const double a = 0.5 + 0.5 * convert_from_q30(random_q30());
+            const double b = 0.5 + 0.5 * convert_from_q30(random_q30());
             const int32_t sine_q30 =
                 s->sine_lo_q30 +
                 (int32_t)(a * (s->sine_hi_q30 - s->sine_lo_q30));
@@ -293,13 +296,13 @@ static struct used check_proofs(int systems)
 
             compare_rays(&m, sine_q30, wave_q24, RAYS, &used);
         }
-        finish(&m);
+        free_made(&m);
     }
     return used;
 }
 
-/* Some value must come near its bound, and some rounding error must be at least
- * 2 % of its bound. */
+/* Some value comes near its bound, and some rounding error is at least 2 %
+ * of its bound. */
 TEST(proof)
 {
     const struct used used = check_proofs(240);
@@ -309,7 +312,8 @@ TEST(proof)
     assert_in_range((long)(1000 * used.rounding), 20, 1000);
 }
 
-/* A coefficient that is off by a thousandth must exceed the proven rounding. */
+/* A coefficient that is wrong by a thousandth exceeds the proven rounding
+ * error. */
 TEST(proof_can_fail)
 {
     struct glint_outputs out;
@@ -332,11 +336,11 @@ TEST(proof_can_fail)
                                     m.lens.system->wave_hi_q24));
     glint_transfer_ray(&t, ONE_Q30, ONE_Q30, &out);
     set_powers(power, (const double[4]){1, 1, 1, 1});
-    truth = ldexp(polynomial(o, power),
+    truth = ldexp(evaluate_polynomial(o, power),
                   -m.quantised.output[GLINT_OUT_ENERGY].exponent);
     assert_true(fabs(out.at[GLINT_OUT_ENERGY] - truth) >
                 ldexp(m.quantised.output[GLINT_OUT_ENERGY].rounding_q8, -8));
-    finish(&m);
+    free_made(&m);
 }
 
 /* ------------------------------------------------------------------ numbers */
@@ -375,9 +379,9 @@ TEST(odd_reals)
 
 /* ---------------------------------------------------------------- exponents */
 
-/* Returns the sum of the coefficients' magnitudes. */
-static int64_t sum_of(const struct glint_fitted_output *o,
-                      const struct glint_quantised_output *q)
+/* Returns the sum of the magnitudes of the coefficients. */
+static int64_t sum_magnitudes(const struct glint_fitted_output *o,
+                              const struct glint_quantised_output *q)
 {
     int64_t sum = 0;
 
@@ -388,7 +392,7 @@ static int64_t sum_of(const struct glint_fitted_output *o,
     return sum;
 }
 
-/* Sums of coefficients must fit, and use at least half of the room there is. */
+/* Sums of coefficients fit, and use at least half of the available range. */
 TEST(exponents)
 {
     for (int k = 0; k < 1000; k++) {
@@ -399,7 +403,7 @@ TEST(exponents)
         assert_ok(glint_quantise(m.fitted.system, &m.quantised));
         for (int i = 0; i < KINDS; i++) {
             const struct glint_quantised_output *q = &m.quantised.output[i];
-            const int64_t sum = sum_of(&m.fitted.system->output[i], q);
+            const int64_t sum = sum_magnitudes(&m.fitted.system->output[i], q);
 
             assert_true(sum <= GLINT_COEF_LIMIT);
             assert_true(q->bound < ONE_Q30);
@@ -409,12 +413,12 @@ TEST(exponents)
         for (int i = 0; i < GLINT_OUT_ENERGY; i += 2)
             assert_int_equal(m.quantised.output[i].exponent,
                              m.quantised.output[i + 1].exponent);
-        finish(&m);
+        free_made(&m);
     }
 }
 
-/* The limit of an energy must be at least 1.2 times the largest one that gets
- * through. */
+/* The limit of an energy is at least 1.2 times the largest energy that
+ * passes. */
 TEST(head)
 {
     int cut = 0;
@@ -432,13 +436,13 @@ TEST(head)
         if (q->head > 0)
             assert_true(ldexp(1.2 * o->most, q->head - q->exponent) < 0x1p29);
         cut += q->head > 0;
-        finish(&m);
+        free_made(&m);
     }
     assert_in_range(cut, 300, 900);
 }
 
-/* Coefficients too small for any exponent of the file must be rounded to steps
- * of the least exponent. */
+/* Coefficients too small for any exponent of the file are rounded to steps
+ * of the smallest exponent. */
 TEST(least_exponent)
 {
     struct made m;
@@ -448,18 +452,18 @@ TEST(least_exponent)
     for (int k = 0; k < KINDS; k++)
         for (int t = 0; t < m.fitted.system->output[k].n_terms; t++)
             m.fitted.system->output[k].coef[t] = k % 2 ? 0 : 0x1p-200;
-    make_model(&m); /* checks that it opens */
+    make_model(&m); /* make_model() checks that the model can be opened */
     assert_int_equal(m.quantised.output[GLINT_OUT_ENERGY].exponent, -80);
-    finish(&m);
+    free_made(&m);
 }
 
 /* ----------------------------------------------------------------- refusals */
 
-static void refused(struct made *m)
+static void check_refused(struct made *m)
 {
     assert_int_equal(glint_quantise(m->fitted.system, &m->quantised),
                      GLINT_E_LENS);
-    finish(m);
+    free_made(m);
 }
 
 TEST(not_finite)
@@ -473,10 +477,10 @@ TEST(not_finite)
         make_system(&m);
         o = &m.fitted.system->output[k / 6];
         o->coef[o->n_terms - 1] = odd[k % 3];
-        refused(&m);
+        check_refused(&m);
         make_system(&m);
         m.fitted.system->box[k % 9] = odd[k % 3];
-        refused(&m);
+        check_refused(&m);
     }
 }
 
@@ -486,5 +490,5 @@ TEST(no_terms)
 
     make_system(&m);
     m.fitted.system->output[GLINT_OUT_STOP_Y].n_terms = 0;
-    refused(&m);
+    check_refused(&m);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sparse regression: terms that a greedy choice has to find.
+ * Tests sparse regression on functions for which a greedy choice of terms is
+ * difficult.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +18,8 @@ static const struct glint_degrees degrees = {.most = {6, 6, 0, 0},
                                              .terms = 8,
                                              .leaps = true};
 
-/* Fits VALUE of a place on a grid, LEAST .. 1 along u and -1 .. 1 along v. */
+/* Fits VALUE(u, v) on a grid, LEAST .. 1 along u and -1 .. 1 along v.
+ * Returns the residual. */
 static double fit(double (*value)(double u, double v), double least,
                   struct glint_poly *poly)
 {
@@ -51,13 +53,13 @@ static double odd(double u, double v)
     return 0.1 + u - 0.5 * u * u * u + 0.25 * u * v * v;
 }
 
-static double at(const struct glint_poly *poly, const double *x)
+static double evaluate(const struct glint_poly *poly, const double *x)
 {
     return glint_poly_at(poly->n, poly->power, poly->coef, x);
 }
 
-/* On a grid that is symmetric in u odd powers explain nothing of an even
- * function, and the other way round: no term in between must be needed. */
+/* On a grid symmetric in u, odd powers explain nothing of an even function
+ * and vice versa: the fit does not need terms in between. */
 TEST(symmetric)
 {
     const double x[GLINT_VARIABLES] = {0.3, -0.6, 0, 0};
@@ -65,10 +67,10 @@ TEST(symmetric)
 
     assert_true(fit(even, -1, &poly) <= 1);
     assert_int_equal(poly.n, 4);
-    assert_near(at(&poly, x), even(x[0], x[1]), 1e-8);
+    assert_near(evaluate(&poly, x), even(x[0], x[1]), 1e-8);
     assert_true(fit(odd, -1, &poly) <= 1);
     assert_int_equal(poly.n, 4);
-    assert_near(at(&poly, x), odd(x[0], x[1]), 1e-8);
+    assert_near(evaluate(&poly, x), odd(x[0], x[1]), 1e-8);
 }
 
 static double cubic(double u, double v)
@@ -77,14 +79,14 @@ static double cubic(double u, double v)
     return 1 - u + 2 * u * u - 3 * u * u * u;
 }
 
-/* Of a twentieth of the range powers of u are nearly alike: what u^3 has beside
- * the lower ones, 10^-5 of its length, is lost in differences of squares, and
- * is worked out again. */
+/* On a twentieth of the range, powers of u are nearly dependent. The
+ * component of u^3 orthogonal to lower powers, 10^-5 of its length, is lost
+ * in differences of squares and is computed again. */
 TEST(nearly_dependent)
 {
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};
     struct glint_poly poly;
 
     assert_true(fit(cubic, 0.95, &poly) <= 1);
-    assert_near(at(&poly, x), cubic(x[0], x[1]), 1e-8);
+    assert_near(evaluate(&poly, x), cubic(x[0], x[1]), 1e-8);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fits of rows that a run time draws, and the algebra below them.
+ * Tests the fits of scattering rows that the run time can draw, and their
+ * linear algebra.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -18,7 +19,8 @@ enum { SIDE = 20, KERNEL = 7, K2 = KERNEL * KERNEL, TEXELS = SIDE * SIDE };
 static const enum glint_scatter_model models[] = {
     GLINT_SCATTER_CLUSTERED, GLINT_SCATTER_FACTORED, GLINT_SCATTER_ALBEDO};
 
-static void chess(struct glint_scatter_rows *rows, int side, int kernel)
+static void make_checkerboard(struct glint_scatter_rows *rows, int side,
+                              int kernel)
 {
     struct glint_stone stone;
     struct glint_error error;
@@ -30,9 +32,9 @@ static void chess(struct glint_scatter_rows *rows, int side, int kernel)
     assert_ok(glint_scatter_compute(&stone, NULL, rows, &error));
 }
 
-static void fit_of(struct glint_scatter_rows *rows,
-                   enum glint_scatter_model model,
-                   struct glint_scatter_fit *fit)
+static void fit_model(struct glint_scatter_rows *rows,
+                      enum glint_scatter_model model,
+                      struct glint_scatter_fit *fit)
 {
     struct glint_scatter_options options;
 
@@ -40,7 +42,8 @@ static void fit_of(struct glint_scatter_rows *rows,
     assert_ok(glint_scatter_fit(rows, &options, NULL, fit));
 }
 
-/* Kernel J of made rows: no mirror leaves it as it is. */
+/* Returns entry D of kernel J of synthetic rows. The kernels are not
+ * symmetric, so that mirroring changes them. */
 static double made_kernel(int j, int d)
 {
     const int u = d % KERNEL - KERNEL / 2, v = d / KERNEL - KERNEL / 2;
@@ -49,8 +52,8 @@ static double made_kernel(int j, int d)
              : exp(-0.1 * u * u - 0.5 * (v - 1) * (v - 1));
 }
 
-/* Rows that are SUM over kernels of what WEIGHT has of x_o, times IN of x_i.
- */
+/* Sets ROWS to sums over kernels, weighted by WEIGHT at the texel where
+ * light leaves and by IN at the texel where it enters. */
 static void make_rows(struct glint_scatter_rows *rows, double (*weight)[2],
                       const double *in)
 {
@@ -68,7 +71,8 @@ static void make_rows(struct glint_scatter_rows *rows, double (*weight)[2],
             }
 }
 
-/* Rows that are a model come back, those that no mirror leaves alone, too. */
+/* Synthetic rows that match a model are fitted by that model, including
+ * kernels that are not symmetric. */
 TEST(models_found)
 {
     uint32_t seed = 5;
@@ -93,28 +97,28 @@ TEST(models_found)
         }
         make_rows(&rows, weight, in);
         assert_ok(glint_scatter_fit(&rows, &options, NULL, &fit));
-        /* alternations end early, floats have seven digits */
+        /* tolerances: alternations end early, and floats have seven digits */
         assert_true(fit.error.rmse < (bound[m]));
         glint_scatter_fit_close(&fit);
         glint_scatter_close(&rows);
     }
 }
 
-/* Light by a fit is light by its entries, even light is that of the data, and
- * factors are what h is made of. */
+/* Light scattered by a fit equals that scattered by its entries; uniform
+ * light gives the albedo of the data; rows and columns multiply to h. */
 TEST(light)
 {
     struct glint_scatter_rows rows, same;
     double light[3 * TEXELS], even[3 * TEXELS], want[3 * TEXELS],
         got[3 * TEXELS];
 
-    chess(&rows, SIDE, KERNEL);
+    make_checkerboard(&rows, SIDE, KERNEL);
     assert_true(glint_scatter_open(&same, SIDE, KERNEL, false));
     glint_scatter_test_light(SIDE, light);
     for (int m = 0; m < 3; m++) {
         struct glint_scatter_fit fit;
 
-        fit_of(&rows, models[m], &fit);
+        fit_model(&rows, models[m], &fit);
         for (int x = 0; x < TEXELS; x++)
             for (int c = 0; c < 3; c++)
                 for (int d = 0; d < K2; d++)
@@ -144,17 +148,18 @@ TEST(light)
     glint_scatter_close(&same);
 }
 
-/* Chess of two marbles, 40 dB under lamps and shadows: what the run time may
- * lose begins there. More terms and ranks are nearer. */
-TEST(near)
+/* Fits of a checkerboard of two marbles have a PSNR above 44 dB under lamps
+ * and shadows, well above the 40 dB that the run time must reach. More terms
+ * and higher ranks have smaller errors. */
+TEST(psnr_is_sufficient)
 {
     static const int parts[4][2] = {{1, 3}, {3, 3}, {5, 1}, {5, 3}};
     struct glint_scatter_rows rows;
     struct glint_scatter_fit fit;
     double db[4];
 
-    chess(&rows, 48, 15);
-    fit_of(&rows, GLINT_SCATTER_CLUSTERED, &fit);
+    make_checkerboard(&rows, 48, 15);
+    fit_model(&rows, GLINT_SCATTER_CLUSTERED, &fit);
     assert_true(fit.error.light_db > 44 && fit.error.entry_db > 44);
     glint_scatter_fit_close(&fit);
     for (int i = 0; i < 4; i++) {
@@ -170,8 +175,8 @@ TEST(near)
     glint_scatter_close(&rows);
 }
 
-/* Black translucent media, one texel, kernels that lead beyond the square from
- * everywhere: finite, and exact where there is nothing to lose. */
+/* Black media, one texel, kernels wider than the square: results are finite,
+ * and exact where the model can represent the data. */
 TEST(extremes)
 {
     static const int shape[3][2] = {{1, 9}, {3, 13}, {9, 1}};
@@ -183,10 +188,10 @@ TEST(extremes)
             struct glint_scatter_fit fit;
 
             if (i < 3)
-                chess(&rows, side, kernel);
+                make_checkerboard(&rows, side, kernel);
             else
                 assert_true(glint_scatter_open(&rows, side, kernel, false));
-            fit_of(&rows, models[m], &fit);
+            fit_model(&rows, models[m], &fit);
             assert_true(isfinite(fit.error.rmse) && fit.error.albedo < 0.5);
             for (int d = 0; d < 3 * kernel * kernel; d++)
                 assert_true(isfinite(fit.h[d]));
@@ -199,12 +204,12 @@ TEST(extremes)
         }
 }
 
-static bool at_once(void *ctx)
+static bool stop_third(void *ctx)
 {
     return ++*(int *)ctx > 2;
 }
 
-TEST(refused)
+TEST(rejects_invalid_options)
 {
     static const struct glint_scatter_options bad[] = {
         {GLINT_SCATTER_CLUSTERED, 0, 1}, {GLINT_SCATTER_CLUSTERED, 21, 1},
@@ -214,7 +219,7 @@ TEST(refused)
     struct glint_scatter_rows rows;
     struct glint_scatter_fit fit;
 
-    chess(&rows, 8, 5);
+    make_checkerboard(&rows, 8, 5);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_int_equal(glint_scatter_fit(&rows, &bad[i], NULL, &fit),
                          GLINT_E_ARGUMENT);
@@ -222,7 +227,7 @@ TEST(refused)
     }
     for (int m = 0; m < 2; m++) {
         int asked = 0;
-        const struct glint_watch watch = {NULL, at_once, &asked};
+        const struct glint_watch watch = {NULL, stop_third, &asked};
         struct glint_scatter_options o;
 
         glint_scatter_defaults(&o, models[m]);
@@ -235,13 +240,13 @@ TEST(refused)
 
 enum { TALL = 120, WIDE = 40, TERMS = 9 };
 
-static void fetch(const void *ctx, int i, double *to)
+static void read_row(const void *ctx, int i, double *to)
 {
     memcpy(to, (const double *)ctx + i * WIDE, WIDE * sizeof *to);
 }
 
-/* A random matrix whose values fall by half each. */
-static void falling(double *a)
+/* Sets A to a random matrix whose singular values decrease by half each. */
+static void make_decreasing(double *a)
 {
     uint32_t seed = 9;
 
@@ -261,12 +266,12 @@ static void falling(double *a)
 typedef int dgesdd_fn(int layout, char job, int m, int n, double *a, int lda,
                       double *s, double *u, int ldu, double *vt, int ldvt);
 
-/* Values and vectors of LAPACK's dgesdd, to 1e-10. */
+/* Values and vectors equal those of LAPACK's dgesdd to 1e-10. */
 TEST(terms_lapacke)
 {
     double a[TALL * WIDE], copy[TALL * WIDE], s[WIDE], u[TALL * WIDE],
         vt[WIDE * WIDE];
-    const struct glint_tall m = {TALL, WIDE, fetch, a};
+    const struct glint_tall m = {TALL, WIDE, read_row, a};
     void *library = dlopen("liblapacke.so.3", RTLD_NOW);
     struct glint_terms terms;
     dgesdd_fn *dgesdd;
@@ -277,14 +282,14 @@ TEST(terms_lapacke)
     }
     *(void **)&dgesdd = dlsym(library, "LAPACKE_dgesdd");
     assert_non_null(dgesdd);
-    falling(a);
+    make_decreasing(a);
     memcpy(copy, a, sizeof a);
     assert_int_equal(
         dgesdd(101, 'S', TALL, WIDE, copy, WIDE, s, u, WIDE, vt, WIDE), 0);
     assert_true(glint_terms_of(&m, TERMS, &terms));
     for (int j = 0; j < TERMS; j++) {
-        const double sign =
-            u[j] * terms.left[j * TALL] < 0 ? -1 : 1; /* one or the other */
+        /* The sign of a pair of vectors is arbitrary. */
+        const double sign = u[j] * terms.left[j * TALL] < 0 ? -1 : 1;
 
         assert_near(terms.value[j], s[j], 1e-10 * s[0]);
         for (int i = 0; i < TALL; i++)
@@ -298,12 +303,12 @@ TEST(terms_lapacke)
     dlclose(library);
 }
 
-/* Vectors are at right angles and what is left is as small as can be: the
- * squares of the values that are left out. Equal and missing values, too. */
+/* Vectors are orthogonal, and the residual is the smallest possible: the
+ * squares of the omitted singular values. Also with equal and zero values. */
 TEST(terms)
 {
     double a[TALL * WIDE] = {0};
-    const struct glint_tall m = {TALL, WIDE, fetch, a};
+    const struct glint_tall m = {TALL, WIDE, read_row, a};
     struct glint_terms terms;
 
     a[0] = a[WIDE + 1] = a[2 * WIDE + 2] = 3;
@@ -325,7 +330,8 @@ TEST(terms)
     glint_terms_close(&terms);
 }
 
-/* A system, and one that leaves a direction open. */
+/* Solves a regular system, and a singular one with an undetermined
+ * direction. */
 TEST(solve)
 {
     double a[9] = {4, 2, 1, 2, 5, 3, 1, 3, 6}, b[3] = {7, 10, 10};

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of a translucent medium: the closed form, reciprocity, energy, measured
- * rows. Tests are named by the rows of shared figures that they show: C1, C2.
+ * Tests the rows of the scattering matrix of a translucent medium: closed form,
+ * reciprocity, energy, measured rows. C1 and C2 in names are numbers of
+ * requirements.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +13,7 @@
 
 enum { SIDE = 24, KERNEL = 13, K2 = KERNEL * KERNEL };
 
-static struct glint_stone stone_of(enum glint_stone_pattern pattern)
+static struct glint_stone make_stone(enum glint_stone_pattern pattern)
 {
     struct glint_stone stone;
 
@@ -24,15 +25,15 @@ static struct glint_stone stone_of(enum glint_stone_pattern pattern)
     return stone;
 }
 
-static void compute(const struct glint_stone *stone,
-                    struct glint_scatter_rows *rows)
+static void compute_rows(const struct glint_stone *stone,
+                         struct glint_scatter_rows *rows)
 {
     struct glint_error error;
 
     assert_ok(glint_scatter_compute(stone, NULL, rows, &error));
 }
 
-static double sum_of(const struct glint_scatter_rows *rows, int x, int c)
+static double sum_row(const struct glint_scatter_rows *rows, int x, int c)
 {
     double sum = 0;
 
@@ -41,9 +42,9 @@ static double sum_of(const struct glint_scatter_rows *rows, int x, int c)
     return sum;
 }
 
-/* Radiant exitance of [Jensen01], equation 4, at distance R, with images of the
- * far face, too. */
-static double exitance(const struct glint_slab *s, double r)
+/* Returns the radiant exitance at distance R by [Jensen01], equation 4, with
+ * image sources of the far face. */
+static double compute_exitance(const struct glint_slab *s, double r)
 {
     const double loss = sqrt(s->absorb / s->diffusion);
     double sum = 0;
@@ -63,16 +64,16 @@ static double exitance(const struct glint_slab *s, double r)
     return s->albedo * sum / (4 * 3.14159265358979);
 }
 
-/* One translucent medium, away from its rim: within 2 % of the closed form,
- * entry by entry from two texels on and in the sum; modes alone from three
- * texels on. */
+/* Homogeneous medium, away from its rim: entries two or more texels from the
+ * centre, and the sum, are within 2 % of the closed form; the modes alone
+ * from three texels on. */
 TEST(closed_form)
 {
-    const struct glint_stone stone = stone_of(GLINT_STONE_EVEN);
+    const struct glint_stone stone = make_stone(GLINT_STONE_EVEN);
     struct glint_scatter_rows rows;
     double modes[K2];
 
-    compute(&stone, &rows);
+    compute_rows(&stone, &rows);
     for (int c = 0; c < 3; c++) {
         const int x = SIDE / 2 * SIDE + SIDE / 2;
         const double area = stone.texel_mm * stone.texel_mm;
@@ -84,10 +85,11 @@ TEST(closed_form)
         assert_true(glint_slab_lattice(&slab, KERNEL, modes));
         for (int u = 2; u <= KERNEL / 2; u++) {
             const int d = K2 / 2 + u;
-            const double want = area * exitance(&slab, u * stone.texel_mm);
+            const double want =
+                area * compute_exitance(&slab, u * stone.texel_mm);
             const float *row = glint_scatter_row(&rows, x, c);
 
-            /* over texels the mean is more than in their middle */
+            /* the mean over a texel exceeds the value at its centre */
             assert_near(closed[d], want, (u < 4 ? 0.3 : 0.06) * want);
             assert_near((double)row[d], closed[d], 0.02 * closed[d]);
             if (u >= 3)
@@ -95,16 +97,16 @@ TEST(closed_form)
         }
         for (int d = 0; d < K2; d++)
             sum += closed[d];
-        assert_near(sum_of(&rows, x, c), sum, 0.02 * sum);
+        assert_near(sum_row(&rows, x, c), sum, 0.02 * sum);
     }
     glint_scatter_close(&rows);
 }
 
-/* The whole of what leaves a translucent medium without far face: the total of
- * [Jensen01], equation 6 of the dipole. */
+/* The total light that leaves a semi-infinite medium equals that of the
+ * dipole, [Jensen01], equation 6. */
 TEST(closed_total)
 {
-    struct glint_stone stone = stone_of(GLINT_STONE_EVEN);
+    struct glint_stone stone = make_stone(GLINT_STONE_EVEN);
     struct glint_slab slab;
     double loss, want, sum = 0, *entry = malloc(63 * 63 * sizeof *entry);
 
@@ -125,20 +127,19 @@ TEST(closed_total)
     free(entry);
 }
 
-/* C1: light goes both ways alike, none is below 0, no more leaves than comes.
- */
+/* C1: rows are reciprocal, entries are not negative, and no row exceeds 1. */
 TEST(c1_reciprocal)
 {
     static const enum glint_stone_pattern pattern[] = {GLINT_STONE_CHESS,
                                                        GLINT_STONE_VEINS};
 
     for (int i = 0; i < 2; i++) {
-        const struct glint_stone stone = stone_of(pattern[i]);
+        const struct glint_stone stone = make_stone(pattern[i]);
         struct glint_scatter_rows rows, turned;
         const size_t bytes = (size_t)SIDE * SIDE * 3 * K2 * sizeof(float);
 
-        compute(&stone, &rows);
-        compute(&stone, &turned);
+        compute_rows(&stone, &rows);
+        compute_rows(&stone, &turned);
         glint_scatter_turn(&turned);
         for (size_t e = 0; e < bytes / sizeof(float); e++) {
             assert_true(rows.r[e] >= 0);
@@ -146,14 +147,14 @@ TEST(c1_reciprocal)
         }
         for (int x = 0; x < SIDE * SIDE; x++)
             for (int c = 0; c < 3; c++)
-                assert_true(sum_of(&rows, x, c) <= 1);
+                assert_true(sum_row(&rows, x, c) <= 1);
         glint_scatter_close(&rows);
         glint_scatter_close(&turned);
     }
 }
 
-/* C2: an offset leads from the texel that is lit; outside the square it is
- * 0, and measured rows come back as they were. */
+/* C2: offsets lead away from the lit texel; entries outside the square are
+ * 0; measured rows are read unchanged. */
 TEST(c2_places)
 {
     enum { S = 3, N = 5, WIDE = S * N };
@@ -190,15 +191,15 @@ TEST(c2_places)
                      GLINT_E_ARGUMENT);
 }
 
-/* A lamp on one texel shows that texel's row. */
+/* A lamp on one texel shows the row of that texel. */
 TEST(c2_light)
 {
-    const struct glint_stone stone = stone_of(GLINT_STONE_VEINS);
+    const struct glint_stone stone = make_stone(GLINT_STONE_VEINS);
     double light[SIDE * SIDE * 3] = {0}, seen[SIDE * SIDE * 3];
     struct glint_scatter_rows rows;
     const int x = 2 * SIDE + 5;
 
-    compute(&stone, &rows);
+    compute_rows(&stone, &rows);
     light[3 * x + 1] = 2;
     glint_scatter_light_rows(&rows, light, seen);
     for (int d = 0; d < K2; d++) {
@@ -212,10 +213,9 @@ TEST(c2_light)
     glint_scatter_close(&rows);
 }
 
-/* Materials at the ends of their ranges, alone and beside each other, in thin
- * and thick slabs: finite, not below 0, no more than all. Dark translucent
- * media are dark.
- */
+/* Materials at the ends of their ranges, single and in pairs, in thin and
+ * thick slabs: entries are finite and not negative, and sums are at most 1.
+ * Absorbing media are dark. */
 TEST(extremes)
 {
     static const double end[4][2] = {
@@ -223,11 +223,11 @@ TEST(extremes)
     static const double slab[2] = {0.1, 1000}, texel[2] = {0.01, 100};
 
     for (int i = 0; i < 16; i++) {
-        struct glint_stone stone = stone_of(GLINT_STONE_CHESS);
+        struct glint_stone stone = make_stone(GLINT_STONE_CHESS);
         struct glint_scatter_rows rows;
 
         stone.side = 6;
-        stone.kernel = 7; /* leads beyond the square from everywhere */
+        stone.kernel = 7; /* wider than the square from every texel */
         stone.slab_mm = slab[(i ^ i >> 2) & 1];
         stone.texel_mm = texel[(i >> 1 ^ i >> 2) & 1];
         for (int c = 0; c < 3; c++) {
@@ -236,10 +236,10 @@ TEST(extremes)
             stone.material[1].scatter[c] = end[i >> 2][0];
             stone.material[1].absorb[c] = end[i >> 2][1];
         }
-        compute(&stone, &rows);
+        compute_rows(&stone, &rows);
         for (int x = 0; x < 36; x++)
             for (int c = 0; c < 3; c++) {
-                const double sum = sum_of(&rows, x, c);
+                const double sum = sum_row(&rows, x, c);
 
                 assert_true(sum >= 0 && sum <= 1 + 1e-6);
                 if ((i & 3) == 2 && i >> 2 == 2)
@@ -253,23 +253,23 @@ TEST(extremes)
 
 TEST(one_texel)
 {
-    struct glint_stone stone = stone_of(GLINT_STONE_CHESS);
+    struct glint_stone stone = make_stone(GLINT_STONE_CHESS);
     struct glint_scatter_rows rows;
 
     stone.side = stone.fields = 1;
-    compute(&stone, &rows);
+    compute_rows(&stone, &rows);
     for (int d = 0; d < K2; d++)
         assert_true(d == K2 / 2 ? rows.r[d] > 0 : rows.r[d] == 0);
     glint_scatter_close(&rows);
 }
 
-TEST(refused)
+TEST(rejects_invalid_stones)
 {
     struct glint_scatter_rows rows;
     struct glint_error error;
 
     for (int i = 0; i < 9; i++) {
-        struct glint_stone stone = stone_of(GLINT_STONE_CHESS);
+        struct glint_stone stone = make_stone(GLINT_STONE_CHESS);
 
         if (i < 2)
             stone.side = i ? 257 : 0;
@@ -294,30 +294,32 @@ TEST(refused)
     }
 }
 
-/* DONE is a fraction that grows with each row. */
+/* Checks that DONE is a fraction that increases with each call, and counts
+ * the calls. */
 static void count(void *ctx, double done)
 {
     double *seen = ctx;
 
-    assert_true(done > seen[0] && done < 1 + 1e-9); /* each row is work done */
+    /* each call follows further work */
+    assert_true(done > seen[0] && done < 1 + 1e-9);
     seen[0] = done;
     seen[1]++;
 }
 
-static bool soon(void *ctx)
+static bool stop_after_limit(void *ctx)
 {
     const double *seen = ctx;
 
     return seen[1] > seen[2];
 }
 
-/* The computation reports progress and can be cancelled; it then frees
- * everything. */
-TEST(watched)
+/* The computation reports progress and can be cancelled, without memory
+ * leaks. */
+TEST(reports_progress)
 {
-    const struct glint_stone stone = stone_of(GLINT_STONE_CHESS);
+    const struct glint_stone stone = make_stone(GLINT_STONE_CHESS);
     double seen[3] = {0, 0, 1e9};
-    const struct glint_watch watch = {count, soon, seen};
+    const struct glint_watch watch = {count, stop_after_limit, seen};
     struct glint_scatter_rows rows;
     struct glint_error error;
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Conics, aspheres, cylinders, torics, shifted and tilted surfaces: text, rays
- * against a second method, and what can be known without tracing. */
+ * Tests conics, aspheres, cylinders, torics, and shifted and tilted surfaces:
+ * parsing, rays compared with a second method, and analytic results.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -17,7 +18,7 @@
 static struct glint_prescription lens;
 static struct glint_path path;
 
-/* Reads a lens of a first surface and its shape, and a flat behind it. */
+/* Parses a lens whose surfaces are SURFACES. */
 static enum glint_status read_with(const char *surfaces,
                                    struct glint_error *error)
 {
@@ -38,10 +39,10 @@ static void load(const char *surfaces)
 
 /* --------------------------------------------------- a second intersection */
 
-/* The same surface written down once more, in long double, by its definition:
- * no derivative, no frame but of the angles. */
-static long double sag_of(const struct glint_surface *s, long double x,
-                          long double y)
+/* Sag by the definition of the surface, in long double, without derivatives:
+ * an implementation independent of the library. */
+static long double compute_sag(const struct glint_surface *s, long double x,
+                               long double y)
 {
     const struct glint_shape *const a = &s->shape;
     const long double along2 = a->bend == GLINT_BEND_ROUND ? x * x + y * y
@@ -67,7 +68,8 @@ struct line {
     long double at[3], way[3];
 };
 
-/* Takes LINE from the lens to the frame of surface S by turning it in steps. */
+/* Transforms LINE from the lens's frame to that of surface S, by successive
+ * rotations. */
 static struct line to_surface(const struct glint_surface *s,
                               const struct line *line)
 {
@@ -78,9 +80,10 @@ static struct line to_surface(const struct glint_surface *s,
     for (int k = 0; k < 2; k++)
         out.at[k] -= a->decentre_mm[k];
     out.at[2] -= a->pivot_mm;
-    for (int axis = 1; axis >= 0; axis--) { /* undo y, then x */
+    /* undo the rotation about y, then about x */
+    for (int axis = 1; axis >= 0; axis--) {
         const long double t = (axis ? -1 : 1) * degree * a->tilt_deg[axis];
-        const int other = 1 - axis; /* turns with z */
+        const int other = 1 - axis; /* the coordinate that rotates with z */
 
         for (int v = 0; v < 2; v++) {
             long double *p = v ? out.way : out.at;
@@ -94,18 +97,19 @@ static struct line to_surface(const struct glint_surface *s,
     return out;
 }
 
-static long double gap_at(const struct glint_surface *s, const struct line *l,
-                          long double t)
+static long double compute_gap(const struct glint_surface *s,
+                               const struct line *l, long double t)
 {
     return l->at[2] + t * l->way[2] -
-           sag_of(s, l->at[0] + t * l->way[0], l->at[1] + t * l->way[1]);
+           compute_sag(s, l->at[0] + t * l->way[0], l->at[1] + t * l->way[1]);
 }
 
-/* Finds the nearest meeting by looking everywhere in small steps outwards from
- * the vertex plane, then halving. Returns false if there is none within REACH.
- */
-static bool second_meet(const struct glint_surface *s, const struct line *l,
-                        long double reach, long double *t)
+/* Finds the nearest intersection by searching outwards from the vertex plane
+ * in small steps, then by bisection. Returns false if there is none within
+ * REACH. */
+static bool find_intersection(const struct glint_surface *s,
+                              const struct line *l, long double reach,
+                              long double *t)
 {
     const long double plane = -l->at[2] / l->way[2];
     const int n = 4000;
@@ -115,12 +119,12 @@ static bool second_meet(const struct glint_surface *s, const struct line *l,
             long double low = plane + side * reach * k / n;
             long double high = plane + side * reach * (k + 1) / n;
 
-            if (!(gap_at(s, l, low) * gap_at(s, l, high) <= 0))
+            if (!(compute_gap(s, l, low) * compute_gap(s, l, high) <= 0))
                 continue;
             for (int i = 0; i < 80; i++) {
                 const long double middle = (low + high) / 2;
 
-                if (gap_at(s, l, low) * gap_at(s, l, middle) <= 0)
+                if (compute_gap(s, l, low) * compute_gap(s, l, middle) <= 0)
                     high = middle;
                 else
                     low = middle;
@@ -131,16 +135,16 @@ static bool second_meet(const struct glint_surface *s, const struct line *l,
     return false;
 }
 
-/* Turns WAY at the surface by Snell's law in vectors, with a normal from
- * differences of the sag; RATIO is n / n'. */
-static void second_refract(const struct glint_surface *s, const struct line *l,
-                           long double t, long double ratio, long double way[3])
+/* Refracts WAY at the surface by Snell's law in vector form, with a normal
+ * from finite differences of the sag; RATIO is n / n'. */
+static void refract(const struct glint_surface *s, const struct line *l,
+                    long double t, long double ratio, long double way[3])
 {
     const long double x = l->at[0] + t * l->way[0];
     const long double y = l->at[1] + t * l->way[1], h = 1e-5L;
-    long double n[3] = {-(sag_of(s, x + h, y) - sag_of(s, x - h, y)) / (2 * h),
-                        -(sag_of(s, x, y + h) - sag_of(s, x, y - h)) / (2 * h),
-                        1};
+    long double n[3] = {
+        -(compute_sag(s, x + h, y) - compute_sag(s, x - h, y)) / (2 * h),
+        -(compute_sag(s, x, y + h) - compute_sag(s, x, y - h)) / (2 * h), 1};
     const long double size = sqrtl(n[0] * n[0] + n[1] * n[1] + 1);
     long double c = 0, out;
 
@@ -155,13 +159,14 @@ static void second_refract(const struct glint_surface *s, const struct line *l,
 
 static uint32_t seed = 7;
 
-static double uniform(double low, double high)
+static double draw_uniform(double low, double high)
 {
     seed = seed * 1664525u + 1013904223u;
     return low + (high - low) * (seed >> 8) / 0x1p24;
 }
 
-/* Compares rays that start within SPAN of the axis; returns how many met. */
+/* Compares rays that start within SPAN of the axis. Returns the number of
+ * rays that hit the surface. */
 static int compare_rays(const char *surfaces, double span)
 {
     const struct glint_surface *const s = lens.surface;
@@ -170,27 +175,31 @@ static int compare_rays(const char *surfaces, double span)
     load(surfaces);
     glint_path_init(&path, &lens, NULL, LINE_D_NM);
     for (int i = 0; i < 60; i++) {
-        const double tilt = uniform(0, 0.5), turn = uniform(-3.1, 3.1);
+        const double tilt = draw_uniform(0, 0.5),
+                     turn = draw_uniform(-3.1, 3.1);
         const double direction[3] = {sin(tilt) * cos(turn),
                                      sin(tilt) * sin(turn), cos(tilt)};
-        const double x = uniform(-span, span), y = uniform(-span, span);
+        const double x = draw_uniform(-span, span),
+                     y = draw_uniform(-span, span);
         const struct line start = {{x, y, 0},
                                    {direction[0], direction[1], direction[2]}};
         const struct line own = to_surface(s, &start);
         double hits[4][2];
         struct glint_ray ray;
         long double t = 0, way[3], at[2];
-        const bool there = second_meet(s, &own, 3 * s->semi_mm, &t);
+        const bool there = find_intersection(s, &own, 3 * s->semi_mm, &t);
         enum glint_ray_status status;
 
-        hits[1][0] = (double)NAN; /* is written by rays that meet the form */
+        /* glint_trace() overwrites it if the ray hits the form */
+        hits[1][0] = (double)NAN;
         status = glint_trace(&path, x, y, direction, &ray, hits);
         for (int k = 0; k < 2; k++)
             at[k] = own.at[k] + t * own.way[k];
         if (!there && hypot(hits[1][0], hits[1][1]) < s->semi_mm)
             fail_msg("%s: met at %g, %g", surfaces, hits[1][0], hits[1][1]);
         if (!there || hypotl(at[0], at[1]) > s->semi_mm)
-            continue; /* no glass: the profile is our own there */
+            continue; /* outside the glass the library continues the profile in
+                         its own way */
         assert_true(isfinite(hits[1][0]));
         if (status != GLINT_RAY_OK)
             continue;
@@ -200,10 +209,11 @@ static int compare_rays(const char *surfaces, double span)
         met++;
         if (s->shape.tilt_deg[0] != 0 || s->shape.tilt_deg[1] != 0 ||
             s[1].radius_mm != 0)
-            continue; /* the plane behind is what the next lines know */
-        second_refract(s, &own, t, 1 / (long double)s->nd, way);
+            continue; /* the next check assumes a plane behind, and no tilt */
+        refract(s, &own, t, 1 / (long double)s->nd, way);
         for (int k = 0; k < 2; k++) {
-            const long double z = gap_at(s, &own, t) + sag_of(s, at[0], at[1]);
+            const long double z =
+                compute_gap(s, &own, t) + compute_sag(s, at[0], at[1]);
             const long double at_flat = at[k] + s->shape.decentre_mm[k] +
                                         (s->thickness_mm - z) / way[2] * way[k];
 
@@ -229,7 +239,7 @@ TEST(against_second_method)
         {"surface 1.962 1.2 0.95 1.54 56\nshape conic -0.12 A4 9e-3 A6 -2e-2 "
          "A8 4e-2 A10 -3e-2\nsurface flat 30 30 air",
          0.9},
-        /* an inflection: rises, then falls beyond the rim */
+        /* an inflection: the sag rises, then falls beyond the rim */
         {"surface 6 2 2 1.54 56\nshape A4 -8e-3 A6 -1e-3\n"
          "surface flat 30 30 air",
          2},
@@ -259,8 +269,8 @@ TEST(against_second_method)
 
 /* ------------------------------------------------------------ known optics */
 
-/* A hyperboloid with the conic -n^2 behind a plane images without spherical
- * aberration. */
+/* A hyperboloid with the conic constant -n^2 behind a plane images without
+ * spherical aberration. */
 TEST(hyperboloid_has_a_point_focus)
 {
     const double direction[3] = {0, 0, 1};
@@ -292,7 +302,7 @@ TEST(no_shape_is_a_sphere)
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &same, NULL), 0);
     assert_memory_equal(&ray, &same, sizeof ray);
-    /* a form that is nearly the sphere, all but bits */
+    /* a conic that differs from the sphere by rounding only */
     load("surface 30 9 9 1.5 60\nshape conic 1e-15\nsurface -60 90 30 air");
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &same, NULL), 0);
@@ -300,13 +310,13 @@ TEST(no_shape_is_a_sphere)
     assert_true(fabs(ray.energy - same.energy) < 1e-12);
 }
 
-/* Two lenses; A to D are the shapes of their surfaces. */
+/* Two lenses with the shapes A to D of their surfaces. */
 #define TWO_LENSES(a, b, c, d)                            \
     "surface 30 5 9 1.5 60\n" a "surface -60 4 9 air\n" b \
     "surface -40 3 9 1.6 40\n" c "surface 80 90 30 air\n" d
 
-/* Ghosts are mirrored alike by spheres that are written as conics, all but
- * bits, or as torics of two equal radii. */
+/* Ghosts of spheres are the same, up to rounding, if the spheres are written
+ * as conics or as torics with two equal radii. */
 TEST(ghosts_of_spheres)
 {
     static const char *const written[] = {
@@ -339,9 +349,9 @@ TEST(ghosts_of_spheres)
     }
 }
 
-/* Two cylinders of an anamorphic front before a lens: focal lengths by rays
- * close to the axis in either plane. */
-TEST(squeeze)
+/* An anamorphic attachment of two cylinders in front of a lens: focal
+ * lengths equal those of paraxial rays in either plane. */
+TEST(anamorphic_focal_lengths)
 {
     struct glint_optics optics;
 
@@ -367,7 +377,8 @@ TEST(squeeze)
     assert_true(fabs(optics.squeeze - 1) > 0.2);
 }
 
-/* Light in the plane at PHI sees the lens turned: the same ray by both ways. */
+/* glint_path_init_at() rotates the lens: light in the plane at PHI gives the
+ * same ray as the rotated light through the lens that is not rotated. */
 TEST(turned_lens)
 {
     const double phi = 33, c = cos(phi * GLINT_PI / 180),
@@ -435,7 +446,8 @@ TEST(mistakes)
     }
 }
 
-/* Where a ray meets a surface is a point of both. */
+/* glint_surface_point() at the position where a ray meets a surface returns
+ * a point of the ray. */
 TEST(points_lie_on_rays)
 {
     static const char *const shapes[] = {
@@ -461,7 +473,7 @@ TEST(points_lie_on_rays)
             assert_true(fabs(1.5 + t * direction[0] - at[0]) < 1e-9);
             assert_true(fabs(-2 - at[1]) < 1e-9);
         }
-    /* The tilted sphere stays one, about a centre that turned with it. */
+    /* The tilted sphere is a sphere with a rotated centre. */
     load("group tilt 20 0\nsurface 40 9 9 1.5 60\nsurface flat 90 30 air\n"
          "end");
     for (int x = -8; x <= 8; x += 4) {
@@ -474,8 +486,9 @@ TEST(points_lie_on_rays)
     }
 }
 
-/* A stop behind the front vertex, about the glass: its rays are those of a
- * plane there, as light before the glass runs straight. */
+/* A stop behind the front vertex, around the glass, gives the same rays as a
+ * stop in the plane where it lies, as light in front of the glass runs
+ * straight. */
 TEST(stop_behind_the_vertex)
 {
     static const char text[] = "name t\nf-number 4\nfilm 9 9\nstop %s\n"
@@ -496,7 +509,7 @@ TEST(stop_behind_the_vertex)
     assert_int_equal(glint_trace(&path, 1, 2, way, &ray, NULL), 0);
     assert_true(fabs(ray.stop_x_mm - (1 + 0.4 * 0.3 / way[2])) < 1e-14);
     assert_true(ray.stop_y_mm == 2);
-    /* At 3 mm the glass is 0.46 mm behind the vertex. */
+    /* at 3 mm from the axis the glass is 0.46 mm behind the vertex */
     snprintf(table, sizeof table, text, "-0.5 3");
     assert_int_equal(
         glint_prescription_parse(&lens, table, strlen(table), "t.lens", &error),
@@ -509,9 +522,9 @@ TEST(stop_behind_the_vertex)
     assert_non_null(strstr(error.text, "thickness must be -100 .. 100000"));
 }
 
-/* Rays that are met all at once and one by one hit the same place, with the
- * same bits however many are traced together. */
-TEST(lanes)
+/* Rays traced in a batch and one by one hit the same points, bit-identical
+ * for every batch size. */
+TEST(batches_are_identical)
 {
     struct glint_launch from[19];
     struct glint_ray many[19], one;
@@ -541,9 +554,9 @@ TEST(lanes)
     assert_true(traced > 10);
 }
 
-/* Rays as steep as their profile, or over what lies beyond the glass, where the
- * first place that is found need not be the nearest: lanes agree with the
- * search that tells them one by one. */
+/* Rays as steep as the profile, or outside the glass, where the first root
+ * found need not be the nearest: batches agree with the search for single
+ * rays. */
 TEST(steep_rays)
 {
     static const char *const shapes[] = {
@@ -560,10 +573,11 @@ TEST(steep_rays)
         glint_path_init(&path, &lens, NULL, LINE_D_NM);
         for (int k = 0; k < 4000; k++) {
             const struct glint_form *const form = &path.form[0];
-            const double tilt = uniform(0, 1.5), turn = uniform(-3.1, 3.1);
+            const double tilt = draw_uniform(0, 1.5),
+                         turn = draw_uniform(-3.1, 3.1);
             const double way[3] = {sin(tilt) * cos(turn), sin(tilt) * sin(turn),
                                    cos(tilt)};
-            double at[3] = {uniform(-20, 20), uniform(-20, 20), 0};
+            double at[3] = {draw_uniform(-20, 20), draw_uniform(-20, 20), 0};
             double normal[3], cosine;
             struct beam b = {.x = {at[0]},
                              .y = {at[1]},

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Few wavelengths in place of all: where they lie, that a flat spectrum is
- * white, and how near smooth spectra come to the colour that 31 wavelengths
- * give.
+ * Tests the replacement of a spectrum by a few wavelengths: their positions,
+ * that a flat spectrum is white, and the colours of smooth spectra compared
+ * with 31 wavelengths.
  */
 #include <math.h>
 #include <stdint.h>
@@ -16,9 +16,9 @@ enum { ALL = 31 };
 static double nm[GLINT_MAX_WAVELENGTHS], share[GLINT_MAX_WAVELENGTHS];
 static double rgb[GLINT_MAX_WAVELENGTHS][3];
 
-/* Sets ALL to the observer at 400 .. 700 nm, each channel divided by its
- * sum. */
-static void observe(double all[ALL][3])
+/* Sets ALL to the observer's RGB responses at 400 .. 700 nm, each channel
+ * divided by its sum. */
+static void set_observer(double all[ALL][3])
 {
     double sum[3] = {0, 0, 0};
 
@@ -32,7 +32,7 @@ static void observe(double all[ALL][3])
             all[j][c] /= sum[c];
 }
 
-TEST(places)
+TEST(wavelength_positions)
 {
     for (int n = 1; n <= GLINT_MAX_WAVELENGTHS; n++) {
         glint_spectrum(n, nm, rgb, share);
@@ -64,9 +64,10 @@ TEST(flat_is_white)
     }
 }
 
-/* Returns the reflectances of two coated glasses at wavelength AT, nm,
- * multiplied as in a ghost. */
-static double ghost(double first_nm, double second_nm, double index, double at)
+/* Returns the product of the reflectances of two coated glasses at
+ * wavelength AT, nm, as in a ghost. */
+static double compute_ghost_reflectance(double first_nm, double second_nm,
+                                        double index, double at)
 {
     const double pi = 3.14159265358979323846;
     const struct glint_film_at first = {1.38, pi * first_nm / at};
@@ -76,30 +77,32 @@ static double ghost(double first_nm, double second_nm, double index, double at)
            glint_reflectance(1, index, 1, &second, 1);
 }
 
-/* Returns the largest error of a channel of a ghost's colour by N wavelengths,
- * divided by the largest channel. */
-static double colour_error(int n, double first_nm, double second_nm,
-                           double index)
+/* Returns the largest error of a channel of a ghost's colour with N
+ * wavelengths / the largest channel. */
+static double compute_colour_error(int n, double first_nm, double second_nm,
+                                   double index)
 {
     double all[ALL][3], few[3] = {0, 0, 0}, true_rgb[3] = {0, 0, 0};
     double most = 0, wrong = 0;
 
-    observe(all);
+    set_observer(all);
     glint_spectrum(n, nm, rgb, share);
     for (int c = 0; c < 3; c++) {
         for (int j = 0; j < ALL; j++)
             true_rgb[c] +=
-                all[j][c] * ghost(first_nm, second_nm, index, 400 + 10 * j);
+                all[j][c] * compute_ghost_reflectance(first_nm, second_nm,
+                                                      index, 400 + 10 * j);
         for (int i = 0; i < n; i++)
-            few[c] += rgb[i][c] * ghost(first_nm, second_nm, index, nm[i]);
+            few[c] += rgb[i][c] * compute_ghost_reflectance(first_nm, second_nm,
+                                                            index, nm[i]);
         most = fmax(most, true_rgb[c]);
         wrong = fmax(wrong, fabs(few[c] - true_rgb[c]));
     }
     return wrong / most;
 }
 
-/* Films of quarter waves and of half waves, as lens tables have them, must have
- * the right colours. */
+/* Quarter-wave and half-wave films, as in lens tables, have the right
+ * colours. */
 TEST(smooth_colours)
 {
     static const double film[] = {430, 460, 520, 560, 640, 680, 1080};
@@ -117,8 +120,8 @@ TEST(smooth_colours)
         for (int i = 0; i < FILMS; i++)
             for (int j = i; j < FILMS; j++)
                 for (double index = 1.5; index < 1.8; index += 0.12) {
-                    const double e =
-                        colour_error(bound[b].n, film[i], film[j], index);
+                    const double e = compute_colour_error(bound[b].n, film[i],
+                                                          film[j], index);
 
                     sum += e;
                     worst = fmax(worst, e);
@@ -131,9 +134,9 @@ TEST(smooth_colours)
     }
 }
 
-/* Returns how far N wavelengths are off where an edge is spread by wavelength
- * into steps: the largest difference, in any channel, from 3000 wavelengths. */
-static double stairs(int n)
+/* Returns the visibility of steps when N wavelengths represent a dispersed
+ * edge: the largest difference, in any channel, from 3000 wavelengths. */
+static double compute_step_error(int n)
 {
     enum { FINE = 3000 };
     double edge[3] = {0, 0, 0}, total[3] = {0, 0, 0}, step[3] = {0, 0, 0};
@@ -166,9 +169,9 @@ static double stairs(int n)
 
 TEST(steps)
 {
-    assert_true(stairs(3) < 0.8);
-    assert_true(stairs(5) < 0.5);
-    assert_true(stairs(9) < 0.3);
-    assert_true(stairs(17) < 0.22);
-    assert_true(stairs(31) < 0.15);
+    assert_true(compute_step_error(3) < 0.8);
+    assert_true(compute_step_error(5) < 0.5);
+    assert_true(compute_step_error(9) < 0.3);
+    assert_true(compute_step_error(17) < 0.22);
+    assert_true(compute_step_error(31) < 0.15);
 }

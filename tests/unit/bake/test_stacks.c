@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * What stacks of films reflect, against Rouard's recursion in complex numbers:
- * Airy's formula for the film next to the glass, whose result is the amplitude
- * of one boundary to the film before it, and so on. It shares nothing with
- * characteristic matrices.
+ * Tests the reflectance of film stacks against Rouard's recursion in complex
+ * numbers: Airy's formula for the film next to the glass gives the amplitude of
+ * an equivalent boundary for the film before it, and so on. It is independent
+ * of characteristic matrices.
  */
 #include <complex.h>
 #include <math.h>
@@ -14,14 +14,16 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Fractions of light reflected and passed. */
+/* Fractions of light that are reflected and transmitted. */
 struct shares {
     double r, t;
 };
 
-/* Fresnel's amplitudes from a medium of index N1 and cosine C1. */
-static void fresnel(double n1, double complex c1, double n2, double complex c2,
-                    int is_p, double complex *r, double complex *t)
+/* Sets R and T to Fresnel's amplitudes for light from a medium of index N1
+ * at the cosine C1. */
+static void set_fresnel(double n1, double complex c1, double n2,
+                        double complex c2, int is_p, double complex *r,
+                        double complex *t)
 {
     const double complex a = is_p ? n2 * c1 : n1 * c1;
     const double complex b = is_p ? n1 * c2 : n2 * c2;
@@ -30,14 +32,16 @@ static void fresnel(double n1, double complex c1, double n2, double complex c2,
     *t = 2 * n1 * c1 / (a + b);
 }
 
-/* Returns what N films, from the medium of the smaller index on, reflect and
- * pass of light that comes from N1 at the cosine COSINE to N2. */
-static struct shares rouard(double n1, double n2, double cosine,
-                            const struct glint_film_at *film, int n, int is_p)
+/* Returns the light that N films reflect and transmit; FILM[0] is next to
+ * the medium of lower index. Light comes from N1 at the cosine COSINE to N2. */
+static struct shares compute_rouard(double n1, double n2, double cosine,
+                                    const struct glint_film_at *film, int n,
+                                    int is_p)
 {
     double index[GLINT_MAX_FILMS + 2];
     double complex c[GLINT_MAX_FILMS + 2], r, t;
-    struct glint_film_at met[GLINT_MAX_FILMS]; /* as the light meets them */
+    /* films in the order in which light meets them */
+    struct glint_film_at met[GLINT_MAX_FILMS];
 
     index[0] = n1;
     index[n + 1] = n2;
@@ -48,14 +52,14 @@ static struct shares rouard(double n1, double n2, double cosine,
     for (int k = 0; k < n + 2; k++)
         c[k] =
             csqrt(1 - n1 * n1 / (index[k] * index[k]) * (1 - cosine * cosine));
-    fresnel(index[n], c[n], n2, c[n + 1], is_p, &r, &t);
+    set_fresnel(index[n], c[n], n2, c[n + 1], is_p, &r, &t);
     for (int k = n; k > 0; k--) {
-        /* the way through the film, and twice that */
+        /* phase factor of one pass through the film, and of two */
         const double complex once =
             cexp((double complex)I * 0.5 * met[k - 1].phase * c[k]);
         double complex r1, t1;
 
-        fresnel(index[k - 1], c[k - 1], index[k], c[k], is_p, &r1, &t1);
+        set_fresnel(index[k - 1], c[k - 1], index[k], c[k], is_p, &r1, &t1);
         t = t1 * t * once / (1 + r1 * r * once * once);
         r = (r1 + r * once * once) / (1 + r1 * r * once * once);
     }
@@ -67,8 +71,8 @@ static struct shares rouard(double n1, double n2, double cosine,
 static void expect_as_rouard(double n1, double n2, double cosine,
                              const struct glint_film_at *film, int n)
 {
-    const struct shares s = rouard(n1, n2, cosine, film, n, 0);
-    const struct shares p = rouard(n1, n2, cosine, film, n, 1);
+    const struct shares s = compute_rouard(n1, n2, cosine, film, n, 0);
+    const struct shares p = compute_rouard(n1, n2, cosine, film, n, 1);
     double of_s, of_p;
 
     glint_reflectance_sp(n1, n2, cosine, film, n, &of_s, &of_p);
@@ -76,15 +80,15 @@ static void expect_as_rouard(double n1, double n2, double cosine,
     assert_near(of_p, p.r, 1e-9);
     assert_near(glint_reflectance(n1, n2, cosine, film, n), (s.r + p.r) / 2,
                 1e-9);
-    /* Films absorb nothing: what is not reflected passes. */
+    /* films do not absorb: light that is not reflected is transmitted */
     assert_near(of_s + s.t, 1, 1e-9);
     assert_near(of_p + p.t, 1, 1e-9);
 }
 
 /* ------------------------------------------------------------------- named */
 
-/* Each coating that has a name, on four glasses, from 380 to 780 nm and from 0
- * to 89 degrees, from the air and from the glass. */
+/* All named coatings on four glasses, from 380 to 780 nm and from 0 to 89
+ * degrees, from the air and from the glass. */
 TEST(named)
 {
     static const double glass[] = {1.46, 1.52, 1.7, 1.95};
@@ -108,9 +112,9 @@ TEST(named)
     assert_null(glint_coating_named(-1, &coating));
 }
 
-/* At its design wavelength and straight on, two quarters reflect ((a^2 g - b^2)
- * / (a^2 g + b^2))^2, and a half wave between them is as if it were not
- * there. */
+/* At the design wavelength and normal incidence, two quarter waves reflect
+ * ((a^2 g - b^2) / (a^2 g + b^2))^2, and a half wave between them has no
+ * effect. */
 TEST(by_hand)
 {
     const double g = 1.52, a = 1.38 * 1.38 * g;
@@ -129,9 +133,9 @@ TEST(by_hand)
                 pow((a - b) / (a + b), 2), 1e-15);
 }
 
-/* Broadband coatings must reflect less than a single film over the whole band,
- * a V-coat less at its wavelength and more at the band's ends. */
-TEST(what_for)
+/* Broadband coatings reflect less than a single film over the whole band; a
+ * V-coat reflects less at its wavelength and more at the ends of the band. */
+TEST(purpose_of_coatings)
 {
     const struct glint_coating single = {550, 1, {{1.38, 1}}};
     struct glint_coating c[3];
@@ -157,15 +161,15 @@ TEST(what_for)
 
 /* -------------------------------------------------------------------- any */
 
-static double drawn(uint32_t *seed, double lo, double hi)
+static double draw_uniform(uint32_t *seed, double lo, double hi)
 {
     *seed = *seed * 1664525u + 1013904223u;
     return lo + (hi - lo) * (*seed >> 8) / 16777216.0;
 }
 
-/* Stacks of 1 to 8 films of any index and thickness, also where light goes
- * through some of them only by frustrated total reflection. */
-TEST(any)
+/* Random stacks of 1 to 8 films, including films that light crosses only by
+ * frustrated total reflection. */
+TEST(random_stacks)
 {
     uint32_t seed = 1;
     int frustrated = 0;
@@ -173,18 +177,19 @@ TEST(any)
     for (int i = 0; i < 40000; i++) {
         struct glint_film_at film[GLINT_MAX_FILMS];
         const int n = 1 + i % GLINT_MAX_FILMS;
-        const double n1 = drawn(&seed, 1, 2), n2 = drawn(&seed, 1, 2);
+        const double n1 = draw_uniform(&seed, 1, 2),
+                     n2 = draw_uniform(&seed, 1, 2);
         const double most = n1 > n2 ? sqrt(1 - n2 * n2 / (n1 * n1)) : 0;
-        const double c = drawn(&seed, most + 0.02 * (1 - most), 1);
+        const double c = draw_uniform(&seed, most + 0.02 * (1 - most), 1);
         const double sine = n1 * sqrt(1 - c * c);
 
         for (int k = 0; k < n; k++) {
-            film[k].n = drawn(&seed, 1.01, 2.5);
-            film[k].phase = drawn(&seed, 0.03, 3 * pi);
+            film[k].n = draw_uniform(&seed, 1.01, 2.5);
+            film[k].phase = draw_uniform(&seed, 0.03, 3 * pi);
             frustrated += film[k].n < sine;
         }
         expect_as_rouard(n1, n2, c, film, n);
-        /* and the other way round */
+        /* and in the reverse direction */
         assert_near(glint_reflectance(n1, n2, c, film, n),
                     glint_reflectance(n2, n1, sqrt(1 - sine * sine / (n2 * n2)),
                                       film, n),
@@ -193,8 +198,8 @@ TEST(any)
     assert_true(frustrated > 1000);
 }
 
-/* Films that nothing passes, grazing light and total reflection. */
-TEST(ends)
+/* Films that transmit no light, grazing incidence, and total reflection. */
+TEST(extreme_stacks)
 {
     const struct glint_film_at thick[8] = {
         {1.01, 1e300}, {1.01, 150}, {1.01, 150}, {1.01, 150},
@@ -214,8 +219,8 @@ TEST(ends)
 
 /* ------------------------------------------------------------------- paths */
 
-/* A ray through a coated pane must lose what two of its surfaces reflect, and a
- * ghost have the product of both, with stacks as with single films. */
+/* A ray through a coated pane has the product of both transmittances, and a
+ * ghost that of both reflectances, with stacks as with single films. */
 TEST(path)
 {
     struct glint_prescription lens = {

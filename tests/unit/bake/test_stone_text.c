@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Texts of translucent media: values, defaults, and errors with their places.
+ * Tests the parser of translucent media: values, defaults, and errors with
+ * their positions.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -21,7 +22,7 @@ static enum glint_status parse(struct glint_stone_text *t, const char *text,
     return glint_stone_parse(t, text, strlen(text), "x", error);
 }
 
-static void good(struct glint_stone_text *t, const char *text)
+static void parse_good(struct glint_stone_text *t, const char *text)
 {
     struct glint_error error = {.text = ""};
 
@@ -33,8 +34,9 @@ TEST(all_lines)
 {
     struct glint_stone_text t;
 
-    good(&t, "# a comment\nsize 64\ntexel .25\nkernel 15\nslab 12\nindex 1.3\n"
-             "\n" TWO "pattern chess 4 pale dark\nmodel factored\n");
+    parse_good(
+        &t, "# a comment\nsize 64\ntexel .25\nkernel 15\nslab 12\nindex 1.3\n"
+            "\n" TWO "pattern chess 4 pale dark\nmodel factored\n");
     assert_int_equal(t.stone.side, 64);
     assert_true(t.stone.texel_mm == .25 && t.stone.slab_mm == 12 &&
                 t.stone.index == 1.3);
@@ -48,12 +50,12 @@ TEST(all_lines)
     assert_int_equal(t.fit.rank, 3);
 }
 
-/* What is not said is as the README has it. */
+/* Omitted lines have the defaults in the README. */
 TEST(defaults)
 {
     struct glint_stone_text t;
 
-    good(&t, "stone pale scatter 2 3 4 absorb .1 .2 .3\n");
+    parse_good(&t, "stone pale scatter 2 3 4 absorb .1 .2 .3\n");
     assert_int_equal(t.stone.side, 128);
     assert_int_equal(t.stone.kernel, 29);
     assert_true(t.stone.texel_mm == .61 && t.stone.slab_mm == 6 &&
@@ -62,24 +64,25 @@ TEST(defaults)
     assert_int_equal(t.fit.model, GLINT_SCATTER_CLUSTERED);
     assert_int_equal(t.fit.kernels, 4);
     assert_int_equal(t.fit.rank, 3);
-    good(&t, TWO "pattern veins 3 pale dark\nmodel factored\n");
+    parse_good(&t, TWO "pattern veins 3 pale dark\nmodel factored\n");
     assert_int_equal(t.fit.kernels, 5);
     assert_int_equal(t.stone.seed, 3);
 }
 
-/* A of a pattern is material 0, whichever line it stands on. */
+/* The first medium of a pattern is material 0, in whatever order the media
+ * are defined. */
 TEST(order)
 {
     struct glint_stone_text t;
 
-    good(&t, TWO "pattern image a.pgm dark pale\n");
+    parse_good(&t, TWO "pattern image a.pgm dark pale\n");
     assert_string_equal(t.mask, "a.pgm");
     assert_true(t.stone.material[0].scatter[0] == .5 &&
                 t.stone.material[1].scatter[0] == 2);
-    good(&t, "model clustered\ndata rows of it.pfm\n");
+    parse_good(&t, "model clustered\ndata rows of it.pfm\n");
     assert_string_equal(t.rows, "rows of it.pfm");
     assert_int_equal(t.fit.kernels, 4);
-    good(&t, "data a.pfm\nmodel albedo\n");
+    parse_good(&t, "data a.pfm\nmodel albedo\n");
     assert_int_equal(t.fit.kernels, 1);
 }
 
@@ -129,7 +132,7 @@ static const struct {
     {"data\n", "the name of the rows is missing"},
 };
 
-TEST(refused)
+TEST(rejects_mistakes)
 {
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         struct glint_error error = {.text = ""};
@@ -142,8 +145,8 @@ TEST(refused)
     }
 }
 
-/* Returns the mean difference of SHARE between columns, or rows, that meet:
- * within the translucent medium, or at its edge. */
+/* Returns the mean difference of SHARE between adjacent columns or rows:
+ * within the medium, or, if EDGE is set, across its edges. */
 static double mean_step(const double *share, int side, bool rows, bool edge)
 {
     const int first = edge ? side - 1 : 0, end = edge ? side : side - 1;
@@ -159,8 +162,8 @@ static double mean_step(const double *share, int side, bool rows, bool edge)
     return sum / ((double)side * (end - first));
 }
 
-/* Around a ball a translucent medium meets itself: steps there are as those
- * within. */
+/* The edges of a medium meet on a sphere: differences across them are as
+ * small as those within. */
 TEST(veins_go_on_at_edges)
 {
     enum { SIDE = 64, SEEDS = 20 };

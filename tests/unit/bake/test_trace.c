@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Exact rays against those of another program, against geometry that can be
- * done by hand, and against the symmetries of a centred lens.
+ * Tests exact rays against those of an independent program, against analytic
+ * results, and against symmetries of a centred lens.
  */
 #include <dirent.h>
 #include <math.h>
@@ -41,7 +41,7 @@ static void parse_bundle_name(struct bundle *bundle, const char *name)
                      4);
 }
 
-/* Returns the next comma-separated number and moves *AT beyond it; NAN where
+/* Returns the next comma-separated number and advances *AT behind it; NAN if
  * the column is empty. */
 static double next_column(const char **at)
 {
@@ -64,7 +64,8 @@ static void compare_mm(double got, double expected, const char *where)
 
     if (!(difference <= fmax(1e-7, 5e-9 * fabs(expected))))
         fail_msg("%s: %.12g mm, expected %.9g", where, got, expected);
-    if (fabs(expected) < 100.0) /* printed with 1e-7 mm or better */
+    /* the file has a resolution of 1e-7 mm or better */
+    if (fabs(expected) < 100.0)
         worst_mm = fmax(worst_mm, difference);
 }
 
@@ -100,7 +101,8 @@ static int compare_bundle(const struct bundle *bundle, FILE *file,
                 bundle->ghost);
     glint_path_init(&path, &lens, &ghosts[bundle->ghost],
                     bundle->wavelength_nm);
-    assert_non_null(fgets(line, sizeof(line), file)); /* skips the header */
+    /* skips the header line */
+    assert_non_null(fgets(line, sizeof(line), file));
     for (int i = 0; i < bundle->n * bundle->n; i++) {
         const double semi = lens.surface[0].semi_mm;
         const double step = 2.0 * semi / (bundle->n - 1);
@@ -125,7 +127,7 @@ static int compare_bundle(const struct bundle *bundle, FILE *file,
     return ok;
 }
 
-TEST(golden)
+TEST(rays_match_other_program)
 {
     DIR *folder = opendir(GOLDEN);
     const struct dirent *entry;
@@ -156,8 +158,8 @@ TEST(golden)
 
 /* ------------------------------------------------------------------- paths */
 
-/* Returns a lens that the parser need not accept: N bare surfaces, alternately
- * into glass of index 1.5 and into air, and the stop behind them. */
+/* Returns a lens of N bare surfaces, alternately into glass of index 1.5 and
+ * into air, with the stop behind them. The parser might reject it. */
 static struct glint_prescription simple_lens(int n, const double *radius_mm,
                                              double thickness_mm)
 {
@@ -188,8 +190,8 @@ static void expect_event(const struct glint_event *event,
     assert_true(event->n_to == n_to);
 }
 
-/* A ghost of two surfaces 5 mm apart, with the stop 5 mm behind them, must have
- * these five events. */
+/* The path of a ghost of two surfaces 5 mm apart, with the stop 5 mm behind
+ * them, has these five events. */
 TEST(ghost_path_events)
 {
     static const double radii[] = {40.0, -40.0};
@@ -225,15 +227,15 @@ TEST(direct_path_of_front_stop)
     expect_event(&path.event[0], GLINT_STOP, -1, -8.0, 1.0, 1.0);
     expect_event(&path.event[1], GLINT_REFRACT, 0, 8.0, 1.0, 1.5);
     assert_true(path.to_sensor_mm == 5.0);
-    /* The stop lies 8 mm before the vertex plane, so the ray from (1, 2) goes
-     * back to it along its 3:4 slope. */
+    /* The stop lies 8 mm in front of the vertex plane, so the ray from (1,
+     * 2) is extended backwards along its slope of 3/4. */
     assert_int_equal(glint_trace(&path, 1.0, 2.0, up, &ray, NULL),
                      GLINT_RAY_OK);
     assert_near(ray.stop_x_mm, 1.0, 1e-14);
     assert_near(ray.stop_y_mm, -4.0, 1e-14);
 }
 
-/* The longest possible path, across the stop, must fit. */
+/* The longest possible path, across the stop, fits into the array of events. */
 TEST(longest_path)
 {
     static double radii[GLINT_MAX_SURFACES];
@@ -259,8 +261,8 @@ static enum glint_ray_status trace_one(const struct glint_prescription *lens,
 }
 
 /* A plane-parallel plate, 5 mm of n = 1.5: a ray of sine 0.6 has sine 0.4
- * inside, climbs by 5 tan(asin 0.4) there, and leaves parallel. */
-TEST(plate)
+ * inside, rises by 5 tan(asin 0.4), and leaves parallel to its entry. */
+TEST(plate_displaces_ray)
 {
     static const double flat[2] = {0.0, 0.0};
     const struct glint_prescription lens = simple_lens(2, flat, 5.0);
@@ -275,9 +277,9 @@ TEST(plate)
     assert_near(ray.rel_radius, (1.0 + inside) / 10.0, 1e-15);
 }
 
-/* A radius of 1e7 mm differs from a plane by its sag, h^2 / 2R = 1.8e-6 mm,
- * and by its tilt, h / R = 6e-7: the bent ray lands lower by (n - 1) h / R *
- * ((5 - sag) / n + 55). */
+/* A surface of radius 1e7 mm differs from a plane by its sag, h^2 / 2R =
+ * 1.8e-6 mm, and its tilt, h / R = 6e-7: the ray lands lower by (n - 1) h /
+ * R * ((5 - sag) / n + 55). */
 TEST(huge_radius)
 {
     static const double huge[2] = {1e7, 0.0};
@@ -294,8 +296,8 @@ TEST(huge_radius)
     assert_true(ray.sensor_y_mm == 0.0);
 }
 
-/* A sphere of 0.01 mm radius: a ray to its centre must go straight on; rays
- * that are 0.01 mm or more from the axis must miss it. */
+/* A sphere of radius 0.01 mm: a ray to its centre continues straight on;
+ * rays 0.01 mm or more from the axis miss it. */
 TEST(tiny_radius)
 {
     static const double tiny[1] = {0.01};
@@ -310,9 +312,9 @@ TEST(tiny_radius)
     assert_int_equal(trace_one(&lens, 0.02, along, &ray), GLINT_RAY_MISSED);
 }
 
-/* The aplanatic points of a sphere: rays that aim at R + n R behind the vertex
- * meet at R + R / n, without any aberration. With R = 10 and n = 1.5, rays that
- * aim at 25 must meet at 16.667 whatever their angle. */
+/* The aplanatic points of a sphere: rays that converge to R + n R behind the
+ * vertex meet at R + R / n, without any aberration. With R = 10 and n = 1.5,
+ * rays to 25 meet at 16.667 whatever their angle. */
 TEST(aplanatic_sphere)
 {
     static const double radius[1] = {10.0};
@@ -330,7 +332,7 @@ TEST(aplanatic_sphere)
     }
 }
 
-/* From glass into air, 45 degrees are beyond the critical angle of 41.8. */
+/* From glass to air, 45 degrees exceed the critical angle of 41.8. */
 TEST(total_reflection)
 {
     static const double curved[2] = {0.0, -10.0};
@@ -341,13 +343,14 @@ TEST(total_reflection)
     assert_int_equal(trace_one(&lens, 10.0 * sqrt(0.5), along, &ray),
                      GLINT_RAY_TOTAL_REFLECTION);
     assert_true(ray.stop_x_mm == 7.0 && ray.rel_radius == 7.0);
-    /* A sine of exactly 2/3 is critical; a ray of slightly less must pass. */
+    /* a sine of exactly 2/3 is critical; a ray with a slightly smaller sine
+     * passes */
     assert_int_equal(trace_one(&lens, 6.66, along, &ray), GLINT_RAY_OK);
 }
 
-/* A ghost of a plate: light that is reflected twice inside must land three
- * times as far within the plate as light that crosses it once, with energy (1 -
- * R)^2 R^2 for R = ((1.5 - 1) / 2.5)^2. */
+/* A ghost of a plate: light that is reflected twice inside is displaced
+ * three times as far within the plate as light that crosses it once. Its
+ * energy is (1 - R)^2 R^2 with R = ((1.5 - 1) / 2.5)^2. */
 TEST(plate_ghost)
 {
     static const double flat[2] = {0.0, 0.0};
@@ -373,7 +376,7 @@ TEST(plate_ghost)
     assert_near(ray.energy, 0.96 * 0.96 * 0.04 * 0.04, 1e-16);
 }
 
-/* Rays that go back, go sideways or are not finite must be reported as
+/* Rays that run backwards, sideways or are not finite are reported as
  * missed. */
 TEST(hostile_rays)
 {
@@ -395,8 +398,9 @@ TEST(hostile_rays)
 
 /* ------------------------------------------------------------ many at once */
 
-/* Checks that N rays traced at once have the bits of rays traced one by one,
- * their hits, too; hits that are not reached must stay as they were. */
+/* Checks that N rays traced in a batch, and their hits, are bit-identical to
+ * rays traced one by one. Hits of events that are not reached stay
+ * unchanged. */
 static void expect_same(const struct glint_path *path, int n,
                         const struct glint_launch *from)
 {
@@ -451,22 +455,24 @@ TEST(many_at_once)
     }
 }
 
-TEST(row)
+TEST(row_equals_single_rays)
 {
     static struct glint_prescription lens;
     const struct glint_ghost ghost = {1, 4};
-    const struct glint_row row = {21, -5, 0.4, 2.5, {0.1, 0, sqrt(0.99)}};
+    const struct glint_row row_equals_single_rays = {
+        21, -5, 0.4, 2.5, {0.1, 0, sqrt(0.99)}};
     struct glint_ray ray[21], one;
     enum glint_ray_status status[21];
     struct glint_path path;
 
     load_lens(&lens, "heliar-tronnier");
     glint_path_init(&path, &lens, &ghost, 532);
-    glint_trace_row(&path, &row, ray, status, NULL);
+    glint_trace_row(&path, &row_equals_single_rays, ray, status, NULL);
     for (int k = 0; k < 21; k++) {
-        assert_int_equal(
-            glint_trace(&path, -5 + 0.4 * k, 2.5, row.direction, &one, NULL),
-            status[k]);
+        assert_int_equal(glint_trace(&path, -5 + 0.4 * k, 2.5,
+                                     row_equals_single_rays.direction, &one,
+                                     NULL),
+                         status[k]);
         if (status[k] == GLINT_RAY_OK)
             assert_memory_equal(&one, &ray[k], sizeof one);
     }
@@ -500,8 +506,8 @@ TEST(axis_goes_straight)
     }
 }
 
-/* Checks that a ray and its mirror image in the plane y = 0 have the same bits
- * but for the sign of y. */
+/* Checks that a ray and its mirror image in the plane y = 0 are
+ * bit-identical except for the sign of y. */
 static void expect_mirrored(const struct glint_path *path, double px, double py,
                             const double d[3])
 {
@@ -520,8 +526,8 @@ static void expect_mirrored(const struct glint_path *path, double px, double py,
     assert_true(a.rel_radius == b.rel_radius);
 }
 
-/* Checks that a ray turned by 90 degrees lands at the turned place, to the
- * bit. */
+/* Checks that a ray rotated by 90 degrees hits the rotated position,
+ * bit-identical. */
 static void expect_turned(const struct glint_path *path, double px, double py,
                           const double d[3])
 {
@@ -559,8 +565,8 @@ TEST(symmetry_to_the_bit)
     }
 }
 
-/* A distant point must be imaged f tan T from the axis by a narrow pencil near
- * it, where f is 49.992 mm by the table. */
+/* A distant point is imaged f tan T from the axis by a narrow pencil near
+ * the axis, with f = 49.992 mm as in the table. */
 TEST(direct_image)
 {
     static struct glint_prescription lens;
@@ -575,12 +581,12 @@ TEST(direct_image)
         assert_int_equal(trace_one(&lens, 0.01 * i, up, &ray), GLINT_RAY_OK);
         assert_near(ray.sensor_y_mm, 49.992 * 1e-4, 2e-7);
     }
-    /* The chief ray must pass the middle of the stop. */
+    /* The chief ray passes the centre of the stop. */
     assert_int_equal(trace_one(&lens, -optics.entrance_z_mm * sine, up, &ray),
                      GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, 0.0, 1e-9);
-    /* A ray at the rim of the entrance pupil must pass the rim of the stop,
-     * 1.3200 mm by the table, up to aberrations. */
+    /* A ray at the rim of the entrance pupil passes the rim of the stop,
+     * 1.3200 mm in the table, up to aberrations. */
     assert_int_equal(trace_one(&lens, optics.entrance_radius_mm,
                                (const double[3]){0.0, 0.0, 1.0}, &ray),
                      GLINT_RAY_OK);

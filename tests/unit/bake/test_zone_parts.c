@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Halves of the box of a zone, halves of these, and when a zone is halved.
+ * Tests the halving of the boxes of zones, and the decision when a zone is
+ * halved.
  */
 #include <math.h>
 
@@ -10,14 +11,14 @@
 #include "support/lens_check.h"
 #include "support/rng.h"
 
-static bool part_has(const struct glint_zone_part *p, double u, double v)
+static bool part_contains(const struct glint_zone_part *p, double u, double v)
 {
     return u >= p->u0 && u < p->u1 && v < p->top &&
            v >= p->top * glint_zone_rim(p->annulus);
 }
 
-/* However often a box is halved, each place must be in exactly one part. */
-TEST(halves)
+/* After any number of halvings, each position lies in exactly one part. */
+TEST(parts_are_disjoint)
 {
     enum { DEPTH = 8, PARTS = 1 << DEPTH };
     static struct glint_zone_part part[PARTS] = {{-1, 1, 1, -1, 1, 0}};
@@ -42,23 +43,24 @@ TEST(halves)
         int found = 0;
 
         for (int k = 0; k < PARTS; k++)
-            found += part_has(&part[k], u, v);
+            found += part_contains(&part[k], u, v);
         assert_int_equal(found, 1);
     }
 }
 
-/* A zone of a ghost that hides nothing, from FROM to TO degrees, and an attempt
- * that left errors of LEFT tolerances, before 10. Of DEPTH 0 it is not a part.
- */
+/* A zone from FROM to TO degrees, of a ghost bright enough that no error is
+ * hidden, and an attempt whose error was LEFT tolerances, after 10 for the
+ * wider zone. DEPTH 0: the zone is not divided. */
 struct attempted {
     bool shaped, far;
     double from, to, left;
-    int depth; /* of a thorough fit; -1: of another */
+    int depth; /* number of halvings of the box in a thorough fit; -1: the fit
+                  was not thorough */
     int axis_depth;
     enum glint_next next;
 };
 
-static enum glint_next next_of(const struct attempted *c)
+static enum glint_next decide_next(const struct attempted *c)
 {
     static struct glint_prescription lens = {.n_surfaces = 2};
     static struct glint_setup setup;
@@ -87,8 +89,9 @@ static enum glint_next next_of(const struct attempted *c)
     return glint_next(&rules, &piece, &attempt);
 }
 
-/* Parts of wide zones of aspheric lenses do not meet, so that their zones are
- * halved where those of spheres are divided, and their parts further. */
+/* Parts of wide zones of aspheric lenses do not join without gaps. So their
+ * zones are halved where those of spherical lenses would be divided, and
+ * their boxes may be divided further. */
 TEST(shaped)
 {
     static const struct attempted all[] = {
@@ -97,19 +100,20 @@ TEST(shaped)
         {true, false, 5, 8.7, 9, -1, 4, GLINT_HALVE},
         {true, false, 5, 8.5, 9, -1, 4, GLINT_THOROUGH},
         {true, false, 5, 8.5, 7, -1, 4,
-         GLINT_HALVE}, /* as the last one helped */
+         GLINT_HALVE}, /* since the previous halving helped */
         {true, false, 5, 11, 0.9, -1, 4, GLINT_KEEP},
         {false, false, 5, 8, 9, 3, 4, GLINT_PART},
         {false, false, 5, 8, 9, 4, 4, GLINT_KEEP},
         {true, false, 5, 8, 9, 5, 4, GLINT_PART},
         {true, false, 5, 8, 9, 6, 4, GLINT_KEEP},
         {true, false, 5, 8, 4, 5, 4, GLINT_KEEP},
-        /* at the axis by the tolerance, if that requests more */
+        /* at the axis, the tolerance may allow more halvings */
         {false, false, 0, 3, 9, 4, 5, GLINT_PART},
         {true, false, 0, 3, 9, 5, 4, GLINT_PART},
         {true, false, 0, 3, 9, 6, 4, GLINT_KEEP},
         {true, false, 0, 3, 9, 7, 8, GLINT_PART},
-        /* lights beyond 60 degrees: halved as far, divided no further */
+        /* lights beyond 60 degrees: halved like aspheric lenses, but not
+         * divided further */
         {false, true, 70, 74, 9, -1, 4, GLINT_HALVE},
         {false, true, 70, 73.7, 9, -1, 4, GLINT_HALVE},
         {false, true, 70, 73.5, 9, -1, 4, GLINT_THOROUGH},
@@ -117,7 +121,7 @@ TEST(shaped)
     };
 
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        if (next_of(&all[i]) != all[i].next)
-            fail_msg("attempt %d: %d, not %d", (int)i, (int)next_of(&all[i]),
-                     (int)all[i].next);
+        if (decide_next(&all[i]) != all[i].next)
+            fail_msg("attempt %d: %d, not %d", (int)i,
+                     (int)decide_next(&all[i]), (int)all[i].next);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Zooms and focus: tables of several positions against those of one, gaps
- * between columns, and exact rays near the axis of lenses that were focused. */
+ * Tests zoom and focus: tables of several positions against tables of one, gaps
+ * between columns, and exact paraxial rays of focused lenses.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -25,7 +26,7 @@ static void load_zoom(const char *name)
     load_lens(&zoom, path);
 }
 
-static void go_to(double along)
+static void set_zoom(double along)
 {
     struct glint_error error = {""};
 
@@ -33,7 +34,7 @@ static void go_to(double along)
         fail_msg("%s", error.text);
 }
 
-static void focus(struct glint_prescription *lens, double metres)
+static void focus_at(struct glint_prescription *lens, double metres)
 {
     struct glint_error error = {""};
 
@@ -41,7 +42,8 @@ static void focus(struct glint_prescription *lens, double metres)
         fail_msg("%s", error.text);
 }
 
-/* At its columns a zoom is the lens of that table, to the last bit. */
+/* At its columns a zoom equals the lens of the corresponding table,
+ * bit-identical. */
 TEST(columns)
 {
     for (int k = 0; k < 9; k++) {
@@ -50,7 +52,7 @@ TEST(columns)
         snprintf(name, sizeof name, "%s-%s", zooms[k / 3], ends[k % 3]);
         load_lens(&single, name);
         load_zoom(zooms[k / 3]);
-        go_to(zoom.zoom.along[k % 3]);
+        set_zoom(zoom.zoom.along[k % 3]);
         assert_int_equal(zoom.n_surfaces, single.n_surfaces);
         for (int i = 0; i < zoom.n_surfaces; i++)
             assert_memory_equal(&zoom.surface[i], &single.surface[i],
@@ -62,9 +64,9 @@ TEST(columns)
     }
 }
 
-/* Between columns focal lengths only rise, the image stays in focus, and a
- * focal length is found again. */
-TEST(between)
+/* Between columns focal lengths are monotone and the image stays in focus;
+ * glint_prescription_zoom_to() finds each focal length again. */
+TEST(monotone_between_columns)
 {
     enum { STEPS = 40 };
 
@@ -77,7 +79,7 @@ TEST(between)
             double along = -1;
 
             load_zoom(zooms[z]);
-            go_to((double)k / STEPS);
+            set_zoom((double)k / STEPS);
             glint_optics_of(&zoom, &optics);
             assert_true(optics.focal_mm > before);
             before = optics.focal_mm;
@@ -92,10 +94,10 @@ TEST(between)
     }
 }
 
-/* Returns where a ray that passes (X, 0) on the front's vertex plane with the
- * slope TANGENT meets the sensor. */
-static double land(const struct glint_prescription *lens, double x,
-                   double tangent)
+/* Returns the sensor position, mm, of a ray through (X, 0) of the front's
+ * vertex plane with the slope TANGENT. */
+static double trace_to_sensor(const struct glint_prescription *lens, double x,
+                              double tangent)
 {
     static struct glint_path path;
     const double size = sqrt(1 + tangent * tangent);
@@ -108,8 +110,8 @@ static double land(const struct glint_prescription *lens, double x,
     return ray.sensor_x_mm;
 }
 
-/* Rays from the point that is in focus meet on the sensor, and light from afar
- * lies where the scale says. */
+/* Checks that rays from the focused point meet on the sensor, and that
+ * distant light is imaged at the position given by scale_mm. */
 static void check_focus(struct glint_prescription *lens, double metres)
 {
     const double h = 1e-3, angle = 1e-5;
@@ -117,18 +119,20 @@ static void check_focus(struct glint_prescription *lens, double metres)
     double object;
 
     glint_optics_of(lens, &before);
-    focus(lens, metres);
+    focus_at(lens, metres);
     glint_optics_of(lens, &optics);
     object = 1000 * metres - optics.length_mm;
-    assert_near(land(lens, h, h / object), 0, 1e-7 * h * before.focal_mm);
-    assert_true(fabs(land(lens, h, 0)) > 1e-3 * h);
-    assert_near(land(lens, -optics.entrance_z_mm * angle, angle) / angle,
+    assert_near(trace_to_sensor(lens, h, h / object), 0,
+                1e-7 * h * before.focal_mm);
+    assert_true(fabs(trace_to_sensor(lens, h, 0)) > 1e-3 * h);
+    assert_near(trace_to_sensor(lens, -optics.entrance_z_mm * angle, angle) /
+                    angle,
                 optics.scale_mm, 1e-4 * optics.scale_mm);
     assert_true(fabs(optics.scale_mm - before.focal_mm) >
                 1e-3 * before.focal_mm);
 }
 
-TEST(focus)
+TEST(focus_at)
 {
     static const double metres[] = {1.5, 5, 30};
 
@@ -139,31 +143,30 @@ TEST(focus)
         check_focus(&single, metres[k] / 3);
         for (int z = 0; z < 9; z++) {
             load_zoom(zooms[z / 3]);
-            go_to(0.5 * (z % 3));
+            set_zoom(0.5 * (z % 3));
             check_focus(&zoom, metres[k]);
         }
     }
 }
 
-/* Newton's formula, x x' = f^2, for a lens that moves as a whole. */
-TEST(newton)
+/* Newton's formula, x x' = f^2, holds for a lens that moves as a whole. */
+TEST(newtons_formula)
 {
     struct glint_optics optics;
     double before, moved;
 
     load_lens(&single, "heliar-tronnier");
     before = single.surface[single.n_surfaces - 1].thickness_mm;
-    focus(&single, 2);
+    focus_at(&single, 2);
     moved = single.surface[single.n_surfaces - 1].thickness_mm - before;
     glint_optics_of(&single, &optics);
-    /* The front focus lies about a focal length before the lens. */
+    /* the front focus lies about one focal length in front of the lens */
     assert_near(optics.focal_mm * optics.focal_mm / moved,
                 2000 - optics.length_mm - optics.focal_mm,
                 0.5 * optics.focal_mm);
 }
 
-/* A stop in front of the group that focuses keeps its distance to the sensor.
- */
+/* A stop in front of the focusing group keeps its distance from the sensor. */
 TEST(front_stop)
 {
     static const char text[] =
@@ -179,14 +182,14 @@ TEST(front_stop)
         fail_msg("%s", error.text);
     glint_optics_of(&single, &optics);
     before = optics.length_mm + single.stop_thickness_mm;
-    focus(&single, 3);
+    focus_at(&single, 3);
     glint_optics_of(&single, &optics);
     assert_true(single.stop_thickness_mm < 4.5);
     assert_near(optics.length_mm + single.stop_thickness_mm, before, 1e-9);
 }
 
-/* A stop in front leaves the glass behind it as solid: surfaces whose rims are
- * apart do not pass through each other's vertices. */
+/* With a stop in front, elements are still solid: surfaces whose rims do not
+ * touch may not pass through each other's vertices. */
 TEST(solid)
 {
     static const char text[] =
@@ -197,7 +200,7 @@ TEST(solid)
 
     assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
                                        &error));
-    focus(&single, 20);
+    focus_at(&single, 20);
     assert_true(single.surface[1].thickness_mm > 0);
     assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
                                        &error));
@@ -208,7 +211,7 @@ TEST(solid)
 
 /* -------------------------------------------------------------------- text */
 
-static void refuses(const char *body, const char *cause)
+static void check_refused(const char *body, const char *cause)
 {
     struct glint_error error = {""};
     char text[1000];
@@ -226,27 +229,29 @@ static void refuses(const char *body, const char *cause)
 
 TEST(text)
 {
-    refuses("f-number 10\n" FRONT "4/x" BACK, "t.lens:5:15: thickness 'x'");
-    refuses("f-number 10\n" FRONT "4//6" BACK, "thickness");
-    refuses("f-number 10/11/12\n" FRONT "4/6" BACK,
-            "thickness has 2 positions, but the lines above have 3");
-    refuses("f-number 10/11\n" FRONT "4" BACK, "no thickness changes");
-    refuses("f-number 10\n" FRONT "4/4" BACK,
-            "focal lengths must only rise or only fall");
-    refuses("f-number 10\n" FRONT "1/2/3/4/5/6/7/8/9" BACK,
-            "more than 8 positions");
-    refuses("f-number 10\nfocal-length 31/99\n" FRONT "4/6" BACK,
-            "focal-length is");
-    refuses("f-number 10\nfocus\n" FRONT "4/6" BACK, "end it above");
-    refuses("f-number 10\nfocus\ngroup tilt 1 0\n" FRONT "4/6" BACK,
-            "t.lens:5:1: the group above has no end");
-    refuses("f-number 10\nfocus\nend\n" FRONT "4/6" BACK, "no surface moves");
+    check_refused("f-number 10\n" FRONT "4/x" BACK,
+                  "t.lens:5:15: thickness 'x'");
+    check_refused("f-number 10\n" FRONT "4//6" BACK, "thickness");
+    check_refused("f-number 10/11/12\n" FRONT "4/6" BACK,
+                  "thickness has 2 positions, but what stands above has 3");
+    check_refused("f-number 10/11\n" FRONT "4" BACK, "no thickness changes");
+    check_refused("f-number 10\n" FRONT "4/4" BACK,
+                  "focal lengths must only rise or only fall");
+    check_refused("f-number 10\n" FRONT "1/2/3/4/5/6/7/8/9" BACK,
+                  "more than 8 positions");
+    check_refused("f-number 10\nfocal-length 31/99\n" FRONT "4/6" BACK,
+                  "focal-length is");
+    check_refused("f-number 10\nfocus\n" FRONT "4/6" BACK, "end it above");
+    check_refused("f-number 10\nfocus\ngroup tilt 1 0\n" FRONT "4/6" BACK,
+                  "t.lens:5:1: the group above has no end");
+    check_refused("f-number 10\nfocus\nend\n" FRONT "4/6" BACK,
+                  "no surface moves");
 }
 
-/* Where a lens is zoomed to does not depend on where it was before, though the
- * table has one last gap, which lies off the focus by another distance in each
+/* The result of a zoom does not depend on the previous position, even if the
+ * table has a single last gap, whose distance from the focus differs per
  * column. */
-TEST(again)
+TEST(result_is_independent_of_history)
 {
     static const char text[] =
         "name t\nfilm 36 24\nf-number 10\n" FRONT "4/6/7" BACK;
@@ -260,13 +265,13 @@ TEST(again)
     for (int i = 0; i < 5; i++) {
         single = once;
         assert_ok(glint_prescription_zoom(&single, places[i], &error));
-        go_to(places[i]);
+        set_zoom(places[i]);
         assert_memory_equal(&zoom, &single, sizeof zoom);
     }
 }
 
-/* Of two columns f-numbers are in proportion; focal lengths that fall are found
- * as those that rise. */
+/* With two columns f-numbers are interpolated linearly. Descending focal
+ * lengths work like ascending ones. */
 TEST(two_columns)
 {
     static const char *const texts[] = {
@@ -282,7 +287,7 @@ TEST(two_columns)
                                      "t.lens", &error))
             fail_msg("%s", error.text);
         single = zoom;
-        go_to(0.3);
+        set_zoom(0.3);
         assert_near(zoom.f_number, 13, 1e-9);
         glint_optics_of(&zoom, &optics);
         assert_ok(glint_prescription_zoom_to(&single, optics.focal_mm, &along,
