@@ -28,9 +28,9 @@ extern "C" {
 struct glint_bake_options {
     double band_nm[2]; /* shortest and longest wavelength, 300 .. 1100 */
     double max_deg;    /* largest angle of a light, above 0, up to 89 */
-    double field_mm;   /* radius around the centre of the sensor within which
-                          the model must be accurate; 0: a tenth beyond the
-                          corners of the film */
+    double field_mm;   /* radius of the field around the sensor's centre within
+                          which the model is accurate, mm; 0: 1.1 times the
+                          distance to the corners of the film */
     /* Factor on all tolerances, 0.1 .. 100. At 1, the brightest ghosts are
      * fitted with RMS errors of 0.04 pixels (film 1920 pixels wide) for
      * positions and outlines, and of 0.12 % for the energy. Faint ghosts get at
@@ -62,12 +62,12 @@ void glint_bake_defaults(struct glint_bake_options *options);
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options);
 
-/* Sets PROJECTION to the projection of LENS at the d line, from chief rays at
- * whole degrees (finer for narrow lenses) up to 85 degrees or the last ray that
- * gets through. *MISS_DEG receives the max error of the polynomial at these
- * rays, degrees. Returns GLINT_E_LENS if LENS is not round, or hardly any light
- * gets through; ERROR states the cause, and PROJECTION becomes a pinhole
- * projection. */
+/* Sets PROJECTION to the projection of LENS at the d line. Uses chief rays
+ * at whole degrees (finer for narrow lenses) up to 85 degrees or the last
+ * ray that passes the lens. *MISS_DEG receives the max error of the
+ * polynomial at these rays, degrees. Returns GLINT_E_LENS if LENS is not
+ * round, or if hardly any light passes; ERROR states the cause, and
+ * PROJECTION becomes a pinhole projection. */
 enum glint_status glint_projection_of(struct glint_projection *projection,
                                       const struct glint_prescription *lens,
                                       double *miss_deg,
@@ -84,11 +84,11 @@ struct glint_bake_report {
     int unmet; /* number of systems that miss the tolerance */
 };
 
-/* Bakes LENS into *MODEL[*BYTES], a file as in glint/model.h, which the caller
- * frees. The same lens and options give the same bytes. Returns
- * GLINT_E_ARGUMENT if OPTIONS are out of range. Returns GLINT_E_LENS if no
- * light gets through, or it cannot be proven that integers do not overflow.
- * Both set ERROR. May return GLINT_E_MEMORY. */
+/* Bakes LENS into the model file *MODEL[*BYTES] (format: glint/model.h),
+ * which the caller frees. The same lens and options give the same bytes.
+ * Returns GLINT_E_ARGUMENT if OPTIONS are out of range, and GLINT_E_LENS if
+ * no light passes the lens or if integer overflow cannot be excluded by
+ * proof; both set ERROR. May return GLINT_E_MEMORY. */
 enum glint_status glint_bake(const struct glint_prescription *lens,
                              const struct glint_bake_options *options,
                              unsigned char **model, size_t *bytes,
@@ -104,10 +104,10 @@ struct glint_bake_model {
     const bool *ghosts;
 };
 
-/* Joins N models of one lens, sorted by rising position from 0 to 2^30, into a
- * file as in glint/model.h, *ZOOM[*BYTES], which the caller frees. Returns
- * GLINT_E_LENS if the models are not positions of one lens; ERROR states why.
- * May return GLINT_E_MEMORY. */
+/* Joins N models of one zoom lens, sorted by ascending position from 0 to
+ * 2^30, into the file *ZOOM[*BYTES] (format: glint/model.h), which the
+ * caller frees. Returns GLINT_E_LENS if the models are not positions of one
+ * lens; ERROR states the cause. May return GLINT_E_MEMORY. */
 enum glint_status glint_bake_zoom(const struct glint_bake_model *model, int n,
                                   unsigned char **zoom, size_t *bytes,
                                   struct glint_error *error);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/exact.h - draws pictures by exact ray tracing, the reference for all
- * other methods. */
+ * glint/exact.h - draws pictures by exact ray tracing; the reference for all
+ * other methods.
+ */
 #ifndef GLINT_EXACT_H
 #define GLINT_EXACT_H
 
@@ -31,12 +32,13 @@ struct glint_exact_config {
 };
 
 /* Draws the reference picture into RGB, [height][width][3], row 0 on top, in
- * the unit of the power of lamps. Every ray is traced in double precision; each
- * cell is clipped exactly by the stop and by the circles of all barrels, and
- * covers pixels by area, so that energy is conserved. The result is
- * deterministic. Returns GLINT_E_MEMORY if there is no memory for about 100
- * bytes per cell of one ghost and 24 bytes per pixel, or lamps x ghosts x
- * wavelengths exceed 2^24. */
+ * the unit of the power of lamps. Every ray is traced in double precision.
+ * Each cell of the ray grid is clipped exactly by the stop and by the
+ * circles of all barrels, and its light is distributed over pixels by area,
+ * so that energy is conserved. The result is deterministic. Returns
+ * GLINT_E_MEMORY if there is no memory for about 100 bytes per cell of one
+ * ghost and 24 bytes per pixel, or if lamps x ghosts x wavelengths exceed
+ * 2^24. */
 enum glint_status glint_exact_render(const struct glint_exact_config *cfg,
                                      double *rgb);
 

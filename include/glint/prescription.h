@@ -144,10 +144,10 @@ double glint_surface_index(const struct glint_surface *s, double wavelength_nm);
 #define GLINT_MAX_POSITIONS 8  /* max columns of the table of a zoom lens */
 #define GLINT_MAX_MOVES     12 /* max gaps of a zoom lens that change */
 
-/* The values of a zoom lens at each of its positions, by rising or falling
- * focal length. Between positions monotone cubics interpolate them over the
- * zoom parameter: 0 at the first, 1 at the last column, in equal steps where
- * focal lengths rise by equal factors. */
+/* The values of a zoom lens at each of its positions, sorted by ascending or
+ * descending focal length. Monotone cubics interpolate them over the zoom
+ * parameter, which is 0 at the first and 1 at the last column and
+ * proportional to the logarithm of the focal length. */
 struct glint_zoom {
     int n_positions; /* number of columns; 0: the lens does not zoom */
     int n_moves;     /* number of gaps that change */
@@ -179,7 +179,8 @@ bool glint_prescription_is_round(const struct glint_prescription *lens);
  * that surface to the stop. */
 struct glint_prescription {
     char name[GLINT_NAME_BYTES];
-    char source[256];    /* source of the data, a patent or book, as text */
+    char source[256]; /* source of the data, such as a patent or a book, as text
+                       */
     char character[256]; /* description of the flare of the lens, as text */
     double f_number;
     double film_width_mm, film_height_mm;
@@ -187,24 +188,24 @@ struct glint_prescription {
                        GLINT_MAX_SURFACES */
     struct glint_surface surface[GLINT_MAX_SURFACES];
     int stop_after; /* number of surfaces before the stop, 0 .. n_surfaces */
-    double stop_thickness_mm; /* mm from the stop to the next surface (or the
-                                 sensor); a front stop lies at z < 0, or
-                                 behind the vertex where this is below 0 */
+    double stop_thickness_mm; /* distance from the stop to the next surface (or
+                                 the sensor), mm. A stop in front of the lens
+                                 lies at z < 0, or behind the front vertex if
+                                 the distance is below 0 */
     double stop_semi_mm;      /* max radius of the stop */
     bool stop_is_circle;      /* true: the stop is a circle at every opening;
                                  false: it has blades */
     double check_focal_mm;    /* values that the table states, to check it; 0:
                                  not stated */
     double check_back_mm;
-    /* Alternative coatings that the table lists, chosen for appearance, not
-     * measured. Surfaces get them only by glint_prescription_coat(). */
+    /* Alternative coatings in the table, chosen for appearance, not
+     * measured. glint_prescription_coat() applies them. */
     struct glint_coating mixed[GLINT_MAX_COATINGS];
-    int n_mixed; /* number of mixed coatings; 0: the table lists
-                    none */
+    int n_mixed; /* number of mixed coatings; 0: the table lists none */
     /* After parsing, the lens is at the first position. */
     struct glint_zoom zoom;
-    /* First surface and number of the surfaces that move together along the
-     * axis to focus; 0 surfaces: the whole lens moves. */
+    /* Index of the first surface, and number of surfaces, of the group that
+     * moves along the axis to focus; 0 surfaces: the whole lens moves. */
     int focus_first, n_focus;
     /* Current zoom position, 0 .. 1, and distance from the sensor to the
      * focused object, m; 0: infinity. */
@@ -231,10 +232,10 @@ glint_prescription_set_f_number(struct glint_prescription *lens,
 double glint_prescription_widest(const struct glint_prescription *lens);
 
 /* Zooms LENS, which must not have been focused before, to ALONG, 0 .. 1.
- * Between columns the last gap keeps the image in focus: the difference of the
- * gap from the back focal length is interpolated. Returns GLINT_E_ARGUMENT if
- * LENS does not zoom, ALONG is out of range, or at ALONG elements would collide
- * or the stop would be too small. */
+ * Between columns the image stays in focus: the difference between last gap
+ * and back focal length is interpolated. Returns GLINT_E_ARGUMENT if LENS
+ * does not zoom, if ALONG is out of range, or if elements would collide or
+ * the stop would be too small at ALONG. */
 enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
                                           double along,
                                           struct glint_error *error);
@@ -247,10 +248,10 @@ glint_prescription_zoom_to(const struct glint_prescription *lens,
                            double focal_mm, double *along,
                            struct glint_error *error);
 
-/* Focuses LENS, which must be focused at infinity, at a distance of METRES from
- * the sensor: paraxial rays from there then meet where rays from infinity met
- * before. Moves the focusing group, or the whole lens if there is no such
- * group. Returns GLINT_E_ARGUMENT if LENS cannot focus so near. */
+/* Focuses LENS, which must be focused at infinity, at a distance of METRES
+ * from the sensor, by paraxial optics. Moves the focusing group, or the
+ * whole lens if there is no such group. Returns GLINT_E_ARGUMENT if LENS
+ * cannot focus so near. */
 enum glint_status glint_prescription_focus(struct glint_prescription *lens,
                                            double metres,
                                            struct glint_error *error);
@@ -261,8 +262,8 @@ enum glint_status glint_prescription_focus(struct glint_prescription *lens,
 void glint_prescription_coat(struct glint_prescription *lens,
                              const struct glint_coating *coatings, int n);
 
-/* Sets COATINGS to the default mixed coatings, for tables that list none;
- * returns their number. */
+/* Sets COATINGS to the default mixed coatings, for tables without mixed
+ * coatings. Returns their number. */
 int glint_coatings_mixed(struct glint_coating coatings[GLINT_MAX_COATINGS]);
 
 /* Parses TEXT, a list of coatings separated by commas: "none", "NAME[/NM]" or
@@ -291,10 +292,9 @@ struct glint_optics {
     /* Squeeze of an anamorphic lens: focal length in the y-z plane (focal_mm) /
      * focal length in the x-z plane. 1 for round lenses. */
     double squeeze;
-    /* Image scale: distance of the image of a light from the middle of the
-     * sensor / tangent of the angle of the light. If the lens is focused at
-     * infinity, it equals the focal length; its change with focus is the
-     * breathing of the lens. */
+    /* Image scale: distance of a light's image from the centre of the sensor
+     * / tangent of the light's angle. It equals the focal length if the lens
+     * is focused at infinity; its change with focus is called breathing. */
     double scale_mm;
 };
 

@@ -89,7 +89,7 @@ enum glint_ray_status {
     GLINT_RAY_MISSED = 1, /* the ray misses a surface, meets a sphere beyond its
                              equator, or cannot continue */
     GLINT_RAY_TOTAL_REFLECTION =
-        2 /* total reflection where the ray should be refracted */
+        2 /* total reflection at a surface where the path refracts */
 };
 
 struct glint_ray {
@@ -177,15 +177,15 @@ static inline double glint_pupil_height(const struct glint_pupil *p)
     return p->mirrored ? 2 * p->y1_mm : p->y1_mm - p->y0_mm;
 }
 
-/* Finds the pupil of PATH for light at THETA_DEG; returns false if no light
- * gets through. NEAR is NULL, or the pupil at another wavelength: then only
- * that pupil and its surroundings are searched, at a third of the cost. */
+/* Finds the pupil of PATH for light at THETA_DEG. Returns false if no light
+ * passes. NEAR is NULL, or the pupil at another wavelength; then only NEAR
+ * and its surroundings are searched, at a third of the cost. */
 bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
                       double theta_deg, double stop_radius_mm,
                       const struct glint_pupil *near);
 
-/* Like glint_pupil_find(), but only for rays that land within FIELD_MM of the
- * centre of the sensor. */
+/* Like glint_pupil_find(), but only for rays that hit the sensor within
+ * FIELD_MM of its centre. */
 bool glint_pupil_find_within(struct glint_pupil *pupil,
                              const struct glint_path *path, double theta_deg,
                              double stop_radius_mm, double field_mm,

@@ -101,7 +101,7 @@ static void record_ray(struct meter *b, const struct glint_ray *ray,
     record_barrels(b, o, hits);
 }
 
-static bool passes(const struct meter *b, const struct glint_outputs *o)
+static bool model_passes(const struct meter *b, const struct glint_outputs *o)
 {
     bool clear =
         hypot(get_output(b, o, GLINT_OUT_STOP_X),
@@ -139,7 +139,7 @@ static void measure_ray(struct meter *b, double u, double v)
                        (int32_t)lrint(v * 0x1p30), &o);
     if (status == GLINT_RAY_OK && glint_visible_passes(b->visible, &ray))
         record_ray(b, &ray, &o, hits);
-    else if (is_well_outside(b, status, &ray) && passes(b, &o))
+    else if (is_well_outside(b, status, &ray) && model_passes(b, &o))
         b->out->intruders++;
 }
 

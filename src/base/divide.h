@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * 64-bit division for hot code: on 32-bit CPUs the compiler's own function
- * works bit by bit and needs about 300 instructions. */
+ * 64-bit division for hot code. On 32-bit CPUs the compiler's own division
+ * works bit by bit and needs about 300 instructions.
+ */
 #ifndef GLINT_BASE_DIVIDE_H
 #define GLINT_BASE_DIVIDE_H
 

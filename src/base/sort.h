@@ -21,8 +21,8 @@ void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
  * sorting order is at index 0. */
 struct glint_heap {
     int (*before)(const void *things, int a,
-                  int b); /* returns whether the object at index A comes before
-                             the object at index B */
+                  int b); /* returns whether the object at index A must come
+                             before the object at index B */
     void (*swap)(void *things, int a, int b);
     void *things;
 };

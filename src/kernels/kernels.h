@@ -42,11 +42,13 @@ enum glint_pair_step {
                           rows */
 };
 
-/* Adds light to N pixels of one row of Y'CbCr whose chroma is shared by pairs.
+/* Adds light to N pixels of one row of Y'CbCr whose chroma is shared by
+ * pairs.
  *   luma    codes, changed in place
  *   chroma  codes Cb, Cr of each pair; changed unless STEP is FIRST
  *   light, round  as for glint_add_luma_fn
- *   round_chroma  _q7, below 1: chroma[i] takes round_chroma[i & 7]
+ *   round_chroma  dither thresholds, _q7, below 1; chroma[i] uses
+ *                 round_chroma[i & 7]
  *   mean    mean changes of each pair, R', B' (_q15) and Y' (_q7): the first
  *           row writes them, the second reads them */
 typedef void glint_add_pairs_fn(uint8_t *luma, uint8_t *chroma,

@@ -216,8 +216,8 @@ static void spread_across(struct glint_veil *v,
     }
 }
 
-/* Returns LIGHT, white times pixels in units of 2^(OVER - 16), times SHARE,
- * _q30 of white in a cell of 1 / CELLS of the picture's PIXELS. */
+/* Returns LIGHT times FACTOR, rounded and clamped to 2^50. FACTOR converts
+ * the scaled light of a cell to _q30 of white. */
 static int64_t scale_light(int32_t light, struct glint_real factor)
 {
     const int64_t product = (int64_t)light * factor.mantissa;

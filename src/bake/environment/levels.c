@@ -25,7 +25,7 @@ struct block {
                        direction that the block contributes to */
 };
 
-static double dot(const double a[3], const double b[3])
+static double compute_dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -41,14 +41,15 @@ static void compute_cone(const struct glint_sphere *s, int i, int j, int side,
             for (int k = 0; k < 3; k++)
                 b->toward[k] +=
                     s->texel[glint_sphere_index(s->side, x, y)].toward[k];
-    length = sqrt(dot(b->toward, b->toward));
+    length = sqrt(compute_dot(b->toward, b->toward));
     for (int k = 0; k < 3; k++)
         b->toward[k] /= length;
     for (int y = j * side; y < (j + 1) * side; y++)
         for (int x = i * side; x < (i + 1) * side; x++)
             cosine =
                 fmin(cosine,
-                     dot(b->toward,
+                     compute_dot(
+                         b->toward,
                          s->texel[glint_sphere_index(s->side, x, y)].toward));
     b->angle = acos(cosine);
 }
@@ -63,7 +64,7 @@ static void add_block(const struct glint_sphere *s, int i, int j, int side,
         for (int x = i * side; x < (i + 1) * side; x++) {
             const struct glint_sphere_texel *t =
                 &s->texel[glint_sphere_index(s->side, x, y)];
-            const double cosine = dot(toward, t->toward);
+            const double cosine = compute_dot(toward, t->toward);
             double weight;
 
             if (cosine < nearest)
@@ -97,7 +98,7 @@ bool glint_sphere_blur(const struct glint_sphere *from, double sigma,
 
         glint_sphere_middle(n, i, toward);
         for (int k = 0; k < blocks * blocks; k++)
-            if (dot(toward, block[k].toward) >= block[k].nearest)
+            if (compute_dot(toward, block[k].toward) >= block[k].nearest)
                 add_block(from, k % blocks, k / blocks, side, toward, sigma,
                           cos(reach), sum);
         for (int c = 0; c < 3; c++)
@@ -119,7 +120,7 @@ void glint_sphere_irradiance(const struct glint_sphere *from, int side_log2,
         glint_sphere_middle(n, i, normal);
         for (size_t k = 0; k < texels; k++) {
             const struct glint_sphere_texel *t = &from->texel[k];
-            const double cosine = dot(normal, t->toward);
+            const double cosine = compute_dot(normal, t->toward);
 
             for (int c = 0; c < 3 && cosine > 0; c++)
                 sum[c] += t->weight * cosine * t->light[c];

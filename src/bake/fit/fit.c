@@ -14,7 +14,8 @@
 /* Degrees: a wider zone with more than two barrels is halved, as a vertex
  * stores the radii at two barrels only. */
 #define CROWD_DEG 1.5
-/* Degrees: narrower zones may fill their boxes less. */
+/* Degrees: zones narrower than this may fill less than LEAST_FILL of their
+ * boxes. */
 #define FILL_DEG 0.6
 /* A part is cropped again only if the last crop left a smaller fraction of
  * it. */

@@ -20,9 +20,9 @@
 #include "bake/visible/visible.h"
 #include "glint/status.h"
 
-/* Called after each fit of a zone with the number of fits so far, thorough fits
- * counted twice, and the fraction 0 .. 1 of the ghost's angles that are
- * done. */
+/* Called after each fit of a zone. WORK is the number of fits so far, where
+ * thorough fits count twice; SHARE is the fraction of the ghost's angles
+ * that are done, 0 .. 1. */
 typedef void glint_fit_told_fn(void *ctx, double work, double share);
 
 /* Fits a ghost; TOLD may be NULL. The caller must call glint_fitted_finish()

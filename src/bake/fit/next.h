@@ -54,7 +54,7 @@ double glint_next_degrees(double lo, double hi);
 /* Returns whether a coating of several films reflects the ghost. */
 bool glint_next_stacks(const struct glint_visible *visible);
 
-/* The ghost, and the rules by which its zones are divided. */
+/* A ghost, and the tolerances that determine how its zones are divided. */
 struct glint_next_rules {
     const struct glint_visible *visible;
     const struct glint_tolerance *tolerance;

@@ -87,7 +87,7 @@ double glint_zone_crop(const struct glint_zone *zone,
  * are included. */
 double glint_zone_node(int k, int n);
 
-/* Rays of a zone that share a path and are traced together.
+/* A batch of rays of a zone that share a path and are traced together.
  *
  *     batch.path = &path;
  *     for (batch.n = 0; batch.n < GLINT_ZONE_BATCH;)

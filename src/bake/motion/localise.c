@@ -58,9 +58,9 @@ static void update_places(struct glint_localiser *l, int n,
 
 /* -------------------------------------------------------------------- frame */
 
-static const char *locate(struct glint_localiser *l, int n,
-                          const double (*seen)[3], const bool *is_new,
-                          struct glint_located *located)
+static const char *locate_body(struct glint_localiser *l, int n,
+                               const double (*seen)[3], const bool *is_new,
+                               struct glint_located *located)
 {
     if (!fit_all(l, n, seen, is_new, -1, &located->pose))
         return located->n_known < 3
@@ -125,7 +125,7 @@ const char *glint_localise(struct glint_localiser *localiser, int n,
     memcpy(before, l->place, sizeof before);
     for (int i = 0; i < n; i++)
         located->n_known += !is_new[i];
-    wrong = locate(l, n, seen, is_new, located);
+    wrong = locate_body(l, n, seen, is_new, located);
     if (!wrong)
         set_residual(n, (const double(*)[3])before, seen, is_new, located);
     return wrong;

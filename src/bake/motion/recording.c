@@ -46,7 +46,7 @@ struct recording {
 /* --------------------------------------------------------------------- bytes
  */
 
-static bool fail(struct recording *r, const char *format, ...)
+static bool fail_at_byte(struct recording *r, const char *format, ...)
 {
     char cause[128];
     va_list args;
@@ -82,14 +82,14 @@ static void load_byte(struct recording *r)
 static bool fail_at_end(struct recording *r)
 {
     if (r->number >= 0)
-        return fail(r, "the text ends within frame %ld", r->number);
-    return fail(r, "the text ends within the recording");
+        return fail_at_byte(r, "the text ends within frame %ld", r->number);
+    return fail_at_byte(r, "the text ends within the recording");
 }
 
 static bool append_char(struct recording *r, char c)
 {
     if (r->bytes == MOST_BYTES)
-        return fail(r, "the recording takes more than 1 MiB");
+        return fail_at_byte(r, "the recording takes more than 1 MiB");
     if (r->bytes == r->room) {
         const size_t room = r->room ? 2 * r->room : 4096;
         char *const text = realloc(r->text, room);
@@ -136,7 +136,7 @@ static bool consume_char(struct recording *r, char c)
     if (r->c < 0)
         return fail_at_end(r);
     if (r->c != c)
-        return fail(r, "'%c' is expected here, in the recording", c);
+        return fail_at_byte(r, "'%c' is expected here, in the recording", c);
     return consume_byte(r);
 }
 
@@ -153,7 +153,7 @@ static bool consume_string(struct recording *r, char *name)
         return false;
     while (r->c != '"') {
         if (r->c >= 0 && r->c < ' ')
-            return fail(r, "a string must end on its line, with '\"'");
+            return fail_at_byte(r, "a string ends on its line, with '\"'");
         if (name && n + 1 < NAME_BYTES && r->c >= 0)
             name[n++] = (char)r->c;
         if ((r->c == '\\' && !consume_byte(r)) || !consume_byte(r))
@@ -185,7 +185,7 @@ static bool consume_value(struct recording *r)
     if (!consume_space(r))
         return false;
     if (r->c == ',' || r->c == '}' || r->c == ']')
-        return fail(r, "a value is expected here, in the recording");
+        return fail_at_byte(r, "a value is expected here, in the recording");
     do {
         if (r->c == '"') {
             if (!consume_string(r, NULL))
@@ -194,15 +194,16 @@ static bool consume_value(struct recording *r)
         }
         if (r->c == '{' || r->c == '[') {
             if (deep == MOST_DEEP)
-                return fail(r, "brackets are more than %d deep", MOST_DEEP);
+                return fail_at_byte(r, "brackets are more than %d deep",
+                                    MOST_DEEP);
             close[deep++] = r->c == '{' ? '}' : ']';
         } else if (r->c == '}' || r->c == ']') {
             if (deep == 0)
                 return true; /* a bracket or comma ends a number; it belongs to
                                 the enclosing value */
             if (r->c != close[--deep])
-                return fail(r, "'%c' closes what '%c' opened", r->c,
-                            close[deep] == '}' ? '{' : '[');
+                return fail_at_byte(r, "'%c' closes what '%c' opened", r->c,
+                                    close[deep] == '}' ? '{' : '[');
             remove_comma(r);
         } else if (deep == 0 && (r->c == ',' || r->c <= ' ')) {
             return r->c >= 0 || fail_at_end(r);
@@ -215,8 +216,8 @@ static bool consume_value(struct recording *r)
 
 /* Sets an error at LINE and COLUMN of the current piece (1, 1: its
  * beginning), with the number of the frame if the piece is a frame. */
-static bool fail_at(const struct recording *r, int line, int column,
-                    const char *format, ...)
+static bool fail_in_piece(const struct recording *r, int line, int column,
+                          const char *format, ...)
 {
     char cause[112], frame[32] = "";
     va_list args;
@@ -256,10 +257,10 @@ static bool read_number(const struct recording *r, const json_t *object,
     const json_t *value = get_member(object, name, other);
 
     if (!value)
-        return fail_at(r, 1, 1, "%s has no '%s'", what, name);
+        return fail_in_piece(r, 1, 1, "%s has no '%s'", what, name);
     *x = json_number_value(value);
     return json_is_number(value) ||
-           fail_at(r, 1, 1, "'%s' of %s is not a number", name, what);
+           fail_in_piece(r, 1, 1, "'%s' of %s is no number", name, what);
 }
 
 /* Sets V to the vector NAME of OBJECT; to zeros if there is no such member. */
@@ -271,7 +272,7 @@ static bool read_vector(const struct recording *r, const json_t *object,
     for (size_t k = 0; k < 3; k++) {
         v[k] = json_number_value(json_array_get(value, k));
         if (value && !json_is_number(json_array_get(value, k)))
-            return fail_at(r, 1, 1, "'%s' needs three numbers", name);
+            return fail_in_piece(r, 1, 1, "'%s' takes three numbers", name);
     }
     return true;
 }
@@ -286,16 +287,16 @@ static bool read_body(const struct recording *r, const json_t *object)
     struct glint_error cause;
 
     if (!json_is_object(object))
-        return fail_at(r, 1, 1, "the structure is no object");
+        return fail_in_piece(r, 1, 1, "the structure is no object");
     if (!read_number(r, object, "size", "meret", "the structure", &body.size) ||
         !read_number(r, object, "angleofview", "latoszog", "the structure",
                      &body.angle_deg))
         return false;
     if (sensors && !json_is_array(sensors))
-        return fail_at(r, 1, 1, "'sensors' is not an array");
+        return fail_in_piece(r, 1, 1, "'sensors' is no array");
     if (json_array_size(sensors) > GLINT_MOTION_MAX_SENSORS)
-        return fail_at(r, 1, 1, "more than %d sensors",
-                       GLINT_MOTION_MAX_SENSORS);
+        return fail_in_piece(r, 1, 1, "more than %d sensors",
+                             GLINT_MOTION_MAX_SENSORS);
     for (size_t i = 0; i < json_array_size(sensors); i++) {
         const json_t *sensor = json_array_get(sensors, i);
 
@@ -306,7 +307,7 @@ static bool read_body(const struct recording *r, const json_t *object)
         body.n_sensors++;
     }
     return glint_motion_baker_body(r->baker, &body, &cause) == GLINT_OK ||
-           fail_at(r, 1, 1, "%s", cause.text);
+           fail_in_piece(r, 1, 1, "%s", cause.text);
 }
 
 /* -------------------------------------------------------------------- frames
@@ -323,18 +324,18 @@ static bool read_intensities(const struct recording *r, const json_t *food,
                                           : 0;
 
     if (n > GLINT_MOTION_MAX_SENSORS)
-        return fail_at(r, 1, 1, "more than %d intensities",
-                       GLINT_MOTION_MAX_SENSORS);
+        return fail_in_piece(r, 1, 1, "more than %d intensities",
+                             GLINT_MOTION_MAX_SENSORS);
     if (i > 0 && (int)n != s->n_intensities)
-        return fail_at(r, 1, 1, "foods have %d and %d intensities",
-                       s->n_intensities, (int)n);
+        return fail_in_piece(r, 1, 1, "foods have %d and %d intensities",
+                             s->n_intensities, (int)n);
     s->n_intensities = (int)n;
     for (size_t k = 0; k < n; k++) {
         const json_t *one =
             json_is_array(value) ? json_array_get(value, k) : value;
 
         if (!json_is_number(one) && !json_is_boolean(one))
-            return fail_at(r, 1, 1, "an intensity is not a number");
+            return fail_in_piece(r, 1, 1, "an intensity is no number");
         s->intensity[i][k] =
             json_is_number(one) ? json_number_value(one) : json_is_true(one);
     }
@@ -350,7 +351,7 @@ static bool read_food(const struct recording *r, const json_t *food, int i,
 
     snprintf(what, sizeof what, "food %d", i);
     if (!json_is_object(food))
-        return fail_at(r, 1, 1, "%s is no object", what);
+        return fail_in_piece(r, 1, 1, "%s is no object", what);
     for (int k = 0; k < 3; k++)
         if (!read_number(r, food, axis[k], NULL, what, &s->food[i][k]))
             return false;
@@ -366,15 +367,17 @@ static bool read_frame(const struct recording *r, const json_t *object,
 
     *s = (struct glint_motion_sight){.number = -1};
     if (!json_is_object(object))
-        return fail_at(r, 1, 1, "the frame is not a JSON object");
+        return fail_in_piece(r, 1, 1, "it is no object");
     if (of && (!json_is_integer(of) || json_integer_value(of) < 0))
-        return fail_at(r, 1, 1, "'frame_num' is not a whole number from 0");
+        return fail_in_piece(r, 1, 1,
+                             "'frame_num' is no whole number from 0 on");
     if (of)
         s->number = json_integer_value(of);
     if (!json_is_array(foods))
-        return fail_at(r, 1, 1, "the frame has no array 'foods'");
+        return fail_in_piece(r, 1, 1, "it has no array 'foods'");
     if (json_array_size(foods) > GLINT_MOTION_MAX_FOODS)
-        return fail_at(r, 1, 1, "more than %d foods", GLINT_MOTION_MAX_FOODS);
+        return fail_in_piece(r, 1, 1, "more than %d foods",
+                             GLINT_MOTION_MAX_FOODS);
     for (size_t i = 0; i < json_array_size(foods); i++)
         if (!read_food(r, json_array_get(foods, i), (int)i, s))
             return false;
@@ -394,7 +397,7 @@ static enum glint_status add_frame(const struct recording *r,
         return GLINT_E_LENS;
     status = glint_motion_baker_frame(r->baker, &sight, &cause);
     if (status == GLINT_E_LENS)
-        fail_at(r, 1, 1, "%s", cause.text);
+        fail_in_piece(r, 1, 1, "%s", cause.text);
     return status;
 }
 
@@ -421,8 +424,9 @@ static bool read_value(struct recording *r, int key)
     value = json_loadb(r->text, r->bytes, JSON_DECODE_ANY, &wrong);
     r->status = GLINT_E_LENS;
     if (!value)
-        fail_at(r, wrong.line > 0 ? wrong.line : 1,
-                wrong.column > 0 ? wrong.column : 1, "%.100s", wrong.text);
+        fail_in_piece(r, wrong.line > 0 ? wrong.line : 1,
+                      wrong.column > 0 ? wrong.column : 1, "%.100s",
+                      wrong.text);
     else if (key == FRAMES)
         r->status = add_frame(r, value);
     else if (read_body(r, value))
@@ -440,7 +444,8 @@ static bool consume_separator(struct recording *r, char close, bool *done)
     if (*done)
         return true;
     if (r->c >= 0 && r->c != ',')
-        return fail(r, "',' or '%c' is expected here, in the recording", close);
+        return fail_at_byte(r, "',' or '%c' is expected here, in the recording",
+                            close);
     if (!consume_byte(r) || !consume_space(r))
         return false;
     *done = r->c == close;
@@ -474,7 +479,7 @@ static bool read_member(struct recording *r, unsigned *seen)
     if (key == KEYS)
         return consume_value(r);
     if (*seen >> key & 1)
-        return fail(r, "a second '%s'", name);
+        return fail_at_byte(r, "a second '%s'", name);
     *seen |= 1u << key;
     return key == FRAMES ? read_frames(r) : read_value(r, key);
 }
@@ -495,7 +500,7 @@ static bool read_all(struct recording *r)
     load_byte(r);
     if (!consume_space(r))
         return false;
-    return r->c < 0 || fail(r, "text follows the end of the recording");
+    return r->c < 0 || fail_at_byte(r, "the recording has ended before this");
 }
 
 enum glint_status glint_recording_read(struct glint_motion_baker *baker,

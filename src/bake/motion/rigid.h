@@ -28,7 +28,7 @@ bool glint_rigid_fit(int n, const double (*from)[3], const double (*to)[3],
 /* Sets the rotation of RIGID to the one nearest to the matrix ROW. */
 void glint_rigid_nearest(const double row[3][3], struct glint_rigid *rigid);
 
-/* Sets TO to POINT moved by RIGID. */
+/* Sets TO to the image of POINT under RIGID. */
 void glint_rigid_take(const struct glint_rigid *rigid, const double point[3],
                       double to[3]);
 

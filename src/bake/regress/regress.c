@@ -148,7 +148,7 @@ struct search {
 };
 
 /* Returns direction RANK, which may be the next direction to be chosen. */
-static double *direction(const struct search *s, int rank)
+static double *get_direction(const struct search *s, int rank)
 {
     return s->direction + (size_t)rank * (size_t)s->s->n;
 }
@@ -226,7 +226,7 @@ static void add_products(const struct search *s, const double *a, int first,
         double product[VECTORS];
 
         for (int j = 0; j < VECTORS; j++)
-            at[j] = direction(s, k + j < s->n_chosen ? k + j : k) + first;
+            at[j] = get_direction(s, k + j < s->n_chosen ? k + j : k) + first;
         compute_dots(a + first, at, m, product);
         for (int j = 0; j < VECTORS && k + j < s->n_chosen; j++)
             sum[k + j] += product[j];
@@ -239,7 +239,7 @@ static void subtract_all(const struct search *s, double *a, int first, int m,
                          const double share[GLINT_MAX_TERMS])
 {
     for (int k = 0; k < s->n_chosen; k++)
-        subtract_scaled(a + first, share[k], direction(s, k) + first, m);
+        subtract_scaled(a + first, share[k], get_direction(s, k) + first, m);
 }
 
 /* Sets the next direction to the component of COLUMN that is orthogonal to
@@ -248,7 +248,7 @@ static void subtract_all(const struct search *s, double *a, int first, int m,
 static void make_orthogonal(const struct search *s, struct column *column)
 {
     const int n = s->s->n;
-    double *const q = direction(s, s->n_chosen);
+    double *const q = get_direction(s, s->n_chosen);
     double again[GLINT_MAX_TERMS] = {0};
 
     memcpy(q, column->at, (size_t)n * sizeof *q);
@@ -377,7 +377,7 @@ static void choose_column(struct search *s, int index)
     const int n = s->s->n, rank = s->n_chosen;
     struct column *group[VECTORS];
     int grouped = 0;
-    double *const q = direction(s, rank);
+    double *const q = get_direction(s, rank);
     double share;
 
     make_orthogonal(s, c);
@@ -429,7 +429,7 @@ static void solve_coefficients(const struct search *s, const double *y,
         double share = 0;
 
         for (int i = 0; i < s->s->n; i++)
-            share += direction(s, k)[i] * s->s->weight[i] * y[i];
+            share += get_direction(s, k)[i] * s->s->weight[i] * y[i];
         for (int m = k + 1; m < s->n_chosen; m++)
             share -= s->column[s->chosen[m]].on[k] * poly->coef[m];
         poly->coef[k] = share / q->on[k];

@@ -44,8 +44,8 @@ static double compute_slope(const struct glint_zoom *z, const double *value,
 }
 
 /* Interpolates VALUE, given per column, at ALONG. */
-static double interpolate(const struct glint_zoom *z, const double *value,
-                          double along)
+static double interpolate_column(const struct glint_zoom *z,
+                                 const double *value, double along)
 {
     int k = 0;
     double h, t, a, b;
@@ -80,14 +80,15 @@ static void set_zoom(struct glint_prescription *lens, double along)
         column |= !(along < z->along[k] || along > z->along[k]);
     }
     for (int m = 0; m < z->n_moves; m++)
-        *glint_gap_of(lens, z->move[m]) = interpolate(z, z->gap_mm[m], along);
-    *glint_gap_of(lens, last) = interpolate(z, z->last_gap_mm, along);
-    lens->f_number = interpolate(z, z->f_number, along);
+        *glint_gap_of(lens, z->move[m]) =
+            interpolate_column(z, z->gap_mm[m], along);
+    *glint_gap_of(lens, last) = interpolate_column(z, z->last_gap_mm, along);
+    lens->f_number = interpolate_column(z, z->f_number, along);
     if (column)
         return;
     glint_optics_of(lens, &optics);
     *glint_gap_of(lens, last) =
-        optics.back_focal_mm + interpolate(z, defocus, along);
+        optics.back_focal_mm + interpolate_column(z, defocus, along);
 }
 
 static enum glint_status fail_no_zoom(const struct glint_prescription *lens,

@@ -298,8 +298,8 @@ static WHOLLY_INLINE void record_hit(const struct beam *b, int k,
         hit[i] = form->turn[i][0] * b->x[k] + form->turn[i][1] * b->y[k];
 }
 
-/* Traces rays through one event. HITS[k * n_events] receives the position of
- * lane K, for K below ASKED. */
+/* Traces rays through one event. For the first ASKED lanes, HITS[k *
+ * n_events] receives the position of lane K. */
 static WHOLLY_INLINE void trace_event(struct beam *b, int n, int asked,
                                       const struct glint_path *path,
                                       const struct glint_event *e,

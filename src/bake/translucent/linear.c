@@ -31,7 +31,8 @@ static double compute_dot(const double *a, const double *b, int n)
     return sum;
 }
 
-static void rotate(double *a, double *b, int n, double cosine, double sine)
+static void rotate_vectors(double *a, double *b, int n, double cosine,
+                           double sine)
 {
     for (int i = 0; i < n; i++) {
         const double x = a[i], y = b[i];
@@ -72,10 +73,10 @@ static bool orthogonalise_columns(double *a, int rows, int i, int k,
     ratio = (fmin(xx, yy) - fmax(xx, yy)) / (2 * xy);
     t = (ratio >= 0 ? 1 : -1) / (fabs(ratio) + sqrt(1 + ratio * ratio));
     cosine = 1 / sqrt(1 + t * t);
-    rotate(x, y, rows, cosine, cosine * t);
+    rotate_vectors(x, y, rows, cosine, cosine * t);
     if (turn)
-        rotate(turn + (size_t)i * (size_t)m, turn + (size_t)k * (size_t)m, m,
-               cosine, cosine * t);
+        rotate_vectors(turn + (size_t)i * (size_t)m,
+                       turn + (size_t)k * (size_t)m, m, cosine, cosine * t);
     return true;
 }
 
@@ -303,8 +304,8 @@ static int separate_columns(struct work *w, int i, int j)
     zeta = (q - p) / (2 * r);
     tangent = copysign(1 / (fabs(zeta) + sqrt(1 + zeta * zeta)), zeta);
     cosine = 1 / sqrt(1 + tangent * tangent);
-    rotate(w->a[i], w->a[j], w->n, cosine, cosine * tangent);
-    rotate(w->v[i], w->v[j], w->n, cosine, cosine * tangent);
+    rotate_vectors(w->a[i], w->a[j], w->n, cosine, cosine * tangent);
+    rotate_vectors(w->v[i], w->v[j], w->n, cosine, cosine * tangent);
     return 1;
 }
 
@@ -332,7 +333,7 @@ static void unweigh_by_correlation(double *x, int n)
         x[i] -= correlation * x[i + 1];
 }
 
-static void decompose(struct work *w, const double *kernel)
+static void decompose_kernel(struct work *w, const double *kernel)
 {
     int any = 1;
 
@@ -360,7 +361,7 @@ void glint_separate(const double *kernel, int n, int rank,
     double square[MOST];
 
     w.n = n;
-    decompose(&w, kernel);
+    decompose_kernel(&w, kernel);
     to->all = 0;
     for (int i = 0; i < n; i++) {
         square[i] = compute_dot(w.a[i], w.a[i], n);

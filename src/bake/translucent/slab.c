@@ -73,7 +73,7 @@ static void factorise_cholesky(double *a, int n)
 
 /* Replaces A, symmetric and positive definite, by its inverse. TO is scratch
  * of the same size. */
-static void invert(double *a, double *to, int n)
+static void invert_matrix(double *a, double *to, int n)
 {
     factorise_cholesky(a, n);
     /* from the top, the rows of TO become those of U'^-1 */
@@ -113,7 +113,7 @@ static double *get_eliminated(const struct inverse *v, int j)
 }
 
 /* Computes S_j^-1 from the block above. */
-static void eliminate(struct inverse *v, int j)
+static void eliminate_block(struct inverse *v, int j)
 {
     const struct blocks *b = v->b;
     const int n = b->side;
@@ -134,7 +134,7 @@ static void eliminate(struct inverse *v, int j)
         if (i < n - 1)
             s[i * n + i + 1] -= right[i];
     }
-    invert(s, v->scratch, n);
+    invert_matrix(s, v->scratch, n);
 }
 
 /* Computes T of row J, and the ranges of its non-negligible entries. */
@@ -226,7 +226,7 @@ static enum glint_status compute_blocks(struct inverse *v, int reach,
     const double first = 2.0 / (reach + 2.0);
 
     for (int j = 0; j < n; j++) {
-        eliminate(v, j);
+        eliminate_block(v, j);
         if (glint_watch_ends(watch, first * (j + 1) / n))
             return GLINT_E_CLOSED;
     }

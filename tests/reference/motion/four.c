@@ -218,8 +218,9 @@ static void begin_localiser(struct four *l, int n, const double (*seen)[3],
     l->has_begun = true;
 }
 
-static const char *locate(struct four *l, int n, const double (*seen)[3],
-                          const bool *is_new, struct glint_located *located)
+static const char *locate_body(struct four *l, int n, const double (*seen)[3],
+                               const bool *is_new,
+                               struct glint_located *located)
 {
     double map[4][3], row[3][3];
     const char *const wrong = map_four(l, n, seen, is_new, map);
@@ -247,7 +248,8 @@ const char *four_localise(struct four *four, int n, const double (*seen)[3],
         for (int k = 0; k < 3; k++)
             rounded[i][k] = four_rounded(four->arithmetic, seen[i][k]);
     if (four->has_begun)
-        wrong = locate(four, n, (const double(*)[3])rounded, is_new, located);
+        wrong =
+            locate_body(four, n, (const double(*)[3])rounded, is_new, located);
     else
         begin_localiser(four, n, (const double(*)[3])rounded, located);
     memcpy(four->last, rounded, sizeof four->last);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tucker factorisation of the mean of R, G, B, term by term, and a polynomial
- * of what it makes for each row and channel [Kurt14].
+ * Models the mean of R, G, B by a Tucker factorisation, term by term, and each
+ * row and channel by a polynomial of the model [Kurt14].
  *
  * A Tucker(1, 1) fit of a matrix is one term f h', found by alternating least
- * squares; the next one fits the running error.
+ * squares. The next term fits the residual.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -14,34 +14,35 @@
 #include "bake/translucent/linear.h"
 
 enum {
-    ROUNDS = 300, /* of a term, at most */
+    ROUNDS = 300, /* max number of iterations per term */
     COEFFICIENTS = 6
 };
 
-#define STILL 1e-11 /* change of a term's square that has come to rest */
+/* relative change of a term's square at which iteration stops */
+#define STILL 1e-11
 
 struct tucker {
     const struct glint_scatter_rows *rows;
     int n, k2;
-    float *left;   /* [n][k2] the running error */
-    double *f, *h; /* [n], [k2] of a term */
+    float *left;   /* [n][k2]: residual */
+    double *f, *h; /* [n], [k2]: factors of a term */
     float *model;  /* [n][k2] sum of the terms */
-    int *first;    /* [n] where a row's maximum is */
-    double *most;  /* [n] the maximum, 1 where rows are not turned */
+    int *first;    /* [n]: index of each row's max entry */
+    double *most;  /* [n]: max entry of each row; 1 if rows are not rotated */
 };
 
-static float *line(const struct tucker *p, float *all, int x)
+static float *get_row(const struct tucker *p, float *all, int x)
 {
     return all + (size_t)x * (size_t)p->k2;
 }
 
-/* Sets the running error to the means, turned so that they begin with their
- * maximum, over it. */
-static void begin(const struct tucker *p, bool turned)
+/* Sets the residual to the mean of R, G, B. TURNED: each row is rotated to
+ * begin with its max entry and divided by it. */
+static void set_residual(const struct tucker *p, bool turned)
 {
     for (int x = 0; x < p->n; x++) {
         const float *rgb = glint_scatter_row(p->rows, x, 0);
-        float *to = line(p, p->left, x), *scratch = line(p, p->model, x);
+        float *to = get_row(p, p->left, x), *scratch = get_row(p, p->model, x);
         int first = 0;
 
         for (int d = 0; d < p->k2; d++) {
@@ -57,8 +58,8 @@ static void begin(const struct tucker *p, bool turned)
     }
 }
 
-/* F = left H / |H|^2. */
-static void set_f(const float *left, int n, int k2, double *f, const double *h)
+/* Sets F to left H / |H|^2. */
+static void fit_f(const float *left, int n, int k2, double *f, const double *h)
 {
     double square = 0;
 
@@ -74,8 +75,8 @@ static void set_f(const float *left, int n, int k2, double *f, const double *h)
     }
 }
 
-/* H = left' F / |F|^2; returns the square of the term. */
-static double set_h(const float *left, int n, int k2, const double *f,
+/* Sets H to left' F / |F|^2. Returns the square of the term. */
+static double fit_h(const float *left, int n, int k2, const double *f,
                     double *h)
 {
     double square = 0, length = 0;
@@ -102,8 +103,8 @@ double glint_tucker_term(float *left, int n, int k2, double *f, double *h)
     for (int d = 0; d < k2; d++)
         h[d] = 1 + (double)(d * 7919 % 101) / 101;
     for (int i = 0; i < ROUNDS; i++) {
-        set_f(left, n, k2, f, h);
-        square = set_h(left, n, k2, f, h);
+        fit_f(left, n, k2, f, h);
+        square = fit_h(left, n, k2, f, h);
         if (fabs(square - before) <= STILL * square)
             break;
         before = square;
@@ -114,22 +115,22 @@ double glint_tucker_term(float *left, int n, int k2, double *f, double *h)
     return square;
 }
 
-/* Fits one term of the running error and takes it off. */
+/* Fits one term of the residual and subtracts it. */
 static void fit_term(const struct tucker *p)
 {
     glint_tucker_term(p->left, p->n, p->k2, p->f, p->h);
     for (int x = 0; x < p->n; x++) {
-        float *model = line(p, p->model, x);
+        float *model = get_row(p, p->model, x);
 
         for (int d = 0; d < p->k2; d++)
             model[d] += (float)(p->f[x] * p->h[d]);
     }
 }
 
-/* Sets COEF to the polynomial in MEAN that is nearest to the row of channel C,
- * entries inside the square. */
-static void regress(const struct tucker *p, int x, int c, int degree,
-                    const double *mean, double *coef)
+/* Sets COEF to the polynomial in MEAN that fits the row of channel C best,
+ * over entries inside the square. */
+static void fit_polynomial(const struct tucker *p, int x, int c, int degree,
+                           const double *mean, double *coef)
 {
     double gram[COEFFICIENTS * COEFFICIENTS] = {0};
     const float *row = glint_scatter_row(p->rows, x, c);
@@ -152,11 +153,10 @@ static void regress(const struct tucker *p, int x, int c, int degree,
     glint_solve(gram, n, coef);
 }
 
-/* Sets MEAN[k2] to the terms' row of X, turned back, over its maximum: near 0
- * .. 1, so that its powers are well separated. */
+/* Sets MEAN[k2] to the sum of the terms for row X, rotated back. */
 static void mean_row(const struct tucker *p, int x, double *mean)
 {
-    const float *model = line(p, p->model, x);
+    const float *model = get_row(p, p->model, x);
 
     for (int d = 0; d < p->k2; d++)
         mean[(d + p->first[x]) % p->k2] = (double)model[d];
@@ -175,7 +175,7 @@ static void rebuild_row(const struct tucker *p, int x, int degree, double *mean,
     for (int c = 0; c < 3; c++) {
         double coef[COEFFICIENTS];
 
-        regress(p, x, c, degree, mean, coef);
+        fit_polynomial(p, x, c, degree, mean, coef);
         for (int d = 0; d < p->k2; d++) {
             row[d] = coef[degree];
             for (int i = degree - 1; i >= 0; i--)
@@ -185,12 +185,12 @@ static void rebuild_row(const struct tucker *p, int x, int degree, double *mean,
     }
 }
 
-static enum glint_status run(const struct tucker *p,
-                             const struct glint_scatter_candidate *o,
-                             const struct glint_watch *watch,
-                             struct glint_scatter_rows *rebuilt)
+static enum glint_status rebuild_all(const struct tucker *p,
+                                     const struct glint_scatter_candidate *o,
+                                     const struct glint_watch *watch,
+                                     struct glint_scatter_rows *rebuilt)
 {
-    begin(p, o->turned);
+    set_residual(p, o->turned);
     for (int t = 0; t < o->terms; t++) {
         if (glint_watch_ends(watch, (double)t / (o->terms + 1)))
             return GLINT_E_CLOSED;
@@ -213,12 +213,13 @@ enum glint_status glint_rebuild_tucker(const struct glint_scatter_rows *rows,
 
     p.left = malloc(2 * n * k2 * sizeof *p.left);
     p.model = p.left + n * k2;
-    p.f = malloc((2 * n + 2 * k2) * sizeof *p.f); /* f holds a row, too */
+    /* f also serves as scratch for a row */
+    p.f = malloc((2 * n + 2 * k2) * sizeof *p.f);
     p.h = p.f + n + k2;
     p.most = p.h + k2;
     p.first = malloc(n * sizeof *p.first);
     if (p.left && p.f && p.first)
-        status = run(&p, o, watch, rebuilt);
+        status = rebuild_all(&p, o, watch, rebuilt);
     free(p.left);
     free(p.f);
     free(p.first);

@@ -248,8 +248,8 @@ static void compute_phong(const struct twin *twin, const struct twin_hit *hit,
 /* Refracts D at a surface by Snell's law (A12). The normal N points back;
  * ETA is the index before / the index behind. Returns false at total
  * reflection. */
-static bool refract(const double d[3], const double n[3], double eta,
-                    double to[3])
+static bool refract_direction(const double d[3], const double n[3], double eta,
+                              double to[3])
 {
     const double cosine = -vec_dot(d, n);
     const double rest = 1 - eta * eta * (1 - cosine * cosine);
@@ -263,7 +263,8 @@ static bool refract(const double d[3], const double n[3], double eta,
 }
 
 /* Mirrors D at a surface with normal N: D - 2 (D.N) N (A9). */
-static void reflect(const double d[3], const double n[3], double to[3])
+static void reflect_direction(const double d[3], const double n[3],
+                              double to[3])
 {
     vec_add(d, -2 * vec_dot(d, n), n, to);
 }
@@ -282,9 +283,9 @@ static bool refract_or_reflect(struct twin_ray *ray, const double normal[3],
 {
     const double d[3] = {ray->toward[0], ray->toward[1], ray->toward[2]};
 
-    if (refract(d, normal, eta, ray->toward))
+    if (refract_direction(d, normal, eta, ray->toward))
         return false;
-    reflect(d, normal, ray->toward);
+    reflect_direction(d, normal, ray->toward);
     return true;
 }
 
@@ -348,7 +349,7 @@ static void add_mirrored(const struct twin *twin, const struct twin_ray *ray,
     double rgb[3];
 
     memcpy(next.from, hit->place, sizeof next.from);
-    reflect(ray->toward, hit->shading, next.toward);
+    reflect_direction(ray->toward, hit->shading, next.toward);
     if (twin_meet(twin, &next, HUGE_VAL, &met))
         compute_phong(twin, &met, next.toward, rgb);
     else

@@ -183,14 +183,14 @@ TEST(uniform_light)
     free(b.data);
 }
 
-static double slope(const double d[3])
+static double slope_light(const double d[3])
 {
     return 1 + d[1];
 }
 
 /* Irradiance of light 1 + y on a white surface is 1 + 2/3 y. Rotation by 90
  * degrees to the right moves the light that was ahead to the right. */
-static double ahead(const double d[3])
+static double ahead_light(const double d[3])
 {
     return 1 + d[2];
 }
@@ -205,7 +205,7 @@ TEST(irradiance)
 
         o.turn_deg = 90 * turned;
         o.scale = 1 + turned;
-        paint_picture(turned ? ahead : slope);
+        paint_picture(turned ? ahead_light : slope_light);
         bake(&b, &o);
         for (int i = 0; i < 1024; i++) {
             double n[3], want;
@@ -225,7 +225,7 @@ TEST(irradiance)
     assert_true(worst < .006);
 }
 
-static double patches(const double d[3])
+static double patch_light(const double d[3])
 {
     return 1 + fmax(0, sin(9 * d[0]) * sin(7 * d[1] + 1) + sin(11 * d[2])) +
            (d[0] > .3 && d[1] > .2 ? 5 : 0);
@@ -241,7 +241,7 @@ TEST(blur)
     struct baked b;
     double worst = 0;
 
-    paint_picture(patches);
+    paint_picture(patch_light);
     o.max_lights = 0;
     bake(&b, &o);
     assert_true(glint_sphere_open(&s, 2 * SIDE));
@@ -296,7 +296,7 @@ TEST(mips)
     struct glint_environment_options o = make_options();
     struct baked b;
 
-    paint_picture(patches);
+    paint_picture(patch_light);
     o.max_lights = 0;
     o.levels = GLINT_ENVIRONMENT_MIP;
     bake(&b, &o);
@@ -323,7 +323,7 @@ TEST(mips)
 
 static const double sun[3] = {.48, .6, .64};
 
-static double day(const double d[3])
+static double day_light(const double d[3])
 {
     return (compute_dot(d, sun) > cos(4 * GLINT_PI / 180) ? 4000 : 0) + 1 +
            .5 * d[1];
@@ -339,7 +339,7 @@ TEST(light)
     struct baked b;
     double d[3], power, u, v;
 
-    paint_picture(day);
+    paint_picture(day_light);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
             if (picture[y][x][0] > 100)
@@ -381,7 +381,7 @@ TEST(light)
     free(b.data);
 }
 
-static double window(const double d[3])
+static double window_light(const double d[3])
 {
     return (d[2] > .9 ? 500 : 0) + 1;
 }
@@ -392,7 +392,7 @@ TEST(areas_stay)
     const struct glint_environment_options o = make_options();
     struct baked b;
 
-    paint_picture(window);
+    paint_picture(window_light);
     bake(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 0);
     assert_true(b.report.residual_largest > 250);
@@ -518,7 +518,7 @@ TEST(rejects_damaged_files)
     struct baked b;
     const struct glint_environment_header *h;
 
-    paint_picture(day);
+    paint_picture(day_light);
     bake(&b, &o);
     h = b.environment.header;
     check_refused(&b, AT(magic), 0, "no baked environment");

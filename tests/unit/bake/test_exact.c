@@ -49,7 +49,7 @@ static void render(double *out, struct glint_view view,
     assert_ok(glint_exact_render(&cfg, out));
 }
 
-static struct glint_lamp lamp_at(double theta, double phi)
+static struct glint_lamp make_lamp(double theta, double phi)
 {
     return (struct glint_lamp){theta, phi, 1, {1, 1, 1}, {0, 0}, 0};
 }
@@ -104,7 +104,7 @@ static void compare_golden(const struct golden *g)
 {
     const struct glint_view view = {
         .width = 480, .height = 270, .sensor_width_mm = 36};
-    const struct glint_lamp lamp = lamp_at(g->theta, g->phi);
+    const struct glint_lamp lamp = make_lamp(g->theta, g->phi);
     struct glint_float_image want, got;
     struct glint_measure m;
 
@@ -145,7 +145,7 @@ TEST(axis_light_is_symmetric)
 {
     const struct glint_view view = {
         .width = 160, .height = 160, .sensor_width_mm = 24};
-    const struct glint_lamp lamp = lamp_at(0, 0);
+    const struct glint_lamp lamp = make_lamp(0, 0);
     double worst = 0, peak = 0;
 
     load_setup(&setup, &lens, "heliar-tronnier");
@@ -172,7 +172,7 @@ TEST(quarter_turn)
 {
     const struct glint_view view = {
         .width = 160, .height = 160, .sensor_width_mm = 24};
-    const struct glint_lamp lamp = lamp_at(6, 20), turned = lamp_at(6, 110);
+    const struct glint_lamp lamp = make_lamp(6, 20), turned = make_lamp(6, 110);
 
     load_setup(&setup, &lens, "double-gauss-angenieux");
     render(rgb, view, &lamp, 1, 96);
@@ -193,7 +193,7 @@ TEST(doubling_the_grid)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
-    const struct glint_lamp lamp = lamp_at(7.58, 33.2);
+    const struct glint_lamp lamp = make_lamp(7.58, 33.2);
     double db;
 
     load_setup(&setup, &lens, "heliar-tronnier");
@@ -210,7 +210,7 @@ TEST(flux_is_bounded)
 {
     const struct glint_view view = {
         .width = 200, .height = 200, .sensor_width_mm = 2000};
-    const struct glint_lamp lamp = lamp_at(10, 45);
+    const struct glint_lamp lamp = make_lamp(10, 45);
     const double front = 3.14159265 * 14.5 * 14.5;
     double sum[3] = {0, 0, 0};
 
@@ -229,7 +229,7 @@ TEST(threads_do_not_matter)
 {
     const struct glint_view view = {
         .width = 120, .height = 67, .sensor_width_mm = 36};
-    const struct glint_lamp lamps[2] = {lamp_at(5, 33), lamp_at(9, -120)};
+    const struct glint_lamp lamps[2] = {make_lamp(5, 33), make_lamp(9, -120)};
     struct glint_workers *const pool = workers;
 
     load_setup(&setup, &lens, "heliar-tronnier");
@@ -268,8 +268,8 @@ TEST(integers_match)
                                         "double-gauss-angenieux"};
     const struct glint_view view = {
         .width = 480, .height = 270, .sensor_width_mm = 36};
-    const struct glint_lamp lamps[2] = {lamp_at(7.58, 33.2),
-                                        lamp_at(3.1, -100)};
+    const struct glint_lamp lamps[2] = {make_lamp(7.58, 33.2),
+                                        make_lamp(3.1, -100)};
 
     for (int i = 0; i < 2; i++) {
         struct glint_engine_report report;
@@ -292,8 +292,8 @@ TEST(memory_does_not_matter)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
-    const struct glint_lamp lamps[2] = {lamp_at(7.58, 33.2),
-                                        lamp_at(3.1, -100)};
+    const struct glint_lamp lamps[2] = {make_lamp(7.58, 33.2),
+                                        make_lamp(3.1, -100)};
     static float linear[2][3 * 240 * 135];
     struct glint_engine_report report[2];
 
@@ -369,7 +369,7 @@ TEST(torics_that_are_spheres)
 {
     const struct glint_view view = {
         .width = 180, .height = 120, .sensor_width_mm = 36};
-    const struct glint_lamp lamp = lamp_at(7, 37);
+    const struct glint_lamp lamp = make_lamp(7, 37);
     struct glint_engine_report report;
     double db, flux;
 
@@ -395,7 +395,7 @@ TEST(decentred_at_the_diagonal)
 {
     const struct glint_view view = {
         .width = 120, .height = 120, .sensor_width_mm = 30};
-    const struct glint_lamp at[2] = {lamp_at(6, 30), lamp_at(6, 60)};
+    const struct glint_lamp at[2] = {make_lamp(6, 30), make_lamp(6, 60)};
     double db;
 
     load_shaped("group decentre 0.7 0\n", "", "end\n");

@@ -34,8 +34,8 @@ static const char *const good[] = {
 
 /* Writes the valid table to TEXT, with LINE in place of line NUMBER (from 1;
  * 0: no replacement) and END after each line. Returns its size in bytes. */
-static size_t compose(char text[4096], int number, const char *line,
-                      const char *end)
+static size_t compose_table(char text[4096], int number, const char *line,
+                            const char *end)
 {
     text[0] = 0;
     for (int i = 0; i < N_GOOD; i++) {
@@ -121,19 +121,20 @@ TEST(good_table)
     static struct glint_prescription lens;
     char text[4096];
 
-    expect_good(&lens, text, compose(text, 0, NULL, "\n"));
+    expect_good(&lens, text, compose_table(text, 0, NULL, "\n"));
     expect_tiny(&lens);
-    expect_good(&lens, text, compose(text, 0, NULL, "\r\n"));
+    expect_good(&lens, text, compose_table(text, 0, NULL, "\r\n"));
     expect_tiny(&lens);
-    expect_good(&lens, text, compose(text, 0, NULL, " \t \n\n"));
+    expect_good(&lens, text, compose_table(text, 0, NULL, " \t \n\n"));
     expect_tiny(&lens);
     /* the last line may have no line end */
-    expect_good(&lens, text, compose(text, 0, NULL, "\n") - 1);
+    expect_good(&lens, text, compose_table(text, 0, NULL, "\n") - 1);
     expect_tiny(&lens);
-    expect_good(&lens, text,
-                compose(text, 1, "\xef\xbb\xbf# mark\nname tiny-4", "\n"));
+    expect_good(
+        &lens, text,
+        compose_table(text, 1, "\xef\xbb\xbf# mark\nname tiny-4", "\n"));
     expect_tiny(&lens);
-    expect_good(&lens, text, compose(text, 3, "\tf-number\t+.8E1", "\n"));
+    expect_good(&lens, text, compose_table(text, 3, "\tf-number\t+.8E1", "\n"));
     expect_tiny(&lens);
 }
 
@@ -143,7 +144,7 @@ static void expect_coatings(int number, const char *line, const double nm[4],
     static struct glint_prescription lens;
     char text[4096];
 
-    expect_good(&lens, text, compose(text, number, line, "\n"));
+    expect_good(&lens, text, compose_table(text, number, line, "\n"));
     for (int k = 0; k < 4; k++) {
         assert_true(lens.surface[k].coating.nm == nm[k]);
         assert_true(lens.surface[k].coating.film[0].index == n[k]);
@@ -231,7 +232,7 @@ TEST(numbers_are_exact)
 
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         snprintf(line, sizeof(line), "film 36 %s", cases[i].word);
-        expect_good(&lens, text, compose(text, 4, line, "\n"));
+        expect_good(&lens, text, compose_table(text, 4, line, "\n"));
         assert_true(lens.film_height_mm == cases[i].value);
     }
 }
@@ -419,9 +420,10 @@ TEST(mistakes)
     char text[4096];
 
     for (size_t i = 0; i < sizeof(mistakes) / sizeof(mistakes[0]); i++)
-        expect_error(text,
-                     compose(text, mistakes[i].number, mistakes[i].line, "\n"),
-                     mistakes[i].error);
+        expect_error(
+            text,
+            compose_table(text, mistakes[i].number, mistakes[i].line, "\n"),
+            mistakes[i].error);
 }
 
 TEST(bytes)
@@ -431,16 +433,16 @@ TEST(bytes)
 
     expect_error(NULL, 0, "x.lens:1:1: there is no name line");
     expect_error("\n\n", 2, "x.lens:3:1: there is no name line");
-    bytes = compose(text, 0, NULL, "\n");
+    bytes = compose_table(text, 0, NULL, "\n");
     text[5] = 0;
     expect_error(text, bytes, "x.lens:1:6: byte 0x00 is not text (UTF-8)");
     /* the last byte of the text is the first byte of a multi-byte character */
-    bytes = compose(text, 0, NULL, "\n");
+    bytes = compose_table(text, 0, NULL, "\n");
     text[bytes - 1] = '\xe2';
     expect_error(text, bytes, "x.lens:10:34: byte 0xe2 is not text (UTF-8)");
     memset(line, '#', sizeof(line));
     line[201] = 0;
-    expect_error(text, compose(text, 2, line, "\r\n"),
+    expect_error(text, compose_table(text, 2, line, "\r\n"),
                  "x.lens:2:201: line is longer than 200 bytes");
 }
 
@@ -451,10 +453,10 @@ TEST(longest_line_and_text)
     char text[4096], line[300] = "source ";
 
     memset(line + 7, 'x', 193); /* a line of 200 bytes */
-    expect_good(&lens, text, compose(text, 2, line, "\r\n"));
+    expect_good(&lens, text, compose_table(text, 2, line, "\r\n"));
     assert_int_equal(strlen(lens.source), 193);
     memset(big, '\n', sizeof(big));
-    memcpy(big, text, compose(text, 0, NULL, "\n"));
+    memcpy(big, text, compose_table(text, 0, NULL, "\n"));
     expect_good(&lens, big, 65536);
     expect_error(big, 65537, "x.lens:1:1: text is longer than 65536 bytes");
 }
@@ -467,10 +469,10 @@ TEST(utf8_and_comments)
     char text[4096];
 
     expect_good(&lens, text,
-                compose(text, 2,
-                        "# \xe2\x82\xac \xf0\x9f\x93\xb7\n"
-                        "source Voigtl\xc3\xa4nder a#1 \t # no",
-                        "\n"));
+                compose_table(text, 2,
+                              "# \xe2\x82\xac \xf0\x9f\x93\xb7\n"
+                              "source Voigtl\xc3\xa4nder a#1 \t # no",
+                              "\n"));
     assert_string_equal(lens.source, "Voigtl\xc3\xa4nder a#1");
 }
 
@@ -530,12 +532,13 @@ TEST(stated_values)
     static struct glint_prescription lens;
     char text[4096];
 
-    expect_good(
-        &lens, text,
-        compose(text, 2, "focal-length 38.15\nback-focal-length 29.41", "\n"));
+    expect_good(&lens, text,
+                compose_table(text, 2,
+                              "focal-length 38.15\nback-focal-length 29.41",
+                              "\n"));
     assert_true(lens.check_focal_mm == 38.15);
     assert_true(lens.check_back_mm == 29.41);
-    expect_error(text, compose(text, 2, "focal-length 38.08", "\n"),
+    expect_error(text, compose_table(text, 2, "focal-length 38.08", "\n"),
                  "x.lens:2:14: focal-length is 38.1194 mm, not the stated "
                  "38.08 mm");
 }

@@ -43,17 +43,18 @@ static double fit(double (*value)(double u, double v), double least,
     return left;
 }
 
-static double even(double u, double v)
+static double even_polynomial(double u, double v)
 {
     return 1 - 3 * u * u + 2 * u * u * u * u + v * v;
 }
 
-static double odd(double u, double v)
+static double odd_polynomial(double u, double v)
 {
     return 0.1 + u - 0.5 * u * u * u + 0.25 * u * v * v;
 }
 
-static double evaluate(const struct glint_poly *poly, const double *x)
+static double evaluate_polynomial(const struct glint_poly *poly,
+                                  const double *x)
 {
     return glint_poly_at(poly->n, poly->power, poly->coef, x);
 }
@@ -65,15 +66,17 @@ TEST(symmetric)
     const double x[GLINT_VARIABLES] = {0.3, -0.6, 0, 0};
     struct glint_poly poly;
 
-    assert_true(fit(even, -1, &poly) <= 1);
+    assert_true(fit(even_polynomial, -1, &poly) <= 1);
     assert_int_equal(poly.n, 4);
-    assert_near(evaluate(&poly, x), even(x[0], x[1]), 1e-8);
-    assert_true(fit(odd, -1, &poly) <= 1);
+    assert_near(evaluate_polynomial(&poly, x), even_polynomial(x[0], x[1]),
+                1e-8);
+    assert_true(fit(odd_polynomial, -1, &poly) <= 1);
     assert_int_equal(poly.n, 4);
-    assert_near(evaluate(&poly, x), odd(x[0], x[1]), 1e-8);
+    assert_near(evaluate_polynomial(&poly, x), odd_polynomial(x[0], x[1]),
+                1e-8);
 }
 
-static double cubic(double u, double v)
+static double cubic_polynomial(double u, double v)
 {
     (void)v;
     return 1 - u + 2 * u * u - 3 * u * u * u;
@@ -87,6 +90,7 @@ TEST(nearly_dependent)
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};
     struct glint_poly poly;
 
-    assert_true(fit(cubic, 0.95, &poly) <= 1);
-    assert_near(evaluate(&poly, x), cubic(x[0], x[1]), 1e-8);
+    assert_true(fit(cubic_polynomial, 0.95, &poly) <= 1);
+    assert_near(evaluate_polynomial(&poly, x), cubic_polynomial(x[0], x[1]),
+                1e-8);
 }

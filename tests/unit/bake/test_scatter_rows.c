@@ -296,7 +296,7 @@ TEST(rejects_invalid_stones)
 
 /* Checks that DONE is a fraction that increases with each call, and counts
  * the calls. */
-static void count(void *ctx, double done)
+static void count_calls(void *ctx, double done)
 {
     double *seen = ctx;
 
@@ -319,7 +319,7 @@ TEST(reports_progress)
 {
     const struct glint_stone stone = make_stone(GLINT_STONE_CHESS);
     double seen[3] = {0, 0, 1e9};
-    const struct glint_watch watch = {count, stop_after_limit, seen};
+    const struct glint_watch watch = {count_calls, stop_after_limit, seen};
     struct glint_scatter_rows rows;
     struct glint_error error;
 

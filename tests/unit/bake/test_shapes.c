@@ -29,7 +29,7 @@ static enum glint_status read_with(const char *surfaces,
     return glint_prescription_parse(&lens, text, strlen(text), "t.lens", error);
 }
 
-static void load(const char *surfaces)
+static void load_surfaces(const char *surfaces)
 {
     struct glint_error error = {""};
 
@@ -137,8 +137,9 @@ static bool find_intersection(const struct glint_surface *s,
 
 /* Refracts WAY at the surface by Snell's law in vector form, with a normal
  * from finite differences of the sag; RATIO is n / n'. */
-static void refract(const struct glint_surface *s, const struct line *l,
-                    long double t, long double ratio, long double way[3])
+static void refract_independently(const struct glint_surface *s,
+                                  const struct line *l, long double t,
+                                  long double ratio, long double way[3])
 {
     const long double x = l->at[0] + t * l->way[0];
     const long double y = l->at[1] + t * l->way[1], h = 1e-5L;
@@ -172,7 +173,7 @@ static int compare_rays(const char *surfaces, double span)
     const struct glint_surface *const s = lens.surface;
     int met = 0;
 
-    load(surfaces);
+    load_surfaces(surfaces);
     glint_path_init(&path, &lens, NULL, LINE_D_NM);
     for (int i = 0; i < 60; i++) {
         const double tilt = draw_uniform(0, 0.5),
@@ -210,7 +211,7 @@ static int compare_rays(const char *surfaces, double span)
         if (s->shape.tilt_deg[0] != 0 || s->shape.tilt_deg[1] != 0 ||
             s[1].radius_mm != 0)
             continue; /* the next check assumes a plane behind, and no tilt */
-        refract(s, &own, t, 1 / (long double)s->nd, way);
+        refract_independently(s, &own, t, 1 / (long double)s->nd, way);
         for (int k = 0; k < 2; k++) {
             const long double z =
                 compute_gap(s, &own, t) + compute_sag(s, at[0], at[1]);
@@ -277,7 +278,8 @@ TEST(hyperboloid_has_a_point_focus)
     struct glint_optics optics;
     struct glint_ray ray;
 
-    load("surface flat 12 14 1.5 60\nsurface -25 50 14 air\nshape conic -2.25");
+    load_surfaces(
+        "surface flat 12 14 1.5 60\nsurface -25 50 14 air\nshape conic -2.25");
     glint_optics_of(&lens, &optics);
     assert_true(fabs(optics.back_focal_mm - 50) < 1e-9);
     glint_path_init(&path, &lens, NULL, LINE_D_NM);
@@ -294,16 +296,18 @@ TEST(no_shape_is_a_sphere)
     const double direction[3] = {0.1, 0.05, sqrt(1 - 0.0125)};
     struct glint_ray ray, same;
 
-    load("surface 30 9 9 1.5 60\nsurface -60 90 30 air");
+    load_surfaces("surface 30 9 9 1.5 60\nsurface -60 90 30 air");
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &ray, NULL), 0);
-    load("surface 30 9 9 1.5 60\nshape conic 0 A4 0\nsurface -60 90 30 air");
+    load_surfaces(
+        "surface 30 9 9 1.5 60\nshape conic 0 A4 0\nsurface -60 90 30 air");
     assert_false(glint_surface_is_shaped(&lens.surface[0]));
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &same, NULL), 0);
     assert_memory_equal(&ray, &same, sizeof ray);
     /* a conic that differs from the sphere by rounding only */
-    load("surface 30 9 9 1.5 60\nshape conic 1e-15\nsurface -60 90 30 air");
+    load_surfaces(
+        "surface 30 9 9 1.5 60\nshape conic 1e-15\nsurface -60 90 30 air");
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &same, NULL), 0);
     assert_true(fabs(ray.sensor_x_mm - same.sensor_x_mm) < 1e-11);
@@ -331,7 +335,7 @@ TEST(ghosts_of_spheres)
     int n = 0;
 
     for (int w = 0; w < 3; w++) {
-        load(written[w]);
+        load_surfaces(written[w]);
         n = glint_ghost_list(&lens, ghost, GLINT_MAX_GHOSTS);
         assert_int_equal(n, 6);
         for (int k = 0; k < n; k++) {
@@ -355,9 +359,10 @@ TEST(anamorphic_focal_lengths)
 {
     struct glint_optics optics;
 
-    load("surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 55 20 air\n"
-         "surface 120 4 20 1.6 50\nshape cylinder x\nsurface flat 5 20 air\n"
-         "surface 50 8 20 1.6 50\nsurface -50 60 20 air");
+    load_surfaces(
+        "surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 55 20 air\n"
+        "surface 120 4 20 1.6 50\nshape cylinder x\nsurface flat 5 20 air\n"
+        "surface 50 8 20 1.6 50\nsurface -50 60 20 air");
     assert_false(glint_prescription_is_round(&lens));
     glint_optics_of(&lens, &optics);
     glint_path_init(&path, &lens, NULL, LINE_D_NM);
@@ -387,9 +392,10 @@ TEST(turned_lens)
     const double plain[3] = {0.2 * c, 0.2 * s, sqrt(0.96)};
     struct glint_ray a, b;
 
-    load("surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 25 20 air\n"
-         "group decentre 1 2 tilt 3 -2\n"
-         "surface 50 9 20 1.6 50\nshape conic -1\nsurface -50 60 20 air\nend");
+    load_surfaces(
+        "surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 25 20 air\n"
+        "group decentre 1 2 tilt 3 -2\n"
+        "surface 50 9 20 1.6 50\nshape conic -1\nsurface -50 60 20 air\nend");
     glint_path_init_at(&path, &lens, NULL, 532, phi);
     assert_int_equal(glint_trace(&path, 3, 1, turned, &a, NULL), 0);
     glint_path_init(&path, &lens, NULL, 532);
@@ -463,7 +469,7 @@ TEST(points_lie_on_rays)
         for (int phi = 0; phi < 360; phi += 40) {
             double t;
 
-            load(shapes[i]);
+            load_surfaces(shapes[i]);
             glint_path_init_at(&path, &lens, NULL, LINE_D_NM, phi);
             assert_int_equal(glint_trace(&path, 1.5, -2, direction, &ray, hits),
                              0);
@@ -474,8 +480,9 @@ TEST(points_lie_on_rays)
             assert_true(fabs(-2 - at[1]) < 1e-9);
         }
     /* The tilted sphere is a sphere with a rotated centre. */
-    load("group tilt 20 0\nsurface 40 9 9 1.5 60\nsurface flat 90 30 air\n"
-         "end");
+    load_surfaces(
+        "group tilt 20 0\nsurface 40 9 9 1.5 60\nsurface flat 90 30 air\n"
+        "end");
     for (int x = -8; x <= 8; x += 4) {
         const double turn = 20 * 3.14159265358979323846 / 180;
 
@@ -531,9 +538,10 @@ TEST(batches_are_identical)
     enum glint_ray_status status[19];
     int traced = 0;
 
-    load("surface 20 6 9 1.5 60\nshape conic -2 A4 2e-5 A8 -3e-9\n"
-         "surface -30 3 9 air\nsurface -25 2 9 1.6 40\nshape cylinder x\n"
-         "surface flat 30 9 air\n");
+    load_surfaces(
+        "surface 20 6 9 1.5 60\nshape conic -2 A4 2e-5 A8 -3e-9\n"
+        "surface -30 3 9 air\nsurface -25 2 9 1.6 40\nshape cylinder x\n"
+        "surface flat 30 9 air\n");
     glint_path_init_at(&path, &lens, NULL, 532, 25);
     for (int k = 0; k < 19; k++)
         from[k] =
@@ -569,7 +577,7 @@ TEST(steep_rays)
     int met = 0;
 
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-        load(shapes[i]);
+        load_surfaces(shapes[i]);
         glint_path_init(&path, &lens, NULL, LINE_D_NM);
         for (int k = 0; k < 4000; k++) {
             const struct glint_form *const form = &path.form[0];

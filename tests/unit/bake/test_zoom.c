@@ -34,7 +34,7 @@ static void set_zoom(double along)
         fail_msg("%s", error.text);
 }
 
-static void focus_at(struct glint_prescription *lens, double metres)
+static void focus_lens(struct glint_prescription *lens, double metres)
 {
     struct glint_error error = {""};
 
@@ -119,7 +119,7 @@ static void check_focus(struct glint_prescription *lens, double metres)
     double object;
 
     glint_optics_of(lens, &before);
-    focus_at(lens, metres);
+    focus_lens(lens, metres);
     glint_optics_of(lens, &optics);
     object = 1000 * metres - optics.length_mm;
     assert_near(trace_to_sensor(lens, h, h / object), 0,
@@ -132,7 +132,7 @@ static void check_focus(struct glint_prescription *lens, double metres)
                 1e-3 * before.focal_mm);
 }
 
-TEST(focus_at)
+TEST(focus_lens)
 {
     static const double metres[] = {1.5, 5, 30};
 
@@ -157,7 +157,7 @@ TEST(newtons_formula)
 
     load_lens(&single, "heliar-tronnier");
     before = single.surface[single.n_surfaces - 1].thickness_mm;
-    focus_at(&single, 2);
+    focus_lens(&single, 2);
     moved = single.surface[single.n_surfaces - 1].thickness_mm - before;
     glint_optics_of(&single, &optics);
     /* the front focus lies about one focal length in front of the lens */
@@ -182,7 +182,7 @@ TEST(front_stop)
         fail_msg("%s", error.text);
     glint_optics_of(&single, &optics);
     before = optics.length_mm + single.stop_thickness_mm;
-    focus_at(&single, 3);
+    focus_lens(&single, 3);
     glint_optics_of(&single, &optics);
     assert_true(single.stop_thickness_mm < 4.5);
     assert_near(optics.length_mm + single.stop_thickness_mm, before, 1e-9);
@@ -200,7 +200,7 @@ TEST(solid)
 
     assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
                                        &error));
-    focus_at(&single, 20);
+    focus_lens(&single, 20);
     assert_true(single.surface[1].thickness_mm > 0);
     assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
                                        &error));
