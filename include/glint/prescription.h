@@ -179,8 +179,7 @@ bool glint_prescription_is_round(const struct glint_prescription *lens);
  * that surface to the stop. */
 struct glint_prescription {
     char name[GLINT_NAME_BYTES];
-    char source[256]; /* source of the data, such as a patent or a book, as text
-                       */
+    char source[256];    /* source of the data, such as a patent, as text */
     char character[256]; /* description of the flare of the lens, as text */
     double f_number;
     double film_width_mm, film_height_mm;

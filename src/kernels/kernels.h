@@ -36,8 +36,7 @@ glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
  * changes with the mean changes of R', B' and Y' of its pixels. */
 enum glint_pair_step {
     GLINT_PAIRS_ALONE, /* 4:2:2: the row's pairs have their own chroma */
-    GLINT_PAIRS_FIRST, /* 4:2:0, first row: stores the mean changes of its pairs
-                        */
+    GLINT_PAIRS_FIRST, /* 4:2:0, first row: stores the mean changes of pairs */
     GLINT_PAIRS_SECOND /* 4:2:0, second row: changes chroma by the mean of both
                           rows */
 };

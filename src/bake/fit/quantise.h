@@ -27,8 +27,7 @@ struct glint_quantised_output {
     int32_t exponent;
     int32_t *coef; /* [sets][n_terms]; owned */
     int n_narrow, shift;
-    int head; /* shift of the energy polynomial, as in struct glint_model_output
-               */
+    int head; /* as in struct glint_model_output; energy only */
     uint8_t order[GLINT_MAX_MODEL_TERMS]; /* indices of the terms in the order
                                              of the file */
     uint32_t bound, rounding_q8;

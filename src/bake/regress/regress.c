@@ -136,8 +136,7 @@ struct search {
     const struct glint_regress_samples *s;
     const struct glint_degrees *degrees;
     int n_chosen, n_columns;
-    int chosen[GLINT_MAX_TERMS]; /* indices of columns, in the order of choice
-                                  */
+    int chosen[GLINT_MAX_TERMS]; /* columns, in the order of choice */
     struct column column[GLINT_MAX_CANDIDATES];
     /* Products of two terms; NAN: not computed yet. A product depends only
      * on the sums of both terms' powers, which many pairs share. */

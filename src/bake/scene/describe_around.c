@@ -140,8 +140,7 @@ bool glint_describe_around(struct glint_describer *d)
         if (glint_environment_open(&e, s->environment[k].data,
                                    s->environment[k].bytes,
                                    &reason) != GLINT_OK)
-            return false; /* cannot fail: the file was checked when it was read
-                           */
+            return false; /* cannot happen: the file was checked before */
         if ((int)e.header->n_lights > s->n_environment_lights)
             s->n_environment_lights = (int)e.header->n_lights;
     }

@@ -368,9 +368,8 @@ struct parser {
     struct glint_coating coating; /* default coating of surfaces */
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
-    bool in_group; /* true: within a group, whose decentre and tilt are in GROUP
-                    */
-    bool in_focus; /* true: within the focusing group */
+    bool in_group;   /* true: within a group, with the position in GROUP */
+    bool in_focus;   /* true: within the focusing group */
     bool is_surface; /* true: the last element is a surface, not the stop */
     struct glint_shape group;
     int n_glasses;

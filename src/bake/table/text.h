@@ -35,8 +35,7 @@ struct glint_text_place {
 
 struct glint_word {
     const char *start; /* not terminated */
-    int length; /* bytes; 0: the line has no further word, and PLACE is its end
-                 */
+    int length;        /* bytes; 0: end of the line, whose position is PLACE */
     struct glint_text_place place;
 };
 

@@ -20,8 +20,7 @@ enum { GLINT_MAX_SAMPLING = 96 };
 
 struct glint_sampling {
     int n_cuts;
-    int cut_event[GLINT_MAX_EVENTS]; /* indices of events of the path, ascending
-                                      */
+    int cut_event[GLINT_MAX_EVENTS];  /* events of the path, ascending */
     int cut_weight[GLINT_MAX_EVENTS]; /* number that grows with the barrel's
                                          part of the outline */
     double bend_mm; /* second difference of the sensor position over the pupil
@@ -38,8 +37,7 @@ struct glint_sampling {
      * box: harmonic mean over neighbouring rays between which the opening
      * may lie. */
     double step;
-    bool folds; /* true: a part of the light arrives mirrored, another does not
-                 */
+    bool folds; /* true: some of the light arrives mirrored, some does not */
 };
 
 /* Traces a grid of SIDE x SIDE cells over PUPIL; SIDE is even, at most

@@ -24,8 +24,7 @@ struct factors {
     int c;
     double *h, *f, *column, *row; /* arrays of channel C for kernel 0; those of
                                      other kernels follow at distances of 3 */
-    int *whole; /* indices of texels whose rows lie completely inside the square
-                 */
+    int *whole;                   /* texels whose rows lie inside the square */
     /* normal equations, one system per entry of a kernel */
     double *gram, *side;
 };

@@ -46,8 +46,7 @@ struct glint_visible {
     int ghost;
     double field_mm; /* radius of the field around the sensor's centre */
     bool wide; /* true: the lens opens wider than GLINT_WIDE. Its rays pass near
-                  singularities, and the model is used with much narrower stops
-                */
+                  singularities, and much narrower stops use the same model */
     bool far;  /* true: the lens is round and lights beyond GLINT_FAR are
                   requested; WIDE is then set, too */
     /* true: the lens is round, opens wider than GLINT_WIDE and has surfaces

@@ -43,8 +43,7 @@ glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
     const double line = sqrt(entries);
 
     switch (candidate->kind) {
-    case GLINT_CANDIDATE_CLUSTERED: /* plus one byte per texel for the cluster
-                                     */
+    case GLINT_CANDIDATE_CLUSTERED: /* plus one byte per texel */
         return 8 * 3 * (2 * texels + candidate->terms * entries) + texels;
     case GLINT_CANDIDATE_FACTORED:
         return 8 * 3 * candidate->terms * (texels + 2 * candidate->rank * line);

@@ -37,14 +37,12 @@ enum glint_scatter_candidate_kind {
 
 struct glint_scatter_candidate {
     enum glint_scatter_candidate_kind kind;
-    int terms;   /* number of terms, or of kernels, 1 .. GLINT_SCATTER_MAX_TERMS
-                  */
-    int rank;    /* rank of FACTORED, 1 .. GLINT_SCATTER_MAX_RANK */
-    int degree;  /* degree P of TUCKER's polynomial, 0 .. 5 */
-    bool turned; /* TUCKER: rows are rotated to begin with their maximum, and
-                    divided by it */
-    int clusters; /* number of clusters of PEERS, 1 .. GLINT_SCATTER_MAX_TERMS
-                   */
+    int terms;    /* terms or kernels, 1 .. GLINT_SCATTER_MAX_TERMS */
+    int rank;     /* rank of FACTORED, 1 .. GLINT_SCATTER_MAX_RANK */
+    int degree;   /* degree P of TUCKER's polynomial, 0 .. 5 */
+    bool turned;  /* TUCKER: rows are rotated to begin with their maximum, and
+                     divided by it */
+    int clusters; /* PEERS: clusters, 1 .. GLINT_SCATTER_MAX_TERMS */
     double a, b;  /* parameters of LOG_SVD, both > 0; a is relative to the
                      largest entry. a = 0: both are searched for and set */
 };

@@ -38,8 +38,7 @@ struct twin_texels {
 
 struct twin {
     const struct glint_description *scene;
-    int shadow_points; /* shadow rays per light: 1, 4 or 16; twin_open() sets 1
-                        */
+    int shadow_points; /* rays per light: 1, 4 or 16; twin_open() sets 1 */
     /* Samples of a Ward lobe. 1 to 32: the samples of the run time;
      * twin_open() sets 8. More: this number of samples of the whole lobe
      * from the finest mipmap level, shifted for each ray. */
@@ -51,9 +50,8 @@ struct twin {
     /* Trees of bounding boxes over the triangles of each object,
      * consecutively. */
     struct twin_node *node;
-    int *root; /* index of the root node of each object; -1: it has no triangles
-                */
-    int *order;           /* indices of triangles, in the order of the leaves */
+    int *root;  /* root node of each object; -1: it has no triangles */
+    int *order; /* indices of triangles, in the order of the leaves */
     struct twin_map *map; /* [n_objects]: maps of translucent objects; NULL:
                              there are none */
     /* [n_stones]: scattering rows for meshes, used instead of the baked
