@@ -27,7 +27,8 @@
 struct glint_source_frame {
     struct glint_image image; /* plane[0] NULL: there is no frame yet */
     uint32_t sequence;        /* frame number from the device; wraps around */
-    int64_t time_us;          /* CLOCK_MONOTONIC, when it was captured */
+    /* CLOCK_MONOTONIC time at which the frame was captured, us */
+    int64_t time_us;
     /* true: the frame may be drawn on in place, as its memory is cached and
      * nobody else writes to it */
     bool is_drawable;
@@ -40,10 +41,11 @@ struct glint_source_frame {
 
 /* The format of the frames that a source delivers. */
 struct glint_source_format {
-    struct glint_image image; /* format of a frame, without its memory */
-    int fps_num, fps_den;     /* frames per second; 0: not known */
-    char text[512];           /* one line for users that describes the source */
-    const char *detail;       /* a second line, or NULL */
+    /* format and size of a frame; its planes are not set */
+    struct glint_image image;
+    int fps_num, fps_den; /* frames per second; 0: not known */
+    char text[512];       /* one line for users that describes the source */
+    const char *detail;   /* second line for users, or NULL */
 };
 
 struct glint_source {
@@ -52,17 +54,18 @@ struct glint_source {
                         it. */
     int n_restarts;  /* restarts of the stream since it was opened; each may
                         change the format */
-    bool has_signal; /* false: the device has no signal, and frames show its
-                        substitute */
+    bool has_signal; /* false: the device receives no signal, and frames show
+                        the device's own substitute picture */
 
-    /* Begins to deliver frames, after SOURCE was opened and after each restart.
-     * The caller should prepare for the format before, as frames that come
-     * meanwhile would be lost. If it returns GLINT_E_DEVICE, close SOURCE. */
+    /* Begins to deliver frames, after SOURCE was opened and after each
+     * restart. Prepare for the format before this call: frames that arrive
+     * while the caller prepares are lost. After GLINT_E_DEVICE, close
+     * SOURCE. */
     enum glint_status (*start)(struct glint_source *source,
                                struct glint_error *error);
     /* Sets FRAME to the latest frame and returns older frames to the device;
-     * never waits. Returns GLINT_E_DEVICE if the device is lost (close SOURCE),
-     * GLINT_E_CLOSED if there are no more frames. */
+     * never waits. Returns GLINT_E_DEVICE if the device was removed (close
+     * SOURCE), GLINT_E_CLOSED if there are no more frames. */
     enum glint_status (*next)(struct glint_source *source,
                               struct glint_source_frame *frame,
                               struct glint_error *error);
@@ -75,8 +78,8 @@ struct glint_source {
 };
 
 struct glint_sink {
-    /* Shows IMAGE; does not use its memory after the call. Waits for slow
-     * readers at most one frame time, if the system allows that. */
+    /* Shows IMAGE and keeps no pointer to its memory. Waits for slow readers
+     * for at most one frame time, if the system can limit the wait. */
     enum glint_status (*put)(struct glint_sink *sink,
                              const struct glint_image *image,
                              struct glint_error *error);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The plug-in behind assimp/assimp.h, through the library's C interface.
+ * The plug-in that implements assimp/assimp.h, using the C interface of Open
+ * Asset Import.
  */
 #include "assimp/assimp.h"
 
@@ -17,8 +18,8 @@
 /* The OBJ text that is being written. */
 struct writer {
     FILE *to;
-    int is_flat;                /* Normals are not written: each triangle has
-                                   its own. */
+    int is_flat; /* 1: normals are not written, as each triangle has its own
+                    normal */
     unsigned place, uv, normal; /* indices, from 1, at which the next mesh's
                                    vertices, texture coordinates and normals
                                    begin */
@@ -62,8 +63,8 @@ static int is_smooth(const struct aiVector3D *n, const struct aiFace *face)
 }
 
 /* Returns the normals of MESH, or NULL if all of its faces are flat. */
-static const struct aiVector3D *normals_of(const struct writer *w,
-                                           const struct aiMesh *mesh)
+static const struct aiVector3D *find_normals(const struct writer *w,
+                                             const struct aiMesh *mesh)
 {
     for (unsigned i = 0; !w->is_flat && i < mesh->mNumFaces; i++)
         if (is_smooth(mesh->mNormals, &mesh->mFaces[i]))
@@ -110,7 +111,7 @@ static void write_mesh(struct writer *w, const struct aiScene *scene,
 {
     static const struct aiVector3D none = {0, 0, 0};
     const struct aiVector3D *const v = mesh->mVertices;
-    const struct aiVector3D *const n = normals_of(w, mesh);
+    const struct aiVector3D *const n = find_normals(w, mesh);
     const struct aiVector3D *const t = mesh->mTextureCoords[0];
 
     write_name(w->to, scene, mesh->mMaterialIndex);
@@ -127,7 +128,8 @@ static void write_mesh(struct writer *w, const struct aiScene *scene,
     w->normal += n ? mesh->mNumVertices : 0;
 }
 
-/* Returns why MESH cannot be written, or NULL, and adds its triangles to N. */
+/* Returns the reason why MESH cannot be written, or NULL, and adds the
+ * number of its triangles to N. */
 static const char *check_mesh(const struct aiMesh *mesh, size_t *n)
 {
     for (unsigned k = 0; k < mesh->mNumVertices; k++)
@@ -150,7 +152,8 @@ static const char *check_mesh(const struct aiMesh *mesh, size_t *n)
 
 /* Returns the reason to refuse SCENE, or NULL if it is a mesh that glint
  * accepts. */
-static const char *check(const struct aiScene *scene, unsigned max_triangles)
+static const char *check_scene(const struct aiScene *scene,
+                               unsigned max_triangles)
 {
     const char *refusal = NULL;
     size_t n = 0;
@@ -165,17 +168,17 @@ static const char *check(const struct aiScene *scene, unsigned max_triangles)
 /* Reads PATH, cuts polygons into triangles, applies the transforms of the
  * file's nodes and merges identical corners. Returns NULL, with the cause in
  * REFUSAL, if glint does not accept the mesh. */
-static const struct aiScene *import(const char *path, unsigned max_triangles,
-                                    const char **refusal)
+static const struct aiScene *
+import_scene(const char *path, unsigned max_triangles, const char **refusal)
 {
     const struct aiScene *scene = aiImportFile(path, aiProcess_Triangulate);
 
-    *refusal = scene ? check(scene, max_triangles) : aiGetErrorString();
+    *refusal = scene ? check_scene(scene, max_triangles) : aiGetErrorString();
     if (*refusal)
         return NULL;
     scene = aiApplyPostProcessing(scene, aiProcess_PreTransformVertices |
                                              aiProcess_JoinIdenticalVertices);
-    *refusal = scene ? check(scene, max_triangles) : aiGetErrorString();
+    *refusal = scene ? check_scene(scene, max_triangles) : aiGetErrorString();
     return *refusal ? NULL : scene;
 }
 
@@ -189,7 +192,7 @@ static void write_obj(int fd, const char *path, unsigned max_triangles)
 
     if (!w.to)
         return;
-    scene = import(path, max_triangles, &refusal);
+    scene = import_scene(path, max_triangles, &refusal);
     if (scene)
         fputc('m', w.to);
     else

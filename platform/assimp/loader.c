@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE /* memmem */
+#define _GNU_SOURCE /* for memmem */
 #include "assimp/assimp.h"
 
 #include <errno.h>
@@ -22,11 +22,12 @@
 enum {
     SECONDS = 60, /* max CPU time that reading a mesh may cost */
     SIGNALS = 64, /* signal numbers are 1 .. SIGNALS */
-    /* max address space of the child beyond glint's own. An .stl of 2^20
-     * triangles, the max of a scene, needs 2.1 GB. */
+    /* Max MiB of address space of the child process beyond that of glint. An
+     * .stl of 2^20 triangles, the max of a scene, needs 2.1 GB. */
     MIB = 3072,
-    GLB_HEAD = 20,      /* bytes before the JSON text of a binary glTF */
-    MAX_TEXT = 1 << 26, /* bytes of a glTF's beginning that are checked */
+    GLB_HEAD = 20, /* bytes before the JSON text of a binary glTF */
+    /* max bytes of the beginning of a glTF that are checked */
+    MAX_TEXT = 1 << 26,
     MAX_NODES = 1 << 22
 };
 
@@ -34,7 +35,7 @@ enum {
     "needs more than 60 s or 3 GiB to read: the mesh is too large " \
     "(or its parts refer to each other too many times)"
 
-static const struct glint_assimp *load(struct glint_error *error)
+static const struct glint_assimp *load_plugin(struct glint_error *error)
 {
     static const struct glint_plugin plugin = {
         "glint-assimp.so",    "GLINT_ASSIMP",
@@ -42,7 +43,8 @@ static const struct glint_assimp *load(struct glint_error *error)
         GLINT_ASSIMP_VERSION, ", so that only OBJ meshes are read",
         "libassimp-dev",      "assimp"};
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-    static const struct glint_assimp *found; /* under LOCK; stays loaded */
+    /* interface of the loaded plug-in, or NULL; guarded by LOCK */
+    static const struct glint_assimp *found;
     const struct glint_assimp *face;
 
     pthread_mutex_lock(&lock);
@@ -71,8 +73,8 @@ static rlim_t mapped_bytes(void)
 /* Runs the child process until it exits. Restores the default actions of
  * signals and unblocks them: glint's handlers would remove the temporary files
  * of the parent, which lives on. */
-static void be_the_child(const struct glint_assimp *face, int fd,
-                         const char *path, unsigned max_triangles)
+static void run_child(const struct glint_assimp *face, int fd, const char *path,
+                      unsigned max_triangles)
 {
     const struct rlimit time = {SECONDS, SECONDS}, core = {0, 0};
     const struct rlimit memory = {mapped_bytes() + (rlim_t)MIB * 1048576,
@@ -96,8 +98,8 @@ static void be_the_child(const struct glint_assimp *face, int fd,
 
 /* Starts the child process, which writes to pipe_fd[1]. Returns its id, or -1
  * with errno set on failure. */
-static pid_t start(const struct glint_assimp *face, const int pipe_fd[2],
-                   const char *path, unsigned max_triangles)
+static pid_t start_child(const struct glint_assimp *face, const int pipe_fd[2],
+                         const char *path, unsigned max_triangles)
 {
     sigset_t all, before;
     pid_t child;
@@ -107,14 +109,14 @@ static pid_t start(const struct glint_assimp *face, const int pipe_fd[2],
     child = fork();
     if (child == 0) {
         close(pipe_fd[0]);
-        be_the_child(face, pipe_fd[1], path, max_triangles);
+        run_child(face, pipe_fd[1], path, max_triangles);
     }
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return child;
 }
 
-/* Kills CHILD unless its result IS_WANTED, and waits for it. Returns why it
- * failed, or NULL. */
+/* Waits for CHILD; kills it first unless IS_WANTED. Returns the reason why
+ * it failed, or NULL. */
 static const char *end(pid_t child, int is_wanted)
 {
     int status = 0;
@@ -133,8 +135,9 @@ static const char *end(pid_t child, int is_wanted)
 
 /* Removes the status letter (m or x) from DATA[BYTES]. Returns GLINT_OK, or the
  * error that the letter, the text after it or FAILURE states. */
-static enum glint_status judge(uint8_t *data, size_t *bytes, const char *path,
-                               const char *failure, struct glint_error *error)
+static enum glint_status check_result(uint8_t *data, size_t *bytes,
+                                      const char *path, const char *failure,
+                                      struct glint_error *error)
 {
     if (!failure && *bytes < 1)
         failure = "cannot be read";
@@ -152,7 +155,7 @@ static enum glint_status judge(uint8_t *data, size_t *bytes, const char *path,
     return GLINT_OK;
 }
 
-static size_t length_at(const uint8_t *b)
+static size_t read_length(const uint8_t *b)
 {
     return b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
 }
@@ -190,19 +193,19 @@ static int has_shared_node(const char *text, size_t bytes)
     return is_shared;
 }
 
-/* Returns the error of the glTF TEXT[BYTES], the beginning of a file of ALL
- * bytes, or NULL. A binary glTF begins with a magic number, a version, the
- * file's length, and length and type of the JSON chunk. */
+/* Returns what is wrong with the glTF in TEXT[BYTES], the beginning of a
+ * file of ALL bytes, or NULL. A binary glTF begins with a magic number, a
+ * version, the file's length, and length and type of the JSON chunk. */
 static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
 {
     if (bytes >= 4 && memcmp(text, "glTF", 4) == 0) {
-        if (bytes < GLB_HEAD || all < length_at(text + 8) ||
-            all - GLB_HEAD < length_at(text + 12))
+        if (bytes < GLB_HEAD || all < read_length(text + 8) ||
+            all - GLB_HEAD < read_length(text + 12))
             return "is cut off: shorter than the length at its beginning";
         text += GLB_HEAD;
         bytes -= GLB_HEAD;
-        if (length_at(text - 8) < bytes)
-            bytes = length_at(text - 8);
+        if (read_length(text - 8) < bytes)
+            bytes = read_length(text - 8);
     }
     return has_shared_node((const char *)text, bytes)
                ? "has a node that is the child of two others, which glTF "
@@ -210,8 +213,8 @@ static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
                : NULL;
 }
 
-/* Checks, before Assimp reads PATH, that it is a regular file and, if it is a
- * glTF, that it is not cut off and has no shared nodes. */
+/* Checks PATH before Assimp reads it: it must be a regular file and, if it
+ * is a glTF, must not be cut off and must have no shared nodes. */
 static enum glint_status check_file(const char *path, struct glint_error *error)
 {
     const char *const dot = strrchr(path, '.'), *cause = NULL;
@@ -253,7 +256,7 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
                                     unsigned max_triangles,
                                     struct glint_error *error)
 {
-    const struct glint_assimp *const face = load(error);
+    const struct glint_assimp *const face = load_plugin(error);
     struct glint_input in = {.name = path};
     enum glint_status status;
     const char *failure;
@@ -269,7 +272,7 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
         return status;
     if (pipe(pipe_fd) < 0)
         return glint_error_errno(error, GLINT_E_IO, path, errno);
-    child = start(face, pipe_fd, path, max_triangles);
+    child = start_child(face, pipe_fd, path, max_triangles);
     close(pipe_fd[1]);
     in.fd = pipe_fd[0];
     status = child < 0 ? glint_error_report(error, GLINT_E_MEMORY, path, "%s",
@@ -279,7 +282,7 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
     if (child > 0) {
         failure = end(child, status == GLINT_OK);
         if (status == GLINT_OK)
-            status = judge(*data, bytes, path, failure, error);
+            status = check_result(*data, bytes, path, failure, error);
     }
     if (status != GLINT_OK) {
         free(*data);

@@ -12,8 +12,9 @@
 
 #include "posix/error.h"
 
-#define ALIGN     64 /* alignment of planes and their rows, bytes */
-#define MAX_ROWS  32 /* max rows of a plane in a row of MCUs: 4 blocks of 8 */
+#define ALIGN 64 /* alignment of planes and their rows, bytes */
+/* max rows of a plane in a row of MCUs: 4 blocks of 8 rows */
+#define MAX_ROWS  32
 #define N_PLANES  3
 #define MARKER    0xff
 #define SOI       0xd8
@@ -29,12 +30,12 @@ struct glint_mjpeg {
     size_t plane_bytes;
     uint8_t *mem; /* N_PLANES planes of plane_bytes each */
 
-    /* The state of the frame being decoded. */
+    /* The members below are the state of the frame being decoded. */
     struct jpeg_decompress_struct jpeg;
     struct jpeg_error_mgr errors;
     struct jpeg_source_mgr source;
-    bool in_scan; /* The header has been read. */
-    bool ended;   /* libjpeg requested more bytes than the frame has. */
+    bool in_scan; /* true: the header has been read */
+    bool ended;   /* true: libjpeg requested more bytes than the frame has */
     jmp_buf escape;
     enum glint_status status; /* error to return after a jump to escape */
     struct glint_error *error;
@@ -91,7 +92,7 @@ void glint_mjpeg_close(struct glint_mjpeg *decoder)
 
 /* Leaves libjpeg with STATUS, by a jump to d->escape. The caller must have set
  * d->error. */
-static void leave(struct glint_mjpeg *d, enum glint_status status)
+static void leave_libjpeg(struct glint_mjpeg *d, enum glint_status status)
 {
     d->status = status;
     longjmp(d->escape, 1);
@@ -103,7 +104,8 @@ static void leave_with_message(j_common_ptr jpeg, enum glint_status status)
     char text[JMSG_LENGTH_MAX];
 
     jpeg->err->format_message(jpeg, text);
-    leave(d, glint_error_report(d->error, status, d->name, "MJPEG: %s", text));
+    leave_libjpeg(
+        d, glint_error_report(d->error, status, d->name, "MJPEG: %s", text));
 }
 
 static void on_error(j_common_ptr jpeg)
@@ -132,10 +134,11 @@ static void on_message(j_common_ptr jpeg, int level)
     switch (jpeg->err->msg_code) {
     case JWRN_HIT_MARKER:
         if (d->ended)
-            leave(d, glint_error_report(d->error, GLINT_E_FORMAT, d->name,
-                                        "MJPEG: frame ends in row %d of %d",
-                                        (int)d->jpeg.output_scanline,
-                                        (int)d->jpeg.output_height));
+            leave_libjpeg(
+                d, glint_error_report(d->error, GLINT_E_FORMAT, d->name,
+                                      "MJPEG: frame ends in row %d of %d",
+                                      (int)d->jpeg.output_scanline,
+                                      (int)d->jpeg.output_height));
         leave_with_message(jpeg, GLINT_E_FORMAT);
         return;
     case JWRN_HUFF_BAD_CODE:
@@ -156,17 +159,17 @@ static void on_source(j_decompress_ptr jpeg)
     (void)jpeg;
 }
 
-/* Called when libjpeg has read all data. In the scan supplies an end-of-image
- * marker, since libjpeg reads ahead and may have all samples already; in the
- * header leaves libjpeg with an error. */
+/* Called when libjpeg has read all data. In the scan, supplies an
+ * end-of-image marker, since libjpeg reads ahead and may have all samples
+ * already; in the header, jumps out of libjpeg with an error. */
 static boolean on_end(j_decompress_ptr jpeg)
 {
     static const JOCTET end[] = {MARKER, EOI};
     struct glint_mjpeg *const d = jpeg->client_data;
 
     if (!d->in_scan)
-        leave(d, glint_error_report(d->error, GLINT_E_FORMAT, d->name,
-                                    "MJPEG: frame ends in its header"));
+        leave_libjpeg(d, glint_error_report(d->error, GLINT_E_FORMAT, d->name,
+                                            "MJPEG: frame ends in its header"));
     d->ended = true;
     d->source.next_input_byte = end;
     d->source.bytes_in_buffer = sizeof end;
@@ -201,7 +204,7 @@ static size_t find_start(const uint8_t *data, size_t bytes)
 
         if (marker == SOI)
             start = at;
-        if (marker == MARKER) /* padding */
+        if (marker == MARKER) /* a padding byte */
             at++;
         else if (is_bare(marker))
             at += 2;
@@ -229,16 +232,16 @@ static void set_source(struct glint_mjpeg *d, const uint8_t *data, size_t bytes)
 
 /* ------------------------------------------------------------------- frames */
 
-static void refuse(struct glint_mjpeg *d, const char *cause)
+static void reject_frame(struct glint_mjpeg *d, const char *cause)
 {
-    leave(d, glint_error_report(d->error, GLINT_E_UNSUPPORTED, d->name,
-                                "MJPEG: %s", cause));
+    leave_libjpeg(d, glint_error_report(d->error, GLINT_E_UNSUPPORTED, d->name,
+                                        "MJPEG: %s", cause));
 }
 
-/* Returns the pixel format of the frame's subsampling, and refuses other
- * subsamplings. Only the ratios of Y's sampling factors to Cb's and Cr's
- * matter. */
-static enum glint_pixel_format format_of(struct glint_mjpeg *d)
+/* Returns the pixel format for the frame's chroma subsampling, and rejects
+ * subsamplings that glint does not support. Only the ratios of Y's sampling
+ * factors to Cb's and Cr's matter. */
+static enum glint_pixel_format choose_format(struct glint_mjpeg *d)
 {
     const jpeg_component_info *const c = d->jpeg.comp_info;
     const int across = c[0].h_samp_factor, down = c[0].v_samp_factor;
@@ -255,15 +258,14 @@ static enum glint_pixel_format format_of(struct glint_mjpeg *d)
         if (across == 2 * c[1].h_samp_factor && down == 2 * c[1].v_samp_factor)
             return GLINT_I420;
     }
-    snprintf(text, sizeof text,
-             "chroma subsampling %dx%d,%dx%d,%dx%d is not supported", across,
-             down, c[1].h_samp_factor, c[1].v_samp_factor, c[2].h_samp_factor,
-             c[2].v_samp_factor);
-    refuse(d, text);
+    snprintf(text, sizeof text, "subsampling %dx%d,%dx%d,%dx%d is not handled",
+             across, down, c[1].h_samp_factor, c[1].v_samp_factor,
+             c[2].h_samp_factor, c[2].v_samp_factor);
+    reject_frame(d, text);
     return GLINT_GREY;
 }
 
-/* Refuses frames that are too large, would cost too much memory or time, or
+/* Rejects frames that are too large, would cost too much memory or time, or
  * that glint cannot draw on. */
 static void check_header(struct glint_mjpeg *d)
 {
@@ -271,26 +273,27 @@ static void check_header(struct glint_mjpeg *d)
 
     if (j->image_width > (JDIMENSION)d->max_width ||
         j->image_height > (JDIMENSION)d->max_height)
-        leave(d, glint_error_report(d->error, GLINT_E_UNSUPPORTED, d->name,
-                                    "MJPEG: frame of %u x %u pixels is larger "
-                                    "than %d x %d",
-                                    j->image_width, j->image_height,
-                                    d->max_width, d->max_height));
+        leave_libjpeg(
+            d, glint_error_report(d->error, GLINT_E_UNSUPPORTED, d->name,
+                                  "MJPEG: frame of %u x %u pixels is larger "
+                                  "than %d x %d",
+                                  j->image_width, j->image_height, d->max_width,
+                                  d->max_height));
     if (j->jpeg_color_space != JCS_YCbCr &&
         j->jpeg_color_space != JCS_GRAYSCALE)
-        refuse(d, "the components are neither Y, Cb, Cr nor grey");
+        reject_frame(d, "colours are neither Y, Cb, Cr nor grey");
     if (j->arith_code)
-        refuse(d, "arithmetic coding is not supported");
+        reject_frame(d, "arithmetic coding is not handled");
     if (jpeg_has_multiple_scans(&d->jpeg))
-        refuse(d, "progressive frames (several scans) are not supported");
+        reject_frame(d, "frames in several scans are not handled");
 }
 
-static void start(struct glint_mjpeg *d, struct glint_image *image)
+static void start_decoding(struct glint_mjpeg *d, struct glint_image *image)
 {
     jpeg_read_header(&d->jpeg, TRUE);
     check_header(d);
     *image = (struct glint_image){
-        .format = format_of(d),
+        .format = choose_format(d),
         .width = (int)d->jpeg.image_width,
         .height = (int)d->jpeg.image_height,
         .range = GLINT_RANGE_FULL,
@@ -358,7 +361,7 @@ enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
     }
     jpeg_create_decompress(&d->jpeg);
     set_source(d, data, bytes);
-    start(d, &frame);
+    start_decoding(d, &frame);
     read_planes(d, &frame);
     jpeg_destroy_decompress(&d->jpeg);
     *image = frame;

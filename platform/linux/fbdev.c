@@ -16,16 +16,17 @@
 #include "posix/at_death.h"
 #include "posix/error.h"
 
-/* put_back() reads these variables when the process dies, so they are
+/* restore_console() reads these variables when the process dies, so they are
  * atomic. */
 static int held_fd = -1;
 static int held_mode; /* mode of the console before glint set graphics mode */
-/* process that set graphics mode; its children must not restore it */
+/* id of the process that set graphics mode; its child processes must not
+ * restore the mode */
 static pid_t holder;
 
 /* Restores the console's mode. Async-signal-safe, as ioctl() is a plain system
  * call in Linux. */
-static void put_back(void)
+static void restore_console(void)
 {
     const int saved = errno;
     const int fd = __atomic_load_n(&held_fd, __ATOMIC_SEQ_CST);
@@ -35,13 +36,13 @@ static void put_back(void)
     errno = saved;
 }
 
-/* Registers put_back() with glint_at_death(); a second call does nothing.
- * Registered functions run from the latest to the earliest, so a function that
- * must run before the console is restored must be registered after this
- * call. */
+/* Registers restore_console() with glint_at_death(); a second call does
+ * nothing. Registered functions run from the latest to the earliest, so a
+ * function that must run before the console is restored must be registered
+ * after this call. */
 static void watch_console(void)
 {
-    glint_at_death(put_back);
+    glint_at_death(restore_console);
 }
 
 /* Opens the console PATH as *FD. Returns the mode to restore later, or -1 with
@@ -80,10 +81,10 @@ static bool refuse_console(int *fd, struct glint_error *note, const char *cause)
     return false;
 }
 
-/* Sets the console to graphics mode; a process may do so with one console at a
- * time. Returns false, with the reason in NOTE, if there is no console,
- * permission is missing or another program draws on it. */
-static bool take_console(int *fd, struct glint_error *note)
+/* Sets the console to graphics mode; a process may do so with one console at
+ * a time. Returns false, with the reason in NOTE, if there is no console,
+ * the permission is missing or another program draws on the console. */
+static bool acquire_console(int *fd, struct glint_error *note)
 {
     int mode = open_console("/dev/tty", fd);
 
@@ -108,13 +109,13 @@ static bool take_console(int *fd, struct glint_error *note)
     return true;
 }
 
-/* Restores the console's mode and closes *FD, if take_console() had
+/* Restores the console's mode and closes *FD, if acquire_console() had
  * succeeded. */
 static void release_console(int *fd)
 {
     if (*fd < 0)
         return;
-    put_back();
+    restore_console();
     __atomic_store_n(&held_fd, -1, __ATOMIC_SEQ_CST);
     close(*fd);
     *fd = -1;
@@ -125,8 +126,9 @@ static void release_console(int *fd)
 #endif
 
 /* Reports that the ioctl request WHAT failed, with the cause in errno. */
-static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
-                              struct glint_error *error)
+static enum glint_status report_failure(const struct glint_fbdev *fb,
+                                        const char *what,
+                                        struct glint_error *error)
 {
     if (errno == ENODEV)
         return glint_error_report(error, GLINT_E_DEVICE, fb->name,
@@ -137,16 +139,17 @@ static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
 
 /* -------------------------------------------------------------- when dying */
 
-/* The console continues drawing at the offset that the panel had before glint
- * panned it, so the panel is panned back when glint ends. That must happen
- * before the console's mode is restored: the console then adopts the current
- * offset, and with another offset Linux 6.1 draws in a wrong position. */
+/* The console draws at the offset to which the panel was panned last, so
+ * glint pans the panel back when it ends. That must happen before the
+ * console's mode is restored: the console then adopts the current offset,
+ * and Linux 6.1 draws in a wrong position if the offset differs from the
+ * original one. */
 static int panned_fd = -1; /* framebuffer to pan back, or -1; atomic */
 static struct fb_var_screeninfo panned_home;
-static pid_t panner; /* process that panned it; atomic */
+static pid_t panner; /* id of the process that panned the panel; atomic */
 
-/* Pans the panel back to the offset it had before. Async-signal-safe. */
-static void pan_home(void)
+/* Pans the panel back to its original offset. Async-signal-safe. */
+static void restore_pan(void)
 {
     const int saved = errno;
     const int fd = __atomic_load_n(&panned_fd, __ATOMIC_SEQ_CST);
@@ -162,27 +165,27 @@ static void watch_pan(const struct glint_fbdev *fb)
     __atomic_store_n(&panner, getpid(), __ATOMIC_SEQ_CST);
     __atomic_store_n(&panned_fd, fb->fd, __ATOMIC_SEQ_CST);
     watch_console();
-    glint_at_death(pan_home);
+    glint_at_death(restore_pan);
 }
 
 static void end_pan(const struct glint_fbdev *fb)
 {
     if (fb->fd < 0 || __atomic_load_n(&panned_fd, __ATOMIC_SEQ_CST) != fb->fd)
         return;
-    pan_home();
+    restore_pan();
     __atomic_store_n(&panned_fd, -1, __ATOMIC_SEQ_CST);
 }
 
 /* -------------------------------------------------------------------- mode */
 
-static struct glint_pixel_field field_of(const struct fb_bitfield *bits)
+static struct glint_pixel_field convert_field(const struct fb_bitfield *bits)
 {
     return (struct glint_pixel_field){(int)bits->offset, (int)bits->length};
 }
 
 /* Returns the layout of V's pixels; if the driver states no bit fields, RGB565
  * or XRGB8888. */
-static struct glint_pixel_layout layout_of(const struct fb_var_screeninfo *v)
+static struct glint_pixel_layout read_layout(const struct fb_var_screeninfo *v)
 {
     const int bytes =
         v->bits_per_pixel > 32 ? 0 : (int)(v->bits_per_pixel + 7) / 8;
@@ -195,9 +198,9 @@ static struct glint_pixel_layout layout_of(const struct fb_var_screeninfo *v)
                                                         {0, 0}}
                           : (struct glint_pixel_layout){
                                 bytes, {16, 8}, {8, 8}, {0, 8}, {0, 0}};
-    return (struct glint_pixel_layout){bytes, field_of(&v->red),
-                                       field_of(&v->green), field_of(&v->blue),
-                                       field_of(&v->transp)};
+    return (struct glint_pixel_layout){
+        bytes, convert_field(&v->red), convert_field(&v->green),
+        convert_field(&v->blue), convert_field(&v->transp)};
 }
 
 static bool is_true_colour(const struct fb_fix_screeninfo *fix,
@@ -210,16 +213,16 @@ static bool is_true_colour(const struct fb_fix_screeninfo *fix,
 
 /* Sets size, layout and memory size of FB from the driver's data, or reports
  * why glint cannot draw on such a framebuffer. */
-static enum glint_status adopt(struct glint_fbdev *fb,
-                               const struct fb_fix_screeninfo *fix,
-                               struct glint_error *error)
+static enum glint_status adopt_layout(struct glint_fbdev *fb,
+                                      const struct fb_fix_screeninfo *fix,
+                                      struct glint_error *error)
 {
     const struct fb_var_screeninfo *const v = &fb->var;
     const uint64_t wanted =
         (uint64_t)fix->line_length *
         (v->yres_virtual > v->yres ? v->yres_virtual : v->yres);
 
-    fb->layout = layout_of(v);
+    fb->layout = read_layout(v);
     if (!is_true_colour(fix, v) || !glint_pixel_layout_is_valid(&fb->layout))
         return glint_error_report(
             error, GLINT_E_DEVICE, fb->name,
@@ -261,13 +264,13 @@ static enum glint_status map(struct glint_fbdev *fb, struct glint_error *error)
     at = mmap(NULL, fb->map_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fb->fd,
               0);
     if (at == MAP_FAILED)
-        return lost(fb, "mmap", error);
+        return report_failure(fb, "mmap", error);
     fb->map = at;
     return GLINT_OK;
 }
 
 /* Returns row Y of the mapped memory. */
-static uint8_t *row_at(const struct glint_fbdev *fb, uint32_t y)
+static uint8_t *get_row(const struct glint_fbdev *fb, uint32_t y)
 {
     return fb->map + fb->skip_bytes + y * fb->stride_bytes;
 }
@@ -292,7 +295,7 @@ static bool try_pages(struct glint_fbdev *fb,
         fb->var.yres_virtual / 2 < height ||
         fb->mem_bytes / fb->stride_bytes / 2 < height)
         return false;
-    memset(row_at(fb, 0), 0, 2 * (size_t)height * fb->stride_bytes);
+    memset(get_row(fb, 0), 0, 2 * (size_t)height * fb->stride_bytes);
     watch_pan(fb);
     return pan(fb, 1) && pan(fb, 0);
 }
@@ -310,11 +313,12 @@ static enum glint_status enter_mode(struct glint_fbdev *fb,
     fb->home = fb->var;
     if (fb->home.yoffset == fb->var.yres)
         fb->home.yoffset =
-            /* A glint that was killed may have left the second screen shown. */
+            /* A glint process that was killed may have left the second
+             * screen visible. */
             0;
     if (glint_ioctl(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
-        return lost(fb, "FBIOGET_FSCREENINFO", error);
-    status = adopt(fb, &fix, error);
+        return report_failure(fb, "FBIOGET_FSCREENINFO", error);
+    status = adopt_layout(fb, &fix, error);
     if (!status)
         status = map(fb, error);
     if (status)
@@ -349,7 +353,7 @@ static enum glint_status follow_mode(struct glint_fbdev *fb,
     const struct fb_var_screeninfo old = fb->var;
 
     if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
-        return lost(fb, "FBIOGET_VSCREENINFO", error);
+        return report_failure(fb, "FBIOGET_VSCREENINFO", error);
     return fb->map && is_same_mode(&old, &fb->var) ? GLINT_OK
                                                    : enter_mode(fb, error);
 }
@@ -378,8 +382,8 @@ static enum glint_status fit_panel(struct glint_fbdev *fb,
     return glint_panel_open(&fb->panel, &cfg, error);
 }
 
-static void draw(struct glint_fbdev *fb, const struct glint_image *image,
-                 uint8_t *mem, int page)
+static void draw_to_map(struct glint_fbdev *fb, const struct glint_image *image,
+                        uint8_t *mem, int page)
 {
     const ptrdiff_t stride = (ptrdiff_t)fb->stride_bytes;
 
@@ -389,10 +393,11 @@ static void draw(struct glint_fbdev *fb, const struct glint_image *image,
     glint_panel_draw(&fb->panel, image, mem, stride);
 }
 
-/* Draws IMAGE to the screen that is shown, as memory holds only one screen. */
-static enum glint_status draw_seen(struct glint_fbdev *fb,
-                                   const struct glint_image *image,
-                                   struct glint_error *error)
+/* Draws IMAGE directly to the visible screen, for panels whose memory holds
+ * only one screen. */
+static enum glint_status draw_visible(struct glint_fbdev *fb,
+                                      const struct glint_image *image,
+                                      struct glint_error *error)
 {
     const uint32_t first = fb->var.yoffset;
     const size_t left = fb->var.xoffset * (size_t)fb->layout.bytes;
@@ -407,29 +412,29 @@ static enum glint_status draw_seen(struct glint_fbdev *fb,
             fb->var.xoffset, first);
     if (fb->has_vsync && glint_ioctl(fb->fd, FBIO_WAITFORVSYNC, &screen) < 0)
         fb->has_vsync = false;
-    draw(fb, image, row_at(fb, first) + left, 0);
+    draw_to_map(fb, image, get_row(fb, first) + left, 0);
     return GLINT_OK;
 }
 
 /* Draws IMAGE to the hidden one of two screens, then shows that screen. */
-static enum glint_status draw_unseen(struct glint_fbdev *fb,
+static enum glint_status draw_hidden(struct glint_fbdev *fb,
                                      const struct glint_image *image,
                                      struct glint_error *error)
 {
     const int page = fb->var.yoffset < fb->var.yres ? 1 : 0;
 
-    draw(fb, image, row_at(fb, (uint32_t)page * fb->var.yres), page);
+    draw_to_map(fb, image, get_row(fb, (uint32_t)page * fb->var.yres), page);
     if (pan(fb, page))
         return GLINT_OK;
     if (errno == ENODEV)
-        return lost(fb, "FBIOPAN_DISPLAY", error);
+        return report_failure(fb, "FBIOPAN_DISPLAY", error);
     fb->n_pages = 1;
-    return draw_seen(fb, image, error);
+    return draw_visible(fb, image, error);
 }
 
-static enum glint_status put(struct glint_sink *sink,
-                             const struct glint_image *image,
-                             struct glint_error *error)
+static enum glint_status show_frame(struct glint_sink *sink,
+                                    const struct glint_image *image,
+                                    struct glint_error *error)
 {
     struct glint_fbdev *const fb = (struct glint_fbdev *)sink;
     enum glint_status status = follow_mode(fb, error);
@@ -438,8 +443,8 @@ static enum glint_status put(struct glint_sink *sink,
         status = fit_panel(fb, image, error);
     if (status)
         return status;
-    return fb->n_pages == 2 ? draw_unseen(fb, image, error)
-                            : draw_seen(fb, image, error);
+    return fb->n_pages == 2 ? draw_hidden(fb, image, error)
+                            : draw_visible(fb, image, error);
 }
 
 /* -------------------------------------------------------- opening, closing */
@@ -495,7 +500,7 @@ static enum glint_status open_device(struct glint_fbdev *fb,
     if (errno == ENOTTY || errno == EINVAL)
         return glint_error_report(error, GLINT_E_DEVICE, fb->name,
                                   "is not a framebuffer");
-    return lost(fb, "FBIOGET_VSCREENINFO", error);
+    return report_failure(fb, "FBIOGET_VSCREENINFO", error);
 }
 
 enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
@@ -505,7 +510,7 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
     enum glint_status status;
 
     *fb = (struct glint_fbdev){
-        .sink = {.put = put, .close = close_fb},
+        .sink = {.put = show_frame, .close = close_fb},
         .options = *options,
         .name = path ? path : default_path(),
         .fd = -1,
@@ -514,11 +519,11 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
     };
     status = open_device(fb, error);
     if (!status && options->console) {
-        fb->has_note = !take_console(&fb->console_fd, &fb->note);
-        /* Setting graphics mode may have changed the offset of the screen
-         * shown. */
+        fb->has_note = !acquire_console(&fb->console_fd, &fb->note);
+        /* Setting graphics mode may have changed the offset of the visible
+         * screen, so the mode is read again. */
         if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
-            status = lost(fb, "FBIOGET_VSCREENINFO", error);
+            status = report_failure(fb, "FBIOGET_VSCREENINFO", error);
     }
     if (!status)
         status = enter_mode(fb, error);

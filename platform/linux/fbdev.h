@@ -1,29 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/fbdev.h - a panel behind /dev/fb0, as a sink.
- *
- *     glint_fbdev_open(&fb, NULL, &options, &error);
- *     fb.sink.put(&fb.sink, &image, &error);       each frame
- *     fb.sink.close(&fb.sink);
- *
- * The mode is never changed; the driver's row stride (line_length) and bit
- * fields are trusted. Any packed true-colour format of 16, 24 or 32 bits is
- * supported (panel/panel.h). If the driver offers memory for two screens and
- * panning, frames are double-buffered; else they are drawn to the visible
- * screen.
- *
- * Each put() first reads the mode from the driver: another program may have
- * changed it, and glint adapts; or the device may have been removed, which
- * writing to its memory would not show, as that stays mapped. Only a change of
- * the frame's size allocates memory.
- *
- * While the sink is open, the console (the terminal of the process, or the
- * foreground console) is in graphics mode, in which it draws neither text nor
- * cursor. Closing restores its mode, as do exit() and the signals that
- * posix/at_death.h lists; then the kernel redraws the text. After kill -9 the
- * console stays dark and cannot be switched, as programs in graphics mode must
- * do that themselves. The next run restores the text; so does SysRq + K, or
- * echo k > /proc/sysrq-trigger from another terminal.
+ * SPDX-License-Identifier: MIT  linux/fbdev.h - a panel behind /dev/fb0, as a
+ * sink.      glint_fbdev_open(&fb, NULL, &options, &error);
+ * fb.sink.put(&fb.sink, &image, &error);       each frame
+ * fb.sink.close(&fb.sink);  The mode is never changed; the driver's row stride
+ * (line_length) and bit fields are trusted. Any packed true-colour format of
+ * 16, 24 or 32 bits is supported (panel/panel.h). If the driver offers memory
+ * for two screens and panning, frames are double-buffered; else they are drawn
+ * to the visible screen.  Each put() first reads the mode from the driver:
+ * another program may have changed it, and glint adapts; or the device may have
+ * been removed, which writing to its still mapped memory would not reveal. Only
+ * a change of the frame's size allocates memory.  While the sink is open, the
+ * console (the terminal of the process, or the foreground console) is in
+ * graphics mode, in which it draws neither text nor cursor. Closing restores
+ * its mode, as do exit() and the signals that posix/at_death.h lists; then the
+ * kernel redraws the text. After kill -9 the console stays dark and cannot be
+ * switched, as programs in graphics mode must do that themselves. The next run
+ * restores the text; so does SysRq + K, or echo k > /proc/sysrq-trigger from
+ * another terminal.
  */
 #ifndef GLINT_PLATFORM_LINUX_FBDEV_H
 #define GLINT_PLATFORM_LINUX_FBDEV_H
@@ -34,7 +28,7 @@
 
 struct glint_fbdev_options {
     enum glint_panel_fit fit;
-    bool dither;  /* panel/panel.h */
+    bool dither;  /* true: dither, see panel/panel.h */
     bool vsync;   /* true: with only one screen of memory, wait for the panel's
                      refresh if the driver can. Less tearing; costs up to one
                      refresh period per frame. */
@@ -49,11 +43,12 @@ struct glint_fbdev {
     int n_pages;   /* screens in memory, 1 or 2; 2: each frame is drawn to the
                       hidden screen */
     bool has_note; /* true: the console could not be set to graphics mode */
-    struct glint_error note; /* reason for that */
+    /* why the console could not be set to graphics mode */
+    struct glint_error note;
 
     /* Private. */
     struct glint_fbdev_options options;
-    const char *name;                   /* not owned */
+    const char *name;                   /* path of the device; not owned */
     int fd;                             /* -1: closed */
     struct fb_var_screeninfo var, home; /* current mode, and mode and offset
                                            before glint panned */

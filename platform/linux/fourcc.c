@@ -7,8 +7,8 @@
 
 #include <linux/videodev2.h>
 
-/* glint_fourcc_of() returns the first entry of a format whose planes lie in one
- * block of memory. */
+/* Pixel formats by FOURCC. glint_fourcc_of() returns the first entry of a
+ * format whose planes lie in one block of memory. */
 static const struct {
     uint32_t fourcc;
     enum glint_pixel_format format;
@@ -36,7 +36,7 @@ static const struct {
     {V4L2_PIX_FMT_YUV444M, GLINT_I444, 3},
 };
 
-/* Names of formats: those of ffmpeg, and a few common ones. */
+/* Names of pixel formats: those of ffmpeg, and a few common ones. */
 static const struct {
     const char *name;
     uint32_t fourcc;
@@ -75,7 +75,7 @@ uint32_t glint_fourcc_of(enum glint_pixel_format format)
     return 0;
 }
 
-static bool prints(uint32_t character)
+static bool is_printable(uint32_t character)
 {
     return character >= ' ' && character <= '~';
 }
@@ -85,7 +85,7 @@ void glint_fourcc_text(uint32_t fourcc, char text[5])
     for (int i = 0; i < 4; i++) {
         const uint32_t character = fourcc >> 8 * i & 255;
 
-        text[i] = prints(character) ? (char)character : '?';
+        text[i] = is_printable(character) ? (char)character : '?';
     }
     text[4] = 0;
 }
@@ -118,7 +118,7 @@ bool glint_fourcc_parse(const char *text, uint32_t *fourcc)
     if (strlen(text) != 4)
         return false;
     for (int i = 0; i < 4; i++) {
-        if (!prints((unsigned char)text[i]))
+        if (!is_printable((unsigned char)text[i]))
             return false;
         value |= (uint32_t)(unsigned char)text[i] << 8 * i;
     }

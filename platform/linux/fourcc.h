@@ -23,8 +23,8 @@ bool glint_fourcc_to_format(uint32_t fourcc, enum glint_pixel_format *format);
  * as for GLINT_LINEAR_Q20 and for GLINT_I444, which exists as YM24 only. */
 uint32_t glint_fourcc_of(enum glint_pixel_format format);
 
-/* Writes FOURCC as text, such as "YUYV", with '?' for characters that do not
- * print. */
+/* Writes FOURCC as text, such as "YUYV", with '?' for unprintable
+ * characters. */
 void glint_fourcc_text(uint32_t fourcc, char text[5]);
 
 /* Parses TEXT, a FOURCC or ffmpeg's name of a pixel format, in any case

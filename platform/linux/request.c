@@ -17,7 +17,7 @@ int glint_ioctl(int fd, unsigned long request, void *arg)
     return r;
 }
 
-static const char *advice(int number)
+static const char *get_advice(int number)
 {
     switch (number) {
     case EACCES:
@@ -38,5 +38,5 @@ enum glint_status glint_ioctl_failed(struct glint_error *error,
     const int number = errno;
 
     return glint_error_report(error, GLINT_E_DEVICE, path, "%s: %s%s", request,
-                              strerror(number), advice(number));
+                              strerror(number), get_advice(number));
 }

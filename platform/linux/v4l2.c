@@ -14,7 +14,7 @@
 #include "posix/clock.h"
 #include "posix/error.h"
 
-/* outcome of take_buffer() */
+/* result of take_buffer() */
 enum glint_v4l2_outcome {
     GLINT_V4L2_TAKEN,
     GLINT_V4L2_NOTHING,
@@ -24,7 +24,7 @@ enum glint_v4l2_outcome {
 
 struct glint_v4l2_taken {
     int index;
-    /* length of each block, and offset of its data, bytes */
+    /* bytes of each block, and offset of the data in the block, bytes */
     size_t bytes[3], start[3];
     uint32_t sequence;
     int64_t time_us;
@@ -32,7 +32,8 @@ struct glint_v4l2_taken {
 };
 
 #define PAGE 4096
-/* us; older time stamps of an unknown clock are ignored */
+/* max age of a time stamp of unknown clock, us; older time stamps are
+ * ignored */
 #define MAX_AGE_US 5000000
 
 static bool is_multiplanar(const struct glint_v4l2 *v)
@@ -83,10 +84,10 @@ static int queue_buffer(struct glint_v4l2 *v, int index)
     return 0;
 }
 
-/* Returns the time of B's frame by the monotonic clock: its time stamp, if the
- * driver states that clock, or states no clock, as v4l2loopback, and the stamp
- * is at most MAX_AGE_US old. Otherwise, or if the stamp is in the future,
- * returns the time now. */
+/* Returns the capture time of B's frame on the monotonic clock, us. Uses the
+ * driver's time stamp if it is on that clock, or if its clock is not stated
+ * (v4l2loopback) and it is at most MAX_AGE_US old. Otherwise, or if the
+ * stamp lies in the future, returns the current time. */
 static int64_t capture_time_us(const struct v4l2_buffer *b)
 {
     const uint32_t clock = b->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK;
@@ -100,7 +101,7 @@ static int64_t capture_time_us(const struct v4l2_buffer *b)
     return is_it && stamp_us <= now_us ? stamp_us : now_us;
 }
 
-static enum glint_v4l2_outcome outcome_of(int number)
+static enum glint_v4l2_outcome convert_errno(int number)
 {
     return number == EAGAIN                      ? GLINT_V4L2_NOTHING
            : number == ENODEV || number == ENXIO ? GLINT_V4L2_GONE
@@ -114,7 +115,7 @@ static enum glint_v4l2_outcome dequeue(struct glint_v4l2 *v,
     struct v4l2_buffer b = describe_buffer(v, 0, planes);
 
     if (glint_ioctl(v->device.fd, VIDIOC_DQBUF, &b) < 0)
-        return outcome_of(errno);
+        return convert_errno(errno);
     if (b.index >= (uint32_t)v->n_buffers || !v->buffer[b.index].queued)
         return GLINT_V4L2_BROKEN;
     *t = (struct glint_v4l2_taken){.index = (int)b.index,
@@ -145,7 +146,7 @@ static enum glint_v4l2_outcome read_frame(struct glint_v4l2 *v,
         got = read(v->device.fd, v->buffer[i].mem[0], v->buffer[i].bytes[0]);
     while (got < 0 && errno == EINTR);
     if (got < 0)
-        return outcome_of(errno);
+        return convert_errno(errno);
     *t = (struct glint_v4l2_taken){.index = i,
                                    .bytes = {(size_t)got},
                                    .sequence = v->n_read++,
@@ -154,7 +155,8 @@ static enum glint_v4l2_outcome read_frame(struct glint_v4l2 *v,
     return GLINT_V4L2_TAKEN;
 }
 
-/* Dequeues a filled buffer from the driver and describes it in T. */
+/* Dequeues a filled buffer from the driver, or reads one with read(2), and
+ * describes it in T. */
 static enum glint_v4l2_outcome take_buffer(struct glint_v4l2 *v,
                                            struct glint_v4l2_taken *t)
 {
@@ -199,7 +201,8 @@ static void release_buffers(struct glint_v4l2 *v)
     v->n_buffers = 0;
 }
 
-/* Maps a block of buffer INDEX. Returns NULL, or the call that failed. */
+/* Maps one block of buffer INDEX into memory. Returns NULL, or the name of
+ * the call that failed. */
 static const char *map_block(struct glint_v4l2 *v, int index, int block,
                              size_t bytes, size_t offset)
 {
@@ -214,7 +217,8 @@ static const char *map_block(struct glint_v4l2 *v, int index, int block,
     return NULL;
 }
 
-/* Maps all blocks of buffer INDEX. Returns NULL, or the call that failed. */
+/* Maps all blocks of buffer INDEX into memory. Returns NULL, or the name of
+ * the call that failed. */
 static const char *map_buffer(struct glint_v4l2 *v, int index)
 {
     struct v4l2_plane planes[3];
@@ -231,9 +235,9 @@ static const char *map_buffer(struct glint_v4l2 *v, int index)
     return failed;
 }
 
-/* Allocates all blocks of buffer INDEX. Returns NULL, or the call that
- * failed. */
-static const char *own_buffer(struct glint_v4l2 *v, int index)
+/* Allocates memory for all blocks of buffer INDEX. Returns NULL, or the name
+ * of the call that failed. */
+static const char *allocate_buffer(struct glint_v4l2 *v, int index)
 {
     struct glint_v4l2_buffer *b = &v->buffer[index];
 
@@ -249,8 +253,8 @@ static const char *own_buffer(struct glint_v4l2 *v, int index)
     return NULL;
 }
 
-/* Returns whether the driver can export buffers as DMABUF, without a copy; for
- * reports only. */
+/* Returns whether the driver can export buffers as DMABUF, which other
+ * devices read without a copy; used in reports only. */
 static bool can_export(const struct glint_v4l2 *v)
 {
     struct v4l2_exportbuffer e = {.type = v->device.type};
@@ -262,8 +266,8 @@ static bool can_export(const struct glint_v4l2 *v)
     return true;
 }
 
-/* Returns the time, in us, of reading every other word of MEM[BYTES] twice;
- * uncached memory is slow both times. */
+/* Returns the time of reading every other word of MEM[BYTES] twice, us.
+ * Uncached memory is as slow the second time as the first. */
 static int64_t read_time_us(const void *mem, size_t bytes)
 {
     const volatile uint64_t *at = mem;
@@ -302,13 +306,14 @@ static const char *fill_buffers(struct glint_v4l2 *v, uint32_t n)
 
     v->n_buffers = (int)n;
     for (int i = 0; !failed && i < v->n_buffers; i++)
-        failed = (v->io == GLINT_V4L2_MMAP ? map_buffer : own_buffer)(v, i);
+        failed =
+            (v->io == GLINT_V4L2_MMAP ? map_buffer : allocate_buffer)(v, i);
     return failed;
 }
 
-/* Gets buffers by IO. Returns NULL, or the call that failed, with errno set.
- * Requests them twice, as a driver that was just stopped refuses the first
- * request. */
+/* Allocates buffers of type IO. Returns NULL, or the name of the call that
+ * failed, with errno set. Requests them twice, as a driver that was just
+ * stopped refuses the first request. */
 static const char *try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
 {
     const enum v4l2_memory memory =
@@ -341,8 +346,8 @@ static bool is_lacking(const struct glint_v4l2 *v)
     return v->n_buffers == 0 && errno == EINVAL;
 }
 
-/* Gets buffers of the first type that both the configuration and the device
- * allow. Returns NULL, or the call that failed, as text. */
+/* Allocates buffers of the first type that both the configuration and the
+ * device allow. Returns NULL, or the name of the call that failed. */
 static const char *get_buffers(struct glint_v4l2 *v)
 {
     const uint32_t caps = v->device.caps;
@@ -379,7 +384,7 @@ static const char *get_buffers(struct glint_v4l2 *v)
 
 /* ------------------------------------------------------------------- stream */
 
-static void stop(struct glint_v4l2 *v)
+static void stop_stream(struct glint_v4l2 *v)
 {
     int type = (int)v->device.type;
 
@@ -412,9 +417,9 @@ static enum glint_status make_decoder(struct glint_v4l2 *v,
                       : GLINT_OK;
 }
 
-/* Gets buffers, and for MJPEG a decoder, for the format. */
-static enum glint_status prepare(struct glint_v4l2 *v,
-                                 struct glint_error *error)
+/* Allocates buffers, and for MJPEG a decoder, for the current format. */
+static enum glint_status prepare_stream(struct glint_v4l2 *v,
+                                        struct glint_error *error)
 {
     const char *const failed = get_buffers(v);
 
@@ -425,13 +430,14 @@ static enum glint_status prepare(struct glint_v4l2 *v,
     return make_decoder(v, error);
 }
 
-static enum glint_status begin(struct glint_v4l2 *v, struct glint_error *error)
+static enum glint_status begin_stream(struct glint_v4l2 *v,
+                                      struct glint_error *error)
 {
     int n_queued = 0;
 
     for (int i = 0; i < v->n_buffers; i++)
-        n_queued +=
-            queue_buffer(v, i) == 0; /* Refused buffers are queued later. */
+        /* A buffer that the driver refuses is queued later. */
+        n_queued += queue_buffer(v, i) == 0;
     if (n_queued == 0)
         return glint_ioctl_failed(error, v->device.path, "VIDIOC_QBUF");
     if (stream_on(v) < 0)
@@ -448,40 +454,40 @@ static bool is_patient(const struct glint_v4l2 *v)
     return v->broken_us && glint_now_us() - v->broken_us <= PATIENCE_US;
 }
 
-/* The first start fails at once; after a restart next() tries again for
- * PATIENCE_US. */
+/* Implements glint_source.start. Until a stream has started once, an error
+ * is returned at once; after a restart next() tries again for PATIENCE_US. */
 static enum glint_status start(struct glint_source *source,
                                struct glint_error *error)
 {
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     const enum glint_status status =
-        v->streams || v->n_buffers == 0 ? GLINT_OK : begin(v, error);
+        v->streams || v->n_buffers == 0 ? GLINT_OK : begin_stream(v, error);
 
     if (status == GLINT_OK || !is_patient(v))
         return status;
-    stop(v);
+    stop_stream(v);
     return GLINT_OK;
 }
 
-static enum glint_status gone(const struct glint_v4l2 *v,
-                              struct glint_error *error)
+static enum glint_status report_gone(const struct glint_v4l2 *v,
+                                     struct glint_error *error)
 {
     return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
                               "the camera is gone");
 }
 
-static bool is_there(const struct glint_v4l2 *v)
+static bool is_present(const struct glint_v4l2 *v)
 {
     struct v4l2_capability cap;
 
     return glint_ioctl(v->device.fd, VIDIOC_QUERYCAP, &cap) == 0;
 }
 
-/* Negotiates the format again. A device that is read by read(2) is closed and
- * opened for that, as it streams until it is closed and then accepts no other
- * format. */
-static enum glint_status agree_anew(struct glint_v4l2 *v,
-                                    struct glint_error *error)
+/* Negotiates the format again. A device that is read by read(2) is closed
+ * and reopened first, as it streams until it is closed and accepts no other
+ * format meanwhile. */
+static enum glint_status negotiate_again(struct glint_v4l2 *v,
+                                         struct glint_error *error)
 {
     const struct glint_v4l2_config wish = v->device.wish;
     enum glint_status status;
@@ -494,21 +500,21 @@ static enum glint_status agree_anew(struct glint_v4l2 *v,
     return status;
 }
 
-/* Stops the stream and prepares it for the format that the device has now. Only
- * the next frame shows whether that helped: until it comes, failures are
- * ignored for PATIENCE_US. After that returns the error of the failed request,
- * or reports WHY if the stream had started. */
-static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
-                                    struct glint_error *error)
+/* Stops the stream and prepares it for the current format of the device.
+ * Only the next frame shows whether the restart succeeded: until it arrives,
+ * failures are ignored for PATIENCE_US. After that time returns the error of
+ * the failed request, or reports WHY if the stream had started. */
+static enum glint_status restart_stream(struct glint_v4l2 *v, const char *why,
+                                        struct glint_error *error)
 {
     const struct timespec breath = {0, 20000000};
     const bool started = v->streams;
     enum glint_status status;
     bool is_late = false;
 
-    stop(v);
-    if (!is_there(v))
-        return gone(v, error);
+    stop_stream(v);
+    if (!is_present(v))
+        return report_gone(v, error);
     if (v->broken_us == 0)
         v->broken_us = glint_now_us();
     else {
@@ -518,14 +524,14 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
     if (is_late && started)
         return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
                                   "%s, and restarting does not help", why);
-    status = agree_anew(v, error);
+    status = negotiate_again(v, error);
     if (status == GLINT_OK)
-        status = prepare(v, error);
+        status = prepare_stream(v, error);
     v->source.n_restarts += status == GLINT_OK;
     if (status == GLINT_E_UNSUPPORTED || v->device.fd < 0 || is_late)
         return status;
     if (status != GLINT_OK)
-        stop(v);
+        stop_stream(v);
     return GLINT_OK;
 }
 
@@ -533,7 +539,7 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
 
 /* Restarts the time limits of STALL_US and PATIENCE_US, as the source changed
  * or has no signal. */
-static void begin_waiting(struct glint_v4l2 *v)
+static void restart_time_limits(struct glint_v4l2 *v)
 {
     v->heard_us = glint_now_us();
     if (v->broken_us)
@@ -541,7 +547,7 @@ static void begin_waiting(struct glint_v4l2 *v)
 }
 
 /* Dequeues all events. Returns whether the source has changed. */
-static bool take_events(struct glint_v4l2 *v)
+static bool read_events(struct glint_v4l2 *v)
 {
     struct v4l2_event event;
     bool is_other = false;
@@ -550,13 +556,13 @@ static bool take_events(struct glint_v4l2 *v)
         if (event.type == V4L2_EVENT_SOURCE_CHANGE) {
             is_other |=
                 !v->device.is_dv || glint_v4l2_device_retimed(&v->device);
-            begin_waiting(v);
+            restart_time_limits(v);
         }
     return is_other;
 }
 
-static bool is_whole(const struct glint_v4l2 *v,
-                     const struct glint_v4l2_taken *t)
+static bool is_complete(const struct glint_v4l2 *v,
+                        const struct glint_v4l2_taken *t)
 {
     const struct glint_v4l2_format *f = &v->device.format;
     const struct glint_v4l2_buffer *b = &v->buffer[t->index];
@@ -575,7 +581,7 @@ static bool is_whole(const struct glint_v4l2 *v,
     return true;
 }
 
-static void give_back(struct glint_v4l2 *v, int index)
+static void return_buffer(struct glint_v4l2 *v, int index)
 {
     v->buffer[index].lent = false;
     queue_buffer(v, index); /* If this fails, a later call reports it. */
@@ -592,7 +598,7 @@ static void queue_idle(struct glint_v4l2 *v)
  * numbers are unreliable: for the first two frames after a start, as
  * v4l2loopback begins with an old number; for drivers that repeat a number; for
  * gaps above MAX_GAP, which would have been a stall. */
-static int gap(struct glint_v4l2 *v, uint32_t sequence)
+static int count_missing_frames(struct glint_v4l2 *v, uint32_t sequence)
 {
     const uint32_t missing = sequence - v->sequence - 1;
     const bool counts = v->n_numbered == 2 && missing <= MAX_GAP;
@@ -617,16 +623,16 @@ static enum glint_v4l2_outcome take_newest(struct glint_v4l2 *v,
         if (outcome != GLINT_V4L2_TAKEN)
             break;
         v->heard_us = glint_now_us();
-        frame->n_dropped += gap(v, t.sequence);
-        if (!is_whole(v, &t)) {
+        frame->n_dropped += count_missing_frames(v, t.sequence);
+        if (!is_complete(v, &t)) {
             frame->n_corrupt++;
             v->n_useless++;
-            give_back(v, t.index);
+            return_buffer(v, t.index);
             continue;
         }
         if (newest->index >= 0) {
             frame->n_late++;
-            give_back(v, newest->index);
+            return_buffer(v, newest->index);
         }
         *newest = t;
     }
@@ -636,8 +642,9 @@ static enum glint_v4l2_outcome take_newest(struct glint_v4l2 *v,
                                          : outcome;
 }
 
-static void place(const struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
-                  struct glint_image *image)
+static void set_image_planes(const struct glint_v4l2 *v,
+                             const struct glint_v4l2_taken *t,
+                             struct glint_image *image)
 {
     const struct glint_v4l2_format *f = &v->device.format;
 
@@ -653,10 +660,10 @@ static void place(const struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     }
 }
 
-/* Decodes the JPEG in T to the decoder's planes and returns its buffer to the
- * driver. On failure returns false, and IMAGE has no planes. */
-static bool decode(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
-                   struct glint_image *image)
+/* Decodes the JPEG frame in T to the decoder's planes and returns T's buffer
+ * to the driver. On failure returns false and leaves IMAGE without planes. */
+static bool decode_jpeg(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
+                        struct glint_image *image)
 {
     struct glint_error unsaid;
     const bool done =
@@ -666,7 +673,7 @@ static bool decode(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
 
     if (!done)
         image->plane[0] = NULL;
-    give_back(v, t->index);
+    return_buffer(v, t->index);
     return done;
 }
 
@@ -675,13 +682,13 @@ static void show(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
 {
     const struct glint_v4l2_format *f = &v->device.format;
 
-    if (f->is_jpeg && !decode(v, t, &frame->image)) {
+    if (f->is_jpeg && !decode_jpeg(v, t, &frame->image)) {
         frame->n_corrupt++;
         v->n_useless++;
         return;
     }
     if (!f->is_jpeg) {
-        place(v, t, &frame->image);
+        set_image_planes(v, t, &frame->image);
         v->buffer[t->index].lent = true;
         frame->buffer = &v->buffer[t->index];
     }
@@ -707,7 +714,7 @@ static bool is_stalled(struct glint_v4l2 *v)
         return false;
     glint_v4l2_device_retimed(&v->device);
     if (!v->device.has_signal)
-        begin_waiting(v);
+        restart_time_limits(v);
     return v->device.has_signal;
 }
 
@@ -719,15 +726,15 @@ static enum glint_status take_frame(struct glint_v4l2 *v,
 
     *frame = (struct glint_source_frame){.sequence = 0};
     if (!v->streams && v->n_buffers == 0)
-        return start_anew(v, "the stream is broken", error);
+        return restart_stream(v, "the stream is broken", error);
     if (!v->streams) {
         const enum glint_status status = start(&v->source, error);
 
         if (!v->streams)
             return status;
     }
-    if (take_events(v))
-        return start_anew(v, "the source changed", error);
+    if (read_events(v))
+        return restart_stream(v, "the source changed", error);
     queue_idle(v);
     switch (take_newest(v, &newest, frame)) {
     case GLINT_V4L2_TAKEN:
@@ -736,17 +743,17 @@ static enum glint_status take_frame(struct glint_v4l2 *v,
             return GLINT_OK;
         break;
     case GLINT_V4L2_NOTHING:
-        return is_stalled(v) ? start_anew(v, "no frames come", error)
+        return is_stalled(v) ? restart_stream(v, "no frames come", error)
                              : GLINT_OK;
     case GLINT_V4L2_GONE:
-        return gone(v, error);
+        return report_gone(v, error);
     case GLINT_V4L2_BROKEN:
         break;
     }
-    return start_anew(v,
-                      v->n_useless >= USELESS ? "all frames are damaged"
-                                              : "the stream is broken",
-                      error);
+    return restart_stream(v,
+                          v->n_useless >= USELESS ? "all frames are damaged"
+                                                  : "the stream is broken",
+                          error);
 }
 
 static enum glint_status next(struct glint_source *source,
@@ -765,9 +772,9 @@ static void done(struct glint_source *source, struct glint_source_frame *frame)
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     struct glint_v4l2_buffer *b = frame->buffer;
 
-    if (b && b->lent) /* else the stream was restarted since, which freed the
-                         buffer */
-        give_back(v, (int)(b - v->buffer));
+    if (b && b->lent) /* B is no longer lent if the stream was restarted
+                         meanwhile, which freed the buffer. */
+        return_buffer(v, (int)(b - v->buffer));
     frame->buffer = NULL;
     frame->image.plane[0] = NULL;
 }
@@ -777,7 +784,7 @@ static void close_camera(struct glint_source *source)
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
 
     if (v->device.fd >= 0)
-        stop(v);
+        stop_stream(v);
     glint_mjpeg_close(v->jpeg);
     v->jpeg = NULL;
     glint_v4l2_device_close(&v->device);
@@ -831,7 +838,7 @@ enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
     status = glint_v4l2_device_open(&camera->device, wish, error);
     if (status != GLINT_OK)
         return status;
-    status = prepare(camera, error);
+    status = prepare_stream(camera, error);
     if (status != GLINT_OK)
         close_camera(&camera->source);
     camera->source.fd = camera->device.fd;

@@ -1,25 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/v4l2.h - a V4L2 camera as a source of live frames.
- *
- *     glint_v4l2_open(&camera, &wish, GLINT_V4L2_AUTO, 4, &error);
- *     camera.source.start(&camera.source, &error);           when set up
- *     camera.source.next(&camera.source, &frame, &error);    when readable
- *     camera.source.done(&camera.source, &frame);
- *     camera.source.close(&camera.source);
- *
- * Only the latest frame is used: older frames that wait are returned to the
- * driver, so latency never grows. Frames that the driver marks as damaged or
- * that are too short are counted and not shown. Frames come in mapped buffers;
- * if the device does not support that, in the application's (USERPTR), else by
- * read(2).
- *
- * next() stops a broken stream and negotiates the format again: after failed
- * requests, a fatal error of the driver, a change of the source, 30 damaged
- * frames in a row, or no frame for two seconds plus four frame times. The
- * caller starts the stream again; a call of next() does so, too. If that does
- * not help within a second, or the device is gone, start() and next() return
- * GLINT_E_DEVICE.
+ * SPDX-License-Identifier: MIT  linux/v4l2.h - a V4L2 camera as a source of
+ * live frames.      glint_v4l2_open(&camera, &wish, GLINT_V4L2_AUTO, 4,
+ * &error);     camera.source.start(&camera.source, &error);           when set
+ * up     camera.source.next(&camera.source, &frame, &error);    when readable
+ * camera.source.done(&camera.source, &frame);
+ * camera.source.close(&camera.source);  Only the latest frame is used: older
+ * frames that wait are returned to the driver, so latency never grows. Frames
+ * that the driver marks as damaged or that are too short are counted and not
+ * shown. Frames arrive in mapped buffers; if the device does not support these,
+ * in buffers of the application (USERPTR), else by read(2).  next() stops a
+ * broken stream and negotiates the format again: after failed requests, a fatal
+ * error of the driver, a change of the source, 30 damaged frames in a row, or
+ * no frame for two seconds plus four frame times. The caller starts the stream
+ * again; a call of next() does so, too. If that does not help within a second,
+ * or the device is gone, start() and next() return GLINT_E_DEVICE.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_H
 #define GLINT_PLATFORM_LINUX_V4L2_H
@@ -38,9 +33,9 @@ enum glint_v4l2_io {
 
 struct glint_v4l2_buffer {
     void *mem[3];
-    size_t bytes[3]; /* size of each block in mem */
-    bool queued;     /* The buffer is queued in the driver. */
-    bool lent;       /* The application uses the buffer. */
+    size_t bytes[3]; /* size of each block in mem, bytes */
+    bool queued;     /* true: the buffer is queued in the driver */
+    bool lent;       /* true: the application uses the buffer */
 };
 
 struct glint_v4l2 {
@@ -60,12 +55,13 @@ struct glint_v4l2 {
     struct glint_v4l2_buffer buffer[GLINT_V4L2_MAX_BUFFERS];
     struct glint_mjpeg *jpeg; /* decoder of JPEG streams */
     bool streams;
-    int n_numbered;    /* frames since the start, counted up to 2 */
+    int n_numbered; /* frames since the stream was started, counted up to 2 */
     uint32_t sequence; /* number of the last frame taken */
     uint32_t n_read;   /* frames read by read(2), which gives no sequence
                           number */
     int64_t heard_us;  /* time of the last frame */
-    int64_t broken_us; /* time at which the stream failed; 0: it works */
+    int64_t broken_us; /* time at which the stream failed, us; 0: the stream
+                          works */
     int n_useless;     /* damaged frames in a row */
 };
 

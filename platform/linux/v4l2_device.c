@@ -17,8 +17,8 @@
 #include "posix/error.h"
 
 /* Formats in order of preference: two bytes per pixel, in which flares are
- * drawn in place; planes; RGB; JPEG, which has to be decoded; and grey, which
- * has no colours. */
+ * drawn in place; planes; RGB; JPEG, which has to be decoded; and last grey,
+ * which has no colours. */
 static const uint32_t preferred[] = {
     V4L2_PIX_FMT_YUYV,   V4L2_PIX_FMT_UYVY,    V4L2_PIX_FMT_NV12,
     V4L2_PIX_FMT_NV21,   V4L2_PIX_FMT_YUV420,  V4L2_PIX_FMT_NV12M,
@@ -70,8 +70,9 @@ static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc,
 }
 
 /* Returns whether the frame interval A is at most 0.5 % longer than the
- * interval of the requested rate: USB has units of 100 ns, and 29.97 is also
- * called 30. */
+ * interval of the requested rate. The tolerance is needed as USB states
+ * intervals in units of 100 ns, and 29.97 frames per second is also called
+ * 30. */
 static bool is_fast(const struct glint_v4l2_device *d, struct v4l2_fract a)
 {
     return 200.0 * a.numerator * d->wish.fps_num <=
@@ -99,7 +100,7 @@ static bool has_rate(const struct glint_v4l2_device *d, uint32_t fourcc,
 
 /* Returns a mask whose bit i is set if the device has preferred[i] and glint
  * reads it. */
-static uint32_t offered(const struct glint_v4l2_device *d)
+static uint32_t find_offered_formats(const struct glint_v4l2_device *d)
 {
     struct v4l2_fmtdesc f = {.type = d->type};
     uint32_t have = 0;
@@ -114,10 +115,10 @@ static uint32_t offered(const struct glint_v4l2_device *d)
 /* Returns the first format of preferred[] that the device has in W x H at the
  * requested rate; if there is no such format, the first that the device has in
  * any size; 0 if glint reads none of its formats. */
-static uint32_t cheapest(const struct glint_v4l2_device *d, uint32_t w,
-                         uint32_t h)
+static uint32_t choose_format(const struct glint_v4l2_device *d, uint32_t w,
+                              uint32_t h)
 {
-    const uint32_t have = offered(d);
+    const uint32_t have = find_offered_formats(d);
     uint32_t first = 0, sized = 0;
 
     for (int i = N_PREFERRED - 1; i >= 0; i--) {
@@ -185,7 +186,7 @@ static void write_pix(struct v4l2_format *f, bool multiplanar, uint32_t fourcc,
 /* Sets the planes of F from PIX. Returns false if the planes do not fit the
  * blocks of F. A single block holds the planes one after the other, and chroma
  * strides follow from the luma stride. */
-static bool lay_out(struct glint_v4l2_format *f, const struct pix *pix)
+static bool set_planes(struct glint_v4l2_format *f, const struct pix *pix)
 {
     const int n = glint_image_planes(f->pixels);
     uint64_t offset = 0; /* 64 bits, as a driver may state any size */
@@ -215,14 +216,15 @@ static bool lay_out(struct glint_v4l2_format *f, const struct pix *pix)
     return true;
 }
 
-static void take_colour(struct glint_v4l2_device *d,
-                        const struct glint_v4l2_colour *colour)
+static void set_colour(struct glint_v4l2_device *d,
+                       const struct glint_v4l2_colour *colour)
 {
     struct glint_v4l2_format *f = &d->format;
     struct glint_image image = {.format = f->is_jpeg ? GLINT_I420 : f->pixels};
 
     glint_v4l2_colour_read(colour, &image);
-    if (f->is_jpeg) { /* JFIF, whatever the driver reports */
+    if (f->is_jpeg) { /* JPEG frames are coded as JFIF, whatever the driver
+                         reports. */
         image.range = GLINT_RANGE_FULL;
         image.matrix = GLINT_MATRIX_BT601;
     }
@@ -233,9 +235,9 @@ static void take_colour(struct glint_v4l2_device *d,
     f->transfer = image.transfer;
 }
 
-static enum glint_status take_format(struct glint_v4l2_device *d,
-                                     const struct pix *pix,
-                                     struct glint_error *error)
+static enum glint_status adopt_format(struct glint_v4l2_device *d,
+                                      const struct pix *pix,
+                                      struct glint_error *error)
 {
     struct glint_v4l2_format *f = &d->format;
     char name[5];
@@ -254,22 +256,21 @@ static enum glint_status take_format(struct glint_v4l2_device *d,
     for (int i = 0; i < f->n_blocks; i++)
         f->block_bytes[i] = pix->bytes[i];
     if (!f->is_jpeg && !glint_fourcc_to_format(pix->fourcc, &f->pixels))
-        return glint_error_report(
-            error, GLINT_E_UNSUPPORTED, d->path,
-            "delivers pixel format %s, which glint does not support; "
-            "--list-formats lists the formats of this camera",
-            name);
-    if (!f->is_jpeg && !lay_out(f, pix))
-        return glint_error_report(
-            error, GLINT_E_DEVICE, d->path,
-            "%ux%u %s needs more bytes than the %u that the driver reports",
-            pix->width, pix->height, name, pix->bytes[0]);
-    take_colour(d, &pix->colour);
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, d->path,
+                                  "delivers %s, which glint does not read; "
+                                  "--list-formats shows what there is",
+                                  name);
+    if (!f->is_jpeg && !set_planes(f, pix))
+        return glint_error_report(error, GLINT_E_DEVICE, d->path,
+                                  "%ux%u %s does not fit the %u bytes that the "
+                                  "driver says it has",
+                                  pix->width, pix->height, name, pix->bytes[0]);
+    set_colour(d, &pix->colour);
     return GLINT_OK;
 }
 
-/* Requests a format and adopts the format that the device answers with. Returns
- * the errors of glint_v4l2_device_open(). */
+/* Requests the configured format and adopts the format that the device
+ * answers with. Returns the errors of glint_v4l2_device_open(). */
 static enum glint_status set_format(struct glint_v4l2_device *d,
                                     struct glint_error *error)
 {
@@ -286,7 +287,7 @@ static enum glint_status set_format(struct glint_v4l2_device *d,
         pix.height = (uint32_t)d->wish.height;
     }
     if (!fourcc)
-        fourcc = cheapest(d, pix.width, pix.height);
+        fourcc = choose_format(d, pix.width, pix.height);
     write_pix(&f, multiplanar, fourcc ? fourcc : pix.fourcc, pix.width,
               pix.height);
     if (glint_ioctl(d->fd, VIDIOC_S_FMT, &f) < 0)
@@ -303,7 +304,7 @@ static enum glint_status set_format(struct glint_v4l2_device *d,
             "--list-formats lists the formats of this camera",
             asked, got);
     }
-    return take_format(d, &pix, error);
+    return adopt_format(d, &pix, error);
 }
 
 static bool is_count(uint32_t n)
@@ -366,8 +367,9 @@ static enum glint_status open_node(struct glint_v4l2_device *d,
 
 /* Opens NAME and reads its capabilities and name, without changing settings.
  * Returns GLINT_E_DEVICE on failure; D is closed then. */
-static enum glint_status attach(struct glint_v4l2_device *d, const char *name,
-                                struct glint_error *error)
+static enum glint_status open_by_name(struct glint_v4l2_device *d,
+                                      const char *name,
+                                      struct glint_error *error)
 {
     struct v4l2_capability cap = {.driver = ""};
     enum glint_status status;
@@ -415,7 +417,7 @@ void glint_v4l2_device_close(struct glint_v4l2_device *d)
 
 /* -------------------------------------------------------------------- input */
 
-static void note_input(struct glint_v4l2_device *d)
+static void read_input(struct glint_v4l2_device *d)
 {
     struct v4l2_input input = {.index = 0};
     int index = 0;
@@ -447,13 +449,13 @@ static enum glint_status choose_input(struct glint_v4l2_device *d,
                    ? glint_error_report(error, GLINT_E_DEVICE, d->path,
                                         "has no input %d", d->wish.input)
                    : glint_ioctl_failed(error, d->path, "VIDIOC_S_INPUT");
-    note_input(d);
+    read_input(d);
     subscribe(d);
     return GLINT_OK;
 }
 
-static bool same_timings(const struct v4l2_bt_timings *a,
-                         const struct v4l2_bt_timings *b)
+static bool has_same_timings(const struct v4l2_bt_timings *a,
+                             const struct v4l2_bt_timings *b)
 {
     return a->width == b->width && a->height == b->height &&
            a->pixelclock == b->pixelclock && a->interlaced == b->interlaced;
@@ -468,7 +470,7 @@ bool glint_v4l2_device_retimed(struct glint_v4l2_device *d)
     d->has_signal = glint_ioctl(d->fd, VIDIOC_QUERY_DV_TIMINGS, &now) == 0;
     return d->has_signal &&
            glint_ioctl(d->fd, VIDIOC_G_DV_TIMINGS, &set) == 0 &&
-           !same_timings(&now.bt, &set.bt);
+           !has_same_timings(&now.bt, &set.bt);
 }
 
 /* Sets an HDMI input to the timings it receives, as drivers do not adopt new
@@ -502,7 +504,7 @@ enum glint_status glint_v4l2_device_open(struct glint_v4l2_device *d,
                                          const struct glint_v4l2_config *wish,
                                          struct glint_error *error)
 {
-    enum glint_status status = attach(d, wish->device, error);
+    enum glint_status status = open_by_name(d, wish->device, error);
 
     if (status != GLINT_OK)
         return status;
@@ -519,13 +521,13 @@ enum { MAX_NODES = 256 };
 
 /* ------------------------------------------------------------------ devices */
 
-static int by_number(const void *a, const void *b)
+static int compare_numbers(const void *a, const void *b)
 {
     return *(const int *)a - *(const int *)b;
 }
 
-/* Lists the numbers of all /dev/videoN, rising. Returns their count, at most
- * MAX_NODES. */
+/* Lists the numbers N of all device nodes /dev/videoN, rising. Returns their
+ * count, at most MAX_NODES. */
 static int find_nodes(int number[MAX_NODES])
 {
     DIR *dev = opendir("/dev");
@@ -543,7 +545,7 @@ static int find_nodes(int number[MAX_NODES])
         n += end > entry->d_name + 5 && *end == '\0';
     }
     closedir(dev);
-    qsort(number, (size_t)n, sizeof *number, by_number);
+    qsort(number, (size_t)n, sizeof *number, compare_numbers);
     return n;
 }
 
@@ -602,7 +604,7 @@ enum glint_status glint_v4l2_list_devices(FILE *out, bool json)
         char name[16];
 
         snprintf(name, sizeof name, "%d", number[i]);
-        if (attach(&d, name, &error) != GLINT_OK) {
+        if (open_by_name(&d, name, &error) != GLINT_OK) {
             n_refused++;
             why = error;
             continue;
@@ -624,7 +626,7 @@ enum glint_status glint_v4l2_list_devices(FILE *out, bool json)
 
 /* ------------------------------------------------------------------ formats */
 
-static double rate_of(struct v4l2_fract interval)
+static double compute_rate(struct v4l2_fract interval)
 {
     return interval.numerator
                ? (double)interval.denominator / interval.numerator
@@ -642,10 +644,10 @@ static void print_rates(FILE *out, const struct glint_v4l2_device *d,
     while (glint_ioctl(d->fd, VIDIOC_ENUM_FRAMEINTERVALS, &i) == 0) {
         if (i.type == V4L2_FRMIVAL_TYPE_DISCRETE)
             fprintf(out, json ? "%s%.5g" : "%s%.4g", i.index ? ", " : "",
-                    rate_of(i.discrete));
+                    compute_rate(i.discrete));
         else
             fprintf(out, json ? "%.5g, %.5g" : "%.4g to %.4g",
-                    rate_of(i.stepwise.max), rate_of(i.stepwise.min));
+                    compute_rate(i.stepwise.max), compute_rate(i.stepwise.min));
         i.index++;
         if (i.type != V4L2_FRMIVAL_TYPE_DISCRETE)
             break;
@@ -708,7 +710,7 @@ enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,
                                           bool json, struct glint_error *error)
 {
     struct glint_v4l2_device d;
-    const enum glint_status status = attach(&d, device, error);
+    const enum glint_status status = open_by_name(&d, device, error);
     struct v4l2_fmtdesc f = {.type = d.type};
 
     if (status != GLINT_OK)

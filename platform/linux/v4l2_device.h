@@ -15,7 +15,8 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
-#define GLINT_V4L2_PATH 256 /* bytes; udev's names have 80 and more */
+/* Max length of a path, bytes; udev's names have 80 and more. */
+#define GLINT_V4L2_PATH 256
 
 struct glint_v4l2_config {
     const char *device;   /* "/dev/video0", or "0" for short */
@@ -52,7 +53,7 @@ struct glint_v4l2_device {
     int fd; /* -1: closed */
     uint32_t caps;
     uint32_t type; /* type of the device's buffers */
-    bool is_dv;    /* an HDMI input, whose source sets the timings */
+    bool is_dv;    /* true: an HDMI input, whose source sets the timings */
     bool has_signal;
     uint32_t input;
     bool is_loopback; /* v4l2loopback: the writer may overwrite a frame that is

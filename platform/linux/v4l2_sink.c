@@ -14,9 +14,10 @@
 #include "linux/request.h"
 #include "posix/error.h"
 
-/* Reports that WHAT failed, with the cause in errno. */
-static enum glint_status failed(const struct glint_v4l2_sink *out,
-                                const char *what, struct glint_error *error)
+/* Reports that the request WHAT failed, with the cause in errno. */
+static enum glint_status report_failure(const struct glint_v4l2_sink *out,
+                                        const char *what,
+                                        struct glint_error *error)
 {
     const int number = errno;
     const char *hint = "";
@@ -45,7 +46,7 @@ static enum glint_status check_node(struct glint_v4l2_sink *out,
         return errno == ENOTTY || errno == EINVAL
                    ? glint_error_report(error, GLINT_E_DEVICE, out->name,
                                         "is not a video device")
-                   : failed(out, "VIDIOC_QUERYCAP", error);
+                   : report_failure(out, "VIDIOC_QUERYCAP", error);
     memcpy(out->card, cap.card, 32);
     can = cap.capabilities & V4L2_CAP_DEVICE_CAPS ? cap.device_caps
                                                   : cap.capabilities;
@@ -83,7 +84,7 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
     px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* makes drivers read the last three
                                            members */
     if (glint_ioctl(out->fd, VIDIOC_S_FMT, f) < 0)
-        return failed(out, "VIDIOC_S_FMT", error);
+        return report_failure(out, "VIDIOC_S_FMT", error);
     if (glint_fourcc_to_format(px->pixelformat, &format) &&
         format == like->format && px->width == (uint32_t)like->width &&
         px->height == (uint32_t)like->height)
@@ -97,10 +98,11 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
         got, px->width, px->height, want, like->width, like->height);
 }
 
-/* Starts streaming, though frames are sent by write(): v4l2loopback 0.12 with
- * exclusive_caps=1 is an output again after glint only if glint has streamed.
- * Other drivers refuse, as no buffers were requested, which is ignored. */
-static void claim(const struct glint_v4l2_sink *out)
+/* Starts streaming, although frames are sent by write(2): v4l2loopback 0.12
+ * with exclusive_caps=1 accepts output again after glint ends only if glint
+ * has streamed. Other drivers refuse, as no buffers were requested; that
+ * error is ignored. */
+static void start_streaming(const struct glint_v4l2_sink *out)
 {
     int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
 
@@ -121,8 +123,8 @@ static void set_rate(const struct glint_v4l2_sink *out, int num, int den)
 
 /* Sets the frame's layout and allocates its memory: all planes in one block of
  * SIZE bytes, luma rows STRIDE bytes apart, chroma rows in proportion. */
-static enum glint_status lay_out(struct glint_v4l2_sink *out, size_t stride,
-                                 size_t size, struct glint_error *error)
+static enum glint_status set_layout(struct glint_v4l2_sink *out, size_t stride,
+                                    size_t size, struct glint_error *error)
 {
     struct glint_image *const f = &out->frame;
     const size_t least = glint_image_row_bytes(f->format, 0, f->width);
@@ -161,8 +163,9 @@ static enum glint_status lay_out(struct glint_v4l2_sink *out, size_t stride,
 
 /* ------------------------------------------------------------------ frames */
 
-/* Returns the bytes from the first plane of IMAGE to PLANE. */
-static uintptr_t distance(const struct glint_image *image, int plane)
+/* Returns the distance from the first plane of IMAGE to PLANE, bytes. */
+static uintptr_t compute_plane_offset(const struct glint_image *image,
+                                      int plane)
 {
     return (uintptr_t)image->plane[plane] - (uintptr_t)image->plane[0];
 }
@@ -175,7 +178,7 @@ static bool is_laid_out(const struct glint_v4l2_sink *out,
 
     for (int i = 0; i < glint_image_planes(f->format); i++)
         if (image->stride_bytes[i] != f->stride_bytes[i] ||
-            distance(image, i) != distance(f, i))
+            compute_plane_offset(image, i) != compute_plane_offset(f, i))
             return false;
     return true;
 }
@@ -219,7 +222,7 @@ static enum glint_status put(struct glint_sink *sink,
         return GLINT_OK;
     }
     if (n < 0)
-        return failed(out, "write", error);
+        return report_failure(out, "write", error);
     if ((size_t)n < out->bytes)
         return glint_error_report(error, GLINT_E_DEVICE, out->name,
                                   "accepted %zu of %zu bytes of a frame",
@@ -256,19 +259,19 @@ enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
                                   "V4L2 has no such format");
     out->fd = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC);
     if (out->fd < 0)
-        status = failed(out, "open", error);
+        status = report_failure(out, "open", error);
     if (!status)
         status = check_node(out, error);
     if (!status)
         status = set_format(out, fourcc, &format, error);
     if (!status)
-        status = lay_out(out, format.fmt.pix.bytesperline,
-                         format.fmt.pix.sizeimage, error);
+        status = set_layout(out, format.fmt.pix.bytesperline,
+                            format.fmt.pix.sizeimage, error);
     if (status) {
         close_sink(&out->sink);
         return status;
     }
     set_rate(out, fps_num, fps_den);
-    claim(out);
+    start_streaming(out);
     return GLINT_OK;
 }

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * linux/v4l2_sink.h - a V4L2 output node as a sink: with v4l2loopback the way
- * into programs that want a camera.
+ * linux/v4l2_sink.h - a V4L2 output node as a sink: with v4l2loopback, glint's
+ * frames appear as a camera to other programs.
  *
  *     glint_v4l2_sink_open(&out, "/dev/video9", &like, 30, 1, &error);
  *     out.sink.put(&out.sink, &image, &error);        each frame
  *     out.sink.close(&out.sink);
  *
- * Frames are given by write(), in the format, size and colours of LIKE, with
- * the row length that the driver answers. A frame that the driver has no room
- * for is dropped and counted. Multi-planar nodes, and those that only stream,
- * are refused.
+ * Frames are sent by write(2), in the format, size and colours of LIKE, with
+ * the row stride that the driver answers. A frame for which the driver has no
+ * free buffer is dropped and counted. Multi-planar nodes, and nodes that only
+ * support streaming, are rejected.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_SINK_H
 #define GLINT_PLATFORM_LINUX_V4L2_SINK_H
@@ -20,14 +20,15 @@
 struct glint_v4l2_sink {
     struct glint_sink sink;
     char card[33];  /* name that the device gives itself */
-    long n_frames;  /* frames that the device accepted */
-    long n_dropped; /* frames that the device did not accept */
+    long n_frames;  /* frames that the device accepted so far */
+    long n_dropped; /* frames that the device did not accept so far */
 
     /* Private. */
-    const char *name;         /* not owned */
-    int fd;                   /* -1: closed */
-    struct glint_image frame; /* picture in the device's format */
-    uint8_t *mem;             /* memory of the frame */
+    const char *name; /* path of the device; not owned */
+    int fd;           /* -1: closed */
+    /* frame in the device's format and layout, in mem */
+    struct glint_image frame;
+    uint8_t *mem; /* memory of the frame */
     size_t bytes;
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Loops here are plain so that compilers turn them into vectors: bytes in,
- * products of 16 bits summed in 32, bytes out.
+ * The loops are simple so that compilers vectorise them: bytes in, products of
+ * 16 bits summed in 32 bits, bytes out.
  */
 #include "panel/panel.h"
 
@@ -100,7 +100,7 @@ struct bias {
     int32_t red, green, blue, grey;
 };
 
-static struct bias bias_of(const struct mix *m)
+static struct bias compute_bias(const struct mix *m)
 {
     const int32_t grey = HALF_Q13 - m->black * m->luma_q13;
 
@@ -115,7 +115,7 @@ static struct bias bias_of(const struct mix *m)
 /* Returns SUM as a code, clamped to 0 .. 255. |SUM| must be below 2^23, so that
  * the code fits 16 bits before it is clamped: twice as many fit a vector as
  * with 32 bits. */
-static inline uint8_t code_of(int32_t sum_q13)
+static inline uint8_t convert_to_code(int32_t sum_q13)
 {
     const int16_t code = (int16_t)(sum_q13 >> 13);
 
@@ -131,14 +131,14 @@ static void mix_pixels(const struct mix *m, uint8_t *restrict r,
     const int16_t ky = m->luma_q13, r_cr = m->red_cr_q13,
                   g_cb = m->green_cb_q13, g_cr = m->green_cr_q13,
                   b_cb = m->blue_cb_q13;
-    const struct bias bias = bias_of(m);
+    const struct bias bias = compute_bias(m);
 
     for (int i = 0; i < n; i++) {
         const int32_t y = luma[i] * ky;
 
-        r[i] = code_of(y + cr[i] * r_cr + bias.red);
-        g[i] = code_of(y + cb[i] * g_cb + cr[i] * g_cr + bias.green);
-        b[i] = code_of(y + cb[i] * b_cb + bias.blue);
+        r[i] = convert_to_code(y + cr[i] * r_cr + bias.red);
+        g[i] = convert_to_code(y + cb[i] * g_cb + cr[i] * g_cr + bias.green);
+        b[i] = convert_to_code(y + cb[i] * b_cb + bias.blue);
     }
 }
 
@@ -151,7 +151,7 @@ static void mix_pairs(const struct mix *m, uint8_t *restrict r,
     const int16_t ky = m->luma_q13, r_cr = m->red_cr_q13,
                   g_cb = m->green_cb_q13, g_cr = m->green_cr_q13,
                   b_cb = m->blue_cb_q13;
-    const struct bias bias = bias_of(m);
+    const struct bias bias = compute_bias(m);
 
     for (int i = 0; i < n; i++) {
         const int32_t y0 = luma[2 * i] * ky, y1 = luma[2 * i + 1] * ky;
@@ -159,12 +159,12 @@ static void mix_pairs(const struct mix *m, uint8_t *restrict r,
         const int32_t to_g = cb[i] * g_cb + cr[i] * g_cr + bias.green;
         const int32_t to_b = cb[i] * b_cb + bias.blue;
 
-        r[2 * i] = code_of(y0 + to_r);
-        r[2 * i + 1] = code_of(y1 + to_r);
-        g[2 * i] = code_of(y0 + to_g);
-        g[2 * i + 1] = code_of(y1 + to_g);
-        b[2 * i] = code_of(y0 + to_b);
-        b[2 * i + 1] = code_of(y1 + to_b);
+        r[2 * i] = convert_to_code(y0 + to_r);
+        r[2 * i + 1] = convert_to_code(y1 + to_r);
+        g[2 * i] = convert_to_code(y0 + to_g);
+        g[2 * i + 1] = convert_to_code(y1 + to_g);
+        b[2 * i] = convert_to_code(y0 + to_b);
+        b[2 * i + 1] = convert_to_code(y1 + to_b);
     }
 }
 
@@ -172,10 +172,10 @@ static void mix_greys(const struct mix *m, uint8_t *restrict grey,
                       const uint8_t *restrict luma, int n)
 {
     const int16_t ky = m->luma_q13;
-    const int32_t bias = bias_of(m).grey;
+    const int32_t bias = compute_bias(m).grey;
 
     for (int i = 0; i < n; i++)
-        grey[i] = code_of(luma[i] * ky + bias);
+        grey[i] = convert_to_code(luma[i] * ky + bias);
 }
 
 /* -------------------------------------------------------------------- rows */
@@ -184,7 +184,7 @@ struct ycc {
     const uint8_t *luma, *cb, *cr;
 };
 
-static const uint8_t *row_at(const struct glint_image *image, int plane, int y)
+static const uint8_t *get_row(const struct glint_image *image, int plane, int y)
 {
     return image->plane[plane] + y * image->stride_bytes[plane];
 }
@@ -205,17 +205,18 @@ static struct ycc find_samples(struct glint_row_rgb *row,
     case GLINT_YUYV:
     case GLINT_UYVY:
         glint_split_packed(image->format, row->luma, row->cb, row->cr,
-                           row_at(image, 0, y) + 2 * x, half);
+                           get_row(image, 0, y) + 2 * x, half);
         return moved;
     case GLINT_NV12:
-        glint_split_pairs(row->cb, row->cr, row_at(image, 1, cy) + x, half);
-        return (struct ycc){row_at(image, 0, y) + x, row->cb, row->cr};
+        glint_split_pairs(row->cb, row->cr, get_row(image, 1, cy) + x, half);
+        return (struct ycc){get_row(image, 0, y) + x, row->cb, row->cr};
     case GLINT_NV21:
-        glint_split_pairs(row->cr, row->cb, row_at(image, 1, cy) + x, half);
-        return (struct ycc){row_at(image, 0, y) + x, row->cb, row->cr};
+        glint_split_pairs(row->cr, row->cb, get_row(image, 1, cy) + x, half);
+        return (struct ycc){get_row(image, 0, y) + x, row->cb, row->cr};
     default:
-        return (struct ycc){row_at(image, 0, y) + x, row_at(image, 1, cy) + cx,
-                            row_at(image, 2, cy) + cx};
+        return (struct ycc){get_row(image, 0, y) + x,
+                            get_row(image, 1, cy) + cx,
+                            get_row(image, 2, cy) + cx};
     }
 }
 
@@ -242,7 +243,7 @@ void glint_row_rgb_read(struct glint_row_rgb *row,
                         const struct glint_image *image, int x, int y, int n)
 {
     uint8_t *const *const c = row->rgb;
-    const uint8_t *const from = row_at(image, 0, y);
+    const uint8_t *const from = get_row(image, 0, y);
 
     for (int i = 0; i < 3; i++)
         row->channel[i] = c[i];
@@ -280,8 +281,8 @@ size_t glint_row_rgb_bytes(int width)
 
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 {
-    const ptrdiff_t each = (ptrdiff_t)width + 1; /* an even number of samples
-                                                    fits */
+    /* holds an even number of samples */
+    const ptrdiff_t each = (ptrdiff_t)width + 1;
     uint8_t *const at = mem;
 
     for (int i = 0; i < 3; i++)
@@ -295,7 +296,7 @@ void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 
 /* Returns the mask of FIELD in a word of N_BITS, or 0 if FIELD does not fit
  * into the word. */
-static uint64_t bits_of(const struct glint_pixel_field *field, int n_bits)
+static uint64_t compute_mask(const struct glint_pixel_field *field, int n_bits)
 {
     if (field->length < 1 || field->offset < 0 || field->length > 16 ||
         field->offset > n_bits - field->length)
@@ -312,7 +313,7 @@ bool glint_pixel_layout_is_valid(const struct glint_pixel_layout *layout)
     if (layout->bytes < 2 || layout->bytes > 4)
         return false;
     for (int i = 0; i < 4; i++) {
-        const uint64_t bits = bits_of(field[i], 8 * layout->bytes);
+        const uint64_t bits = compute_mask(field[i], 8 * layout->bytes);
 
         if (i == 3 && field[i]->length == 0)
             continue;
@@ -328,7 +329,7 @@ static bool is_whole_byte(const struct glint_pixel_field *field)
     return field->length == 8 && field->offset % 8 == 0;
 }
 
-static enum glint_pack_way way_of(const struct glint_pixel_layout *l)
+static enum glint_pack_way choose_way(const struct glint_pixel_layout *l)
 {
     if (l->bytes > 2 && is_whole_byte(&l->red) && is_whole_byte(&l->green) &&
         is_whole_byte(&l->blue))
@@ -386,15 +387,16 @@ static void pack_bytes(const struct glint_row_pack *p, uint8_t *dst,
 }
 
 /* Returns (CODE * MOST + THRESHOLD) / 255 without a division: exact for sums
- * below 65535; the largest sum is 255 * 255 + 254. */
-static inline uint16_t fewer(uint8_t code, uint16_t most, uint8_t threshold)
+ * below 65535; the max sum is 255 * 255 + 254. */
+static inline uint16_t scale_code(uint8_t code, uint16_t most,
+                                  uint8_t threshold)
 {
     const uint16_t sum = (uint16_t)(code * most + threshold);
 
     return (uint16_t)((uint16_t)(sum + 1 + (sum >> 8)) >> 8);
 }
 
-static inline uint16_t shifted(uint16_t bits, int offset)
+static inline uint16_t shift_bits(uint16_t bits, int offset)
 {
     return (uint16_t)(bits << offset);
 }
@@ -412,10 +414,11 @@ static void pack_halves(const struct glint_row_pack *p, uint16_t *restrict dst,
     const uint16_t opaque = (uint16_t)p->opaque;
 
     for (int i = 0; i < n; i++)
-        dst[i] = (uint16_t)(opaque |
-                            shifted(fewer(r[i], max_r, threshold[i]), to_r) |
-                            shifted(fewer(g[i], max_g, threshold[i]), to_g) |
-                            shifted(fewer(b[i], max_b, threshold[i]), to_b));
+        dst[i] =
+            (uint16_t)(opaque |
+                       shift_bits(scale_code(r[i], max_r, threshold[i]), to_r) |
+                       shift_bits(scale_code(g[i], max_g, threshold[i]), to_g) |
+                       shift_bits(scale_code(b[i], max_b, threshold[i]), to_b));
 }
 
 static void pack_tables(const struct glint_row_pack *p, uint8_t *dst,
@@ -476,7 +479,7 @@ static void place_bytes(struct glint_row_pack *p, uint8_t *mem, int width)
 
 /* Returns the threshold of pixel X, Y (0 .. 7): (2 i + 1) * 255 / 128 for an i
  * of 0 .. 63; the mean over all pixels is 127. */
-static int threshold_of(int x, int y)
+static int compute_threshold(int x, int y)
 {
     int bits = 0;
 
@@ -491,7 +494,7 @@ static void place_thresholds(struct glint_row_pack *p, uint8_t *mem, int width)
         p->threshold[y] = mem + (ptrdiff_t)y * width;
         for (int x = 0; x < width; x++)
             p->threshold[y][x] =
-                (uint8_t)(p->dither ? threshold_of(x & 7, y) : 127);
+                (uint8_t)(p->dither ? compute_threshold(x & 7, y) : 127);
     }
 }
 
@@ -524,9 +527,10 @@ void glint_row_pack_init(struct glint_row_pack *pack,
 {
     *pack = (struct glint_row_pack){
         .layout = *layout,
-        .way = way_of(layout),
+        .way = choose_way(layout),
         .dither = dither,
-        .opaque = (uint32_t)bits_of(&layout->transparency, 8 * layout->bytes),
+        .opaque =
+            (uint32_t)compute_mask(&layout->transparency, 8 * layout->bytes),
     };
     switch (pack->way) {
     case GLINT_PACK_BYTES:
@@ -543,13 +547,13 @@ void glint_row_pack_init(struct glint_row_pack *pack,
 
 /* ----------------------------------------------------------------- geometry */
 
-static int at_least_1(int side)
+static int clamp_to_1(int side)
 {
     return side < 1 ? 1 : side;
 }
 
 /* Shows all of the picture, scaled to fit the panel at its aspect ratio. */
-static void fit(struct glint_panel *p)
+static void fit_picture(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
 
@@ -558,15 +562,15 @@ static void fit(struct glint_panel *p)
     p->shown.height = c->height;
     if (c->width * c->image_height > c->height * c->image_width)
         p->shown.width =
-            at_least_1((c->height * c->image_width + c->image_height / 2) /
+            clamp_to_1((c->height * c->image_width + c->image_height / 2) /
                        c->image_height);
     else
-        p->shown.height = at_least_1(
+        p->shown.height = clamp_to_1(
             (c->width * c->image_height + c->image_width / 2) / c->image_width);
 }
 
 /* Shows the middle of the picture, unscaled. */
-static void centre(struct glint_panel *p)
+static void centre_picture(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
     const int width = c->image_width < c->width ? c->image_width : c->width;
@@ -580,19 +584,19 @@ static void centre(struct glint_panel *p)
     p->shown.height = height;
 }
 
-static void place(struct glint_panel *p)
+static void place_picture(struct glint_panel *p)
 {
     if (p->cfg.fit == GLINT_PANEL_FIT)
-        fit(p);
+        fit_picture(p);
     else
-        centre(p);
+        centre_picture(p);
     p->shown.x = (p->cfg.width - p->shown.width) / 2;
     p->shown.y = (p->cfg.height - p->shown.height) / 2;
 }
 
-/* Returns which of FROM pixels has its centre nearest to the centre of pixel I
- * when TO pixels span the same length. */
-static int nearest(int i, int from, int to)
+/* Returns the index, among FROM pixels, of the pixel whose centre is nearest
+ * to the centre of pixel I of TO pixels that span the same length. */
+static int find_nearest(int i, int from, int to)
 {
     return (2 * i + 1) * from / (2 * to);
 }
@@ -606,8 +610,8 @@ static size_t round_up(size_t bytes)
     return (bytes + 63) & ~(size_t)63;
 }
 
-static enum glint_status take_memory(struct glint_panel *p,
-                                     struct glint_error *error)
+static enum glint_status allocate_memory(struct glint_panel *p,
+                                         struct glint_error *error)
 {
     const int widest =
         p->cfg.width > p->cfg.image_width ? p->cfg.width : p->cfg.image_width;
@@ -651,13 +655,13 @@ enum glint_status glint_panel_open(struct glint_panel *panel,
         return glint_error_report(error, GLINT_E_UNSUPPORTED, "panel",
                                   "its pixels are not packed true colour of "
                                   "16, 24 or 32 bits");
-    place(panel);
-    status = take_memory(panel, error);
+    place_picture(panel);
+    status = allocate_memory(panel, error);
     if (status)
         return status;
     for (int x = 0; x < panel->shown.width; x++)
         panel->from_x[x] =
-            (uint16_t)nearest(x, panel->seen.width, panel->shown.width);
+            (uint16_t)find_nearest(x, panel->seen.width, panel->shown.width);
     if (panel->shown.width == panel->seen.width)
         panel->from_x = NULL;
     return GLINT_OK;
@@ -745,7 +749,7 @@ void glint_panel_draw(struct glint_panel *panel,
 
     for (int y = 0; y < to->height; y++) {
         const int from_y =
-            panel->seen.y + nearest(y, panel->seen.height, to->height);
+            panel->seen.y + find_nearest(y, panel->seen.height, to->height);
 
         if (!row || from_y != made || panel->pack.dither)
             row = make_row(panel, image, from_y, y);

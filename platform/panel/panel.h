@@ -2,7 +2,7 @@
  *
  * panel/panel.h - pictures for a panel of packed true-colour pixels.
  *
- *     glint_panel_open(&panel, &cfg, &error);         takes all memory
+ *     glint_panel_open(&panel, &cfg, &error);         allocates memory
  *     glint_panel_clear(&panel, mem, stride);         once: black everywhere
  *     glint_panel_draw(&panel, &image, mem, stride);  each frame
  *     glint_panel_close(&panel);
@@ -49,7 +49,7 @@ struct glint_row_rgb {
     uint8_t *rgb[3], *luma, *cb, *cr; /* rows in the caller's memory */
 };
 
-/* Bits of a pixel's word that hold a channel; length 0: there is no such
+/* Position of a channel in a pixel's word, bits; length 0: there is no such
  * channel. */
 struct glint_pixel_field {
     int offset, length;
@@ -74,7 +74,8 @@ struct glint_row_pack {
                        colour */
     uint8_t *threshold[8]; /* HALVES: thresholds of a row of pixels, for each
                               row modulo 8 */
-    uint32_t *table[3];    /* TABLES: word with the bits of a colour, by code */
+    uint32_t *table[3]; /* TABLES: bits of the pixel's word for each code of a
+                           colour */
     uint32_t opaque;
 };
 

@@ -44,7 +44,7 @@ enum glint_pixel_format glint_planar_format(enum glint_pixel_format format)
     }
 }
 
-static uint8_t *row_at(const struct glint_image *image, int plane, int y)
+static uint8_t *get_row(const struct glint_image *image, int plane, int y)
 {
     return image->plane[plane] + y * image->stride_bytes[plane];
 }
@@ -56,7 +56,7 @@ static void copy_plane(const struct glint_image *to,
     const int rows = glint_image_plane_height(to->format, plane, to->height);
 
     for (int y = 0; y < rows; y++)
-        memcpy(row_at(to, plane, y), row_at(from, plane, y), bytes);
+        memcpy(get_row(to, plane, y), get_row(from, plane, y), bytes);
 }
 
 /* Splits row Y of FROM, YUYV or UYVY, into the planes of TO. If the width is
@@ -66,11 +66,11 @@ static void split_row(const struct glint_image *to,
                       int y)
 {
     const int half = (from->width + 1) / 2;
-    uint8_t *const cb = row_at(to, 1, y), *const cr = row_at(to, 2, y);
+    uint8_t *const cb = get_row(to, 1, y), *const cr = get_row(to, 2, y);
 
-    glint_split_packed(from->format, row->luma, cb, cr, row_at(from, 0, y),
+    glint_split_packed(from->format, row->luma, cb, cr, get_row(from, 0, y),
                        half);
-    memcpy(row_at(to, 0, y), row->luma, (size_t)from->width);
+    memcpy(get_row(to, 0, y), row->luma, (size_t)from->width);
 }
 
 static void split_chroma(const struct glint_image *to,
@@ -79,16 +79,16 @@ static void split_chroma(const struct glint_image *to,
     const int cb = from->format == GLINT_NV12 ? 1 : 2;
 
     for (int y = 0; y < (from->height + 1) / 2; y++)
-        glint_split_pairs(row_at(to, cb, y), row_at(to, 3 - cb, y),
-                          row_at(from, 1, y), (from->width + 1) / 2);
+        glint_split_pairs(get_row(to, cb, y), get_row(to, 3 - cb, y),
+                          get_row(from, 1, y), (from->width + 1) / 2);
 }
 
 /* --------------------------------------------------------------- from RGB */
 
 enum { ONE_Q16 = 1 << 16, HALF_Q16 = 1 << 15 };
 
-/* by_q16: matrix from R', G', B' (columns) to Y', Cb, Cr (rows); zero_q16: code
- * of zero plus a half for rounding. */
+/* Matrix by_q16 from R', G', B' (columns) to Y', Cb, Cr (rows); zero_q16:
+ * code of zero of each row, plus a half for rounding. */
 struct mix {
     int32_t by_q16[3][3], zero_q16[3];
 };
@@ -115,8 +115,8 @@ static const struct mix mixes[2][2] = {
 /* clang-format on */
 
 /* Returns SUM as a code, clamped to 255: chroma of pure red and blue in full
- * range is half a code above it. */
-static uint8_t code_of(int32_t sum_q16)
+ * range exceeds 255 by half a code. */
+static uint8_t convert_to_code(int32_t sum_q16)
 {
     return (uint8_t)(sum_q16 >= 256 * ONE_Q16 ? 255 : sum_q16 >> 16);
 }
@@ -128,8 +128,8 @@ static void mix_row(const struct mix *m, uint8_t *restrict to, int i,
                   zero = m->zero_q16[i];
 
     for (int x = 0; x < n; x++)
-        to[x] = code_of(channel[0][x] * r + channel[1][x] * g +
-                        channel[2][x] * b + zero);
+        to[x] = convert_to_code(channel[0][x] * r + channel[1][x] * g +
+                                channel[2][x] * b + zero);
 }
 
 /* ---------------------------------------------------------------- pictures */
@@ -160,17 +160,17 @@ void glint_planar_write(const struct glint_image *to,
         for (int y = 0; y < from->height; y++) {
             glint_row_rgb_read(row, from, 0, y, from->width);
             for (int i = 0; i < 3; i++)
-                mix_row(&mixes[to->matrix][to->range], row_at(to, i, y), i,
+                mix_row(&mixes[to->matrix][to->range], get_row(to, i, y), i,
                         row->channel, from->width);
         }
     }
 }
 
 /* Prepares the frame to write: allocates planes if Y4M does not support the
- * images' format. */
-static enum glint_status take_planes(struct glint_y4m_sink *y,
-                                     const struct glint_y4m_header *header,
-                                     struct glint_error *error)
+ * format of the images. */
+static enum glint_status prepare_planes(struct glint_y4m_sink *y,
+                                        const struct glint_y4m_header *header,
+                                        struct glint_error *error)
 {
     const size_t bytes =
         glint_image_bytes(header->format, header->width, header->height);
@@ -205,7 +205,7 @@ static enum glint_status begin(struct glint_y4m_sink *y,
     if (!glint_image_is_rgb(image->format))
         header.range = image->range;
     header.range_stated = true;
-    status = take_planes(y, &header, error);
+    status = prepare_planes(y, &header, error);
     if (!status)
         status = glint_y4m_writer_open(&y->writer, y->path, &header, error);
     if (status) {

@@ -30,10 +30,11 @@ static void run_all(void)
     }
 }
 
-static int (*library_report)(void); /* reports an abort in a library, or NULL;
-                                       atomic */
+/* function that reports an abort in a library, or NULL; atomic */
+static int (*library_report)(void);
 
-/* If a library has ended the process, reports that and returns true. */
+/* Returns true, after printing a message, if a library has ended the
+ * process. */
 static bool report_library(void)
 {
     int (*const report)(void) =
@@ -42,7 +43,7 @@ static bool report_library(void)
     return report && report();
 }
 
-static void at_exit(void)
+static void run_at_exit(void)
 {
     run_all();
     report_library();
@@ -52,7 +53,7 @@ static void at_exit(void)
  * exits with 1 after an abort in a library. SA_RESETHAND has restored the
  * default action, so the second signal, delivered on return, kills the process
  * with the status that its parent expects. */
-static void die(int signal_number)
+static void handle_signal(int signal_number)
 {
     run_all();
     if (signal_number == SIGABRT && report_library())
@@ -69,12 +70,12 @@ static void install_signal_handlers(void)
     for (size_t i = 0; i < sizeof broken / sizeof *broken; i++)
         if (!sigaction(broken[i], NULL, &old) && old.sa_handler == SIG_DFL)
             sigaction(broken[i], &act, NULL);
-    act.sa_handler = die;
+    act.sa_handler = handle_signal;
     act.sa_flags = (int)SA_RESETHAND;
     for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
         if (!sigaction(deadly[i], NULL, &old) && old.sa_handler == SIG_DFL)
             sigaction(deadly[i], &act, NULL);
-    atexit(at_exit);
+    atexit(run_at_exit);
 }
 
 static void install_signal_handlers_once(void)

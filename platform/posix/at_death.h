@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/at_death.h - functions that clean up, whatever ends the process.
+ * posix/at_death.h - clean-up functions that run when the process exits or is
+ * killed by a signal.
  *
  *     glint_at_death(remove_files);       once
  *

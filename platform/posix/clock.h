@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/clock.h - the clock of frames' time stamps.
+ * posix/clock.h - the clock of the time stamps of frames.
  */
 #ifndef GLINT_PLATFORM_POSIX_CLOCK_H
 #define GLINT_PLATFORM_POSIX_CLOCK_H
 
 #include <stdint.h>
 
-/* Returns CLOCK_MONOTONIC in us. It does not jump, and drivers use it for
- * frames' time stamps. */
+/* Returns the time of CLOCK_MONOTONIC, us. That clock never jumps, and
+ * drivers use it for the time stamps of frames. */
 int64_t glint_now_us(void);
 
 #endif

@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Returns the length of a UTF-8 character by its FIRST byte, or 0 if no
- * printable character begins with it. */
-static size_t stated_length(unsigned char first)
+/* Returns the length in bytes of a UTF-8 character by its FIRST byte, or 0
+ * if no printable character begins with FIRST. */
+static size_t decode_length(unsigned char first)
 {
     if (first < 0x80)
         return first >= ' ' && first != 0x7f;
@@ -23,14 +23,15 @@ size_t glint_utf8_length(const char *text)
 {
     static const uint32_t smallest[] = {0, 0, 0xa0, 0x800, 0x10000};
     const unsigned char *const byte = (const unsigned char *)text;
-    const size_t length = stated_length(byte[0]);
+    const size_t length = decode_length(byte[0]);
     uint32_t code;
 
     if (length < 2)
         return length;
     code = byte[0] & (0x7fu >> length);
     for (size_t i = 1; i < length; i++) {
-        if ((byte[i] & 0xc0) != 0x80) /* true also at the end of TEXT */
+        /* Also true for the zero byte at the end of TEXT. */
+        if ((byte[i] & 0xc0) != 0x80)
             return 0;
         code = code << 6 | (byte[i] & 0x3fu);
     }

@@ -14,8 +14,9 @@
 /* bytes to allocate at first if the size is unknown */
 #define FIRST_BYTES 65536
 
-static enum glint_status open_by(struct glint_input *in, const char *path,
-                                 int flags, struct glint_error *error)
+static enum glint_status open_with_flags(struct glint_input *in,
+                                         const char *path, int flags,
+                                         struct glint_error *error)
 {
     const int is_stdin = !strcmp(path, "-");
 
@@ -37,12 +38,12 @@ static enum glint_status open_by(struct glint_input *in, const char *path,
 enum glint_status glint_input_open(struct glint_input *in, const char *path,
                                    struct glint_error *error)
 {
-    return open_by(in, path, 0, error);
+    return open_with_flags(in, path, 0, error);
 }
 
-/* Returns why PATH, of status ST, is not accepted as a file, or NULL if it
- * is. */
-static const char *not_a_file(const char *path, const struct stat *st)
+/* Returns the reason why PATH, of status ST, is not accepted as a file, or
+ * NULL if it is accepted. */
+static const char *explain_rejection(const char *path, const struct stat *st)
 {
     struct stat null;
 
@@ -66,12 +67,13 @@ enum glint_status glint_input_open_file(struct glint_input *in,
 {
     struct stat st;
     const char *cause;
-    /* so that opening a FIFO does not wait for a writer */
-    enum glint_status status = open_by(in, path, O_NONBLOCK, error);
+    /* O_NONBLOCK: opening a FIFO does not wait for a writer. */
+    enum glint_status status = open_with_flags(in, path, O_NONBLOCK, error);
 
     if (status != GLINT_OK || !strcmp(path, "-"))
         return status;
-    cause = fstat(in->fd, &st) < 0 ? strerror(errno) : not_a_file(path, &st);
+    cause =
+        fstat(in->fd, &st) < 0 ? strerror(errno) : explain_rejection(path, &st);
     if (!cause)
         return GLINT_OK;
     glint_input_close(in);

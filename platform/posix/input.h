@@ -52,9 +52,9 @@ enum glint_status glint_input_append(struct glint_input *in, uint8_t **data,
 /* Closes IN, unless it is closed already. */
 void glint_input_close(struct glint_input *in);
 
-/* Reads all of PATH, as glint_input_open_file() opens it, into a malloc'ed
- * block, which the caller frees; *DATA is not NULL even for an empty file.
- * Returns the errors of the functions above. */
+/* Reads all of PATH, opened as by glint_input_open_file(), into a block that
+ * the caller frees; *DATA is not NULL even for an empty file. Returns the
+ * errors of glint_input_open_file() and glint_input_append(). */
 enum glint_status glint_input_slurp(uint8_t **data, size_t *bytes,
                                     const char *path, size_t max,
                                     struct glint_error *error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE /* realpath, flock, fopencookie */
+#define _GNU_SOURCE /* for realpath, flock, fopencookie */
 #include "posix/output.h"
 
 #include <dirent.h>
@@ -47,9 +47,9 @@ static void set_folder(char *folder, const char *path)
 }
 
 /* Returns whether the kernel would follow the symbolic link at PATH, whose
- * status is LINK. In a folder that everybody may write to, the kernel follows
- * only links of the user and of the folder's owner, but it reports that only if
- * the link leads to an existing file. */
+ * status is LINK. In a folder that everybody may write to, the kernel
+ * follows only links of the user and of the folder's owner, but reports a
+ * refusal only if the link leads to an existing file. */
 static bool may_follow(const char *path, const struct stat *link)
 {
     char folder[PATH_BYTES];
@@ -80,9 +80,9 @@ static bool follow_link(char *path)
     return true;
 }
 
-/* Follows the dangling links at PATH. Returns the malloc'ed path of the missing
- * file, or NULL with errno set. */
-static char *new_target(const char *path)
+/* Follows the dangling links at PATH. Returns the path of the missing file,
+ * which the caller frees, or NULL with errno set. */
+static char *find_new_target(const char *path)
 {
     char at[PATH_BYTES];
     struct stat st;
@@ -106,18 +106,18 @@ static char *new_target(const char *path)
     return NULL;
 }
 
-/* Returns the malloc'ed path of the file that PATH leads to after all links. ST
- * is the status of PATH, or NULL if there is no file yet, as at the end of a
- * dangling link. On failure returns NULL with errno set: EACCES for a dangling
- * link that the kernel would not follow, ESTALE if PATH now leads to another
- * file than ST, or a system error. */
-static char *target_of(const char *path, const struct stat *st)
+/* Returns the path of the file that PATH leads to after all links; the
+ * caller frees it. ST is the status of PATH, or NULL if there is no file
+ * yet, as at the end of a dangling link. On failure returns NULL with errno
+ * set: EACCES for a dangling link that the kernel would not follow, ESTALE
+ * if PATH now leads to another file than ST, or a system error. */
+static char *resolve_target(const char *path, const struct stat *st)
 {
     struct stat now;
     char *target;
 
     if (!st)
-        return new_target(path);
+        return find_new_target(path);
     target = realpath(path, NULL);
     if (!target)
         return NULL;
@@ -163,9 +163,9 @@ bool glint_target_is_same(const char *a, const char *b)
 
 /* ---------------------------------------------------------- temporary names */
 
-/* Returns the temporary name DIR/.glint-PID-N.EXT for the target DIR/NAME.EXT,
- * malloc'ed, or NULL if there is no memory. */
-static char *name_beside(const char *target, unsigned n)
+/* Returns the temporary name DIR/.glint-PID-N.EXT for the target
+ * DIR/NAME.EXT, which the caller frees, or NULL if memory is exhausted. */
+static char *make_temporary_name(const char *target, unsigned n)
 {
     const char *const base = target + folder_length(target);
     const char *ext = strrchr(base, '.');
@@ -180,9 +180,9 @@ static char *name_beside(const char *target, unsigned n)
     return name;
 }
 
-/* Returns the id of the process that made the temporary file NAME, or 0 if NAME
- * is not the name of a temporary file. */
-static pid_t maker_of(const char *name)
+/* Returns the id of the process that made the temporary file NAME, or 0 if
+ * NAME does not have the form of a temporary name. */
+static pid_t parse_maker(const char *name)
 {
     static const char begin[] = ".glint-";
     char *end;
@@ -208,9 +208,9 @@ static bool is_abandoned(int fd)
            st.st_uid == geteuid() && flock(fd, LOCK_EX | LOCK_NB) == 0;
 }
 
-static void clean_one(int folder, const char *name)
+static void remove_if_abandoned(int folder, const char *name)
 {
-    const pid_t pid = maker_of(name);
+    const pid_t pid = parse_maker(name);
     int fd;
 
     if (pid == 0 || kill(pid, 0) == 0 || errno != ESRCH)
@@ -245,23 +245,26 @@ static void clean_folder(const char *target)
         return;
     dir = opendir(folder);
     while (dir && (entry = readdir(dir)))
-        clean_one(dirfd(dir), entry->d_name);
+        remove_if_abandoned(dirfd(dir), entry->d_name);
     if (dir)
         closedir(dir);
     __atomic_store_n(&cleaned, here, __ATOMIC_RELAXED);
 }
 
 #define BUFFER_BYTES 65536
-#define MAX_TMP      16   /* max open temporary files */
-#define MAX_TRIES    1000 /* names to try, as some may exist already */
+#define MAX_TMP      16 /* max open temporary files */
+/* max names to try, as files of some names may exist */
+#define MAX_TRIES 1000
 
 /* ---------------------------------------------- files to remove when dying */
 
-static char *doomed[MAX_TMP]; /* names of temporary files, or NULL; atomic */
-static int dying;             /* atomic */
+/* names of temporary files, or NULL; atomic */
+static char *doomed[MAX_TMP];
+/* 1: the process dies, and remove_temporaries() may run; atomic */
+static int dying;
 
 /* Removes all temporary files when the process dies. Async-signal-safe. */
-static void remove_doomed(void)
+static void remove_temporaries(void)
 {
     const int saved = errno;
 
@@ -275,7 +278,7 @@ static void remove_doomed(void)
     errno = saved;
 }
 
-static bool doom(char *name)
+static bool register_temporary(char *name)
 {
     for (int i = 0; i < MAX_TMP; i++) {
         char *none = NULL;
@@ -287,9 +290,10 @@ static bool doom(char *name)
     return false;
 }
 
-/* Removes NAME from the list and frees it. If another thread is in
- * remove_doomed(), which may use NAME, DYING is set, and NAME is not freed. */
-static void spare(char *name)
+/* Removes NAME from the list of temporary files and frees it. If another
+ * thread is in remove_temporaries(), which may use NAME, DYING is set, and
+ * NAME is not freed. */
+static void unregister_temporary(char *name)
 {
     for (int i = 0; i < MAX_TMP; i++) {
         char *same = name;
@@ -303,17 +307,17 @@ static void spare(char *name)
 
 /* ----------------------------------------------------------------- opening */
 
-static enum glint_status refuse(const struct glint_output *out,
-                                struct glint_error *error, int number)
+static enum glint_status report_refusal(const struct glint_output *out,
+                                        struct glint_error *error, int number)
 {
     return glint_error_report(error, GLINT_E_OUTPUT, out->name, "%s",
                               strerror(number));
 }
 
-/* Creates the file NAME and adds it to the list. Signals are blocked meanwhile,
- * as a signal between the two steps would leave the file behind. Returns its
- * descriptor, or -1 with errno set. */
-static int create_doomed(char *name, mode_t mode)
+/* Creates the file NAME and adds it to the list of temporary files. Blocks
+ * signals meanwhile, as a signal between the two steps would leave the file
+ * behind. Returns the file's descriptor, or -1 with errno set. */
+static int create_temporary(char *name, mode_t mode)
 {
     sigset_t held, old;
     int fd, saved;
@@ -322,7 +326,7 @@ static int create_doomed(char *name, mode_t mode)
     pthread_sigmask(SIG_BLOCK, &held, &old);
     fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     saved = errno;
-    if (fd >= 0 && !doom(name)) {
+    if (fd >= 0 && !register_temporary(name)) {
         close(fd);
         unlink(name);
         fd = -1;
@@ -335,21 +339,21 @@ static int create_doomed(char *name, mode_t mode)
 
 /* Opens a temporary file in the folder of out->target. MODE: its permission
  * bits, or (mode_t)-1 for the default by umask. */
-static enum glint_status open_beside(struct glint_output *out, mode_t mode,
-                                     struct glint_error *error)
+static enum glint_status open_temporary(struct glint_output *out, mode_t mode,
+                                        struct glint_error *error)
 {
-    static unsigned counter; /* atomic */
+    static unsigned counter; /* number for the next temporary name; atomic */
     const bool keep = mode != (mode_t)-1;
     int number = 0;
 
     clean_folder(out->target);
     for (int i = 0; i < MAX_TRIES; i++) {
-        out->tmp = name_beside(
+        out->tmp = make_temporary_name(
             out->target, __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED));
         if (!out->tmp)
             return glint_error_report(error, GLINT_E_MEMORY, out->name,
                                       "no memory for a file name");
-        out->fd = create_doomed(out->tmp, keep ? 0600 : 0666);
+        out->fd = create_temporary(out->tmp, keep ? 0600 : 0666);
         if (out->fd >= 0)
             break;
         number = errno;
@@ -366,14 +370,14 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
     /* The lock shows clean_folder() that the file is in use. */
     flock(out->fd, LOCK_EX | LOCK_NB);
     if (keep && fchmod(out->fd, mode) < 0)
-        return refuse(out, error, errno);
+        return report_refusal(out, error, errno);
     return GLINT_OK;
 }
 
-/* Resolves OUT's name. If the file exists, sets ST to its status, else IS_THERE
- * to false. Sets OUT's target unless the file is not regular. Tries again if
- * another process replaces the file meanwhile, as shards that end together do.
- * Returns 0 or an errno. */
+/* Resolves OUT's name and sets OUT's target, unless the file exists and is
+ * not regular. Sets ST to the status of an existing file, else IS_THERE to
+ * false. Tries again if another process replaces the file meanwhile, as jobs
+ * that finish together may do. Returns 0 or an errno. */
 static int find_target(struct glint_output *out, struct stat *st,
                        bool *is_there)
 {
@@ -385,7 +389,7 @@ static int find_target(struct glint_output *out, struct stat *st,
             return 0;
         if (*is_there && access(out->name, W_OK) < 0)
             return errno;
-        out->target = target_of(out->name, *is_there ? st : NULL);
+        out->target = resolve_target(out->name, *is_there ? st : NULL);
         if (out->target)
             return 0;
         if (errno != ESTALE)
@@ -394,7 +398,7 @@ static int find_target(struct glint_output *out, struct stat *st,
     return ESTALE;
 }
 
-static enum glint_status open_straight(struct glint_output *out, bool is_stdout,
+static enum glint_status open_directly(struct glint_output *out, bool is_stdout,
                                        enum glint_output_kind kind,
                                        struct glint_error *error)
 {
@@ -403,7 +407,7 @@ static enum glint_status open_straight(struct glint_output *out, bool is_stdout,
     else
         out->fd = open(out->name, O_WRONLY | O_CLOEXEC | O_NOCTTY);
     if (out->fd < 0)
-        return refuse(out, error, errno);
+        return report_refusal(out, error, errno);
     if (kind == GLINT_OUTPUT_BINARY && isatty(out->fd))
         return glint_error_report(error, GLINT_E_OUTPUT, out->name,
                                   "is a terminal; redirect it or name a file");
@@ -420,7 +424,7 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
     struct stat st;
     int number;
 
-    glint_at_death(remove_doomed);
+    glint_at_death(remove_temporaries);
     *out = (struct glint_output){.fd = -1,
                                  .name = is_stdout ? "standard output" : path};
     out->buffer = malloc(BUFFER_BYTES);
@@ -428,14 +432,14 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
         status = glint_error_report(error, GLINT_E_MEMORY, out->name,
                                     "no memory for a buffer");
     else if (is_stdout)
-        status = open_straight(out, true, kind, error);
+        status = open_directly(out, true, kind, error);
     else if ((number = find_target(out, &st, &is_there)) != 0)
-        status = refuse(out, error, number);
+        status = report_refusal(out, error, number);
     else if (!out->target)
-        status = open_straight(out, false, kind, error);
+        status = open_directly(out, false, kind, error);
     else
-        status =
-            open_beside(out, is_there ? st.st_mode & 0777 : (mode_t)-1, error);
+        status = open_temporary(out, is_there ? st.st_mode & 0777 : (mode_t)-1,
+                                error);
     if (status)
         glint_output_abort(out);
     return status;
@@ -530,14 +534,14 @@ enum glint_status glint_output_commit(struct glint_output *out,
     enum glint_status status = glint_output_flush(out, error);
 
     if (!status && close(out->fd) < 0 && errno != EINTR)
-        status = refuse(out, error, errno);
+        status = report_refusal(out, error, errno);
     else if (status)
         close(out->fd);
     out->fd = -1;
     if (!status && out->tmp && rename(out->tmp, out->target) < 0)
-        status = refuse(out, error, errno);
+        status = report_refusal(out, error, errno);
     if (!status && out->tmp) {
-        spare(out->tmp);
+        unregister_temporary(out->tmp);
         out->tmp = NULL;
     }
     glint_output_abort(out);
@@ -551,7 +555,7 @@ void glint_output_abort(struct glint_output *out)
     out->fd = -1;
     if (out->tmp) {
         unlink(out->tmp);
-        spare(out->tmp);
+        unregister_temporary(out->tmp);
     }
     out->tmp = NULL;
     free(out->target);
@@ -628,7 +632,7 @@ FILE *glint_memory_file_open(char **text, size_t *bytes)
     struct text_stream *const t = malloc(sizeof *t);
     FILE *file;
 
-    *text = calloc(1, 1); /* an empty text, in case nothing is written */
+    *text = calloc(1, 1); /* empty text, in case nothing is written */
     *bytes = 0;
     if (!t || !*text) {
         free(t);

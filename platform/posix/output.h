@@ -34,7 +34,7 @@
 
 enum glint_output_kind {
     GLINT_OUTPUT_TEXT,
-    GLINT_OUTPUT_BINARY /* refused on a terminal */
+    GLINT_OUTPUT_BINARY /* rejected if the output is a terminal */
 };
 
 struct glint_output {
@@ -44,7 +44,7 @@ struct glint_output {
     char *tmp;        /* temporary file that is written instead, or NULL */
     uint8_t *buffer;  /* collects small writes */
     size_t used;      /* bytes in buffer */
-    int failed;       /* errno of the first write that failed, or 0 */
+    int failed; /* errno of the first write that failed, or 0 if none failed */
 };
 
 /* Returns whether INPUT and OUTPUT are the same regular file; "-" is the
@@ -52,7 +52,7 @@ struct glint_output {
 bool glint_target_is_input(const char *input, const char *output);
 
 /* Returns whether A and B, which need not exist, are the same path: the same
- * name in the same folder. Returns false for existing objects other than
+ * name in the same folder. Returns false for existing objects that are not
  * regular files, such as /dev/null. */
 bool glint_target_is_same(const char *a, const char *b);
 

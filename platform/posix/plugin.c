@@ -13,12 +13,12 @@
 
 #define PATH_BYTES 4096
 #define FILE_BYTES 64
-#define INSTALLED                                                             \
-    "../lib/glint/" /* folder of plug-ins relative to bin/, wherever both are \
-                       installed */
+#define INSTALLED                                                      \
+    "../lib/glint/" /* folder of plug-ins relative to bin/ of the same \
+                       installation */
 
-/* Sets DIR to the folder of glint's own file, with its last slash. Returns
- * false if that is unknown. */
+/* Sets DIR to the folder of the program or library that contains this code,
+ * with a trailing slash. Returns false if the folder is unknown. */
 static bool find_own_directory(char dir[PATH_BYTES])
 {
     char *slash;
@@ -30,8 +30,8 @@ static bool find_own_directory(char dir[PATH_BYTES])
     return true;
 }
 
-/* Returns whether DIR is outside a source tree: neither build/ nor a folder in
- * it, which have lenses/ beside or above them. */
+/* Returns whether DIR is outside a source tree. In a source tree DIR is
+ * build/ or a folder in it, which have lenses/ beside or above them. */
 static bool is_installed(const char *dir)
 {
     char up[PATH_BYTES + FILE_BYTES], up_twice[PATH_BYTES + FILE_BYTES];
@@ -57,7 +57,7 @@ static void report_missing(const struct glint_plugin *plugin, bool installed,
             plugin->without, plugin->library, plugin->target);
 }
 
-static const void *load_from(const struct glint_plugin *plugin,
+static const void *load_file(const struct glint_plugin *plugin,
                              const char *path, struct glint_error *error)
 {
     void *const handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
@@ -92,7 +92,7 @@ static const void *load_from_directory(const struct glint_plugin *plugin,
     snprintf(path, sizeof path, "%s%s", dir, plugin->file);
     if (stat(dir, &st) < 0 || st.st_mode & S_IWOTH)
         return NULL;
-    return access(path, F_OK) == 0 ? load_from(plugin, path, error) : NULL;
+    return access(path, F_OK) == 0 ? load_file(plugin, path, error) : NULL;
 }
 
 const void *glint_plugin_load(const struct glint_plugin *plugin,
@@ -103,7 +103,7 @@ const void *glint_plugin_load(const struct glint_plugin *plugin,
     char own[PATH_BYTES];
 
     if (stated && *stated)
-        return load_from(plugin, stated, error);
+        return load_file(plugin, stated, error);
     if (!find_own_directory(own))
         *own = '\0';
     report_missing(plugin, *own && is_installed(own), error);

@@ -14,13 +14,13 @@
 #include "glint/status.h"
 
 struct glint_plugin {
-    const char *file;    /* file name of the library; without .so, name of its
-                            Debian package */
+    const char *file; /* file name of the library; without .so, the name of its
+                         Debian package */
     const char *setting; /* environment variable with the path of the library */
-    const char *symbol;  /* name of the struct */
-    const char *noun;    /* "the image plug-in" */
+    const char *symbol;  /* name of the exported struct */
+    const char *noun;    /* name in messages, as "the image plug-in" */
     int version;         /* Plug-ins of other versions are refused. */
-    /* For the message if it is not found: */
+    /* The members below are for the message that the plug-in is not found. */
     const char *without; /* consequence, as ", so that ...", or "" */
     const char *library; /* Debian package needed to build it */
     const char *target;  /* make target that builds it */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _XOPEN_SOURCE 700 /* SIGSYS */
+#define _XOPEN_SOURCE 700 /* for SIGSYS */
 #include "glint/pool.h"
 
 #include <pthread.h>
@@ -14,22 +14,24 @@ struct pool;
 
 struct helper {
     struct pool *pool;
-    int worker; /* 1 .. n - 1 */
+    int worker; /* number of this worker, 1 .. n - 1 */
     pthread_t thread;
 };
 
 struct pool {
-    struct glint_workers base; /* first: a pool is a glint_workers */
-    pthread_mutex_t lock;      /* guards round, open, quit and busy */
-    pthread_cond_t wake; /* signals that a round was opened, or quit set */
-    pthread_cond_t idle; /* signals that busy became 0 */
-    unsigned round;      /* rounds opened so far; a round runs one set of
-                            jobs */
-    bool open;           /* helpers may still join the round */
+    /* first member, so that a pool can be used as a glint_workers */
+    struct glint_workers base;
+    pthread_mutex_t lock; /* guards round, open, quit and busy */
+    pthread_cond_t wake;  /* signals that a round was opened, or quit set */
+    pthread_cond_t idle;  /* signals that busy became 0 */
+    unsigned round;       /* rounds opened so far; a round runs one set of
+                             jobs */
+    bool open;            /* true: helpers may still join the round */
     bool quit;
-    int busy; /* helpers that work in the round */
+    int busy; /* number of helpers that work in the round */
 
-    /* These are constant while a round is open or a helper is busy. */
+    /* The members below are constant while a round is open or a helper is
+     * busy. */
     glint_job_fn *fn;
     void *ctx;
     unsigned n_jobs;
@@ -49,7 +51,7 @@ static void do_jobs(struct pool *p, int worker)
         p->fn(p->ctx, (int)job, worker);
 }
 
-static void *help(void *arg)
+static void *run_helper(void *arg)
 {
     const struct helper *const h = arg;
     struct pool *const p = h->pool;
@@ -73,8 +75,8 @@ static void *help(void *arg)
     return NULL;
 }
 
-static void run(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
-                void *ctx)
+static void run_jobs(struct glint_workers *workers, int n_jobs,
+                     glint_job_fn *fn, void *ctx)
 {
     struct pool *const p = (struct pool *)workers;
 
@@ -96,16 +98,16 @@ static void run(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
     do_jobs(p, 0);
 
     pthread_mutex_lock(&p->lock);
-    p->open = false; /* A helper that still sleeps would find no job. */
+    p->open = false; /* A helper that has not woken up yet would find no job. */
     while (p->busy > 0)
         pthread_cond_wait(&p->idle, &p->lock);
     pthread_mutex_unlock(&p->lock);
 }
 
-/* Blocks all signals but the signals of a thread's own faults (SIGSEGV ...):
- * blocked, these would kill the process at once, without the functions of
- * posix/at_death.h. */
-static void hold_signals(sigset_t *old)
+/* Blocks all signals except those of a thread's own faults (SIGSEGV ...): if
+ * these were blocked, a fault would kill the process without running the
+ * functions of posix/at_death.h. */
+static void block_signals(sigset_t *old)
 {
     static const int faults[] = {SIGSEGV, SIGBUS,  SIGILL, SIGFPE,
                                  SIGABRT, SIGTRAP, SIGSYS};
@@ -125,14 +127,14 @@ static void start_helpers(struct pool *p, int n)
 
     if (pthread_attr_init(&attr))
         return;
-    hold_signals(&old);
+    block_signals(&old);
     pthread_attr_setstacksize(&attr, GLINT_WORKER_STACK_BYTES);
     while (p->n_helpers < n) {
         struct helper *const h = &p->helper[p->n_helpers];
 
         h->pool = p;
         h->worker = p->n_helpers + 1;
-        if (pthread_create(&h->thread, &attr, help, h))
+        if (pthread_create(&h->thread, &attr, run_helper, h))
             break;
         p->n_helpers++;
     }
@@ -158,7 +160,7 @@ enum glint_status glint_pool_create(struct glint_workers **workers,
     p = calloc(1, sizeof *p);
     if (!p)
         return GLINT_E_MEMORY;
-    p->base.run = run;
+    p->base.run = run_jobs;
     pthread_mutex_init(&p->lock, NULL);
     pthread_cond_init(&p->wake, NULL);
     pthread_cond_init(&p->idle, NULL);

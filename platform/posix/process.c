@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE /* secure_getenv */
+#define _GNU_SOURCE /* for secure_getenv */
 #include "posix/process.h"
 
 #include <errno.h>
@@ -26,8 +26,9 @@ const char *glint_process_setting(const char *name)
     return secure_getenv(name);
 }
 
-/* Not dladdr(): it returns the path passed to dlopen(), which may be relative
- * to an earlier working directory, and argv[0] for a program. */
+/* Reads /proc/self/maps, as dladdr() returns the path passed to dlopen(),
+ * which may be relative to an earlier working directory, and argv[0] for a
+ * program. */
 bool glint_process_own_file(char *path, size_t bytes)
 {
     static const char own = 0;
@@ -61,7 +62,7 @@ struct call {
     int (*fn)(void *ctx);
     void *ctx;
     int result;
-    sigset_t signals; /* signals that were blocked before */
+    sigset_t signals; /* signal mask of the thread that called */
 };
 
 static void *do_call(void *arg)
@@ -75,7 +76,7 @@ static void *do_call(void *arg)
 
 /* Runs C in a thread with a stack of BYTES; signals go to that thread
  * meanwhile. Returns false if the thread cannot be created. */
-static bool call_apart(size_t bytes, struct call *c)
+static bool call_in_thread(size_t bytes, struct call *c)
 {
     pthread_attr_t attr;
     pthread_t thread;
@@ -102,7 +103,7 @@ int glint_process_on_stack(size_t bytes, int (*fn)(void *ctx), void *ctx)
 
     if (getrlimit(RLIMIT_STACK, &stack) < 0 ||
         stack.rlim_cur == RLIM_INFINITY || stack.rlim_cur >= bytes ||
-        !call_apart(bytes, &c))
+        !call_in_thread(bytes, &c))
         return fn(ctx);
     return c.result;
 }

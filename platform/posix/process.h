@@ -16,8 +16,9 @@
 #define GLINT_WORKER_STACK_BYTES (2 << 20)
 #endif
 
-/* Opens each closed descriptor of 0 to 2 in a way that reading or writing it
- * fails, so that no file opened later becomes standard output. */
+/* Opens each closed descriptor of 0 to 2 such that reading or writing it
+ * fails, so that no file opened later becomes standard input, output or
+ * error. */
 void glint_process_hold_streams(void);
 
 /* Returns the value of the environment variable NAME, or NULL if it is not set

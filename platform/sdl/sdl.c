@@ -27,9 +27,10 @@ static void close_view(void *window)
     free(v);
 }
 
-/* Opens a window for pictures of WIDTH x HEIGHT. Its size is halved until it
- * fits the desktop. On failure v->texture stays NULL. */
-static void make(struct view *v, const char *title, int width, int height)
+/* Opens a window for pictures of WIDTH x HEIGHT, and halves its size until
+ * it fits the desktop. On failure v->texture stays NULL. */
+static void make_window(struct view *v, const char *title, int width,
+                        int height)
 {
     SDL_Rect room = {0, 0, width, height};
     double scale = 1;
@@ -60,7 +61,7 @@ static void *open_view(const char *title, int width, int height,
         return NULL;
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     if (SDL_Init(SDL_INIT_VIDEO) == 0)
-        make(v, title, width, height);
+        make_window(v, title, width, height);
     if (v->texture)
         return v;
     *cause = SDL_GetError();
@@ -68,7 +69,7 @@ static void *open_view(const char *title, int width, int height,
     return NULL;
 }
 
-static int is_enough(const SDL_Event *event)
+static int is_close_request(const SDL_Event *event)
 {
     return event->type == SDL_QUIT || (event->type == SDL_KEYDOWN &&
                                        (event->key.keysym.sym == SDLK_ESCAPE ||
@@ -81,7 +82,7 @@ static int show(void *window, const void *pixels, int stride)
     SDL_Event event;
 
     while (SDL_PollEvent(&event))
-        if (is_enough(&event))
+        if (is_close_request(&event))
             return 1;
     if (SDL_UpdateTexture(v->texture, NULL, pixels, stride) != 0)
         return -1;

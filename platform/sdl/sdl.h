@@ -3,7 +3,7 @@
  * sdl/sdl.h - a window on the desktop, through SDL2.
  *
  *     glint_window_open(&window, "glint", &error);
- *     window.sink.put(&window.sink, &image, &error);   the first one opens it
+ *     window.sink.put(&window.sink, &image, &error);   first: opens it
  *     window.sink.close(&window.sink);
  *
  * SDL2 lives in a plug-in, glint-sdl.so, which is loaded when a window is

@@ -7,8 +7,8 @@
 #define WHITE_Q24 (INT32_C(1) << 24)
 #define ONE_Q31   (UINT64_C(1) << 31)
 
-/* A curve light(v): ((v + a) / (1 + a))^(power / 45) from v = toe on, and v /
- * divisor below. */
+/* Parameters of a transfer curve: light(v) = ((v + a) / (1 + a))^(power /
+ * 45) for v >= toe, v / divisor below the toe. */
 struct power {
     int power;       /* 45 times the exponent */
     int a_10000;     /* 10000 times a */
@@ -33,7 +33,7 @@ struct tag {
     int value;
 };
 
-static int find(const struct tag *tags, const char *name)
+static int find_tag(const struct tag *tags, const char *name)
 {
     while (tags->name && strcmp(tags->name, name) != 0)
         tags++;
@@ -61,7 +61,7 @@ int glint_transfer_of_tag(const char *tag)
                                       {"log316", GLINT_TRANSFER_LOG316},
                                       {NULL, 0}};
 
-    return find(tags, tag);
+    return find_tag(tags, tag);
 }
 
 int glint_primaries_of_tag(const char *tag)
@@ -76,7 +76,7 @@ int glint_primaries_of_tag(const char *tag)
                                       {"smpte432", GLINT_PRIMARIES_P3},
                                       {NULL, 0}};
 
-    return find(tags, tag);
+    return find_tag(tags, tag);
 }
 
 const int32_t glint_primaries_from_bt709_q16[GLINT_PRIMARIES][3][3] = {
@@ -96,7 +96,7 @@ static uint64_t mul_q30(uint64_t a_q30, uint64_t b_q30)
     return (a_q30 * b_q30 + (UINT64_C(1) << 29)) >> 30;
 }
 
-/* Returns x^9, 0 <= x <= 1. */
+/* Returns x^9; X is 0 .. 1. */
 static uint64_t power_q30(uint64_t x_q30)
 {
     const uint64_t x2_q30 = mul_q30(x_q30, x_q30);
@@ -105,7 +105,7 @@ static uint64_t power_q30(uint64_t x_q30)
     return mul_q30(mul_q30(x4_q30, x4_q30), x_q30);
 }
 
-/* Returns the largest r with r^9 <= x, 0 <= x <= 1. */
+/* Returns the largest r with r^9 <= x; X is 0 .. 1. */
 static uint64_t root_q30(uint64_t x_q30)
 {
     uint64_t r_q30 = 0;
@@ -157,7 +157,8 @@ static int64_t log2_q32(uint64_t n, uint64_t d)
         d >>= 1;
     }
     m_q31 = (n << 31) / d;
-    if (m_q31 >= 2 * ONE_Q31) /* d was odd */
+    /* D was odd, and the shifts above have rounded it down. */
+    if (m_q31 >= 2 * ONE_Q31)
         m_q31 = 2 * ONE_Q31 - 1;
     for (int i = 0; i < 32; i++) {
         m_q31 = (m_q31 * m_q31) >> 31;
@@ -169,9 +170,9 @@ static int64_t log2_q32(uint64_t n, uint64_t d)
 
 /* Returns 2^X with FRAC fraction bits, by the series of e^(x ln 2) for the
  * fraction of X. 2^X must be below 2^(31 - FRAC). */
-static int64_t exp2_of(int64_t x_q32, int frac)
+static int64_t compute_exp2(int64_t x_q32, int frac)
 {
-    const int64_t whole = x_q32 >> 32; /* floor */
+    const int64_t whole = x_q32 >> 32; /* integer part, rounded down */
     const uint64_t ln2_q31 = 1488522236;
     const uint64_t t_q31 = ((uint64_t)(x_q32 & 0xffffffff) * ln2_q31) >> 32;
     const int64_t down = 31 - frac - whole;
@@ -186,7 +187,7 @@ static int64_t exp2_of(int64_t x_q32, int frac)
 
 static int64_t exp2_q24(int64_t x_q32)
 {
-    return exp2_of(x_q32, 24);
+    return compute_exp2(x_q32, 24);
 }
 
 static int32_t power_light_q24(const struct power *p, int64_t step,
@@ -214,7 +215,8 @@ static int32_t pq_light_q24(int step, int steps)
 
     if (step == 0)
         return 0;
-    p_q30 = exp2_of(log2_q32((uint64_t)step, (uint64_t)steps) * 32 / 2523, 30);
+    p_q30 =
+        compute_exp2(log2_q32((uint64_t)step, (uint64_t)steps) * 32 / 2523, 30);
     if (p_q30 <= c1_q30)
         return 0;
     d_q30 = c2_q30 - ((2392 * p_q30) >> 7);

@@ -13,7 +13,8 @@
 #include <stdint.h>
 
 enum glint_transfer_curve {
-    GLINT_TRANSFER_BT709, /* also BT.601 and BT.2020 */
+    GLINT_TRANSFER_BT709, /* also BT.601 and BT.2020, which have the same curve
+                           */
     GLINT_TRANSFER_SRGB,
     GLINT_TRANSFER_LINEAR,
     GLINT_TRANSFER_GAMMA22,
@@ -27,13 +28,15 @@ enum glint_transfer_curve {
 };
 
 enum glint_primaries {
-    GLINT_PRIMARIES_BT709, /* also BT.601, whose differences are ignored */
+    GLINT_PRIMARIES_BT709, /* also BT.601, whose differences from BT.709 are
+                              ignored */
     GLINT_PRIMARIES_BT2020,
     GLINT_PRIMARIES_P3,
     GLINT_PRIMARIES
 };
 
-/* Option values of the curves, in the order of the enum; ends with NULL. */
+/* Names of the curves as option values, in the order of the enum; ends with
+ * NULL. */
 extern const char *const glint_transfer_words[];
 
 /* Return the curve, or the primaries, that ffmpeg calls TAG; -1 if TAG is
@@ -47,8 +50,8 @@ int glint_primaries_of_tag(const char *tag);
 int32_t glint_transfer_light_q24(enum glint_transfer_curve curve, int step,
                                  int steps);
 
-/* from linear light of BT.709's primaries to other primaries, and back; 65536
- * is 1. Rows sum up to 65536, so white stays white. */
+/* Matrices from linear light of BT.709's primaries to other primaries, and
+ * back; 65536 is 1. Rows sum up to 65536, so white stays white. */
 extern const int32_t glint_primaries_from_bt709_q16[GLINT_PRIMARIES][3][3];
 extern const int32_t glint_primaries_to_bt709_q16[GLINT_PRIMARIES][3][3];
 

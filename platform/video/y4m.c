@@ -24,7 +24,7 @@ static const struct colour {
     enum glint_pixel_format format;
     bool has_alpha, is_411, may_be_deep;
 } colours[] = {
-    /* tag_of() returns the first tag of each format. */
+    /* Formats by the tag C. find_tag() returns the first tag of each format. */
     {"420jpeg", GLINT_I420, false, false, false},
     {"420mpeg2", GLINT_I420, false, false, false},
     {"420paldv", GLINT_I420, false, false, false},
@@ -38,9 +38,9 @@ static const struct colour {
 
 #define N_COLOURS (sizeof colours / sizeof *colours)
 
-/* Returns the bits per sample by TEXT, the end of a tag: 9 .. 16; 8 if TEXT is
- * empty, 0 if it is malformed. */
-static int bits_of(const char *text, bool is_grey)
+/* Returns the bits per sample that TEXT, the end of a tag, states: 9 .. 16;
+ * 8 if TEXT is empty, 0 if it is malformed. */
+static int parse_bits(const char *text, bool is_grey)
 {
     static const char *const names[] = {"9", "10", "12", "14", "16"};
     static const int bits[] = {9, 10, 12, 14, 16};
@@ -55,8 +55,8 @@ static int bits_of(const char *text, bool is_grey)
     return 0;
 }
 
-/* Sets LAYOUT by TAG, "" being 420jpeg. Returns false if there is no such
- * tag. */
+/* Sets LAYOUT by TAG; an empty TAG means 420jpeg. Returns false if TAG is
+ * unknown. */
 static bool parse_layout(struct glint_y4m_layout *layout, const char *tag)
 {
     const char *const text = *tag ? tag : colours[0].tag;
@@ -65,7 +65,7 @@ static bool parse_layout(struct glint_y4m_layout *layout, const char *tag)
         const struct colour *const c = &colours[i];
         const size_t n = strlen(c->tag);
         const int bits = strncmp(text, c->tag, n) == 0
-                             ? bits_of(text + n, c->format == GLINT_GREY)
+                             ? parse_bits(text + n, c->format == GLINT_GREY)
                              : 0;
 
         if (bits == 0 || (bits > 8 && !c->may_be_deep))
@@ -77,9 +77,9 @@ static bool parse_layout(struct glint_y4m_layout *layout, const char *tag)
     return false;
 }
 
-/* Returns the tag that glint writes for FORMAT: _GREY, _I420, _I422 or
+/* Returns the tag C that glint writes for FORMAT: _GREY, _I420, _I422 or
  * _I444. */
-static const char *tag_of(enum glint_pixel_format format)
+static const char *find_tag(enum glint_pixel_format format)
 {
     size_t i = 0;
 
@@ -97,8 +97,8 @@ bool glint_y4m_is_plain(const struct glint_y4m_header *header)
 
 /* Sets SIZE to the samples across and down PLANE, 0 .. 3, or to 0 and 0 if
  * there is no such plane. */
-static void plane_size(const struct glint_y4m_layout *layout, int plane,
-                       int width, int height, int size[2])
+static void set_plane_size(const struct glint_y4m_layout *layout, int plane,
+                           int width, int height, int size[2])
 {
     const enum glint_pixel_format format = layout->format;
     const bool is_chroma = plane == 1 || plane == 2;
@@ -120,7 +120,7 @@ size_t glint_y4m_layout_bytes(const struct glint_y4m_layout *layout, int width,
     for (int p = 0; p < 4; p++) {
         int size[2];
 
-        plane_size(layout, p, width, height, size);
+        set_plane_size(layout, p, width, height, size);
         samples += (size_t)size[0] * (size_t)size[1];
     }
     return samples * (layout->bits > 8 ? 2 : 1);
@@ -138,7 +138,7 @@ static void find_planes(const struct glint_y4m_layout *layout, int width,
                         int height, uint8_t *planes, struct plane plane[4])
 {
     for (int p = 0; p < 4; p++) {
-        plane_size(layout, p, width, height, plane[p].size);
+        set_plane_size(layout, p, width, height, plane[p].size);
         plane[p].is_wide = layout->bits > 8;
         plane[p].at = planes;
         planes += (size_t)plane[p].size[0] * (size_t)plane[p].size[1] *
@@ -146,14 +146,14 @@ static void find_planes(const struct glint_y4m_layout *layout, int width,
     }
 }
 
-static int32_t take_code(const struct plane *p, int x, int y)
+static int32_t read_code(const struct plane *p, int x, int y)
 {
     const size_t i = (size_t)y * (size_t)p->size[0] + (size_t)x;
 
     return p->is_wide ? p->at[2 * i] | p->at[2 * i + 1] << 8 : p->at[i];
 }
 
-static void put_code(const struct plane *p, int x, int y, int32_t code)
+static void write_code(const struct plane *p, int x, int y, int32_t code)
 {
     const size_t i = (size_t)y * (size_t)p->size[0] + (size_t)x;
 
@@ -182,7 +182,7 @@ static void fill_proxy(const struct glint_y4m_layout *layout,
         for (int y = 0; y < height; y++)
             for (int x = 0; x < width; x++) {
                 const int from = layout->is_411 && p > 0 ? x / 2 : x;
-                const int32_t code = take_code(&plane[p], from, y) >> down;
+                const int32_t code = read_code(&plane[p], from, y) >> down;
 
                 image->plane[p][y * image->stride_bytes[p] + x] =
                     (uint8_t)(code < 255 ? code : 255);
@@ -192,7 +192,7 @@ static void fill_proxy(const struct glint_y4m_layout *layout,
 
 /* ------------------------------------------------------------------ header */
 
-static enum glint_matrix matrix_of(int height)
+static enum glint_matrix choose_matrix(int height)
 {
     return height < 720 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
 }
@@ -219,19 +219,19 @@ void glint_y4m_header_init(struct glint_y4m_header *header, int width,
         .height = height,
         .format = format,
         .range = GLINT_RANGE_LIMITED,
-        .matrix = matrix_of(height),
+        .matrix = choose_matrix(height),
         .fps_num = fps_num,
         .fps_den = fps_den,
         .interlace = 'p',
         .aspect = "1:1",
     };
-    strcpy(header->colour, tag_of(format));
+    strcpy(header->colour, find_tag(format));
     (void)parse_layout(&header->layout, header->colour);
 }
 
 /* Returns the number at *AT, at most INT_MAX, and moves *AT past it. Returns -1
  * if there is no number. */
-static int take_number(const char **at)
+static int parse_number(const char **at)
 {
     int value = -1;
 
@@ -246,24 +246,24 @@ static int take_number(const char **at)
 
 /* Parses TEXT as "N:D" in plain digits. Returns false if TEXT is malformed, or
  * D is 0 and N is not. */
-static bool take_ratio(const char *text, int *num, int *den)
+static bool parse_ratio(const char *text, int *num, int *den)
 {
-    *num = take_number(&text);
+    *num = parse_number(&text);
     if (*num < 0 || *text++ != ':')
         return false;
-    *den = take_number(&text);
+    *den = parse_number(&text);
     return *den >= 0 && !*text && (*den > 0 || *num == 0);
 }
 
 /* Returns TEXT as a number, or 0 if any character is not a digit. */
-static int take_side(const char *text)
+static int parse_side(const char *text)
 {
-    const int value = take_number(&text);
+    const int value = parse_number(&text);
 
     return *text || value < 0 ? 0 : value;
 }
 
-static bool take_text(char *dst, size_t size, const char *text)
+static bool copy_text(char *dst, size_t size, const char *text)
 {
     const bool fits = strlen(text) < size;
 
@@ -272,7 +272,7 @@ static bool take_text(char *dst, size_t size, const char *text)
     return fits;
 }
 
-static bool take_range(struct glint_y4m_header *h, const char *tag)
+static bool parse_range(struct glint_y4m_header *h, const char *tag)
 {
     const bool full = !strcmp(tag, "XCOLORRANGE=FULL");
 
@@ -284,27 +284,27 @@ static bool take_range(struct glint_y4m_header *h, const char *tag)
 }
 
 /* Sets H by TAG of the header. Returns false if TAG is malformed. */
-static bool take_tag(struct glint_y4m_header *h, const char *tag)
+static bool parse_tag(struct glint_y4m_header *h, const char *tag)
 {
     int num, den;
 
     switch (tag[0]) {
     case 'W':
-        return (h->width = take_side(tag + 1)) > 0;
+        return (h->width = parse_side(tag + 1)) > 0;
     case 'H':
-        return (h->height = take_side(tag + 1)) > 0;
+        return (h->height = parse_side(tag + 1)) > 0;
     case 'F':
-        return take_ratio(tag + 1, &h->fps_num, &h->fps_den);
+        return parse_ratio(tag + 1, &h->fps_num, &h->fps_den);
     case 'I':
         h->interlace = tag[1];
         return tag[1] && strchr("ptbm?", tag[1]) && !tag[2];
     case 'A':
-        return take_ratio(tag + 1, &num, &den) &&
-               take_text(h->aspect, sizeof h->aspect, tag + 1);
+        return parse_ratio(tag + 1, &num, &den) &&
+               copy_text(h->aspect, sizeof h->aspect, tag + 1);
     case 'C':
-        return tag[1] && take_text(h->colour, sizeof h->colour, tag + 1);
+        return tag[1] && copy_text(h->colour, sizeof h->colour, tag + 1);
     }
-    if (!take_range(h, tag)) {
+    if (!parse_range(h, tag)) {
         /* All tags fit, as they come from a line no longer than EXTRA. */
         strcat(h->extra, " ");
         strcat(h->extra, tag);
@@ -352,19 +352,19 @@ enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
         (line[strlen(MAGIC)] && line[strlen(MAGIC)] != ' '))
         return glint_error_report(error, GLINT_E_FORMAT, name,
                                   "is not a YUV4MPEG2 stream");
-    if (!is_plain_text(line) || !take_text(copy, sizeof copy, line))
+    if (!is_plain_text(line) || !copy_text(copy, sizeof copy, line))
         return glint_error_report(error, GLINT_E_FORMAT, name,
                                   "malformed Y4M header");
     for (char *tag = strtok_r(copy + strlen(MAGIC), " ", &rest); tag;
          tag = strtok_r(NULL, " ", &rest))
-        if (!take_tag(&h, tag))
+        if (!parse_tag(&h, tag))
             return glint_error_report(error, GLINT_E_FORMAT, name,
                                       "malformed tag %s in the Y4M header",
                                       tag);
     status = check_header(&h, name, error);
     if (status)
         return status;
-    h.matrix = is_jpeg(&h) ? GLINT_MATRIX_BT601 : matrix_of(h.height);
+    h.matrix = is_jpeg(&h) ? GLINT_MATRIX_BT601 : choose_matrix(h.height);
     strcpy(h.line, line); /* fits, as LINE fitted into COPY */
     h.line_range = h.range;
     *header = h;
@@ -394,12 +394,13 @@ size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
 
 /* ----------------------------------------------------------------- reading */
 
-/* Converts frames of a stream that is not BT.709 to the 8-bit BT.709 copy. */
+/* Tables that convert frames of a stream that is not BT.709 to the 8-bit
+ * BT.709 copy. */
 struct glint_y4m_seen {
     struct glint_y4m_light from, to;
 };
 
-static void fill_seen(const struct glint_y4m_reader *r);
+static void fill_copy(const struct glint_y4m_reader *r);
 
 static ptrdiff_t read_some(struct glint_y4m_reader *r, void *dst, size_t bytes)
 {
@@ -534,7 +535,7 @@ glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
 }
 
 /* Sets *MORE to whether a stream without FRAME lines continues. */
-static enum glint_status look_ahead(struct glint_y4m_reader *r, bool *more,
+static enum glint_status peek_frame(struct glint_y4m_reader *r, bool *more,
                                     struct glint_error *error)
 {
     if (r->ahead_at == r->ahead_end) {
@@ -560,8 +561,8 @@ static ptrdiff_t read_rows(struct glint_y4m_reader *r)
         size_t stride = r->stride;
         int size[2];
 
-        plane_size(&r->header.layout, p, r->header.width, r->header.height,
-                   size);
+        set_plane_size(&r->header.layout, p, r->header.width, r->header.height,
+                       size);
         if (size[0] < r->header.width)
             stride /= 2;
         for (int y = 0; y < size[1]; y++) {
@@ -674,7 +675,7 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
     bool more = false;
     ptrdiff_t got;
     enum glint_status status = reader->is_raw
-                                   ? look_ahead(reader, &more, error)
+                                   ? peek_frame(reader, &more, error)
                                    : read_frame_line(reader, &more, error);
 
     if (!status && more)
@@ -694,7 +695,7 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
                                   "frame %ld: ends after %zu of %zu bytes",
                                   reader->n_frames, (size_t)got, bytes);
     if (reader->seen)
-        fill_seen(reader);
+        fill_copy(reader);
     else if (!glint_y4m_is_plain(h))
         fill_proxy(&h->layout, &reader->frame, reader->planes);
     reader->n_frames++;
@@ -805,9 +806,9 @@ void glint_y4m_writer_abort(struct glint_y4m_writer *writer)
 #define WHITE_Q24 (INT32_C(1) << 24)
 #define WHITE_Q20 (INT32_C(1) << 20)
 
-/* Returns the R'G'B' code, _q20, at which DECODE, interpolated linearly,
- * reaches LIGHT, _q24. */
-static int32_t place_q20(const int32_t *decode_q24, int32_t light)
+/* Returns the R'G'B' code, _q20, at which the table DECODE, interpolated
+ * linearly, reaches LIGHT, _q24. */
+static int32_t find_code_q20(const int32_t *decode_q24, int32_t light)
 {
     int low = 0, high = GLINT_Y4M_STEPS;
     int64_t over, step;
@@ -838,7 +839,7 @@ static void fill_tables(struct glint_y4m_light *l,
             l->encode_q20[o][i] =
                 light >= l->decode_q24[GLINT_Y4M_STEPS]
                     ? WHITE_Q20
-                    : place_q20(l->decode_q24, (int32_t)light);
+                    : find_code_q20(l->decode_q24, (int32_t)light);
         }
 }
 
@@ -911,21 +912,21 @@ void glint_y4m_light_blacken(const struct glint_y4m_light *light,
     for (int p = 0; p < 3; p++)
         for (int y = 0; y < plane[p].size[1]; y++)
             for (int x = 0; x < plane[p].size[0]; x++)
-                put_code(&plane[p], x, y,
-                         p ? 1 << (light->layout.bits - 1) : light->black);
+                write_code(&plane[p], x, y,
+                           p ? 1 << (light->layout.bits - 1) : light->black);
 }
 
 /* ------------------------------------------------------------------- adding */
 
-static int32_t held(int64_t v, int32_t most)
+static int32_t clamp_code(int64_t v, int32_t most)
 {
     return v < 0 ? 0 : v > most ? most : (int32_t)v;
 }
 
 /* Sets RGB to R', G', B', clamped to 0 .. 1, of YCC: the code of Y', and the
  * codes of Cb and Cr minus the code of zero. */
-static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
-                   int32_t rgb_q20[3])
+static void convert_to_rgb(const struct glint_y4m_light *l,
+                           const int32_t ycc[3], int32_t rgb_q20[3])
 {
     const int64_t y = y4m_share(ycc[0] - l->black, l->y_factor);
     const int64_t cb = y4m_share(ycc[1], l->c_factor);
@@ -933,10 +934,10 @@ static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
     const int64_t r = y + y4m_halve((65536 - l->kr_q16) * cr, 15);
     const int64_t b = y + y4m_halve((65536 - l->kb_q16) * cb, 15);
 
-    rgb_q20[0] = held(r, WHITE_Q20);
+    rgb_q20[0] = clamp_code(r, WHITE_Q20);
     rgb_q20[1] = y4m_part(65536 * y - l->kr_q16 * r - l->kb_q16 * b, l->kg_q16,
                           l->g_factor);
-    rgb_q20[2] = held(b, WHITE_Q20);
+    rgb_q20[2] = clamp_code(b, WHITE_Q20);
 }
 
 /* Multiplies LIGHT by the matrix M; each row of M sums up to 65536. */
@@ -950,8 +951,8 @@ static void multiply(const int32_t m_q16[3][3], int64_t light[3])
 }
 
 /* Sets Y', Cb and Cr, _q20, by R', G' and B'. */
-static void to_ycc(const struct glint_y4m_light *l, const int64_t rgb_q20[3],
-                   int64_t ycc_q20[3])
+static void convert_to_ycc(const struct glint_y4m_light *l,
+                           const int64_t rgb_q20[3], int64_t ycc_q20[3])
 {
     const int64_t y =
         y4m_halve(l->kr_q16 * rgb_q20[0] + l->kg_q16 * rgb_q20[1] +
@@ -963,15 +964,17 @@ static void to_ycc(const struct glint_y4m_light *l, const int64_t rgb_q20[3],
     ycc_q20[2] = y4m_share((int32_t)(rgb_q20[0] - y), l->cr_factor);
 }
 
-/* Sets the changes of Y', Cb and Cr, _q20, of a pixel with codes YCC when the
- * fraction COVER_Q8 of it is hidden and the light of LAYER is added. */
-static void change_of(const struct glint_y4m_light *l, const int32_t ycc[3],
-                      const float *layer, int cover_q8, int64_t change_q20[3])
+/* Sets the changes of Y', Cb and Cr, _q20, of a pixel with codes YCC when
+ * the fraction COVER_Q8 of its light is hidden and the light of LAYER is
+ * added. */
+static void compute_change(const struct glint_y4m_light *l,
+                           const int32_t ycc[3], const float *layer,
+                           int cover_q8, int64_t change_q20[3])
 {
     int32_t rgb_q20[3];
     int64_t d[3], light[3];
 
-    to_rgb(l, ycc, rgb_q20);
+    convert_to_rgb(l, ycc, rgb_q20);
     for (int c = 0; c < 3; c++) {
         const float most = 64;
         const float held = layer[c] > most ? most : layer[c] > 0 ? layer[c] : 0;
@@ -989,7 +992,7 @@ static void change_of(const struct glint_y4m_light *l, const int32_t ycc[3],
         if (!cover_q8 && (d[c] < 0 || light[c] == 0))
             d[c] = 0;
     }
-    to_ycc(l, d, change_q20);
+    convert_to_ycc(l, d, change_q20);
 }
 
 static bool is_lit(const float *layer)
@@ -999,7 +1002,7 @@ static bool is_lit(const float *layer)
 
 /* Returns SUM_Q20 / COUNT, rounded to an integer. COUNT is 1 .. 4; 3 occurs
  * only at the right edge of 4:1:1. */
-static int64_t mean_of(int64_t sum_q20, int count)
+static int64_t compute_mean(int64_t sum_q20, int count)
 {
     const int64_t whole = 3 * (int64_t)WHITE_Q20;
 
@@ -1009,7 +1012,7 @@ static int64_t mean_of(int64_t sum_q20, int count)
                        : (2 * sum_q20 + whole) / (2 * whole);
 }
 
-/* the pixels X0 .. X1 - 1, Y0 .. Y1 - 1 that share a chroma sample */
+/* The pixels X0 .. X1 - 1, Y0 .. Y1 - 1 that share a chroma sample. */
 struct block {
     int x, y; /* position of the chroma sample in its plane */
     int x0, y0, x1, y1;
@@ -1029,7 +1032,7 @@ static void add_to_block(const struct glint_y4m_light *l, struct plane plane[4],
     int32_t ycc[3] = {0, 0, 0};
 
     for (int c = 1; c < 3 && !is_grey; c++)
-        ycc[c] = take_code(&plane[c], b->x, b->y) - middle;
+        ycc[c] = read_code(&plane[c], b->x, b->y) - middle;
     for (int y = b->y0; y < b->y1; y++)
         for (int x = b->x0; x < b->x1; x++) {
             const size_t at = (size_t)y * (size_t)l->width + (size_t)x;
@@ -1039,29 +1042,30 @@ static void add_to_block(const struct glint_y4m_light *l, struct plane plane[4],
 
             if (!cover && !is_lit(light))
                 continue;
-            ycc[0] = take_code(&plane[0], x, y);
-            change_of(l, ycc, light, cover, change);
-            put_code(
-                &plane[0], x, y,
-                held(ycc[0] + y4m_halve(change[0] * l->y_span, 20), l->most));
+            ycc[0] = read_code(&plane[0], x, y);
+            compute_change(l, ycc, light, cover, change);
+            write_code(&plane[0], x, y,
+                       clamp_code(ycc[0] + y4m_halve(change[0] * l->y_span, 20),
+                                  l->most));
             sum[0] += change[1];
             sum[1] += change[2];
         }
     for (int c = 1; c < 3 && !is_grey; c++)
-        put_code(&plane[c], b->x, b->y,
-                 held(middle + ycc[c] + mean_of(sum[c - 1] * l->c_span, count),
-                      l->most));
+        write_code(&plane[c], b->x, b->y,
+                   clamp_code(middle + ycc[c] +
+                                  compute_mean(sum[c - 1] * l->c_span, count),
+                              l->most));
 }
 
-static int least(int a, int b)
+static int min_int(int a, int b)
 {
     return a < b ? a : b;
 }
 
 /* Sets ACROSS and DOWN to the width and height, in pixels, of the block that
  * shares a chroma sample. */
-static void block_size(const struct glint_y4m_layout *layout, int *across,
-                       int *down)
+static void set_block_size(const struct glint_y4m_layout *layout, int *across,
+                           int *down)
 {
     const bool is_grey = layout->format == GLINT_GREY;
 
@@ -1071,26 +1075,26 @@ static void block_size(const struct glint_y4m_layout *layout, int *across,
     *down = layout->format == GLINT_I420 ? 2 : 1;
 }
 
-/* Converts YCC, codes by FROM, to YCC_Q20, values by TO; light above white is
- * clipped. */
-static void regrade(const struct glint_y4m_light *from,
-                    const struct glint_y4m_light *to, const int32_t ycc[3],
-                    int64_t ycc_q20[3])
+/* Converts YCC, codes of the stream FROM, to YCC_Q20, values of the stream
+ * TO; light above white is clipped. */
+static void convert_ycc(const struct glint_y4m_light *from,
+                        const struct glint_y4m_light *to, const int32_t ycc[3],
+                        int64_t ycc_q20[3])
 {
     int32_t rgb_q20[3];
     int64_t rgb[3];
 
-    to_rgb(from, ycc, rgb_q20);
+    convert_to_rgb(from, ycc, rgb_q20);
     for (int c = 0; c < 3; c++)
         rgb[c] = decode(from, rgb_q20[c]);
     if (from->primaries != GLINT_PRIMARIES_BT709)
         multiply(glint_primaries_to_bt709_q16[from->primaries], rgb);
     for (int c = 0; c < 3; c++)
         rgb[c] = encode(to, rgb[c]);
-    to_ycc(to, rgb, ycc_q20);
+    convert_to_ycc(to, rgb, ycc_q20);
 }
 
-static void regrade_block(const struct glint_y4m_seen *seen,
+static void convert_block(const struct glint_y4m_seen *seen,
                           const struct plane from[4], const struct plane to[4],
                           const struct block *b)
 {
@@ -1102,32 +1106,35 @@ static void regrade_block(const struct glint_y4m_seen *seen,
     int64_t made[3], sum[2] = {0, 0};
 
     for (int c = 1; c < 3 && !is_grey; c++)
-        ycc[c] = take_code(&from[c], b->x, b->y) - middle;
+        ycc[c] = read_code(&from[c], b->x, b->y) - middle;
     for (int y = b->y0; y < b->y1; y++)
         for (int x = b->x0; x < b->x1; x++) {
-            ycc[0] = take_code(&from[0], x, y);
-            regrade(f, t, ycc, made);
-            put_code(&to[0], x, y,
-                     held(t->black + y4m_halve(made[0] * t->y_span, 20), 255));
+            ycc[0] = read_code(&from[0], x, y);
+            convert_ycc(f, t, ycc, made);
+            write_code(
+                &to[0], x, y,
+                clamp_code(t->black + y4m_halve(made[0] * t->y_span, 20), 255));
             sum[0] += made[1];
             sum[1] += made[2];
         }
     /* The copy of 4:1:1 is 4:2:2. */
     for (int c = 1; c < 3 && !is_grey; c++)
         for (int x = b->x0; x < b->x1; x += 2)
-            put_code(&to[c], f->layout.is_411 ? x / 2 : b->x, b->y,
-                     held(128 + mean_of(sum[c - 1] * t->c_span, count), 255));
+            write_code(
+                &to[c], f->layout.is_411 ? x / 2 : b->x, b->y,
+                clamp_code(128 + compute_mean(sum[c - 1] * t->c_span, count),
+                           255));
 }
 
 /* Converts the last frame of R to its BT.709 copy, r->frame. */
-static void fill_seen(const struct glint_y4m_reader *r)
+static void fill_copy(const struct glint_y4m_reader *r)
 {
     const struct glint_y4m_light *const f = &r->seen->from, *const t =
                                                                 &r->seen->to;
     struct plane from[4], to[4];
     int across, down;
 
-    block_size(&f->layout, &across, &down);
+    set_block_size(&f->layout, &across, &down);
     find_planes(&f->layout, f->width, f->height, r->planes, from);
     find_planes(&t->layout, t->width, t->height, r->frame.plane[0], to);
     for (int y = 0; y < f->height; y += down)
@@ -1136,10 +1143,10 @@ static void fill_seen(const struct glint_y4m_reader *r)
                                         y / down,
                                         x,
                                         y,
-                                        least(x + across, f->width),
-                                        least(y + down, f->height)};
+                                        min_int(x + across, f->width),
+                                        min_int(y + down, f->height)};
 
-            regrade_block(r->seen, from, to, &block);
+            convert_block(r->seen, from, to, &block);
         }
 }
 
@@ -1156,7 +1163,7 @@ void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
     struct plane plane[4];
     int across, down;
 
-    block_size(&l->layout, &across, &down);
+    set_block_size(&l->layout, &across, &down);
     find_planes(&l->layout, l->width, l->height, planes, plane);
     for (int y = 0; y < l->height; y += down)
         for (int x = 0; x < l->width; x += across) {
@@ -1164,8 +1171,8 @@ void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
                                         y / down,
                                         x,
                                         y,
-                                        least(x + across, l->width),
-                                        least(y + down, l->height)};
+                                        min_int(x + across, l->width),
+                                        min_int(y + down, l->height)};
 
             add_to_block(l, plane, &block, layer, cover_q8);
         }

@@ -60,7 +60,7 @@ struct glint_y4m_layout {
     bool is_411;    /* 4:1:1: chroma has a quarter of the width */
 };
 
-#define GLINT_Y4M_LINE 512 /* max bytes of a line that is read */
+#define GLINT_Y4M_LINE 512 /* max bytes of a line that is parsed */
 
 #define GLINT_Y4M_PRINTED 1024 /* max bytes of a line that is printed */
 
@@ -112,8 +112,8 @@ struct glint_y4m_reader {
     struct glint_image frame;
     uint8_t *planes; /* planes of the last frame, as they were stored */
     uint8_t *mem;    /* memory of planes, followed by the memory of frame */
-    struct glint_y4m_seen *seen; /* converts to the copy; NULL: frames are
-                                    BT.709 */
+    struct glint_y4m_seen *seen; /* converts frames to the BT.709 copy; NULL:
+                                    frames are BT.709 already */
     uint8_t ahead[4096];
     /* bytes ahead_at .. ahead_end - 1 of ahead are still unread */
     size_t ahead_at, ahead_end;
@@ -242,18 +242,19 @@ enum {
 struct glint_y4m_light {
     struct glint_y4m_layout layout;
     int width, height;
-    int32_t black, most;    /* code of Y' = 0, and the largest code */
+    int32_t black, most;    /* code of Y' = 0, and the max code */
     int32_t y_span, c_span; /* codes from Y' = 0 to 1, and from Cb = -1/2 to
                                1/2 */
     int32_t kr_q16, kg_q16, kb_q16; /* weights of R', G', B' in Y' */
-    int64_t y_factor, c_factor;     /* factors that replace divisions by the
-                                       spans (y4m_divide.h) */
+    int64_t y_factor, c_factor; /* factors that replace divisions by y_span and
+                                   c_span (y4m_divide.h) */
     int64_t cb_factor, cr_factor,
         /* factors that replace divisions by 1 - kb, 1 - kr and kg */
         g_factor;
     enum glint_primaries primaries;
-    int32_t decode_q24[GLINT_Y4M_STEPS + 1]; /* light of each step */
-    /* R'G'B' of light, by octave and entry */
+    /* light of each step; 2^24: white */
+    int32_t decode_q24[GLINT_Y4M_STEPS + 1];
+    /* R'G'B' by octave of light and entry in the octave; 2^20: white */
     int32_t encode_q20[GLINT_Y4M_OCTAVES][GLINT_Y4M_IN_OCTAVE + 1];
 };
 
@@ -261,7 +262,7 @@ struct glint_y4m_light {
 void glint_y4m_light_init(struct glint_y4m_light *light,
                           const struct glint_y4m_header *header);
 
-/* Sets all codes of PLANES to black; alpha stays. */
+/* Sets all colour codes of PLANES to black; alpha stays. */
 void glint_y4m_light_blacken(const struct glint_y4m_light *light,
                              uint8_t *planes);
 
