@@ -6,30 +6,34 @@
 
 #include "engine/frame/block.h"
 
-/* Returns how many tracks are kept if MAX lamps are shown: more, so that a lamp
- * that becomes strong is already known. */
-static int tracks_for(int max)
+/* Returns the max number of tracks if at most MAX lamps are shown. The
+ * number is larger than MAX, so that a lamp that becomes strong has been
+ * tracked before. */
+static int choose_max_tracks(int max)
 {
     const int wanted = max < 64 ? 128 : 2 * max;
 
     return wanted < GLINT_LAMP_DETECTOR_MAX ? wanted : GLINT_LAMP_DETECTOR_MAX;
 }
 
-/* Returns BYTES rounded up to the alignment of memory for init. */
-static size_t padded(size_t bytes)
+/* Returns BYTES rounded up to the alignment that the init functions require. */
+static size_t round_up(size_t bytes)
 {
     return (bytes + 63) & ~(size_t)63;
 }
 
-/* Takes one block of memory and places everything in it. */
-static enum glint_status place(struct glint_lamp_detector *f,
-                               const struct glint_lamp_finder_config *lights,
-                               const struct glint_lamp_tracker_config *tracks)
+/* Allocates one block of memory and initialises the finder, tracker, profile
+ * and arrays in it. */
+static enum glint_status
+allocate_all(struct glint_lamp_detector *f,
+             const struct glint_lamp_finder_config *lights,
+             const struct glint_lamp_tracker_config *tracks)
 {
-    const size_t lights_bytes = padded(glint_lamp_finder_bytes(lights));
-    const size_t tracks_bytes = padded(glint_lamp_tracker_bytes(tracks));
-    const size_t profile_bytes = padded(glint_profile_bytes());
-    const size_t spot_bytes = padded(GLINT_LAMP_DETECTOR_MAX * sizeof *f->spot);
+    const size_t lights_bytes = round_up(glint_lamp_finder_bytes(lights));
+    const size_t tracks_bytes = round_up(glint_lamp_tracker_bytes(tracks));
+    const size_t profile_bytes = round_up(glint_profile_bytes());
+    const size_t spot_bytes =
+        round_up(GLINT_LAMP_DETECTOR_MAX * sizeof *f->spot);
     enum glint_status status;
     uint8_t *at;
 
@@ -64,12 +68,12 @@ glint_lamp_detector_open(struct glint_lamp_detector *detector,
 
     detector->mem = NULL;
     detector->n_tracks = detector->n_spots = 0;
-    detector->max_tracks = tracks_for(detector->max);
+    detector->max_tracks = choose_max_tracks(detector->max);
     lights.keep_faint = 1;
     glint_lamp_tracker_defaults(&tracks, cfg->width, cfg->height);
     tracks.max_tracks = detector->max_tracks;
     tracks.max_shown = detector->max;
-    status = place(detector, &lights, &tracks);
+    status = allocate_all(detector, &lights, &tracks);
     if (status != GLINT_OK)
         glint_lamp_detector_close(detector);
     return status;
@@ -98,22 +102,24 @@ void glint_lamp_detector_restart(struct glint_lamp_detector *detector)
     glint_lamp_tracker_restart(detector->tracks);
 }
 
-static int32_t larger(int32_t a, int32_t b)
+static int32_t max_i32(int32_t a, int32_t b)
 {
     return a > b ? a : b;
 }
 
 /* Returns the min semi-axis of a spot in a still picture. The glare around a
- * core may hide a lamp of any smaller size; a lamp drawn as a point has ghosts
- * with unrealistically sharp outlines. */
-static int32_t least_axis_q8(const struct glint_spot *spot)
+ * lamp's core hides its true size if that is smaller than this; without a
+ * minimum the lamp would be drawn as a point, whose ghosts have
+ * unrealistically sharp outlines. */
+static int32_t min_axis_q8(const struct glint_spot *spot)
 {
     return spot->size_q8 / 6;
 }
 
-static struct glint_lamp_track still(const struct glint_spot *spot, uint32_t id)
+static struct glint_lamp_track make_still_track(const struct glint_spot *spot,
+                                                uint32_t id)
 {
-    const int32_t least_q8 = least_axis_q8(spot);
+    const int32_t least_q8 = min_axis_q8(spot);
     const bool is_round = spot->axis_q8[0] <= least_q8;
 
     return (struct glint_lamp_track){
@@ -125,15 +131,16 @@ static struct glint_lamp_track still(const struct glint_spot *spot, uint32_t id)
         .level_q15 = 1 << 15,
         .flux_q16 = spot->flux_q16,
         .power_q16 = spot->power_q16,
-        .axis_q8 = {larger(spot->axis_q8[0], least_q8),
-                    larger(spot->axis_q8[1], least_q8)},
+        .axis_q8 = {max_i32(spot->axis_q8[0], least_q8),
+                    max_i32(spot->axis_q8[1], least_q8)},
         .cos_q15 = is_round ? 1 << 15 : spot->cos_q15,
         .sin_q15 = is_round ? 0 : spot->sin_q15,
         .rgb_q15 = {spot->rgb_q15[0], spot->rgb_q15[1], spot->rgb_q15[2]}};
 }
 
-/* Sets the power of a spot as if each clipped pixel were 2^headroom. Above 2^8
- * it is kept in units of 2^(headroom - 8), as tracks hold at most 2^42. */
+/* Sets the power of a spot as if each clipped pixel had the light
+ * 2^headroom. If the headroom is above 8 stops, the unit of power is
+ * 2^(headroom - 8), as tracks hold powers up to 2^42. */
 static void set_power(struct glint_lamp_detector *f, struct glint_spot *spot)
 {
     const double each = 65536 * (exp2(f->headroom_ev) - 1);
@@ -143,11 +150,11 @@ static void set_power(struct glint_lamp_detector *f, struct glint_spot *spot)
         ((double)spot->flux_q16 + spot->n_clipped * each) / f->scale, 0x1p42);
 }
 
-/* Finds spots, and measures profiles of as many of the strongest as can be
- * followed: for a thousand, as in a city at night, that would cost several
- * times as much as finding them. */
-static int find(struct glint_lamp_detector *f, const struct glint_image *image,
-                int max)
+/* Finds spots, and measures the profiles of the strongest ones, at most
+ * max_tracks. Measuring the profiles of a thousand spots, as in a city at
+ * night, would cost several times as much as finding them. */
+static int find_spots(struct glint_lamp_detector *f,
+                      const struct glint_image *image, int max)
 {
     const int n = glint_lamp_finder_find(f->lights, image, f->spot, max);
 
@@ -160,20 +167,22 @@ static int find(struct glint_lamp_detector *f, const struct glint_image *image,
     return n;
 }
 
-/* Finds the lamps of IMAGE by itself; returns how many. */
-static int find_still(struct glint_lamp_detector *f,
-                      const struct glint_image *image)
+/* Finds the lamps of IMAGE without regard to earlier pictures; returns their
+ * number. */
+static int find_still_lamps(struct glint_lamp_detector *f,
+                            const struct glint_image *image)
 {
-    const int n = find(f, image, f->max);
+    const int n = find_spots(f, image, f->max);
     int n_lights = 0;
 
     for (; n_lights < n && !f->spot[n_lights].faint; n_lights++)
-        f->track[n_lights] = still(&f->spot[n_lights], (uint32_t)n_lights + 1);
+        f->track[n_lights] =
+            make_still_track(&f->spot[n_lights], (uint32_t)n_lights + 1);
     return n_lights;
 }
 
-static double power_of(const struct glint_lamp_detector *f,
-                       const struct glint_lamp_track *track)
+static double compute_power(const struct glint_lamp_detector *f,
+                            const struct glint_lamp_track *track)
 {
     return track->level_q15 / 32768.0 * (double)track->power_q16 / 65536 *
            f->scale;
@@ -199,11 +208,11 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
 
         glint_lamp_finder_keep_white(
             f->lights, glint_lamp_tracker_white_q15(f->tracks, elapsed_us));
-        n = find(f, image, GLINT_LAMP_DETECTOR_MAX);
+        n = find_spots(f, image, GLINT_LAMP_DETECTOR_MAX);
         f->n_tracks = glint_lamp_tracker_step(f->tracks, f->spot, n, elapsed_us,
                                               f->track, f->max_tracks);
     } else {
-        f->n_tracks = find_still(f, image);
+        f->n_tracks = find_still_lamps(f, image);
     }
     for (int i = 0; i < f->n_tracks; i++) {
         const struct glint_lamp_track *track = &f->track[i];
@@ -211,7 +220,7 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
         glint_view_to_angles(view, focal_mm, track->x_q8 / 256.0,
                              track->y_q8 / 256.0, &lamps[i]);
         set_extent(&lamps[i], track, glint_view_pixel_tangent(view, focal_mm));
-        lamps[i].power = power_of(f, track);
+        lamps[i].power = compute_power(f, track);
         for (int c = 0; c < 3; c++)
             lamps[i].rgb[c] = track->rgb_q15[c] / 32768.0;
     }
@@ -219,7 +228,7 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
 }
 
 /* Returns whether a spot is about as compact as a disc, whose area is 2 pi
- * times its squared RMS radius. */
+ * times its squared RMS radius: its area must be at least 60 % of that. */
 static int is_disc(const struct glint_spot *spot)
 {
     const double r = spot->size_q8 / 256.0;

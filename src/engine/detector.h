@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds lamps in pictures of one size, and follows them if these are a video.
- * All memory is allocated by open. */
+ * Finds lamps in pictures of one size, and tracks them if the pictures are
+ * frames of a video. Only the open functions allocate memory.
+ */
 #ifndef GLINT_ENGINE_DETECTOR_H
 #define GLINT_ENGINE_DETECTOR_H
 
@@ -10,15 +11,15 @@
 #include "glint/profile.h"
 #include "glint/lamp_tracker.h"
 
-enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* as many as GLINT_ENGINE_MAX_LAMPS */
+enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* equal to GLINT_ENGINE_MAX_LAMPS */
 
 struct glint_lamp_detector {
     double headroom_ev; /* stops by which clipped pixels exceed white; below 0:
                            estimated from the profile of each lamp */
-    int max; /* most lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
+    int max; /* max number of lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
-    /* The lamps of the last frame, as found, the strongest first; those of a
-     * still picture are numbered from 1. */
+    /* Lamps of the last frame before conversion to directions, the strongest
+     * first. The ids of lamps in a still picture count from 1. */
     struct glint_lamp_track *track;
     int n_tracks;
 
@@ -26,50 +27,55 @@ struct glint_lamp_detector {
     struct glint_lamp_finder *lights;
     struct glint_lamp_tracker *tracks;
     struct glint_profile *profile;
-    double scale;            /* factor on the powers of tracks */
+    double scale; /* factor from powers of tracks to powers of lamps */
     struct glint_spot *spot; /* [GLINT_LAMP_DETECTOR_MAX] */
-    int n_spots;             /* spots of the last frame, lamps and candidates */
+    int n_spots; /* number of spots in the last frame, including spots that are
+                    not lamps */
     int max_tracks;
     void *mem;
 };
 
-/* Opens DETECTOR, whose headroom_ev and max are set. CFG states what a lamp is;
- * its keep_faint is not used. */
+/* Opens DETECTOR, whose headroom_ev and max are set. CFG has the thresholds
+ * and rules for lamps; its keep_faint is ignored. Returns GLINT_E_ARGUMENT
+ * if CFG is out of range, or GLINT_E_MEMORY. */
 enum glint_status
 glint_lamp_detector_open(struct glint_lamp_detector *detector,
                          const struct glint_lamp_finder_config *cfg);
 
-/* The same for pictures of WIDTH x HEIGHT, with lamps that reach
- * threshold_ev[0] stops from white and extend down to threshold_ev[1]. */
+/* Like glint_lamp_detector_open(), for pictures of WIDTH x HEIGHT. A lamp
+ * needs a pixel of at least threshold_ev[0] stops relative to white, and
+ * extends down to threshold_ev[1] stops. */
 enum glint_status
 glint_lamp_detector_open_at(struct glint_lamp_detector *detector, int width,
                             int height, const double threshold_ev[2]);
 void glint_lamp_detector_close(struct glint_lamp_detector *detector);
 
-/* Writes the lamps of IMAGE, which comes ELAPSED_US after the last frame, to
- * LAMPS, which has room for GLINT_LAMP_DETECTOR_MAX; returns how many. They
- * rise and fade as in glint/lamp_tracker.h, so for a while there may be a few
- * more than max. ELAPSED_US 0: IMAGE is a still picture. */
+/* Finds the lamps of IMAGE, ELAPSED_US after the last frame, or 0 if IMAGE
+ * is a still picture. Writes them to LAMPS, an array of
+ * GLINT_LAMP_DETECTOR_MAX, and returns their number. Lamps fade in and out
+ * as described in glint/lamp_tracker.h, so the number may exceed max for a
+ * while. */
 int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
                               const struct glint_image *image,
                               int32_t elapsed_us, const struct glint_view *view,
                               double focal_mm, struct glint_lamp *lamps);
 
 /* Returns the light of LAMP in excess of what the picture shows, in white x
- * pixels: TRACK is the lamp's, LEVEL how far it has risen, SHARE its visible
- * fraction, and WHITE the light of the picture's white. */
+ * pixels. TRACK is the lamp's track, LEVEL its fade level 0 .. 1, SHARE the
+ * visible fraction of the lamp, WHITE the linear light of the picture's
+ * white. */
 double glint_lamp_excess(const struct glint_lamp *lamp,
                          const struct glint_lamp_track *track, double level,
                          double share, double white);
 
-/* Returns spot I, the strongest first, of those of the last frame that were not
- * taken for lamps, yet are within a stop of white on average and about as
- * compact as a disc; NULL if there are no so many. */
+/* Returns the Ith strongest spot of the last frame that was rejected as a
+ * lamp although its mean light is within a stop of white and it is about as
+ * compact as a disc; NULL if there are not that many. */
 const struct glint_spot *
 glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector, int i);
 
-/* Declares that the next frame is unrelated to the last one: another camera, a
- * jump. */
+/* Declares that the next frame is unrelated to the last one, as after a cut
+ * to another camera. */
 void glint_lamp_detector_restart(struct glint_lamp_detector *detector);
 
 #endif

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * State of an engine, by stage; shared by the files of engine*.c. */
+ * State of an engine, by stage: optics, lamp search, exposure, drawing. Shared
+ * by the files engine*.c.
+ */
 #ifndef GLINT_ENGINE_ENGINE_PARTS_H
 #define GLINT_ENGINE_ENGINE_PARTS_H
 
@@ -25,24 +27,26 @@ struct glint_engine_stops {
 };
 
 struct glint_engine_optics {
-    const struct glint_setup *setup; /* OWN, or the caller's */
+    /* points to OWN, or to the caller's setup */
+    const struct glint_setup *setup;
     struct glint_setup own;
-    struct glint_engine_camera camera; /* what OWN was made for */
-    struct glint_dirt *dirt;           /* that of OWN, or NULL */
+    struct glint_engine_camera camera; /* camera that OWN was made for */
+    struct glint_dirt *dirt; /* dirt on the front lens in OWN, or NULL */
     struct glint_front_dirt *own_front;
-    const struct glint_front_dirt *front; /* OWN_FRONT, the caller's, or NULL */
+    /* points to OWN_FRONT, to the caller's, or NULL */
+    const struct glint_front_dirt *front;
 };
 
 struct glint_engine_finding {
     struct glint_lamp_detector detector;
     struct glint_lamp found[GLINT_LAMP_DETECTOR_MAX];
-    int32_t elapsed_us; /* between the next picture and the last; 0: not known
-                         */
-    bool is_searched;   /* lamps were looked for in the next picture */
-    bool is_cut;        /* the next picture restarts */
+    int32_t elapsed_us; /* time from the last picture to the next, us; 0: not
+                           known */
+    bool is_searched;   /* true: lamps were searched in the next picture */
+    bool is_cut; /* true: the next picture is unrelated to the last one */
 };
 
-/* Light of the lamps of the last picture in excess of what it showed. */
+/* Light of a lamp in the last picture in excess of what the picture showed. */
 struct glint_engine_before {
     uint32_t id;
     double excess;
@@ -53,16 +57,16 @@ struct glint_engine_exposing {
     struct glint_response response;
     struct glint_strength strength;
     struct glint_engine_exposure last;
-    bool by_drawing; /* the exposure of stills is measured in a small drawing of
-                        their flare */
-    bool is_done;    /* the next picture is exposed */
+    bool by_drawing; /* true: still pictures are exposed by drawing their flare
+                        at reduced size and measuring it */
+    bool is_done;    /* true: the exposure of the next picture is set */
     struct glint_engine_before *before;
     int n_before;
 };
 
 struct glint_engine_painting {
     struct glint_frame frame;
-    struct glint_lamp *lamp; /* [most_lamps]: those of the picture */
+    struct glint_lamp *lamp; /* [most_lamps]: lamps to draw in the picture */
     unsigned parts;
     bool keep_points, keep_lights;
 };
@@ -72,31 +76,35 @@ struct glint_engine {
     struct glint_engine_finding find;
     struct glint_engine_exposing expose;
     struct glint_engine_painting paint;
-    int most_lamps; /* that a picture may have */
+    int most_lamps; /* max number of lamps per picture */
 };
 
-/* Sets the stop of CAMERA by the options stop and dust of O that are set. */
+/* Sets the stop of CAMERA by those of the options stop and dust that are set
+ * in O. */
 struct glint_options;
 void glint_engine_configure_stop(struct glint_engine_camera *camera,
                                  const struct glint_options *o);
 
-/* Sets another stop of ENGINE, which makes its own setup; with MEASURE,
- * measures the brightness of flares again. After an error, stop and brightness
- * are unchanged. */
+/* Sets another stop of ENGINE, for which it makes its own setup. If MEASURE
+ * is set, measures the brightness of flares again. On failure the stop is
+ * unchanged. */
 enum glint_status glint_engine_reshape(struct glint_engine *engine,
                                        const struct glint_engine_camera *camera,
                                        bool measure, struct glint_error *error);
 
-/* Enables PARTS of the flare, for the light that is set and with VEIL, and
- * disables all others. */
+/* Enables PARTS of the flare as far as the options permit them, with
+ * starbursts of brightness STAR, and a veil if VEIL is set; disables all
+ * other parts. */
 void glint_engine_choose(struct glint_engine *engine, unsigned parts,
                          double star, bool veil);
 
-/* Returns whether ENGINE can draw N lamps on IMAGE. */
+/* Returns whether ENGINE can draw N lamps on IMAGE: the number and the
+ * format and size of IMAGE are in range. */
 bool glint_engine_fits(const struct glint_engine *engine,
                        const struct glint_image *image, int n);
 
-/* Copies N LAMPS to where they are drawn from; returns these. */
+/* Copies N LAMPS to the array from which they are drawn, and returns that
+ * array. */
 const struct glint_lamp *
 glint_engine_plain(struct glint_engine *engine,
                    const struct glint_engine_lamp *lamps, int n);

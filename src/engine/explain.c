@@ -9,16 +9,17 @@
 #include "engine/explain_frame.h"
 #include "engine/frame/frame_parts.h"
 
-/* Returns the instructions that N items of a kind take. */
-static double work_in(enum glint_cost_kind kind, double n)
+/* Returns the cost of N items of KIND, instructions. */
+static double compute_work(enum glint_cost_kind kind, double n)
 {
     return 1e3 * glint_cost_weight[kind].counted * n;
 }
 
-/* Returns the instructions of P, and sets STAGE to those of each kind. Lit
- * pixels and parts of cells do not count, as they belong to no ghost, light or
- * wave alone. */
-static double work_of(const struct glint_explain_part *p, double *stage)
+/* Returns the cost of P in instructions, and sets STAGE to the cost of each
+ * kind of item. Lit pixels and pieces of cells are not counted, as they do
+ * not belong to a single ghost, light or wave. */
+static double compute_part_work(const struct glint_explain_part *p,
+                                double *stage)
 {
     const double count[GLINT_COST_PARTS] = {
         [GLINT_COST_LOOKED_AT] = (double)p->probed,
@@ -29,7 +30,7 @@ static double work_of(const struct glint_explain_part *p, double *stage)
     double work = 0;
 
     for (int k = 0; k < GLINT_COST_PARTS; k++)
-        work += stage[k] = work_in((enum glint_cost_kind)k, count[k]);
+        work += stage[k] = compute_work((enum glint_cost_kind)k, count[k]);
     return work;
 }
 
@@ -49,7 +50,8 @@ int glint_explain_bundles(const struct glint_explain_part *p)
 
 /* ---------------------------------------------------------------- accounts */
 
-static void add(struct glint_explain_part *p, const struct glint_account *a)
+static void add_account(struct glint_explain_part *p,
+                        const struct glint_account *a)
 {
     p->probed += a->probed;
     if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* The ghost is drawn with
@@ -68,9 +70,9 @@ static void add(struct glint_explain_part *p, const struct glint_account *a)
     p->refs += a->refs;
 }
 
-/* Returns the index of the part that wave WAVE belongs to: its set, or itself.
- */
-static int part_of(const struct glint_explain *e, int wave)
+/* Returns the index in e->wave of the part that includes wave WAVE: its wave
+ * set, or the wave itself if there are no sets. */
+static int find_part(const struct glint_explain *e, int wave)
 {
     const struct glint_wave_sets *sets = e->frame->plan.rays.sets;
     int part = wave;
@@ -81,7 +83,7 @@ static int part_of(const struct glint_explain *e, int wave)
     return part;
 }
 
-static void take_accounts(struct glint_explain *e)
+static void collect_accounts(struct glint_explain *e)
 {
     const int n_ghosts = (int)e->frame->lens->header->n_ghosts;
     const int n_waves = e->frame->plan.rays.n_waves;
@@ -93,11 +95,12 @@ static void take_accounts(struct glint_explain *e)
 
                 glint_flare_account(e->frame->memory.flare, ghost, light, wave,
                                     &a);
-                add(&e->all, &a);
-                /* NOLINTNEXTLINE: set_numbers() has set all of them */
-                add(&e->ghost[e->ghost_of[ghost]], &a);
-                add(&e->light[light], &a);
-                add(&e->wave[part_of(e, wave)], &a);
+                add_account(&e->all, &a);
+                /* NOLINTNEXTLINE: set_numbers() has set all elements of
+                 * ghost_of */
+                add_account(&e->ghost[e->ghost_of[ghost]], &a);
+                add_account(&e->light[light], &a);
+                add_account(&e->wave[find_part(e, wave)], &a);
                 if (a.outcome == GLINT_OUTCOME_DRAWN ||
                     a.outcome == GLINT_OUTCOME_EMPTY)
                     e->barrels[a.barrels]++;
@@ -106,7 +109,7 @@ static void take_accounts(struct glint_explain *e)
 
 /* ------------------------------------------------------------------- light */
 
-static void draw(struct glint_explain *e, int ghost, int light, int wave)
+static void draw_part(struct glint_explain *e, int ghost, int light, int wave)
 {
     const struct glint_view *view = &e->frame->view;
     struct glint_image image = glint_image_over(e->linear_q20, GLINT_LINEAR_Q20,
@@ -121,11 +124,13 @@ static void draw(struct glint_explain *e, int ghost, int light, int wave)
 
 void glint_explain_draw(struct glint_explain *explain, int ghost)
 {
-    draw(explain, ghost, -1, -1);
+    draw_part(explain, ghost, -1, -1);
 }
 
-/* Measures the light that PART, which was just drawn, gives to the picture. */
-static void measure(struct glint_explain *e, struct glint_explain_part *part)
+/* Measures the light of PART, which must be the part drawn last: flux, max,
+ * lit pixels and tiles. */
+static void measure_part(struct glint_explain *e,
+                         struct glint_explain_part *part)
 {
     const struct glint_view *view = &e->frame->view;
     const size_t n = (size_t)view->width * (size_t)view->height;
@@ -148,22 +153,22 @@ static void measure_parts(struct glint_explain *e)
 {
     for (int i = 0; i < e->n_ghosts; i++)
         if (e->ghost[i].edges) {
-            draw(e, i, -1, -1);
-            measure(e, &e->ghost[i]);
+            draw_part(e, i, -1, -1);
+            measure_part(e, &e->ghost[i]);
         }
     for (int i = 0; i < e->n_lights; i++)
         if (e->light[i].edges) {
-            draw(e, -1, i, -1);
-            measure(e, &e->light[i]);
+            draw_part(e, -1, i, -1);
+            measure_part(e, &e->light[i]);
         }
     for (int i = 0; i < e->n_waves; i++)
         if (e->wave[i].edges) {
-            draw(e, -1, -1, i);
-            measure(e, &e->wave[i]);
+            draw_part(e, -1, -1, i);
+            measure_part(e, &e->wave[i]);
         }
     if (e->n_lights) {
-        draw(e, -1, -1, -1);
-        measure(e, &e->all);
+        draw_part(e, -1, -1, -1);
+        measure_part(e, &e->all);
     }
 }
 
@@ -173,7 +178,7 @@ static void set_shares(const struct glint_explain *e,
     double stage[GLINT_COST_KINDS];
 
     for (int i = 0; i < n; i++) {
-        part[i].work = work_of(&part[i], stage);
+        part[i].work = compute_part_work(&part[i], stage);
         part[i].share = e->all.flux > 0 ? part[i].flux / e->all.flux : 0;
         part[i].cost = e->all.work > 0 ? part[i].work / e->all.work : 0;
     }
@@ -190,7 +195,7 @@ static void set_numbers(struct glint_explain *e)
         e->ghost_of[k] = glint_frame_number(s, k);
 }
 
-static int tiles_of(const struct glint_frame *f)
+static int count_tiles(const struct glint_frame *f)
 {
     const int side = 1 << f->cfg.tile_log2;
 
@@ -219,7 +224,7 @@ enum glint_status glint_explain_frame(struct glint_explain *e,
                                          : frame->plan.rays.n_waves,
         .unit = unit,
         .tile_log2 = frame->cfg.tile_log2,
-        .n_tiles = tiles_of(frame)};
+        .n_tiles = count_tiles(frame)};
     e->ghost_of = malloc(n_all * sizeof *e->ghost_of);
     e->ghost = calloc(n_all, sizeof *e->ghost);
     e->light = calloc((size_t)e->n_lights + 1, sizeof *e->light);
@@ -230,18 +235,18 @@ enum glint_status glint_explain_frame(struct glint_explain *e,
     if (!e->ghost_of || !e->ghost || !e->light || !e->wave || !e->linear_q20)
         return GLINT_E_MEMORY;
     set_numbers(e);
-    take_accounts(e);
+    collect_accounts(e);
     measure_parts(e);
     e->stage[GLINT_COST_PARTS] =
-        work_in(GLINT_COST_PARTS,
-                glint_cost_of(&plan, &plan.dials).count[GLINT_COST_PARTS]);
-    e->stage[GLINT_COST_LIT] = work_in(GLINT_COST_LIT, e->all.lit);
-    e->stage[GLINT_COST_STAR] =
-        work_in(GLINT_COST_STAR, frame->star.is_set ? frame->star.pixels : 0);
+        compute_work(GLINT_COST_PARTS,
+                     glint_cost_of(&plan, &plan.dials).count[GLINT_COST_PARTS]);
+    e->stage[GLINT_COST_LIT] = compute_work(GLINT_COST_LIT, e->all.lit);
+    e->stage[GLINT_COST_STAR] = compute_work(
+        GLINT_COST_STAR, frame->star.is_set ? frame->star.pixels : 0);
     e->stage[GLINT_COST_VEIL] =
-        work_in(GLINT_COST_VEIL,
-                frame->veil.is_set ? glint_frame_veil_pixels(frame) : 0);
-    e->all.work = work_of(&e->all, e->stage);
+        compute_work(GLINT_COST_VEIL,
+                     frame->veil.is_set ? glint_frame_veil_pixels(frame) : 0);
+    e->all.work = compute_part_work(&e->all, e->stage);
     for (int k = GLINT_COST_PARTS; k < GLINT_COST_KINDS; k++)
         e->all.work += e->stage[k];
     e->all.share = e->all.flux > 0;

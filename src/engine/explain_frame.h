@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Explains a frame that no engine has drawn. */
+ * Explains a frame that was drawn without an engine.
+ */
 #ifndef GLINT_ENGINE_EXPLAIN_FRAME_H
 #define GLINT_ENGINE_EXPLAIN_FRAME_H
 
 #include "engine/frame/frame.h"
 #include "glint/explain.h"
 
-/* Does as glint_explain_open(), of what FRAME drew last. */
+/* Like glint_explain_open(), for the last picture that FRAME drew. UNIT:
+ * factor from the frame's light to the light of the report. */
 enum glint_status glint_explain_frame(struct glint_explain *explain,
                                       struct glint_frame *frame, double unit);
 

@@ -5,13 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t samples(const struct glint_float_image *image)
+static size_t count_samples(const struct glint_float_image *image)
 {
     return 3 * (size_t)image->width * (size_t)image->height;
 }
 
-/* Returns a number that rises with the luminance of a pixel, also below 0. */
-static uint32_t key_of(const float rgb[3])
+/* Returns an integer that rises with the luminance of a pixel, also for
+ * negative luminance. */
+static uint32_t encode_key(const float rgb[3])
 {
     const float y = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
     uint32_t bits;
@@ -20,7 +21,7 @@ static uint32_t key_of(const float rgb[3])
     return bits >> 31 ? ~bits : bits | UINT32_C(1) << 31;
 }
 
-static double value_of(uint32_t key)
+static double decode_key(uint32_t key)
 {
     const uint32_t bits = key >> 31 ? key & INT32_MAX : ~key;
     float y;
@@ -29,11 +30,12 @@ static double value_of(uint32_t key)
     return (double)y;
 }
 
-/* Returns the luminance of the pixel of rank RANK, 0 .. pixels - 1, by rising
- * luminance. Its bits are found a byte at a time, which needs no memory. */
-static double luminance_at(const struct glint_float_image *image, size_t rank)
+/* Returns the luminance of the pixel of rank RANK, 0 .. pixels - 1, in the
+ * order of rising luminance. A radix selection finds the bits of its key a
+ * byte at a time, without allocating memory. */
+static double find_luminance(const struct glint_float_image *image, size_t rank)
 {
-    const size_t n = samples(image) / 3;
+    const size_t n = count_samples(image) / 3;
     uint32_t key = 0, known = 0;
 
     for (int shift = 24; shift >= 0; shift -= 8) {
@@ -41,7 +43,7 @@ static double luminance_at(const struct glint_float_image *image, size_t rank)
         uint32_t byte = 0;
 
         for (size_t i = 0; i < n; i++) {
-            const uint32_t k = key_of(image->rgb + 3 * i);
+            const uint32_t k = encode_key(image->rgb + 3 * i);
 
             count[k >> shift & 255] += (k & known) == key;
         }
@@ -50,13 +52,13 @@ static double luminance_at(const struct glint_float_image *image, size_t rank)
         key |= byte << shift;
         known |= UINT32_C(255) << shift;
     }
-    return value_of(key);
+    return decode_key(key);
 }
 
 double glint_measure_exposure(const struct glint_float_image *image)
 {
-    const size_t n = samples(image) / 3;
-    const double at = luminance_at(image, (size_t)((double)(n - 1) * 0.999));
+    const size_t n = count_samples(image) / 3;
+    const double at = find_luminance(image, (size_t)((double)(n - 1) * 0.999));
 
     return at > 0 ? 1 / at : 1;
 }
@@ -71,7 +73,7 @@ double glint_measure_code(double light)
 uint8_t *glint_measure_encode(const struct glint_float_image *image,
                               double exposure)
 {
-    const size_t n = samples(image);
+    const size_t n = count_samples(image);
     uint8_t *codes = calloc(n, 1);
 
     for (size_t i = 0; codes && i < n; i++)
@@ -80,29 +82,29 @@ uint8_t *glint_measure_encode(const struct glint_float_image *image,
     return codes;
 }
 
-static double best_factor(const struct glint_float_image *a,
-                          const struct glint_float_image *b)
+static double compute_best_factor(const struct glint_float_image *a,
+                                  const struct glint_float_image *b)
 {
     double ab = 0, bb = 0;
 
-    for (size_t i = 0; i < samples(a); i++) {
+    for (size_t i = 0; i < count_samples(a); i++) {
         ab += (double)a->rgb[i] * (double)b->rgb[i];
         bb += (double)b->rgb[i] * (double)b->rgb[i];
     }
     return bb > 0 ? ab / bb : 1;
 }
 
-static double sum(const struct glint_float_image *image)
+static double sum_samples(const struct glint_float_image *image)
 {
     double s = 0;
 
-    for (size_t i = 0; i < samples(image); i++)
+    for (size_t i = 0; i < count_samples(image); i++)
         s += (double)image->rgb[i];
     return s;
 }
 
-static void difference(const uint8_t *a, const uint8_t *b, size_t n,
-                       struct glint_measure *m)
+static void measure_difference(const uint8_t *a, const uint8_t *b, size_t n,
+                               struct glint_measure *m)
 {
     size_t count[256] = {0}, seen = 0;
     double squares = 0;
@@ -124,21 +126,22 @@ static void difference(const uint8_t *a, const uint8_t *b, size_t n,
     m->p99 = d;
 }
 
-static double luma(const uint8_t *p)
+static double compute_luma(const uint8_t *p)
 {
-    /* NOLINTNEXTLINE: a picture has pixels */
+    /* NOLINTNEXTLINE: a picture is never empty */
     return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2];
 }
 
-/* Returns the SSIM of one 8 x 8 block, by [Wang04] with a flat window. */
-static double block_ssim(const uint8_t *a, const uint8_t *b, int stride)
+/* Returns the structural similarity (SSIM) of one 8 x 8 block [Wang04], with
+ * a flat window instead of a Gaussian. */
+static double compute_block_ssim(const uint8_t *a, const uint8_t *b, int stride)
 {
     double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, va, vb, ab;
     const double c1 = 6.5025, c2 = 58.5225, n = 64;
 
     for (int k = 0; k < 64; k++) {
         const int at = (k / 8 * stride + k % 8) * 3;
-        const double x = luma(a + at), y = luma(b + at);
+        const double x = compute_luma(a + at), y = compute_luma(b + at);
 
         sa += x, sb += y, saa += x * x, sbb += y * y, sab += x * y;
     }
@@ -148,7 +151,8 @@ static double block_ssim(const uint8_t *a, const uint8_t *b, int stride)
            ((sa * sa + sb * sb + c1) * (va + vb + c2));
 }
 
-static double ssim(const uint8_t *a, const uint8_t *b, int width, int height)
+static double compute_ssim(const uint8_t *a, const uint8_t *b, int width,
+                           int height)
 {
     double total = 0;
     int n = 0;
@@ -157,7 +161,7 @@ static double ssim(const uint8_t *a, const uint8_t *b, int width, int height)
         for (int x = 0; x + 8 <= width; x += 4, n++) {
             const size_t at = ((size_t)y * (size_t)width + (size_t)x) * 3;
 
-            total += block_ssim(a + at, b + at, width);
+            total += compute_block_ssim(a + at, b + at, width);
         }
     return n ? total / n : 1;
 }
@@ -165,17 +169,18 @@ static double ssim(const uint8_t *a, const uint8_t *b, int width, int height)
 void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
                          int width, int height, struct glint_measure *result)
 {
-    difference(reference, test, 3 * (size_t)width * (size_t)height, result);
-    result->ssim = ssim(reference, test, width, height);
+    measure_difference(reference, test, 3 * (size_t)width * (size_t)height,
+                       result);
+    result->ssim = compute_ssim(reference, test, width, height);
 }
 
-/* Returns the PSNR, dB, of codes before rounding, for differences that rounding
- * hides. */
-static double fine_db(const struct glint_float_image *reference,
-                      const struct glint_float_image *test,
-                      const struct glint_measure *m)
+/* Returns the PSNR in dB of 8-bit codes before rounding, which resolves
+ * differences that rounding hides. */
+static double compute_fine_db(const struct glint_float_image *reference,
+                              const struct glint_float_image *test,
+                              const struct glint_measure *m)
 {
-    const size_t n = samples(reference);
+    const size_t n = count_samples(reference);
     double squares = 0;
 
     for (size_t i = 0; i < n; i++) {
@@ -192,19 +197,19 @@ bool glint_measure_at(const struct glint_float_image *reference,
                       const struct glint_float_image *test, bool fit,
                       double exposure, struct glint_measure *result)
 {
-    const double total = sum(reference);
+    const double total = sum_samples(reference);
     uint8_t *a, *b;
 
     result->exposure = exposure;
-    result->factor = fit ? best_factor(reference, test) : 1;
-    result->flux = total > 0 ? result->factor * sum(test) / total : 1;
+    result->factor = fit ? compute_best_factor(reference, test) : 1;
+    result->flux = total > 0 ? result->factor * sum_samples(test) / total : 1;
     a = glint_measure_encode(reference, result->exposure);
     b = glint_measure_encode(test, result->exposure * result->factor);
     if (a && b)
         glint_measure_codes(a, b, reference->width, reference->height, result);
     result->same_codes = a && b && result->psnr_db == 999;
     if (result->same_codes)
-        result->psnr_db = fine_db(reference, test, result);
+        result->psnr_db = compute_fine_db(reference, test, result);
     free(a);
     free(b);
     return a && b;

@@ -8,25 +8,25 @@
 #include "glint/area.h"
 #include "engine/setup/spectrum.h"
 
-/* Most pixels that find_top() is requested. */
+/* Max N of find_top(). */
 enum { TOP_MAX = GLINT_RESPONSE_FINE / 5000 };
 
 static const double none_log2 = -100;
 
-/* Numbers of angles and fineness of grids. Exact rays get fewer of both, as
- * they take fifty times as long as a model. */
+/* Number of angles, and fineness of ghost grids. Exact rays use fewer angles
+ * and coarser grids, as they cost fifty times as much as a model. */
 enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
 
-/* The brightest pixels are brought to 2^AIM_LOG2 times display white, within a
- * factor of 2^AIM_SPAN: far below saturation, and equally far above the
- * smallest step. */
+/* Lamp powers are scaled until the brightest pixels are 2^AIM_LOG2 times
+ * display white, within a factor of 2^AIM_SPAN: far below saturation, and
+ * equally far above the quantisation step. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
 /* ----------------------------------------------------------------- looking */
 
-/* Inserts VALUE into the N largest values, sorted from the largest; returns the
- * smallest of them. */
-static float insert(float *top, int n, float value)
+/* Inserts VALUE into the N largest values, sorted in descending order;
+ * returns the smallest of them. */
+static float insert_value(float *top, int n, float value)
 {
     int i = n - 1;
 
@@ -45,20 +45,20 @@ static void find_top(const float *rgb, size_t pixels, int channel, float *top,
     memset(top, 0, (size_t)n * sizeof *top);
     for (size_t i = 0; i < pixels; i++)
         if (rgb[3 * i + (size_t)channel] > least)
-            least = insert(top, n, rgb[3 * i + (size_t)channel]);
+            least = insert_value(top, n, rgb[3 * i + (size_t)channel]);
 }
 
-/* Returns how many pixels are 1 / PARTS of N, 1 .. TOP_MAX. */
-static int count_of_part(size_t n, int parts)
+/* Returns 1 / PARTS of N, clamped to 1 .. TOP_MAX. */
+static int count_fraction(size_t n, int parts)
 {
     return (int)fmin(fmax(floor((double)n / parts), 1), TOP_MAX);
 }
 
-/* Returns the mean of the largest 1/1000 of one channel. */
-static double peak_of(const float *rgb, size_t n, int channel)
+/* Returns the mean of the brightest 1/1000 of the pixels of one channel. */
+static double compute_peak(const float *rgb, size_t n, int channel)
 {
     float top[TOP_MAX];
-    const int n_top = count_of_part(n, 1000);
+    const int n_top = count_fraction(n, 1000);
     double sum = 0;
 
     find_top(rgb, n, channel, top, n_top);
@@ -76,13 +76,13 @@ void glint_response_around(const float *rgb, size_t n,
         for (size_t i = 0; i < n; i++)
             sum += (double)rgb[3 * i + (size_t)c];
         light->mean[c] = fmax(sum / (double)n, 0);
-        light->peak[c] = peak_of(rgb, n, c);
+        light->peak[c] = compute_peak(rgb, n, c);
     }
 }
 
 /* ----------------------------------------------------------------- drawing */
 
-static struct glint_view proxy_of(struct glint_view view, int pixels)
+static struct glint_view make_proxy_view(struct glint_view view, int pixels)
 {
     const double by = sqrt(pixels / ((double)view.width * view.height));
 
@@ -91,8 +91,8 @@ static struct glint_view proxy_of(struct glint_view view, int pixels)
     return view;
 }
 
-/* A small frame with a view like that of a larger frame, and its picture. It
- * must be closed even if opening fails. */
+/* A small frame with the same field of view as a larger frame, and its
+ * picture. It must be closed even if opening fails. */
 struct proxy {
     struct glint_view view;
     struct glint_frame frame;
@@ -100,13 +100,14 @@ struct proxy {
     float *rgb;
 };
 
-/* Opens a small frame with all settings of LIKE that matter for brightness. */
+/* Opens a small frame of about PIXELS pixels with all settings of LIKE that
+ * affect brightness. */
 static enum glint_status open_proxy(const struct glint_frame *like, int pixels,
                                     size_t bytes, struct proxy *p)
 {
     size_t samples;
 
-    *p = (struct proxy){.view = proxy_of(like->view, pixels)};
+    *p = (struct proxy){.view = make_proxy_view(like->view, pixels)};
     glint_frame_like(&p->frame, like, p->view);
     p->frame.only_ghost = -1;
     p->frame.picture.uniform = false;
@@ -129,7 +130,8 @@ static void close_proxy(struct proxy *p)
     free(p->rgb);
 }
 
-/* Draws LAMPS times 2^BY, and sets LIGHT to the light at scale 1. */
+/* Draws LAMPS with powers scaled by 2^BY, and sets LIGHT to the measured
+ * light divided by 2^BY. */
 static enum glint_status draw_once(struct proxy *p,
                                    const struct glint_lamp *lamps, int n,
                                    double by,
@@ -150,11 +152,13 @@ static enum glint_status draw_once(struct proxy *p,
     return status;
 }
 
-/* Draws until the brightest pixels lie in the range aimed at. *PEAK_LOG2 is
- * log2 of their light, first as it is expected, then as it was drawn. */
-static enum glint_status draw(struct proxy *p, const struct glint_lamp *lamps,
-                              int n, double *peak_log2,
-                              struct glint_response_light *light)
+/* Draws LAMPS, with powers scaled repeatedly, until the brightest pixels lie
+ * in the range of AIM_LOG2 and AIM_SPAN. *PEAK_LOG2 is log2 of their light:
+ * on entry an estimate, on return the measured value. */
+static enum glint_status draw_in_range(struct proxy *p,
+                                       const struct glint_lamp *lamps, int n,
+                                       double *peak_log2,
+                                       struct glint_response_light *light)
 {
     enum glint_status status = GLINT_OK;
 
@@ -172,7 +176,7 @@ static enum glint_status draw(struct proxy *p, const struct glint_lamp *lamps,
 
 /* --------------------------------------------------------------- measuring */
 
-static double corner_deg(struct glint_view view, double focal_mm)
+static double compute_corner_deg(struct glint_view view, double focal_mm)
 {
     const double half =
         0.5 * view.sensor_width_mm * hypot(1, (double)view.height / view.width);
@@ -180,8 +184,8 @@ static double corner_deg(struct glint_view view, double focal_mm)
     return atan(half / fabs(focal_mm)) * 180 / GLINT_PI;
 }
 
-/* Sets the angles to be measured: denser near the axis, where ghosts lie on top
- * of each other, and none beyond the end of the model. */
+/* Sets the angles to measure, degrees: denser near the axis, where ghosts
+ * overlap, and none above END, the max angle of the model. */
 static void set_angles(struct glint_response *r, int n, double corner,
                        double end)
 {
@@ -195,28 +199,28 @@ static void set_angles(struct glint_response *r, int n, double corner,
     }
 }
 
-static double log2_or_none(double value)
+static double compute_log2(double value)
 {
     return value > 0 ? fmax(log2(value), none_log2) : none_log2;
 }
 
-static void take_logs(struct glint_response_light *light)
+static void convert_to_log2(struct glint_response_light *light)
 {
     for (int c = 0; c < 3; c++) {
-        light->peak[c] = log2_or_none(light->peak[c]);
-        light->mean[c] = log2_or_none(light->mean[c]);
+        light->peak[c] = compute_log2(light->peak[c]);
+        light->mean[c] = compute_log2(light->mean[c]);
     }
 }
 
-/* Measures how much fainter the brightest part of the flare becomes if LAMP is
- * a disc rather than a point, of radii up to an eighth of the picture's
+/* Measures how much fainter the brightest part of the flare becomes if LAMP
+ * is a disc rather than a point, for radii up to an eighth of the picture's
  * diagonal. */
 static enum glint_status measure_extents(struct proxy *p,
                                          struct glint_response *r,
                                          struct glint_lamp lamp)
 {
     const double diagonal =
-        2 * tan(corner_deg(p->view, p->frame.setup->optics.focal_mm) *
+        2 * tan(compute_corner_deg(p->view, p->frame.setup->optics.focal_mm) *
                 GLINT_PI / 180);
     double point_log2 = 0, peak_log2 = 0;
 
@@ -227,7 +231,7 @@ static enum glint_status measure_extents(struct proxy *p,
         r->extent[i] =
             i ? diagonal / (1 << (GLINT_RESPONSE_EXTENTS + 2 - i)) : 0;
         glint_area_set_round(&lamp, r->extent[i]);
-        status = draw(p, &lamp, 1, &peak_log2, &light);
+        status = draw_in_range(p, &lamp, 1, &peak_log2, &light);
         if (status != GLINT_OK)
             return status;
         if (i == 0)
@@ -237,9 +241,11 @@ static enum glint_status measure_extents(struct proxy *p,
     return GLINT_OK;
 }
 
-static enum glint_status measure(struct proxy *p, struct glint_response *r)
+static enum glint_status measure_angles(struct proxy *p,
+                                        struct glint_response *r)
 {
-    const double azimuth = /* direction from the middle to the corner */
+    const double azimuth = /* direction from the middle of the picture to a
+                              corner, degrees */
         atan2(p->view.height, p->view.width) * 180 / GLINT_PI;
     const double all = (double)p->view.width * p->view.height;
     struct glint_lamp lamp = {
@@ -247,16 +253,16 @@ static enum glint_status measure(struct proxy *p, struct glint_response *r)
     double peak_log2 = 0;
 
     set_angles(r, p->frame.lens ? GLINT_RESPONSE_ANGLES : EXACT_ANGLES,
-               corner_deg(p->view, p->frame.setup->optics.focal_mm),
+               compute_corner_deg(p->view, p->frame.setup->optics.focal_mm),
                glint_frame_end_deg(&p->frame));
     for (int i = 0; i < r->n; i++) {
         enum glint_status status;
 
         lamp.theta_deg = r->theta_deg[i];
-        status = draw(p, &lamp, 1, &peak_log2, &r->log2_of[i]);
+        status = draw_in_range(p, &lamp, 1, &peak_log2, &r->log2_of[i]);
         if (status != GLINT_OK)
             return status;
-        take_logs(&r->log2_of[i]);
+        convert_to_log2(&r->log2_of[i]);
     }
     lamp.theta_deg = r->theta_deg[r->n / 2];
     return measure_extents(p, r, lamp);
@@ -272,13 +278,13 @@ enum glint_status glint_response_measure(const struct glint_frame *like,
         open_proxy(like, GLINT_RESPONSE_COARSE, bytes, &proxy);
 
     if (status == GLINT_OK)
-        status = measure(&proxy, response);
+        status = measure_angles(&proxy, response);
     response->ms = like->clock ? 1e3 * (like->clock() - start) : 0;
     close_proxy(&proxy);
     return status;
 }
 
-static double mix(double a, double b, double part)
+static double interpolate_log2(double a, double b, double part)
 {
     return exp2(a + part * (b - a));
 }
@@ -298,10 +304,10 @@ void glint_response_at(const struct glint_response *r, double theta_deg,
     for (int c = 0; c < 3; c++) {
         const int j = r->n > 1 ? i + 1 : i;
 
-        light->peak[c] =
-            mix(r->log2_of[i].peak[c], r->log2_of[j].peak[c], part);
-        light->mean[c] =
-            mix(r->log2_of[i].mean[c], r->log2_of[j].mean[c], part);
+        light->peak[c] = interpolate_log2(r->log2_of[i].peak[c],
+                                          r->log2_of[j].peak[c], part);
+        light->mean[c] = interpolate_log2(r->log2_of[i].mean[c],
+                                          r->log2_of[j].mean[c], part);
     }
 }
 
@@ -315,20 +321,20 @@ double glint_response_softening(const struct glint_response *r,
     while (i + 2 < GLINT_RESPONSE_EXTENTS && r->extent[i + 1] < extent)
         i++;
     if (!(r->extent[i + 1] > r->extent[i]))
-        return 1; /* Nothing was measured. */
+        return 1; /* nothing was measured */
     part = (extent - r->extent[i]) / (r->extent[i + 1] - r->extent[i]);
-    return mix(r->softened_log2[i], r->softened_log2[i + 1], fmin(part, 1));
+    return interpolate_log2(r->softened_log2[i], r->softened_log2[i + 1],
+                            fmin(part, 1));
 }
 
 /* ---------------------------------------------------------- what was drawn */
 
-/* Sets the peak of LIGHT to the least value of the brightest 1/10000 of the
+/* Sets the peak of LIGHT to the min value among the brightest 1/10000 of the
  * pixels drawn last. */
-static void set_least_top(const struct proxy *p,
-                          struct glint_response_light *light)
+static void set_peak(const struct proxy *p, struct glint_response_light *light)
 {
     const size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
-    const int n = count_of_part(pixels, 10000);
+    const int n = count_fraction(pixels, 10000);
     float top[TOP_MAX];
 
     for (int c = 0; c < 3; c++) {
@@ -360,9 +366,9 @@ enum glint_status glint_response_draw(const struct glint_frame *like,
         for (int i = 0; i < n; i++)
             small[i].power *= by;
         if (status == GLINT_OK)
-            status = draw(&p, small, n, &peak_log2, light);
+            status = draw_in_range(&p, small, n, &peak_log2, light);
         if (status == GLINT_OK)
-            set_least_top(&p, light);
+            set_peak(&p, light);
         if (status == GLINT_OK && ground && seen)
             glint_seen_on(seen, ground, p.rgb, p.view.width, p.view.height);
         close_proxy(&p);

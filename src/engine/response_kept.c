@@ -2,28 +2,29 @@
  *
  * Cache of lens responses between runs.
  *
- * An entry is found by a key of the model, of what its brightness depends on,
- * and of the version of the library. It is some 800 bytes; one that is damaged,
- * or of another format, is measured and written again. */
+ * The key of an entry is a hash of the model, of all settings that affect
+ * brightness, and of the library's version. An entry has about 800 bytes.
+ * Entries that are damaged or of another format are measured and written again.
+ */
 #include <math.h>
 #include <string.h>
 
 #include "engine/response.h"
 #include "glint/glint.h"
 
-/* Revision of the figures. It is to be raised when glint_response_measure()
- * gives other figures for the same scene, because frames are drawn or measured
- * in another way. */
+/* Revision of the measured values. Raise it when glint_response_measure()
+ * returns other values for the same scene, because frames are drawn or
+ * measured differently. */
 enum { REVISION = 2 };
 
 enum { VALUES = 7 * GLINT_RESPONSE_ANGLES + 2 * GLINT_RESPONSE_EXTENTS };
 
-/* An entry, in the byte order of the machine, without padding. */
+/* A cache entry, in the machine's byte order, without padding. */
 struct entry {
     char magic[8];
     uint64_t key;
     int32_t n;
-    uint32_t crc32; /* checksum of value */
+    uint32_t crc32; /* checksum of the member value */
     double value[VALUES];
 };
 
@@ -31,7 +32,7 @@ static const char magic[8] = "glintRS";
 
 /* ---------------------------------------------------------------------- key */
 
-/* Adds the bytes of WORD, the lowest first, to KEY by FNV-1a. */
+/* Adds the bytes of WORD to KEY by the hash FNV-1a, the lowest byte first. */
 static void add_word(uint64_t *key, uint64_t word)
 {
     for (int shift = 0; shift < 64; shift += 8)
@@ -48,8 +49,8 @@ static void add_values(uint64_t *key, const double *value, size_t n)
     }
 }
 
-/* Adds the stop and the colours of a setup; all else in it follows from the
- * model. */
+/* Adds the stop and the wavelengths of a setup to KEY; all other members
+ * follow from the model. */
 static void add_setup(uint64_t *key, const struct glint_setup *s)
 {
     const size_t n = (size_t)s->n_wavelengths;
@@ -78,8 +79,9 @@ static void add_setup(uint64_t *key, const struct glint_setup *s)
     }
 }
 
-/* Adds the dials that glint_response_measure() does not set itself. */
-static void add_dials(uint64_t *key, const struct glint_frame *like)
+/* Adds the quality parameters that glint_response_measure() does not set
+ * itself to KEY. */
+static void add_parameters(uint64_t *key, const struct glint_frame *like)
 {
     const struct glint_dials *d = &like->asked;
     const double value[] = {
@@ -90,10 +92,10 @@ static void add_dials(uint64_t *key, const struct glint_frame *like)
     add_values(key, value, sizeof value / sizeof *value);
 }
 
-/* Returns the key of a scene. It depends on the shape of the picture, not on
- * its size, and on BYTES, as too little memory makes grids coarser or leaves
- * parts of the flare out. */
-static uint64_t key_of(const struct glint_frame *like, size_t bytes)
+/* Returns the key of a scene. It contains the aspect ratio of the picture,
+ * not its size, and BYTES, as too little memory makes grids coarser or
+ * leaves parts of the flare out. */
+static uint64_t compute_key(const struct glint_frame *like, size_t bytes)
 {
     const struct glint_model_header *h = like->lens->header;
     const double shape[] = {(double)like->view.width / like->view.height,
@@ -108,13 +110,14 @@ static uint64_t key_of(const struct glint_frame *like, size_t bytes)
         add_word(&key, (unsigned char)*c);
     add_values(&key, shape, sizeof shape / sizeof *shape);
     add_setup(&key, like->setup);
-    add_dials(&key, like);
+    add_parameters(&key, like);
     return key;
 }
 
 /* -------------------------------------------------------------------- entry */
 
-/* Lists the places of R's values in the order of an entry. */
+/* Sets AT to pointers to the members of R in the order in which an entry
+ * stores them. */
 static void list_values(struct glint_response *r, double *at[VALUES])
 {
     int n = 0;
@@ -132,7 +135,7 @@ static void list_values(struct glint_response *r, double *at[VALUES])
     }
 }
 
-static struct entry entry_of(struct glint_response *r, uint64_t key)
+static struct entry make_entry(struct glint_response *r, uint64_t key)
 {
     struct entry e = {.key = key, .n = r->n};
     double *at[VALUES];
@@ -145,8 +148,8 @@ static struct entry entry_of(struct glint_response *r, uint64_t key)
     return e;
 }
 
-/* Checks whether R has figures that glint_response_measure() could have
- * given. */
+/* Returns whether all members of R are in the range that
+ * glint_response_measure() returns. */
 static bool is_sound(const struct glint_response *r)
 {
     if (r->n < 1 || r->n > GLINT_RESPONSE_ANGLES || r->theta_deg[0] != 0)
@@ -163,7 +166,7 @@ static bool is_sound(const struct glint_response *r)
     return true;
 }
 
-static bool take_entry(const struct entry *e, uint64_t key,
+static bool read_entry(const struct entry *e, uint64_t key,
                        struct glint_response *r)
 {
     double *at[VALUES];
@@ -189,7 +192,7 @@ enum glint_status glint_response_obtain(const struct glint_frame *like,
                                         const struct glint_engine_cache *cache,
                                         struct glint_response *response)
 {
-    const uint64_t key = like->lens ? key_of(like, bytes) : 0;
+    const uint64_t key = like->lens ? compute_key(like, bytes) : 0;
     const char *const name = like->lens ? like->lens->header->name : "";
     enum glint_status status;
     struct entry e;
@@ -197,12 +200,12 @@ enum glint_status glint_response_obtain(const struct glint_frame *like,
     if (!like->lens)
         cache = NULL;
     if (cache && cache->read(cache->ctx, name, key, &e, sizeof e) &&
-        take_entry(&e, key, response))
+        read_entry(&e, key, response))
         return GLINT_OK;
     *response = (struct glint_response){.n = 0};
     status = glint_response_measure(like, bytes, response);
     if (status == GLINT_OK && cache) {
-        e = entry_of(response, key);
+        e = make_entry(response, key);
         cache->write(cache->ctx, name, key, &e, sizeof e);
     }
     return status;

@@ -4,8 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Bins of light / the least visible light, an eighth of a stop each, around 1.
- * */
+/* Histogram bins: eight per stop, over 40 stops on either side of 1. */
 enum { STEPS = 8, OCTAVES = 40, BINS = 2 * OCTAVES * STEPS };
 
 void glint_ground_take(struct glint_ground *ground,
@@ -22,8 +21,9 @@ static double decode(int code)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* By the code of a channel, 1 / the light that must be added to be visible, and
- * to make it white; 0 if there is no such light. */
+/* For each 8-bit code of a channel: 1 / the linear light that must be added
+ * to be visible, and 1 / the light that makes it white; 0 if no light does
+ * that, or if the code is not tested. */
 struct slopes {
     double visible[256], white[256];
 };
@@ -38,9 +38,10 @@ static void list_slopes(struct slopes *slope)
         slope->white[code] = 1 / (1 - decode(code));
 }
 
-/* Returns the light of a pixel over the least visible light. */
-static double visible_of(const float light[3], const uint8_t code[3],
-                         const struct slopes *slope)
+/* Returns the max over the channels of a pixel's added light divided by the
+ * min visible light. */
+static double compute_visible(const float light[3], const uint8_t code[3],
+                              const struct slopes *slope)
 {
     double most = 0;
 
@@ -49,10 +50,11 @@ static double visible_of(const float light[3], const uint8_t code[3],
     return most;
 }
 
-/* Returns the light of a pixel over that which makes it white; 0 if it is dark,
- * or nearly white. */
-static double white_of(const float light[3], const uint8_t code[3],
-                       const struct slopes *slope)
+/* Returns the min over the channels of a pixel's added light divided by the
+ * light that makes the channel white; 0 if a channel is below
+ * GLINT_SEEN_BRIGHT or from GLINT_SEEN_WHITE on. */
+static double compute_white(const float light[3], const uint8_t code[3],
+                            const struct slopes *slope)
 {
     double least = HUGE_VAL;
 
@@ -64,14 +66,15 @@ static double white_of(const float light[3], const uint8_t code[3],
     return least < HUGE_VAL ? least : 0;
 }
 
-static void count_in(int count[BINS], double x)
+static void count_value(int count[BINS], double x)
 {
     if (x > 0)
         count[(int)fmin(fmax((log2(x) + OCTAVES) * STEPS, 0), BINS - 1)]++;
 }
 
-/* Returns what N of the counted pixels reach, or 0. */
-static double reached_by(const int count[BINS], int n)
+/* Returns the max value that N of the counted pixels reach, or 0 if fewer
+ * than N were counted. */
+static double find_reached(const int count[BINS], int n)
 {
     for (int bin = BINS - 1, sum = 0; bin >= 0; bin--) {
         sum += count[bin];
@@ -94,10 +97,10 @@ void glint_seen_on(struct glint_seen *seen, const struct glint_ground *ground,
                 ground->rgb[y * GLINT_GROUND_ROWS / height]
                            [x * GLINT_GROUND_COLUMNS / width];
 
-            count_in(visible, visible_of(rgb, code, &slope));
-            count_in(white, white_of(rgb, code, &slope));
+            count_value(visible, compute_visible(rgb, code, &slope));
+            count_value(white, compute_white(rgb, code, &slope));
         }
-    seen->few = reached_by(visible, width * height / GLINT_SEEN_FEW + 1);
-    seen->many = reached_by(visible, width * height / GLINT_SEEN_MANY + 1);
-    seen->white = reached_by(white, width * height / GLINT_SEEN_DISC + 1);
+    seen->few = find_reached(visible, width * height / GLINT_SEEN_FEW + 1);
+    seen->many = find_reached(visible, width * height / GLINT_SEEN_MANY + 1);
+    seen->white = find_reached(white, width * height / GLINT_SEEN_DISC + 1);
 }

@@ -5,38 +5,39 @@
 
 #include "engine/setup/spectrum.h"
 
-/* Exponent of the sum of many lights: with 4, sixteen equal flares, which
- * mostly lie side by side, count as two on top of each other. */
+/* Exponent of the norm that sums the peaks of many flares: with 4, sixteen
+ * equal flares, which rarely overlap, count as two that overlap. */
 static const double norm = 4;
 
-/* Display light of the mean at strength 1, about a third of the largest. */
+/* max display light of the picture's mean at strength 1, about a third of
+ * white */
 static const double mean_most = 0.32;
 
-/* log2 of display light at --exposure 0 that is neither much nor little. */
+/* log2 of the display light, at --exposure 0, of a flare of medium
+ * brightness */
 static const double common_log2 = -5;
-/* Stops of change for a stop of light. */
+/* stops by which the exposed flare changes per stop of lamp light */
 static const double compression = 0.15;
 
-/* Display light at strength 0.5: limits of the brightest part and of the mean
- * up to which a hidden flare is lifted, and the least of the brightest part to
- * which a veil is lowered. */
+/* Limits of display light at strength 0.5: the max peak and max mean up to
+ * which an invisible flare is raised, and the min peak down to which a veil
+ * is lowered. */
 static const double seen_peak = 0.6, seen_mean = 0.04, veil_peak = 0.1;
 
-/* Light that a veil leaves on a quarter of the picture / the least visible
- * light. */
+/* target light of a veil in a quarter of the picture / the min visible light */
 static const double veil_light = 0.5;
 
-/* Light of the brightest ghosts on bright ground / that which turns it white.
- */
+/* target light of the brightest ghosts on bright ground / the light that
+ * turns the ground white */
 static const double white_part = 0.4;
 
-/* How the factor follows: stops a second, most stops a frame, and the time
- * constant. */
+/* Limits on how the factor changes over time: stops per second, max stops
+ * per frame, and the time constant in seconds. */
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
 static const double settle_s = 0.3;
 
-/* A lamp is at most this much brighter than it would be alone, as a fraction.
- */
+/* Max fraction by which a lamp may be brighter than its exposure alone would
+ * make it. */
 static const double overshoot = 0.5;
 
 void glint_strength_defaults(struct glint_strength *strength)
@@ -46,10 +47,10 @@ void glint_strength_defaults(struct glint_strength *strength)
 
 /* --------------------------------------------------------------- one frame */
 
-/* Sets LIGHT to that of lamp I at full level, by channel. */
-static void light_of(const struct glint_response *response,
-                     const struct glint_strength_lamps *lamps, int i,
-                     struct glint_response_light *light)
+/* Sets LIGHT to the light of lamp I's flare at full level, by channel. */
+static void compute_light(const struct glint_response *response,
+                          const struct glint_strength_lamps *lamps, int i,
+                          struct glint_response_light *light)
 {
     const struct glint_lamp *l = &lamps->lamp[i].lamp;
     const double power = l->power / lamps->pixels / lamps->lamp[i].level;
@@ -62,8 +63,8 @@ static void light_of(const struct glint_response *response,
     }
 }
 
-static void add(struct glint_response_light *sum,
-                const struct glint_response_light *light, double level)
+static void add_light(struct glint_response_light *sum,
+                      const struct glint_response_light *light, double level)
 {
     for (int c = 0; c < 3; c++) {
         sum->peak[c] += pow(level * light->peak[c], norm);
@@ -71,7 +72,7 @@ static void add(struct glint_response_light *sum,
     }
 }
 
-static void finish(struct glint_response_light *sum)
+static void finish_sum(struct glint_response_light *sum)
 {
     for (int c = 0; c < 3; c++)
         sum->peak[c] = pow(sum->peak[c], 1 / norm);
@@ -85,37 +86,39 @@ void glint_strength_light(const struct glint_response *response,
     for (int i = 0; i < lamps->n; i++) {
         struct glint_response_light one;
 
-        light_of(response, lamps, i, &one);
-        add(light, &one, lamps->lamp[i].level);
+        compute_light(response, lamps, i, &one);
+        add_light(light, &one, lamps->lamp[i].level);
     }
-    finish(light);
+    finish_sum(light);
 }
 
-static double together(double a, double b)
+static double combine_norm(double a, double b)
 {
     return pow(pow(a, norm) + pow(b, norm), 1 / norm);
 }
 
-/* Returns the factor in stops of the strength that the caller set. */
-static double own_log2(const struct glint_strength *s)
+/* Returns the stops that the strength set by the caller adds to the factor
+ * at strength 1. */
+static double compute_strength_log2(const struct glint_strength *s)
 {
     return 2 * log2(s->asked);
 }
 
-/* Returns the factor in stops that LIGHT requests at strength 1. */
-static double target_log2(const struct glint_response_light *light)
+/* Returns the log2 of the factor, at strength 1, that exposes a flare of
+ * brightness LIGHT. */
+static double compute_target_log2(const struct glint_response_light *light)
 {
     const double peak = fmax(glint_largest_channel(light->peak), 1e-60);
     const double mean = glint_largest_channel(light->mean) / mean_most;
     const double more =
-        compression * (log2(together(peak, mean)) - common_log2);
+        compression * (log2(combine_norm(peak, mean)) - common_log2);
 
-    return -log2(together(peak * exp2(-tanh(more)), mean));
+    return -log2(combine_norm(peak * exp2(-tanh(more)), mean));
 }
 
 /* --------------------------------------------------------------- over time */
 
-static double step(double towards, double elapsed_s)
+static double limit_step(double towards, double elapsed_s)
 {
     const double part = 1 - exp(-elapsed_s / settle_s);
     const double most = fmin(
@@ -124,22 +127,23 @@ static double step(double towards, double elapsed_s)
     return fmin(fmax(part * towards, -most), most);
 }
 
-/* Returns the factor that lowers TIMES: 1 up to TIMES 1, then such that the
- * product rises ever more slowly to 1 + overshoot. */
-static double held(double times)
+/* Returns the factor that limits TIMES, the ratio of a lamp's exposure to
+ * its exposure alone: 1 up to TIMES 1; above, the product rises ever more
+ * slowly to 1 + overshoot. */
+static double compute_limit(double times)
 {
     return times <= 1 ? 1
                       : (1 + overshoot * tanh((times - 1) / overshoot)) / times;
 }
 
-/* Lowers lamp I towards the exposure that it would get alone; LIGHT is its own
- * light. */
-static void hold(const struct glint_strength *s,
-                 const struct glint_strength_lamps *lamps, int i,
-                 struct glint_response_light *light)
+/* Lowers the power of lamp I towards the exposure that it would get alone.
+ * LIGHT is the light of its own flare, which is lowered with it. */
+static void limit_lamp(const struct glint_strength *s,
+                       const struct glint_strength_lamps *lamps, int i,
+                       struct glint_response_light *light)
 {
-    const double times = exp2(s->factor_log2 - target_log2(light));
-    const double by = held(times);
+    const double times = exp2(s->factor_log2 - compute_target_log2(light));
+    const double by = compute_limit(times);
 
     lamps->lamp[i].lamp.power *= by;
     for (int c = 0; c < 3; c++) {
@@ -148,18 +152,20 @@ static void hold(const struct glint_strength *s,
     }
 }
 
-static void follow(struct glint_strength *s, double target, int32_t elapsed_us)
+static void follow_target(struct glint_strength *s, double target,
+                          int32_t elapsed_us)
 {
     if (elapsed_us > 0 && s->follows)
-        s->factor_log2 += step(target - s->factor_log2, 1e-6 * elapsed_us);
+        s->factor_log2 +=
+            limit_step(target - s->factor_log2, 1e-6 * elapsed_us);
     else
         s->factor_log2 = target;
     s->follows = true;
 }
 
-/* Returns the factor in stops at strength 1 for all lamps at full level. */
-static double target_of(const struct glint_response *response,
-                        const struct glint_strength_lamps *lamps)
+/* Returns log2 of the factor at strength 1 for all lamps at full level. */
+static double find_target_log2(const struct glint_response *response,
+                               const struct glint_strength_lamps *lamps)
 {
     struct glint_strength_lamps full = *lamps;
     struct glint_response_light light = {{0}, {0}};
@@ -167,27 +173,28 @@ static double target_of(const struct glint_response *response,
     for (int i = 0; i < full.n; i++) {
         struct glint_response_light one;
 
-        light_of(response, &full, i, &one);
-        add(&light, &one, 1);
+        compute_light(response, &full, i, &one);
+        add_light(&light, &one, 1);
     }
-    finish(&light);
-    return target_log2(&light);
+    finish_sum(&light);
+    return compute_target_log2(&light);
 }
 
-static void expose(struct glint_strength *s,
-                   const struct glint_response *response,
-                   const struct glint_strength_lamps *lamps, int32_t elapsed_us)
+static void expose_lamps(struct glint_strength *s,
+                         const struct glint_response *response,
+                         const struct glint_strength_lamps *lamps,
+                         int32_t elapsed_us)
 {
-    follow(s, target_of(response, lamps), elapsed_us);
+    follow_target(s, find_target_log2(response, lamps), elapsed_us);
     for (int i = 0; i < lamps->n; i++) {
         struct glint_response_light one;
 
-        light_of(response, lamps, i, &one);
-        hold(s, lamps, i, &one);
-        add(&s->light, &one, lamps->lamp[i].level);
+        compute_light(response, lamps, i, &one);
+        limit_lamp(s, lamps, i, &one);
+        add_light(&s->light, &one, lamps->lamp[i].level);
     }
-    finish(&s->light);
-    s->scale = s->gain * exp2(own_log2(s) + s->factor_log2);
+    finish_sum(&s->light);
+    s->scale = s->gain * exp2(compute_strength_log2(s) + s->factor_log2);
 }
 
 static void scale_light(struct glint_strength *s)
@@ -216,17 +223,18 @@ void glint_strength_expose(struct glint_strength *strength,
         glint_strength_light(response, lamps, &s->light);
         s->scale = s->gain * exp2(s->exposure_ev);
     } else {
-        expose(s, response, lamps, elapsed_us);
+        expose_lamps(s, response, lamps, elapsed_us);
     }
     scale_light(s);
 }
 
-/* Returns the stops by which the flare DRAWN is lifted so that it can be seen,
- * or lowered so that it neither is a veil nor turns a bright picture white,
- * within the limits of its brightest part and its mean. BASE: log2 of its
+/* Returns the stops by which the flare DRAWN is raised until it is visible,
+ * or lowered until it neither veils the picture nor turns bright ground
+ * white, within the limits on its peak and its mean. BASE: log2 of its
  * factor at strength 0.5. */
-static double lift_log2(double base, const struct glint_response_light *drawn,
-                        const struct glint_seen *seen)
+static double compute_lift_log2(double base,
+                                const struct glint_response_light *drawn,
+                                const struct glint_seen *seen)
 {
     const double peak = log2(fmax(glint_largest_channel(drawn->peak), 1e-60));
     const double mean = log2(fmax(glint_largest_channel(drawn->mean), 1e-60));
@@ -251,10 +259,10 @@ void glint_strength_correct(struct glint_strength *strength,
         !(glint_largest_channel(drawn->peak) > 0))
         return;
     s->is_drawn = true;
-    s->factor_log2 = target_log2(drawn);
+    s->factor_log2 = compute_target_log2(drawn);
     if (seen)
-        s->factor_log2 += lift_log2(s->factor_log2 - 2, drawn, seen);
-    s->scale = s->gain * exp2(own_log2(s) + s->factor_log2);
+        s->factor_log2 += compute_lift_log2(s->factor_log2 - 2, drawn, seen);
+    s->scale = s->gain * exp2(compute_strength_log2(s) + s->factor_log2);
     s->light = *drawn;
     scale_light(s);
 }

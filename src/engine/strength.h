@@ -5,78 +5,77 @@
  *
  *     glint_strength_expose(&strength, &response, &lit, elapsed_us);
  *
- * From scene to code. A lamp of power P (white times pixels: as the picture
- * shows it, and as it would show it beyond white) gives a flare of P *
- * response(angle) at --exposure 0; the response contains what the lens lets
- * through, its coatings, its stop and the size of the sensor. Multiplied by
- * gain and 2^EV that is display light, 1 = white, which is added to the
- * picture's. --exposure sets EV by hand; otherwise it is chosen here.
+ * From scene to code: a lamp of power P (white times pixels: the light that the
+ * picture shows, and the estimated light beyond white) has a flare of
+ * P * response(angle) at --exposure 0. The response includes the transmittance
+ * and the coatings of the lens, its stop and the sensor's size. Multiplied by
+ * gain and 2^EV it is display light, 1 = white, which is added to the light of
+ * the picture. --exposure sets EV directly; otherwise it is chosen here.
  *
- * If lamp i has the light p_i at the brightest thousandth of the layer and m_i
- * in its mean (largest channels), the flare would have
- *     p = (sum p_i^4)^(1/4)    about the brightest: flares lie side by side
- *     m = sum m_i
+ * If the flare of lamp i has the light p_i in the brightest thousandth of the
+ * pixels and m_i in the mean (largest channels), the flare of all lamps has
+ *     p = (sum p_i^4)^(1/4)    approximate peak, as flares rarely overlap
+ *     m = sum m_i              mean
  *     b = (p^4 + (m / 0.32)^4)^(1/4)
- * and the factor is
+ * and the factor on the power of all lamps is
  *     strength^2 * ((p / t)^4 + (m / 0.32)^4)^(-1/4),
  *     t = 2^tanh(0.15 log2(b / b0)),    b0 = 1/32
- * so the brightest part is strength^2, and the mean, if the lens veils the
- * picture or lamps are many, at most a third of that; each doubling of the
- * strength is two stops, 0.5 a quarter of white. Lamps with ten stops more
- * light give 1.25 stops more flare: a sun shows more than a candle, within a
- * stop either way. All lamps get the same factor, so the ratios between them
- * stay.
+ * So the peak is about strength^2, and the mean, if the lens veils the picture
+ * or there are many lamps, at most a third of that. Each doubling of the
+ * strength adds two stops; 0.5 is a quarter of white. Lamps with ten stops more
+ * light have 1.25 stops more flare: a sun shows more than a candle, within a
+ * stop either way. The ratios between lamps are preserved.
  *
- * The response is that of one lamp along one line from the axis. A still
- * picture is drawn at reduced size first, and p and m are measured in that: p
- * is then the value that 1/10000 of the pixels reach. So the few small ghosts
- * of a point, the wide ones of a candle, and lamps at which the response off
- * that line differs become as bright as others. Then the exposure is corrected
- * by the visibility of the flare on the picture (engine/seen.h). An invisible
- * flare is brightened until it is visible in 1/50 of the picture: at strength
- * 0.5 up to 0.6 in its brightest part and 0.04 in the mean. A flare that veils
- * a quarter of the picture is lowered until the light there is half of the
- * least that can be seen, and one whose ghosts turn a bright sky white is
- * lowered until they take two fifths of the way there; neither below 0.1 in its
- * brightest part.
+ * The response is measured with one lamp on one line from the axis. For a still
+ * picture its own flare is drawn at reduced size first, which gives p and m
+ * directly; p is then the value that 1/10000 of the pixels reach. So the few
+ * small ghosts of a point, the large ghosts of a candle, and lamps off that
+ * line are exposed equally. Then the exposure is corrected by the visibility
+ * of the flare on the picture (engine/seen.h). An invisible flare is raised
+ * until it is visible in 1/50 of the picture; at strength 0.5 the limits are
+ * 0.6 for its peak and 0.04 for its mean. A flare that veils a quarter of the
+ * picture is lowered until its light there is half of the min visible light. A
+ * flare whose ghosts turn a bright sky white is lowered until they add two
+ * fifths of the light that would do so. Neither is lowered below a peak of 0.1.
  *
- * In a video a strength that changes counts in its frame. The rest of the
- * factor follows, in stops in proportion to the time: it falls by up to 3 stops
- * a second and rises by up to 2, by no more than an eighth of a stop a frame,
- * so that no step exceeds 10 %. It starts again after a cut, and if there was
- * no lamp before. Lamps rise and fade with their tracks
- * (powers without these levels decide on the factor). A new lamp that is too
- * bright for the factor, until that has followed, is limited to 1.5 times the
- * exposure that it would get alone. */
+ * In a video, a change of the strength takes effect at once. The rest of the
+ * factor changes gradually, in stops: it falls by at most 3 stops per second,
+ * rises by at most 2, and changes by at most an eighth of a stop per frame, so
+ * that no step exceeds 10 %. It starts again after a cut, and when the first
+ * lamp appears. Lamps fade in and out with their tracks; the factor is chosen
+ * from their powers without these levels. A new lamp that is too bright for the
+ * current factor is limited to 1.5 times the exposure that it would get alone,
+ * until the factor has adapted.
+ */
 #ifndef GLINT_ENGINE_STRENGTH_H
 #define GLINT_ENGINE_STRENGTH_H
 
 #include "engine/response.h"
 
-/* The lamps of a frame. */
+/* The lamps of a frame, for exposure. */
 struct glint_strength_lamps {
-    /* [n]; powers include levels but not scale; powers of new lamps that are
-     * too bright are lowered in place */
+    /* [n]; powers include the fade levels but not scale; powers of new lamps
+     * that are too bright are lowered in place */
     struct glint_engine_lamp *lamp;
     int n;
-    double pixels; /* number of pixels of the picture, times the light of its
-                      white */
+    double pixels; /* number of pixels of the picture, times the linear light of
+                      its white */
 };
 
 struct glint_strength {
-    /* Options. */
-    double asked;     /* 0 .. 100, 0.5 by default */
+    /* Options: */
+    double asked;     /* requested strength, 0 .. 100, 0.5 by default */
     bool is_physical; /* true: the factor is 2^exposure_ev */
     double exposure_ev, gain;
 
-    /* Results for the last frame. */
-    double
-        scale; /* factor on the powers of lamps; 0: there is nothing to draw */
-    /* Light of the flare, with that factor. */
+    /* Results for the last frame: */
+    double scale; /* factor on the powers of lamps; 0: nothing to draw */
+    /* Light of the flare, including the factor scale. */
     struct glint_response_light light;
     bool is_drawn; /* true: the light was measured in a drawn flare */
 
-    /* Private: log2 of the factor without strength and gain, as it follows. */
+    /* Private: log2 of the factor without strength and gain; changes
+     * gradually over time. */
     double factor_log2;
     bool follows;
 };
@@ -84,33 +83,33 @@ struct glint_strength {
 /* Sets strength 0.5 and gain 1. */
 void glint_strength_defaults(struct glint_strength *strength);
 
-/* Returns the factor on a starburst, in addition to the scale of the flare.
- * STARBURST is its brightness / the physical one; the result does not depend on
- * the exposure of ghosts. */
+/* Returns the factor on the brightness of a starburst, in addition to scale.
+ * STARBURST: requested brightness / physical brightness. The product does
+ * not depend on the exposure of ghosts. */
 double glint_strength_star(const struct glint_strength *strength,
                            double starburst);
 
-/* Sets the scale and the light for LAMPS, ELAPSED_US after the last frame, or 0
- * if this frame is unrelated to that one. Lowers the powers of lamps that are
- * still too bright. */
+/* Sets the scale and the light for LAMPS, ELAPSED_US after the last frame,
+ * or 0 if this frame is unrelated to the last one. Lowers the powers of
+ * lamps that would still be too bright. */
 void glint_strength_expose(struct glint_strength *strength,
                            const struct glint_response *response,
                            const struct glint_strength_lamps *lamps,
                            int32_t elapsed_us);
 
-/* Corrects the exposure of a still picture: sets the scale and the light from
- * DRAWN, the light of its flare drawn at reduced size and scale 1, instead of
- * the response; and from SEEN, the visibility of that flare on the picture,
- * unless SEEN is NULL. Changes nothing if the factor is set by hand or there is
- * no light. */
+/* Corrects the exposure of a still picture: sets the scale and the light
+ * from DRAWN, the light of the picture's flare drawn at reduced size and
+ * scale 1, instead of from the response; and from SEEN, the visibility of
+ * that flare on the picture, unless SEEN is NULL. Does nothing if the factor
+ * was set by hand or there is no light. */
 void glint_strength_correct(struct glint_strength *strength,
                             const struct glint_response_light *drawn,
                             const struct glint_seen *seen);
 
-/* Corrects the exposure of a still: draws the flare of N LAMPS behind the lens
- * of FRAME at low resolution and scale 1, and measures it. WHITE: light of the
- * picture's white. GROUND: the picture below the flare, or NULL.
- * GLINT_E_MEMORY: nothing has changed. */
+/* Corrects the exposure of a still picture: draws the flare of N LAMPS with
+ * the lens of FRAME at reduced size and scale 1, and measures it. WHITE:
+ * linear light of the picture's white. GROUND: the picture under the flare,
+ * or NULL. On GLINT_E_MEMORY nothing has changed. */
 enum glint_status glint_strength_expose_still(struct glint_strength *strength,
                                               const struct glint_frame *frame,
                                               const struct glint_lamp *lamps,
