@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Reports the outcome of each bundle of a frame, and its cause. No other file
- * refers to this file, so programs that do not use it do not link it. */
+ * refers to this file, so programs that do not call it do not link it.
+ */
 #include "base/q.h"
 #include "flare/by_edges.h"
 #include "flare/dim.h"
@@ -9,8 +10,8 @@
 
 /* Returns the number of a bundle among all combinations of light, ghost and
  * wave. */
-static int64_t number_of(const struct glint_flare *f, int ghost, int light,
-                         int wave)
+static int64_t compute_number(const struct glint_flare *f, int ghost, int light,
+                              int wave)
 {
     const struct glint_flare_frame *r = f->plan.frame;
 
@@ -22,7 +23,7 @@ static int64_t number_of(const struct glint_flare *f, int ghost, int light,
 /* Returns the index of the first planned bundle whose number is at least
  * NUMBER, or n_bundles if there is no such bundle. Planned bundles are sorted
  * by number. */
-static int first_from(const struct glint_flare *f, int64_t number)
+static int find_first(const struct glint_flare *f, int64_t number)
 {
     int low = 0, high = f->n_bundles;
 
@@ -30,7 +31,7 @@ static int first_from(const struct glint_flare *f, int64_t number)
         const int middle = low + (high - low) / 2;
         const struct glint_bundle_plan *s = &f->planned[middle];
 
-        if (number_of(f, s->ghost, s->light, s->wave) < number)
+        if (compute_number(f, s->ghost, s->light, s->wave) < number)
             low = middle + 1;
         else
             high = middle;
@@ -38,25 +39,25 @@ static int first_from(const struct glint_flare *f, int64_t number)
     return low;
 }
 
-/* Returns the index of a bundle among the planned bundles, or -1 if it was not
- * planned. */
+/* Returns the index of the bundle with number NUMBER among the planned
+ * bundles, or -1 if it was not planned. */
 static int find_bundle(const struct glint_flare *f, int64_t number)
 {
-    const int at = first_from(f, number);
+    const int at = find_first(f, number);
 
     if (at == f->n_bundles)
         return -1;
-    return number_of(f, f->planned[at].ghost, f->planned[at].light,
-                     f->planned[at].wave) == number
+    return compute_number(f, f->planned[at].ghost, f->planned[at].light,
+                          f->planned[at].wave) == number
                ? at
                : -1;
 }
 
-/* Returns the set of waves chosen for GHOST and LIGHT; 0 if no bundle of both
- * was kept. */
-static int set_of(const struct glint_flare *f, int ghost, int light)
+/* Returns the index of the wave set chosen for GHOST and LIGHT; 0 if no
+ * bundle of GHOST and LIGHT was planned. */
+static int find_set(const struct glint_flare *f, int ghost, int light)
 {
-    const int at = first_from(f, number_of(f, ghost, light, 0));
+    const int at = find_first(f, compute_number(f, ghost, light, 0));
     const struct glint_bundle_plan *s = &f->planned[at];
 
     return at < f->n_bundles && s->ghost == ghost && s->light == light
@@ -64,21 +65,21 @@ static int set_of(const struct glint_flare *f, int ghost, int light)
                : 0;
 }
 
-/* Returns the index of the slot, of the flare's max_bundles slots, that must
- * exist for the plan to consider the bundle at all. Without sets the index is
- * the bundle's number. With sets the plan first considers all waves of the
- * first set, for each ghost and light, and then chooses a set: it is the slot
- * of the last of these waves. */
-static int64_t place_of(const struct glint_flare *f, int ghost, int light,
-                        int wave)
+/* Returns the index of the slot, among the flare's max_bundles slots, that
+ * the plan needs to consider the bundle at all. Without wave sets the index
+ * is the bundle's number. With wave sets the plan first considers all waves
+ * of the first set, for each ghost and light, and then chooses a set; the
+ * index is that of the last of these waves. */
+static int64_t compute_slot(const struct glint_flare *f, int ghost, int light,
+                            int wave)
 {
     const struct glint_flare_frame *r = f->plan.frame;
-    const int64_t number = number_of(f, ghost, light, wave);
+    const int64_t number = compute_number(f, ghost, light, wave);
 
     return r->sets ? (number / r->n_waves + 1) * r->sets->size[0] - 1 : number;
 }
 
-static int terms_of(const struct glint_transfer *t, int kind)
+static int count_terms(const struct glint_transfer *t, int kind)
 {
     int n = 0;
 
@@ -95,12 +96,12 @@ static void count_outputs(const struct glint_transfer *t,
         if (t->outputs >> kind & 1) {
             a->outputs++;
             a->barrels += kind >= GLINT_OUT_RADIUS;
-            a->terms += terms_of(t, kind);
+            a->terms += count_terms(t, kind);
         }
 }
 
 /* Returns the number of rows of the picture that EDGE crosses. */
-static int rows_of(const struct glint_edge *edge, int height)
+static int count_rows(const struct glint_edge *edge, int height)
 {
     const int first = edge->y_q8 > 0 ? edge->y_q8 >> 8 : 0;
     const int end = (edge->end_y_q8 + 255) >> 8;
@@ -116,14 +117,14 @@ static void count_edges(const struct glint_flare *f,
 
     a->edges = slot->n;
     for (int i = slot->first; i < slot->first + slot->n; i++) {
-        a->rows += rows_of(&edge[i], f->cfg.height);
+        a->rows += count_rows(&edge[i], f->cfg.height);
         a->refs =
             glint_flare_add_need(a->refs, glint_edge_span(&edge[i], &f->bins));
     }
 }
 
-/* Returns whether, for GHOST, all light of LIGHT was merged into another
- * light. */
+/* Returns whether, for GHOST, all light of light LIGHT was merged into
+ * another light. */
 static int is_shared(const struct glint_flare *f, int ghost, int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -136,8 +137,8 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
                          int wave, struct glint_account *account)
 {
     struct glint_plan_scratch *scratch = flare->worker[0].plan;
-    const int64_t number = number_of(flare, ghost, light, wave);
-    const int64_t place = place_of(flare, ghost, light, wave);
+    const int64_t number = compute_number(flare, ghost, light, wave);
+    const int64_t place = compute_slot(flare, ghost, light, wave);
     const struct glint_wave_sets *sets = flare->plan.frame->sets;
     const int at = find_bundle(flare, number);
     struct glint_bundle_plan planned = {
@@ -148,13 +149,15 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     account->outcome = glint_plan_bundle(
         &flare->plan, &flare->plan.light[light], &planned, &bundle, scratch);
     account->probed = scratch->probe.n_rays;
-    if (sets && glint_wave_sets_of(sets, wave) != set_of(flare, ghost, light)) {
+    if (sets &&
+        glint_wave_sets_of(sets, wave) != find_set(flare, ghost, light)) {
         account->outcome = GLINT_OUTCOME_OTHER_SET;
         account->probed *= wave < sets->size[0];
         return;
     }
     if (place >= flare->cfg.max_bundles && place < flare->stats.need_bundles) {
-        account->probed = 0; /* this function traced these rays, not the plan */
+        /* this function traced the probe rays, not the plan */
+        account->probed = 0;
         account->outcome = GLINT_OUTCOME_NO_ROOM;
     } else if (at >= flare->n_drawn)
         account->outcome = GLINT_OUTCOME_NO_ROOM;
@@ -177,8 +180,9 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
         account->outcome = GLINT_OUTCOME_EMPTY;
 }
 
-static int is_of(const struct glint_flare *f, const struct glint_bundle_plan *s,
-                 int ghost, int light, int wave)
+static int is_bundle_of(const struct glint_flare *f,
+                        const struct glint_bundle_plan *s, int ghost, int light,
+                        int wave)
 {
     const struct glint_model_ghost *of = f->plan.frame->lens->ghost;
     const struct glint_wave_sets *sets = f->plan.frame->sets;
@@ -200,7 +204,7 @@ void glint_flare_keep(struct glint_flare *flare, int ghost, int light, int wave)
         for (int i = 0; i < flare->n_drawn; i++) {
             const struct glint_bundle_slot *slot = &flare->slot[i];
 
-            if (!is_of(flare, &flare->planned[i], ghost, light, wave))
+            if (!is_bundle_of(flare, &flare->planned[i], ghost, light, wave))
                 continue;
             for (int k = slot->first; k < slot->first + slot->n; k++)
                 if (put)

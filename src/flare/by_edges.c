@@ -9,16 +9,17 @@
 
 /* ------------------------------------------------------------------ memory */
 
-/* Returns the max of the number of bundles and the number of rows of tiles. */
-static size_t most_jobs(const struct glint_flare_config *c)
+/* Returns the larger of the max number of bundles and the number of rows of
+ * tiles. */
+static size_t count_max_jobs(const struct glint_flare_config *c)
 {
     const size_t rows = glint_flare_count_tiles(1, c->height, c->tile_log2);
 
     return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
 }
 
-/* Both functions are called twice: first to measure, when they return NULL,
- * then to allocate. */
+/* Both functions are called twice: first with an arena that only measures,
+ * when they return NULL, then to allocate. */
 struct glint_by_edges *glint_edges_carve(struct glint_arena *a,
                                          const struct glint_flare_config *c)
 {
@@ -28,7 +29,7 @@ struct glint_by_edges *glint_edges_carve(struct glint_arena *a,
     own = placed ? placed : &measured;
     own->edge =
         glint_arena_take(a, (size_t)c->max_primitives, sizeof *own->edge);
-    own->order = glint_arena_take(a, most_jobs(c), sizeof *own->order);
+    own->order = glint_arena_take(a, count_max_jobs(c), sizeof *own->order);
     return placed;
 }
 
@@ -95,12 +96,12 @@ static void set_order(struct glint_flare *f, int n, weight_fn *weight)
         order[at[32 - bit_length((uint32_t)weight(f, i))]++] = i;
 }
 
-static int cells_across(const struct glint_flare *f, int bundle)
+static int count_cells(const struct glint_flare *f, int bundle)
 {
     return f->bundle[bundle].n_cells;
 }
 
-static int edges_in_row(const struct glint_flare *f, int row)
+static int count_row_edges(const struct glint_flare *f, int row)
 {
     const int32_t *start = f->bins.start + row * f->bins.tiles_x;
 
@@ -111,9 +112,9 @@ static int edges_in_row(const struct glint_flare *f, int row)
 
 /* Returns the flux of a bundle at energy 1, display white times pixels, clamped
  * to 2^26. */
-static int64_t flux_of(const struct glint_bundle *b)
+static int64_t compute_flux(const struct glint_bundle *b)
 {
-    const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* 2^20 at most */
+    const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* at most 2^20 */
     const int up = b->flux_exponent - 31 + 8;
     const int64_t most_q8 = INT64_C(1) << 34, flux = b->flux_q31 * cells;
 
@@ -124,17 +125,18 @@ static int64_t flux_of(const struct glint_bundle *b)
     return ((up < 0 ? flux >> -up : flux << up) >> 8) + 1;
 }
 
-/* Returns the max light that one cell may give a pixel. Sums of _q36 in colours
- * up to 4 stay below 2^63 as long as no pixel gets more than 2^24. No cell can
- * give a pixel more than its flux; if the flux of all bundles reaches 2^24,
- * each cell is limited to 2^23 / the number of cells. */
-static int32_t light_limit_q8(const struct glint_flare *f)
+/* Returns the max light that one cell may give a pixel, display white, so
+ * that sums do not overflow: sums of _q36 in colours up to 4 stay below 2^63
+ * as long as no pixel gets more than 2^24. No cell can give a pixel more
+ * than its flux; if the flux of all bundles reaches 2^24, each cell is
+ * limited to 2^23 / the number of cells. */
+static int32_t compute_light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;
     int64_t flux = 0, cells = 1, share_q8;
 
     for (int i = 0; i < f->n_bundles; i++) {
-        flux += flux_of(&f->bundle[i]);
+        flux += compute_flux(&f->bundle[i]);
         cells += (int64_t)f->bundle[i].n_cells * f->bundle[i].n_cells;
     }
     if (flux < most)
@@ -152,9 +154,9 @@ static int add_refs(const struct glint_flare *f, int refs, int first, int n)
     return refs;
 }
 
-/* Turns a bundle into edges in the free rest of the worker's range of edges. If
- * they do not fit, all are dropped, and the number of entries that they need in
- * BINS is stored in the slot's refs, unless BINS is NULL. */
+/* Converts a bundle to edges in the unused rest of the worker's range of
+ * edges. If they do not fit, all of them are dropped; unless BINS is NULL,
+ * the number of entries that they need in BINS is stored in the slot's refs. */
 static void emit_bundle(struct glint_flare *f, int bundle, int worker,
                         const struct glint_bins *bins)
 {
@@ -209,8 +211,9 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
     w->n_edges += ghost.n_edges;
 }
 
-/* Returns the bins with the indices of WORKER's own entries. */
-static struct glint_bins bins_of(const struct glint_flare *f, int worker)
+/* Returns a copy of the bins with the start indices of WORKER's own entries. */
+static struct glint_bins make_worker_bins(const struct glint_flare *f,
+                                          int worker)
 {
     struct glint_bins bins = f->bins;
 
@@ -221,7 +224,7 @@ static struct glint_bins bins_of(const struct glint_flare *f, int worker)
 static void count_bundle(struct glint_flare *f, int bundle, int worker)
 {
     const struct glint_bundle_slot *slot = &f->slot[bundle];
-    struct glint_bins bins = bins_of(f, worker);
+    struct glint_bins bins = make_worker_bins(f, worker);
 
     for (int k = 0; slot->first >= 0 && k < slot->n; k++)
         glint_edge_count(&glint_by_edges_of(f)->edge[slot->first + k], &bins);
@@ -254,13 +257,13 @@ static void split_edges(struct glint_flare *f, int n)
 static void clear_counts(struct glint_flare *f)
 {
     for (int i = 0; i < glint_workers_count(f->cfg.workers); i++) {
-        struct glint_bins bins = bins_of(f, i);
+        struct glint_bins bins = make_worker_bins(f, i);
 
         glint_bins_open(&bins);
     }
 }
 
-static int all_placed(const struct glint_flare *f)
+static int are_all_placed(const struct glint_flare *f)
 {
     for (int i = 0; i < f->n_bundles; i++)
         if (f->slot[i].first < 0)
@@ -268,8 +271,8 @@ static int all_placed(const struct glint_flare *f)
     return 1;
 }
 
-/* Makes the edges of each bundle that did not fit into its worker's range in
- * the range of any worker with enough space left. */
+/* Converts each bundle whose edges did not fit into its worker's range,
+ * using the range of any worker that has enough space left. */
 static void emit_leftovers(struct glint_flare *f)
 {
     const int n_workers = glint_workers_count(f->cfg.workers);
@@ -286,8 +289,8 @@ static void emit_leftovers(struct glint_flare *f)
         }
 }
 
-/* Turns all bundles into edges again, in order and into one list, so that the
- * set of dropped bundles does not depend on the workers' timing. */
+/* Converts all bundles to edges again, in order and into one list, so that
+ * the set of dropped bundles does not depend on the timing of workers. */
 static void emit_in_order(struct glint_flare *f)
 {
     int full = 0;
@@ -312,11 +315,11 @@ static void emit_all(struct glint_flare *f)
 {
     split_edges(f, glint_workers_count(f->cfg.workers));
     clear_counts(f);
-    set_order(f, f->n_bundles, cells_across);
+    set_order(f, f->n_bundles, count_cells);
     glint_workers_run(f->cfg.workers, f->n_bundles, emit_job, f);
-    if (!all_placed(f))
+    if (!are_all_placed(f))
         emit_leftovers(f);
-    if (!all_placed(f))
+    if (!are_all_placed(f))
         emit_in_order(f);
     for (int i = 0; i < f->n_bundles; i++) {
         f->stats.need_primitives =
@@ -330,11 +333,11 @@ static void emit_all(struct glint_flare *f)
 
 /* -------------------------------------------------------------------- bins */
 
-/* Keeps the longest run of first bundles whose entries fit into the bins. The
- * counts in the bins are undefined afterwards. */
+/* Keeps as many bundles, from the first on, as have entries that fit into
+ * the bins. The counts in the bins are undefined afterwards. */
 static void drop_refs(struct glint_flare *f)
 {
-    struct glint_bins bins = bins_of(f, 0);
+    struct glint_bins bins = make_worker_bins(f, 0);
     int refs = 0, n_kept = 0;
 
     for (int i = 0; i < f->n_drawn; i++) {
@@ -350,9 +353,10 @@ static void drop_refs(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
-/* Turns counts into first indices: in each tile, a worker's entries follow the
- * entries of the workers before it. Returns the number of all entries. */
-static int place_refs(struct glint_flare *f)
+/* Converts the workers' counts to start indices: in each tile, a worker's
+ * entries follow the entries of the workers before it. Returns the total
+ * number of entries. */
+static int assign_refs(struct glint_flare *f)
 {
     const int n_tiles = f->bins.tiles_x * f->bins.tiles_y;
     const int n_workers = glint_workers_count(f->cfg.workers);
@@ -373,11 +377,11 @@ static int place_refs(struct glint_flare *f)
 }
 
 /* Job JOB puts the edges that worker JOB counted into the bins, at the indices
- * that place_refs() computed for that worker. Any worker may run it. */
-static void put_job(void *ctx, int job, int worker)
+ * that assign_refs() computed for that worker. Any worker may run it. */
+static void bin_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
-    struct glint_bins bins = bins_of(f, job);
+    struct glint_bins bins = make_worker_bins(f, job);
 
     (void)worker;
     for (int i = 0; i < f->n_drawn; i++) {
@@ -393,20 +397,20 @@ void glint_edges_bin(struct glint_flare *flare)
 {
     struct glint_flare_stats *s = &flare->stats;
 
-    glint_by_edges_of(flare)->limit_q8 = light_limit_q8(flare);
+    glint_by_edges_of(flare)->limit_q8 = compute_light_limit_q8(flare);
     flare->n_drawn = 0;
     emit_all(flare);
-    s->refs = place_refs(flare);
+    s->refs = assign_refs(flare);
     s->need_refs = glint_flare_add_need(s->need_refs, s->refs);
     if (s->refs > flare->cfg.max_refs) {
         drop_refs(flare);
         clear_counts(flare);
         for (int i = 0; i < flare->n_drawn; i++)
             count_bundle(flare, i, flare->slot[i].worker);
-        s->refs = place_refs(flare);
+        s->refs = assign_refs(flare);
     }
     glint_workers_run(flare->cfg.workers,
-                      glint_workers_count(flare->cfg.workers), put_job, flare);
+                      glint_workers_count(flare->cfg.workers), bin_job, flare);
 }
 
 /* ----------------------------------------------------------------- drawing */
@@ -436,6 +440,6 @@ void glint_edges_draw(struct glint_flare *flare,
     glint_by_edges_of(flare)->linear =
         tiles->image && tiles->image->format == GLINT_LINEAR_Q20;
     pass[n_below] = glint_edges_pass(flare);
-    set_order(flare, flare->bins.tiles_y, edges_in_row);
+    set_order(flare, flare->bins.tiles_y, count_row_edges);
     glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Edges of bundles: their memory, sorting into tiles, and drawing. */
+ * Edges of bundles: their memory, sorting into tiles, and drawing.
+ */
 #ifndef GLINT_FLARE_BY_EDGES_H
 #define GLINT_FLARE_BY_EDGES_H
 
@@ -9,17 +10,17 @@
 
 struct glint_by_edges {
     struct glint_edge *edge;
-    int32_t *order; /* the order of processing: indices of bundles while edges
-                       are made, then of rows of tiles */
+    int32_t *order; /* order of the jobs: indices of bundles while edges are
+                       made, then of rows of tiles */
     /* Max light that one cell may give a pixel, in units of display white. */
     int32_t limit_q8;
-    int linear; /* 1: the picture that is drawn onto is in linear light */
+    int linear; /* 1: the target picture is in linear light */
 };
 
 /* The state and memory of one worker. */
 struct glint_edges_worker {
     struct glint_ghost_rows *rows;
-    /* Sums of the row of tiles that the worker draws. */
+    /* Sums of edges for the row of tiles that the worker draws. */
     struct glint_edge_sums sums;
     /* For each tile, the index of the worker's next entry in the bins. */
     int32_t *at;
@@ -53,16 +54,17 @@ struct glint_edges_worker *
 glint_edges_carve_worker(struct glint_arena *a,
                          const struct glint_flare_config *c);
 
-/* Sets all sums of all workers to 0, as they must be between tiles. */
+/* Sets all sums of all workers to 0, the state that is required before each
+ * tile. */
 void glint_edges_begin(struct glint_flare *f);
 
-/* Makes the bundles' edges and sorts them into tiles. Sets n_drawn, the state
- * for drawing, and all statistics except the numbers of bundles and
- * vertices. */
+/* Converts the bundles to edges and sorts these into tiles. Sets n_drawn,
+ * the state for drawing, and all statistics except the numbers of bundles
+ * and vertices. */
 void glint_edges_bin(struct glint_flare *flare);
 
-/* Draws the edges over PASS[0 .. N_BELOW - 1]; the edges' own pass is stored in
- * PASS[N_BELOW]. */
+/* Draws the edges over the passes PASS[0 .. N_BELOW - 1]. Stores the pass of
+ * the edges in PASS[N_BELOW]. */
 void glint_edges_draw(struct glint_flare *flare,
                       const struct glint_tiles *tiles, struct glint_pass *pass,
                       int n_below);

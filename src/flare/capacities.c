@@ -3,8 +3,8 @@
 #include "glint/flare.h"
 
 /* Max edges per light, per bundle, and per frame. Tiles have room for two
- * entries per edge, so up to 131072 per light; the lenses of this repository
- * need up to 67000, at 1280x720 in linear light. */
+ * entries per edge, that is up to 131072 per light; the lenses of this
+ * repository need up to 67000 (1280x720, linear light). */
 enum { EDGES = 1 << 16, EDGES_OF_BUNDLE = 1 << 10, MOST_EDGES = 1 << 24 };
 
 void glint_flare_defaults(struct glint_flare_config *cfg, int width, int height)
@@ -33,7 +33,7 @@ void glint_flare_capacities(struct glint_flare_config *cfg,
 void glint_flare_frame_defaults(struct glint_flare_frame *frame,
                                 const struct glint_lens *lens)
 {
-    /* 1/8 code near black: 0.125 / 255 / 12.92 */
+    /* 1/8 code near black, in linear light: 0.125 / 255 / 12.92 */
     static const struct glint_real faintest = {1334925791, -45};
 
     *frame = (struct glint_flare_frame){.lens = lens,

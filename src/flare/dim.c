@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Logarithms are interpolated between nodes, so that a ghost's share changes
- * smoothly as its light moves or fades. If a wave does not get through at a
- * node, the ghost counts as bright from the node before it to the node after
- * it. */
+ * Interpolates the table of ghost brightness. Logarithms are interpolated
+ * between nodes (sampled angles), so that a ghost's share changes smoothly as
+ * its light moves or fades. If a wave does not get through the lens at a node,
+ * the ghost counts as bright from the previous node to the next one.
+ */
 #include "flare/dim.h"
 
 enum { BRIGHT_Q8 = 1 << 16 };
 
-/* Returns value K of ghost GHOST at the angle of SINE, or GLINT_DIM_DARK. */
-static int32_t value_at(const struct glint_flare_frame *frame, int32_t sine_q30,
-                        int ghost, int k)
+/* Returns value K of ghost GHOST at the angle whose sine is SINE,
+ * interpolated, or GLINT_DIM_DARK. */
+static int32_t interpolate_value(const struct glint_flare_frame *frame,
+                                 int32_t sine_q30, int ghost, int k)
 {
     const int32_t at_q16 = glint_dim_node_q16(frame, sine_q30);
     const int node = at_q16 >> 16;
@@ -37,10 +39,9 @@ static int is_known(const struct glint_flare_frame *frame, int ghost, int node)
     return 1;
 }
 
-/* If the ghost counts as bright in the interval before or after this interval,
- * the result falls from 1, at the node shared by both intervals, to the
- * interpolated value. It reaches that value halfway to the other node at the
- * latest. */
+/* If the ghost counts as bright in the previous or next interval, the result
+ * falls from 1, at the node shared with that interval, to the interpolated
+ * value. It reaches that value halfway to the other node at the latest. */
 int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
                            const struct glint_light *light, int ghost)
 {
@@ -51,7 +52,7 @@ int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
 
     if (!is_known(frame, ghost, node) || !is_known(frame, ghost, node + 1))
         return BRIGHT_Q8;
-    share_q8 = value_at(frame, light->sine_q30, ghost, 0) +
+    share_q8 = interpolate_value(frame, light->sine_q30, ghost, 0) +
                glint_dim_log2_q8(light->power) -
                glint_dim_log2_q8(frame->dimmest);
     if (frame->tints)
@@ -75,10 +76,10 @@ int glint_dim_share_q8(const struct glint_flare_frame *frame,
 int64_t glint_dim_ratio_q16(const struct glint_flare_frame *frame,
                             int32_t sine_q30, int ghost, int wave)
 {
-    const int32_t log2 =
-        q_clamp_sat(value_at(frame, sine_q30, ghost, 1 + wave) -
-                        value_at(frame, sine_q30, ghost, 1 + GLINT_DIM_WAVE),
-                    -16 * 256, 11 * 256);
+    const int32_t log2 = q_clamp_sat(
+        interpolate_value(frame, sine_q30, ghost, 1 + wave) -
+            interpolate_value(frame, sine_q30, ghost, 1 + GLINT_DIM_WAVE),
+        -16 * 256, 11 * 256);
     const int64_t one_q16 = (int64_t)(256 + (log2 & 255)) << 8;
     const int octaves = log2 >> 8;
 

@@ -12,7 +12,7 @@
 #include "glint/flare.h"
 
 enum {
-    GLINT_DIM_WAVE = 1,  /* the wave whose rays represent all waves */
+    GLINT_DIM_WAVE = 1,  /* index of the wave whose rays represent all waves */
     GLINT_DIM_WAVES = 3, /* with any other number of waves no ghost is treated
                             as dim */
     GLINT_DIM_WHOLE_Q8 = 256,
@@ -30,11 +30,11 @@ struct glint_dim_method {
     /* Fills the nodes (sampled angles) next to the angles of the plan's first
      * N_LIGHTS lights, unless they are filled already. */
     void (*fill)(struct glint_flare *flare, int n_lights);
-    /* Lets dim ghosts of the plan's first N_LIGHTS lights share rays: for each
-     * ghost, a light is merged into the nearest of the lights before it in the
-     * list if the ghost is so dim that the shift is invisible. Both lights are
-     * then drawn as one light between them. The fraction of the light that is
-     * merged falls gradually as a ghost becomes brighter. */
+    /* Lets dim ghosts of the plan's first N_LIGHTS lights share rays. For
+     * each ghost, a light is merged into the nearest of the preceding lights
+     * in the list if the ghost is so dim that the shift is invisible; both
+     * are then drawn as one light at a position between them. The merged
+     * fraction of the light falls gradually as a ghost gets brighter. */
     void (*gather)(struct glint_flare *flare, int n_lights);
     /* Returns the merged light that is drawn in place of LIGHT for GHOST, or
      * NULL if max_bundles is too small. Valid until the first bundle of this
@@ -46,7 +46,7 @@ struct glint_dim_method {
      * I as merged so far. */
     int (*kept_q8)(const struct glint_flare_frame *frame,
                    const struct glint_light *light, int i, int ghost);
-    /* glint_dim_share_q8() and glint_dim_ratio_q16() */
+    /* Pointers to glint_dim_share_q8() and glint_dim_ratio_q16(). */
     int (*share_q8)(const struct glint_flare_frame *frame,
                     const struct glint_light *light, int ghost);
     int64_t (*ratio_q16)(const struct glint_flare_frame *frame,
@@ -54,7 +54,8 @@ struct glint_dim_method {
 };
 
 /* Returns log2 of the ratio of the mean light of GHOST from LIGHT to the
- * frame's dimmest; a value far above 0 if the mean light is not known. */
+ * frame's parameter dimmest; a value far above 0 if the mean light is not
+ * known. */
 int32_t glint_dim_above_q8(const struct glint_flare_frame *frame,
                            const struct glint_light *light, int ghost);
 
@@ -86,8 +87,8 @@ static inline int32_t glint_dim_log2_q8(struct glint_real x)
            ((x.mantissa >> 22) - 256);
 }
 
-/* Returns the position of the angle of sine SINE in the table, as a fractional
- * node index. */
+/* Returns the position of the angle whose sine is SINE in the table, as a
+ * fractional node index. */
 static inline int32_t glint_dim_node_q16(const struct glint_flare_frame *frame,
                                          int32_t sine_q30)
 {

@@ -34,7 +34,7 @@ void glint_flare_draw_over(struct glint_flare *flare,
         pass[i] = under->pass[i];
     if (flare->stats.primitives > 0)
         glint_edges_draw(flare, &tiles, pass, under->n);
-    else /* without primitives the bins may hold the edges of an earlier
+    else /* without primitives the bins may still hold the edges of an earlier
             frame */
         glint_workers_run(flare->cfg.workers, glint_tiles_down(&tiles), row_job,
                           &alone);

@@ -11,13 +11,13 @@ struct glint_flare_under {
     const struct glint_pass *pass; /* [n], from back to front */
     int n;                         /* 0 .. GLINT_MAX_PASSES - 1 */
     const struct glint_blend *blend;
-    struct glint_blend_rows *rows; /* one for each worker of the flare */
+    struct glint_blend_rows *rows; /* [number of workers of the flare] */
 };
 
-/* Like glint_flare_draw(), over the passes of UNDER. The passes are called with
- * the flare's tiles: at half resolution, tiles of pixels twice as wide and
- * high; if cells are drawn in two levels, rows of tiles that end at the side of
- * each large tile. */
+/* Like glint_flare_draw(), over the passes of UNDER. The passes are called
+ * with the flare's tiles: at half resolution these have pixels twice as wide
+ * and high; if cells are drawn in two levels, a row of tiles ends at the
+ * side of each large tile. */
 void glint_flare_draw_over(struct glint_flare *flare,
                            const struct glint_image *image,
                            const struct glint_flare_under *under);

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pass of a flare: turns edges into the sums of a tile, and the sums into
- * the light of its rows. */
+ * The pass of a flare: accumulates edges into the sums of a tile, and converts
+ * the sums to the light of its pixel rows.
+ */
 #include <stddef.h>
 
 #include "flare/by_edges.h"
 #include "flare/edges/ghost_shade.h"
 
-/* Frames with more outlines use sums of _q20. Rounding to _q16 has an error of
- * up to half a unit per outline, 1/40 of a code near black. */
+/* Frames with more outlines than this use sums of _q20. Rounding to _q16 has
+ * an error of up to half a unit per outline, 1/40 of a code near black. */
 enum { FINE_OUTLINES = 1024 };
 
 /* Returns whether F needs sums of _q20. With a soft edge each bundle may have
@@ -22,7 +23,7 @@ static int is_fine(const struct glint_flare *f)
 }
 
 /* Returns whether any row carries light into the next tile. */
-static int runs_on(const struct glint_edge_sums *s)
+static int has_carry(const struct glint_edge_sums *s)
 {
     int64_t any = 0;
 
@@ -62,7 +63,7 @@ static int add_tile(void *state, struct glint_box tile)
     struct glint_edge_sums *s = &w->sums;
 
     /* Carries change only in tiles that are drawn. */
-    s->lit = n > 0 || (s->lit && runs_on(s));
+    s->lit = n > 0 || (s->lit && has_carry(s));
     if (!s->lit)
         return 0;
     s->tile = tile;

@@ -8,7 +8,8 @@
 #include "flare/wave_sets.h"
 
 enum {
-    WHOLE_OPENING_Q30 = 1 << 30, /* a stop as wide as the model's stop */
+    /* the stop's radius equals that of the model */
+    WHOLE_OPENING_Q30 = 1 << 30,
     LEAST_OPENING_Q30 = 1 << 20
 };
 
@@ -27,7 +28,8 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
     w->edges = glint_edges_carve_worker(a, c);
 }
 
-/* Called twice: first to measure, when it returns NULL, then to allocate. */
+/* Called twice: first with an arena that only measures, when it returns
+ * NULL, then to allocate. */
 static struct glint_flare *carve(struct glint_arena *a,
                                  const struct glint_flare_config *c)
 {
@@ -60,7 +62,7 @@ static struct glint_flare *carve(struct glint_arena *a,
     return placed;
 }
 
-static int stop_ok(const struct glint_stop *s)
+static int is_valid_stop(const struct glint_stop *s)
 {
     const int32_t most_q30 = (1 << 30) - 1;
 
@@ -78,7 +80,7 @@ static int stop_ok(const struct glint_stop *s)
             s->apothem_q16 > 0);
 }
 
-static int config_ok(const struct glint_flare_config *c)
+static int is_valid_config(const struct glint_flare_config *c)
 {
     const int workers = glint_workers_count(c->workers);
 
@@ -89,7 +91,7 @@ static int config_ok(const struct glint_flare_config *c)
            c->max_primitives >= 0 && c->max_refs >= 0 &&
            c->irradiance_steps >= 0 && c->irradiance_steps <= 4096 &&
            c->reuse_lights >= 0 && workers >= 1 && workers <= 64 &&
-           stop_ok(&c->stop);
+           is_valid_stop(&c->stop);
 }
 
 void glint_flare_forget(struct glint_flare *flare)
@@ -106,7 +108,7 @@ size_t glint_flare_bytes(const struct glint_flare_config *cfg)
 {
     struct glint_arena arena = glint_arena_measure();
 
-    if (!config_ok(cfg))
+    if (!is_valid_config(cfg))
         return 0;
     carve(&arena, cfg);
     return arena.used;
@@ -119,7 +121,7 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
     struct glint_arena arena = glint_arena_over(mem, bytes);
     struct glint_flare *f;
 
-    if (!config_ok(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
+    if (!is_valid_config(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
         return GLINT_E_ARGUMENT;
     if (glint_flare_bytes(cfg) > bytes)
         return GLINT_E_MEMORY;
@@ -135,7 +137,7 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
 enum glint_status glint_flare_set_stop(struct glint_flare *flare,
                                        const struct glint_stop *stop)
 {
-    if (!stop_ok(stop))
+    if (!is_valid_stop(stop))
         return GLINT_E_ARGUMENT;
     flare->cfg.stop = *stop;
     flare->reusable = GLINT_REUSABLE_NOT;
@@ -211,10 +213,10 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* -------------------------------------------------------------------- plan */
 
-/* Returns N less the trailing lights outside the model's range, so that a frame
- * with only such lights costs nothing. */
-static int n_within(const struct glint_lens *lens,
-                    const struct glint_light *lights, int n)
+/* Returns N minus the number of trailing lights outside the model's range of
+ * angles, so that a frame with only such lights costs nothing. */
+static int count_within(const struct glint_lens *lens,
+                        const struct glint_light *lights, int n)
 {
     while (n > 0 && glint_plan_is_beyond(lens, &lights[n - 1]))
         n--;
@@ -248,10 +250,10 @@ static void plan_job(void *ctx, int job, int worker)
     }
 }
 
-/* Leaves out invisible ghosts. For each ghost and wave the light from all lamps
- * is summed, as the sum may be visible although each summand is not. A ghost is
- * left out, in a wave, for all lights at once. Sums are integers, so their
- * order does not matter. */
+/* Removes invisible ghosts. For each ghost and wave the light from all lamps
+ * is summed, as the sum may be visible although each summand is not; so a
+ * ghost is removed, in a wave, for all lights or for none. Sums are
+ * integers, so their order does not matter. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -282,8 +284,8 @@ static void keep_seen(struct glint_flare *f, int n)
     }
 }
 
-/* Plans all waves of N_JOBS pairs of a ghost and a light. Returns the number of
- * bundles. */
+/* Plans all waves of N_JOBS pairs of a ghost and a light. Returns the number
+ * of visible bundles. */
 static int plan_all(struct glint_flare *f, int n_jobs)
 {
     const int n_waves = f->plan.frame->n_waves;
@@ -306,7 +308,7 @@ void glint_flare_plan(struct glint_flare *flare,
 {
     const int n_ghosts = (int)frame->lens->header->n_ghosts;
     const int64_t pairs =
-        (int64_t)n_within(frame->lens, lights, n_lights) * n_ghosts;
+        (int64_t)count_within(frame->lens, lights, n_lights) * n_ghosts;
     const int n_jobs = pairs < INT32_MAX ? (int)pairs : INT32_MAX;
 
     if (flare->cfg.reuse &&
@@ -329,15 +331,15 @@ void glint_flare_plan(struct glint_flare *flare,
         .shaded = flare->cfg.stop.shade != NULL,
         .opening_q30 = flare->cfg.stop.opening_q30 ? flare->cfg.stop.opening_q30
                                                    : WHOLE_OPENING_Q30};
-    /* The table of dim ghosts depends on the angle of the light alone. */
+    /* The table of dim ghosts depends only on the angle of the light. */
     if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
         frame->n_waves == GLINT_DIM_WAVES &&
         !(frame->lens && glint_basis_is_lens(frame->lens->header->basis))) {
         frame->dim->method->fill(flare,
-                                 n_within(frame->lens, lights, n_lights));
+                                 count_within(frame->lens, lights, n_lights));
         flare->plan.dims = 1;
         frame->dim->method->gather(flare,
-                                   n_within(frame->lens, lights, n_lights));
+                                   count_within(frame->lens, lights, n_lights));
     }
     flare->flux = flare->brightest = (struct glint_real){0, 0};
     keep_seen(flare, frame->sets ? frame->sets->planner->plan(flare, n_jobs)

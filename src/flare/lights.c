@@ -32,8 +32,8 @@
 #include "glint/flare.h"
 
 enum {
-    CURVES = 3, /* number of curves along which indistinguishable lights are
-                   searched for */
+    CURVES = 3, /* number of curves along which lights that cannot be
+                   distinguished are searched */
     PART = 4,   /* a round merges 1 / PART of the surplus lights */
     BINS = 64,  /* number of bins of the histogram of costs */
     HELD = GLINT_LIGHT_HELD,
@@ -48,7 +48,7 @@ struct direction {
     int32_t x_q30, y_q30, z_q30;
 };
 
-static struct direction direction_of(const struct glint_light *b)
+static struct direction compute_direction(const struct glint_light *b)
 {
     return (struct direction){q_mul(b->sine_q30, b->cos_q30, 30),
                               q_mul(b->sine_q30, b->sin_q30, 30),
@@ -58,7 +58,7 @@ static struct direction direction_of(const struct glint_light *b)
 uint64_t glint_light_apart2_q60(const struct glint_light *a,
                                 const struct glint_light *b)
 {
-    const struct direction p = direction_of(a), q = direction_of(b);
+    const struct direction p = compute_direction(a), q = compute_direction(b);
     const int64_t x = (int64_t)p.x_q30 - q.x_q30;
     const int64_t y = (int64_t)p.y_q30 - q.y_q30;
     const int64_t z = (int64_t)p.z_q30 - q.z_q30;
@@ -107,7 +107,7 @@ struct order {
     uint32_t x0, y0;
 };
 
-static void words_of(const struct glint_light *b, int32_t *word)
+static void list_words(const struct glint_light *b, int32_t *word)
 {
     word[0] = b->power.exponent;
     word[1] = b->power.mantissa;
@@ -125,17 +125,17 @@ static int is_brighter(const struct glint_light *a, const struct glint_light *b)
 {
     int32_t p[WORDS], q[WORDS];
 
-    words_of(a, p);
-    words_of(b, q);
+    list_words(a, p);
+    list_words(b, q);
     for (int i = 0; i < WORDS; i++)
         if (p[i] != q[i])
             return p[i] > q[i];
     return 0;
 }
 
-/* Returns the distance of V, -1 .. 1, from the start of a side of the plane at
- * -1 - ZERO; _q30. */
-static uint32_t along(int32_t v_q30, uint32_t zero)
+/* Returns the distance of V, -1 .. 1, from the lower end -1 - ZERO of the
+ * axis; _q30. */
+static uint32_t compute_offset(int32_t v_q30, uint32_t zero)
 {
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
 }
@@ -144,15 +144,17 @@ static int is_before(const void *order, int i, int j)
 {
     const struct order *const o = order;
     const struct glint_light *const a = &o->light[i], *const b = &o->light[j];
-    const struct direction p = direction_of(a), q = direction_of(b);
-    const uint32_t px = along(p.x_q30, o->x0), qx = along(q.x_q30, o->x0);
-    const uint32_t py = along(p.y_q30, o->y0), qy = along(q.y_q30, o->y0);
+    const struct direction p = compute_direction(a), q = compute_direction(b);
+    const uint32_t px = compute_offset(p.x_q30, o->x0),
+                   qx = compute_offset(q.x_q30, o->x0);
+    const uint32_t py = compute_offset(p.y_q30, o->y0),
+                   qy = compute_offset(q.y_q30, o->y0);
     const uint32_t dx = px ^ qx, dy = py ^ qy;
 
     if (o->by_power || (dx | dy) == 0)
         return is_brighter(a, b);
-    /* Order along the Z curve: the highest differing bit decides; y's bit ranks
-     * above x's of the same weight. */
+    /* Compares positions along the Z curve: the highest differing bit
+     * decides; y's bit ranks above x's bit of the same weight. */
     return dx < dy && dx < (dx ^ dy) ? py < qy : px < qx;
 }
 
@@ -191,7 +193,7 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b)
     const int64_t share_q30 =
         power.mantissa ? real_integer(real_over(b->power, power), 30, ONE_Q30)
                        : 0;
-    const struct direction p = direction_of(a), q = direction_of(b);
+    const struct direction p = compute_direction(a), q = compute_direction(b);
     const struct direction mean = {
         q_narrow(p.x_q30 +
                  q_shift(((int64_t)q.x_q30 - p.x_q30) * share_q30, 30)),
@@ -216,7 +218,8 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b)
 }
 
 /* Returns the base-2 exponent of the squared cost of merging A and B. */
-static int cost_of(const struct glint_light *a, const struct glint_light *b)
+static int compute_cost_log2(const struct glint_light *a,
+                             const struct glint_light *b)
 {
     const uint64_t d2_q59 = glint_light_apart2_q60(a, b) >> 1 | 1;
     const struct glint_real light = real_times(a->power, b->power);
@@ -225,11 +228,12 @@ static int cost_of(const struct glint_light *a, const struct glint_light *b)
         .exponent;
 }
 
-/* The rule by which neighbours merge. */
+/* The condition under which neighbours merge. */
 struct rule {
     uint64_t near2_q60; /* if not 0: lights merge if their squared distance is
                            at most this */
-    int cost; /* if near2_q60 is 0: max cost_of() at which lights merge */
+    int cost; /* if near2_q60 is 0: max compute_cost_log2() at which lights
+                 merge */
     int most; /* merging stops at this number of lights */
 };
 
@@ -237,11 +241,11 @@ static int may_merge(const struct rule *r, const struct glint_light *a,
                      const struct glint_light *b)
 {
     return r->near2_q60 ? glint_light_apart2_q60(a, b) <= r->near2_q60
-                        : cost_of(a, b) <= r->cost;
+                        : compute_cost_log2(a, b) <= r->cost;
 }
 
-/* Merges neighbours in the list of N lights by rule R; returns the number of
- * lights left. */
+/* Merges neighbours in the list of N lights that satisfy R; returns the
+ * number of lights left. */
 static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
 {
     int last = 0, left = n;
@@ -255,22 +259,22 @@ static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
     return left;
 }
 
-/* Returns the min cost, to within 1 / BINS of the range of costs, at which
- * enough neighbours merge: 1 / PART of the N - MOST surplus lights. */
-static int next_cost(const struct glint_light *b, int n, int most)
+/* Returns the min cost limit, to within 1 / BINS of the range of costs, at
+ * which enough neighbours merge: 1 / PART of the N - MOST surplus lights. */
+static int find_next_cost(const struct glint_light *b, int n, int most)
 {
     int count[BINS] = {0}, low = INT32_MAX, high = INT32_MIN, width, bin = 0;
     int wanted = (n - most + PART - 1) / PART;
 
     for (int i = 1; i < n; i++) {
-        const int cost = cost_of(&b[i - 1], &b[i]);
+        const int cost = compute_cost_log2(&b[i - 1], &b[i]);
 
         low = cost < low ? cost : low;
         high = cost > high ? cost : high;
     }
     width = (int)(((int64_t)high - low) / BINS) + 1;
     for (int i = 1; i < n; i++)
-        count[(cost_of(&b[i - 1], &b[i]) - low) / width]++;
+        count[(compute_cost_log2(&b[i - 1], &b[i]) - low) / width]++;
     while (bin < BINS - 1 && (wanted -= count[bin]) > 0)
         bin++;
     return low + (bin + 1) * width - 1;
@@ -320,7 +324,7 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
     rule = (struct rule){.most = most > 1 ? most : 1};
     for (; n > rule.most; round++) {
         sort_along(lights, n, round);
-        rule.cost = next_cost(lights, n, rule.most);
+        rule.cost = find_next_cost(lights, n, rule.most);
         n = merge_neighbours(lights, n, &rule);
     }
     finish_lights(lights, n);

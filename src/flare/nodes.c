@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
  * Fills the table of flare/dim.h: logarithms of the light of each ghost, inside
- * the picture or not, for a white light of power 1 at nodes of the sine of its
- * angle. Also merges lights near each other for dim ghosts. */
+ * and outside the picture, for a white light of power 1 at sampled sines of its
+ * angle (nodes). Also merges lights near each other for dim ghosts.
+ */
 #include "base/compiler.h"
 #include "flare/dim.h"
 #include "flare/state.h"
 
 enum {
     MOST_Q8 = 1 << 14,
-    FOLD_Q8 = 3 << 8 /* log2 of how much brighter a fold is than the mean of its
-                        ghost */
+    FOLD_Q8 = 3 << 8 /* log2 of the ratio of the light at a fold to the mean
+                        light of its ghost */
 };
 
 struct fill {
@@ -21,13 +22,13 @@ struct fill {
     int node;
 };
 
-static int16_t value_of(int32_t log2)
+static int16_t clamp_value(int32_t log2)
 {
     return (int16_t)q_clamp_sat(log2, -MOST_Q8, MOST_Q8);
 }
 
-/* Returns the largest magnitude of the channels of wave W. */
-static struct glint_real channel_of(const struct glint_wave *w)
+/* Returns the max magnitude of the colour channels of wave W. */
+static struct glint_real find_max_channel(const struct glint_wave *w)
 {
     int32_t most = 0;
 
@@ -39,8 +40,8 @@ static struct glint_real channel_of(const struct glint_wave *w)
     return real_of(most, -14);
 }
 
-/* Computes one ghost at a node, in a picture so large that it contains the
- * whole ghost. */
+/* Computes the table entry of one ghost at a node, in a picture so large
+ * that it contains the whole ghost. */
 static void fill_job(void *ctx, int ghost, int worker)
 {
     const struct fill *fill = ctx;
@@ -50,20 +51,22 @@ static void fill_job(void *ctx, int ghost, int worker)
     for (int wave = 0; wave < GLINT_DIM_WAVES; wave++) {
         struct glint_bundle_plan planned = {.ghost = ghost, .wave = wave};
         struct glint_bundle bundle;
-        struct glint_real light; /* at energy 1 */
+        /* light of the wave if all rays had energy 1 */
+        struct glint_real light;
 
         value[1 + wave] = GLINT_DIM_DARK;
         if (glint_plan_bundle(&fill->plan, &fill->light, &planned, &bundle,
                               scratch) != GLINT_OUTCOME_DRAWN ||
             planned.irradiance.mantissa == 0 || scratch->probe.energy <= 0)
             continue;
-        light = real_over(planned.flux, channel_of(&fill->frame.wave[wave]));
+        light =
+            real_over(planned.flux, find_max_channel(&fill->frame.wave[wave]));
         value[1 + wave] =
-            value_of(glint_dim_log2_q8(light) +
-                     glint_dim_log2_q8(real_of(scratch->probe.energy,
-                                               planned.energy_up - 30)));
+            clamp_value(glint_dim_log2_q8(light) +
+                        glint_dim_log2_q8(real_of(scratch->probe.energy,
+                                                  planned.energy_up - 30)));
         if (wave == GLINT_DIM_WAVE)
-            value[0] = value_of(
+            value[0] = clamp_value(
                 glint_dim_log2_q8(planned.irradiance) +
                 (scratch->probe.n_up && scratch->probe.n_down ? FOLD_Q8 : 0));
     }
@@ -118,14 +121,16 @@ static void fill_nodes(struct glint_flare *flare, int n_lights)
 /* ----------------------------------------------------------------- sharing */
 
 enum {
-    /* Lights that are 1 / SIDE of the picture's longer side apart (four pixels
-     * of 1920) may share the rays of a ghost that is as bright as the frame's
-     * dimmest. Errors of N lights add up to sqrt(N) errors. */
+    /* Lights whose distance is 1 / SIDE of the picture's longer side (four
+     * pixels of 1920) may share the rays of a ghost whose brightness equals
+     * the frame's parameter dimmest. Errors of N lights add up to sqrt(N)
+     * errors. */
     SIDE = 480,
     FARTHEST_Q8 = 1 << 14
 };
 
-/* The merged light of a ghost is stored in the memory of its first bundle. */
+/* Returns the merged light of a ghost, which is stored in the memory of its
+ * first bundle. */
 static struct glint_light *gathered(struct glint_flare *f, int ghost, int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -137,16 +142,16 @@ static struct glint_light *gathered(struct glint_flare *f, int ghost, int light)
 
 STATIC_ASSERT(sizeof(struct glint_light) <= sizeof(struct glint_bundle_plan));
 
-/* For each of N lights, finds the nearest light before it in the list and log2
- * of the distance to it. The unit of distance is 1 / SIDE of the picture's
- * longer side, over sqrt(N). */
+/* For each of N lights, finds the nearest of the preceding lights in the
+ * list, and log2 of the distance to it. The unit of distance is 1 / SIDE of
+ * the picture's longer side, divided by sqrt(N). */
 static void find_nearest(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
     const struct glint_light *light = f->plan.light;
     const int longer = q_larger(f->plan.width, f->plan.height);
-    const struct glint_real focal =
-        real_times(r->lens->header->focal_mm, r->pixels_per_mm); /* pixels */
+    const struct glint_real focal = real_times(
+        r->lens->header->focal_mm, r->pixels_per_mm); /* focal length, pixels */
     const int32_t scale_log2 =
         glint_dim_log2_q8(real_over(real_times(focal, real_of(SIDE, 0)),
                                     real_of(longer, 0))) +
@@ -172,9 +177,9 @@ static void find_nearest(struct glint_flare *f, int n)
     }
 }
 
-/* The error of a merged ghost is its light times the distance that it moves: up
- * to half of the allowed error all light is merged, from the allowed error on
- * no light. */
+/* Returns the fraction of the light that is not merged. The error of a
+ * merged ghost is its light times the distance that it moves: up to half of
+ * the allowed error all light is merged, from the allowed error on no light. */
 static int kept_q8(const struct glint_flare_frame *frame,
                    const struct glint_light *light, int i, int ghost)
 {
@@ -186,8 +191,8 @@ static int kept_q8(const struct glint_flare_frame *frame,
                        0, GLINT_DIM_WHOLE_Q8);
 }
 
-/* Moves the fraction of light that B, light I, does not keep to the nearest
- * light before it. */
+/* Merges the fraction of light that B, light I, does not keep into the
+ * nearest preceding light. */
 static void merge_rest(struct glint_flare *f, struct glint_light *b, int ghost,
                        int i)
 {
@@ -208,8 +213,8 @@ struct gather {
     int n_lights;
 };
 
-/* Merges from the last light to the first, so that light merged into a light is
- * merged onwards with it. */
+/* Merges lights from the last to the first, so that light merged into a
+ * light is merged further with it. */
 static void gather_job(void *ctx, int ghost, int worker)
 {
     const struct gather *g = ctx;

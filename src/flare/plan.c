@@ -8,30 +8,30 @@
 #include "flare/plan_cells.h"
 
 enum {
-    /* cells across the small probe, whose rows have GLINT_RAYS rays, as many as
-     * are computed at once */
+    /* cells across the small probe; each of its rows has GLINT_RAYS rays,
+     * which are computed at once */
     FEW_ACROSS = GLINT_RAYS - 1,
     FEW_DOWN = 4,
     FEW_INSIDE = 6,
     ONE_Q16 = 1 << 16,
     WIDEST_Q16 = 64 << 16, /* max factor by which a ghost is enlarged */
-    FARTHEST_Q8 = 1 << 20  /* max distance of its centre from the middle,
-                              pixels */
+    FARTHEST_Q8 = 1 << 20  /* max distance of the centre of enlargement from the
+                              picture's middle, pixels */
 };
 
 /* Converts X from units of the sensor outputs of T to pixels, clamped to +-2^23
  * pixels. */
-static int64_t pixels_q8(const struct glint_plan *p,
-                         const struct glint_transfer *t, int64_t x)
+static int64_t convert_to_pixels_q8(const struct glint_plan *p,
+                                    const struct glint_transfer *t, int64_t x)
 {
     return real_integer(real_times(real_of(x, t->exponent[GLINT_OUT_SENSOR_X]),
                                    plan_pixels_per_mm(p)),
                         8, INT64_C(1) << 31);
 }
 
-/* Returns the length in the picture of X, a length within a ghost in pixels,
- * after the ghost's enlargement. */
-static int64_t widened(const struct glint_bundle_plan *s, int64_t x_q8)
+/* Returns X, a length within a ghost in pixels, after the ghost's
+ * enlargement. */
+static int64_t enlarge(const struct glint_bundle_plan *s, int64_t x_q8)
 {
     return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
 }
@@ -43,31 +43,34 @@ struct reach {
     int64_t middle_q8, across_q8, wide_q8, high_q8;
 };
 
-/* Returns half the extent of E across the light's azimuth. */
-static int64_t half_height(const struct glint_probe_extent *e)
+/* Returns half the extent of E perpendicular to the light's azimuth. */
+static int64_t compute_half_height(const struct glint_probe_extent *e)
 {
     return (e->y_high - e->y_low) / 2;
 }
 
-/* Returns the box of the range E of the probe's rays, enlarged by a tenth. */
-static struct reach reach_of(const struct glint_plan *p,
-                             const struct glint_bundle_plan *planned,
-                             const struct glint_transfer *t,
-                             const struct glint_probe_extent *e)
+/* Returns the bounding box, in pixels, of the range E of the probe's rays,
+ * enlarged by a tenth. */
+static struct reach compute_reach(const struct glint_plan *p,
+                                  const struct glint_bundle_plan *planned,
+                                  const struct glint_transfer *t,
+                                  const struct glint_probe_extent *e)
 {
-    const int64_t high = half_height(e);
+    const int64_t high = compute_half_height(e);
 
     return (struct reach){
-        pixels_q8(p, t, (e->low + e->high) / 2),
-        pixels_q8(p, t, (e->y_low + e->y_high) / 2),
-        widened(planned,
-                pixels_q8(p, t, q_divide((e->high - e->low) * 11, 20))) +
+        convert_to_pixels_q8(p, t, (e->low + e->high) / 2),
+        convert_to_pixels_q8(p, t, (e->y_low + e->y_high) / 2),
+        enlarge(planned, convert_to_pixels_q8(
+                             p, t, q_divide((e->high - e->low) * 11, 20))) +
             256,
-        widened(planned, pixels_q8(p, t, high + q_divide(high, 10))) + 256};
+        enlarge(planned,
+                convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
+            256};
 }
 
-/* Returns whether E, rotated by TURN, meets the picture. across is nonzero only
- * for ghosts that are not rotated. */
+/* Returns whether the box E, rotated by TURN, overlaps the picture. across
+ * is nonzero only for ghosts that are not rotated. */
 static int is_in_view(const struct glint_plan *p, struct glint_azimuth turn,
                       const struct reach *e)
 {
@@ -82,9 +85,9 @@ static int is_in_view(const struct glint_plan *p, struct glint_azimuth turn,
                p->height * 128 >> p->half;
 }
 
-/* Returns the fraction, 0 to 255, of the span MIDDLE +- WIDE that lies between
- * -HALF and HALF. */
-static int64_t span_q8(int64_t middle, int64_t wide, int64_t half)
+/* Returns the fraction, 0 .. 255, of the interval MIDDLE +- WIDE that lies
+ * between -HALF and HALF. */
+static int64_t compute_span_q8(int64_t middle, int64_t wide, int64_t half)
 {
     const int64_t low = middle - wide > -half ? middle - wide : -half;
     const int64_t high = middle + wide < half ? middle + wide : half;
@@ -94,32 +97,33 @@ static int64_t span_q8(int64_t middle, int64_t wide, int64_t half)
 
 /* Returns the fraction of the upright bounding box of E, rotated by TURN, that
  * lies in the picture. */
-static uint8_t view_q8(const struct glint_plan *p, struct glint_azimuth turn,
-                       const struct reach *e)
+static uint8_t compute_view_q8(const struct glint_plan *p,
+                               struct glint_azimuth turn, const struct reach *e)
 {
     const int64_t c = turn.cos_q30 < 0 ? -turn.cos_q30 : turn.cos_q30;
     const int64_t s = turn.sin_q30 < 0 ? -turn.sin_q30 : turn.sin_q30;
-    const int64_t across =
-        span_q8(e->middle_q8 * c >> 30, (e->wide_q8 * c + e->high_q8 * s) >> 30,
-                p->width * 128 >> p->half);
-    const int64_t down = span_q8((e->middle_q8 * s + e->across_q8 * c) >> 30,
-                                 (e->wide_q8 * s + e->high_q8 * c) >> 30,
-                                 p->height * 128 >> p->half);
+    const int64_t across = compute_span_q8(
+        e->middle_q8 * c >> 30, (e->wide_q8 * c + e->high_q8 * s) >> 30,
+        p->width * 128 >> p->half);
+    const int64_t down = compute_span_q8(
+        (e->middle_q8 * s + e->across_q8 * c) >> 30,
+        (e->wide_q8 * s + e->high_q8 * c) >> 30, p->height * 128 >> p->half);
 
     return (uint8_t)((across * down + 254) >> 8);
 }
 
-static struct glint_real box_side(const struct glint_transfer *t, int k)
+static struct glint_real compute_box_side(const struct glint_transfer *t, int k)
 {
     return real_of(t->box[k], t->box_exponent);
 }
 
-/* Returns the ratio of the light of wave WAVE that the rays of PLANNED draw to
- * the light of the wave of PLANNED: 1 for that wave itself; for other waves it
- * counts only the light that their own rays do not draw. */
-static int64_t part_q16(const struct glint_plan *p,
-                        const struct glint_bundle_plan *planned, int wave,
-                        int share_q8)
+/* Returns the ratio of the light of wave WAVE that is drawn with the rays of
+ * PLANNED to the light of the wave of PLANNED itself. It is 1 for that wave;
+ * for other waves it includes only the fraction that is not drawn with their
+ * own rays. */
+static int64_t compute_part_q16(const struct glint_plan *p,
+                                const struct glint_bundle_plan *planned,
+                                int wave, int share_q8)
 {
     if (wave == planned->wave)
         return 1 << 16;
@@ -129,12 +133,12 @@ static int64_t part_q16(const struct glint_plan *p,
                    8);
 }
 
-/* Sets RGB to the colour of the bundle, scaled to a largest channel of 1;
- * returns the largest channel before scaling. */
-static struct glint_real colour_of(const struct glint_plan *p,
-                                   const struct glint_light *b,
-                                   const struct glint_bundle_plan *planned,
-                                   int share_q8, int32_t *rgb_q14)
+/* Sets RGB to the colour of the bundle, scaled such that its max channel is
+ * 1; returns the max channel before scaling. */
+static struct glint_real compute_colour(const struct glint_plan *p,
+                                        const struct glint_light *b,
+                                        const struct glint_bundle_plan *planned,
+                                        int share_q8, int32_t *rgb_q14)
 {
     const struct glint_wave *w = p->frame->wave;
     const struct glint_tint *tint =
@@ -146,7 +150,7 @@ static struct glint_real colour_of(const struct glint_plan *p,
     int64_t rgb_q28[3] = {0, 0, 0}, most = 0;
 
     for (int wave = first; wave <= last; wave++) {
-        const int64_t part = part_q16(p, planned, wave, share_q8);
+        const int64_t part = compute_part_q16(p, planned, wave, share_q8);
 
         for (int c = 0; c < 3; c++)
             rgb_q28[c] +=
@@ -169,17 +173,18 @@ static struct glint_real colour_of(const struct glint_plan *p,
 /* Returns the flux of the bundle, display white times pixels, if all rays of
  * its window had energy 2^EXPONENT. The hole of an annular box does not
  * count. */
-static struct glint_real flux_of(const struct glint_plan *p,
-                                 const struct glint_light *b,
-                                 const struct glint_bundle_plan *s,
-                                 const struct glint_transfer *t,
-                                 struct glint_real colour, int exponent)
+static struct glint_real compute_flux(const struct glint_plan *p,
+                                      const struct glint_light *b,
+                                      const struct glint_bundle_plan *s,
+                                      const struct glint_transfer *t,
+                                      struct glint_real colour, int exponent)
 {
     const struct glint_wave *w = &p->frame->wave[s->wave];
-    struct glint_real x = real_times(box_side(t, 1), box_side(t, 2));
+    struct glint_real x =
+        real_times(compute_box_side(t, 1), compute_box_side(t, 2));
 
-    /* Both sides are halves of the box; so is the window's height unless T is
-     * whole. */
+    /* Both sides are halves of the box; so is the window's height unless T
+     * covers the whole box. */
     x.exponent += (t->whole ? 1 : 2) + exponent;
     /* A pixel at half resolution covers four pixels of the picture. */
     x.exponent -= 2 * p->half;
@@ -193,15 +198,15 @@ static struct glint_real flux_of(const struct glint_plan *p,
     return real_times(x, colour);
 }
 
-/* Returns the max light that a cell can give a pixel: 2 * (flux of a cell of
- * the probe) / (min area of such a cell on the sensor), as the light between
- * probed rays may be brighter. Returns 0 for folded ghosts, whose areas do not
- * bound their brightness. */
-static struct glint_real brightest_of(const struct glint_plan *p,
-                                      const struct glint_bundle_plan *planned,
-                                      const struct glint_probe *s,
-                                      const struct glint_transfer *t,
-                                      struct glint_real flux)
+/* Returns an upper limit on the light of a pixel from one cell: 2 * (flux of
+ * a cell of the probe) / (min area of such a cell on the sensor), as the
+ * light between probed rays may be brighter. Returns 0 for folded ghosts,
+ * whose cell areas do not bound their brightness. */
+static struct glint_real
+compute_brightest(const struct glint_plan *p,
+                  const struct glint_bundle_plan *planned,
+                  const struct glint_probe *s, const struct glint_transfer *t,
+                  struct glint_real flux)
 {
     struct glint_real area;
 
@@ -216,14 +221,15 @@ static struct glint_real brightest_of(const struct glint_plan *p,
             area,
             real_of((int64_t)planned->wider_q16 * planned->wider_q16, -32));
     flux.exponent += 1;
-    /* the number of cells over the whole box */
+    /* number of cells over the whole box */
     area = real_times(area, real_of(s->across * s->rows, 0));
     return real_over(flux, area);
 }
 
-/* Returns BRIGHTEST in units of the faintest visible light; 2^20 of them if
+/* Returns BRIGHTEST in units of the min visible light; 2^20 units if
  * BRIGHTEST is 0 (not known), and for linear pictures. */
-static int64_t peak_q20(const struct glint_plan *p, struct glint_real brightest)
+static int64_t compute_peak_q20(const struct glint_plan *p,
+                                struct glint_real brightest)
 {
     const int64_t most = INT64_C(1) << 40;
 
@@ -232,7 +238,8 @@ static int64_t peak_q20(const struct glint_plan *p, struct glint_real brightest)
     return real_integer(real_over(brightest, p->frame->faintest), 20, most);
 }
 
-/* Sets inside_q8 and contrast_q4, which glint_flare_planned() returns. */
+/* Sets the members inside_q8 and contrast_q4 of PLANNED, which
+ * glint_flare_planned() returns. */
 static void set_shape(const struct glint_probe *s, struct glint_real brightest,
                       struct glint_bundle_plan *planned)
 {
@@ -293,7 +300,7 @@ struct glint_place glint_plan_place(const struct glint_plan *plan,
 
 /* Returns log2 of the factor by which energies can be scaled up without
  * overflow, if they are at most 5/4 of the probe's max ENERGY. */
-static int energy_up(int64_t energy)
+static int find_energy_up(int64_t energy)
 {
     const int up = 29 - bit_length((uint64_t)(energy + energy / 4));
 
@@ -307,7 +314,7 @@ static void set_flux(struct glint_bundle *b, const struct glint_transfer *t,
     const struct glint_real cell =
         real_over(flux, real_of((int64_t)b->n_cells * rows, 0));
 
-    /* below 2^-400 nothing is visible; above 2^400 light is clamped anyway */
+    /* light below 2^-400 is invisible; light above 2^400 is clamped later */
     b->flux_q31 = cell.exponent < -400 ? 0 : cell.mantissa;
     b->flux_exponent = cell.exponent > 400 ? 431 : cell.exponent + 31;
 }
@@ -331,20 +338,21 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
 }
 
 /* Returns the length of (X, Y); both magnitudes must be below 2^31. */
-static int64_t far_from(int64_t x, int64_t y)
+static int64_t compute_length(int64_t x, int64_t y)
 {
     if (y == 0)
         return x < 0 ? -x : x;
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Sets the magnification of the ghost, at most WIDEST_Q16. A lamp with extent
- * is sampled by points. If the ghosts of the points are smaller than their
- * distance, the lamp's ghost becomes a pattern of dots; so each is enlarged to
- * two and a half times the distance between neighbours. A ghost moves with the
- * light in proportion to its distance from the middle. Lights on the axis need
- * no magnification. The centre may have an offset across the azimuth only if
- * the ghost is mirrored rather than rotated. */
+/* Sets the magnification of the ghost, at most WIDEST_Q16. A lamp with
+ * extent is sampled by point lights. If the ghosts of the points are smaller
+ * than the distance between them, the lamp's ghost becomes a pattern of
+ * dots; so each ghost is enlarged to two and a half times the distance
+ * between neighbours. A ghost moves with the light in proportion to its
+ * distance from the middle. Lights on the axis need no magnification. The
+ * centre may have an offset perpendicular to the azimuth only if the ghost
+ * is mirrored rather than rotated. */
 static void set_wider(const struct glint_plan *p, const struct glint_light *b,
                       struct glint_bundle_plan *planned,
                       const struct glint_transfer *t,
@@ -353,27 +361,28 @@ static void set_wider(const struct glint_plan *p, const struct glint_light *b,
     const int64_t middle = (e->low + e->high) / 2;
     const int64_t across = (e->y_low + e->y_high) / 2;
     const struct glint_real wide =
-        real_of((e->high - e->low) / 2 + half_height(e), 0);
+        real_of((e->high - e->low) / 2 + compute_half_height(e), 0);
     struct glint_real wanted;
 
     planned->wider_q16 = planned->centre_q8[0] = planned->centre_q8[1] = 0;
     if (b->apart_q30 <= 0 || b->sine_q30 <= 0 || wide.mantissa <= 0)
         return;
     wanted = real_times(
-        real_of(far_from(middle, across), 0),
+        real_of(compute_length(middle, across), 0),
         real_over(real_of(b->cosine_q30, -30), real_of(b->sine_q30, -30)));
     wanted = real_times(wanted, real_of(5 * (int64_t)b->apart_q30, -31));
     if (!real_less(wide, wanted))
         return;
     planned->wider_q16 =
         (int32_t)real_integer(real_over(wanted, wide), 16, WIDEST_Q16);
-    planned->centre_q8[0] = (int32_t)q_clamp_sat(pixels_q8(p, t, middle),
-                                                 -FARTHEST_Q8, FARTHEST_Q8);
+    planned->centre_q8[0] = (int32_t)q_clamp_sat(
+        convert_to_pixels_q8(p, t, middle), -FARTHEST_Q8, FARTHEST_Q8);
     planned->centre_q8[1] = (int32_t)q_clamp_sat(
-        pixels_q8(p, t, t->side ? -across : across), -FARTHEST_Q8, FARTHEST_Q8);
+        convert_to_pixels_q8(p, t, t->side ? -across : across), -FARTHEST_Q8,
+        FARTHEST_Q8);
 }
 
-/* Narrows the window of the transfer to the rays that the stop lets through, if
+/* Narrows the window of the transfer to the rays that the stop transmits, if
  * the stop is narrower than the model's. Returns 0 if no ray is left. */
 static int set_window(const struct glint_plan *plan,
                       struct glint_bundle_plan *planned,
@@ -390,10 +399,10 @@ static int set_window(const struct glint_plan *plan,
     return any;
 }
 
-/* Traces a few rays, and more if hardly any gets through. Returns whether any
- * ray gets through. */
-static int probe(const struct glint_plan *plan, struct glint_transfer *transfer,
-                 struct glint_probe *s)
+/* Traces a few rays, and more if fewer than FEW_INSIDE get through. Returns
+ * whether any ray gets through. */
+static int probe_bundle(const struct glint_plan *plan,
+                        struct glint_transfer *transfer, struct glint_probe *s)
 {
     glint_probe_run(s, transfer, plan->opening_q30, FEW_ACROSS, FEW_DOWN);
     if (s->n_inside < FEW_INSIDE)
@@ -402,25 +411,30 @@ static int probe(const struct glint_plan *plan, struct glint_transfer *transfer,
     return s->n_inside > 0;
 }
 
-/* Returns the area of the bounding box of the range E of rays, pixels. */
-static struct glint_real area_of(const struct glint_plan *p,
-                                 const struct glint_bundle_plan *planned,
-                                 const struct glint_transfer *t,
-                                 const struct glint_probe_extent *e)
+/* Returns the area of the bounding box of the range E of rays, square
+ * pixels. */
+static struct glint_real compute_area(const struct glint_plan *p,
+                                      const struct glint_bundle_plan *planned,
+                                      const struct glint_transfer *t,
+                                      const struct glint_probe_extent *e)
 {
-    const int64_t high = half_height(e);
+    const int64_t high = compute_half_height(e);
     const int64_t wide_q8 =
-        widened(planned, pixels_q8(p, t, q_divide((e->high - e->low) * 3, 5))) +
+        enlarge(planned, convert_to_pixels_q8(
+                             p, t, q_divide((e->high - e->low) * 3, 5))) +
         256;
     const int64_t high_q8 =
-        widened(planned, pixels_q8(p, t, high + q_divide(high, 10))) + 256;
+        enlarge(planned,
+                convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
+        256;
 
     return real_times(real_of(wide_q8, -7), real_of(high_q8, -7));
 }
 
-/* Returns the rotation that the outputs of T need for light at AZIMUTH. */
-static struct glint_azimuth turn_of(const struct glint_transfer *t,
-                                    struct glint_azimuth azimuth)
+/* Returns the rotation in the picture that the sensor outputs of T need for
+ * a light at AZIMUTH. */
+static struct glint_azimuth choose_rotation(const struct glint_transfer *t,
+                                            struct glint_azimuth azimuth)
 {
     const struct glint_azimuth upright = {t->sign * (INT32_C(1) << 30), 0};
 
@@ -449,35 +463,35 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
     if (!glint_transfer_init_at(transfer, r->lens, planned->ghost, b->sine_q30,
                                 azimuth, r->wave[planned->wave].wave_q24))
         return GLINT_OUTCOME_CLOSED;
-    planned->turn = turn_of(transfer, azimuth);
+    planned->turn = choose_rotation(transfer, azimuth);
     transfer->sets = plan->sets;
     share_q8 = plan->dims ? r->dim->method->share_q8(r, b, planned->ghost)
                           : GLINT_DIM_WHOLE_Q8;
     if (share_q8 == 0 && planned->wave != GLINT_DIM_WAVE)
         return GLINT_OUTCOME_OTHER_SET;
-    colour = colour_of(plan, b, planned, share_q8, bundle->rgb_q14);
+    colour = compute_colour(plan, b, planned, share_q8, bundle->rgb_q14);
     if (colour.mantissa == 0 || b->power.mantissa == 0)
         return GLINT_OUTCOME_DARK;
     if (!set_window(plan, planned, scratch))
         return GLINT_OUTCOME_BLOCKED;
-    if (!probe(plan, transfer, s))
+    if (!probe_bundle(plan, transfer, s))
         return GLINT_OUTCOME_BLOCKED;
     set_wider(plan, b, planned, transfer, &s->seen);
-    reach = reach_of(plan, planned, transfer, &s->reach);
+    reach = compute_reach(plan, planned, transfer, &s->reach);
     if (!is_in_view(plan, planned->turn, &reach))
         return GLINT_OUTCOME_OUTSIDE;
-    planned->view_q8 = view_q8(plan, planned->turn, &reach);
-    planned->energy_up = (uint8_t)energy_up(s->energy);
+    planned->view_q8 = compute_view_q8(plan, planned->turn, &reach);
+    planned->energy_up = (uint8_t)find_energy_up(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - planned->energy_up;
-    planned->flux = flux_of(plan, b, planned, transfer, colour, exponent);
+    planned->flux = compute_flux(plan, b, planned, transfer, colour, exponent);
     if (share_q8 < GLINT_DIM_WHOLE_Q8 && planned->wave != GLINT_DIM_WAVE)
         planned->flux = real_times(planned->flux, real_of(share_q8, -8));
-    brightest = brightest_of(plan, planned, s, transfer, planned->flux);
-    planned->peak_q20 = peak_q20(plan, brightest);
+    brightest = compute_brightest(plan, planned, s, transfer, planned->flux);
+    planned->peak_q20 = compute_peak_q20(plan, brightest);
     if (plan->n_lights == 1 && !r->sets && planned->peak_q20 < 1 << 20)
         return GLINT_OUTCOME_FAINT;
-    planned->irradiance =
-        real_over(planned->flux, area_of(plan, planned, transfer, &s->seen));
+    planned->irradiance = real_over(
+        planned->flux, compute_area(plan, planned, transfer, &s->seen));
     set_shape(s, brightest, planned);
     bundle->n_cells = glint_plan_cells(plan, s, transfer, planned->irradiance);
     glint_plan_sags(planned, s, transfer, bundle->n_cells, plan->round_q16);

@@ -23,30 +23,31 @@
  * results of the plan. */
 struct glint_bundle_plan {
     int32_t ghost, light, wave;
-    /* Direction of the light that is drawn, as in struct glint_light: the
-     * direction of LIGHT, or of the merged light that replaces it. */
+    /* Direction of the light that is drawn, as in struct glint_light: that
+     * of light LIGHT, or of the merged light that replaces it. */
     int32_t sine_q30, cos_q30, sin_q30;
     /* Rotation of the ghost in the picture, see struct glint_place. */
     struct glint_azimuth turn;
     uint8_t energy_up; /* see struct glint_transfer */
     /* As in struct glint_planned. */
     uint8_t inside_q8, view_q8, contrast_q4;
-    /* subrange of the box that the stop lets through */
+    /* Subrange of the pupil box that the stop transmits. */
     struct glint_box_window window;
     /* For two barrels and a curved stop: mean height of the straight lines
      * between grid rays above the curve (1 + r^2) / 2 */
     uint16_t sag_q16[3];
-    /* Light of the whole pupil if all rays had the highest energy of the probed
+    /* Light of the whole pupil if all rays had the max energy of the probed
      * rays, display white times pixels. */
     struct glint_real flux;
-    /* wider: factor above 1 by which the ghost is enlarged, or 0 if it is drawn
-     * in its own size. centre: the fixed point of the enlargement, pixels from
-     * the picture's middle along the light's azimuth and across it. */
+    /* wider: factor above 1 by which the ghost is enlarged, or 0 if it is
+     * drawn at its own size. centre: fixed point of the enlargement, pixels
+     * from the picture's middle along the light's azimuth and perpendicular
+     * to it. */
     int32_t wider_q16, centre_q8[2];
     /* flux divided by the number of pixels that it falls on, display white */
     struct glint_real irradiance;
-    int64_t peak_q20; /* max light of a pixel, in units of the least visible
-                         light; clamped to 2^20 of them */
+    int64_t peak_q20; /* max light of a pixel, in units of the min visible
+                         light; clamped to 2^20 units */
 };
 
 struct glint_plan {
@@ -73,13 +74,13 @@ struct glint_plan_scratch {
     int64_t n_rays; /* number of rays probed since the plan began */
 };
 
-/* Returns whether the angle of LIGHT is larger than the largest angle that the
- * model was baked for. */
+/* Returns whether the angle of LIGHT exceeds the max angle that the model
+ * was baked for. */
 int glint_plan_is_beyond(const struct glint_lens *lens,
                          const struct glint_light *light);
 
-/* Plans one bundle with LIGHT as its light; its ghost, light and wave must be
- * set in PLANNED. Returns the outcome; unless it is GLINT_OUTCOME_DRAWN, the
+/* Plans one bundle with light LIGHT; its ghost, light and wave must be set
+ * in PLANNED. Returns the outcome; unless it is GLINT_OUTCOME_DRAWN, the
  * bundle is invisible and BUNDLE->n_cells is 0. */
 enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
                                      const struct glint_light *light,

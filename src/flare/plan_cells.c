@@ -8,50 +8,50 @@
 
 enum { FOLD_OCTAVES = 3, MOST_SHADE_CELLS = 128, SHADE_CELL_LOG2 = 4 };
 
-/* Returns the root of the mean SUM / N of squares; each square was divided by
- * 2^10 before it was added. */
-static int64_t root_mean(uint64_t sum, int n)
+/* Returns the root of the mean SUM / N of squares. Each square was divided
+ * by 2^10 before it was added to SUM; N may be 0. */
+static int64_t compute_rms(uint64_t sum, int n)
 {
     return n ? (int64_t)q_root((uint64_t)q_divide((int64_t)sum, n)) << 5 : 0;
 }
 
-/* Returns the curvature of the outputs A and B over the box as a distance on
- * the sensor, in units of the sensor outputs times 2^GLINT_PROBE_FINE_LOG2:
- * second differences / first differences, times the first differences of the
- * sensor outputs. */
-static int64_t bend_of(const struct glint_probe *s, int a, int b)
+/* Returns the curvature of the outputs A and B over the box, converted to a
+ * distance on the sensor, in units of the sensor outputs times
+ * 2^GLINT_PROBE_FINE_LOG2: second differences / first differences, times the
+ * first differences of the sensor outputs. */
+static int64_t compute_bend(const struct glint_probe *s, int a, int b)
 {
-    const int64_t second = root_mean(
+    const int64_t second = compute_rms(
         s->change[a].second + (a == b ? 0 : s->change[b].second), s->n_bends);
-    const int64_t first = root_mean(
+    const int64_t first = compute_rms(
         s->change[a].first + (a == b ? 0 : s->change[b].first), s->n_bends);
-    const int64_t sensor = root_mean(s->change[GLINT_OUT_SENSOR_X].first +
-                                         s->change[GLINT_OUT_SENSOR_Y].first,
-                                     s->n_bends);
+    const int64_t sensor = compute_rms(s->change[GLINT_OUT_SENSOR_X].first +
+                                           s->change[GLINT_OUT_SENSOR_Y].first,
+                                       s->n_bends);
 
-    /* At most 2^30 * 2^31. */
+    /* at most 2^30 * 2^31 */
     return first ? q_divide(second * sensor, first) : 0;
 }
 
-/* Return the change of the stop position over the box, and the stop's radius,
- * both in units of the stop outputs times 2^GLINT_PROBE_FINE_LOG2. */
-static int64_t stop_change(const struct glint_probe *s)
+/* Returns the change of the stop position over the box, in units of the stop
+ * outputs times 2^GLINT_PROBE_FINE_LOG2. */
+static int64_t compute_stop_change(const struct glint_probe *s)
 {
-    return root_mean(s->change[GLINT_OUT_STOP_X].first +
-                         s->change[GLINT_OUT_STOP_Y].first,
-                     s->n_bends);
+    return compute_rms(s->change[GLINT_OUT_STOP_X].first +
+                           s->change[GLINT_OUT_STOP_Y].first,
+                       s->n_bends);
 }
 
 /* Returns the change of the position on the sensor over the box, in units of
  * the sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
-static int64_t sensor_change(const struct glint_probe *s)
+static int64_t compute_sensor_change(const struct glint_probe *s)
 {
-    return root_mean(s->change[GLINT_OUT_SENSOR_X].first +
-                         s->change[GLINT_OUT_SENSOR_Y].first,
-                     s->n_bends);
+    return compute_rms(s->change[GLINT_OUT_SENSOR_X].first +
+                           s->change[GLINT_OUT_SENSOR_Y].first,
+                       s->n_bends);
 }
 
-static int64_t one_radius(const struct glint_probe *s)
+static int64_t compute_radius(const struct glint_probe *s)
 {
     /* The limit is 1.05 radii. */
     const int64_t radius =
@@ -61,17 +61,18 @@ static int64_t one_radius(const struct glint_probe *s)
     return radius > 0 ? radius : 1;
 }
 
-/* Like bend_of(), for the outline of a stop of curvature ROUND. A round stop
- * cuts where (1 + r^2) / 2 is 1, like a barrel: at r = 1 this function changes
- * as fast as the stop position s, and its second difference is the square of
- * the first difference of s. */
-static int64_t round_bend(const struct glint_probe *s, int32_t round_q16)
+/* Like compute_bend(), for the outline of a stop of curvature ROUND. A round
+ * stop cuts where (1 + r^2) / 2 is 1, like a barrel: at r = 1 this function
+ * changes as fast as the stop position s, and its second difference is the
+ * square of the first difference of s. */
+static int64_t compute_round_bend(const struct glint_probe *s,
+                                  int32_t round_q16)
 {
-    const int64_t change = (stop_change(s) >> 2) * round_q16 >> 16;
-    const int64_t sensor = sensor_change(s);
+    const int64_t change = (compute_stop_change(s) >> 2) * round_q16 >> 16;
+    const int64_t sensor = compute_sensor_change(s);
 
-    /* 2^30 * 2^31 */
-    return q_divide(change * sensor, (one_radius(s) >> 2) + 1);
+    /* at most 2^30 * 2^31 */
+    return q_divide(change * sensor, (compute_radius(s) >> 2) + 1);
 }
 
 /* Reduces N cells per side to the number that a picture in codes (not linear
@@ -92,11 +93,11 @@ static int cells_for_codes(const struct glint_probe *s,
     return n;
 }
 
-/* Returns the ratio of the error allowed for outlines to the error allowed for
- * light. The ratio is 5 if three or more barrels cut: the second barrel of a
- * vertex is the tightest of all but the first, and has kinks where these meet,
- * so that tips of outlines come and go with the grid. It is also 5 for a round
- * stop, which curves all outlines. */
+/* Returns the ratio of the error allowed for outlines to the error allowed
+ * for light. It is 5, not 10, if three or more barrels cut: the second
+ * barrel of a vertex is the tightest of all but the first, and has kinks
+ * where these meet, so that tips of outlines appear and vanish with the
+ * grid. It is also 5 for a round stop, which curves all outlines. */
 static int outline_over_light(const struct glint_plan *p,
                               const struct glint_transfer *t)
 {
@@ -109,25 +110,26 @@ static int cells_for_shade(const struct glint_plan *p,
                            const struct glint_probe *s,
                            const struct glint_transfer *t)
 {
-    const struct glint_real pixels =
-        real_times(real_of(sensor_change(s), t->exponent[GLINT_OUT_SENSOR_X] +
-                                                 GLINT_PROBE_FINE_LOG2),
-                   plan_pixels_per_mm(p));
+    const struct glint_real pixels = real_times(
+        real_of(compute_sensor_change(s),
+                t->exponent[GLINT_OUT_SENSOR_X] + GLINT_PROBE_FINE_LOG2),
+        plan_pixels_per_mm(p));
 
     return (int)real_integer(pixels, -SHADE_CELL_LOG2, MOST_SHADE_CELLS);
 }
 
 /* Returns the cells per side by the rule of lens/grid.h, from the probe's
  * results. */
-static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
-                    const struct glint_transfer *t,
-                    struct glint_real irradiance)
+static int compute_cells(const struct glint_plan *p,
+                         const struct glint_probe *s,
+                         const struct glint_transfer *t,
+                         struct glint_real irradiance)
 {
     const struct glint_flare_frame *r = p->frame;
     const int folds = glint_grid_most(r->fineness, s->n_up && s->n_down);
     const int most = folds < GLINT_MAX_CELLS ? folds : GLINT_MAX_CELLS;
-    int64_t bend = bend_of(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
-    int64_t outline = bend_of(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
+    int64_t bend = compute_bend(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
+    int64_t outline = compute_bend(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
     int64_t bend_q8;
     int n;
 
@@ -135,12 +137,12 @@ static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
         return r->fineness;
     for (int k = GLINT_OUT_RADIUS; k < GLINT_OUT_KINDS; k++)
         if (t->outputs >> k & 1) {
-            const int64_t cut = bend_of(s, k, k);
+            const int64_t cut = compute_bend(s, k, k);
 
             outline = cut > outline ? cut : outline;
         }
     if (p->round_q16) {
-        const int64_t cut = round_bend(s, p->round_q16);
+        const int64_t cut = compute_round_bend(s, p->round_q16);
 
         outline = cut > outline ? cut : outline;
     }
@@ -167,8 +169,8 @@ static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
     return n < most ? n : most;
 }
 
-/* Returns N + 2, made even, or GLINT_MAX_CELLS if that is less: room for the
- * two rows of cells in the hole of an annular box. */
+/* Returns N + 2, rounded up to an even number, or GLINT_MAX_CELLS if that is
+ * less. The two rows of cells are those in the hole of an annular box. */
 static int annular_cells(int n)
 {
     const int more = (n + 3) / 2 * 2;
@@ -181,14 +183,14 @@ int glint_plan_cells(const struct glint_plan *plan,
                      const struct glint_transfer *transfer,
                      struct glint_real irradiance)
 {
-    const int n = cells_of(plan, probe, transfer, irradiance);
+    const int n = compute_cells(plan, probe, transfer, irradiance);
 
     return transfer->annulus ? annular_cells(n) : n;
 }
 
 /* Returns the sum of the mean second differences of output K across and down
  * the box, in the output's unit times 2^GLINT_PROBE_FINE_LOG2. */
-static int64_t bowl_of(const struct glint_probe *s, int k)
+static int64_t compute_bowl(const struct glint_probe *s, int k)
 {
     int64_t sum = 0;
 
@@ -198,12 +200,12 @@ static int64_t bowl_of(const struct glint_probe *s, int k)
     return sum;
 }
 
-/* The same sum for (1 + r^2) / 2 of a round stop: in each direction the square
- * of the distance that the stop position moves, in stop radii. */
-static int64_t round_bowl_q16(const struct glint_probe *s)
+/* Like compute_bowl(), for (1 + r^2) / 2 of a round stop: in each direction
+ * the square of the distance that the stop position moves, in stop radii. */
+static int64_t compute_round_bowl_q16(const struct glint_probe *s)
 {
-    const struct glint_real change =
-        real_over(real_of(stop_change(s), 0), real_of(one_radius(s), 0));
+    const struct glint_real change = real_over(
+        real_of(compute_stop_change(s), 0), real_of(compute_radius(s), 0));
 
     return 2 * real_integer(real_times(change, change), 16, INT64_C(1) << 40);
 }
@@ -211,14 +213,15 @@ static int64_t round_bowl_q16(const struct glint_probe *s)
 /* Returns the mean height, above a paraboloid, of the straight lines between
  * the rays of a grid of N_CELLS: (D + E) / 12 for second differences D across
  * and E down a cell. */
-static uint16_t sag_q16(int64_t bowl_q16, int n_cells)
+static uint16_t compute_sag_q16(int64_t bowl_q16, int n_cells)
 {
     return (uint16_t)q_clamp_sat(
         q_divide(bowl_q16, 12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
 }
 
-/* A barrel's (1 + r^2) / 2 is a paraboloid. After the sag is subtracted, drawn
- * outlines lie outside the true outlines as often as inside. */
+/* Implements plan_cells.h. A barrel's (1 + r^2) / 2 is a paraboloid. After
+ * the sag is subtracted, drawn outlines lie outside the true outlines as
+ * often as inside. */
 void glint_plan_sags(struct glint_bundle_plan *planned,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer, int n_cells,
@@ -228,15 +231,17 @@ void glint_plan_sags(struct glint_bundle_plan *planned,
         const int64_t bowl_q16 =
             transfer->outputs >> k & 1
                 ? real_integer(
-                      real_of(bowl_of(probe, k),
+                      real_of(compute_bowl(probe, k),
                               transfer->exponent[k] + GLINT_PROBE_FINE_LOG2),
                       16, INT64_C(1) << 40)
                 : 0;
 
-        planned->sag_q16[k - GLINT_OUT_BARREL_0] = sag_q16(bowl_q16, n_cells);
+        planned->sag_q16[k - GLINT_OUT_BARREL_0] =
+            compute_sag_q16(bowl_q16, n_cells);
     }
     planned->sag_q16[2] =
-        round_q16
-            ? sag_q16(q_shift(round_bowl_q16(probe) * round_q16, 16), n_cells)
-            : 0;
+        round_q16 ? compute_sag_q16(
+                        q_shift(compute_round_bowl_q16(probe) * round_q16, 16),
+                        n_cells)
+                  : 0;
 }

@@ -18,7 +18,7 @@ static inline struct glint_real plan_pixels_per_mm(const struct glint_plan *p)
     return x;
 }
 
-/* Returns the cells per side of the grid of a bundle that shines with
+/* Returns the cells per side of the grid of a bundle with the irradiance
  * IRRADIANCE, display white. For an annular box the number includes the two
  * rows of cells next to the middle, which carry no light. */
 int glint_plan_cells(const struct glint_plan *plan,

@@ -5,21 +5,22 @@
 #include "base/real.h"
 
 /* Returns X as an integer in the unit of output KIND. */
-static int64_t in_units(const struct glint_transfer *t, int kind, int64_t x_q46)
+static int64_t convert_to_units(const struct glint_transfer *t, int kind,
+                                int64_t x_q46)
 {
     return real_integer(real_of(x_q46, -46), -t->exponent[kind],
                         INT64_C(1) << 31);
 }
 
-static int is_of_stop(int kind)
+static int is_stop_output(int kind)
 {
     return kind == GLINT_OUT_STOP_X || kind == GLINT_OUT_STOP_Y;
 }
 
-static void begin(struct glint_probe *s, const struct glint_transfer *t,
-                  int32_t opening_q30, int across, int down)
+static void begin_probe(struct glint_probe *s, const struct glint_transfer *t,
+                        int32_t opening_q30, int across, int down)
 {
-    /* 1.05: rays just outside count as inside. */
+    /* 1.05 times the limits: rays just outside count as inside. */
     const int64_t near_q16 = 68813;
 
     s->across = across;
@@ -36,8 +37,9 @@ static void begin(struct glint_probe *s, const struct glint_transfer *t,
     s->n_kinds = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         s->change[k] = (struct glint_probe_change){0, 0, {0, 0}};
-        s->limit[k] = in_units(
-            t, k, near_q16 * (is_of_stop(k) ? opening_q30 : INT32_C(1) << 30));
+        s->limit[k] = convert_to_units(
+            t, k,
+            near_q16 * (is_stop_output(k) ? opening_q30 : INT32_C(1) << 30));
         if (t->outputs >> k & 1 && k != GLINT_OUT_ENERGY)
             s->kind[s->n_kinds++] = (uint8_t)k;
     }
@@ -58,7 +60,7 @@ static int is_inside(const struct glint_probe *s,
 }
 
 /* Traces the rays of row J, 0 .. s->down. */
-static void send_row(struct glint_probe *s, struct glint_transfer *t, int j)
+static void trace_row(struct glint_probe *s, struct glint_transfer *t, int j)
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     const int32_t v_q30 = glint_transfer_v(t, j, s->down);
@@ -99,7 +101,8 @@ static void add_bend(struct glint_probe *s, const struct glint_probe_node *a,
         const int64_t second =
             ((int64_t)a->at[k] - 2 * (int64_t)b->at[k] + c->at[k]) * steps *
             steps;
-        /* squares below 2^62 / 2^10: the sum holds several hundred of them */
+        /* Squares are below 2^62 / 2^10, so the sum can hold several hundred
+         * of them. */
         const int64_t f =
             q_clamp_sat(first >> GLINT_PROBE_FINE_LOG2, -INT32_MAX, INT32_MAX);
         const int64_t d =
@@ -129,8 +132,8 @@ static void add_cell(struct glint_probe *s, const struct glint_probe_node *a,
     s->least_area = area < s->least_area ? area : s->least_area;
 }
 
-static void widen(const struct glint_probe *s, struct glint_probe_extent *e,
-                  const struct glint_probe_node *n)
+static void extend(const struct glint_probe *s, struct glint_probe_extent *e,
+                   const struct glint_probe_node *n)
 {
     const int64_t x = n->at[GLINT_OUT_SENSOR_X], y = n->at[GLINT_OUT_SENSOR_Y];
     const int64_t away = y < 0 ? -y : y;
@@ -151,10 +154,10 @@ static void add_reach(struct glint_probe *s, const struct glint_probe_node *a,
 {
     if (!(a->inside || b->inside || c->inside || d->inside))
         return;
-    widen(s, &s->reach, a);
-    widen(s, &s->reach, b);
-    widen(s, &s->reach, c);
-    widen(s, &s->reach, d);
+    extend(s, &s->reach, a);
+    extend(s, &s->reach, b);
+    extend(s, &s->reach, c);
+    extend(s, &s->reach, d);
 }
 
 static void add_seen(struct glint_probe *s, const struct glint_probe_node *n)
@@ -162,7 +165,7 @@ static void add_seen(struct glint_probe *s, const struct glint_probe_node *n)
     if (!n->inside)
         return;
     s->n_inside++;
-    widen(s, &s->seen, n);
+    extend(s, &s->seen, n);
     s->energy = n->at[GLINT_OUT_ENERGY] > s->energy ? n->at[GLINT_OUT_ENERGY]
                                                     : s->energy;
 }
@@ -170,7 +173,7 @@ static void add_seen(struct glint_probe *s, const struct glint_probe_node *n)
 void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
                      int32_t opening_q30, int across, int down)
 {
-    begin(probe, t, opening_q30, across, down);
+    begin_probe(probe, t, opening_q30, across, down);
     down = probe->down;
     probe->n_rays += (across + 1) * (down + 1);
     for (int j = 0; j <= down; j++) {
@@ -178,7 +181,7 @@ void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
         const struct glint_probe_node *above = probe->row[(j + 2) % 3];
         const struct glint_probe_node *top = probe->row[(j + 1) % 3];
 
-        send_row(probe, t, j);
+        trace_row(probe, t, j);
         for (int i = 0; i <= across; i++) {
             add_seen(probe, &here[i]);
             if (i > 0 && i < across)

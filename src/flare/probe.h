@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Traces a few rays of a bundle through its polynomials: finds where they land,
- * how they spread, and how the outputs change from ray to ray.
+ * Traces a few rays of a bundle through its polynomials: finds their positions
+ * on the sensor, their extent, and how the outputs change from ray to ray.
  *
- *   in   the polynomials of a bundle, the number of rays
- *   out  extents, sums of differences, numbers of cells by orientation */
+ *    in   the polynomials of a bundle, the number of rays
+ *    out  extents, sums of differences, numbers of cells by orientation
+ */
 #ifndef GLINT_FLARE_PROBE_H
 #define GLINT_FLARE_PROBE_H
 
@@ -34,27 +35,29 @@ struct glint_probe_change {
 };
 
 struct glint_probe {
-    /* The last three rows of rays. */
+    /* The last three rows of rays, by row number modulo 3. */
     struct glint_probe_node row[3][GLINT_PROBE_ACROSS + 1];
     struct glint_probe_change change[GLINT_OUT_KINDS];
-    /* Number of cells across the window; down half the window, or down all of
-     * it if rays have no mirror image; down all of it in any case. */
+    /* Numbers of cells. across: across the window; down: down half the
+     * window, or down all of it if rays have no mirror image; rows: down all
+     * of the window. */
     int across, down, rows;
     int whole;  /* as in struct glint_transfer */
     int n_rays; /* number of rays of all probes of the bundle */
     int n_bends, n_bent[2], n_inside, n_kinds;
-    /* Outputs that this bundle has, without energy: [n_kinds]. */
+    /* Kinds of outputs of this bundle, except energy: [n_kinds]. */
     uint8_t kind[GLINT_OUT_KINDS];
     int n_up, n_down; /* numbers of cells of positive and of negative
                          orientation */
-    /* Range of the rays inside stop and barrels. */
+    /* Range of the rays that pass the stop and the barrels. */
     struct glint_probe_extent seen;
-    /* Range of all corners of the cells that have a ray inside; it covers the
-     * light between rays, too. */
+    /* Range of all corners of the cells that have a ray inside; it also
+     * contains the light between rays. */
     struct glint_probe_extent reach;
     int64_t energy;
     uint64_t least_area; /* area of the smallest half of a cell on the sensor */
-    int64_t limit[GLINT_OUT_KINDS]; /* max value that counts as inside */
+    int64_t limit[GLINT_OUT_KINDS]; /* max magnitude of an output that counts as
+                                       inside */
 };
 
 /* log2 of the divisor of differences before they are squared */

@@ -26,22 +26,23 @@ struct glint_bundle_slot {
     int first_vertex;
     int first; /* index of the first edge; -1: the edges did not fit */
     int n, n_dropped, n_held;
-    int worker; /* index of the worker that made the edges */
+    int worker; /* index of the worker that emitted the edges */
     int refs;   /* entries in the bins; set only if the edges did not fit */
 };
 
-/* Whether the bins hold the edges of the plan. */
+/* Whether the bins hold the edges of the current plan. */
 enum glint_reusable {
     GLINT_REUSABLE_NOT,
     GLINT_REUSABLE_PLANNED, /* planned, but not binned yet */
-    GLINT_REUSABLE_BINNED   /* the bins hold the whole plan and nothing else */
+    GLINT_REUSABLE_BINNED   /* the bins hold the edges of the whole plan and
+                               nothing else */
 };
 
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    /* half is 1 at half resolution; width and height: the size that is drawn,
-     * in its pixels. */
+    /* half: 1 at half resolution. width, height: size of the drawn area, in
+     * pixels of the drawing resolution. */
     int half, width, height;
     const struct glint_half *quads; /* set only at half resolution */
     int n_bundles, n_vertices;      /* bundles and vertices added so far */
@@ -53,8 +54,8 @@ struct glint_flare {
     struct glint_bundle_plan *planned; /* the plan of each bundle */
     struct glint_real flux, brightest; /* flux of all planned bundles, and the
                                           largest mean irradiance of a bundle */
-    int n_drawn; /* number of bundles that glint_edges_bin() kept; they are the
-                    first ones */
+    int n_drawn; /* number of bundles that glint_edges_bin() kept, counted from
+                    the first */
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
@@ -73,17 +74,18 @@ struct glint_reuse {
     /* Carves the state of the reuse out of A; returns NULL while A only
      * measures. */
     void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
-    /* Returns whether a plan of these inputs would equal the last plan and that
-     * plan is still binned; it is then reused. Otherwise records the inputs for
-     * the next plan and returns 0. */
+    /* Returns whether a plan of these inputs would equal the last plan and
+     * that plan is still binned, so that it is reused. Otherwise records the
+     * inputs for the next plan and returns 0. */
     int (*take)(struct glint_flare *f, const struct glint_flare_frame *frame,
                 const struct glint_light *lights, int n_lights);
-    /* Applies the frame's factors to the binned bundles. */
+    /* Sets the colours of the binned bundles to their planned colours times the
+     * gains of the frame for each light (gain_q14). */
     void (*turn)(struct glint_flare *f);
 };
 
-/* Clears the tile counts of the last draw and the blend with passes under the
- * flare. */
+/* Clears the tile counts of the last draw and the state for blending with
+ * passes under the flare. */
 void glint_flare_forget(struct glint_flare *flare);
 
 /* Prepares the flare's tables for IMAGE (NULL: light is discarded) and returns
@@ -91,7 +93,8 @@ void glint_flare_forget(struct glint_flare *flare);
 struct glint_tiles glint_flare_start(struct glint_flare *flare,
                                      const struct glint_image *image);
 
-/* Returns A + B, clamped to INT32_MAX; so large a need cannot be met anyway. */
+/* Returns A + B, clamped to INT32_MAX, a need that no memory satisfies
+ * anyway. */
 static inline int glint_flare_add_need(int a, int b)
 {
     return a > INT32_MAX - b ? INT32_MAX : a + b;

@@ -6,8 +6,8 @@
 
 enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
 
-/* One ghost and one light. Jobs are stored in the memory of the bundles' slots,
- * which are not in use until bundles have their final indices. */
+/* A pair of a ghost and a light. Jobs are stored in the memory of the
+ * bundles' slots, which are unused until bundles have their final indices. */
 struct job {
     int ghost, light;
     int set;      /* index of the chosen set of waves, or UNSEEN */
@@ -20,13 +20,13 @@ typedef char
     glint_job_fits[sizeof(struct job) <= sizeof(struct glint_bundle_slot) ? 1
                                                                           : -1];
 
-static struct job *jobs_of(struct glint_flare *f)
+static struct job *get_jobs(struct glint_flare *f)
 {
     return (struct job *)(void *)f->slot;
 }
 
 /* Returns the index of the first wave of set SET. */
-static int first_wave(const struct glint_wave_sets *sets, int set)
+static int find_first_wave(const struct glint_wave_sets *sets, int set)
 {
     int first = 0;
 
@@ -48,9 +48,10 @@ int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave)
 
 /* Sets AT_Q8 to the positions of rays of PLANNED in the picture, pixels. The
  * rays are spread evenly over half of the bundle's window. */
-static void trace(const struct glint_plan *plan,
-                  const struct glint_bundle_plan *planned,
-                  struct glint_transfer *t, int32_t at_q8[ROWS][2][GLINT_RAYS])
+static void trace_rays(const struct glint_plan *plan,
+                       const struct glint_bundle_plan *planned,
+                       struct glint_transfer *t,
+                       int32_t at_q8[ROWS][2][GLINT_RAYS])
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     const struct glint_real scale =
@@ -77,16 +78,17 @@ static void trace(const struct glint_plan *plan,
 
 /* Returns the distance in pixels between the outlines of FIRST and LAST, the
  * outermost waves of the first set. */
-static int64_t apart_q8(const struct glint_plan *plan,
-                        const struct glint_bundle_plan *first,
-                        const struct glint_bundle_plan *last,
-                        struct glint_transfer *t)
+static int64_t compute_distance_q8(const struct glint_plan *plan,
+                                   const struct glint_bundle_plan *first,
+                                   const struct glint_bundle_plan *last,
+                                   struct glint_transfer *t)
 {
     int32_t a_q8[ROWS][2][GLINT_RAYS], b_q8[ROWS][2][GLINT_RAYS];
-    uint64_t squares = 0; /* 24 squares of x and 24 of y, each 2^52 at most */
+    /* sum of 24 squares of x and 24 of y, each at most 2^52 */
+    uint64_t squares = 0;
 
-    trace(plan, first, t, a_q8);
-    trace(plan, last, t, b_q8);
+    trace_rays(plan, first, t, a_q8);
+    trace_rays(plan, last, t, b_q8);
     for (int row = 0; row < ROWS; row++)
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < GLINT_RAYS; i++) {
@@ -97,21 +99,21 @@ static int64_t apart_q8(const struct glint_plan *plan,
     return q_root(squares / (ROWS * GLINT_RAYS));
 }
 
-/* Returns the width of set SET in 1 / wavelength^2, um^-2 in _q24. */
-static int64_t span_of(const struct glint_flare_frame *r, int set)
+/* Returns the width of wave set SET in 1 / wavelength^2, um^-2 in _q24. */
+static int64_t compute_width(const struct glint_flare_frame *r, int set)
 {
-    const struct glint_wave *w = r->wave + first_wave(r->sets, set);
+    const struct glint_wave *w = r->wave + find_first_wave(r->sets, set);
     const int32_t span = w[r->sets->size[set] - 1].wave_q24 - w[0].wave_q24;
 
     return span < 0 ? -span : span;
 }
 
-/* Returns whether the steps between the waves of set SET are invisible in a
- * ghost whose waves have the sum of light LIGHT. From one of n waves to the
- * next, light changes by about 5 LIGHT / n; the step is invisible if a tenth of
- * that is below s->step, or if the outlines are near enough to each other.
- * APART is the distance between the first set's outermost outlines, pixels
- * _q8. */
+/* Returns whether the brightness steps between the waves of set SET are
+ * invisible in a ghost whose waves have the total light LIGHT. From one of n
+ * waves to the next, light changes by about 5 LIGHT / n; the step is
+ * invisible if a tenth of that is below s->step, or if the outlines are near
+ * enough to each other. APART: distance between the outermost outlines of
+ * the first set, pixels _q8. */
 static int hides_steps(const struct glint_flare_frame *r, int set,
                        int64_t apart, struct glint_real light)
 {
@@ -121,11 +123,12 @@ static int hides_steps(const struct glint_flare_frame *r, int set,
         real_over(light, real_of(s->size[set], 1)); /* LIGHT / (2 n) */
 
     return real_less(step, s->step) ||
-           apart * span_of(r, set) <= s->apart_q8 * gaps * span_of(r, 0);
+           apart * compute_width(r, set) <=
+               s->apart_q8 * gaps * compute_width(r, 0);
 }
 
-/* Returns the smallest set whose steps are invisible in a ghost, from the
- * ghost's bundles of the first set. */
+/* Returns the index of the smallest set whose steps are invisible in a
+ * ghost, given the ghost's bundles of the first set. */
 static int choose_set(const struct glint_plan *plan,
                       const struct glint_bundle_plan *planned,
                       const struct glint_bundle *bundle,
@@ -142,7 +145,7 @@ static int choose_set(const struct glint_plan *plan,
             light = real_plus(light, planned[i].irradiance);
     if (r->sets->n_sets > 1 && !hides_steps(r, 0, FARTHEST_Q8, light)) {
         const int64_t apart =
-            both ? apart_q8(plan, &planned[0], &planned[n - 1], t)
+            both ? compute_distance_q8(plan, &planned[0], &planned[n - 1], t)
                  : FARTHEST_Q8;
 
         while (set < r->sets->n_sets - 1 && !hides_steps(r, set, apart, light))
@@ -157,7 +160,7 @@ static void plan_waves(struct glint_flare *f, const struct job *job, int at,
                        int set, struct glint_plan_scratch *scratch)
 {
     const struct glint_wave_sets *sets = f->plan.frame->sets;
-    const int first = first_wave(sets, set);
+    const int first = find_first_wave(sets, set);
 
     for (int i = 0; i < sets->size[set]; i++) {
         f->planned[at + i] = (struct glint_bundle_plan){
@@ -169,10 +172,10 @@ static void plan_waves(struct glint_flare *f, const struct job *job, int at,
 
 /* Plans a ghost and a light with the first set of waves, and chooses the set
  * that they need. */
-static void look_job(void *ctx, int number, int worker)
+static void plan_first_set_job(void *ctx, int number, int worker)
 {
     struct glint_flare *f = ctx;
-    struct job *job = &jobs_of(f)[number];
+    struct job *job = &get_jobs(f)[number];
     const struct glint_flare_frame *r = f->plan.frame;
     const int n_ghosts = (int)r->lens->header->n_ghosts;
     const int n = r->sets->size[0], at = number * n;
@@ -192,21 +195,21 @@ static void look_job(void *ctx, int number, int worker)
                               &f->worker[worker].plan->transfer);
 }
 
-static void more_job(void *ctx, int number, int worker)
+static void plan_chosen_set_job(void *ctx, int number, int worker)
 {
     struct glint_flare *f = ctx;
-    const struct job *job = &jobs_of(f)[number];
+    const struct job *job = &get_jobs(f)[number];
 
     if (job->set > 0)
         plan_waves(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
-/* Leaves out each ghost that is too faint to be seen even if its brightest
- * pixels by all lights coincide. */
+/* Removes each ghost that would be invisible even if its brightest pixels by
+ * all lights coincided. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;
-    struct job *job = jobs_of(f);
+    struct job *job = get_jobs(f);
 
     for (int ghost = 0; ghost < n_ghosts && ghost < n; ghost++) {
         int64_t sum_q20 = 0;
@@ -218,8 +221,8 @@ static void leave_out_faint(struct glint_flare *f, int n)
     }
 }
 
-/* Moves N bundles from index FROM to TO. Moves the last bundle first if TO is
- * larger, as both ranges may overlap. */
+/* Moves N bundles from index FROM to TO. Starts with the last bundle if TO
+ * is larger, as the ranges may overlap. */
 static void move_bundles(struct glint_flare *f, int from, int to, int n)
 {
     for (int i = 0; i < n && from != to; i++) {
@@ -235,7 +238,7 @@ static void move_bundles(struct glint_flare *f, int from, int to, int n)
 static int keep_seen(struct glint_flare *f, int n)
 {
     const int size = f->plan.frame->sets->size[0];
-    struct job *job = jobs_of(f);
+    struct job *job = get_jobs(f);
     int kept = 0;
 
     for (int i = 0; i < n; i++)
@@ -252,7 +255,7 @@ static int keep_seen(struct glint_flare *f, int n)
 static int assign_indices(struct glint_flare *f, int n, int64_t *need)
 {
     const int *size = f->plan.frame->sets->size;
-    struct job *job = jobs_of(f);
+    struct job *job = get_jobs(f);
     int total = 0;
 
     *need = 0;
@@ -282,13 +285,13 @@ static int plan_sets(struct glint_flare *flare, int n_jobs)
     s->dropped_bundles =
         q_narrow(q_clamp_sat((int64_t)(n_jobs - n) * size, 0, INT32_MAX));
     if (n > 0) {
-        glint_workers_run(flare->cfg.workers, n, look_job, flare);
+        glint_workers_run(flare->cfg.workers, n, plan_first_set_job, flare);
         leave_out_faint(flare, n);
         n = keep_seen(flare, n);
         total = assign_indices(flare, n, &need);
     }
     if (n > 0)
-        glint_workers_run(flare->cfg.workers, n, more_job, flare);
+        glint_workers_run(flare->cfg.workers, n, plan_chosen_set_job, flare);
     least = least > need ? least : need;
     s->need_bundles = q_narrow(q_clamp_sat(least, 0, INT32_MAX));
     return total;

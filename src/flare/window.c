@@ -16,7 +16,7 @@ enum {
 /* A range in units of the distance between nodes, counted from the first node.
  */
 struct extent {
-    int32_t low_q16[2], high_q16[2]; /* across, down */
+    int32_t low_q16[2], high_q16[2]; /* [across, down] */
 };
 
 /* -------------------------------------------------------------------- nodes */
@@ -26,7 +26,7 @@ static int is_cut(int kind)
     return kind >= GLINT_OUT_RADIUS;
 }
 
-static int has(const struct glint_transfer *t, int kind)
+static int has_output(const struct glint_transfer *t, int kind)
 {
     return t->outputs >> kind & 1;
 }
@@ -51,7 +51,7 @@ static void trace_nodes(struct glint_window_nodes *n, struct glint_transfer *t)
                            ((INT32_C(1) << 30) / (ACROSS - 1)));
             glint_transfer_rays(t, v_q30, u_q30, first == 0, out);
             for (int k = 0; k < GLINT_OUT_KINDS; k++)
-                for (int i = 0; has(t, k) && i < GLINT_RAYS; i++)
+                for (int i = 0; has_output(t, k) && i < GLINT_RAYS; i++)
                     n->at[k][j][first + i] = out[k][i];
         }
     }
@@ -60,9 +60,10 @@ static void trace_nodes(struct glint_window_nodes *n, struct glint_transfer *t)
 }
 
 /* Returns the second difference of output K about node (I, J): twice the
- * distance by which it may deviate from a straight line between rays. About
- * 2^31 at most, as values are below 2^30. */
-static int64_t bend_of(const struct glint_window_nodes *n, int k, int i, int j)
+ * distance by which the output may deviate from a straight line between
+ * rays. At most about 2^31, as values are below 2^30. */
+static int64_t compute_bend(const struct glint_window_nodes *n, int k, int i,
+                            int j)
 {
     const int32_t(*at)[ACROSS] = n->at[k];
     const int x = i < 1 ? 1 : i > ACROSS - 2 ? ACROSS - 2 : i;
@@ -75,9 +76,10 @@ static int64_t bend_of(const struct glint_window_nodes *n, int k, int i, int j)
     return ((across < 0 ? -across : across) + (down < 0 ? -down : down)) / 4;
 }
 
-/* Returns the sides of the octagon around the stop that a node lies outside of,
- * a bit each. */
-static uint32_t beyond_stop(int64_t x, int64_t y, int64_t radius, int64_t bend)
+/* Returns a mask of the sides of the octagon around the stop outside of
+ * which a node lies, one bit per side. */
+static uint32_t find_outer_sides(int64_t x, int64_t y, int64_t radius,
+                                 int64_t bend)
 {
     const int64_t straight = radius + bend;
     const int64_t slanted = radius + radius * 106 / 256 + 2 * bend;
@@ -92,37 +94,37 @@ static void test_node(struct glint_window_nodes *n, int i, int j)
 {
     const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
     const int64_t y = n->at[GLINT_OUT_STOP_Y][j][i];
-    const int64_t bend_x = bend_of(n, GLINT_OUT_STOP_X, i, j);
-    const int64_t bend_y = bend_of(n, GLINT_OUT_STOP_Y, i, j);
+    const int64_t bend_x = compute_bend(n, GLINT_OUT_STOP_X, i, j);
+    const int64_t bend_y = compute_bend(n, GLINT_OUT_STOP_Y, i, j);
     const int64_t bend = bend_x > bend_y ? bend_x : bend_y;
 
     n->bend[j][i] = (int32_t)(bend < INT32_MAX ? bend : INT32_MAX);
-    n->beyond[j][i] = beyond_stop(x, y, n->radius, bend);
+    n->beyond[j][i] = find_outer_sides(x, y, n->radius, bend);
     n->inside[j][i] = x * x + y * y < n->radius * n->radius;
 }
 
-/* Sets, next to the bits of the stop, a bit for each barrel that a node lies
- * outside of. */
+/* Sets, in the masks of the stop's sides, a bit for each barrel outside of
+ * which a node lies. */
 static void test_barrels(struct glint_window_nodes *n,
                          const struct glint_transfer *t)
 {
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         int64_t one;
 
-        if (!is_cut(k) || !has(t, k))
+        if (!is_cut(k) || !has_output(t, k))
             continue;
         one = real_integer(real_of(1, 0), -t->exponent[k], INT64_C(1) << 31);
         for (int j = 0; j < DOWN; j++)
             for (int i = 0; i < ACROSS; i++)
                 n->beyond[j][i] |=
-                    (uint32_t)(n->at[k][j][i] > one + bend_of(n, k, i, j))
+                    (uint32_t)(n->at[k][j][i] > one + compute_bend(n, k, i, j))
                     << (8 + k);
     }
 }
 
 /* -------------------------------------------------------------------- cells */
 
-static void widen(struct extent *e, int32_t across_q16, int32_t down_q16)
+static void extend(struct extent *e, int32_t across_q16, int32_t down_q16)
 {
     const int32_t at_q16[2] = {across_q16, down_q16};
 
@@ -136,7 +138,8 @@ static void widen(struct extent *e, int32_t across_q16, int32_t down_q16)
 
 /* Returns the distance of a node from the middle of the stop, in units of the
  * stop outputs. */
-static int64_t distance(const struct glint_window_nodes *n, int i, int j)
+static int64_t compute_distance(const struct glint_window_nodes *n, int i,
+                                int j)
 {
     const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
     const int64_t y = n->at[GLINT_OUT_STOP_Y][j][i];
@@ -144,12 +147,12 @@ static int64_t distance(const struct glint_window_nodes *n, int i, int j)
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Extends E to where the stop's circle crosses the line from node (I, J) to the
- * next node, if that node lies outside. WAY is 0 across or 1 down, STEP 1 or
- * -1. Node (I, J) must be inside. */
-static void widen_to_circle(struct extent *e,
-                            const struct glint_window_nodes *n, int i, int j,
-                            int way, int step)
+/* Extends E to where the stop's circle crosses the line from node (I, J) to
+ * the next node, if that node lies outside. WAY is 0 across or 1 down, STEP
+ * is 1 or -1. Node (I, J) must be inside. */
+static void extend_to_circle(struct extent *e,
+                             const struct glint_window_nodes *n, int i, int j,
+                             int way, int step)
 {
     const int i2 = i + (way == 0 ? step : 0), j2 = j + (way == 1 ? step : 0);
     int64_t here, there;
@@ -157,17 +160,17 @@ static void widen_to_circle(struct extent *e,
 
     if (n->inside[j2][i2])
         return;
-    here = distance(n, i, j);
-    there = distance(n, i2, j2);
+    here = compute_distance(n, i, j);
+    there = compute_distance(n, i2, j2);
     part_q16 =
         (int32_t)q_divide((n->radius - here) * ONE_NODE_Q16, there - here + 1) *
         step;
-    widen(e, i * ONE_NODE_Q16 + (way == 0 ? part_q16 : 0),
-          j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
+    extend(e, i * ONE_NODE_Q16 + (way == 0 ? part_q16 : 0),
+           j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
 }
 
-/* Returns whether the cell at (I, J) is small compared with the stop, and
- * hardly curved. */
+/* Returns whether the cell at (I, J) is small compared with the stop and
+ * nearly flat. */
 static int is_fine(const struct glint_window_nodes *n, int i, int j)
 {
     int64_t size = 0, bend = 0;
@@ -194,8 +197,8 @@ static void add_cell(struct extent *e, const struct glint_window_nodes *n,
         n->beyond[j + 1][i + 1])
         return;
     if (!is_fine(n, i, j)) {
-        widen(e, i * ONE_NODE_Q16, j * ONE_NODE_Q16);
-        widen(e, (i + 1) * ONE_NODE_Q16, (j + 1) * ONE_NODE_Q16);
+        extend(e, i * ONE_NODE_Q16, j * ONE_NODE_Q16);
+        extend(e, (i + 1) * ONE_NODE_Q16, (j + 1) * ONE_NODE_Q16);
         return;
     }
     for (int corner = 0; corner < 4; corner++) {
@@ -203,9 +206,9 @@ static void add_cell(struct extent *e, const struct glint_window_nodes *n,
 
         if (!n->inside[j + low][i + right])
             continue;
-        widen(e, (i + right) * ONE_NODE_Q16, (j + low) * ONE_NODE_Q16);
-        widen_to_circle(e, n, i + right, j + low, 0, right ? -1 : 1);
-        widen_to_circle(e, n, i + right, j + low, 1, low ? -1 : 1);
+        extend(e, (i + right) * ONE_NODE_Q16, (j + low) * ONE_NODE_Q16);
+        extend_to_circle(e, n, i + right, j + low, 0, right ? -1 : 1);
+        extend_to_circle(e, n, i + right, j + low, 1, low ? -1 : 1);
     }
 }
 
@@ -228,10 +231,10 @@ static struct extent find_extent(struct glint_window_nodes *n,
 
 /* ------------------------------------------------------------------- window */
 
-/* Extends E along K, 0 across or 1 down, by 1 / PART of its size on either
- * side, within 0 .. STEPS: between the lines of the grid a circle that spans
- * six cells or more bulges by a hundredth of its size. */
-static void loosen(struct extent *e, int k, int steps, int part)
+/* Extends E along axis K, 0 across or 1 down, by 1 / PART of its size on
+ * either side, within 0 .. STEPS: between the lines of the grid a circle
+ * that spans six or more cells bulges by a hundredth of its size. */
+static void enlarge(struct extent *e, int k, int steps, int part)
 {
     const int32_t most_q16 = steps * ONE_NODE_Q16;
     const int32_t more_q16 = (e->high_q16[k] - e->low_q16[k]) / part + 1;
@@ -242,9 +245,9 @@ static void loosen(struct extent *e, int k, int steps, int part)
     e->high_q16[k] = e->high_q16[k] < most_q16 ? e->high_q16[k] : most_q16;
 }
 
-/* Narrows the window of T to its subrange E; returns whether it became much
+/* Narrows the window of T to its subrange E; returns whether it got much
  * smaller. */
-static int narrow(struct glint_transfer *t, struct extent *e)
+static int narrow_window(struct glint_transfer *t, struct extent *e)
 {
     struct glint_box_window *w = &t->window;
     const struct glint_box_window old = *w;
@@ -280,11 +283,11 @@ int glint_window_find(struct glint_window_nodes *nodes,
 
         if (e.high_q16[0] < 0)
             return 0;
-        loosen(&e, 0, ACROSS - 1, 48);
-        loosen(&e, 1, DOWN - 1, 24); /* E covers half the height, so 1/24 of it
+        enlarge(&e, 0, ACROSS - 1, 48);
+        enlarge(&e, 1, DOWN - 1, 24); /* E covers half the height, so 1/24 of it
                                         is 1/48 of the whole height. */
         more =
-            narrow(t, &e) && t->window.u_half_q30 > LEAST_HALF_Q30 &&
+            narrow_window(t, &e) && t->window.u_half_q30 > LEAST_HALF_Q30 &&
             (int64_t)t->window.v_to_q30 - t->window.v_from_q30 > LEAST_HALF_Q30;
     }
     return 1;

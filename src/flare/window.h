@@ -29,7 +29,7 @@ struct glint_window_nodes {
     uint32_t beyond[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
     /* nonzero: the ray passes through the stop */
     uint8_t inside[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
-    int64_t radius; /* radius of the stop, in units of the stop position */
+    int64_t radius; /* radius of the stop, in units of the stop outputs */
     int n_rays;     /* number of rays traced so far */
 };
 
