@@ -3,10 +3,11 @@
 
 enum { WIDTH = GLINT_CODES_WIDTH };
 
-/* Copies N samples that are TO_STEP and FROM_STEP bytes apart. Loops with known
- * steps become vectors. */
-static inline void copy(uint8_t *restrict to, int to_step,
-                        const uint8_t *restrict from, int from_step, int n)
+/* Copies N samples that are TO_STEP and FROM_STEP bytes apart. Separate
+ * loops for common steps can be vectorised. */
+static inline void copy_samples(uint8_t *restrict to, int to_step,
+                                const uint8_t *restrict from, int from_step,
+                                int n)
 {
     if (to_step == 1 && from_step == 1)
         for (int i = 0; i < n; i++)
@@ -23,8 +24,8 @@ static inline void copy(uint8_t *restrict to, int to_step,
 }
 
 /* Copies N pixels of three samples each, STEP bytes apart, to rows. */
-static inline void split(uint8_t (*sample)[2][WIDTH], int row,
-                         const uint8_t *const from[3], int step, int n)
+static inline void split_pixels(uint8_t (*sample)[2][WIDTH], int row,
+                                const uint8_t *const from[3], int step, int n)
 {
     for (int i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
@@ -32,16 +33,16 @@ static inline void split(uint8_t (*sample)[2][WIDTH], int row,
 }
 
 /* Copies rows of samples back to N pixels of three samples each. */
-static inline void join(const struct glint_codes *codes, int row,
-                        uint8_t *const to[3], int step, int n)
+static inline void join_pixels(const struct glint_codes *codes, int row,
+                               uint8_t *const to[3], int step, int n)
 {
     for (int i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
             to[c][(ptrdiff_t)i * step] = codes->sample[c][row][i];
 }
 
-/* Repeats the last of N groups of SIZE samples. */
-static void pad(uint8_t *to, int n, int size)
+/* Repeats the last of N groups of SIZE samples until the row is full. */
+static void repeat_last(uint8_t *to, int n, int size)
 {
     for (int i = n * size; i < WIDTH; i++)
         to[i] = to[i - size];
@@ -60,12 +61,12 @@ static void read_565(struct glint_codes *c, const uint8_t *px, int n, int row)
         c->sample[2][row][i] = (uint8_t)(b << 3 | b >> 2);
     }
     for (int k = 0; k < 3; k++)
-        pad(c->sample[k][row], n, 1);
+        repeat_last(c->sample[k][row], n, 1);
 }
 
-/* Returns CODE, 0 .. 255, scaled to 0 .. MOST and rounded. Inverts the widening
- * by read_565() exactly. */
-static int fewer(int code, int most)
+/* Returns CODE, 0 .. 255, scaled to 0 .. MOST and rounded. Inverts exactly
+ * the expansion to 8 bits by read_565(). */
+static int scale_code(int code, int most)
 {
     return (code * most + 127) / 255;
 }
@@ -73,9 +74,9 @@ static int fewer(int code, int most)
 static void write_565(const struct glint_codes *c, uint8_t *px, int n, int row)
 {
     for (int i = 0; i < n; i++) {
-        const int bits = fewer(c->sample[0][row][i], 31) << 11 |
-                         fewer(c->sample[1][row][i], 63) << 5 |
-                         fewer(c->sample[2][row][i], 31);
+        const int bits = scale_code(c->sample[0][row][i], 31) << 11 |
+                         scale_code(c->sample[1][row][i], 63) << 5 |
+                         scale_code(c->sample[2][row][i], 31);
 
         px[2 * i] = (uint8_t)(bits & 255);
         px[2 * i + 1] = (uint8_t)(bits >> 8);
@@ -91,11 +92,11 @@ static void read_rgb(struct glint_codes *c, const struct glint_layout *l,
                                     glint_layout_at(l, image, 2, x, y)};
 
     if (l->sample[0].step == 3)
-        split(c->sample, row, from, 3, n);
+        split_pixels(c->sample, row, from, 3, n);
     else
-        split(c->sample, row, from, 4, n);
+        split_pixels(c->sample, row, from, 4, n);
     for (int k = 0; k < 3; k++)
-        pad(c->sample[k][row], n, 1);
+        repeat_last(c->sample[k][row], n, 1);
 }
 
 static void write_rgb(const struct glint_codes *c, const struct glint_layout *l,
@@ -107,15 +108,15 @@ static void write_rgb(const struct glint_codes *c, const struct glint_layout *l,
                             glint_layout_at(l, image, 2, x, y)};
 
     if (l->sample[0].step == 3)
-        join(c, row, to, 3, n);
+        join_pixels(c, row, to, 3, n);
     else
-        join(c, row, to, 4, n);
+        join_pixels(c, row, to, 4, n);
 }
 
 /* ------------------------------------------------------------------ chroma */
 
 /* Returns whether Cb and Cr alternate in memory, as in a row of pairs. */
-static int is_woven(const struct glint_layout *l)
+static int is_interleaved(const struct glint_layout *l)
 {
     return l->planes == 2 && l->sample[1].offset == 0;
 }
@@ -128,14 +129,14 @@ static void read_chroma(const struct glint_layout *l,
     const uint8_t *cr = glint_layout_at(l, image, 2, x, y);
 
     if (glint_layout_is_packed(l))
-        copy(to, 1, cb, 2, 2 * n);
-    else if (is_woven(l))
-        copy(to, 1, cb, 1, 2 * n);
+        copy_samples(to, 1, cb, 2, 2 * n);
+    else if (is_interleaved(l))
+        copy_samples(to, 1, cb, 1, 2 * n);
     else {
-        copy(to, 2, cb, l->sample[1].step, n);
-        copy(to + 1, 2, cr, l->sample[2].step, n);
+        copy_samples(to, 2, cb, l->sample[1].step, n);
+        copy_samples(to + 1, 2, cr, l->sample[2].step, n);
     }
-    pad(to, n, 2);
+    repeat_last(to, n, 2);
 }
 
 static void write_chroma(const struct glint_layout *l,
@@ -146,19 +147,20 @@ static void write_chroma(const struct glint_layout *l,
     uint8_t *cr = glint_layout_at(l, image, 2, x, y);
 
     if (glint_layout_is_packed(l))
-        copy(cb, 2, from, 1, 2 * n);
-    else if (is_woven(l))
-        copy(cb, 1, from, 1, 2 * n);
+        copy_samples(cb, 2, from, 1, 2 * n);
+    else if (is_interleaved(l))
+        copy_samples(cb, 1, from, 1, 2 * n);
     else {
-        copy(cb, l->sample[1].step, from, 2, n);
-        copy(cr, l->sample[2].step, from + 1, 2, n);
+        copy_samples(cb, l->sample[1].step, from, 2, n);
+        copy_samples(cr, l->sample[2].step, from + 1, 2, n);
     }
 }
 
 /* -------------------------------------------------------------------- rows */
 
-/* Returns the number of channels that have a sample for each pixel. */
-static int whole_channels(const struct glint_layout *l)
+/* Returns the number of channels that have a sample for each pixel, from the
+ * first on. */
+static int count_whole_channels(const struct glint_layout *l)
 {
     return l->kind == GLINT_LAYOUT_GREY || l->log2_x ? 1 : 3;
 }
@@ -167,10 +169,10 @@ static void read_row(struct glint_codes *c, const struct glint_layout *l,
                      const struct glint_image *image, int x, int y, int n,
                      int row)
 {
-    for (int i = 0; i < whole_channels(l); i++) {
-        copy(c->sample[i][row], 1, glint_layout_at(l, image, i, x, y),
-             l->sample[i].step, n);
-        pad(c->sample[i][row], n, 1);
+    for (int i = 0; i < count_whole_channels(l); i++) {
+        copy_samples(c->sample[i][row], 1, glint_layout_at(l, image, i, x, y),
+                     l->sample[i].step, n);
+        repeat_last(c->sample[i][row], n, 1);
     }
     if (l->kind == GLINT_LAYOUT_GREY)
         for (int i = 0; i < WIDTH; i++)
@@ -183,9 +185,9 @@ static void write_row(const struct glint_codes *c, const struct glint_layout *l,
                       const struct glint_image *image, int x, int y, int n,
                       int row)
 {
-    for (int i = 0; i < whole_channels(l); i++)
-        copy(glint_layout_at(l, image, i, x, y), l->sample[i].step,
-             c->sample[i][row], 1, n);
+    for (int i = 0; i < count_whole_channels(l); i++)
+        copy_samples(glint_layout_at(l, image, i, x, y), l->sample[i].step,
+                     c->sample[i][row], 1, n);
     if (l->log2_x && (row == 0 || !l->log2_y))
         write_chroma(l, image, x, y, (n + 1) / 2, c->chroma[row]);
 }

@@ -13,17 +13,17 @@
 enum { GLINT_CODES_WIDTH = 64 };
 
 struct glint_codes {
-    /* [channel][row]: R, G, B, or Y, Cb, Cr of each pixel; Cb and Cr are 128 in
-     * grey pictures */
+    /* [channel][row]: R, G, B, or Y, Cb, Cr of each pixel. Cb and Cr are 128
+     * in grey pictures. */
     uint8_t sample[3][2][GLINT_CODES_WIDTH];
-    /* Chroma of pairs of pixels, Cb and Cr interleaved; in 4:2:0 both rows use
-     * the first row. */
+    /* Chroma of pairs of pixels, Cb and Cr interleaved. In 4:2:0 both rows
+     * share row 0. */
     uint8_t chroma[2][GLINT_CODES_WIDTH];
 };
 
-/* Read and write pixels X .. X + N_X - 1 of the N_Y rows from Y on. X must be
- * even, and Y too if N_Y is 2. Reading repeats the last pixel past the end of
- * the row. */
+/* Read and write pixels X .. X + N_X - 1 of the N_Y rows from Y on. X must
+ * be even; if N_Y is 2, Y must be even, too. Reading repeats the last pixel
+ * beyond the end of the row. */
 void glint_codes_read(struct glint_codes *codes,
                       const struct glint_image *image, int x, int y, int n_x,
                       int n_y);

@@ -12,8 +12,8 @@ struct glint_composite {
     struct glint_resolve_rows *rows;
 };
 
-/* Allocates a composite from A. Called twice: to measure (returns NULL) and to
- * place. */
+/* Allocates a composite from A. Called twice: first to measure, when it
+ * returns NULL, then to allocate. */
 static struct glint_composite *carve(struct glint_arena *a)
 {
     struct glint_composite measured = {0}, *placed;
@@ -53,7 +53,8 @@ enum glint_status glint_composite_init(struct glint_composite **composite,
     return GLINT_OK;
 }
 
-/* Copies the light of N_Y rows of N_X pixels; returns whether there is any. */
+/* Copies the light of N_Y rows of N_X pixels from LAYER; returns whether any
+ * of it is nonzero. */
 static int copy_light(struct glint_composite *c,
                       const struct glint_layer *layer, int x, int y, int n_x,
                       int n_y)

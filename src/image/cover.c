@@ -11,7 +11,7 @@ struct stretch {
     int n_x, n_y, black;
     const struct glint_cover_rows *cover;
     struct glint_codes *codes;
-    /* Sums of chroma over the pixels of each pair: Cb, Cr interleaved. */
+    /* Sums of Cb and Cr over the pixels of each pair, interleaved. */
     int32_t sum_q7[WIDTH];
 };
 
@@ -23,16 +23,17 @@ static void cover_rgb(const struct stretch *s, const struct glint_mix *mix)
                                s->cover->cover_q8[row], s->n_x, &mix->tone);
 }
 
-/* Returns the chroma of the pairs of row ROW. */
-static uint8_t *pairs_of(const struct stretch *s, int row)
+/* Returns the row of interleaved chroma of pixel pairs that ROW uses. */
+static uint8_t *get_pair_row(const struct stretch *s, int row)
 {
     return s->codes->chroma[s->layout->log2_y ? 0 : row];
 }
 
 /* Sets YCC to Y', Cb and Cr of every pixel of a row. */
-static void spread(const struct stretch *s, int row, int16_t *const ycc_q7[3])
+static void expand_row(const struct stretch *s, int row,
+                       int16_t *const ycc_q7[3])
 {
-    const uint8_t *restrict pairs = pairs_of(s, row);
+    const uint8_t *restrict pairs = get_pair_row(s, row);
 
     for (int c = 0; c < (s->layout->log2_x ? 1 : 3); c++) {
         const uint8_t *restrict code = s->codes->sample[c][row];
@@ -50,14 +51,14 @@ static void spread(const struct stretch *s, int row, int16_t *const ycc_q7[3])
     }
 }
 
-static inline uint8_t rounded(int32_t sum_q7, int log2)
+static inline uint8_t round_mean(int32_t sum_q7, int log2)
 {
     return (uint8_t)q_smaller(
         q_larger((sum_q7 + (1 << (6 + log2))) >> (7 + log2), 0), 255);
 }
 
-/* Adds the chroma of a row to the sums of its pairs; if the width is odd, the
- * last pixel counts twice. */
+/* Adds the chroma of a row to the sums of its pairs. If the width is odd,
+ * the last pixel counts twice. */
 static void add_pairs(struct stretch *s, int16_t *const ycc_q7[3])
 {
     const int end = s->n_x & ~1;
@@ -73,25 +74,26 @@ static void add_pairs(struct stretch *s, int16_t *const ycc_q7[3])
     }
 }
 
-/* Writes the mean chroma of each pair; over both rows if the rows share
- * chroma. */
-static void put_pairs(struct stretch *s, int row)
+/* Writes the mean chroma of each pair, or of two pairs below each other if
+ * the rows share chroma. */
+static void write_pairs(struct stretch *s, int row)
 {
     const int log2 = s->layout->log2_y && row ? 2 : 1;
-    uint8_t *restrict pairs = pairs_of(s, row);
+    uint8_t *restrict pairs = get_pair_row(s, row);
 
     for (int i = 0; i < ((s->n_x + 1) & ~1); i++)
-        pairs[i] = rounded(s->sum_q7[i], log2);
+        pairs[i] = round_mean(s->sum_q7[i], log2);
 }
 
-static void put_row(const struct stretch *s, int row, int16_t *const ycc_q7[3])
+static void write_row(const struct stretch *s, int row,
+                      int16_t *const ycc_q7[3])
 {
     for (int c = 0; c < (s->layout->log2_x ? 1 : 3); c++) {
         const int16_t *restrict from_q7 = ycc_q7[c];
         uint8_t *restrict code = s->codes->sample[c][row];
 
         for (int i = 0; i < s->n_x; i++)
-            code[i] = rounded(from_q7[i], 0);
+            code[i] = round_mean(from_q7[i], 0);
     }
 }
 
@@ -105,15 +107,15 @@ static void cover_ycc(struct stretch *s, const struct glint_mix *mix,
         if (row == 0 || !s->layout->log2_y)
             for (int i = 0; i < WIDTH; i++)
                 s->sum_q7[i] = 0;
-        spread(s, row, ycc_q7);
+        expand_row(s, row, ycc_q7);
         glint_cover_ycc_c(ycc_q7, s->cover->cover_q8[row], s->n_x, s->black,
                           mix);
-        put_row(s, row, ycc_q7);
+        write_row(s, row, ycc_q7);
         if (!s->layout->log2_x)
             continue;
         add_pairs(s, ycc_q7);
         if (row == s->n_y - 1 || !s->layout->log2_y)
-            put_pairs(s, row);
+            write_pairs(s, row);
     }
 }
 

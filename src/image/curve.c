@@ -10,18 +10,21 @@ struct standard {
     int last_toe;
     int toe_divisor_100; /* 100 times the divisor of the toe */
     int a_1000;          /* 1000 times a */
-    int root;            /* 5: u^2.4; 9: u^(20/9) = u^(1 / 0.45) */
+    int root; /* root in the exponent 2 + 2 / root; 5: u^2.4; 9: u^(20/9) = u^(1
+                 / 0.45) */
 };
 
-static const struct standard srgb = {10, 1292, 55, 5}; /* v <= 0.04045 */
-static const struct standard bt709 = {20, 450, 99, 9}; /* v < 0.081 */
+/* toe up to v = 0.04045 */
+static const struct standard srgb = {10, 1292, 55, 5};
+/* toe below v = 0.081 */
+static const struct standard bt709 = {20, 450, 99, 9};
 
 static uint64_t mul_q30(uint64_t a_q30, uint64_t b_q30)
 {
     return (a_q30 * b_q30 + (UINT64_C(1) << 29)) >> 30;
 }
 
-/* Returns x^5 or x^9, 0 <= x <= 1. */
+/* Returns x^N; N is 5 or 9, x is 0 .. 1. */
 static uint64_t power_q30(uint64_t x_q30, int n)
 {
     const uint64_t x2_q30 = mul_q30(x_q30, x_q30);
@@ -30,8 +33,8 @@ static uint64_t power_q30(uint64_t x_q30, int n)
     return mul_q30(n == 9 ? mul_q30(x4_q30, x4_q30) : x4_q30, x_q30);
 }
 
-/* Returns the largest r with r^n <= x. Rounding moves r by 2^-27 at most in the
- * range in which it is used: r >= 0.38 for n = 5, r >= 0.67 for n = 9. */
+/* Returns the largest r with r^n <= x. Rounding moves r by at most 2^-27 in
+ * the range in which it is used: r >= 0.38 for n = 5, r >= 0.67 for n = 9. */
 static uint64_t root_q30(uint64_t x_q30, int n)
 {
     uint64_t r_q30 = 0;
@@ -43,7 +46,7 @@ static uint64_t root_q30(uint64_t x_q30, int n)
     return r_q30;
 }
 
-static int32_t light_of_code_q20(const struct standard *s, int code)
+static int32_t compute_light_q20(const struct standard *s, int code)
 {
     const uint64_t divisor = 255 * (1000 + (uint64_t)s->a_1000);
     const uint64_t toe_divisor = 255 * (uint64_t)s->toe_divisor_100;
@@ -64,12 +67,12 @@ void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer)
     const struct standard *s = transfer == GLINT_TONE_SRGB ? &srgb : &bt709;
 
     for (int i = 0; i < 256; i++)
-        curve->decode_q20[i] = light_of_code_q20(s, i);
+        curve->decode_q20[i] = compute_light_q20(s, i);
     curve->decode_q20[256] = 2 * LINEAR_WHITE_Q20;
 }
 
 /* Returns N / D * 2^FRAC, rounded; D > 0. */
-static int32_t ratio(int64_t n, int64_t d, int frac)
+static int32_t compute_ratio(int64_t n, int64_t d, int frac)
 {
     const int64_t twice = n * ((int64_t)2 << frac) + d;
 
@@ -77,8 +80,8 @@ static int32_t ratio(int64_t n, int64_t d, int frac)
                                 : -((-twice + 2 * d - 1) / (2 * d)));
 }
 
-/* Sets the factors from Y'CbCr to R'G'B': B' - Y' is 2 (1 - kb) Cb, R' - Y' is
- * 2 (1 - kr) Cr, and G' is such that the luma is Y'. */
+/* Sets the matrix from Y'CbCr to R'G'B': B' - Y' is 2 (1 - kb) Cb, R' - Y'
+ * is 2 (1 - kr) Cr, and G' is such that the luma of the result is Y'. */
 static void fill_to_rgb(struct glint_ycc *ycc, int64_t kr, int64_t kb,
                         int y_steps, int c_steps)
 {
@@ -86,31 +89,33 @@ static void fill_to_rgb(struct glint_ycc *ycc, int64_t kr, int64_t kb,
     int32_t(*m_q16)[3] = ycc->to_rgb_q16;
 
     for (int i = 0; i < 3; i++)
-        m_q16[i][0] = ratio(255, y_steps, 16);
+        m_q16[i][0] = compute_ratio(255, y_steps, 16);
     m_q16[0][1] = 0;
-    m_q16[0][2] = ratio(255 * 2 * (one - kr), one * c_steps, 16);
-    m_q16[1][1] = ratio(-255 * 2 * kb * (one - kb), kg * one * c_steps, 16);
-    m_q16[1][2] = ratio(-255 * 2 * kr * (one - kr), kg * one * c_steps, 16);
-    m_q16[2][1] = ratio(255 * 2 * (one - kb), one * c_steps, 16);
+    m_q16[0][2] = compute_ratio(255 * 2 * (one - kr), one * c_steps, 16);
+    m_q16[1][1] =
+        compute_ratio(-255 * 2 * kb * (one - kb), kg * one * c_steps, 16);
+    m_q16[1][2] =
+        compute_ratio(-255 * 2 * kr * (one - kr), kg * one * c_steps, 16);
+    m_q16[2][1] = compute_ratio(255 * 2 * (one - kb), one * c_steps, 16);
     m_q16[2][2] = 0;
 }
 
-/* Sets the factors from R'G'B' to Y'CbCr. Green takes the rounding errors, so
- * that the sums of the rows are exact. */
+/* Sets the matrix from R'G'B' to Y'CbCr. The coefficient of green absorbs
+ * the rounding errors, so that the sums of the rows are exact. */
 static void fill_to_ycc(struct glint_ycc *ycc, int64_t kr, int64_t kb,
                         int y_steps, int c_steps)
 {
     const int64_t one = 10000;
     int32_t(*m_q15)[3] = ycc->to_ycc_q15;
 
-    m_q15[0][0] = ratio(kr * y_steps, one * 255, 15);
-    m_q15[0][2] = ratio(kb * y_steps, one * 255, 15);
-    m_q15[0][1] = ratio(y_steps, 255, 15) - m_q15[0][0] - m_q15[0][2];
-    m_q15[1][0] = ratio(-kr * c_steps, 2 * (one - kb) * 255, 15);
-    m_q15[1][2] = ratio(c_steps, 2 * 255, 15);
+    m_q15[0][0] = compute_ratio(kr * y_steps, one * 255, 15);
+    m_q15[0][2] = compute_ratio(kb * y_steps, one * 255, 15);
+    m_q15[0][1] = compute_ratio(y_steps, 255, 15) - m_q15[0][0] - m_q15[0][2];
+    m_q15[1][0] = compute_ratio(-kr * c_steps, 2 * (one - kb) * 255, 15);
+    m_q15[1][2] = compute_ratio(c_steps, 2 * 255, 15);
     m_q15[1][1] = -m_q15[1][0] - m_q15[1][2];
-    m_q15[2][0] = ratio(c_steps, 2 * 255, 15);
-    m_q15[2][2] = ratio(-kb * c_steps, 2 * (one - kr) * 255, 15);
+    m_q15[2][0] = compute_ratio(c_steps, 2 * 255, 15);
+    m_q15[2][2] = compute_ratio(-kb * c_steps, 2 * (one - kr) * 255, 15);
     m_q15[2][1] = -m_q15[2][0] - m_q15[2][2];
 }
 

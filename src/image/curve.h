@@ -7,7 +7,7 @@
  *
  * Full-range codes have 7 fraction bits (_q7: 255 << 7 is white), linear light
  * has 20 (1 << 20 is white). A curve is within 2^-21 of the standard's curve at
- * the 256 codes, and linear between them. kernels/tone.h goes from light to
+ * the 256 codes, and linear between them. kernels/tone.h converts light to
  * codes.
  *
  * Integers only, the same on every CPU; only init divides. */
@@ -26,7 +26,7 @@ struct glint_curve {
                                 last interval */
 };
 
-/* Fills CURVE for TRANSFER: 256 roots by bit search. */
+/* Fills CURVE for TRANSFER; finds 256 roots by bisection over their bits. */
 void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer);
 
 /* Returns the linear light of CODE_Q7, which must be in 0 .. CODE_WHITE_Q7. */
@@ -38,8 +38,8 @@ static inline int32_t curve_decode(const struct glint_curve *curve,
     return at_q20[0] + (((at_q20[1] - at_q20[0]) * (code_q7 & 127) + 64) >> 7);
 }
 
-/* The factors between Y'CbCr and R'G'B'. Equal R', G', B' give Cb = Cr = 128 to
- * the last bit, as the sums of the rows are exact. */
+/* Matrices between Y'CbCr and R'G'B'. Equal R', G', B' give Cb = Cr = 128
+ * exactly, as the sums of the rows are exact. */
 struct glint_ycc {
     int black;                /* code of Y' = 0 */
     int32_t to_rgb_q16[3][3]; /* R', G', B' per code of Y - black, Cb - 128, Cr
@@ -47,12 +47,13 @@ struct glint_ycc {
     int32_t to_ycc_q15[3][3]; /* Y, Cb, Cr per code of R', G', B' */
 };
 
-/* Fills YCC for MATRIX and RANGE. Grey pictures use its first columns alone. */
+/* Fills YCC for MATRIX and RANGE. For grey pictures only its first columns
+ * are used. */
 void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
                     enum glint_range range);
 
-/* Sets RGB to R'G'B' of 8-bit codes. They are not clamped: their range is -290
- * .. 550 codes. */
+/* Sets RGB to the R'G'B' of 8-bit codes, not clamped: the range is -290 ..
+ * 550 codes. */
 static inline void ycc_to_rgb(const struct glint_ycc *ycc, int y, int cb,
                               int cr, int32_t rgb_q7[3])
 {

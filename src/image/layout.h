@@ -19,8 +19,8 @@ struct glint_layout {
     int planes;
     int log2_x, log2_y; /* 1: chroma has half as many samples as luma across or
                            down; 0: as many */
-    /* For Y, Cb, Cr or R, G, B: plane, bytes from the row's start to the first
-     * sample, and bytes from one sample to the next. */
+    /* For each of Y, Cb, Cr or R, G, B: the plane, the bytes from the row's
+     * start to the first sample, and the bytes from one sample to the next. */
     struct glint_layout_sample {
         int plane, offset, step;
     } sample[3];

@@ -39,9 +39,9 @@ void glint_light_sum_read(struct glint_light_sum *sum,
         glint_codes_read(codes, sum->image, x, y, n_x, n_y);
 }
 
-/* Clamps CODE and returns its light, as curve_decode() does. */
-static inline int32_t light_of(const struct glint_light_code *code,
-                               int32_t code_q7)
+/* Clamps CODE to the range of the table and returns its linear light. */
+static inline int32_t look_up_light(const struct glint_light_code *code,
+                                    int32_t code_q7)
 {
     const struct glint_light_code *at =
         code + (code_q7 >> 7) + GLINT_LIGHT_BELOW;
@@ -54,8 +54,8 @@ struct chroma {
     int32_t r_q16, g_q16, b_q16;
 };
 
-static inline struct chroma chroma_of(const struct glint_ycc *ycc, int cb,
-                                      int cr)
+static inline struct chroma compute_chroma(const struct glint_ycc *ycc, int cb,
+                                           int cr)
 {
     const int32_t(*by_q16)[3] = ycc->to_rgb_q16;
     const int u = cb - 128, v = cr - 128, half = 1 << 8;
@@ -65,8 +65,9 @@ static inline struct chroma chroma_of(const struct glint_ycc *ycc, int cb,
                            u * by_q16[2][1] + v * by_q16[2][2] + half};
 }
 
-/* Sums stay below 2^27, as a call adds at most GLINT_CODES_WIDTH pixels. The
- * contribution of Cb and Cr is computed once for all pixels that share them. */
+/* Adds the light of a row of a Y'CbCr picture to RGB. Sums stay below 2^27,
+ * as a call adds at most GLINT_CODES_WIDTH pixels. The contribution of Cb
+ * and Cr is computed once for all pixels that share them. */
 static void add_ycc(const struct glint_light_sum *s,
                     const struct glint_codes *codes, int row, int from, int to,
                     int64_t rgb_q20[3])
@@ -82,17 +83,17 @@ static void add_ycc(const struct glint_light_sum *s,
 
     for (int x = from, next; x < to; x = next) {
         const struct chroma part =
-            is_shared ? chroma_of(&s->ycc, shared[x & ~1], shared[x | 1])
-                      : chroma_of(&s->ycc, codes->sample[1][row][x],
-                                  codes->sample[2][row][x]);
+            is_shared ? compute_chroma(&s->ycc, shared[x & ~1], shared[x | 1])
+                      : compute_chroma(&s->ycc, codes->sample[1][row][x],
+                                       codes->sample[2][row][x]);
 
         next = is_shared ? q_smaller((x | 1) + 1, to) : x + 1;
         for (int i = x; i < next; i++) {
             const int y = luma[i] - black;
 
-            r_q20 += light_of(code, (y * r_q16 + part.r_q16) >> 9);
-            g_q20 += light_of(code, (y * g_q16 + part.g_q16) >> 9);
-            b_q20 += light_of(code, (y * b_q16 + part.b_q16) >> 9);
+            r_q20 += look_up_light(code, (y * r_q16 + part.r_q16) >> 9);
+            g_q20 += look_up_light(code, (y * g_q16 + part.g_q16) >> 9);
+            b_q20 += look_up_light(code, (y * b_q16 + part.b_q16) >> 9);
         }
     }
     rgb_q20[0] += r_q20;
@@ -109,7 +110,8 @@ static void add_565(const struct glint_light_sum *s,
             rgb_q20[c] += s->curve->curve.decode_q20[codes->sample[c][row][x]];
 }
 
-/* Sums stay below 2^27, as a call adds at most GLINT_CODES_WIDTH pixels. */
+/* Adds the light of a row of a picture in R, G, B to RGB. Sums stay below
+ * 2^27, as a call adds at most GLINT_CODES_WIDTH pixels. */
 static void add_rgb(const struct glint_light_sum *s, int y, int from, int to,
                     int64_t rgb_q20[3])
 {

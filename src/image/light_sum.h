@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sums of the linear light of pixels, of pictures of every format.
+ * Sums the linear light of pixels, of pictures in any format.
  *
  *     glint_light_curve_init(&curve, image->transfer);
  *     glint_light_sum_init(&sum, image, &curve);
- *     glint_light_sum_read(&sum, &codes, x, y, n_x, n_y);   a stretch of rows
+ *     glint_light_sum_read(&sum, &codes, x, y, n_x, n_y);   some rows
  *     glint_light_sum_add(&sum, &codes, 0, from, to, rgb_q20);
  */
 #ifndef GLINT_IMAGE_LIGHT_SUM_H
@@ -13,11 +13,13 @@
 #include "image/codes.h"
 #include "image/curve.h"
 
-/* Codes that Y, Cb and Cr give, -296 .. 559, see ycc_to_rgb(). */
+/* Range of R'G'B' codes that Y, Cb and Cr convert to before clamping, -296
+ * .. 559; see ycc_to_rgb(). */
 enum { GLINT_LIGHT_BELOW = 296, GLINT_LIGHT_CODES = GLINT_LIGHT_BELOW + 560 };
 
-/* A curve, and the same for codes that are not clamped: light of code I -
- * BELOW, and how much that rises to the next code. */
+/* A transfer curve, as a table for codes outside 0 .. 255, too: entry I
+ * holds the light of code I - BELOW, clamped, and the difference to the
+ * light of the next code. */
 struct glint_light_curve {
     struct glint_curve curve;
     struct glint_light_code {
@@ -28,9 +30,9 @@ struct glint_light_curve {
 struct glint_light_sum {
     const struct glint_image *image;
     const struct glint_layout *layout;
-    const struct glint_light_curve *curve; /* of the image's transfer */
+    const struct glint_light_curve *curve; /* curve of the image's transfer */
     struct glint_ycc ycc;
-    int x, y; /* where the stretch begins that was read last */
+    int x, y; /* first pixel of the rows that were read last */
 };
 
 void glint_light_curve_init(struct glint_light_curve *curve,
@@ -40,16 +42,17 @@ void glint_light_sum_init(struct glint_light_sum *sum,
                           const struct glint_image *image,
                           const struct glint_light_curve *curve);
 
-/* Reads pixels X .. X + N_X - 1 of rows Y .. Y + N_Y - 1, as glint_codes_read()
- * does, and at most as many; linear pictures and those of whole R, G, B are not
- * copied to CODES but read as they are added. */
+/* Reads pixels X .. X + N_X - 1 of rows Y .. Y + N_Y - 1, under the limits
+ * of glint_codes_read(). Linear pictures and pictures with separate R, G, B
+ * samples are not copied to CODES; glint_light_sum_add() reads these
+ * directly. */
 void glint_light_sum_read(struct glint_light_sum *sum,
                           struct glint_codes *codes, int x, int y, int n_x,
                           int n_y);
 
-/* Adds to RGB_Q20 the light of pixels FROM .. TO - 1 of row ROW, 0 or 1, of
- * what was read, counted from the picture's left. Negative light counts as 0.
- */
+/* Adds the light of pixels FROM .. TO - 1 of row ROW, 0 or 1, of the rows
+ * that were read to RGB_Q20. FROM and TO count from the left of the rows
+ * that were read. Negative light counts as 0. */
 void glint_light_sum_add(const struct glint_light_sum *sum,
                          const struct glint_codes *codes, int row, int from,
                          int to, int64_t rgb_q20[3]);

@@ -12,7 +12,8 @@
             (int16_t)(x), (int16_t)(x), (int16_t)(x)                          \
     }
 
-/* 32640 / 32768 turns units of R'G'B', 255 / 32767 of a code, into _q7 */
+/* factor 32640 / 32768 converts units of R'G'B', 255 / 32767 of a code, to
+ * _q7 */
 #define FACTORS(toe, rise, turn)                                    \
     {                                                               \
         {toe, rise, turn, 32640, 0x0202},                           \
@@ -53,7 +54,7 @@ const struct glint_tone16 *glint_tone16_of(enum glint_tone transfer)
     return transfer == GLINT_TONE_SRGB ? &srgb : &bt709;
 }
 
-static void set(int16_t *lanes, int64_t x)
+static void fill_lanes(int16_t *lanes, int64_t x)
 {
     for (int i = 0; i < GLINT_LANES; i++)
         lanes[i] = (int16_t)x;
@@ -62,20 +63,20 @@ static void set(int16_t *lanes, int64_t x)
 static void set_factor(struct glint_factors *f, int i, int64_t x)
 {
     f->one[i] = (int16_t)q_clamp_sat(x, -INT16_MAX, INT16_MAX);
-    set(f->all[i], f->one[i]);
+    fill_lanes(f->all[i], f->one[i]);
 }
 
 /* Returns N / D, rounded; D > 0. */
-static int64_t ratio(int64_t n, int64_t d)
+static int64_t compute_ratio(int64_t n, int64_t d)
 {
     return (2 * n + (n < 0 ? -d : d)) / (2 * d);
 }
 
-/* Sets the factors from Y'CbCr in _q7 to base and tints, which are half of
- * R'G'B' in _q15. A code of 8 bits is 128.5 units of R'G'B', so the factors are
- * 257 / 512 of to_rgb; the factor of blue is halved once more, to fit 16
- * bits. */
-static void from_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
+/* Sets the factors from Y'CbCr in _q7 to the base (luma) and the tints
+ * (chroma), which are half of R'G'B' in _q15. A code of 8 bits is 128.5
+ * units of R'G'B', so the factors are 257 / 512 of to_rgb; the factor of
+ * blue is halved once more, to fit into 16 bits. */
+static void set_from_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
 {
     static const uint8_t at[][2] = {[GLINT_MIX_BASE] = {0, 0},
                                     [GLINT_MIX_RED_CR] = {0, 2},
@@ -87,35 +88,39 @@ static void from_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
     for (int i = 0; i <= GLINT_MIX_BLUE_CB; i++) {
         const int64_t m_q16 = ycc->to_rgb_q16[at[i][0]][at[i][1]];
 
-        set_factor(f, i,
-                   ratio(m_q16 * 257, i == GLINT_MIX_BLUE_CB ? 2048 : 1024));
+        set_factor(
+            f, i,
+            compute_ratio(m_q16 * 257, i == GLINT_MIX_BLUE_CB ? 2048 : 1024));
     }
-    set(mix->black, -q_mul(ycc->black * 128, f->one[GLINT_MIX_BASE], 15));
+    fill_lanes(mix->black,
+               -q_mul(ycc->black * 128, f->one[GLINT_MIX_BASE], 15));
 }
 
-/* Sets the factors from changes of R'G'B' to changes of Y'CbCr in _q7: 256 /
- * 257 of to_ycc. */
-static void to_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
+/* Sets the factors from changes of R'G'B' to changes of Y'CbCr in _q7, which
+ * are 256 / 257 of to_ycc. */
+static void set_to_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
 {
     const int32_t(*m_q15)[3] = ycc->to_ycc_q15;
     const int32_t y_q15 = m_q15[0][0] + m_q15[0][1] + m_q15[0][2];
     struct glint_factors *f = &mix->to_ycc;
 
-    set(mix->white, 128 * (ycc->black + q_mul(255, y_q15, 15)));
+    fill_lanes(mix->white, 128 * (ycc->black + q_mul(255, y_q15, 15)));
     for (int c = 0; c < 3; c++)
-        set_factor(f, GLINT_MIX_LUMA + c, ratio(m_q15[0][c] * 256, 257));
+        set_factor(f, GLINT_MIX_LUMA + c,
+                   compute_ratio(m_q15[0][c] * 256, 257));
     /* Cb is PER (B' - Y'), Cr is PER (R' - Y'). Y' contains a fraction of B'
      * and R', so PER is larger than the factor of B' in Cb, or R' in Cr, alone.
      */
     for (int k = 0; k < 2; k++) {
         const int own = k ? 0 : 2;
         const int64_t own_q15 = m_q15[k + 1][own];
-        const int64_t per_q15 = ratio(own_q15 * y_q15, y_q15 - m_q15[0][own]);
+        const int64_t per_q15 =
+            compute_ratio(own_q15 * y_q15, y_q15 - m_q15[0][own]);
 
         set_factor(f, k ? GLINT_MIX_CR_RED : GLINT_MIX_CB_BLUE,
-                   ratio(per_q15 * 256, 257));
+                   compute_ratio(per_q15 * 256, 257));
         set_factor(f, k ? GLINT_MIX_CR_LUMA : GLINT_MIX_CB_LUMA,
-                   ratio(per_q15 << 15, y_q15));
+                   compute_ratio(per_q15 << 15, y_q15));
     }
 }
 
@@ -125,6 +130,6 @@ void glint_mix_init(struct glint_mix *mix, const struct glint_image *image)
 
     glint_ycc_init(&ycc, image->matrix, image->range);
     mix->tone = *glint_tone16_of(image->transfer);
-    from_ycc(mix, &ycc);
-    to_ycc(mix, &ycc);
+    set_from_ycc(mix, &ycc);
+    set_to_ycc(mix, &ycc);
 }

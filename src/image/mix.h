@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Works out the constants of kernels/tone.h for the coding of a picture. */
+ * Computes the constants of kernels/tone.h for the format and colours of a
+ * picture.
+ */
 #ifndef GLINT_IMAGE_MIX_H
 #define GLINT_IMAGE_MIX_H
 
@@ -9,7 +11,8 @@
 
 const struct glint_tone16 *glint_tone16_of(enum glint_tone transfer);
 
-/* Fills MIX for pictures that are coded as IMAGE is. */
+/* Fills MIX for pictures with the format, range, matrix and transfer of
+ * IMAGE. */
 void glint_mix_init(struct glint_mix *mix, const struct glint_image *image);
 
 #endif

@@ -11,7 +11,7 @@ struct stretch {
     const uint16_t *const *light_q16;
 };
 
-static int padded(int n)
+static int round_up(int n)
 {
     return (n + STEP - 1) & -STEP;
 }
@@ -31,7 +31,7 @@ static void add_to_pixels(const struct glint_resolve *r,
 {
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < s->n_y; row++)
-            double_row(s->light_q16[c], padded(s->n_x) / 2,
+            double_row(s->light_q16[c], round_up(s->n_x) / 2,
                        rows->light.rgb_q16[c][row]);
     glint_resolve_stretch(r, s->image, s->x, s->y, s->n_x, s->n_y, &rows->light,
                           &rows->rows);
@@ -53,13 +53,13 @@ static void add_to_pairs(const struct glint_resolve *r, const struct stretch *s,
 
     glint_codes_read(codes, s->image, s->x, s->y, s->n_x, s->n_y);
     glint_quad_kernels_of(r->sets)->add(luma, chroma, s->light_q16,
-                                        padded(s->n_x), &r->mix, round,
+                                        round_up(s->n_x), &r->mix, round,
                                         round_chroma);
     glint_codes_write(codes, s->image, s->x, s->y, s->n_x, s->n_y);
 }
 
-/* Adds light in place to packed pictures like YUYV. Pixels beyond the last
- * whole step of the kernels are copied, lit and copied back. */
+/* Adds light in place to packed pictures like YUYV. Pixels after the last
+ * whole step of the kernels are copied, changed and copied back. */
 static void add_to_packed(const struct glint_resolve *r,
                           const struct stretch *s, struct glint_codes *codes)
 {

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds light that four pixels share, as resolve.h does for single pixels.
+ * Adds light that has one value for 2 x 2 pixels; resolve.h adds light per
+ * pixel.
  *
- *   in   linear light, _q16, one value for 2 x 2 pixels
- *   out  the picture's own codes, changed in place
+ *    in   linear light, _q16, one value for 2 x 2 pixels
+ *    out  the picture's own codes, changed in place
  *
- * In Y'CbCr whose chroma is shared by pairs, the change by light is worked out
- * once, for the mean of four pixels, which is a quarter of the work. Each of
- * them then changes in proportion to how far it is below white. If the four are
- * equal, the result is that of single pixels. In other pictures light is added
- * pixel by pixel. */
+ * In Y'CbCr whose chroma is shared by pairs, the change by the light is
+ * computed once, for the mean of the four pixels, which is a quarter of the
+ * work. Each pixel then changes in proportion to its distance from white. If
+ * the four pixels are equal, the result equals that of resolve.h. In other
+ * formats light is added pixel by pixel.
+ */
 #ifndef GLINT_IMAGE_QUADS_H
 #define GLINT_IMAGE_QUADS_H
 
@@ -17,7 +19,7 @@
 #include "glint/image.h"
 #include "image/resolve.h"
 
-/* Scratch of a worker. */
+/* Scratch memory of one worker. */
 struct glint_quads_rows {
     struct glint_light_rows light;
     struct glint_resolve_rows rows;
@@ -36,8 +38,8 @@ typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     struct glint_quads_rows *rows);
 glint_resolve_quads_fn glint_resolve_quads;
 
-/* Half resolution as an object, linked only by programs that name it.
- */
+/* The function for half resolution, through a pointer, so that only programs
+ * that use it link it. */
 struct glint_half {
     glint_resolve_quads_fn *resolve;
 };

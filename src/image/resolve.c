@@ -28,7 +28,7 @@ void glint_resolve_init(struct glint_resolve *resolve,
                 (int16_t)(dither ? 2 * bayer_rank(x, y) + 1 : 64);
 }
 
-static int padded(int n)
+static int round_up(int n)
 {
     return (n + GLINT_LANES - 1) & -GLINT_LANES;
 }
@@ -40,14 +40,14 @@ static void resolve_rgb(const struct glint_resolve *r, int y, int n_x, int n_y,
     for (int row = 0; row < n_y; row++)
         for (int c = 0; c < 3; c++)
             r->kernels->add_code(codes->sample[c][row], light->rgb_q16[c][row],
-                                 padded(n_x), &r->mix.tone,
+                                 round_up(n_x), &r->mix.tone,
                                  r->round_q7[(y + row) & 7]);
 }
 
 /* Sets GREY to the luminance of N pixels, with the weights of BT.709, whose sum
  * is 1. */
-static void luminance(const struct glint_light_rows *light, int row, int n,
-                      uint16_t *grey_q16)
+static void compute_luminance(const struct glint_light_rows *light, int row,
+                              int n, uint16_t *grey_q16)
 {
     for (int i = 0; i < n; i++)
         grey_q16[i] = (uint16_t)((light->rgb_q16[0][row][i] * UINT32_C(13933) +
@@ -56,9 +56,9 @@ static void luminance(const struct glint_light_rows *light, int row, int n,
                                  16);
 }
 
-/* Adds light to one row of chroma that has a sample for each pixel. OWN is the
- * change of B' or R', LUMA the change of Y', FACTOR the factors of OWN and
- * LUMA. */
+/* Adds light to one row of chroma that has a sample for each pixel. OWN is
+ * the change of B' (for Cb) or R' (for Cr), LUMA the change of Y'; FACTOR
+ * has the factors of OWN and LUMA. */
 static void add_chroma(uint8_t *code, const int16_t *own, const int16_t *luma,
                        const int16_t *factor_q15, int n, const int16_t *round)
 {
@@ -88,10 +88,10 @@ static void resolve_whole(const struct glint_resolve *r,
                         rows->codes.sample[2][row]};
 
     if (grey) {
-        luminance(light, row, padded(n), rows->grey_q16);
+        compute_luminance(light, row, round_up(n), rows->grey_q16);
         rgb[0] = rgb[1] = rgb[2] = rows->grey_q16;
     }
-    r->kernels->add_luma(code[0], code[1], code[2], rgb, change, padded(n),
+    r->kernels->add_luma(code[0], code[1], code[2], rgb, change, round_up(n),
                          &r->mix, round);
     for (int k = 0; k < 2 && !grey; k++)
         add_chroma(code[1 + k], change[1 - k], change[2],
@@ -131,13 +131,13 @@ static void resolve_pairs(const struct glint_resolve *r,
 
         r->kernels->add_pairs(rows->codes.sample[0][row],
                               rows->codes.chroma[l->log2_y ? 0 : row], rgb,
-                              mean, padded(n_x), step, &r->mix,
+                              mean, round_up(n_x), step, &r->mix,
                               r->round_q7[(y + row) & 7], r->round_q7[cy & 7]);
     }
 }
 
-/* Adds light in place to packed pictures like YUYV. Pixels beyond the last
- * whole vector are copied, lit and copied back. */
+/* Adds light in place to packed pictures like YUYV. Pixels after the last
+ * whole vector are copied, changed and copied back. */
 static void resolve_packed(const struct glint_resolve *r,
                            const struct glint_layout *l,
                            const struct glint_image *image, int x, int y, int n,

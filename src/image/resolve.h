@@ -33,9 +33,9 @@ struct glint_resolve {
     struct glint_mix mix;
     const struct glint_kernels *kernels;
     unsigned sets;
-    /* Codes to add before rounding down: 1/2 everywhere, or an 8 x 8 pattern
-     * with that mean and all values below 1, so that integer codes stay
-     * unchanged. */
+    /* Fraction of a code to add before rounding down: 1/2 everywhere, or an
+     * 8 x 8 dither pattern with that mean and all values below 1, so that
+     * integer codes stay unchanged. */
     int16_t round_q7[8][8];
 };
 
@@ -45,18 +45,18 @@ struct glint_light_rows {
     ALIGNED(32) uint16_t rgb_q16[3][2][GLINT_CODES_WIDTH];
 };
 
-/* Scratch of a worker. */
+/* Scratch memory of one worker. */
 struct glint_resolve_rows {
     ALIGNED(32) struct glint_codes codes;
     ALIGNED(32)
     int16_t change[3][GLINT_CODES_WIDTH]; /* changes of R', B' and Y', in the
-                                             formats of the kernels */
+                                             number formats of the kernels */
     ALIGNED(32) uint16_t grey_q16[GLINT_CODES_WIDTH];
 };
 
-/* Makes the tables for pictures with the format and coding of IMAGE. If DITHER
- * is 1, a fixed ordered pattern of less than a code is added before
- * rounding. */
+/* Makes the tables for pictures with the format, range, matrix and transfer
+ * of IMAGE. If DITHER is 1, an ordered dither pattern below one code is
+ * added before rounding. SETS: instruction sets that may be used. */
 void glint_resolve_init(struct glint_resolve *resolve,
                         const struct glint_image *image, int dither,
                         unsigned sets);
@@ -77,9 +77,9 @@ void glint_resolve_codes(const struct glint_resolve *resolve,
                          int n_y, struct glint_light_rows *light,
                          struct glint_resolve_rows *rows);
 
-/* Adds N values of LIGHT, separate R, G, B, to a row of a LINEAR_Q20 picture
- * (4-byte aligned) from (X, Y) on, clamped to int32. Returns how many samples
- * end at a limit of the range. */
+/* Adds N values of LIGHT per channel to a row of a LINEAR_Q20 picture
+ * (4-byte aligned) from (X, Y) on, clamped to int32. Returns the number of
+ * samples that were clamped. */
 int glint_resolve_linear(const struct glint_image *image, int x, int y, int n,
                          const int32_t *const light_q20[3]);
 

@@ -3,7 +3,7 @@
 #include "image/curve.h"
 #include "image/layout.h"
 
-static uint8_t code_of(int32_t code_q7)
+static uint8_t round_code(int32_t code_q7)
 {
     return (uint8_t)q_clamp_sat(code_q7 >> 7, 0, 255);
 }
@@ -15,7 +15,7 @@ static void read_ycc(const struct glint_ycc *ycc, int y, int cb, int cr,
 
     ycc_to_rgb(ycc, y, cb, cr, rgb_q7);
     for (int c = 0; c < 3; c++)
-        rgb[c] = code_of(rgb_q7[c]);
+        rgb[c] = round_code(rgb_q7[c]);
 }
 
 /* Widens five or six bits to eight by repeating the upper bits, so that white
@@ -30,9 +30,10 @@ static void read_565(const uint8_t *p, uint8_t rgb[3])
     rgb[2] = (uint8_t)(b << 3 | b >> 2);
 }
 
-static void read_at(const struct glint_layout *layout,
-                    const struct glint_image *image,
-                    const struct glint_ycc *ycc, int x, int y, uint8_t rgb[3])
+static void read_pixel(const struct glint_layout *layout,
+                       const struct glint_image *image,
+                       const struct glint_ycc *ycc, int x, int y,
+                       uint8_t rgb[3])
 {
     const uint8_t *p[3];
 
@@ -65,7 +66,7 @@ void glint_image_sample(const struct glint_image *image, int columns, int rows,
     glint_ycc_init(&ycc, image->matrix, image->range);
     for (int j = 0; j < rows; j++)
         for (int i = 0; i < columns; i++, rgb += 3)
-            read_at(layout, image, &ycc,
-                    (2 * i + 1) * image->width / (2 * columns),
-                    (2 * j + 1) * image->height / (2 * rows), rgb);
+            read_pixel(layout, image, &ycc,
+                       (2 * i + 1) * image->width / (2 * columns),
+                       (2 * j + 1) * image->height / (2 * rows), rgb);
 }
