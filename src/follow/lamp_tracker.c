@@ -23,11 +23,11 @@ enum {
 };
 
 #define MAX_ELAPSED_US 10000000
-/* Microseconds after which a lost lamp is searched for within one more reach,
- * up to MAX_REACHES. */
+/* Microseconds after which the search radius of a lost lamp grows by one
+ * more reach, up to MAX_REACHES. */
 #define REACH_US    1000000
 #define MAX_REACHES 3
-/* microseconds in which white falls to 1/e, one stop per second */
+/* time in which white falls to 1/e, us: one stop per second */
 #define WHITE_US 1442695
 
 struct glint_lamp_tracker {
@@ -38,13 +38,14 @@ struct glint_lamp_tracker {
     struct glint_record_step step;
     struct glint_record *record; /* [max_tracks] */
     struct glint_match match;
-    int32_t *owner; /* [max_tracks]: index of the record of each match.seeker */
+    int32_t *owner; /* [max_tracks]: index of the record that each element of
+                       match.seeker belongs to */
     int32_t *order; /* [MAX_SPOTS]: indices of spots or records */
 };
 
 /* ------------------------------------------------------------------- memory */
 
-static int is_time(int32_t ms)
+static int is_valid_time(int32_t ms)
 {
     return ms >= 1 && ms <= MAX_MS;
 }
@@ -56,9 +57,9 @@ static int is_valid(const struct glint_lamp_tracker_config *c)
            c->max_tracks <= MAX_TRACKS && c->max_shown >= 1 &&
            c->max_shown <= c->max_tracks && c->match_q15 >= 0 &&
            c->match_q15 <= 1 << 15 && c->cut_q15 >= 1 &&
-           is_time(c->attack_ms) && is_time(c->release_ms) &&
-           is_time(c->leave_ms) && is_time(c->memory_ms) &&
-           is_time(c->smooth_ms);
+           is_valid_time(c->attack_ms) && is_valid_time(c->release_ms) &&
+           is_valid_time(c->leave_ms) && is_valid_time(c->memory_ms) &&
+           is_valid_time(c->smooth_ms);
 }
 
 /* Allocates a tracker from A. Returns NULL if A only measures or is full. */
@@ -139,7 +140,7 @@ int glint_lamp_tracker_was_cut(const struct glint_lamp_tracker *tracks)
     return tracks->was_cut;
 }
 
-static int knows_any(const struct glint_lamp_tracker *tracks)
+static int has_tracks(const struct glint_lamp_tracker *tracks)
 {
     for (int i = 0; i < tracks->cfg.max_tracks; i++)
         if (tracks->record[i].id)
@@ -152,14 +153,14 @@ int32_t glint_lamp_tracker_white_q15(const struct glint_lamp_tracker *tracks,
 {
     const int32_t us = q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US);
 
-    return knows_any(tracks) ? (1 << 15) - glint_pace_part_q15(us, WHITE_US)
-                             : 0;
+    return has_tracks(tracks) ? (1 << 15) - glint_pace_part_q15(us, WHITE_US)
+                              : 0;
 }
 
 /* ----------------------------------------------------------------- matching */
 
-static int32_t reach_of_q8(const struct glint_lamp_tracker *t,
-                           const struct glint_record *r)
+static int32_t compute_reach_q8(const struct glint_lamp_tracker *t,
+                                const struct glint_record *r)
 {
     const int64_t more_q8 = (int64_t)t->reach_q8 * r->lost_us / REACH_US;
     const int32_t most_q8 = t->reach_q8 * (MAX_REACHES - 1);
@@ -168,7 +169,7 @@ static int32_t reach_of_q8(const struct glint_lamp_tracker *t,
 }
 
 /* Makes a seeker for each track, at its predicted position. */
-static void send_seekers(struct glint_lamp_tracker *t)
+static void make_seekers(struct glint_lamp_tracker *t)
 {
     struct glint_match *m = &t->match;
 
@@ -184,7 +185,7 @@ static void send_seekers(struct glint_lamp_tracker *t)
             .id = r->id,
             .x_q8 = q_narrow(r->ahead_q16[0] / 256),
             .y_q8 = q_narrow(r->ahead_q16[1] / 256),
-            .reach_q8 = reach_of_q8(t, r),
+            .reach_q8 = compute_reach_q8(t, r),
             .max_faint_area = q_clamp_sat(r->last.area, 0, 1 << 26) * 4,
             .is_lost = r->lost_us > 0};
     }
@@ -193,7 +194,7 @@ static void send_seekers(struct glint_lamp_tracker *t)
 /* Returns the squared distance within which a spot is the same lamp if there
  * are N spots. It shrinks with N, as among many spots one is within reach by
  * chance. */
-static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
+static int64_t compute_near2_q16(const struct glint_lamp_tracker *t, int n)
 {
     const int64_t reach2_q16 = (int64_t)t->reach_q8 * t->reach_q8;
 
@@ -201,10 +202,12 @@ static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
 }
 
 /* Returns the flux that spot NOW has in common with BEFORE, the lamp's last
- * spot; 0 if NOW is too far from the predicted position of S. */
-static int64_t kept_of(const struct glint_seeker *s,
-                       const struct glint_spot *before,
-                       const struct glint_spot *now, int64_t limit2_q16)
+ * spot; 0 if NOW is too far from the predicted position in S. LIMIT2:
+ * squared max distance. */
+static int64_t compute_common_flux(const struct glint_seeker *s,
+                                   const struct glint_spot *before,
+                                   const struct glint_spot *now,
+                                   int64_t limit2_q16)
 {
     const int64_t dx_q8 = (int64_t)now->x_q8 - s->x_q8;
     const int64_t dy_q8 = (int64_t)now->y_q8 - s->y_q8;
@@ -216,8 +219,8 @@ static int64_t kept_of(const struct glint_seeker *s,
     return p_q16 < q_q16 ? p_q16 : q_q16;
 }
 
-/* One side of a cut: the flux seen in one picture, and the flux that is also in
- * the other picture. */
+/* The flux on one side of a possible cut: total flux of the picture, and the
+ * flux that is also in the other picture. N: number of lamps. */
 struct side {
     int64_t flux, kept;
     int n;
@@ -225,8 +228,8 @@ struct side {
 
 /* Returns whether most of the flux of A is not in B. If A has no flux, several
  * lamps in B indicate a cut: all of them appeared, or vanished, at once. */
-static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
-                    const struct side *b)
+static int is_mostly_new(const struct glint_lamp_tracker *t,
+                         const struct side *a, const struct side *b)
 {
     return a->flux > 0 ? a->flux - a->kept >= (a->flux * t->cfg.cut_q15) >> 15
                        : b->n >= MANY_LIGHTS;
@@ -237,7 +240,7 @@ static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
 static int is_cut(const struct glint_lamp_tracker *t,
                   const struct glint_spot *spots, int n)
 {
-    const int64_t limit2_q16 = near2_q16(t, n);
+    const int64_t limit2_q16 = compute_near2_q16(t, n);
     struct side before = {0, 0, 0}, now = {0, 0, 0};
 
     for (int i = 0; i < n; i++)
@@ -249,7 +252,9 @@ static int is_cut(const struct glint_lamp_tracker *t,
         const struct glint_seeker *s = &t->match.seeker[i];
         const struct glint_spot *last = &t->record[t->owner[i]].last;
         const int64_t kept =
-            s->spot < 0 ? 0 : kept_of(s, last, &spots[s->spot], limit2_q16);
+            s->spot < 0
+                ? 0
+                : compute_common_flux(s, last, &spots[s->spot], limit2_q16);
 
         now.kept += kept;
         if (s->is_lost)
@@ -258,18 +263,18 @@ static int is_cut(const struct glint_lamp_tracker *t,
         before.kept += kept;
         before.n++;
     }
-    return is_apart(t, &before, &now) && is_apart(t, &now, &before);
+    return is_mostly_new(t, &before, &now) && is_mostly_new(t, &now, &before);
 }
 
 /* Assigns spots to tracks; after a cut all tracks are dropped. */
-static void match(struct glint_lamp_tracker *t, const struct glint_spot *spots,
-                  int n)
+static void match_spots(struct glint_lamp_tracker *t,
+                        const struct glint_spot *spots, int n)
 {
-    send_seekers(t);
+    make_seekers(t);
     glint_match_find(&t->match, spots, n);
     if (is_cut(t, spots, n)) {
         glint_lamp_tracker_restart(t);
-        send_seekers(t);
+        make_seekers(t);
         glint_match_find(&t->match, spots, n);
     }
     t->was_cut = t->step.is_fresh;
@@ -277,10 +282,10 @@ static void match(struct glint_lamp_tracker *t, const struct glint_spot *spots,
 
 /* --------------------------------------------------------------------- new */
 
-/* Returns whether P should be replaced before Q: first lost lamps, then faint
- * lamps, then young lamps. */
-static int yields_first(const struct glint_record *p,
-                        const struct glint_record *q)
+/* Returns whether P should be replaced before Q: lost lamps first, then
+ * faint lamps, then young lamps. */
+static int is_replaced_before(const struct glint_record *p,
+                              const struct glint_record *q)
 {
     const int64_t p_q16 = p->of[GLINT_CHANNEL_POWER].value;
     const int64_t q_q16 = q->of[GLINT_CHANNEL_POWER].value;
@@ -293,8 +298,8 @@ static int yields_first(const struct glint_record *p,
 /* Returns the record for a new lamp of POWER: a free record, else the record of
  * a track that is not shown and is lost or fainter. Returns NULL if there is no
  * such record. */
-static struct glint_record *place_for(struct glint_lamp_tracker *t,
-                                      int64_t power_q16)
+static struct glint_record *find_record(struct glint_lamp_tracker *t,
+                                        int64_t power_q16)
 {
     struct glint_record *best = NULL;
 
@@ -306,7 +311,7 @@ static struct glint_record *place_for(struct glint_lamp_tracker *t,
         if (r->level_q30 > 0 || r->is_shown ||
             (r->lost_us == 0 && r->of[GLINT_CHANNEL_POWER].value >= power_q16))
             continue;
-        if (!best || yields_first(r, best))
+        if (!best || is_replaced_before(r, best))
             best = r;
     }
     return best;
@@ -342,7 +347,7 @@ static void begin_tracks(struct glint_lamp_tracker *t,
     glint_sort(t->order, n_new, is_brighter, &ranked);
     for (int i = 0; i < n_new; i++) {
         const struct glint_spot *s = &spots[t->match.by_x[t->order[i]]];
-        struct glint_record *r = place_for(t, glint_record_power_q16(s));
+        struct glint_record *r = find_record(t, glint_record_power_q16(s));
 
         if (!r)
             return;
@@ -354,7 +359,7 @@ static void begin_tracks(struct glint_lamp_tracker *t,
 
 /* Returns the power of R for ranking. The power of shown tracks is raised by a
  * quarter, so that two tracks of similar power do not alternate. */
-static int64_t score_of(const struct glint_record *r)
+static int64_t compute_rank_power(const struct glint_record *r)
 {
     const int64_t power_q16 = r->of[GLINT_CHANNEL_POWER].value;
 
@@ -364,13 +369,14 @@ static int64_t score_of(const struct glint_record *r)
 static int is_stronger(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_record *record = ctx;
-    const int64_t p = score_of(&record[a]), q = score_of(&record[b]);
+    const int64_t p = compute_rank_power(&record[a]),
+                  q = compute_rank_power(&record[b]);
 
     return p != q ? p > q : record[a].id < record[b].id;
 }
 
-/* Lists all tracks in t->order, the strongest first, and selects the shown
- * tracks. Returns the number of all tracks. */
+/* Lists all tracks in t->order, the strongest first, and selects the tracks
+ * to show. Returns the number of all tracks. */
 static int rank_tracks(struct glint_lamp_tracker *t)
 {
     int n = 0, n_shown = 0;
@@ -388,8 +394,8 @@ static int rank_tracks(struct glint_lamp_tracker *t)
     return n;
 }
 
-static int show(struct glint_lamp_tracker *t, struct glint_lamp_track *out,
-                int max)
+static int write_shown(struct glint_lamp_tracker *t,
+                       struct glint_lamp_track *out, int max)
 {
     const int n = rank_tracks(t);
     int n_out = 0;
@@ -413,7 +419,7 @@ int glint_lamp_tracker_step(struct glint_lamp_tracker *tracks,
 
     t->step.pace = glint_pace_of(q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US),
                                  t->cfg.smooth_ms * 1000);
-    match(t, spots, n);
+    match_spots(t, spots, n);
     for (int i = 0; i < t->match.n_seekers; i++) {
         struct glint_record *r = &t->record[t->owner[i]];
         const int32_t spot = t->match.seeker[i].spot;
@@ -424,7 +430,7 @@ int glint_lamp_tracker_step(struct glint_lamp_tracker *tracks,
             glint_record_miss(r, &t->step);
     }
     begin_tracks(t, spots, n);
-    n = show(t, out, max);
+    n = write_shown(t, out, max);
     t->step.is_fresh = 0;
     return n;
 }

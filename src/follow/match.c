@@ -6,8 +6,8 @@
 
 enum {
     NEAREST_SPOTS = 8,
-    FAR_LOG2 = 2, /* log2 of the factor on squared distances for a faint spot,
-                     and again for a lost lamp */
+    FAR_LOG2 = 2, /* log2 of the factor on squared distances of a faint spot,
+                     and of a lost lamp */
     PIXEL2_Q16 = 1 << 16
 };
 
@@ -53,7 +53,7 @@ static void list_numbers(const struct glint_spot *s, int64_t v[SPOT_NUMBERS])
 
 /* Orders spots by all their members; the order is ambiguous only for equal
  * spots. */
-static int spot_before(const void *ctx, int32_t a, int32_t b)
+static int is_spot_before(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_spot *spots = ctx;
     int64_t p[SPOT_NUMBERS], q[SPOT_NUMBERS];
@@ -68,7 +68,7 @@ static int spot_before(const void *ctx, int32_t a, int32_t b)
     return 0;
 }
 
-static int pair_before(const void *ctx, int32_t a, int32_t b)
+static int is_pair_before(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_match *m = ctx;
     const struct glint_pair *p = &m->pair[a], *q = &m->pair[b];
@@ -82,10 +82,11 @@ static int pair_before(const void *ctx, int32_t a, int32_t b)
 
 /* -------------------------------------------------------------------- pairs */
 
-/* Returns the squared distance of SPOT, multiplied if it is faint or the lamp
- * lost; -1 if it is too far away, or faint and too large. */
-static int64_t cost_q16(const struct glint_seeker *s,
-                        const struct glint_spot *spot)
+/* Returns the cost of assigning SPOT to S: the squared distance, multiplied
+ * by 2^FAR_LOG2 if the spot is faint and again if the lamp is lost. Returns
+ * -1 if SPOT is too far away, or faint and too large. */
+static int64_t compute_cost_q16(const struct glint_seeker *s,
+                                const struct glint_spot *spot)
 {
     const int64_t reach_q8 = s->reach_q8;
     const int64_t dx_q8 = (int64_t)spot->x_q8 - s->x_q8;
@@ -102,8 +103,8 @@ static int64_t cost_q16(const struct glint_seeker *s,
     return is_far ? (d2_q16 + PIXEL2_Q16) << (is_far * FAR_LOG2) : d2_q16;
 }
 
-/* Returns the index in by_x of the first spot at X or to the right of it. */
-static int first_from(const struct glint_match *m,
+/* Returns the index in by_x of the first spot whose x is X or more. */
+static int find_first(const struct glint_match *m,
                       const struct glint_spot *spots, int n, int64_t x_q8)
 {
     int low = 0, high = n;
@@ -137,17 +138,17 @@ static void keep_near(struct glint_match *m, int first, struct glint_pair pair)
     m->pair[at] = pair;
 }
 
-static void look_around(struct glint_match *m, int seeker,
-                        const struct glint_spot *spots, int n)
+static void find_near_spots(struct glint_match *m, int seeker,
+                            const struct glint_spot *spots, int n)
 {
     const struct glint_seeker *s = &m->seeker[seeker];
     const int64_t right_q8 = (int64_t)s->x_q8 + s->reach_q8;
     const int first = m->n_pairs;
 
-    for (int i = first_from(m, spots, n, (int64_t)s->x_q8 - s->reach_q8);
+    for (int i = find_first(m, spots, n, (int64_t)s->x_q8 - s->reach_q8);
          i < n && spots[m->by_x[i]].x_q8 <= right_q8; i++) {
         const int32_t spot = m->by_x[i];
-        const int64_t cost = cost_q16(s, &spots[spot]);
+        const int64_t cost = compute_cost_q16(s, &spots[spot]);
 
         if (cost >= 0)
             keep_near(m, first, (struct glint_pair){cost, seeker, spot, i});
@@ -161,15 +162,15 @@ void glint_match_find(struct glint_match *m, const struct glint_spot *spots,
         m->by_x[i] = i;
         m->taken[i] = 0;
     }
-    glint_sort(m->by_x, n, spot_before, spots);
+    glint_sort(m->by_x, n, is_spot_before, spots);
     m->n_pairs = 0;
     for (int i = 0; i < m->n_seekers; i++) {
         m->seeker[i].spot = -1;
-        look_around(m, i, spots, n);
+        find_near_spots(m, i, spots, n);
     }
     for (int i = 0; i < m->n_pairs; i++)
         m->order[i] = i;
-    glint_sort(m->order, m->n_pairs, pair_before, m);
+    glint_sort(m->order, m->n_pairs, is_pair_before, m);
     for (int i = 0; i < m->n_pairs; i++) {
         const struct glint_pair *p = &m->pair[m->order[i]];
 

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Assigns the spots of a picture to the lamps of the picture before.
+ * Assigns the spots of a picture to the lamps of the previous picture.
  *
- *   in spots in any order; the predicted place of each lamp
- *   out  for each lamp its spot, or none; no spot twice
+ *    in   spots in any order; the predicted position of each lamp
+ *    out  for each lamp its spot, or none; each spot at most once
  *
- * Method: greedy, the nearest pair within reach first. The distance counts
- * double for a faint spot, and again for a lost lamp. Each lamp considers only
- * its NEAREST_SPOTS nearest spots, found among spots sorted by x, so that only
+ * Method: greedy, the nearest pair within reach first. The distance of a faint
+ * spot is doubled, and that of a lost lamp again. Each lamp considers only its
+ * NEAREST_SPOTS nearest spots, found among spots sorted by x, so that only
  * spots within reach cost time. A lamp whose candidates are all assigned gets
- * no spot. */
+ * no spot.
+ */
 #ifndef GLINT_FOLLOW_MATCH_H
 #define GLINT_FOLLOW_MATCH_H
 
@@ -21,8 +22,8 @@ struct glint_arena;
 struct glint_seeker {
     uint32_t id; /* breaks ties; must be unique */
     int32_t x_q8, y_q8;
-    int32_t reach_q8;       /* 0 .. 2^23 */
-    int32_t max_faint_area; /* pixels; a faint spot with a larger area does not
+    int32_t reach_q8;       /* max distance of its spot, pixels, 0 .. 2^23 */
+    int32_t max_faint_area; /* pixels; a faint spot of a larger area does not
                                match */
     int is_lost;
     int32_t spot; /* result: index of its spot, or -1 */

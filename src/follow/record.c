@@ -4,7 +4,7 @@
 #include "base/q.h"
 
 #define VELOCITY_US 100000 /* microseconds over which velocity is averaged */
-/* microseconds in which an unseen lamp loses 1 - 1/e of its velocity */
+/* time in which an unseen lamp loses 1 - 1/e of its velocity, us */
 #define COAST_US     1000000
 #define MAX_FLUX_Q16 (INT64_C(1) << 42)
 #define FULL_Q30     (INT32_C(1) << 30)
@@ -36,29 +36,31 @@
  * Limits: numbers are below 2^43 in magnitude, times below 2^26 us. */
 #define SETTLE_US 60000
 
-/* Ratios of drift to spread up to which an error is noise, and from which it is
- * change. Gaussian noise exceeds the first in one picture of 100, and SUDDEN
- * times the spread in one of 1000. */
+/* Ratios of drift to spread up to which an error counts as noise, and from
+ * which it counts as change. Gaussian noise exceeds NOISE in one picture of
+ * 100, and SUDDEN times the spread in one of 1000. */
 #define NOISE_Q15  Q_CONST(0.8, 15)
 #define CHANGE_Q15 Q_CONST(0.95, 15)
 #define SUDDEN     6
 
 /* Returns X times GAIN, rounded away from 0, so that repeated corrections reach
  * 0. */
-static int64_t part_of(int64_t x, int32_t gain_q15)
+static int64_t multiply_away(int64_t x, int32_t gain_q15)
 {
     return x < 0 ? -((-x * gain_q15 + ONE_Q15 - 1) >> 15)
                  : (x * gain_q15 + ONE_Q15 - 1) >> 15;
 }
 
-static int64_t size_of(int64_t x)
+static int64_t compute_abs(int64_t x)
 {
     return x < 0 ? -x : x;
 }
 
 enum follow_as {
-    FOLLOW_JUDGED,   /* the errors so far decide between noise and change */
-    FOLLOW_REPEATED, /* all members of the spot are unchanged */
+    FOLLOW_JUDGED,   /* the errors so far decide whether this is noise or change
+                      */
+    FOLLOW_REPEATED, /* all members of the spot are the same as in the last
+                        picture */
     FOLLOW_CHANGED
 };
 
@@ -97,39 +99,42 @@ static void follow_blend(struct glint_follow *f, int32_t elapsed_us,
                          int32_t time_us)
 {
     const int64_t step =
-        part_of(f->stride, pace_share_q15(elapsed_us, time_us));
+        multiply_away(f->stride, pace_share_q15(elapsed_us, time_us));
 
-    if (size_of(f->offset) <= step)
+    if (compute_abs(f->offset) <= step)
         f->offset = f->stride = 0;
     else
         f->offset -= f->offset < 0 ? -step : step;
 }
 
-/* Returns a number from 0, if the errors so far are noise, to 1, if they are a
+/* Returns the degree to which the errors so far are a change: 0 noise, 1
  * change. */
-static int32_t judge_q15(const struct glint_follow *f, int64_t floor)
+static int32_t compute_change_q15(const struct glint_follow *f, int64_t floor)
 {
-    const int64_t one_way_q15 = (size_of(f->drift) << 15) / (f->spread + floor);
+    const int64_t one_way_q15 =
+        (compute_abs(f->drift) << 15) / (f->spread + floor);
 
     return q_clamp_sat((one_way_q15 - NOISE_Q15) * ONE_Q15 /
                            (CHANGE_Q15 - NOISE_Q15),
                        0, ONE_Q15);
 }
 
-/* Adds ERROR to drift and spread; returns the degree to which it is a change, 0
- * .. 1. */
-static int32_t learn_q15(struct glint_follow *f, int64_t error, int64_t floor,
-                         int32_t smooth_q15, enum follow_as as)
+/* Adds ERROR to the means drift and spread; returns the degree to which it
+ * is a change, 0 .. 1. */
+static int32_t add_error_q15(struct glint_follow *f, int64_t error,
+                             int64_t floor, int32_t smooth_q15,
+                             enum follow_as as)
 {
-    if (as == FOLLOW_CHANGED || size_of(error) > SUDDEN * (f->spread + floor)) {
+    if (as == FOLLOW_CHANGED ||
+        compute_abs(error) > SUDDEN * (f->spread + floor)) {
         f->drift = error / 2; /* Earlier errors are irrelevant after a
                                  change. */
-        f->spread = size_of(error / 2);
+        f->spread = compute_abs(error / 2);
         return ONE_Q15;
     }
-    f->drift += part_of(error - f->drift, smooth_q15);
-    f->spread += part_of(size_of(error) - f->spread, smooth_q15);
-    return judge_q15(f, floor);
+    f->drift += multiply_away(error - f->drift, smooth_q15);
+    f->spread += multiply_away(compute_abs(error) - f->spread, smooth_q15);
+    return compute_change_q15(f, floor);
 }
 
 /* Moves the value towards TARGET. FLOOR is the tolerated error, at least 1.
@@ -139,27 +144,28 @@ static int32_t follow_step_q15(struct glint_follow *f, int64_t target,
                                enum follow_as as)
 {
     const int64_t error = target - f->value;
-    const int32_t change_q15 = learn_q15(f, error, floor, pace->smooth_q15, as);
+    const int32_t change_q15 =
+        add_error_q15(f, error, floor, pace->smooth_q15, as);
     int32_t gain_q15 =
         pace->smooth_q15 + q_mul(ONE_Q15 - pace->smooth_q15, change_q15, 15);
 
     if (as == FOLLOW_REPEATED && gain_q15 < pace->settle_q15)
         gain_q15 = pace->settle_q15;
-    f->value = size_of(error) <= floor / 4
+    f->value = compute_abs(error) <= floor / 4
                    ? target
-                   : f->value + part_of(error, gain_q15);
+                   : f->value + multiply_away(error, gain_q15);
     return change_q15;
 }
 
-/* Moves the value from AHEAD towards TARGET as for noise, and assumes noise of
- * at least SPREAD until more is known. */
+/* Moves the value from AHEAD towards TARGET at the pace for noise, and
+ * assumes noise of at least SPREAD until more errors are known. */
 static void follow_doubt(struct glint_follow *f, int64_t ahead, int64_t target,
                          int64_t spread, const struct glint_pace *pace)
 {
     f->drift = 0;
     if (f->spread < spread)
         f->spread = spread;
-    f->value = ahead + part_of(target - ahead, pace->smooth_q15);
+    f->value = ahead + multiply_away(target - ahead, pace->smooth_q15);
 }
 
 static int64_t follow_shown(const struct glint_follow *f)
@@ -167,14 +173,14 @@ static int64_t follow_shown(const struct glint_follow *f)
     return f->value + f->offset;
 }
 
-/* Sets the value, but continues to show SHOWN; blends then move the shown
- * number to the value, within their time unless more changes follow. */
+/* Sets the value, but continues to show SHOWN. Later blends move the shown
+ * number to the value within their time, unless more changes follow. */
 static void follow_jump(struct glint_follow *f, int64_t value, int64_t shown)
 {
     f->value = value;
     f->offset = shown - value;
-    if (f->stride < size_of(f->offset))
-        f->stride = size_of(f->offset);
+    if (f->stride < compute_abs(f->offset))
+        f->stride = compute_abs(f->offset);
 }
 
 /* ----------------------------------------------------------------- one lamp */
@@ -188,7 +194,7 @@ enum {
     SIZE = GLINT_CHANNEL_SIZE
 };
 
-static int64_t clamp(int64_t x, int64_t low, int64_t high)
+static int64_t clamp_i64(int64_t x, int64_t low, int64_t high)
 {
     return x < low ? low : x > high ? high : x;
 }
@@ -197,12 +203,12 @@ static int64_t clamp(int64_t x, int64_t low, int64_t high)
 
 int64_t glint_record_flux_q16(const struct glint_spot *spot)
 {
-    return clamp(spot->flux_q16, 0, MAX_FLUX_Q16);
+    return clamp_i64(spot->flux_q16, 0, MAX_FLUX_Q16);
 }
 
 int64_t glint_record_power_q16(const struct glint_spot *spot)
 {
-    return clamp(spot->power_q16, 0, MAX_FLUX_Q16);
+    return clamp_i64(spot->power_q16, 0, MAX_FLUX_Q16);
 }
 
 /* Sets cosine and sine of twice the orientation of S: both directions of an
@@ -210,8 +216,8 @@ int64_t glint_record_power_q16(const struct glint_spot *spot)
 static void double_angle(const struct glint_spot *s, int64_t *cos2_q15,
                          int64_t *sin2_q15)
 {
-    const int64_t c = clamp(s->cos_q15, -ONE_Q15, ONE_Q15);
-    const int64_t d = clamp(s->sin_q15, -ONE_Q15, ONE_Q15);
+    const int64_t c = clamp_i64(s->cos_q15, -ONE_Q15, ONE_Q15);
+    const int64_t d = clamp_i64(s->sin_q15, -ONE_Q15, ONE_Q15);
 
     *cos2_q15 = (c * c - d * d) >> 15;
     *sin2_q15 = (2 * c * d) >> 15;
@@ -221,22 +227,22 @@ static void double_angle(const struct glint_spot *s, int64_t *cos2_q15,
 static void list_targets(const struct glint_spot *s,
                          int64_t target[GLINT_CHANNELS])
 {
-    target[X] = clamp(s->x_q8, 0, GLINT_MAX_SIDE << 8) * 256;
-    target[X + 1] = clamp(s->y_q8, 0, GLINT_MAX_SIDE << 8) * 256;
+    target[X] = clamp_i64(s->x_q8, 0, GLINT_MAX_SIDE << 8) * 256;
+    target[X + 1] = clamp_i64(s->y_q8, 0, GLINT_MAX_SIDE << 8) * 256;
     target[FLUX] = glint_record_flux_q16(s);
     target[GLINT_CHANNEL_POWER] = glint_record_power_q16(s);
-    target[SIZE] = clamp(s->size_q8, 0, GLINT_MAX_SIDE << 8);
+    target[SIZE] = clamp_i64(s->size_q8, 0, GLINT_MAX_SIDE << 8);
     for (int i = 0; i < 2; i++)
         target[GLINT_CHANNEL_MAJOR + i] =
-            clamp(s->axis_q8[i], 0, GLINT_MAX_SIDE << 8);
+            clamp_i64(s->axis_q8[i], 0, GLINT_MAX_SIDE << 8);
     double_angle(s, &target[GLINT_CHANNEL_COS2], &target[GLINT_CHANNEL_SIN2]);
     for (int i = 0; i < 3; i++)
-        target[GLINT_CHANNEL_RED + i] = clamp(s->rgb_q15[i], 0, 1 << 20);
+        target[GLINT_CHANNEL_RED + i] = clamp_i64(s->rgb_q15[i], 0, 1 << 20);
 }
 
 /* Returns the tolerated error of VALUE: 1/32 pixel for positions; 1/64 of the
  * value for all other channels, plus 1/16 pixel for sizes. */
-static int64_t floor_of(int channel, int64_t value)
+static int64_t compute_floor(int channel, int64_t value)
 {
     switch (channel) {
     case GLINT_CHANNEL_X:
@@ -273,7 +279,7 @@ static int is_other_shape(const struct glint_spot *a,
     const int64_t p_q16 = glint_record_flux_q16(a);
     const int64_t q_q16 = glint_record_flux_q16(b);
 
-    return size_of(p_q16 - q_q16) > (p_q16 > q_q16 ? p_q16 : q_q16) / 4;
+    return compute_abs(p_q16 - q_q16) > (p_q16 > q_q16 ? p_q16 : q_q16) / 4;
 }
 
 /* ------------------------------------------------------------------- motion */
@@ -312,36 +318,36 @@ static void learn_velocity(struct glint_record *r,
     if (us == 0)
         return;
     now_q16 = (r->of[X + axis].value - before_q16) * 1000000 / us;
-    now_q16 = clamp(now_q16, -limit_q16, limit_q16);
+    now_q16 = clamp_i64(now_q16, -limit_q16, limit_q16);
     r->velocity_q16[axis] +=
         (now_q16 - r->velocity_q16[axis]) * part_q15 / (1 << 15);
 }
 
-/* Updates the position after a change of shape, which is not a motion. Within
- * half the lamp's radius of the expected position it counts as noise; farther
- * away the shown position moves on as before and is blended to the new
- * position. */
-static void doubt_place(struct glint_record *r,
-                        const struct glint_record_step *step, int axis,
-                        int64_t target_q16)
+/* Updates the position after a change of shape, which is not a motion.
+ * Within half the lamp's radius of the predicted position it counts as
+ * noise; farther away the shown position continues its motion and is blended
+ * to the new position. */
+static void follow_doubtful_place(struct glint_record *r,
+                                  const struct glint_record_step *step,
+                                  int axis, int64_t target_q16)
 {
     struct glint_follow *f = &r->of[X + axis];
     const int64_t ahead_q16 = r->ahead_q16[axis];
     const int64_t extent_q16 = r->of[SIZE].value * 256;
 
-    if (size_of(target_q16 - ahead_q16) <= extent_q16 / 2)
+    if (compute_abs(target_q16 - ahead_q16) <= extent_q16 / 2)
         follow_doubt(f, ahead_q16, target_q16, extent_q16 / 4, &step->pace);
     else
         follow_jump(f, target_q16, ahead_q16 + f->offset);
 }
 
-/* Returns whether the lamp moves along AXIS by more than half a pixel and a
- * sixteenth of its radius per picture. Its errors are then motion, not noise:
- * when the motion turns or ends, the drift has the wrong sign for some
- * pictures. */
+/* Returns whether the lamp moves along AXIS by more than half a pixel plus a
+ * sixteenth of its radius per picture. Its errors are then motion, not
+ * noise: when the motion turns or ends, the drift has the wrong sign for
+ * some pictures. */
 static int is_moving(const struct glint_record *r, int axis)
 {
-    return size_of(r->ahead_q16[axis] - r->of[X + axis].value) >
+    return compute_abs(r->ahead_q16[axis] - r->of[X + axis].value) >
            r->of[SIZE].value * 16 + 65536 / 2;
 }
 
@@ -350,26 +356,27 @@ static int is_moving(const struct glint_record *r, int axis)
 static enum follow_as judge_place(const struct glint_record *r, int axis,
                                   int64_t error_q16, int is_repeat)
 {
-    if (size_of(error_q16) > r->of[SIZE].value * 192 + 65536 / 8 ||
+    if (compute_abs(error_q16) > r->of[SIZE].value * 192 + 65536 / 8 ||
         is_moving(r, axis))
         return FOLLOW_CHANGED;
     return is_repeat ? FOLLOW_REPEATED : FOLLOW_JUDGED;
 }
 
-/* Returns whether TARGET is too far for the lamp's motion: farther from the
- * expected position than twice its radius plus an eighth of the match distance.
- * The cause may be a motion that begins, or another lamp. */
+/* Returns whether TARGET is farther than the lamp's motion explains: farther
+ * from the predicted position than twice its radius plus an eighth of the
+ * match distance. The cause may be a motion that begins, or another lamp. */
 static int is_leap(const struct glint_record *r,
                    const struct glint_record_step *step, int axis,
                    int64_t target_q16)
 {
-    return size_of(target_q16 - r->ahead_q16[axis]) >
+    return compute_abs(target_q16 - r->ahead_q16[axis]) >
            r->of[SIZE].value * 512 +
                (int64_t)step->cfg->width * step->cfg->match_q15 / 4;
 }
 
-static void leap(struct glint_record *r, const struct glint_record_step *step,
-                 int axis, int64_t target_q16)
+static void jump_to_target(struct glint_record *r,
+                           const struct glint_record_step *step, int axis,
+                           int64_t target_q16)
 {
     struct glint_follow *f = &r->of[X + axis];
     const int64_t before_q16 = f->value;
@@ -385,14 +392,15 @@ static void follow_place(struct glint_record *r,
     struct glint_follow *f = &r->of[X + axis];
     const int64_t before_q16 = f->value;
     const int32_t change_q15 = follow_step_q15(
-        f, target_q16, floor_of(X, 0), &step->pace,
+        f, target_q16, compute_floor(X, 0), &step->pace,
         judge_place(r, axis, target_q16 - before_q16, is_repeat));
 
     learn_velocity(r, step, axis, before_q16, change_q15);
 }
 
-/* Moves a lamp without a spot on; a hidden lamp slows down. */
-static void coast(struct glint_record *r, const struct glint_record_step *step)
+/* Moves a lamp that has no spot by its velocity; a hidden lamp slows down. */
+static void move_unseen(struct glint_record *r,
+                        const struct glint_record_step *step)
 {
     for (int axis = 0; axis < 2; axis++) {
         r->of[X + axis].value = r->ahead_q16[axis];
@@ -410,7 +418,7 @@ static int is_leaving(const struct glint_record *r,
 
     for (int axis = 0; axis < 2; axis++) {
         const int64_t at_q16 = r->of[X + axis].value;
-        const int64_t speed_q16 = size_of(r->velocity_q16[axis]);
+        const int64_t speed_q16 = compute_abs(r->velocity_q16[axis]);
         const int64_t room_q16 = r->velocity_q16[axis] < 0
                                      ? at_q16
                                      : side[axis] * INT64_C(65536) - at_q16;
@@ -427,19 +435,19 @@ static int is_leaving(const struct glint_record *r,
 
 /* -------------------------------------------------------------------- light */
 
-/* Returns how to follow light of CHANNEL. The power of a clipped core is
+/* Returns how to follow the light of CHANNEL. The power of a clipped core is
  * estimated from its rim, and noise may halve or double it, so powers are
  * judged by the errors so far unless pictures repeat. */
 static enum follow_as judge_light(int channel, int64_t change, int64_t larger,
                                   int64_t floor, int is_repeat)
 {
     if ((channel != GLINT_CHANNEL_POWER || is_repeat) &&
-        size_of(change) > larger / 4 + 4 * floor)
+        compute_abs(change) > larger / 4 + 4 * floor)
         return FOLLOW_CHANGED;
     return is_repeat ? FOLLOW_REPEATED : FOLLOW_JUDGED;
 }
 
-/* Returns the time in us in which a lamp may fully appear or vanish. */
+/* Returns the time in which a lamp may fully appear or vanish, us. */
 static int32_t blend_us(const struct glint_lamp_tracker_config *cfg,
                         int64_t change)
 {
@@ -456,11 +464,11 @@ static void follow_light(struct glint_record *r,
     const int64_t before = f->value, shown = follow_shown(f);
     const int64_t larger =
         channel == GLINT_CHANNEL_COS2 || channel == GLINT_CHANNEL_SIN2
-            ? ONE_Q15 /* in units of a full axis, independent of its
-                         direction */
+            ? ONE_Q15 /* orientation: relative to a full axis, independent of
+                         its direction */
         : target > before ? target
                           : before;
-    const int64_t floor = floor_of(channel, larger);
+    const int64_t floor = compute_floor(channel, larger);
     int32_t share_q15;
     int64_t change;
 
@@ -470,24 +478,24 @@ static void follow_light(struct glint_record *r,
     change = f->value - before;
     share_q15 =
         pace_share_q15(step->pace.elapsed_us, blend_us(step->cfg, change));
-    if (f->offset != 0 || size_of(change) > (larger * share_q15) >> 15)
+    if (f->offset != 0 || compute_abs(change) > (larger * share_q15) >> 15)
         follow_jump(f, f->value, shown);
 }
 
-static void start(struct glint_record *r, const struct glint_spot *s)
+static void start_channels(struct glint_record *r, const struct glint_spot *s)
 {
     int64_t target[GLINT_CHANNELS];
 
     list_targets(s, target);
     for (int c = 0; c < GLINT_CHANNELS; c++)
-        follow_start(&r->of[c], target[c], 2 * floor_of(c, target[c]));
+        follow_start(&r->of[c], target[c], 2 * compute_floor(c, target[c]));
 }
 
 void glint_record_begin(struct glint_record *r, uint32_t id,
                         const struct glint_spot *spot)
 {
     *r = (struct glint_record){.id = id, .last = *spot};
-    start(r, spot);
+    start_channels(r, spot);
 }
 
 static int count_same(struct glint_record *r, const struct glint_spot *spot)
@@ -499,7 +507,8 @@ static int count_same(struct glint_record *r, const struct glint_spot *spot)
     return r->n_same;
 }
 
-static void blend(struct glint_record *r, const struct glint_record_step *step)
+static void blend_channels(struct glint_record *r,
+                           const struct glint_record_step *step)
 {
     for (int c = 0; c < GLINT_CHANNELS; c++)
         follow_blend(&r->of[c], step->pace.elapsed_us,
@@ -516,20 +525,20 @@ void glint_record_see(struct glint_record *r,
     int64_t target[GLINT_CHANNELS];
 
     if (is_back && r->level_q30 == 0) {
-        start(r, spot);
+        start_channels(r, spot);
     } else {
         list_targets(spot, target);
         for (int axis = 0; axis < 2; axis++)
             if (is_new_shape)
-                doubt_place(r, step, axis, target[X + axis]);
+                follow_doubtful_place(r, step, axis, target[X + axis]);
             else if (is_leap(r, step, axis, target[X + axis]))
-                leap(r, step, axis, target[X + axis]);
+                jump_to_target(r, step, axis, target[X + axis]);
             else
                 follow_place(r, step, axis, target[X + axis], is_repeat);
         for (int c = FLUX; c < GLINT_CHANNELS; c++)
             follow_light(r, step, c, target[c], is_repeat);
     }
-    blend(r, step);
+    blend_channels(r, step);
     r->last = *spot;
     r->lost_us = 0;
 }
@@ -540,8 +549,8 @@ static int is_far(const struct glint_record *r)
 {
     const int64_t limit_q16 = (int64_t)4 * GLINT_MAX_SIDE << 16;
 
-    return size_of(r->of[X].value) > limit_q16 ||
-           size_of(r->of[X + 1].value) > limit_q16;
+    return compute_abs(r->of[X].value) > limit_q16 ||
+           compute_abs(r->of[X + 1].value) > limit_q16;
 }
 
 static int is_over(const struct glint_record *r,
@@ -554,10 +563,10 @@ static int is_over(const struct glint_record *r,
 void glint_record_miss(struct glint_record *r,
                        const struct glint_record_step *step)
 {
-    blend(r, step);
+    blend_channels(r, step);
     if (r->lost_us == 0)
         r->state = is_leaving(r, step) ? GLINT_LAMP_LEAVING : GLINT_LAMP_FADING;
-    coast(r, step);
+    move_unseen(r, step);
     r->lost_us += step->pace.elapsed_us > 0 ? step->pace.elapsed_us : 1;
     if (is_over(r, step) || is_far(r))
         r->id = 0;
@@ -614,9 +623,9 @@ static void set_axis(struct glint_lamp_track *track, int64_t cos2_q15,
         size_q15 > 0 ? cos2_q15 * ONE_Q15 / size_q15 : ONE_Q15;
 
     track->cos_q15 = (int32_t)q_root(
-        (uint64_t)clamp(ONE_Q15 + cos_q15, 0, 2 * ONE_Q15) << 14);
+        (uint64_t)clamp_i64(ONE_Q15 + cos_q15, 0, 2 * ONE_Q15) << 14);
     track->sin_q15 = (int32_t)q_root(
-        (uint64_t)clamp(ONE_Q15 - cos_q15, 0, 2 * ONE_Q15) << 14);
+        (uint64_t)clamp_i64(ONE_Q15 - cos_q15, 0, 2 * ONE_Q15) << 14);
     if (sin2_q15 < 0)
         track->sin_q15 = -track->sin_q15;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The record of one lamp over time, and its updates by pictures.
+ * The state of one tracked lamp (a record), and its update for each picture.
  *
  *     glint_record_begin(r, id, spot);               once
  *     glint_record_look_ahead(r, &step);             each picture
@@ -12,10 +12,10 @@
 
 #include "glint/lamp_tracker.h"
 
-/* The filter of one number of a lamp (record.c). */
+/* The state of the filter of one number of a lamp (record.c). */
 struct glint_follow {
     int64_t value;
-    /* Means of the signed errors, and of their magnitudes. */
+    /* Averages of the errors with their signs, and of their magnitudes. */
     int64_t drift, spread;
     int64_t offset; /* the number shown is value + offset */
     int64_t stride; /* change of the offset over the time of a blend */
@@ -24,9 +24,9 @@ struct glint_follow {
 /* The filter's parameters for the time between two pictures. */
 struct glint_pace {
     int32_t elapsed_us;
-    int32_t smooth_q15; /* fraction of the error corrected per picture for
-                           noise */
-    int32_t settle_q15; /* the same for changes that repeat */
+    int32_t smooth_q15; /* fraction of the error that is corrected per picture
+                           if it is noise */
+    int32_t settle_q15; /* fraction that is corrected if the error persists */
 };
 
 struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us);
@@ -61,9 +61,9 @@ struct glint_record {
     int n_same; /* number of consecutive pictures, after the first, with an
                    equal spot */
     int64_t velocity_q16[2]; /* pixels per second */
-    int64_t ahead_q16[2];    /* predicted position of the lamp, pixels */
+    int64_t ahead_q16[2];    /* predicted position of the lamp, pixels, _q16 */
     int32_t level_q30;
-    int32_t lost_us; /* microseconds since it was last seen; 0: it is seen in
+    int32_t lost_us; /* time since the lamp was last seen, us; 0: it is seen in
                         this picture */
     int is_shown; /* set by the caller: true if the level rises while the lamp
                      is seen */
@@ -94,8 +94,8 @@ void glint_record_see(struct glint_record *r,
                       const struct glint_record_step *step,
                       const struct glint_spot *spot);
 
-/* Continues a record without a spot: the lamp moves on with its velocity, and
- * is forgotten after a time. */
+/* Updates a record for a picture without a spot of the lamp: the lamp moves
+ * on with its velocity, and is dropped after a time. */
 void glint_record_miss(struct glint_record *r,
                        const struct glint_record_step *step);
 
