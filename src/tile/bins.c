@@ -14,10 +14,10 @@ void glint_bins_init(struct glint_bins *bins, struct glint_box region,
     bins->ref = ref;
 }
 
-/* Returns the columns and rows of the tiles that BOX touches; an empty box if
- * it touches no tile. */
-static struct glint_box tile_range(const struct glint_bins *bins,
-                                   struct glint_box box)
+/* Returns the range of columns and rows of the tiles that BOX overlaps; an
+ * empty box if there is none. */
+static struct glint_box find_tile_range(const struct glint_bins *bins,
+                                        struct glint_box box)
 {
     const struct glint_box in = glint_box_cut(box, bins->region);
     const struct glint_box *r = &bins->region;
@@ -32,7 +32,7 @@ static struct glint_box tile_range(const struct glint_bins *bins,
 
 int glint_bins_span(const struct glint_bins *bins, struct glint_box box)
 {
-    const struct glint_box t = tile_range(bins, box);
+    const struct glint_box t = find_tile_range(bins, box);
 
     return (t.x1 - t.x0) * (t.y1 - t.y0);
 }
@@ -45,7 +45,7 @@ void glint_bins_open(struct glint_bins *bins)
 
 void glint_bins_count(struct glint_bins *bins, struct glint_box box)
 {
-    const struct glint_box t = tile_range(bins, box);
+    const struct glint_box t = find_tile_range(bins, box);
 
     for (int y = t.y0; y < t.y1; y++)
         for (int x = t.x0; x < t.x1; x++)
@@ -66,7 +66,7 @@ void glint_bins_sum(struct glint_bins *bins)
 
 void glint_bins_put(struct glint_bins *bins, struct glint_box box, int32_t item)
 {
-    const struct glint_box t = tile_range(bins, box);
+    const struct glint_box t = find_tile_range(bins, box);
 
     for (int y = t.y0; y < t.y1; y++)
         for (int x = t.x0; x < t.x1; x++)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Index lists: which items, each in a box of pixels, may touch which tile.
+ * Bins items, each with a bounding box in pixels, into tiles: lists for each
+ * tile the items whose boxes overlap it.
  *
  * Three steps, so that every list has exactly the length it needs and is
  * ordered by item, never by arrival: count, prefix sum, scatter. The same code
@@ -22,23 +23,24 @@ struct glint_bins {
     int32_t *ref; /* indices of items, rising within a tile */
 };
 
-/* Sets up BINS for REGION: its numbers of tiles across and down, START and REF.
- */
+/* Sets up BINS for REGION, with tiles of 2^TILE_LOG2 pixels. Computes the
+ * numbers of tiles across and down, and stores the arrays START and REF,
+ * which the caller owns. */
 void glint_bins_init(struct glint_bins *bins, struct glint_box region,
                      int tile_log2, int32_t *start, int32_t *ref);
 
-/* Returns how many tiles of BINS the pixels of BOX touch: the list entries that
- * BOX needs. */
+/* Returns the number of tiles of BINS that BOX overlaps, which is the number
+ * of list entries that BOX needs. */
 int glint_bins_span(const struct glint_bins *bins, struct glint_box box);
 
-/* Open sets all counts to 0; count adds the tiles of BOX, once for each item.
- */
+/* open() sets all counts to 0; count() increments the counts of the tiles
+ * that BOX overlaps; call it once for each item. */
 void glint_bins_open(struct glint_bins *bins);
 void glint_bins_count(struct glint_bins *bins, struct glint_box box);
 /* Converts the counts to start indices of the lists. */
 void glint_bins_sum(struct glint_bins *bins);
-/* Appends ITEM to the lists of the tiles of BOX. Call it in the order that the
- * lists shall have. */
+/* Appends ITEM to the lists of the tiles that BOX overlaps. Call it in the
+ * order that the lists are to have. */
 void glint_bins_put(struct glint_bins *bins, struct glint_box box,
                     int32_t item);
 /* Resets the start indices, which glint_bins_put() advanced, to the beginnings

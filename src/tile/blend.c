@@ -3,8 +3,8 @@
 
 #include "base/q.h"
 
-/* Returns LIGHT times (1 - COVER). */
-static int64_t behind(int64_t light, int cover_q8)
+/* Returns LIGHT behind a cover: LIGHT (1 - COVER). */
+static int64_t attenuate(int64_t light, int cover_q8)
 {
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
 }
@@ -25,7 +25,7 @@ static void add_codes(const struct glint_pass_rows *rows, int row, int n_x,
         }
         for (int x = 0; x < n_x && covers; x++)
             to_q16[x] = (uint16_t)q_clamp_sat(
-                behind(to_q16[x], s->next.cover_q8[row][x]) + more_q16[x], 0,
+                attenuate(to_q16[x], s->next.cover_q8[row][x]) + more_q16[x], 0,
                 65535);
     }
 }
@@ -36,14 +36,14 @@ static void add_linear(const struct glint_pass_rows *rows, int n_x,
     for (int c = 0; c < 3; c++)
         for (int x = 0; x < n_x; x++)
             rows->light_q20[c][x] =
-                q_clamp_sat(behind(rows->light_q20[c][x],
-                                   covers ? s->next.cover_q8[0][x] : 0) +
+                q_clamp_sat(attenuate(rows->light_q20[c][x],
+                                      covers ? s->next.cover_q8[0][x] : 0) +
                                 s->light_q20[c][x],
                             INT32_MIN, INT32_MAX);
 }
 
-/* Combines the cover of a pass with the cover so far. COVERED is 0 if no pass
- * before gave cover. */
+/* Combines the cover of a pass with the cover so far. COVERED is 0 if no
+ * earlier pass gave cover. */
 static void add_cover(struct glint_blend_rows *s, int row, int n_x, int covered)
 {
     uint16_t *to_q8 = s->cover.cover_q8[row];
@@ -53,7 +53,7 @@ static void add_cover(struct glint_blend_rows *s, int row, int n_x, int covered)
             covered ? GLINT_COVER_ALL - to_q8[x] : GLINT_COVER_ALL;
 
         to_q8[x] = (uint16_t)(GLINT_COVER_ALL -
-                              behind(shows_q8, s->next.cover_q8[row][x]));
+                              attenuate(shows_q8, s->next.cover_q8[row][x]));
     }
 }
 
@@ -92,8 +92,8 @@ static void double_cover(const uint16_t *from_q8, int part,
         to->cover_q8[0][i] = to->cover_q8[1][i] = from_q8[i / 2];
 }
 
-static void hide(const struct glint_tiles *tiles, struct glint_box tile, int y,
-                 struct glint_tile_scratch *scratch)
+static void hide_row(const struct glint_tiles *tiles, struct glint_box tile,
+                     int y, struct glint_tile_scratch *scratch)
 {
     enum { PART = GLINT_CODES_WIDTH / 2 };
     struct glint_cover_rows *wide = &scratch->blend->next;
@@ -119,4 +119,5 @@ static void hide(const struct glint_tiles *tiles, struct glint_box tile, int y,
     }
 }
 
-const struct glint_blend glint_blend = {add_pass, glint_cover_stretch, hide};
+const struct glint_blend glint_blend = {add_pass, glint_cover_stretch,
+                                        hide_row};

@@ -5,7 +5,7 @@
 #ifndef GLINT_TILE_BOX_H
 #define GLINT_TILE_BOX_H
 
-/* Pixels X0 .. X1 - 1, Y0 .. Y1 - 1. */
+/* A box of pixels: columns X0 .. X1 - 1, rows Y0 .. Y1 - 1. */
 struct glint_box {
     int x0, y0, x1, y1;
 };

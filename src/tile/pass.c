@@ -3,7 +3,7 @@
 
 #include "base/q.h"
 
-/* One tile, and the passes that draw in it. */
+/* A tile, and the passes that are drawn in it. */
 struct visit {
     const struct glint_tiles *tiles;
     const struct glint_pass *pass;
@@ -14,9 +14,10 @@ struct visit {
     struct glint_tile_scratch *scratch;
 };
 
-/* Lets all passes of this tile draw ROWS. Returns their combined output. */
-static enum glint_given gather(const struct visit *v,
-                               struct glint_pass_rows *rows)
+/* Calls all passes that draw in this tile for ROWS. Returns the type of
+ * their combined output. */
+static enum glint_given draw_passes(const struct visit *v,
+                                    struct glint_pass_rows *rows)
 {
     struct glint_blend_rows *more = v->scratch->blend;
     enum glint_given given = GLINT_GIVES_NOTHING;
@@ -33,9 +34,10 @@ static enum glint_given gather(const struct visit *v,
     return given;
 }
 
-/* Covers row Y of the picture if a pass gave cover. For linear pictures and
- * half resolution, where cover and light are applied in separate steps. */
-static void hide(const struct visit *v, enum glint_given given, int y)
+/* Applies the passes' cover to row Y of the picture, if there is any. For
+ * linear pictures and half resolution, where cover and light are applied in
+ * separate steps. */
+static void hide_row(const struct visit *v, enum glint_given given, int y)
 {
     if (given == GLINT_GIVES_COVER)
         v->tiles->blend->hide(v->tiles, v->tile, y, v->scratch);
@@ -65,10 +67,10 @@ static void draw_linear(const struct visit *v)
         const int y = rows.y << t->half;
         const int end = q_smaller(y + 1 + t->half, t->height);
 
-        given = gather(v, &rows);
+        given = draw_passes(v, &rows);
         if (given == GLINT_GIVES_NOTHING)
             continue;
-        hide(v, given, rows.y);
+        hide_row(v, given, rows.y);
         for (int c = 0; c < 3 && t->half; c++)
             double_row(rows.light_q20[c], n);
         for (int k = y; k < end; k++)
@@ -93,8 +95,8 @@ static void resolve_rows(const struct visit *v, enum glint_given given,
                               rows->light, &v->scratch->codes->rows);
 }
 
-/* Draws a tile of codes two rows at a time, as in 4:2:0 these share their
- * chroma. */
+/* Draws a tile of a picture in codes two rows at a time, as 4:2:0 rows share
+ * their chroma in pairs. */
 static void draw_codes(const struct visit *v)
 {
     struct glint_pass_rows rows = {.light = v->scratch->light};
@@ -103,17 +105,16 @@ static void draw_codes(const struct visit *v)
         enum glint_given given;
 
         rows.n = q_smaller(2, v->tile.y1 - rows.y);
-        given = gather(v, &rows);
+        given = draw_passes(v, &rows);
         if (given != GLINT_GIVES_NOTHING && v->tiles->image)
             resolve_rows(v, given, &rows);
     }
 }
 
-/* Number of 2 x 2 pixel blocks that are resolved at once. */
+/* max number of 2 x 2 pixel blocks that are resolved at once */
 enum { QUADS = GLINT_CODES_WIDTH / 2 };
 
-/* Adds one row at half resolution to two rows of the picture, of twice as many
- * pixels. */
+/* Adds one row of light at half resolution to two rows of the picture. */
 static void resolve_quads(const struct visit *v,
                           const struct glint_pass_rows *rows)
 {
@@ -139,11 +140,11 @@ static void draw_half(const struct visit *v)
     struct glint_pass_rows rows = {.n = 1, .light = v->scratch->light};
 
     for (rows.y = v->tile.y0; rows.y < v->tile.y1; rows.y++) {
-        const enum glint_given given = gather(v, &rows);
+        const enum glint_given given = draw_passes(v, &rows);
 
         if (given == GLINT_GIVES_NOTHING || !v->tiles->image)
             continue;
-        hide(v, given, rows.y);
+        hide_row(v, given, rows.y);
         resolve_quads(v, &rows);
     }
 }

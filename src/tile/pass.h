@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of tiles, and the passes that draw onto a picture in them.
+ * Draws passes (flare, scene, stars ...) onto a picture, tile by tile.
  *
  *   in   passes, from the hindmost to the foremost; the picture as it is so far
  *   out  its pixels, changed in place
@@ -27,8 +27,9 @@
 
 enum { GLINT_MAX_PASSES = 4 };
 
-/* Where a pass writes rows Y .. Y + N - 1 of its tile, from the tile's left
- * side on: to light_q20 for a linear picture, where N is 1, else to light. */
+/* Output rows of a pass: rows Y .. Y + N - 1 of its tile, from the tile's
+ * left side on. A pass writes light_q20 for a linear picture, where N is 1,
+ * else light. */
 struct glint_pass_rows {
     int y, n;
     struct glint_light_rows *light; /* _q16, padded to GLINT_LANES */
@@ -36,7 +37,7 @@ struct glint_pass_rows {
     struct glint_cover_rows *cover; /* if NULL, passes must not give cover */
 };
 
-/* The output of a pass for its rows. */
+/* Type of the output of a pass for its rows. */
 enum glint_given {
     GLINT_GIVES_NOTHING,
     GLINT_GIVES_LIGHT, /* light in all three channels */
@@ -45,23 +46,24 @@ enum glint_given {
 
 struct glint_pass {
     const void *self;
-    /* Begins the row of tiles ROW on worker WORKER. Returns the STATE for the
-     * calls below. */
+    /* Begins row ROW of tiles on worker WORKER. Returns the STATE that is
+     * passed to the functions below. */
     void *(*begin)(const void *self, struct glint_box row, int worker);
-    /* Moves to tile TILE. Returns 0 if the pass draws nothing in it; rows is
-     * then not called. */
+    /* Begins tile TILE. Returns 0 if the pass draws nothing in it; rows is
+     * not called then. */
     int (*tile)(void *state, struct glint_box tile);
-    /* Draws rows of the current tile. It is called once for each row, from top
-     * to bottom, even if there is no picture. */
+    /* Draws rows of the current tile. It is called once for each row, from
+     * top to bottom, even if the light is discarded. */
     enum glint_given (*rows)(void *state, const struct glint_pass_rows *rows);
 };
 
 /* The picture that is drawn onto, in tiles. */
 struct glint_tiles {
-    /* The whole picture, in the pixels that passes see. */
+    /* The whole picture, in pixels of the drawing resolution. */
     struct glint_box region;
     int tile_log2; /* 3 .. 6 */
-    int half; /* 1: each pixel that passes see is 2 x 2 pixels of the picture */
+    int half; /* 1: half resolution: each pixel drawn is 2 x 2 pixels of the
+                 picture */
     int width, height;               /* size of the picture */
     const struct glint_image *image; /* if NULL, light is discarded */
     const struct glint_resolve *resolve;
@@ -74,40 +76,40 @@ struct glint_tiles {
 /* The memory that a worker needs for tiles. */
 struct glint_tile_scratch {
     struct glint_light_rows *light;
-    int32_t *light_q20; /* [3][2 sides of a tile]; for linear pictures */
+    int32_t *light_q20; /* [3][2 * width of a tile]; for linear pictures */
     struct glint_quads_rows *codes;
     int n_tiles; /* number of tiles drawn so far in which a pass was active */
-    int n_held;  /* samples of a linear picture that were clamped to an end of
-                    their range */
+    int n_held;  /* number of samples of a linear picture that were clamped */
     struct glint_blend_rows *blend; /* set if the tiles blend passes */
 };
 
-/* Scratch of a worker: the output of the next pass, and the combined cover of
- * the passes so far. */
+/* Scratch memory of one worker: the output of the next pass, and the
+ * combined cover of the passes so far. */
 struct glint_blend_rows {
     struct glint_light_rows light;
     int32_t light_q20[3][GLINT_CODES_WIDTH];
     struct glint_cover_rows cover, next;
 };
 
-/* How several passes are blended and cover the picture. It is a table of
- * functions, so that only a program that names it (blend.h) links them. */
+/* Functions that blend several passes and hide the picture behind them. They
+ * are called through this table, so that only programs that name glint_blend
+ * (blend.h) link them. */
 struct glint_blend {
-    /* Draws ROWS of N_X pixels of PASS in front of GIVEN, the result of the
-     * passes before. Returns the combined result. */
+    /* Draws ROWS of N_X pixels of PASS in front of the output of the passes
+     * before, whose type is GIVEN. Returns the type of the combined output. */
     enum glint_given (*add)(const struct glint_pass *pass, void *state,
                             const struct glint_pass_rows *rows,
                             enum glint_given given, int n_x,
                             struct glint_blend_rows *scratch);
-    /* Hides COVER of the picture, then adds light as glint_resolve_stretch()
-     * does. */
+    /* Hides the fraction COVER of the picture, then adds the light as
+     * glint_resolve_stretch() does. */
     void (*stretch)(const struct glint_resolve *resolve,
                     const struct glint_image *image, int x, int y, int n_x,
                     int n_y, const struct glint_cover_rows *cover,
                     struct glint_light_rows *light,
                     struct glint_resolve_rows *rows);
-    /* Covers row Y of TILE in the picture, before light is added: for linear
-     * pictures and at half resolution. */
+    /* Hides the picture's pixels in row Y of TILE behind the cover, before
+     * light is added: for linear pictures and at half resolution. */
     void (*hide)(const struct glint_tiles *tiles, struct glint_box tile, int y,
                  struct glint_tile_scratch *scratch);
 };
