@@ -1,24 +1,29 @@
 /* SPDX-License-Identifier: MIT
  *
- * SPDX-License-Identifier: MIT  linux/fbdev.h - a panel behind /dev/fb0, as a
- * sink.      glint_fbdev_open(&fb, NULL, &options, &error);
- * fb.sink.put(&fb.sink, &image, &error);       each frame
- * fb.sink.close(&fb.sink);  The mode is never changed; the driver's row stride
- * (line_length) and bit fields are trusted. Any packed true-colour format of
- * 16, 24 or 32 bits is supported (panel/panel.h). If the driver offers memory
- * for two screens and panning, frames are double-buffered; else they are drawn
- * to the visible screen.  Each put() first reads the mode from the driver:
- * another program may have changed it, and glint adapts; or the device may have
- * been removed, which writing to its still mapped memory would not reveal. Only
- * a change of the frame's size allocates memory.  While the sink is open, the
- * console (the terminal of the process, or the foreground console) is in
- * graphics mode, in which it draws neither text nor cursor. Closing restores
- * its mode, as do exit() and the signals that posix/at_death.h lists; then the
- * kernel redraws the text. After kill -9 the console stays dark and cannot be
- * switched, as programs in graphics mode must do that themselves. The next run
- * restores the text; so does SysRq + K, or echo k > /proc/sysrq-trigger from
- * another terminal.
- */
+ * linux/fbdev.h - a panel behind /dev/fb0, as a sink.
+ *
+ *     glint_fbdev_open(&fb, NULL, &options, &error);
+ *     fb.sink.put(&fb.sink, &image, &error);       each frame
+ *     fb.sink.close(&fb.sink);
+ *
+ * The mode is never changed; the driver's row stride (line_length) and bit
+ * fields are trusted. Any packed true-colour format of 16, 24 or 32 bits is
+ * supported (panel/panel.h). If the driver offers memory for two screens and
+ * panning, frames are double-buffered; else they are drawn to the visible
+ * screen.
+ *
+ * Each put() first reads the mode from the driver: another program may have
+ * changed it, and glint adapts; or the device may have been removed, which
+ * writing to its still mapped memory would not reveal. Only a change of the
+ * frame's size allocates memory.
+ *
+ * While the sink is open, the console (the terminal of the process, or the
+ * foreground console) is in graphics mode, in which it draws neither text nor
+ * cursor. Closing restores its mode, as do exit() and the signals that
+ * posix/at_death.h lists; then the kernel redraws the text. After kill -9 the
+ * console stays dark and cannot be switched, as programs in graphics mode must
+ * do that themselves. The next run restores the text; so does SysRq + K, or
+ * echo k > /proc/sysrq-trigger from another terminal. */
 #ifndef GLINT_PLATFORM_LINUX_FBDEV_H
 #define GLINT_PLATFORM_LINUX_FBDEV_H
 

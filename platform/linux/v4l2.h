@@ -1,21 +1,25 @@
 /* SPDX-License-Identifier: MIT
  *
- * SPDX-License-Identifier: MIT  linux/v4l2.h - a V4L2 camera as a source of
- * live frames.      glint_v4l2_open(&camera, &wish, GLINT_V4L2_AUTO, 4,
- * &error);     camera.source.start(&camera.source, &error);           when set
- * up     camera.source.next(&camera.source, &frame, &error);    when readable
- * camera.source.done(&camera.source, &frame);
- * camera.source.close(&camera.source);  Only the latest frame is used: older
- * frames that wait are returned to the driver, so latency never grows. Frames
- * that the driver marks as damaged or that are too short are counted and not
- * shown. Frames arrive in mapped buffers; if the device does not support these,
- * in buffers of the application (USERPTR), else by read(2).  next() stops a
- * broken stream and negotiates the format again: after failed requests, a fatal
- * error of the driver, a change of the source, 30 damaged frames in a row, or
- * no frame for two seconds plus four frame times. The caller starts the stream
- * again; a call of next() does so, too. If that does not help within a second,
- * or the device is gone, start() and next() return GLINT_E_DEVICE.
- */
+ * linux/v4l2.h - a V4L2 camera as a source of live frames.
+ *
+ *     glint_v4l2_open(&camera, &wish, GLINT_V4L2_AUTO, 4, &error);
+ *     camera.source.start(&camera.source, &error);           when set up
+ *     camera.source.next(&camera.source, &frame, &error);    when readable
+ *     camera.source.done(&camera.source, &frame);
+ *     camera.source.close(&camera.source);
+ *
+ * Only the latest frame is used: older frames that wait are returned to the
+ * driver, so latency never grows. Frames that the driver marks as damaged or
+ * that are too short are counted and not shown. Frames arrive in mapped
+ * buffers; if the device does not support these, in buffers of the application
+ * (USERPTR), else by read(2).
+ *
+ * next() stops a broken stream and negotiates the format again: after failed
+ * requests, a fatal error of the driver, a change of the source, 30 damaged
+ * frames in a row, or no frame for two seconds plus four frame times. The
+ * caller starts the stream again; a call of next() does so, too. If that does
+ * not help within a second, or the device is gone, start() and next() return
+ * GLINT_E_DEVICE. */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_H
 #define GLINT_PLATFORM_LINUX_V4L2_H
 

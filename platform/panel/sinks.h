@@ -1,18 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * SPDX-License-Identifier: MIT  panel/sinks.h - a sink that writes frames as
- * YUV4MPEG2 (video/y4m.h), and a sink that discards frames, for measuring the
- * rest of the pipeline.  The stream is opened with the first frame; all frames
- * must have its size, format and range. Formats that Y4M does not know are
- * written as planes; RGB is of limited range then, as most readers expect. The
- * matrix is not stated, as Y4M has no tag for it: readers take BT.601 below 720
- * lines, else BT.709, and RGB is written so.  While the reader of a pipe has
- * not read the last frame, new frames are dropped and counted: live frames do
- * not queue. A frame is never written partly.  glint_planar_write() converts
- * any 8-bit picture to planes of Y', Cb, Cr. Samples of packed and half-packed
- * formats are copied, not computed. RGB becomes GLINT_I444 by the matrix and
- * range of the result, rounded to the nearest code.
- */
+ * panel/sinks.h - a sink that writes frames as YUV4MPEG2 (video/y4m.h), and a
+ * sink that discards frames, for measuring the rest of the pipeline.
+ *
+ * The stream is opened with the first frame; all frames must have its size,
+ * format and range. Formats that Y4M does not know are written as planes; RGB
+ * is of limited range then, as most readers expect. The matrix is not stated,
+ * as Y4M has no tag for it: readers take BT.601 below 720 lines, else BT.709,
+ * and RGB is written so.
+ *
+ * While the reader of a pipe has not read the last frame, new frames are
+ * dropped and counted: live frames do not queue. A frame is never written
+ * partly.
+ *
+ * glint_planar_write() converts any 8-bit picture to planes of Y', Cb, Cr.
+ * Samples of packed and half-packed formats are copied, not computed. RGB
+ * becomes GLINT_I444 by the matrix and range of the result, rounded to the
+ * nearest code. */
 #ifndef GLINT_PLATFORM_PANEL_SINKS_H
 #define GLINT_PLATFORM_PANEL_SINKS_H
 

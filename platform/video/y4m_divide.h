@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * SPDX-License-Identifier: MIT  video/y4m_divide.h - divisions by constants,
- * computed as multiplications, for adding light to pixels. 32-bit CPUs need a
- * function call to divide 64 bits. Results equal the division rounded to
- * nearest, ties away from 0.
- */
+ * video/y4m_divide.h - divisions by constants, computed as multiplications, for
+ * adding light to pixels. 32-bit CPUs need a function call to divide 64 bits.
+ * Results equal the division rounded to nearest, ties away from 0. */
 #ifndef GLINT_PLATFORM_VIDEO_Y4M_DIVIDE_H
 #define GLINT_PLATFORM_VIDEO_Y4M_DIVIDE_H
 

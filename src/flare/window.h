@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds the range of a bundle's box whose rays get through a stop that is
- * narrower than the stop that the model was baked for.
+ * Finds the range of a bundle's pupil box whose rays pass a stop that is
+ * narrower than the stop of the model.
  *
  *   in   the polynomials of a bundle, the stop's radius
  *   out  a window of the box
