@@ -5,7 +5,7 @@
 #include "base/q.h"
 #include "lamps/bright_code.h"
 
-static size_t blocks_of(int width)
+static size_t count_blocks(int width)
 {
     return ((size_t)width + BRIGHT_BLOCK - 1) / BRIGHT_BLOCK;
 }
@@ -16,9 +16,9 @@ void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
     b->curve = glint_arena_take(arena, 1, sizeof *b->curve);
     b->full_luma = glint_arena_take(arena, 256, 1);
     b->beyond = glint_arena_take(arena, 256, 1);
-    b->value = glint_arena_take(arena, blocks_of(width), BRIGHT_BLOCK);
-    b->block = glint_arena_take(arena, blocks_of(width), sizeof *b->block);
-    b->marked = glint_arena_take(arena, blocks_of(width), sizeof *b->marked);
+    b->value = glint_arena_take(arena, count_blocks(width), BRIGHT_BLOCK);
+    b->block = glint_arena_take(arena, count_blocks(width), sizeof *b->block);
+    b->marked = glint_arena_take(arena, count_blocks(width), sizeof *b->marked);
 }
 
 void glint_bright_init(struct glint_bright *b, int width)
@@ -27,8 +27,8 @@ void glint_bright_init(struct glint_bright *b, int width)
     b->curve_tone = -1;
 }
 
-/* Sets BEYOND, the brightness of clipped pixels by luma: 250 below luma 192,
- * then 1 more per 15 of luma, up to 255 from luma 252 on. */
+/* Fills the table BEYOND, the brightness of clipped pixels by luma: 250
+ * below luma 192, then 1 more per 15 of luma, up to 255 from luma 252 on. */
 static void set_beyond(uint8_t beyond[256])
 {
     for (int luma = 0; luma < 256; luma++)
@@ -55,9 +55,9 @@ void glint_bright_begin(struct glint_bright *b, const struct glint_image *image)
     set_beyond(b->beyond);
 }
 
-/* Returns the min Y code whose luma is LUMA or more, or 256 if there is no such
- * code. */
-static int least_of_luma(const struct glint_bright *b, int luma)
+/* Returns the min Y code whose full-range luma is at least LUMA, or 256 if
+ * there is no such code. */
+static int find_min_code(const struct glint_bright *b, int luma)
 {
     int code = luma > 0 ? 1 : 0;
 
@@ -71,7 +71,7 @@ void glint_bright_set_low(struct glint_bright *b, int low)
     const int channel = low < BRIGHT_CLIPPED ? low : BRIGHT_CLIPPED;
 
     b->low = low;
-    b->low_code = bright_is_rgb(b) ? channel : least_of_luma(b, channel);
+    b->low_code = bright_is_rgb(b) ? channel : find_min_code(b, channel);
     b->low_sum_q16 = (channel - 1) * 65536;
 }
 

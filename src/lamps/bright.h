@@ -1,27 +1,28 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds bright pixels of a picture, row by row, and reads the light there.
+ * Finds bright pixels of a picture, row by row, and reads their light.
  *
- *   in   a picture in any format but GLINT_LINEAR_Q20; a brightness
- *   out  brightness of the pixels of rows that may reach it; linear light
+ *    in   a picture in any format but GLINT_LINEAR_Q20; a min brightness
+ *    out  brightness of the pixels in rows that may reach it; linear light
  *
- *     glint_bright_begin(b, image);
- *     glint_bright_set_low(b, low);
- *     for each row y: if (glint_bright_scan(b, y))
- *             ... b->value where b->block says so, glint_bright_read(b, x)
- * ...
+ *      glint_bright_begin(b, image);
+ *      glint_bright_set_low(b, low);
+ *      for each row y: if (glint_bright_scan(b, y))
+ *              ... b->value in blocks with nonzero b->block,
+ *              glint_bright_read(b, x) ...
  *
- * Brightness is the largest channel, so that a lamp of any colour counts. Below
- * BRIGHT_CLIPPED it is that channel's full-range code. From there on the
+ * Brightness is the largest channel, so that lamps of any colour are found.
+ * Below BRIGHT_CLIPPED it is that channel's full-range code. From there on the
  * largest channel is clipped, and brightness rises with luma, which shows how
  * far the other channels are clipped, too: the sun is brighter than the red sky
  * around it.
  *
- * Most of a night picture is dark, and this can be tested without computing
- * brightness: eight bytes at a time are compared with the codes that a bright
- * pixel must exceed, and blocks of BRIGHT_BLOCK pixels without such a byte are
- * skipped. In Y, Cb, Cr the largest luma of a block and the extremes of its
- * chroma bound its channels. */
+ * Most of a night picture is dark, which can be tested without computing
+ * brightness: eight bytes at a time are compared with the min codes of a bright
+ * pixel, and blocks of BRIGHT_BLOCK pixels without such a byte are skipped. In
+ * Y, Cb, Cr the max luma of a block and the extremes of its chroma bound its
+ * channels.
+ */
 #ifndef GLINT_LAMPS_BRIGHT_H
 #define GLINT_LAMPS_BRIGHT_H
 
@@ -31,7 +32,7 @@
 struct glint_arena;
 
 enum {
-    BRIGHT_BLOCK = 32,    /* pixels */
+    BRIGHT_BLOCK = 32,    /* pixels per block */
     BRIGHT_CLIPPED = 250, /* channels of this code or more are clipped and have
                              no colour information */
     /* brightness of clipped pixels whose luma is 237 .. 251 */
@@ -39,7 +40,8 @@ enum {
     BRIGHT_HOT = 255 /* brightness of clipped pixels of luma 252 or more */
 };
 
-/* The addresses of one code of the pixels of a row. */
+/* Addresses of one code (Y, Cb, Cr, R, G, B or a byte of RGB565) of the
+ * pixels of a row. */
 struct glint_bright_code {
     const uint8_t *first;
     int step, shift; /* the code of pixel x is at first + (x >> shift) * step */
@@ -47,31 +49,29 @@ struct glint_bright_code {
 
 struct glint_bright {
     int width;
-    uint8_t *value; /* brightness of the row's pixels in marked blocks; padded
-                       to whole blocks */
-    uint8_t *block; /* [width / BRIGHT_BLOCK, rounded up]: the max brightness in
-                       a block, or 0 if it is below low */
-    int32_t *marked; /* indices of the blocks with nonzero block[i], from the
-                        left */
+    uint8_t *value;  /* brightness of the row's pixels, valid in marked blocks;
+                        padded to whole blocks */
+    uint8_t *block;  /* [width / BRIGHT_BLOCK, rounded up]: max brightness in a
+                        block, or 0 if it is below low */
+    int32_t *marked; /* indices of the blocks with nonzero block[i], rising */
     int n_marked;
 
     /* Private. */
     const struct glint_image *image;
     const struct glint_layout *layout;
-    /* codes of the row: Y Cb Cr, R G B, or two bytes */
+    /* codes of the row: Y Cb Cr, or R G B, or two bytes */
     struct glint_bright_code code[3];
     int n_codes;  /* number of codes in use; the others repeat the first */
     int low;      /* min brightness of a bright pixel, 1 .. 255 */
     int low_code; /* min code (grey, R, G or B) of a bright pixel; 256 if no
                      code is bright */
-    int32_t low_sum_q16; /* min, over bright pixels, of the largest channel
-                            computed from Y, Cb, Cr, minus one code for
-                            rounding */
+    int32_t low_sum_q16; /* min, over bright pixels, of the max channel computed
+                            from Y, Cb, Cr, minus one code for rounding */
     struct glint_curve *curve;
     int curve_tone; /* transfer function of curve, or -1 if curve is not set */
     struct glint_ycc ycc;
-    uint8_t *full_luma; /* full-range luma of each Y code */
-    uint8_t *beyond;    /* brightness of a clipped pixel, by luma */
+    uint8_t *full_luma; /* table: full-range luma of each Y code */
+    uint8_t *beyond;    /* table: brightness of a clipped pixel by luma */
 };
 
 /* Allocates the tables for rows of WIDTH pixels from ARENA, or only measures
@@ -101,7 +101,7 @@ void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
 int32_t glint_bright_step_q20(const struct glint_bright *b, int c,
                               int32_t light_q20);
 
-/* Makes Y the row that glint_bright_read() reads, without a scan. */
+/* Makes Y the row that glint_bright_read() reads, without scanning it. */
 void glint_bright_seek_row(struct glint_bright *b, int y);
 
 #endif

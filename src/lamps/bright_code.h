@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads single pixels; functions to be inlined in loops over rows. */
+ * Reads single pixels. The functions are inlined in loops over rows.
+ */
 #ifndef GLINT_LAMPS_BRIGHT_CODE_H
 #define GLINT_LAMPS_BRIGHT_CODE_H
 
@@ -89,7 +90,7 @@ static WHOLLY_INLINE int bright_value_of_rgb(const struct glint_bright *b,
     return largest < BRIGHT_CLIPPED ? largest : b->beyond[bright_luma(rgb)];
 }
 
-/* Returns the contribution of chroma to the largest channel of pixel X, in
+/* Returns the contribution of chroma to the max channel of pixel X, in
  * full-range codes. */
 static WHOLLY_INLINE int32_t bright_chroma_q16(const struct glint_bright *b,
                                                int x)

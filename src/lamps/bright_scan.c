@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads the brightness of the blocks of a row. */
+ * Computes the brightness of the blocks of a row, and skips dark blocks.
+ */
 #include "base/compiler.h"
 
 #include "base/bytes.h"
@@ -9,10 +10,10 @@
 
 /* ------------------------------------------------------------ one threshold */
 
-/* Returns, ORed over N words at P, the high bit of each byte that is CODE or
- * more. */
-static WHOLLY_INLINE uint64_t high_codes(const uint8_t *p, int n, int code,
-                                         int is_above_128)
+/* Returns the OR over N words at P of masks with the high bit of each byte
+ * that is CODE or more. */
+static WHOLLY_INLINE uint64_t find_high_codes(const uint8_t *p, int n, int code,
+                                              int is_above_128)
 {
     uint64_t found = 0;
 
@@ -21,9 +22,9 @@ static WHOLLY_INLINE uint64_t high_codes(const uint8_t *p, int n, int code,
     return found;
 }
 
-/* Returns the min number of N_BITS bits that expands to CODE or more, when its
- * highest bits are repeated below it to make 8 bits. */
-static int least_of_565(int code, int n_bits)
+/* Returns the min number of N_BITS bits that expands to CODE or more; the
+ * expansion to 8 bits repeats its highest bits below it. */
+static int find_min_565(int code, int n_bits)
 {
     int v = 0;
 
@@ -33,13 +34,13 @@ static int least_of_565(int code, int n_bits)
     return v;
 }
 
-/* Returns, ORed over N words of four pixels at P, a bit for each pixel that has
- * a sample of CODE or more. */
-static uint64_t high_565(const uint8_t *p, int n, int code)
+/* Returns the OR over N words of four pixels at P of masks that have a bit
+ * for each pixel with a sample of CODE or more. */
+static uint64_t find_high_565(const uint8_t *p, int n, int code)
 {
     const uint64_t each = UINT64_C(0x0001000100010001);
-    const uint64_t add_5 = (uint64_t)(32 - least_of_565(code, 5)) * each;
-    const uint64_t add_6 = (uint64_t)(64 - least_of_565(code, 6)) * each;
+    const uint64_t add_5 = (uint64_t)(32 - find_min_565(code, 5)) * each;
+    const uint64_t add_6 = (uint64_t)(64 - find_min_565(code, 6)) * each;
     uint64_t found = 0;
 
     for (int i = 0; i < n; i++) {
@@ -52,9 +53,9 @@ static uint64_t high_565(const uint8_t *p, int n, int code)
     return found;
 }
 
-/* Returns a mask of the bytes of a word that hold colour samples, not
+/* Returns a mask of the bytes of a word that hold colour samples rather than
  * padding. */
-static uint64_t bytes_of_light(const struct glint_layout *layout)
+static uint64_t compute_sample_mask(const struct glint_layout *layout)
 {
     const struct glint_layout_sample *s = &layout->sample[0];
 
@@ -63,23 +64,24 @@ static uint64_t bytes_of_light(const struct glint_layout *layout)
     return UINT64_MAX;
 }
 
-static WHOLLY_INLINE uint64_t high_of(const uint8_t *p, int n, int code)
+static WHOLLY_INLINE uint64_t find_high_bytes(const uint8_t *p, int n, int code)
 {
-    return code > 128 ? high_codes(p, n, code, 1) : high_codes(p, n, code, 0);
+    return code > 128 ? find_high_codes(p, n, code, 1)
+                      : find_high_codes(p, n, code, 0);
 }
 
-/* Returns a mask for each byte of a word: if a byte is CODE or more, at least
- * one of the masked bits is set. */
-static uint64_t bits_of_code(int code)
+/* Returns a mask, repeated in each byte of a word: a byte that is CODE or
+ * more has at least one bit of the mask. */
+static uint64_t compute_code_mask(int code)
 {
     const int highest = (1 << bit_length((uint64_t)code)) >> 1;
 
     return (uint64_t)(256 - (highest < 128 ? highest : 128)) * BYTES_EACH;
 }
 
-/* Returns the OR of N words at P. Load and OR are separate statements, as gcc
- * would otherwise load single bytes. */
-static WHOLLY_INLINE uint64_t bits_of(const uint8_t *p, int n)
+/* Returns the OR of N words at P. Loading and OR are separate statements, as
+ * gcc would otherwise load single bytes. */
+static WHOLLY_INLINE uint64_t or_words(const uint8_t *p, int n)
 {
     uint64_t bits = 0;
 
@@ -92,27 +94,28 @@ static WHOLLY_INLINE uint64_t bits_of(const uint8_t *p, int n)
     return bits;
 }
 
-/* Marks the whole blocks of a row without chroma at PX, with STEP bytes per
- * pixel. Most blocks are dark, and the OR of their bytes proves it. */
+/* Marks those complete blocks of a row without chroma at PX that may be
+ * bright. STEP: bytes per pixel. Most blocks are dark, which the OR of their
+ * bytes proves. */
 static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
                                      int step)
 {
-    const uint64_t bytes = bytes_of_light(b->layout);
+    const uint64_t bytes = compute_sample_mask(b->layout);
     const int n = b->width / BRIGHT_BLOCK, code = b->low_code;
-    const uint64_t bits = bits_of_code(code) & bytes;
+    const uint64_t bits = compute_code_mask(code) & bytes;
     const int n_words = BRIGHT_BLOCK / 8 * step;
     int any = 0;
 
     for (int i = 0; i < n; i++) {
-        b->block[i] = (bits_of(px, n_words) & bits) &&
-                      (high_of(px, n_words, code) & bytes);
+        b->block[i] = (or_words(px, n_words) & bits) &&
+                      (find_high_bytes(px, n_words, code) & bytes);
         any |= b->block[i];
         px += BRIGHT_BLOCK * step;
     }
     return any;
 }
 
-/* Calls mark_blocks() with constant steps, so that its inner loops have
+/* Calls mark_blocks() with a constant step, so that its inner loops have
  * constant bounds. */
 static int mark_row(struct glint_bright *b, const uint8_t *px)
 {
@@ -131,8 +134,8 @@ static int mark_row_565(struct glint_bright *b, const uint8_t *px)
     int any = 0;
 
     for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
-        b->block[i] = high_565(px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 4,
-                               b->low_code) != 0;
+        b->block[i] = find_high_565(px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 4,
+                                    b->low_code) != 0;
         any |= b->block[i];
     }
     return any;
@@ -195,23 +198,22 @@ static WHOLLY_INLINE void find_extremes(struct extremes *e, const uint8_t *p,
 }
 
 /* Returns the max over all four indices. */
-static WHOLLY_INLINE int most_of(const struct extremes *e)
+static WHOLLY_INLINE int get_max(const struct extremes *e)
 {
     return bright_larger(bright_larger(e->most[0], e->most[1]),
                          bright_larger(e->most[2], e->most[3]));
 }
 
-static WHOLLY_INLINE int least_of(const struct extremes *e)
+static WHOLLY_INLINE int get_min(const struct extremes *e)
 {
     return smaller(smaller(e->least[0], e->least[1]),
                    smaller(e->least[2], e->least[3]));
 }
 
-/* Returns the max contribution of chroma in LEAST .. MOST to the largest
- * channel. */
-static WHOLLY_INLINE int32_t most_added_q16(const struct glint_bright *b,
-                                            const int most[2],
-                                            const int least[2])
+/* Returns the max contribution to any channel of chroma in the range LEAST
+ * .. MOST. */
+static WHOLLY_INLINE int32_t compute_max_chroma_q16(
+    const struct glint_bright *b, const int most[2], const int least[2])
 {
     const int32_t(*m_q16)[3] = b->ycc.to_rgb_q16;
     const int32_t red_q16 = (most[1] - 128) * m_q16[0][2];
@@ -222,14 +224,14 @@ static WHOLLY_INLINE int32_t most_added_q16(const struct glint_bright *b,
     return bright_larger(red_q16, bright_larger(green_q16, blue_q16));
 }
 
-/* Returns whether a pixel may be bright whose luma is at most LUMA and whose
- * chroma is in LEAST .. MOST: no channel can exceed the channels of these
- * extremes. One code is allowed for rounding. */
+/* Returns whether a pixel with luma up to LUMA and chroma in LEAST .. MOST
+ * may be bright. No channel can exceed the channels of these extremes; one
+ * code is allowed for rounding. */
 static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b, int luma,
                                        const int most[2], const int least[2])
 {
     return (luma - b->ycc.black) * b->ycc.to_rgb_q16[0][0] +
-               most_added_q16(b, most, least) >=
+               compute_max_chroma_q16(b, most, least) >=
            b->low_sum_q16;
 }
 
@@ -249,31 +251,32 @@ static int may_be_bright_packed(const struct glint_bright *b,
                          (const int[]){e.least[cb], e.least[cr]});
 }
 
-/* max distance of chroma from grey, in codes, in most blocks */
+/* max distance of chroma from grey, in codes, of quiet blocks */
 enum { QUIET_CHROMA = 24 };
 
 /* Returns the min luma code, 0 .. 256, at which a pixel with chroma within
- * QUIET_CHROMA may be bright. */
-static int loud_luma(const struct glint_bright *b)
+ * QUIET_CHROMA may be bright. Blocks from this luma on are loud. */
+static int find_loud_luma(const struct glint_bright *b)
 {
     const int most[2] = {128 + QUIET_CHROMA, 128 + QUIET_CHROMA};
     const int least[2] = {127 - QUIET_CHROMA, 127 - QUIET_CHROMA};
-    const int32_t left_q16 = b->low_sum_q16 - most_added_q16(b, most, least);
+    const int32_t left_q16 =
+        b->low_sum_q16 - compute_max_chroma_q16(b, most, least);
     const int luma = b->ycc.black + left_q16 / b->ycc.to_rgb_q16[0][0];
 
     return q_clamp_sat(left_q16 > 0 ? luma : 0, 0, 256);
 }
 
-/* Returns a number that sets bit 8 of each 16 bits when it is added to bytes of
- * CODE or more. */
-static uint64_t carry_from(int code)
+/* Returns a number that, added to bytes in 16-bit lanes, sets bit 8 of each
+ * lane whose byte is CODE or more. */
+static uint64_t compute_carry(int code)
 {
     return (uint64_t)(256 - code) * UINT64_C(0x0001000100010001);
 }
 
-/* Returns whether some luma, or some chroma in MOST or INVERSE, exceeds the
- * limits of quiet blocks. Luma is in the low bytes of pairs if Y is 0, else in
- * the high bytes. */
+/* Returns whether any luma, or any chroma in MOST or INVERSE, exceeds the
+ * limits of quiet blocks. Luma is in the low bytes of pairs if Y is 0, else
+ * in the high bytes. */
 static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
                                  uint64_t luma_carry, uint64_t chroma_carry)
 {
@@ -287,11 +290,12 @@ static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
     return (sum & ~low) != 0;
 }
 
-/* Number of blocks of YUYV or UYVY that are checked together at first. */
+/* number of blocks of YUYV or UYVY that are tested together first */
 enum { TOGETHER = 4 };
 
 /* Limits of quiet blocks, per index modulo 16: the max byte v and the max 255 -
- * v of pixels with chroma within QUIET_CHROMA and luma below loud_luma(). */
+ * v of pixels with chroma within QUIET_CHROMA and luma below find_loud_luma().
+ */
 struct quiet {
     uint8_t most[16], inverse[16];
 };
@@ -306,20 +310,20 @@ static void set_quiet(struct quiet *quiet, int y, int loud)
     }
 }
 
-static WHOLLY_INLINE uint8_t most_of_8(const uint8_t *p)
+static WHOLLY_INLINE uint8_t find_max_of_8(const uint8_t *p)
 {
     return larger(larger(larger(p[0], p[16]), larger(p[32], p[48])),
                   larger(larger(p[64], p[80]), larger(p[96], p[112])));
 }
 
-static WHOLLY_INLINE uint8_t least_of_8(const uint8_t *p)
+static WHOLLY_INLINE uint8_t find_min_of_8(const uint8_t *p)
 {
     return smaller(smaller(smaller(p[0], p[16]), smaller(p[32], p[48])),
                    smaller(smaller(p[64], p[80]), smaller(p[96], p[112])));
 }
 
-/* Sets ABOVE[i] to nonzero if some byte of TOGETHER blocks at P, of index i
- * modulo 16, exceeds QUIET. Compilers vectorize it like find_halves(). */
+/* Sets ABOVE[i] to nonzero if any byte, of index i modulo 16, of TOGETHER
+ * blocks at P exceeds QUIET. Compilers vectorise it like find_halves(). */
 static NEVER_INLINE void find_above(uint8_t above[restrict 16],
                                     const uint8_t *restrict p,
                                     const struct quiet *restrict quiet)
@@ -327,10 +331,10 @@ static NEVER_INLINE void find_above(uint8_t above[restrict 16],
     uint8_t most[16], inverse[16];
 
     for (int i = 0; i < 16; i++)
-        most[i] = larger(most_of_8(p + i), most_of_8(p + 128 + i));
+        most[i] = larger(find_max_of_8(p + i), find_max_of_8(p + 128 + i));
     for (int i = 0; i < 16; i++)
-        inverse[i] = (uint8_t)(255 - smaller(least_of_8(p + i),
-                                             least_of_8(p + 128 + i)));
+        inverse[i] = (uint8_t)(255 - smaller(find_min_of_8(p + i),
+                                             find_min_of_8(p + 128 + i)));
     for (int i = 0; i < 16; i++)
         above[i] =
             (uint8_t)((larger(most[i], quiet->most[i]) ^ quiet->most[i]) |
@@ -343,22 +347,23 @@ static WHOLLY_INLINE int are_quiet(const uint8_t *p, const struct quiet *quiet)
     uint8_t above[16];
 
     find_above(above, p, quiet);
-    return bits_of(above, 2) == 0;
+    return or_words(above, 2) == 0;
 }
 
-/* Marks the whole blocks of a row of YUYV or UYVY at PX; Y is the offset of the
- * first luma. Most blocks are quiet: neither bright nor strongly coloured. This
- * is tested for TOGETHER blocks at once, else for single blocks, by the max
- * luma and the extremes of all chroma; only other (loud) blocks are then tested
- * by their extremes of Cb and of Cr. Loud blocks mostly follow each other, so
- * blocks after a loud block are tested one by one. If loud_luma() is 0, no
- * block is quiet. */
+/* Marks the complete blocks of a row of YUYV or UYVY at PX that may be
+ * bright; Y is the offset of the first luma byte. Most blocks are quiet:
+ * neither bright nor strongly coloured. This is tested for TOGETHER blocks
+ * at once, else for single blocks, by the max luma and the extremes of all
+ * chroma; only the other (loud) blocks are then tested by their extremes of
+ * Cb and of Cr. Loud blocks usually follow each other, so blocks after a
+ * loud block are tested one by one. If find_loud_luma() is 0, no block is
+ * quiet. */
 static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
                                     int y)
 {
-    const int n = b->width / BRIGHT_BLOCK, loud_from = loud_luma(b);
-    const uint64_t luma_carry = carry_from(loud_from);
-    const uint64_t chroma_carry = carry_from(129 + QUIET_CHROMA);
+    const int n = b->width / BRIGHT_BLOCK, loud_from = find_loud_luma(b);
+    const uint64_t luma_carry = compute_carry(loud_from);
+    const uint64_t chroma_carry = compute_carry(129 + QUIET_CHROMA);
     struct quiet quiet;
     int any = 0, loud = loud_from == 0;
 
@@ -394,8 +399,8 @@ static int mark_row_packed(struct glint_bright *b, const uint8_t *px)
                                        : mark_pairs(b, px, 0);
 }
 
-/* Returns whether a block of a planar picture may be bright: Y is at PX, 16 N
- * bytes of chroma at each of C. */
+/* Returns whether a block of a planar picture may be bright. Its Y is at PX,
+ * and 16 N bytes of Cb and Cr are at C[0] and C[1]. */
 static WHOLLY_INLINE int may_be_bright_in_planes(const struct glint_bright *b,
                                                  const uint8_t *px,
                                                  const uint8_t *const c[2],
@@ -406,9 +411,9 @@ static WHOLLY_INLINE int may_be_bright_in_planes(const struct glint_bright *b,
     find_extremes(&luma, px, BRIGHT_BLOCK / 16);
     find_extremes(&cb, c[0], n);
     find_extremes(&cr, c[1], n);
-    return may_be_bright(b, most_of(&luma),
-                         (const int[]){most_of(&cb), most_of(&cr)},
-                         (const int[]){least_of(&cb), least_of(&cr)});
+    return may_be_bright(b, get_max(&luma),
+                         (const int[]){get_max(&cb), get_max(&cr)},
+                         (const int[]){get_min(&cb), get_min(&cr)});
 }
 
 /* Returns whether a block with interleaved chroma at C may be bright; CB is the
@@ -423,7 +428,7 @@ static WHOLLY_INLINE int may_be_bright_shared(const struct glint_bright *b,
     find_extremes(&luma, px, BRIGHT_BLOCK / 16);
     find_extremes(&e, c, BRIGHT_BLOCK / 16);
     return may_be_bright(
-        b, most_of(&luma),
+        b, get_max(&luma),
         (const int[]){bright_larger(e.most[cb], e.most[cb + 2]),
                       bright_larger(e.most[cr], e.most[cr + 2])},
         (const int[]){smaller(e.least[cb], e.least[cb + 2]),
@@ -464,10 +469,10 @@ static int mark_row_planes(struct glint_bright *b)
     return any;
 }
 
-/* Sets block[i] to whether block i may have a pixel of brightness low or more;
- * an incomplete last block is not tested. Returns 0 if no block may have
- * one. */
-static int mark(struct glint_bright *b)
+/* Sets block[i] to 1 if block i may have a pixel of brightness low or more,
+ * else 0; an incomplete last block is not tested. Returns 0 if no block may
+ * have such a pixel. */
+static int mark_row_blocks(struct glint_bright *b)
 {
     const uint8_t *first = b->code[0].first;
 
@@ -483,7 +488,7 @@ static int mark(struct glint_bright *b)
 /* --------------------------------------------------------------- R, G and B */
 
 /* Returns the brightness of pixel X, which must be clipped. */
-static WHOLLY_INLINE uint8_t beyond_of_rgb(const struct glint_bright *b, int x)
+static WHOLLY_INLINE uint8_t look_up_beyond(const struct glint_bright *b, int x)
 {
     int rgb[3];
 
@@ -491,7 +496,7 @@ static WHOLLY_INLINE uint8_t beyond_of_rgb(const struct glint_bright *b, int x)
     return b->beyond[bright_luma(rgb)];
 }
 
-/* Sets the values of pixels X .. END - 1; returns the max. */
+/* Sets the brightness of pixels X .. END - 1; returns the max. */
 static int read_values_rgb(struct glint_bright *b, int x, int end)
 {
     int greatest = 0;
@@ -511,9 +516,9 @@ static int read_values_rgb(struct glint_bright *b, int x, int end)
 
 enum { RGB_BYTES = 3 * BRIGHT_BLOCK };
 
-/* Sets LARGEST[I] to the largest of bytes P[I .. I + 2], for each I up to
- * RGB_BYTES - 3; returns the max of all. The last vector overlaps the vector
- * before it. */
+/* Sets LARGEST[I] to the max of bytes P[I .. I + 2], for each I up to
+ * RGB_BYTES - 3; returns the max of all bytes. The last vector overlaps the
+ * one before it. */
 static NEVER_INLINE int find_largest(const uint8_t *p,
                                      uint8_t largest[RGB_BYTES])
 {
@@ -551,7 +556,7 @@ static int read_block_rgb24(struct glint_bright *b, int x)
     greatest = 0;
     for (int i = 0; i < BRIGHT_BLOCK; i++) {
         if (value[i] >= BRIGHT_CLIPPED)
-            value[i] = beyond_of_rgb(b, x + i);
+            value[i] = look_up_beyond(b, x + i);
         greatest = bright_larger(greatest, value[i]);
     }
     return greatest;
@@ -560,15 +565,15 @@ static int read_block_rgb24(struct glint_bright *b, int x)
 /* ------------------------------------------------------------- Y, Cb and Cr */
 
 /* Returns A * B / 2^16, rounded down. */
-static WHOLLY_INLINE int16_t high_product(int16_t a, int16_t b)
+static WHOLLY_INLINE int16_t multiply_high(int16_t a, int16_t b)
 {
     return (int16_t)((int32_t)a * b >> 16);
 }
 
-/* Sets VALUE to the largest channels of pixels with LUMA, CB and CR, clamped to
- * 0 .. 255, within a fifth of a code before rounding. Written for compilers to
- * vectorize in 16 bits: codes have 7 fraction bits, coefficients 13 and
- * products 4, at most 2.12 * 255 * 16 < 2^14. */
+/* Sets VALUE to the max channel of each pixel with LUMA, CB and CR, clamped
+ * to 0 .. 255, within a fifth of a code before rounding. Written such that
+ * compilers vectorise it in 16 bits: codes have 7 fraction bits,
+ * coefficients 13 and products 4, at most 2.12 * 255 * 16 < 2^14. */
 static WHOLLY_INLINE void mix_block(const struct glint_bright *b,
                                     uint8_t value[BRIGHT_BLOCK],
                                     const uint8_t luma[BRIGHT_BLOCK],
@@ -587,19 +592,19 @@ static WHOLLY_INLINE void mix_block(const struct glint_bright *b,
         const int16_t y = (int16_t)((luma[i] - black) * 128);
         const int16_t u = (int16_t)((cb[i] - 128) * 128);
         const int16_t v = (int16_t)((cr[i] - 128) * 128);
-        const int16_t r = high_product(v, red), l = high_product(u, blue);
+        const int16_t r = multiply_high(v, red), l = multiply_high(u, blue);
         const int16_t g =
-            (int16_t)(high_product(u, green_u) + high_product(v, green_v));
+            (int16_t)(multiply_high(u, green_u) + multiply_high(v, green_v));
         const int16_t rl = r > l ? r : l, most = rl > g ? rl : g;
         const int16_t code =
-            (int16_t)((high_product(y, white) + most + 9) >> 4);
+            (int16_t)((multiply_high(y, white) + most + 9) >> 4);
         const int16_t held = code < 255 ? code : 255;
 
         value[i] = (uint8_t)(held > 0 ? held : 0);
     }
 }
 
-/* Copies the codes of a block that are STEP bytes apart. */
+/* Copies the codes of a block, which are STEP bytes apart. */
 static WHOLLY_INLINE void copy_codes(uint8_t code[BRIGHT_BLOCK],
                                      const uint8_t *px, int step)
 {
@@ -607,8 +612,8 @@ static WHOLLY_INLINE void copy_codes(uint8_t code[BRIGHT_BLOCK],
         code[k] = px[k * step];
 }
 
-/* Copies the codes of a block that are STEP bytes apart, each for two pixels.
- */
+/* Copies the codes of a block, which are STEP bytes apart, twice each, as
+ * each is shared by two pixels. */
 static WHOLLY_INLINE void copy_codes_twice(uint8_t code[BRIGHT_BLOCK],
                                            const uint8_t *px, int step)
 {
@@ -616,11 +621,11 @@ static WHOLLY_INLINE void copy_codes_twice(uint8_t code[BRIGHT_BLOCK],
         code[2 * k] = code[2 * k + 1] = px[k * step];
 }
 
-/* Copies code I of the pixels of a block from X; past the end of the row the
- * code of the last pixel is repeated. Steps and bounds are constant so that
- * compilers vectorize the usual cases. */
-static void gather(const struct glint_bright *b, int i, int x,
-                   uint8_t code[BRIGHT_BLOCK])
+/* Copies code I of the pixels of a block from X on; beyond the end of the
+ * row the code of the last pixel is repeated. Steps and bounds are constant
+ * in the common cases, so that compilers vectorise these. */
+static void copy_block(const struct glint_bright *b, int i, int x,
+                       uint8_t code[BRIGHT_BLOCK])
 {
     const struct glint_bright_code *c = &b->code[i];
     const int n = b->width - x < BRIGHT_BLOCK ? b->width - x : BRIGHT_BLOCK;
@@ -644,22 +649,22 @@ static void gather(const struct glint_bright *b, int i, int x,
     }
 }
 
-/* Sets the values of the block from pixel X, from luma and chroma or from luma
- * alone. Returns the max; or 0 without setting any value if all are below low
- * and no pixel is clipped. */
+/* Sets the brightness of the block from pixel X on, from luma and chroma or
+ * from luma alone. Returns the max; or 0 without setting any value if all
+ * are below low and no pixel is clipped. */
 static NEVER_INLINE int read_values_ycc(struct glint_bright *b, int x)
 {
     uint8_t luma[BRIGHT_BLOCK], cb[BRIGHT_BLOCK], cr[BRIGHT_BLOCK];
     uint8_t value[BRIGHT_BLOCK];
     uint8_t greatest_code = 0, greatest = 0, *row = b->value + x;
 
-    gather(b, 0, x, luma);
+    copy_block(b, 0, x, luma);
     if (b->layout->kind == GLINT_LAYOUT_GREY) {
         for (int i = 0; i < BRIGHT_BLOCK; i++)
             value[i] = b->full_luma[luma[i]];
     } else {
-        gather(b, 1, x, cb);
-        gather(b, 2, x, cr);
+        copy_block(b, 1, x, cb);
+        copy_block(b, 2, x, cr);
         mix_block(b, value, luma, cb, cr);
     }
     for (int i = 0; i < BRIGHT_BLOCK; i++)
@@ -676,8 +681,8 @@ static NEVER_INLINE int read_values_ycc(struct glint_bright *b, int x)
     return greatest;
 }
 
-/* Sets the values of block I, which was marked. Returns the max, or 0 if it is
- * below low. */
+/* Sets the brightness of block I, which was marked. Returns the max, or 0 if
+ * it is below low. */
 static int read_block(struct glint_bright *b, int i)
 {
     const int x = i * BRIGHT_BLOCK;
@@ -702,7 +707,7 @@ int glint_bright_scan(struct glint_bright *b, int y)
 
     b->n_marked = 0;
     glint_bright_seek_row(b, y);
-    any = mark(b);
+    any = mark_row_blocks(b);
     /* An incomplete last block is always read. */
     if (n_blocks * BRIGHT_BLOCK > b->width)
         any = b->block[n_blocks - 1] = 1;

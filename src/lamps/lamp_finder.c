@@ -4,8 +4,8 @@
  *
  * Regions of all levels are linked first, by brightness alone. Then the light
  * of a row is summed, only for regions that may still be lamps. A region that
- * qualifies becomes a candidate. The brightest LIGHT_CANDIDATES are kept; they
- * are merged after all have been found. */
+ * qualifies becomes a candidate. The brightest LIGHT_CANDIDATES of these are
+ * kept; they are merged after all regions have been found. */
 #include "glint/lamps.h"
 
 #include "base/arena.h"
@@ -20,8 +20,8 @@
 /* --------------------------------------------------------------------- list
  */
 
-/* radius, in merge distances, within which a lamp in excess of MAX joins a kept
- * lamp */
+/* Max distance, in merge distances, at which a lamp in excess of MAX is
+ * merged into a kept lamp. */
 #define JOIN_REACH 4
 
 static int is_brighter(const struct glint_lamp_finder *f, int32_t a, int32_t b)
@@ -50,15 +50,15 @@ static void swap(void *finder, int a, int b)
     f->order[b] = old;
 }
 
-/* Returns a heap of the candidates, the faintest first. */
-static struct glint_heap heap_of(struct glint_lamp_finder *f)
+/* Returns a heap of the candidates whose root is the faintest candidate. */
+static struct glint_heap make_heap(struct glint_lamp_finder *f)
 {
     return (struct glint_heap){is_before, swap, f};
 }
 
 static void sort_by_flux(struct glint_lamp_finder *f)
 {
-    const struct glint_heap heap = heap_of(f);
+    const struct glint_heap heap = make_heap(f);
 
     glint_heap_sort(&heap, f->n);
 }
@@ -68,7 +68,7 @@ static void sort_by_flux(struct glint_lamp_finder *f)
 static void add_candidate(struct glint_lamp_finder *f,
                           const struct glint_candidate *candidate)
 {
-    const struct glint_heap heap = heap_of(f);
+    const struct glint_heap heap = make_heap(f);
     struct glint_candidate *last = &f->candidate[LIGHT_CANDIDATES];
 
     if (f->n < LIGHT_CANDIDATES) {
@@ -90,8 +90,8 @@ static void add_candidate(struct glint_lamp_finder *f,
     f->dropped += !last->faint;
 }
 
-/* Removes candidates marked gone from f->order. */
-static void compact(struct glint_lamp_finder *f)
+/* Removes candidates whose member gone is set from f->order. */
+static void remove_gone(struct glint_lamp_finder *f)
 {
     const int n_before = f->n;
 
@@ -103,7 +103,7 @@ static void compact(struct glint_lamp_finder *f)
 
 /* ------------------------------------------------------------------ merging */
 
-static void locate(struct glint_lamp_finder *f)
+static void locate_all(struct glint_lamp_finder *f)
 {
     for (int i = 0; i < f->n; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
@@ -131,8 +131,8 @@ static int64_t distance2_q16(const struct glint_candidate *a,
     return dx_q8 * dx_q8 + dy_q8 * dy_q8;
 }
 
-/* Merges CANDIDATE into INTO; the position of INTO is updated by the next
- * locate(). */
+/* Merges CANDIDATE into INTO. The position of INTO is updated by the next
+ * locate_all(). */
 static void merge_candidate(struct glint_candidate *candidate,
                             struct glint_candidate *into)
 {
@@ -148,7 +148,7 @@ static int merge_once(struct glint_lamp_finder *f)
     int n_lights;
 
     sort_by_flux(f);
-    locate(f);
+    locate_all(f);
     n_lights = count_lights(f);
     for (int i = 0; i < n_lights; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
@@ -160,14 +160,14 @@ static int merge_once(struct glint_lamp_finder *f)
                 merge_candidate(other, c);
         }
     }
-    compact(f);
+    remove_gone(f);
     return f->n < n_before;
 }
 
 /* Sorts the candidates by descending flux and merges lamps nearer than the
  * merge distance until no such pair is left. Faint candidates are not
  * merged. */
-static void merge(struct glint_lamp_finder *f)
+static void merge_near(struct glint_lamp_finder *f)
 {
     while (merge_once(f))
         ;
@@ -175,9 +175,9 @@ static void merge(struct glint_lamp_finder *f)
 
 /* Returns the candidate nearest to C among the first MAX, or NULL if no
  * candidate is within JOIN_REACH. */
-static struct glint_candidate *nearest_kept(const struct glint_lamp_finder *f,
-                                            const struct glint_candidate *c,
-                                            int max)
+static struct glint_candidate *
+find_nearest_kept(const struct glint_lamp_finder *f,
+                  const struct glint_candidate *c, int max)
 {
     int64_t best_q16 = JOIN_REACH * JOIN_REACH * f->merge2_q16;
     struct glint_candidate *best = NULL;
@@ -194,15 +194,15 @@ static struct glint_candidate *nearest_kept(const struct glint_lamp_finder *f,
     return best;
 }
 
-/* Leaves at most MAX candidates: each lamp in excess joins the nearest kept
- * lamp within JOIN_REACH, or is dropped. */
+/* Leaves at most MAX candidates: each lamp in excess is merged into the
+ * nearest kept lamp within JOIN_REACH, or is dropped. */
 static void limit_lamps(struct glint_lamp_finder *f, int max)
 {
     const int n_lights = count_lights(f);
 
     for (int i = max; i < n_lights; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
-        struct glint_candidate *kept = nearest_kept(f, c, max);
+        struct glint_candidate *kept = find_nearest_kept(f, c, max);
 
         if (kept)
             merge_candidate(c, kept);
@@ -220,11 +220,12 @@ static void limit_lamps(struct glint_lamp_finder *f, int max)
  * pixels reach the upper threshold. */
 #define SEED_LOG2 3
 
-/* Costs of levels, subtracted from the scores of their regions to choose among
- * nested regions. A lamp gets its width at the thresholds, unless its clipped
- * core is clearly more like a lamp. A region of a level whose white is below
- * clipping counts only if it contains no other lamp. DARK_SHARE: fraction of
- * the picture above which such regions are not searched for. */
+/* Costs of levels, subtracted from the scores of their regions when one of
+ * several nested regions is chosen. A lamp gets its width at the thresholds,
+ * unless its clipped core is clearly more like a lamp. A region of a level
+ * whose white is below clipping is chosen only if it contains no other lamp.
+ * DARK_SHARE: max fraction of the picture at the lower threshold for which
+ * such levels are searched. */
 #define COST_CLIPPED_Q8 64
 #define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024
@@ -260,15 +261,15 @@ static void add_dark_level(struct glint_lamp_finder *f)
 }
 
 /* Adds the level of clipped regions, of brightness LOW and above. */
-static void add_core(struct glint_lamp_finder *f, int low, int32_t cost_q8)
+static void add_core_level(struct glint_lamp_finder *f, int low,
+                           int32_t cost_q8)
 {
     f->level[f->n_levels++] =
         (struct glint_level){low, BRIGHT_CLIPPED, BRIGHT_CLIPPED, cost_q8};
 }
 
 /* Measures white and sets the levels. In a picture whose white is below
- * clipping, lamps may be clipped or not: both kinds of regions are searched
- * for. */
+ * clipping, lamps may be clipped or not, so both levels are searched. */
 static void set_levels(struct glint_lamp_finder *f)
 {
     const int white_code = f->cfg.white_code;
@@ -286,9 +287,9 @@ static void set_levels(struct glint_lamp_finder *f)
         add_level(f, LINEAR_WHITE_Q20);
     }
     if (f->cfg.judge) {
-        add_core(f, BRIGHT_CLIPPED, COST_CLIPPED_Q8);
-        add_core(f, BRIGHT_WHITE, COST_WHITE_Q8);
-        add_core(f, BRIGHT_HOT, 0);
+        add_core_level(f, BRIGHT_CLIPPED, COST_CLIPPED_Q8);
+        add_core_level(f, BRIGHT_WHITE, COST_WHITE_Q8);
+        add_core_level(f, BRIGHT_HOT, 0);
     }
     glint_bright_set_low(b, f->level[0].low);
 }
@@ -310,7 +311,7 @@ static int is_faint(const struct glint_lamp_finder *f,
 }
 
 /* Keeps SUM as a candidate if it qualifies. */
-static void offer(void *finder, const struct glint_region *sum)
+static void add_if_qualified(void *finder, const struct glint_region *sum)
 {
     struct glint_lamp_finder *f = finder;
     const int light = is_light(f, sum);
@@ -326,8 +327,8 @@ static void offer(void *finder, const struct glint_region *sum)
 
 /* --------------------------------------------------------------------- rows */
 
-/* Counts the values among N that are CODE or more. */
-static WHOLLY_INLINE int count_from(const uint8_t *value, int n, int code,
+/* Returns how many of N values are CODE or more. */
+static WHOLLY_INLINE int count_high(const uint8_t *value, int n, int code,
                                     int is_above_128)
 {
     uint32_t found = 0;
@@ -340,17 +341,17 @@ static WHOLLY_INLINE int count_from(const uint8_t *value, int n, int code,
     return (int)found;
 }
 
-/* Counts the pixels of RUN that are CODE or more. All its pixels must be LEAST
- * or more. */
-static int count_of_run(const uint8_t *value, const struct glint_run *run,
-                        int least, int code)
+/* Returns how many pixels of RUN are CODE or more. All its pixels must be
+ * LEAST or more. */
+static int count_high_in_run(const uint8_t *value, const struct glint_run *run,
+                             int least, int code)
 {
     const int all = run->x1 - run->x0;
 
     if (code <= least)
         return all;
-    return code > 128 ? count_from(value + run->x0, all, code, 1)
-                      : count_from(value + run->x0, all, code, 0);
+    return code > 128 ? count_high(value + run->x0, all, code, 1)
+                      : count_high(value + run->x0, all, code, 0);
 }
 
 /* Adds RUN of row Y to the area, the box and the counts of SUM, without its
@@ -363,8 +364,8 @@ static void count_run(struct glint_region *sum,
     const uint8_t *value = f->bright.value;
 
     glint_region_add_run(sum, run->x0, run->x1, y);
-    sum->n_seeds += count_of_run(value, run, level->low, level->seed);
-    sum->n_clipped += count_of_run(value, run, level->low, level->clipped);
+    sum->n_seeds += count_high_in_run(value, run, level->low, level->seed);
+    sum->n_clipped += count_high_in_run(value, run, level->low, level->clipped);
 }
 
 /* Marks the light of RUN as needed in the run of the first level that contains
@@ -424,7 +425,7 @@ static void sum_row(struct glint_lamp_finder *f)
     }
 }
 
-static void light_level(struct glint_lamp_finder *f, int y)
+static void add_light_of_level(struct glint_lamp_finder *f, int y)
 {
     struct glint_regions *r = &f->regions[f->at];
 
@@ -437,10 +438,10 @@ static void light_level(struct glint_lamp_finder *f, int y)
                                 y);
     }
     if (r->n_active > 0)
-        glint_regions_end_row(r, offer, f, y);
+        glint_regions_end_row(r, add_if_qualified, f, y);
 }
 
-static void take_row(struct glint_lamp_finder *f, int y)
+static void process_row(struct glint_lamp_finder *f, int y)
 {
     const int greatest = glint_bright_scan(&f->bright, y);
 
@@ -448,7 +449,7 @@ static void take_row(struct glint_lamp_finder *f, int y)
         link_level(f, greatest, y);
     sum_row(f);
     for (f->at = 0; f->at < f->n_levels; f->at++)
-        light_level(f, y);
+        add_light_of_level(f, y);
 }
 
 void glint_lamps_collect(struct glint_lamp_finder *f,
@@ -460,9 +461,10 @@ void glint_lamps_collect(struct glint_lamp_finder *f,
     for (f->at = 0; f->at < f->n_levels; f->at++)
         glint_regions_begin(&f->regions[f->at]);
     for (int y = 0; y < f->cfg.height; y++)
-        take_row(f, y);
+        process_row(f, y);
     for (f->at = 0; f->at < f->n_levels; f->at++)
-        glint_regions_end_row(&f->regions[f->at], offer, f, f->cfg.height);
+        glint_regions_end_row(&f->regions[f->at], add_if_qualified, f,
+                              f->cfg.height);
 }
 
 /* ------------------------------------------------------------------- memory */
@@ -502,7 +504,7 @@ static struct glint_lamp_finder *carve(struct glint_arena *a,
 void glint_lamp_finder_defaults(struct glint_lamp_finder_config *cfg, int width,
                                 int height)
 {
-    const int pixels = width * height; /* 2^30 at most */
+    const int pixels = width * height; /* at most 2^30 */
 
     *cfg = (struct glint_lamp_finder_config){
         .width = width,
@@ -554,9 +556,9 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 
 /* -------------------------------------------------------------------- score */
 
-/* Keeps candidates with the score of a lamp. If keep_faint is set, candidates
- * with a slightly lower score are kept and marked faint. */
-static void judge(struct glint_lamp_finder *f)
+/* Keeps candidates whose score is that of a lamp. If keep_faint is set,
+ * candidates with a slightly lower score are kept, too, and marked faint. */
+static void score_candidates(struct glint_lamp_finder *f)
 {
     const struct glint_score score = {&f->bright,    f->white, f->cfg.width,
                                       f->cfg.height, f->level, 1,
@@ -577,14 +579,14 @@ static void judge(struct glint_lamp_finder *f)
             f->order[f->n++] = f->order[i];
     }
     glint_score_choose(&score, f->candidate, f->order, f->n);
-    compact(f);
+    remove_gone(f);
 }
 
 /* ------------------------------------------------------------------- result */
 
-/* Returns the spot of CANDIDATE. Coordinates of spots count from the corner of
- * the first pixel, coordinates of regions from its centre. */
-static struct glint_spot spot_of(const struct glint_candidate *candidate)
+/* Returns the spot of CANDIDATE. Coordinates of spots are relative to the
+ * corner of the first pixel, coordinates of regions to its centre. */
+static struct glint_spot make_spot(const struct glint_candidate *candidate)
 {
     const struct glint_region *sum = &candidate->sum;
     struct glint_spot s = {.size_q8 = glint_region_radius_q8(sum),
@@ -610,12 +612,12 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
 {
     glint_lamps_collect(finder, image);
     if (finder->cfg.judge)
-        judge(finder);
+        score_candidates(finder);
     finder->alone_q8 = SCORE_ALONE;
-    merge(finder);
+    merge_near(finder);
     limit_lamps(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
     for (int i = 0; i < finder->n; i++)
-        spots[i] = spot_of(&finder->candidate[finder->order[i]]);
+        spots[i] = make_spot(&finder->candidate[finder->order[i]]);
     return finder->n;
 }
 

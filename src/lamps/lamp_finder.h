@@ -13,8 +13,8 @@
 #include "glint/lamps.h"
 
 enum {
-    LIGHT_CANDIDATES =
-        2048, /* max candidates, more than the max of 1024 lamps per find */
+    LIGHT_CANDIDATES = 2048, /* max number of candidates, more than the max of
+                                1024 lamps per picture */
     LIGHT_LEVELS = 6
 };
 
@@ -30,7 +30,7 @@ struct glint_lamp_finder {
     struct glint_regions regions[LIGHT_LEVELS];
     struct glint_level level[LIGHT_LEVELS]; /* levels, by rising brightness */
     int n_levels;
-    int at; /* index of the level in work */
+    int at; /* index of the level that is being processed */
     /* [LIGHT_CANDIDATES + 1]: candidates; the last slot is for a new candidate
      * that may replace the faintest */
     struct glint_candidate *candidate;

@@ -39,8 +39,8 @@ enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
     return GLINT_OK;
 }
 
-/* Measures the spots in place: measuring a spot keeps its position and size_q8,
- * and other spots depend on nothing else of it. */
+/* Measures the spots in place: measuring a spot preserves its position and
+ * size_q8, the only members on which the measurement of other spots depends. */
 void glint_profile_measure(struct glint_profile *profile,
                            const struct glint_image *image,
                            struct glint_spot *spots, int n)

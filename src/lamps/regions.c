@@ -41,40 +41,40 @@ void glint_region_absorb(struct glint_region *sum,
 
 /* Returns A / B * 2^FRAC, rounded; 0 <= A / B < 2^(62 - FRAC), 0 < B < 2^(62 -
  * FRAC). */
-static int64_t quotient(uint64_t a, int64_t b, int frac)
+static int64_t compute_quotient(uint64_t a, int64_t b, int frac)
 {
     const uint64_t d = (uint64_t)b;
 
     return (int64_t)((a / d << frac) + (((a % d) << frac) + d / 2) / d);
 }
 
-static int32_t mean_q8(int64_t wx_q14, int64_t w_q14)
+static int32_t compute_mean_q8(int64_t wx_q14, int64_t w_q14)
 {
-    return q_narrow(quotient((uint64_t)wx_q14, w_q14, 8));
+    return q_narrow(compute_quotient((uint64_t)wx_q14, w_q14, 8));
 }
 
 void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
                            int32_t *y_q8)
 {
-    *x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
-    *y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
+    *x_q8 = compute_mean_q8(sum->wx_q14, sum->w_q14);
+    *y_q8 = compute_mean_q8(sum->wy_q14, sum->w_q14);
 }
 
 /* Returns the RMS radius of a box of uniform light whose squared diagonal is
  * DIAGONAL2. */
-static int32_t box_radius_q8(uint64_t diagonal2)
+static int32_t compute_box_radius_q8(uint64_t diagonal2)
 {
     return (int32_t)q_root((diagonal2 << 16) / 12);
 }
 
 /* First moves the origin of the sums to the pixel nearest to the centroid,
- * exactly, modulo 2^64. */
+ * which is exact modulo 2^64. */
 int32_t glint_region_radius_q8(const struct glint_region *sum)
 {
     const int64_t across = sum->x1 - sum->x0, down = sum->y1 - sum->y0;
     const uint64_t diagonal2 = (uint64_t)(across * across + down * down);
-    const int32_t x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
-    const int32_t y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
+    const int32_t x_q8 = compute_mean_q8(sum->wx_q14, sum->w_q14);
+    const int32_t y_q8 = compute_mean_q8(sum->wy_q14, sum->w_q14);
     const int32_t x = (x_q8 + 128) >> 8, y = (y_q8 + 128) >> 8;
     const int64_t fx_q8 = x_q8 - x * 256, fy_q8 = y_q8 - y * 256;
     const uint64_t about =
@@ -83,10 +83,10 @@ int32_t glint_region_radius_q8(const struct glint_region *sum)
         ((uint64_t)x * (uint64_t)x + (uint64_t)y * (uint64_t)y) *
             (uint64_t)sum->w_q14;
     const int64_t mean_q16 =
-        quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 - fy_q8 * fy_q8;
+        compute_quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 - fy_q8 * fy_q8;
 
     if ((uint64_t)sum->w_q14 > (UINT64_C(1) << 63) / (diagonal2 / 4 + 1))
-        return box_radius_q8(diagonal2);
+        return compute_box_radius_q8(diagonal2);
     return (int32_t)q_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
 }
 
@@ -102,7 +102,7 @@ void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3])
     y = region_luminance(c[0], c[1], c[2]);
     for (int i = 0; i < 3; i++)
         rgb_q15[i] =
-            y > 0 ? q_narrow(quotient((uint64_t)c[i], y, 15)) : 1 << 15;
+            y > 0 ? q_narrow(compute_quotient((uint64_t)c[i], y, 15)) : 1 << 15;
 }
 
 /* ---------------------------------------------------------------- labelling */
@@ -137,7 +137,7 @@ static int32_t find_root(struct glint_component *c, int32_t label)
     return label;
 }
 
-static int32_t unite(struct glint_component *c, int32_t a, int32_t b)
+static int32_t unite_labels(struct glint_component *c, int32_t a, int32_t b)
 {
     a = find_root(c, a);
     b = find_root(c, b);
@@ -148,7 +148,7 @@ static int32_t unite(struct glint_component *c, int32_t a, int32_t b)
     return a;
 }
 
-static int32_t new_label(struct glint_regions *r, int32_t first)
+static int32_t make_label(struct glint_regions *r, int32_t first)
 {
     const int32_t label = r->idle[--r->n_idle];
 
@@ -159,10 +159,10 @@ static int32_t new_label(struct glint_regions *r, int32_t first)
     return label;
 }
 
-/* Returns a bit for each pixel of a block that is LOW or more; bit 0 is the
- * first pixel. */
-static WHOLLY_INLINE uint32_t reach_of(const uint8_t value[BRIGHT_BLOCK],
-                                       int low, int is_above_128)
+/* Returns a mask with a bit for each pixel of a block that is LOW or more;
+ * bit 0 is the first pixel. */
+static WHOLLY_INLINE uint32_t
+find_high_pixels(const uint8_t value[BRIGHT_BLOCK], int low, int is_above_128)
 {
     uint32_t bits = 0;
 
@@ -211,8 +211,8 @@ static void find_all_runs(struct glint_run_row *row,
 
         if (b->block[i] < low)
             continue;
-        bits = low > 128 ? reach_of(b->value + x, low, 1)
-                         : reach_of(b->value + x, low, 0);
+        bits = low > 128 ? find_high_pixels(b->value + x, low, 1)
+                         : find_high_pixels(b->value + x, low, 0);
         if (i == last)
             bits &= UINT32_MAX >> past;
         if (i > next) {
@@ -226,12 +226,13 @@ static void find_all_runs(struct glint_run_row *row,
     end_run(row, begin, next < b->width ? next : b->width);
 }
 
-/* Labels each run of row Y: unites the regions of the runs that it touches in
- * the row above, or makes a new label if it touches none. */
+/* Labels each run of row Y: unites the regions of all runs that it touches
+ * in the row above, or makes a new label if it touches none. */
 static void link_runs(struct glint_regions *r, int y)
 {
     const struct glint_run_row *above = &r->above;
-    int first = 0; /* first run above that may touch run i or a later run */
+    int first = 0; /* index of the first run above that may touch run i or a
+                      later run */
 
     for (int i = 0; i < r->here.n_runs; i++) {
         struct glint_run *run = &r->here.run[i];
@@ -242,9 +243,10 @@ static void link_runs(struct glint_regions *r, int y)
         for (int j = first; j < above->n_runs && above->run[j].x0 <= run->x1;
              j++)
             label = label < 0 ? find_root(r->component, above->run[j].label)
-                              : unite(r->component, label, above->run[j].label);
+                              : unite_labels(r->component, label,
+                                             above->run[j].label);
         if (label < 0)
-            label = new_label(r, y * r->width + run->x0);
+            label = make_label(r, y * r->width + run->x0);
         r->component[label].last_row = y;
         run->label = label;
     }

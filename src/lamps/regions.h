@@ -36,11 +36,12 @@
 struct glint_arena;
 struct glint_bright;
 
-/* The sums over the pixels of a region. */
+/* Sums over the pixels of a region. */
 struct glint_region {
-    int32_t first; /* y * width + x of its first pixel; identifies the region */
-    /* Numbers of all pixels, of pixels at the upper threshold or above, and of
-     * clipped pixels. The caller counts the last two. */
+    int32_t first; /* index y * width + x of the region's first pixel;
+                      identifies the region */
+    /* Number of all pixels, of pixels at the upper threshold or above, and
+     * of clipped pixels. The caller counts the last two. */
     int32_t area, n_seeds, n_clipped;
     /* Bounding box: columns x0 .. x1 - 1, rows y0 .. y1 - 1. */
     int32_t x0, y0, x1, y1;
@@ -52,7 +53,7 @@ struct glint_region {
                                its runs */
 };
 
-/* The light of a pixel, as added to a region. */
+/* The light of one pixel, as added to a region. */
 struct glint_region_light {
     int64_t w_q14;
     int32_t rgb_q14[3];
@@ -76,14 +77,14 @@ static inline struct glint_region_light
 region_light_of(const int32_t rgb_q20[3])
 {
     struct glint_region_light light;
-    /* rounded to _q20 and then to _q14 */
+    /* rounded to _q20, then to _q14 */
     const int64_t seen_q14 =
         (region_wide_luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]) + (1 << 14) +
          (1 << 20)) >>
         21;
 
     light.w_q14 = seen_q14 > 1 ? seen_q14 : 1;
-    for (int i = 0; i < 3; i++) /* 2^14 at most */
+    for (int i = 0; i < 3; i++) /* at most 2^14 */
         light.rgb_q14[i] = (int32_t)q_shift(rgb_q20[i], 20 - 14);
     return light;
 }
@@ -120,8 +121,8 @@ struct glint_component {
 struct glint_run {
     int32_t x0, x1; /* first pixel, and last pixel + 1 */
     int32_t label;
-    int32_t want0, want1; /* the caller needs the light of pixels want0 .. want1
-                             - 1; 0, 0: of no pixels */
+    int32_t want0, want1; /* range of pixels, want0 .. want1 - 1, whose light
+                             the caller needs; 0, 0: none */
 };
 
 struct glint_run_row {
@@ -150,13 +151,13 @@ void glint_regions_begin(struct glint_regions *r);
 void glint_regions_link_row(struct glint_regions *r,
                             const struct glint_bright *bright, int low, int y);
 
-/* Returns the sums so far of the region that run I of r->here belongs to. */
+/* Returns the sums so far of the region to which run I of r->here belongs. */
 struct glint_region *glint_regions_of_run(struct glint_regions *r, int i);
 
 /* Receives a finished REGION, which is valid only during the call. */
 typedef void glint_region_fn(void *ctx, const struct glint_region *region);
 
-/* Calls DONE for each region that row Y does not continue, and frees its
+/* Calls DONE for each region that does not continue in row Y, and frees its
  * labels. */
 void glint_regions_end_row(struct glint_regions *r, glint_region_fn *done,
                            void *ctx, int y);

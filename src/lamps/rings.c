@@ -7,9 +7,9 @@
 
 #define WHITE_Q20 LINEAR_WHITE_Q20
 #define ONE_Q16   (1 << 16)
-/* About code 231: brighter pixels count as partly clipped. */
+/* about code 231: brighter pixels count as partly clipped */
 #define CLIP_FIRST Q_CONST(0.80, 20)
-/* About code 253: brighter pixels count as clipped. */
+/* about code 253: brighter pixels count as clipped */
 #define CLIP_LAST     Q_CONST(0.98, 20)
 #define RIM_LIGHT     Q_CONST(0.95, 20)
 #define MAX_BLACK_Q20 Q_CONST(15.0 / 16, 20)
@@ -19,7 +19,7 @@ enum {
     BORDERS = 4,
     SAMPLES = 32, /* max samples along the radius of the inner disc */
     RAYS = 16,
-    RAY_SAMPLES = 64, /* steps of a ray along the core's radius */
+    RAY_SAMPLES = 64, /* number of steps of a ray along the core's radius */
     RIM_RADIUS = 32,  /* min radius of a core whose rim is measured, pixels: an
                          eighth of it exceeds the blur of a lens */
     RINGS = GLINT_PROFILE_RINGS,
@@ -33,17 +33,18 @@ enum {
  * neighbour. */
 struct border {
     int x, y;      /* vector to the neighbour, pixels */
-    int64_t limit; /* pixels with a larger dot product with (x, y) are beyond
+    int64_t limit; /* pixels whose dot product with (x, y) is larger lie beyond
                       the line */
-    int32_t at_q8; /* distance of the line from the middle, pixels */
+    /* distance of the line from the middle of the spot, pixels */
+    int32_t at_q8;
 };
 
 struct window {
     struct glint_bright *bright;
-    struct border border[BORDERS]; /* the nearest lines */
+    struct border border[BORDERS]; /* the nearest borders, sorted by distance */
     int n_borders;
     int width, height;
-    int x, y;   /* pixel in the middle */
+    int x, y;   /* pixel in the middle of the window */
     int radius; /* radius of the inner disc; ring i ends at radius << i */
     int step; /* distance of samples in the inner disc, pixels; in ring i it is
                  step << i */
@@ -61,8 +62,8 @@ typedef void sample_fn(void *ctx, const struct sample *sample);
 /* Returns the window of SPOT, without borders. The inner disc has twice the RMS
  * radius, which covers a disc or a tube, and 3 pixels for the blur of the lens.
  */
-static struct window window_of(const struct glint_image *image,
-                               const struct glint_spot *spot)
+static struct window make_window(const struct glint_image *image,
+                                 const struct glint_spot *spot)
 {
     const int most =
         image->width > image->height ? image->width : image->height;
@@ -77,7 +78,7 @@ static struct window window_of(const struct glint_image *image,
     return w;
 }
 
-static int is_in(const struct window *w, int dx, int dy)
+static int is_in_window(const struct window *w, int dx, int dy)
 {
     for (int i = 0; i < w->n_borders; i++) {
         const struct border *b = &w->border[i];
@@ -88,15 +89,15 @@ static int is_in(const struct window *w, int dx, int dy)
     return 1;
 }
 
-/* Calls SEE for the samples X0, X0 + STEP ... X1 of the row that are in the
+/* Calls SEE for the samples X0, X0 + STEP ... X1 of a row that are in the
  * picture and within the borders. */
-static void see_run(const struct window *w, int x0, int x1, struct sample *at,
-                    int step, sample_fn *see, void *ctx)
+static void visit_run(const struct window *w, int x0, int x1, struct sample *at,
+                      int step, sample_fn *see, void *ctx)
 {
     for (int dx = x0; dx <= x1; dx += step) {
         const int x = w->x + dx;
 
-        if (x < 0 || x >= w->width || !is_in(w, dx, at->dy))
+        if (x < 0 || x >= w->width || !is_in_window(w, dx, at->dy))
             continue;
         glint_bright_read(w->bright, x, at->rgb_q20);
         at->dx = dx;
@@ -104,10 +105,10 @@ static void see_run(const struct window *w, int x0, int x1, struct sample *at,
     }
 }
 
-/* Returns the largest multiple of STEP that is the x offset of a pixel inside a
- * disc of RADIUS, in the row DY below its middle; -1 if the row misses the
- * disc. */
-static int last_in(int radius, int dy, int step)
+/* Returns the largest multiple of STEP that is the x offset of a pixel
+ * inside a disc of radius RADIUS, in the row DY below its middle; -1 if the
+ * row misses the disc. */
+static int find_last_offset(int radius, int dy, int step)
 {
     const int64_t left = (int64_t)radius * radius - (int64_t)dy * dy;
 
@@ -115,38 +116,38 @@ static int last_in(int radius, int dy, int step)
 }
 
 /* Calls SEE for the samples of ring RING; ring 0 is the disc in the middle. */
-static void see_ring(const struct window *w, int ring, sample_fn *see,
-                     void *ctx)
+static void visit_ring(const struct window *w, int ring, sample_fn *see,
+                       void *ctx)
 {
     const int step = w->step << ring, outer = w->radius << ring;
     const int inner = ring ? w->radius << (ring - 1) : -1;
     struct sample at = {.share = step * step, .ring = ring};
 
     for (int dy = -(outer / step * step); dy <= outer; dy += step) {
-        const int end = last_in(outer, dy, step);
-        const int gap = inner < 0 ? -1 : last_in(inner, dy, step);
+        const int end = find_last_offset(outer, dy, step);
+        const int gap = inner < 0 ? -1 : find_last_offset(inner, dy, step);
 
         if (w->y + dy < 0 || w->y + dy >= w->height)
             continue;
         glint_bright_seek_row(w->bright, w->y + dy);
         at.dy = dy;
         if (gap < 0) {
-            see_run(w, -end, end, &at, step, see, ctx);
+            visit_run(w, -end, end, &at, step, see, ctx);
         } else {
-            see_run(w, -end, -gap - step, &at, step, see, ctx);
-            see_run(w, gap + step, end, &at, step, see, ctx);
+            visit_run(w, -end, -gap - step, &at, step, see, ctx);
+            visit_run(w, gap + step, end, &at, step, see, ctx);
         }
     }
 }
 
 /* --------------------------------------------------------------- neighbours */
 
-static int32_t reach_of_q8(const struct glint_spot *spot)
+static int32_t compute_reach_q8(const struct glint_spot *spot)
 {
     return q_clamp_sat(spot->size_q8, 0, GLINT_MAX_SIDE << 8) * 3 / 2 + 256;
 }
 
-/* Adds BORDER to W if it is among the BORDERS nearest. */
+/* Adds BORDER to W if it is among the BORDERS nearest ones. */
 static void add_border(struct window *w, struct border border)
 {
     int at = w->n_borders;
@@ -161,8 +162,8 @@ static void add_border(struct window *w, struct border border)
 
 /* Adds the border between SPOT and OTHER, half way between their rims, if it is
  * in the window. */
-static void look_at(struct window *w, const struct glint_spot *spot,
-                    const struct glint_spot *other)
+static void add_border_between(struct window *w, const struct glint_spot *spot,
+                               const struct glint_spot *other)
 {
     const int x = (other->x_q8 >> 8) - w->x, y = (other->y_q8 >> 8) - w->y;
     const int64_t d2 = (int64_t)x * x + (int64_t)y * y;
@@ -172,7 +173,7 @@ static void look_at(struct window *w, const struct glint_spot *spot,
     if (other->faint || d2 == 0 || d2 >= 4 * far * far)
         return;
     d_q8 = q_root((uint64_t)d2 << 16);
-    at_q8 = (d_q8 + reach_of_q8(spot) - reach_of_q8(other)) / 2;
+    at_q8 = (d_q8 + compute_reach_q8(spot) - compute_reach_q8(other)) / 2;
     at_q8 = at_q8 < 256 ? 256 : at_q8 > d_q8 ? d_q8 : at_q8;
     if (at_q8 < far << 8)
         add_border(w,
@@ -199,14 +200,14 @@ static void find_borders(struct window *w, const struct glint_rings *rings,
 
         if ((int64_t)spot->x_q8 - other->x_q8 > far_q8)
             break;
-        look_at(w, spot, other);
+        add_border_between(w, spot, other);
     }
     for (int j = i + 1; j < n; j++) {
         const struct glint_spot *other = &spots[rings->by_x[j]];
 
         if ((int64_t)other->x_q8 - spot->x_q8 > far_q8)
             break;
-        look_at(w, spot, other);
+        add_border_between(w, spot, other);
     }
 }
 
@@ -217,7 +218,7 @@ struct sectors {
     int64_t n[SECTORS];
 };
 
-static void see_background(void *ctx, const struct sample *s)
+static void add_to_background(void *ctx, const struct sample *s)
 {
     struct sectors *sectors = ctx;
     const int x = s->dx < 0 ? -s->dx : s->dx, y = s->dy < 0 ? -s->dy : s->dy;
@@ -245,10 +246,10 @@ static void sort(struct part *part, int n)
         }
 }
 
-/* Returns the mean light between FROM and TO eighths of the ring, whose parts
- * are sorted by light. */
-static int32_t mean_between(const struct part *part, int n, int64_t all,
-                            int from, int to)
+/* Returns the mean light of a range of a ring, from FROM to TO eighths of
+ * its samples, with the sectors PART sorted by light. */
+static int32_t compute_mean_between(const struct part *part, int n, int64_t all,
+                                    int from, int to)
 {
     int64_t sum = 0, at = 0;
 
@@ -264,9 +265,9 @@ static int32_t mean_between(const struct part *part, int n, int64_t all,
     return all ? (int32_t)q_divide(sum, (to - from) * all) : 0;
 }
 
-/* Sets the background: the mean of the middle half of the ring, its sectors in
- * order of light. The spread is the difference between the means of the last
- * and the first quarter of that half. */
+/* Sets the background: the mean of the middle half of the ring, with its
+ * sectors sorted by light. The spread is the difference between the means of
+ * the last and the first quarter of that half. */
 static void set_background(struct glint_profile_channel *of,
                            const struct sectors *sectors, int c)
 {
@@ -282,19 +283,19 @@ static void set_background(struct glint_profile_channel *of,
             all += sectors->n[i];
         }
     sort(part, n);
-    of->black_q20 = mean_between(part, n, all, 2, 6);
+    of->black_q20 = compute_mean_between(part, n, all, 2, 6);
     if (of->black_q20 > MAX_BLACK_Q20)
         of->black_q20 = MAX_BLACK_Q20;
     of->scale_q16 =
         (int32_t)q_divide(INT64_C(1) << 36, WHITE_Q20 - of->black_q20);
-    apart_q20 =
-        mean_between(part, n, all, 5, 6) - mean_between(part, n, all, 2, 3);
+    apart_q20 = compute_mean_between(part, n, all, 5, 6) -
+                compute_mean_between(part, n, all, 2, 3);
     of->spread_q16 = (int32_t)(apart_q20 * of->scale_q16 >> 20);
 }
 
 /* --------------------------------------------------------------------- sums */
 
-static int32_t clipped_q8(int32_t light_q20)
+static int32_t compute_clipped_q8(int32_t light_q20)
 {
     if (light_q20 <= CLIP_FIRST)
         return 0;
@@ -303,8 +304,9 @@ static int32_t clipped_q8(int32_t light_q20)
                                         ((CLIP_LAST - CLIP_FIRST) >> 4);
 }
 
-/* Adds SHARE pixels of light U to the number of their level, and a fraction of
- * them to its area. add_up() adds them wholly to the areas of later levels. */
+/* Adds SHARE pixels of light U to the number of pixels of their level, and a
+ * fraction of them to the level's area. add_up() adds all of them to the
+ * areas of the darker levels. */
 static void add_levels(struct glint_profile_channel *of, int32_t u_q16,
                        int share, int ring)
 {
@@ -318,8 +320,8 @@ static void add_levels(struct glint_profile_channel *of, int32_t u_q16,
             ((((int64_t)u_q16 << level) - ONE_Q16) >> 8) * share;
 }
 
-/* Adds S to the moments of the core, in steps: all samples of the inner disc
- * are one step apart. */
+/* Adds S to the moments of the core, in units of steps: all samples of the
+ * inner disc are one step apart. */
 static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
                         const struct sample *s)
 {
@@ -336,25 +338,25 @@ static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
 
 /* ---------------------------------------------------------------------- rim */
 
-/* Returns the largest channel of the pixel at offset (X, Y) from the middle; -1
- * if it belongs to another spot or is outside the picture. */
-static int32_t light_at(const struct window *w, int32_t x_q8, int32_t y_q8)
+/* Returns the max channel of the pixel at offset (X, Y) from the middle; -1
+ * if it belongs to another spot or lies outside the picture. */
+static int32_t read_light(const struct window *w, int32_t x_q8, int32_t y_q8)
 {
     const int dx = (x_q8 + 128) >> 8, dy = (y_q8 + 128) >> 8;
     int32_t rgb_q20[3];
 
     if (w->x + dx < 0 || w->x + dx >= w->width || w->y + dy < 0 ||
-        w->y + dy >= w->height || !is_in(w, dx, dy))
+        w->y + dy >= w->height || !is_in_window(w, dx, dy))
         return -1;
     glint_bright_seek_row(w->bright, w->y + dy);
     glint_bright_read(w->bright, w->x + dx, rgb_q20);
     return q_larger(q_larger(rgb_q20[0], rgb_q20[1]), rgb_q20[2]);
 }
 
-/* Returns the drop along ray I at the rim of a core of RADIUS, as a fraction of
- * white; -1 if it cannot be measured. Returns 0 if the rim is near the middle,
- * as such a core is a ring. */
-static int32_t lost_along(const struct window *w, int i, int32_t radius_q8)
+/* Returns the drop of light along ray I at the rim of a core of radius
+ * RADIUS, as a fraction of white; -1 if it cannot be measured. Returns 0 if
+ * the rim is near the middle, as such a core is a ring. */
+static int32_t measure_drop(const struct window *w, int i, int32_t radius_q8)
 {
     static const int16_t sine_q14[RAYS + RAYS / 4] = {
         0,      6270,  11585, 15137,  16384,  15137,  11585,
@@ -366,20 +368,21 @@ static int32_t lost_along(const struct window *w, int i, int32_t radius_q8)
     do {
         at_q8 += radius_q8 / RAY_SAMPLES;
         light_q20 =
-            light_at(w, q_mul(at_q8, x_q14, 14), q_mul(at_q8, y_q14, 14));
+            read_light(w, q_mul(at_q8, x_q14, 14), q_mul(at_q8, y_q14, 14));
     } while (light_q20 >= RIM_LIGHT && at_q8 < 3 * radius_q8);
     if (light_q20 < 0 || light_q20 >= RIM_LIGHT)
         return -1;
     if (at_q8 < radius_q8 / 4)
         return 0;
     at_q8 += q_larger(at_q8, radius_q8 / 2) / 8;
-    light_q20 = light_at(w, q_mul(at_q8, x_q14, 14), q_mul(at_q8, y_q14, 14));
+    light_q20 = read_light(w, q_mul(at_q8, x_q14, 14), q_mul(at_q8, y_q14, 14));
     return light_q20 < 0 ? -1
                          : q_clamp_sat(WHITE_Q20 - light_q20, 0, WHITE_Q20);
 }
 
-/* Returns the radius of a disc of the largest clipped area. */
-static int32_t core_radius_q8(const struct glint_profile_sums *sums)
+/* Returns the radius of a disc whose area is the largest clipped area of a
+ * channel. */
+static int32_t compute_core_radius_q8(const struct glint_profile_sums *sums)
 {
     int64_t area_q8 = 0;
 
@@ -389,17 +392,17 @@ static int32_t core_radius_q8(const struct glint_profile_sums *sums)
     return (int32_t)q_root((uint64_t)(area_q8 * Q_CONST(0.31831, 8)));
 }
 
-static int32_t rim_q15(const struct window *w,
-                       const struct glint_profile_sums *sums)
+static int32_t measure_rim_q15(const struct window *w,
+                               const struct glint_profile_sums *sums)
 {
-    const int32_t radius_q8 = core_radius_q8(sums);
+    const int32_t radius_q8 = compute_core_radius_q8(sums);
     int32_t lost_q20[RAYS];
     int n = 0;
 
     if (radius_q8 < RIM_RADIUS << 8)
         return 0;
     for (int i = 0; i < RAYS; i++) {
-        const int32_t lost = lost_along(w, i, radius_q8);
+        const int32_t lost = measure_drop(w, i, radius_q8);
         int at = n;
 
         if (lost < 0)
@@ -413,7 +416,7 @@ static int32_t rim_q15(const struct window *w,
 
 /* -------------------------------------------------------------------- light */
 
-static void see_light(void *ctx, const struct sample *s)
+static void add_to_sums(void *ctx, const struct sample *s)
 {
     struct glint_profile_sums *sums = ctx;
     int32_t u_q16[3], most_q16 = 0, clip_q8 = 0;
@@ -421,7 +424,7 @@ static void see_light(void *ctx, const struct sample *s)
     for (int c = 0; c < 3; c++) {
         struct glint_profile_channel *of = &sums->of[c];
         const int32_t over_q20 = s->rgb_q20[c] - of->black_q20;
-        const int32_t clipped = clipped_q8(s->rgb_q20[c]);
+        const int32_t clipped = compute_clipped_q8(s->rgb_q20[c]);
 
         u_q16[c] = (int32_t)((int64_t)over_q20 * of->scale_q16 >> 20);
         if (s->ring == 0)
@@ -445,7 +448,7 @@ static void see_light(void *ctx, const struct sample *s)
         add_moments(sums, most_q16, s);
 }
 
-/* Adds to the area of each level the pixels of the brighter levels. */
+/* Adds to the area of each level all pixels of the brighter levels. */
 static void add_up(struct glint_profile_channel *of)
 {
     int64_t n = 0;
@@ -470,13 +473,13 @@ void glint_rings_sum(struct glint_profile_sums *sums, struct glint_rings *rings,
                      const struct glint_spot *spots, int n, int i)
 {
     struct glint_bright *bright = &rings->bright;
-    struct window w = window_of(bright->image, &spots[rings->by_x[i]]);
+    struct window w = make_window(bright->image, &spots[rings->by_x[i]]);
     struct sectors sectors = {{{0}}, {0}};
 
     w.bright = bright;
     find_borders(&w, rings, spots, n, i);
     *sums = (struct glint_profile_sums){.step = w.step};
-    see_ring(&w, RINGS, see_background, &sectors);
+    visit_ring(&w, RINGS, add_to_background, &sectors);
     for (int c = 0; c < 3; c++) {
         struct glint_profile_channel *of = &sums->of[c];
         int64_t step_q20;
@@ -486,8 +489,8 @@ void glint_rings_sum(struct glint_profile_sums *sums, struct glint_rings *rings,
         of->step_q16 = (int32_t)(step_q20 * of->scale_q16 >> 20);
     }
     for (int ring = 0; ring <= RINGS; ring++)
-        see_ring(&w, ring, see_light, sums);
-    sums->rim_q15 = rim_q15(&w, sums);
+        visit_ring(&w, ring, add_to_sums, sums);
+    sums->rim_q15 = measure_rim_q15(&w, sums);
     for (int c = 0; c < 3; c++)
         add_up(&sums->of[c]);
 }

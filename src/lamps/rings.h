@@ -35,7 +35,7 @@
 enum {
     GLINT_PROFILE_RINGS = 3,
     GLINT_PROFILE_LEVELS = 7,
-    /* Levels up to this level are not counted outside the first ring. */
+    /* Levels up to this one are not counted outside the first ring. */
     GLINT_PROFILE_NEAR = 3,
     GLINT_PROFILE_SPOTS = 1024
 };
@@ -46,14 +46,14 @@ struct glint_profile_channel {
     int32_t spread_q16;           /* spread of the background's light, in u */
     int32_t step_q16; /* distance in u from the background to the next code if
                          codes have fewer than 8 bits; else 0 */
-    /* [k]: number of pixels with u of 2^-k or more; pixels below 2^(1 - k)
-     * count as fractions; [0]: number of clipped pixels */
+    /* [k]: number of pixels whose u is 2^-k or more, where pixels below 2^(1
+     * - k) count as fractions; [0]: number of clipped pixels */
     int64_t area_q8[GLINT_PROFILE_LEVELS + 1];
     /* [k]: number of pixels with u from 2^-k to below 2^(1 - k); [0]: with u of
      * 1 or more. */
     int64_t n[GLINT_PROFILE_LEVELS + 1];
-    int64_t fringe_q16; /* light of unclipped and of clipped pixels, each
-                           weighted by its largest u */
+    int64_t fringe_q16; /* sums of the light of unclipped pixels (fringe) and of
+                           clipped pixels (white), each weighted by its max u */
     int64_t white_q16;
 };
 
@@ -65,11 +65,11 @@ struct glint_profile_sums {
     int step;        /* pixels between samples of the core */
     int32_t rim_q15; /* drop of light at the rim as a fraction of white, the
                         median over all rays; 0 for a small core, or if too few
-                        rays end in the picture */
+                        rays end inside the picture */
 };
 
 struct glint_rings {
-    struct glint_bright bright;        /* reads the picture */
+    struct glint_bright bright;        /* reader of the picture */
     int32_t by_x[GLINT_PROFILE_SPOTS]; /* indices of the spots, from left to
                                           right */
 };

@@ -49,22 +49,25 @@ static WHOLLY_INLINE void add_pixel(struct glint_row_sum *restrict next,
 }
 
 /* Returns 0 + 1 + .. + (n - 1). */
-static int64_t sum_below(int64_t n)
+static int64_t sum_integers_below(int64_t n)
 {
     return n * (n - 1) / 2;
 }
 
-/* Sets *AT to SUM, the sum of the pixels left of X, plus N pixels equal to
- * pixel X; SUM[1] includes pixel X. */
-static void add_alike(struct glint_row_sum *at,
-                      const struct glint_row_sum *restrict sum, int x, int n)
+/* Sets *AT to the prefix sum N pixels further: SUM, over the pixels left of
+ * X, plus N pixels equal to pixel X. SUM[1] is the prefix sum that includes
+ * pixel X. */
+static void add_equal_pixels(struct glint_row_sum *at,
+                             const struct glint_row_sum *restrict sum, int x,
+                             int n)
 {
     const struct glint_row_sum *one = sum + 1;
     const int64_t w_q14 = one->of[ROW_LIGHT_W] - sum->of[ROW_LIGHT_W];
 
     for (int i = 0; i < ROW_LIGHT_SUMS; i++)
         at->of[i] = sum->of[i] + n * (one->of[i] - sum->of[i]);
-    at->wx_q14 = sum->wx_q14 + w_q14 * (sum_below(x + n) - sum_below(x));
+    at->wx_q14 = sum->wx_q14 +
+                 w_q14 * (sum_integers_below(x + n) - sum_integers_below(x));
     at->wx2_q14 = sum->wx2_q14 + w_q14 * (region_squares_below(x + n) -
                                           region_squares_below(x));
 }
@@ -81,9 +84,9 @@ static WHOLLY_INLINE void set_chroma(const struct glint_ycc *ycc, int32_t codes,
         chroma_q16[i] = cb * m_q16[i][1] + cr * m_q16[i][2] + (1 << 8);
 }
 
-/* Sets RGB to the linear light of luma Y and CHROMA, with the results of
- * ycc_to_rgb and curve_decode. The first column of the matrix has the same
- * value in all rows. */
+/* Sets RGB to the linear light of luma Y and CHROMA. Equals curve_decode()
+ * of ycc_to_rgb(). The first column of the matrix has the same value in all
+ * rows. */
 static WHOLLY_INLINE void decode_ycc(const struct glint_bright *b, int y,
                                      const int32_t chroma_q16[3],
                                      int32_t rgb_q20[3])
@@ -99,15 +102,16 @@ static WHOLLY_INLINE void decode_ycc(const struct glint_bright *b, int y,
     }
 }
 
-/* The layout of the codes of a row: first codes are STEP bytes apart; second
- * and third codes STEP_C bytes, each for 1 << SHIFT pixels. */
+/* The memory layout of a row: the codes of the first channel are STEP bytes
+ * apart; those of the second and third channel STEP_C bytes, each for 1 <<
+ * SHIFT pixels. */
 struct packing {
     enum glint_layout_kind kind;
     int step, step_c, shift;
 };
 
-static WHOLLY_INLINE int32_t codes_at(const struct glint_bright *b,
-                                      struct packing p, int x)
+static WHOLLY_INLINE int32_t read_codes(const struct glint_bright *b,
+                                        struct packing p, int x)
 {
     const ptrdiff_t at = (ptrdiff_t)x * p.step;
     const ptrdiff_t at_c = (ptrdiff_t)(x >> p.shift) * p.step_c;
@@ -125,7 +129,7 @@ static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
     const int32_t clipped_q20 = b->curve->decode_q20[BRIGHT_CLIPPED];
     struct glint_row_sum *sum = row->sum;
     int32_t of[ROW_LIGHT_SUMS] = {0}, rgb_q20[3], chroma_q16[3] = {0};
-    int32_t here = x0 < x1 ? codes_at(b, p, x0) : 0, chroma = -1;
+    int32_t here = x0 < x1 ? read_codes(b, p, x0) : 0, chroma = -1;
 
     for (int x = x0; x < x1;) {
         int next = x + 1;
@@ -145,13 +149,13 @@ static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
         add_pixel(&sum[next], &sum[x], of, x);
         row->from[next] = (uint16_t)next;
         for (int32_t last = here; next < x1; next++) {
-            here = codes_at(b, p, next);
+            here = read_codes(b, p, next);
             if (here != last)
                 break;
             row->from[next] = (uint16_t)x;
         }
         if (next > x + 1) {
-            add_alike(&sum[next], &sum[x], x, next - x);
+            add_equal_pixels(&sum[next], &sum[x], x, next - x);
             row->from[x + 1] = (uint16_t)(x + 1);
             row->from[next] = (uint16_t)next;
         }
@@ -159,7 +163,7 @@ static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
     }
 }
 
-/* Calls sum_pixels(), with constant steps for the usual formats. */
+/* Calls sum_pixels(), with a constant layout for the common formats. */
 static void sum_stretch(struct glint_row_light *row,
                         const struct glint_bright *b, int x0, int x1)
 {
@@ -189,16 +193,16 @@ void glint_row_light_extend(struct glint_row_light *row,
         row->end = x1;
 }
 
-/* Returns the sum of the pixels left of X; if it is not stored, it is computed
- * in *ROOM. */
-static const struct glint_row_sum *sum_at(const struct glint_row_light *row,
-                                          int x, struct glint_row_sum *room)
+/* Returns the prefix sum over the pixels left of X. If it is not stored, it
+ * is computed in *ROOM. */
+static const struct glint_row_sum *get_sum(const struct glint_row_light *row,
+                                           int x, struct glint_row_sum *room)
 {
     const int from = row->from[x];
 
     if (from == x)
         return &row->sum[x];
-    add_alike(room, &row->sum[from], from, x - from);
+    add_equal_pixels(room, &row->sum[from], from, x - from);
     return room;
 }
 
@@ -207,12 +211,12 @@ void glint_row_light_add(const struct glint_row_light *row,
                          int y)
 {
     struct glint_row_sum room[4];
-    const struct glint_row_sum *a = sum_at(row, x0, &room[0]);
-    const struct glint_row_sum *b = sum_at(row, x1, &room[1]);
+    const struct glint_row_sum *a = get_sum(row, x0, &room[0]);
+    const struct glint_row_sum *b = get_sum(row, x1, &room[1]);
     const int rim0 = x0 > ROW_LIGHT_RIM ? x0 - ROW_LIGHT_RIM : 0;
     const int rim1 = x1 < width - ROW_LIGHT_RIM ? x1 + ROW_LIGHT_RIM : width;
-    const struct glint_row_sum *c = sum_at(row, rim0, &room[2]);
-    const struct glint_row_sum *d = sum_at(row, rim1, &room[3]);
+    const struct glint_row_sum *c = get_sum(row, rim0, &room[2]);
+    const struct glint_row_sum *d = get_sum(row, rim1, &room[3]);
     const int64_t w_q14 = b->of[ROW_LIGHT_W] - a->of[ROW_LIGHT_W];
 
     region->w_q14 += w_q14;

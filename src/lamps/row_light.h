@@ -32,7 +32,7 @@ enum {
     ROW_LIGHT_RGB, /* linear R, G, B, _q14, of all pixels, then R, G, B of
                       pixels without a clipped channel */
     ROW_LIGHT_RIM_RGB = ROW_LIGHT_RGB + 3,
-    ROW_LIGHT_SUMS = 8 /* a power of two, for vectorization */
+    ROW_LIGHT_SUMS = 8 /* number of sums, a power of two for vectorisation */
 };
 
 /* Prefix sums: over the pixels of a stretch left of a column. */
@@ -42,11 +42,12 @@ struct glint_row_sum {
 };
 
 struct glint_row_light {
-    struct glint_row_sum *sum; /* [width + 1]: sums; valid where from[x] is x */
-    /* [width + 1]: the column itself if its sum is stored; else the first
-     * column of its run of equal pixels */
+    /* [width + 1]: prefix sums; valid where from[x] is x */
+    struct glint_row_sum *sum;
+    /* [width + 1]: x if the sum of column x is stored; else the first column
+     * of its run of equal pixels */
     uint16_t *from;
-    int end; /* end of the last stretch; -1: no stretch yet */
+    int end; /* end of the last stretch, pixels; -1: no stretch yet */
 };
 
 void glint_row_light_carve(struct glint_row_light *row,
@@ -60,8 +61,8 @@ void glint_row_light_extend(struct glint_row_light *row,
                             const struct glint_bright *bright, int x0, int x1);
 
 /* Adds the light of pixels X0 .. X1 - 1 of row Y to REGION, and the light of
- * pixels up to ROW_LIGHT_RIM beside them to its rim. All must be within a
- * stretch, or outside the picture, whose width is WIDTH. */
+ * up to ROW_LIGHT_RIM pixels on either side to its rim. All these pixels
+ * must be within a stretch, or outside the picture, whose width is WIDTH. */
 void glint_row_light_add(const struct glint_row_light *row,
                          struct glint_region *region, int x0, int x1, int width,
                          int y);

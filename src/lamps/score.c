@@ -9,10 +9,10 @@ enum {
                             contrast */
     LEAST_Q8 = -256,     /* contrasts are clamped to -1 .. 6 stops */
     MOST_Q8 = 6 * 256,
-    SMALL_Q8 = -2424, /* log2 of 1/709 of the picture: up to this size colour
-                         counts fully */
-    LARGE_Q8 = -1400, /* log2 of 1/44 of the picture: from this size on colour
-                         does not count */
+    SMALL_Q8 = -2424, /* log2 of 1/709 of the picture: up to this size the
+                         weight of colour is 1 */
+    LARGE_Q8 = -1400, /* log2 of 1/44 of the picture: from this size on the
+                         weight of colour is 0 */
     HALO_MOST_Q8 = 512,
     WIDE_Q8 = 1400,  /* log2 span over which a region becomes large: from 1/1960
                         of the picture to 1/44 */
@@ -27,10 +27,10 @@ struct term {
     int16_t least_q8, most_q8, weight_q8;
 };
 
-/* Weights from a logistic regression, each constrained to the sign that its
- * measure should have; tests/corpus/fit prints them. A step of 64 is a factor e
- * of the odds. The last weight is set by hand: no lamp of the corpus fills its
- * box, but a bright box in the dark still is a lamp. */
+/* Weights from a logistic regression, each constrained to the sign that is
+ * plausible for its measure; tests/corpus/fit prints them. A step of 64 is a
+ * factor e of the odds. The last weight is set by hand: no lamp of the
+ * corpus fills its box, but a bright box in the dark is a lamp nevertheless. */
 enum { BIAS_Q8 = -1438 };
 
 static const struct term terms[] = {
@@ -48,27 +48,28 @@ static const struct term terms[] = {
 
 /* ----------------------------------------------------------------- contrast */
 
-static int64_t largest(const int64_t v[3])
+static int64_t max_of_3(const int64_t v[3])
 {
     const int64_t most = v[0] > v[1] ? v[0] : v[1];
 
     return most > v[2] ? most : v[2];
 }
 
-/* Sets STOPS to log2 of the largest channel and of the luminance of RGB. */
-static void stops_of(const int64_t rgb_q20[3], int32_t stops_q8[2])
+/* Sets STOPS to log2 of the max channel and of the luminance of RGB, 1/256
+ * stops. */
+static void compute_stops(const int64_t rgb_q20[3], int32_t stops_q8[2])
 {
     const int64_t y_q20 =
         (rgb_q20[0] * 54 + rgb_q20[1] * 183 + rgb_q20[2] * 19) >> 8;
 
-    stops_q8[0] = glint_stops_q8(largest(rgb_q20) + FLOOR_Q20);
+    stops_q8[0] = glint_stops_q8(max_of_3(rgb_q20) + FLOOR_Q20);
     stops_q8[1] = glint_stops_q8(y_q20 + FLOOR_Q20);
 }
 
-/* Returns the stops by which IN exceeds pixel X of the row: the max of the
- * largest channel's and the luminance's. */
-static int32_t contrast_at(const struct glint_score *s, const int32_t in_q8[2],
-                           int x)
+/* Returns the stops by which IN exceeds pixel X of the row: the larger of
+ * the differences of the max channel and of the luminance. */
+static int32_t measure_contrast(const struct glint_score *s,
+                                const int32_t in_q8[2], int x)
 {
     int32_t rgb_q20[3], out_q8[2];
     int64_t wide_q20[3];
@@ -76,7 +77,7 @@ static int32_t contrast_at(const struct glint_score *s, const int32_t in_q8[2],
     glint_bright_read(s->bright, x, rgb_q20);
     for (int i = 0; i < 3; i++)
         wide_q20[i] = rgb_q20[i];
-    stops_of(wide_q20, out_q8);
+    compute_stops(wide_q20, out_q8);
     for (int i = 0; i < 2; i++)
         out_q8[i] = in_q8[i] - out_q8[i];
     return q_clamp_sat(out_q8[0] > out_q8[1] ? out_q8[0] : out_q8[1], LEAST_Q8,
@@ -85,8 +86,8 @@ static int32_t contrast_at(const struct glint_score *s, const int32_t in_q8[2],
 
 /* Sets (X, Y) to point I of the ellipse inscribed in SUM's box enlarged by D on
  * all sides. */
-static void point_of(const struct glint_region *sum, int32_t d, int i,
-                     int32_t *x, int32_t *y)
+static void compute_point(const struct glint_region *sum, int32_t d, int i,
+                          int32_t *x, int32_t *y)
 {
     static const int16_t sine_q14[SCORE_POINTS + SCORE_POINTS / 4] = {
         0,      6270,  11585, 15137,  16384,  15137,  11585,
@@ -100,27 +101,28 @@ static void point_of(const struct glint_region *sum, int32_t d, int i,
     *y = q_narrow(sum->y0 - d + q_shift(h * (16384 + sine_q14[i]), 15));
 }
 
-/* Sets FOUND to contrasts at points within the picture; returns their number.
- */
-static int look_around(const struct glint_score *s,
-                       const struct glint_region *sum, int32_t d,
-                       const int32_t in_q8[2], int32_t found_q8[SCORE_POINTS])
+/* Sets FOUND to the contrasts at those points of an ellipse that lie within
+ * the picture; returns their number. */
+static int measure_ellipse(const struct glint_score *s,
+                           const struct glint_region *sum, int32_t d,
+                           const int32_t in_q8[2],
+                           int32_t found_q8[SCORE_POINTS])
 {
     int n = 0;
 
     for (int i = 0; i < SCORE_POINTS; i++) {
         int32_t x, y;
 
-        point_of(sum, d, i, &x, &y);
+        compute_point(sum, d, i, &x, &y);
         if (x < 0 || y < 0 || x >= s->width || y >= s->height)
             continue;
         glint_bright_seek_row(s->bright, y);
-        found_q8[n++] = contrast_at(s, in_q8, x);
+        found_q8[n++] = measure_contrast(s, in_q8, x);
     }
     return n;
 }
 
-static int32_t mean_of(const int32_t *v, int n)
+static int32_t compute_mean(const int32_t *v, int n)
 {
     int32_t sum = 0;
 
@@ -140,10 +142,10 @@ static void sort(int32_t *v, int n)
         }
 }
 
-/* Returns the distance of ring I from the box of SUM, pixels: a sum of a term
- * proportional to the picture's side and a term proportional to the box's. */
-static int32_t distance_of(const struct glint_score *s,
-                           const struct glint_region *sum, int i)
+/* Returns the distance of ring I from the box of SUM, pixels: one term is
+ * proportional to the side of the picture, one to the side of the box. */
+static int32_t compute_distance(const struct glint_score *s,
+                                const struct glint_region *sum, int i)
 {
     static const int16_t in_q8[SCORE_RINGS][2] = {
         {320, 64}, {768, 192}, {2048, 512}};
@@ -155,39 +157,41 @@ static int32_t distance_of(const struct glint_score *s,
                      (in_q8[i][0] * side / 800 + in_q8[i][1] * box / 2) / 256);
 }
 
-/* Contrast around a region at one distance. */
+/* Contrast around a region, at one distance. */
 struct ring {
     int32_t mean_q8, lower_q8, upper_q8; /* mean and quartiles, 1/256 stops */
 };
 
 /* Sets RING to the contrasts at distance D; leaves it unchanged if no point is
  * in the picture. */
-static void look_at_ring(struct ring *ring, const struct glint_score *s,
+static void measure_ring(struct ring *ring, const struct glint_score *s,
                          const struct glint_region *sum, int32_t d,
                          const int32_t in_q8[2])
 {
     int32_t found_q8[SCORE_POINTS];
-    const int n = look_around(s, sum, d, in_q8, found_q8);
+    const int n = measure_ellipse(s, sum, d, in_q8, found_q8);
 
     if (n == 0)
         return;
     sort(found_q8, n);
-    ring->mean_q8 = mean_of(found_q8, n);
+    ring->mean_q8 = compute_mean(found_q8, n);
     ring->lower_q8 = found_q8[n / 4];
     ring->upper_q8 = found_q8[n - 1 - n / 4];
 }
 
-static void mean_stops(const struct glint_region *sum, int32_t stops_q8[2])
+static void compute_mean_stops(const struct glint_region *sum,
+                               int32_t stops_q8[2])
 {
     int64_t mean_q20[3];
 
     for (int i = 0; i < 3; i++)
         mean_q20[i] = sum->rgb_q14[i] * 64 / sum->area;
-    stops_of(mean_q20, stops_q8);
+    compute_stops(mean_q20, stops_q8);
 }
 
 /* Returns VALUE times the degree, 0 .. 1, to which C is a large region. */
-static int32_t wide_q8(const struct glint_candidate *c, int32_t value_q8)
+static int32_t compute_wide_q8(const struct glint_candidate *c,
+                               int32_t value_q8)
 {
     const int64_t size_q8 = (int64_t)c->evidence_q8[EVIDENCE_SIZE];
 
@@ -198,7 +202,7 @@ static int32_t wide_q8(const struct glint_candidate *c, int32_t value_q8)
 
 /* Returns area / (2 pi r^2) of SUM, at most 2: 256 for a disc. r is the RMS
  * radius; 1/6, the value of a single pixel, is added to r^2. */
-static int32_t fill_q8(const struct glint_region *sum)
+static int32_t compute_fill_q8(const struct glint_region *sum)
 {
     const int64_t r_q8 = glint_region_radius_q8(sum);
     const int64_t disc_q16 = q_shift(
@@ -208,14 +212,14 @@ static int32_t fill_q8(const struct glint_region *sum)
 }
 
 /* Returns EVIDENCE_DRAWN of a region that fills the fraction BOX of its box. */
-static int32_t drawn_q8(const struct glint_region *sum, int32_t box_q8)
+static int32_t compute_drawn_q8(const struct glint_region *sum, int32_t box_q8)
 {
     return sum->area < DRAWN_AREA
                ? 0
                : q_clamp_sat((int64_t)(box_q8 - DRAWN_BOX_Q8) * 64, 0, 256);
 }
 
-static int32_t colour_q8(const struct glint_region *sum)
+static int32_t compute_colour_q8(const struct glint_region *sum)
 {
     int64_t rim[3], least;
 
@@ -223,11 +227,11 @@ static int32_t colour_q8(const struct glint_region *sum)
         rim[i] = 63 * sum->rim_rgb_q14[i] + sum->rgb_q14[i];
     least = rim[0] < rim[1] ? rim[0] : rim[1];
     least = least < rim[2] ? least : rim[2];
-    return 256 - (int32_t)(least / (largest(rim) / 256 + 1));
+    return 256 - (int32_t)(least / (max_of_3(rim) / 256 + 1));
 }
 
 /* Returns PIXELS as a fraction of the picture, 2^20 for all of it. */
-static int64_t share_q20(const struct glint_score *s, int64_t pixels)
+static int64_t compute_share_q20(const struct glint_score *s, int64_t pixels)
 {
     return (pixels << 20) / ((int64_t)s->width * s->height);
 }
@@ -236,8 +240,8 @@ static int64_t share_q20(const struct glint_score *s, int64_t pixels)
  * LEVEL, 0 .. 5 stops; 0 if that white is where codes clip. An underexposed
  * night picture has lamps that do not clip; a picture that is grey overall has
  * grey objects. */
-static int32_t dim_q8(const struct glint_score *s,
-                      const struct glint_level *level)
+static int32_t compute_dim_q8(const struct glint_score *s,
+                              const struct glint_level *level)
 {
     const int32_t *light_q20 = s->bright->curve->decode_q20;
     int half;
@@ -250,9 +254,10 @@ static int32_t dim_q8(const struct glint_score *s,
                        0, 5 * 256);
 }
 
-/* Returns the stops below white of the brightness that 1 / 2^PART_LOG2 of the
- * picture reaches. */
-static int32_t below_white_q8(const struct glint_score *s, int part_log2)
+/* Returns how far below white the brightness is that 1 / 2^PART_LOG2 of the
+ * picture reaches, 1/256 stops. */
+static int32_t compute_below_white_q8(const struct glint_score *s,
+                                      int part_log2)
 {
     const int32_t *light_q20 = s->bright->curve->decode_q20;
     const int code = glint_white_reached_by(s->white, part_log2);
@@ -261,50 +266,53 @@ static int32_t below_white_q8(const struct glint_score *s, int part_log2)
         light_q20[code < BRIGHT_CLIPPED ? code : BRIGHT_CLIPPED] + FLOOR_Q20);
 }
 
-/* EVIDENCE_DARK_2, EVIDENCE_DARK_4 and EVIDENCE_DARK_32 of the picture. */
+/* The measures EVIDENCE_DARK_2, EVIDENCE_DARK_4 and EVIDENCE_DARK_32 of the
+ * picture. */
 struct dark {
     int32_t part_q8[SCORE_PARTS];
 };
 
-static void look_at_dark(struct dark *dark, const struct glint_score *s)
+static void measure_dark(struct dark *dark, const struct glint_score *s)
 {
     static const int8_t part_log2[SCORE_PARTS] = {1, 2, 5};
 
     for (int i = 0; i < SCORE_PARTS; i++)
-        dark->part_q8[i] = below_white_q8(s, part_log2[i]);
+        dark->part_q8[i] = compute_below_white_q8(s, part_log2[i]);
 }
 
-static void look_at_shape(struct glint_candidate *c,
+static void measure_shape(struct glint_candidate *c,
                           const struct glint_score *s)
 {
     const struct glint_region *sum = &c->sum;
     const int64_t box = (int64_t)(sum->x1 - sum->x0) * (sum->y1 - sum->y0);
-    const int32_t size_q8 = glint_stops_q8(share_q20(s, sum->area));
+    const int32_t size_q8 = glint_stops_q8(compute_share_q20(s, sum->area));
     const int32_t large_q8 =
         q_clamp_sat((int64_t)size_q8 - SMALL_Q8, 0, LARGE_Q8 - SMALL_Q8);
-    const int32_t tint_q8 = colour_q8(sum) * large_q8 / (LARGE_Q8 - SMALL_Q8);
+    const int32_t tint_q8 =
+        compute_colour_q8(sum) * large_q8 / (LARGE_Q8 - SMALL_Q8);
     int32_t *e_q8 = c->evidence_q8;
     int32_t in_q8[2], x_q8, y_q8;
 
-    mean_stops(sum, in_q8);
+    compute_mean_stops(sum, in_q8);
     e_q8[EVIDENCE_WHITE] =
         in_q8[1] -
         glint_stops_q8(
             s->bright->curve->decode_q20[s->level[c->level].clipped]);
-    e_q8[EVIDENCE_DIM] = dim_q8(s, &s->level[c->level]);
-    e_q8[EVIDENCE_FILL] = fill_q8(sum);
+    e_q8[EVIDENCE_DIM] = compute_dim_q8(s, &s->level[c->level]);
+    e_q8[EVIDENCE_FILL] = compute_fill_q8(sum);
     e_q8[EVIDENCE_BOX] = (int32_t)(((int64_t)sum->area << 8) / box);
-    e_q8[EVIDENCE_DRAWN] = drawn_q8(sum, e_q8[EVIDENCE_BOX]);
+    e_q8[EVIDENCE_DRAWN] = compute_drawn_q8(sum, e_q8[EVIDENCE_BOX]);
     e_q8[EVIDENCE_SIZE] = size_q8;
-    e_q8[EVIDENCE_COLOUR] = colour_q8(sum) - tint_q8;
-    e_q8[EVIDENCE_WIDE_HOT] = wide_q8(c, e_q8[EVIDENCE_WHITE] >= -2 ? 256 : 0);
+    e_q8[EVIDENCE_COLOUR] = compute_colour_q8(sum) - tint_q8;
+    e_q8[EVIDENCE_WIDE_HOT] =
+        compute_wide_q8(c, e_q8[EVIDENCE_WHITE] >= -2 ? 256 : 0);
     glint_region_centroid(sum, &x_q8, &y_q8);
     e_q8[EVIDENCE_HIGH] = 256 - y_q8 / s->height;
 }
 
 /* -------------------------------------------------------------------- score */
 
-static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
+static int32_t compute_score(const int32_t evidence_q8[EVIDENCES])
 {
     int32_t sum_q16 = BIAS_Q8 * 256;
 
@@ -318,9 +326,9 @@ static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
     return sum_q16 >> 8;
 }
 
-/* Returns the doubt that a low MEASURE means, or no doubt for measures that
- * only some lamps have. */
-static enum glint_doubt doubt_of(int measure)
+/* Returns the doubt (see glint_score_doubt()) that a low MEASURE causes, or
+ * no doubt for measures that are high only for some lamps. */
+static enum glint_doubt choose_doubt(int measure)
 {
     switch (measure) {
     case EVIDENCE_AROUND:
@@ -365,14 +373,15 @@ enum glint_doubt glint_score_doubt(const struct glint_candidate *c)
             ((t->least_q8 + t->most_q8) / 2 - v_q8) * t->weight_q8;
     }
     for (int i = worst; i < EVIDENCES; i++)
-        if (doubt_of(i) != GLINT_DOUBT_NONE && loss_q16[i] > loss_q16[worst])
+        if (choose_doubt(i) != GLINT_DOUBT_NONE &&
+            loss_q16[i] > loss_q16[worst])
             worst = i;
-    return doubt_of(worst);
+    return choose_doubt(worst);
 }
 
 /* Returns the first ring that MEASURE depends on, or SCORE_RINGS if it depends
  * on no ring. */
-static int ring_of(int measure)
+static int find_first_ring(int measure)
 {
     switch (measure) {
     case EVIDENCE_CLOSE:
@@ -387,14 +396,14 @@ static int ring_of(int measure)
     }
 }
 
-/* Returns the max that rings FIRST and later can add to a score. */
-static int32_t most_of_rings(int first)
+/* Returns the max that ring FIRST and later rings can add to a score. */
+static int32_t max_of_rings(int first)
 {
     int32_t sum_q16 = 0;
 
     for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
         const struct term *t = &terms[i];
-        const int ring = ring_of(t->measure);
+        const int ring = find_first_ring(t->measure);
 
         if (ring >= first && ring < SCORE_RINGS && t->weight_q8 > 0)
             sum_q16 += (t->most_q8 - t->least_q8) * t->weight_q8;
@@ -402,20 +411,20 @@ static int32_t most_of_rings(int first)
     return (sum_q16 >> 8) + 1;
 }
 
-/* Sets the measures of the rings so low that they add nothing, as
- * most_of_rings() accounts for their max; except EVIDENCE_WIDE_HALO, which
- * most_of_rings() leaves out: it is set to its max. */
-static void hope_for_rings(struct glint_candidate *c)
+/* Sets the measures of the rings so low that they add nothing, as their max
+ * is added by max_of_rings(). EVIDENCE_WIDE_HALO, which max_of_rings()
+ * leaves out, is set to its max. */
+static void assume_best_rings(struct glint_candidate *c)
 {
     for (int i = 0; i < EVIDENCES; i++)
-        if (ring_of(i) < SCORE_RINGS)
+        if (find_first_ring(i) < SCORE_RINGS)
             c->evidence_q8[i] = INT16_MIN; /* below all terms: adds 0 */
-    c->evidence_q8[EVIDENCE_WIDE_HALO] = wide_q8(c, HALO_MOST_Q8);
+    c->evidence_q8[EVIDENCE_WIDE_HALO] = compute_wide_q8(c, HALO_MOST_Q8);
 }
 
 /* Sets the measures of C that are known after ring I. */
-static void learn_of_ring(struct glint_candidate *c, const struct ring *ring,
-                          int i)
+static void set_ring_measures(struct glint_candidate *c,
+                              const struct ring *ring, int i)
 {
     int32_t *e_q8 = c->evidence_q8;
     const int64_t halo_q8 = (int64_t)ring[i].mean_q8 - ring[0].mean_q8;
@@ -431,12 +440,12 @@ static void learn_of_ring(struct glint_candidate *c, const struct ring *ring,
     default:
         e_q8[EVIDENCE_HALO] = q_narrow(halo_q8);
         e_q8[EVIDENCE_WIDE_HALO] =
-            wide_q8(c, q_clamp_sat(halo_q8, 0, HALO_MOST_Q8));
+            compute_wide_q8(c, q_clamp_sat(halo_q8, 0, HALO_MOST_Q8));
     }
 }
 
-/* Returns the score of C. If the level's is_brief is set, rings are read only
- * as long as they may raise the score to -SCORE_DOUBT. MOST[I]: the max that
+/* Returns the score of C. If is_brief of S is set, rings are read only as
+ * long as they may raise the score to -SCORE_DOUBT. MOST[I]: the max that
  * ring I and later rings can add. */
 static int32_t score_by_rings(struct glint_candidate *c,
                               const struct glint_score *s,
@@ -445,19 +454,20 @@ static int32_t score_by_rings(struct glint_candidate *c,
     struct ring ring[SCORE_RINGS] = {{0, 0, 0}};
     int32_t in_q8[2];
 
-    hope_for_rings(c);
-    mean_stops(&c->sum, in_q8);
+    assume_best_rings(c);
+    compute_mean_stops(&c->sum, in_q8);
     for (int i = 0; i < SCORE_RINGS; i++) {
-        const int32_t hoped_q8 = score_of(c->evidence_q8) + most_q8[i];
+        const int32_t hoped_q8 = compute_score(c->evidence_q8) + most_q8[i];
 
         if (s->is_brief && hoped_q8 < -SCORE_DOUBT)
             return hoped_q8;
         if (i > 0)
             ring[i] = ring[i - 1];
-        look_at_ring(&ring[i], s, &c->sum, distance_of(s, &c->sum, i), in_q8);
-        learn_of_ring(c, ring, i);
+        measure_ring(&ring[i], s, &c->sum, compute_distance(s, &c->sum, i),
+                     in_q8);
+        set_ring_measures(c, ring, i);
     }
-    return score_of(c->evidence_q8);
+    return compute_score(c->evidence_q8);
 }
 
 static void count_crowd(struct glint_candidate *candidate, const int32_t *order,
@@ -483,15 +493,15 @@ void glint_score_all(const struct glint_score *score,
     struct dark dark;
 
     for (int i = 0; i < SCORE_RINGS; i++)
-        most_q8[i] = most_of_rings(i);
+        most_q8[i] = max_of_rings(i);
     count_crowd(candidate, order, n);
-    look_at_dark(&dark, score);
+    measure_dark(&dark, score);
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &candidate[order[i]];
 
         for (int part = 0; part < SCORE_PARTS; part++)
             c->evidence_q8[EVIDENCE_DARK_2 + part] = dark.part_q8[part];
-        look_at_shape(c, score);
+        measure_shape(c, score);
         c->score_q8 = score_by_rings(c, score, most_q8);
     }
 }
@@ -500,9 +510,9 @@ void glint_score_all(const struct glint_score *score,
 
 /* Chooses the regions that are lamps, by their scores, and for nested regions
  * the one that represents the lamp. */
-enum { SURE_Q8 = 384 }; /* higher scores count as this score */
+enum { SURE_Q8 = 384 }; /* higher scores are clamped to this score */
 
-static int by_rank(const void *ctx, int32_t a, int32_t b)
+static int compare_ranks(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_candidate *p = (const struct glint_candidate *)ctx + a;
     const struct glint_candidate *q = (const struct glint_candidate *)ctx + b;
@@ -534,7 +544,7 @@ void glint_score_choose(const struct glint_score *score,
         c->rank_q8 = (c->score_q8 < SURE_Q8 ? c->score_q8 : SURE_Q8) -
                      score->level[c->level].cost_q8;
     }
-    glint_sort(order, n, by_rank, candidate);
+    glint_sort(order, n, compare_ranks, candidate);
     for (int i = 0; i < n; i++) {
         const struct glint_candidate *c = &candidate[order[i]];
 

@@ -6,7 +6,7 @@
  *        picture around them
  *   out  a score per region: from 0 on it is a lamp; a step of 64 is a factor
  *        e of the odds; below -SCORE_DOUBT it is not a lamp, even if it was
- *        a lamp in the frame before
+ *        a lamp in the previous frame
  *
  * Lamps are seldom alone: in a picture with SCORE_SEVERAL lamps, the threshold
  * is -SCORE_COMPANY. In a picture without any, the best region is accepted if
@@ -45,7 +45,7 @@ enum {
     SCORE_LEVELS = 8
 };
 
-/* Measures, _q8. */
+/* Measures of a region from which its score is computed, _q8. */
 enum glint_evidence {
     EVIDENCE_AROUND, /* lower quartile of the contrast at the middle ellipse,
                         stops */
@@ -95,10 +95,11 @@ struct glint_candidate {
     struct glint_region sum;
     int32_t x_q8, y_q8;
     int32_t score_q8;
-    int16_t level; /* index of its level; 0 is the darkest */
+    /* index of the level at which it was found; 0 is the darkest */
+    int16_t level;
     int32_t rank_q8;
     uint8_t faint;
-    uint8_t doubt; /* enum glint_doubt */
+    uint8_t doubt; /* value of enum glint_doubt */
     uint8_t gone;  /* 1: merged into another region, or replaced by a region of
                       higher rank */
     int32_t evidence_q8[EVIDENCES];
@@ -107,8 +108,8 @@ struct glint_candidate {
 /* A level of brightness at which regions are searched for. */
 struct glint_level {
     int low;           /* min brightness of pixels of its regions */
-    int seed, clipped; /* min brightness of pixels that count as seeds, or as
-                          clipped */
+    int seed, clipped; /* min brightness of pixels that count as seeds, and of
+                          pixels that count as clipped */
     int32_t cost_q8;   /* subtracted from the score when nested regions are
                           compared */
 };
@@ -134,8 +135,8 @@ void glint_score_all(const struct glint_score *score,
  * of its range. */
 enum glint_doubt glint_score_doubt(const struct glint_candidate *c);
 
-/* Returns the min score of a lamp: 0; -SCORE_COMPANY in a picture of
- * SCORE_SEVERAL lamps; or the best score if no score reaches 0 but the best is
+/* Returns the min score of a lamp: 0; -SCORE_COMPANY in a picture with
+ * SCORE_SEVERAL lamps; or, if no score reaches 0, the best score if that is
  * at least -alone_q8. Reorders ORDER. */
 int32_t glint_score_least(const struct glint_score *score,
                           struct glint_candidate *candidate, int32_t *order,

@@ -14,12 +14,12 @@ enum {
     LEVELS = GLINT_PROFILE_LEVELS,
     FEATURES = GLINT_UNCLIP_FEATURES,
     UNITS = GLINT_UNCLIP_UNITS,
-    SHOWN = 5 /* last level whose light counts as shown by the picture */
+    SHOWN = 5 /* darkest level whose light counts as shown by the picture */
 };
 
 /* ------------------------------------------------------------------- colour */
 
-static int64_t luminance(const int64_t v[3])
+static int64_t compute_luminance(const int64_t v[3])
 {
     return (v[0] * Q_CONST(0.2126, 15) + v[1] * Q_CONST(0.7152, 15) +
             v[2] * Q_CONST(0.0722, 15)) >>
@@ -43,15 +43,15 @@ static void set_colour(struct glint_spot *spot,
                    : down;
     }
     for (int c = 0; c < 3; c++)
-        v[c] >>= down & 31; /* 20 at most */
-    y = luminance(v);
+        v[c] >>= down & 31; /* at most 20 */
+    y = compute_luminance(v);
     for (int c = 0; c < 3 && y > 0; c++)
         spot->rgb_q15[c] = q_clamp_sat(q_divide(v[c] << 15, y), 0, 1 << 20);
 }
 
 /* ------------------------------------------------------------------- extent */
 
-static int32_t root_q8(int64_t square_q16, int step)
+static int32_t compute_root_q8(int64_t square_q16, int step)
 {
     return square_q16 > 0 ? (int32_t)q_root((uint64_t)square_q16) * step : 0;
 }
@@ -77,7 +77,7 @@ static void list_moments(const struct glint_profile_sums *sums,
  * core, 0 .. 1. The glare of a small lamp far over white is clipped, too, and
  * falls off over half of the core's radius or more; a large lamp has a sharp
  * rim, one pixel wide. */
-static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
+static int32_t compute_lamp_share_q15(const struct glint_profile_sums *sums)
 {
     const struct glint_profile_channel *of = &sums->of[0];
     int64_t inner_q8, outer_q8, rim_q8;
@@ -85,7 +85,7 @@ static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
     for (int c = 1; c < 3; c++)
         if (sums->of[c].area_q8[0] > of->area_q8[0])
             of = &sums->of[c];
-    /* radii of circles, times sqrt(pi) */
+    /* radii of circles with these areas, times sqrt(pi) */
     inner_q8 = q_root((uint64_t)of->area_q8[0] << 8);
     outer_q8 = q_root((uint64_t)of->area_q8[2] << 8);
     rim_q8 = outer_q8 - inner_q8 - Q_CONST(1.7725, 8);
@@ -98,15 +98,15 @@ static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
 /* Returns the radius of the lamp as a fraction of the core's radius, 0 .. 1,
  * from the rim of a large core: the whole core is the lamp if light drops more
  * at the rim than glare can drop. Returns 0 for a small core. */
-static int32_t face_share_q15(const struct glint_profile_sums *sums)
+static int32_t compute_face_share_q15(const struct glint_profile_sums *sums)
 {
     const int32_t over_q15 = sums->rim_q15 - RIM_GLARE;
 
     return q_clamp_sat(over_q15 * 32768 / (RIM_FACE - RIM_GLARE), 0, 1 << 15);
 }
 
-/* Semi-axes from the second moments of the pixels, including the lamp's
- * glare. */
+/* Semi-axes of the spot from the second moments of its pixels, including the
+ * lamp's glare. */
 struct axes {
     int32_t major_q8, minor_q8;
     int64_t half, apart; /* half of xx - yy, and half of the difference between
@@ -116,7 +116,7 @@ struct axes {
 
 /* Returns the semi-axes: the square roots of the eigenvalues of the second
  * moments. */
-static struct axes axes_of(const struct glint_profile_sums *sums)
+static struct axes compute_axes(const struct glint_profile_sums *sums)
 {
     int64_t m_q16[3], half, mid, apart;
 
@@ -124,17 +124,17 @@ static struct axes axes_of(const struct glint_profile_sums *sums)
     half = (m_q16[0] - m_q16[1]) / 2;
     mid = (m_q16[0] + m_q16[1]) / 2;
     apart = (int64_t)q_root((uint64_t)(half * half + m_q16[2] * m_q16[2]));
-    return (struct axes){root_q8(mid + apart, sums->step),
-                         root_q8(mid - apart, sums->step), half, apart,
+    return (struct axes){compute_root_q8(mid + apart, sums->step),
+                         compute_root_q8(mid - apart, sums->step), half, apart,
                          m_q16[2] < 0};
 }
 
 static void set_extent(struct glint_spot *spot,
                        const struct glint_profile_sums *sums)
 {
-    const struct axes axes = axes_of(sums);
+    const struct axes axes = compute_axes(sums);
     const int32_t share_q15 =
-        q_larger(lamp_share_q15(sums), face_share_q15(sums));
+        q_larger(compute_lamp_share_q15(sums), compute_face_share_q15(sums));
     int64_t cos2_q15 = 32768;
 
     spot->axis_q8[0] = q_mul(axes.major_q8, share_q15, 15);
@@ -150,16 +150,16 @@ static void set_extent(struct glint_spot *spot,
 
 /* -------------------------------------------------------------------- power */
 
-static int32_t log_of_q8(int64_t area_q8)
+static int32_t compute_log2(int64_t area_q8)
 {
     return q_log2_q16((uint64_t)(area_q8 > 0 ? area_q8 : 0) + 128) -
            8 * ONE_Q16;
 }
 
-/* Returns the weight of level K: 1 for levels 1 and 2; for other levels it
- * falls from 1, if the background's spread is at most half of the level's min
- * light, to 0, if it equals that light. */
-static int32_t weight_q16(const struct glint_profile_channel *of, int k)
+/* Returns the weight of level K. It is 1 for levels 1 and 2; for other
+ * levels it is 1 if the background's spread is at most half of the level's
+ * min light, and falls to 0 where the spread equals that light. */
+static int32_t compute_weight_q16(const struct glint_profile_channel *of, int k)
 {
     const int32_t spread_q16 =
         q_log2_q16((uint64_t)of->spread_q16 + 66) - 16 * ONE_Q16;
@@ -171,20 +171,21 @@ static int32_t weight_q16(const struct glint_profile_channel *of, int k)
 /* Returns the sum of u over the pixels of levels up to SHOWN. Level k ranges
  * from 2^-k to 2^(1 - k), so that areas times these ranges sum up to u -
  * 2^-SHOWN; the last area adds the missing 2^-SHOWN. */
-static int64_t flux_q16(const struct glint_profile_channel *of)
+static int64_t compute_flux_q16(const struct glint_profile_channel *of)
 {
     int64_t sum_q16 = 0;
 
     for (int k = 1; k <= SHOWN; k++)
-        sum_q16 +=
-            q_shift((of->area_q8[k] << (8 - k)) * (weight_q16(of, k) >> 8), 8);
+        sum_q16 += q_shift(
+            (of->area_q8[k] << (8 - k)) * (compute_weight_q16(of, k) >> 8), 8);
     return sum_q16 + q_shift((of->area_q8[SHOWN] << (8 - SHOWN)) *
-                                 (weight_q16(of, SHOWN) >> 8),
+                                 (compute_weight_q16(of, SHOWN) >> 8),
                              8);
 }
 
-/* Returns the area of LEVEL in the channel where it is largest. */
-static int64_t widest_q8(const struct glint_profile_sums *sums, int level)
+/* Returns the max of the areas of LEVEL over the channels. */
+static int64_t find_max_area_q8(const struct glint_profile_sums *sums,
+                                int level)
 {
     int64_t area_q8 = sums->of[0].area_q8[level];
 
@@ -194,8 +195,8 @@ static int64_t widest_q8(const struct glint_profile_sums *sums, int level)
     return area_q8;
 }
 
-/* Returns the clipped area of the channel where it is smallest. */
-static int64_t narrowest_q8(const struct glint_profile_sums *sums)
+/* Returns the min of the clipped areas over the channels. */
+static int64_t find_min_area_q8(const struct glint_profile_sums *sums)
 {
     int64_t area_q8 = sums->of[0].area_q8[0];
 
@@ -205,9 +206,9 @@ static int64_t narrowest_q8(const struct glint_profile_sums *sums)
     return area_q8;
 }
 
-/* Returns the brightest channel of the spot's colour at luminance 1, or 0.5 if
- * it has no colour. */
-static int32_t brightest_q15(const struct glint_spot *spot)
+/* Returns the max channel of the spot's colour at luminance 1, or 0.5 if it
+ * has no colour. */
+static int32_t find_max_channel_q15(const struct glint_spot *spot)
 {
     int32_t most = Q_CONST(0.5, 15);
 
@@ -216,9 +217,10 @@ static int32_t brightest_q15(const struct glint_spot *spot)
     return most;
 }
 
-/* Returns the fraction of LEVEL that the codes of the picture resolve: 1 if its
+/* Returns the degree to which the picture's codes resolve LEVEL: 1 if its
  * min light is two code steps above the background, 0 if it is one step. */
-static int32_t shown_q16(const struct glint_profile_sums *sums, int level)
+static int32_t compute_shown_q16(const struct glint_profile_sums *sums,
+                                 int level)
 {
     int32_t step_q16 = 1;
 
@@ -240,10 +242,11 @@ static void list_growth(int32_t growth_q16[LEVELS],
     int32_t at_q16 = 0, by_q16 = 0;
 
     for (int k = 1; k <= LEVELS; k++) {
-        const int32_t seen_q16 = log_of_q8(widest_q8(sums, k)) - core_q16;
+        const int32_t seen_q16 =
+            compute_log2(find_max_area_q8(sums, k)) - core_q16;
         const int32_t on_q16 = at_q16 + by_q16;
         const int32_t next_q16 =
-            on_q16 + q_mul(seen_q16 - on_q16, shown_q16(sums, k), 16);
+            on_q16 + q_mul(seen_q16 - on_q16, compute_shown_q16(sums, k), 16);
 
         by_q16 = next_q16 - at_q16;
         at_q16 = next_q16;
@@ -255,7 +258,7 @@ void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
                            const struct glint_spot *spot,
                            const struct glint_profile_sums *sums)
 {
-    const int32_t core_q16 = log_of_q8(widest_q8(sums, 0));
+    const int32_t core_q16 = compute_log2(find_max_area_q8(sums, 0));
     int64_t spread_q16 = 0, black_q20 = 0;
 
     for (int c = 0; c < 3; c++) {
@@ -263,24 +266,24 @@ void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
         black_q20 += sums->of[c].black_q20;
     }
     feature_q16[0] = core_q16;
-    feature_q16[1] = core_q16 - log_of_q8(narrowest_q8(sums));
+    feature_q16[1] = core_q16 - compute_log2(find_min_area_q8(sums));
     list_growth(feature_q16 + 2, sums, core_q16);
-    /* means of the channels, plus 0.001 and 0.002 */
+    /* means over the channels, plus 0.001 and 0.002 */
     feature_q16[2 + LEVELS] =
         q_log2_q16((uint64_t)spread_q16 + 197) - Q_CONST(17.585, 16);
     feature_q16[3 + LEVELS] =
         q_log2_q16((uint64_t)black_q20 + 6291) - Q_CONST(21.585, 16);
     feature_q16[4 + LEVELS] =
-        q_log2_q16((uint64_t)brightest_q15(spot)) - 15 * ONE_Q16;
-    feature_q16[5 + LEVELS] =
-        log_of_q8(q_mul(axes_of(sums).minor_q8, lamp_share_q15(sums), 15));
+        q_log2_q16((uint64_t)find_max_channel_q15(spot)) - 15 * ONE_Q16;
+    feature_q16[5 + LEVELS] = compute_log2(
+        q_mul(compute_axes(sums).minor_q8, compute_lamp_share_q15(sums), 15));
 }
 
 /* Returns the weighted sum of features, each clamped to its range, plus the
  * bias. A feature is below 2^23 and a weight below 2^15, so that the sum of 14
  * products is below 2^42. */
-static int64_t weighed_q26(const int16_t weight_q10[FEATURES + 1],
-                           const int32_t feature_q16[FEATURES])
+static int64_t sum_weighted_q26(const int16_t weight_q10[FEATURES + 1],
+                                const int32_t feature_q16[FEATURES])
 {
     int64_t sum_q26 = (int64_t)weight_q10[FEATURES] * ONE_Q16;
 
@@ -291,17 +294,18 @@ static int64_t weighed_q26(const int16_t weight_q10[FEATURES + 1],
     return sum_q26;
 }
 
-/* Returns the stops of the core over white, -6 .. 14: a linear term plus a
- * perceptron with one layer of rectified units. The units model interactions of
- * features: a halo means different objects around a core of three pixels and of
- * a hundred, or on a uniform background and among windows. A unit is below 2^32
- * in _q16, times a weight 2^47, and there are six. */
-static int32_t stops_q16(const int32_t feature_q16[FEATURES])
+/* Returns log2 of core light / white, -6 .. 14: a linear term plus a
+ * perceptron with one layer of rectified units. The units model interactions
+ * of features: a halo around a core of three pixels has another cause than
+ * one around a core of a hundred, and so has a halo on a uniform background
+ * or among windows. A unit is below 2^32 in _q16; times a weight, 2^47; and
+ * there are six. */
+static int32_t compute_stops_q16(const int32_t feature_q16[FEATURES])
 {
-    int64_t sum_q26 = weighed_q26(linear_q10, feature_q16);
+    int64_t sum_q26 = sum_weighted_q26(linear_q10, feature_q16);
 
     for (int i = 0; i < UNITS; i++) {
-        const int64_t unit_q26 = weighed_q26(unit_q10[i], feature_q16);
+        const int64_t unit_q26 = sum_weighted_q26(unit_q10[i], feature_q16);
 
         if (unit_q26 > 0)
             sum_q26 += q_shift(unit_q26, 10) * out_q10[i];
@@ -316,9 +320,11 @@ void glint_unclip_light(int64_t *seen_q16, int64_t *core_q16,
     int64_t flux[3];
 
     for (int c = 0; c < 3; c++)
-        flux[c] = q_divide(flux_q16(&sums->of[c]) << 16, sums->of[c].scale_q16);
-    *seen_q16 = luminance(flux);
-    *core_q16 = q_divide(widest_q8(sums, 0) << 23, brightest_q15(spot));
+        flux[c] = q_divide(compute_flux_q16(&sums->of[c]) << 16,
+                           sums->of[c].scale_q16);
+    *seen_q16 = compute_luminance(flux);
+    *core_q16 =
+        q_divide(find_max_area_q8(sums, 0) << 23, find_max_channel_q15(spot));
 }
 
 /* Sets the power: the light shown by the picture plus the light lost to
@@ -333,10 +339,10 @@ static void set_power(struct glint_spot *spot,
     glint_unclip_light(&seen_q16, &core_q16, spot, sums);
     glint_unclip_features(feature_q16, spot, sums);
     if (core_q16 > 0)
-        hidden_q16 =
-            q_exp2_q16(q_clamp_sat(q_log2_q16((uint64_t)core_q16) +
-                                       stops_q16(feature_q16) - 16 * ONE_Q16,
-                                   -16 * ONE_Q16, 27 * ONE_Q16));
+        hidden_q16 = q_exp2_q16(q_clamp_sat(q_log2_q16((uint64_t)core_q16) +
+                                                compute_stops_q16(feature_q16) -
+                                                16 * ONE_Q16,
+                                            -16 * ONE_Q16, 27 * ONE_Q16));
     spot->power_q16 = seen_q16 + hidden_q16 < MAX_POWER_Q16
                           ? seen_q16 + hidden_q16
                           : MAX_POWER_Q16;

@@ -7,12 +7,12 @@
 
 #include "lamps/rings.h"
 
-/* The features that predict the power of a clipped core, as logarithms: its
- * area; its area relative to the area in the channel that clips least; the area
- * of each level relative to it; spread and light of the background; the
- * brightest channel at luminance 1; the minor semi-axis of the lamp, without
- * glare, from the areas alone. The major semi-axis is left out, as for two
- * lamps in one spot it is their distance. */
+/* Number of the features that predict the power of a clipped core, as
+ * logarithms: its area; its area relative to the area in the channel that
+ * clips least; the area of each level relative to its area; spread and light
+ * of the background; the max channel at luminance 1; the minor semi-axis of
+ * the lamp, without glare, from the areas alone. The major semi-axis is left
+ * out, as for two lamps in one spot it is their distance. */
 enum { GLINT_UNCLIP_FEATURES = 6 + GLINT_PROFILE_LEVELS };
 
 /* Sets FEATURE to the features of SPOT, whose colour must be set. */

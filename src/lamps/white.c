@@ -4,8 +4,8 @@
 #include "base/q.h"
 #include "lamps/bright_code.h"
 
-/* With f the fraction after the leading bit, log2(1 + f) is within 0.002 of f +
- * f (1 - f) (0.4273 - 0.175 f). */
+/* Approximates log2(1 + f), where f is the fraction after the leading bit,
+ * by f + f (1 - f) (0.4273 - 0.175 f); the error is below 0.002. */
 int32_t glint_stops_q8(int64_t light_q20)
 {
     const uint64_t v = light_q20 > 0 ? (uint64_t)light_q20 : 1;
@@ -22,7 +22,7 @@ int32_t glint_stops_q8(int64_t light_q20)
 
 /* Returns the min code, at most BRIGHT_CLIPPED, whose linear light is STOPS or
  * more. */
-static int code_of_stops(const struct glint_bright *b, int32_t stops_q8)
+static int find_code(const struct glint_bright *b, int32_t stops_q8)
 {
     int code = 1;
 
@@ -32,19 +32,19 @@ static int code_of_stops(const struct glint_bright *b, int32_t stops_q8)
     return code;
 }
 
-/* Steps through the N columns or rows of a grid over SIDE pixels: number i is
- * at (2 i + 1) SIDE / (2 N), rounded down. */
+/* Iterates over the N columns or rows of a grid over SIDE pixels: number i
+ * is at (2 i + 1) SIDE / (2 N), rounded down. */
 struct grid {
     int at, past, step, step_past, whole;
 };
 
-static struct grid grid_of(int side, int n)
+static struct grid make_grid(int side, int n)
 {
     return (struct grid){side / (2 * n), side % (2 * n), side / n,
                          2 * side % (2 * n), 2 * n};
 }
 
-static WHOLLY_INLINE void grid_next(struct grid *g)
+static WHOLLY_INLINE void advance_grid(struct grid *g)
 {
     g->at += g->step;
     g->past += g->step_past;
@@ -54,21 +54,22 @@ static WHOLLY_INLINE void grid_next(struct grid *g)
     }
 }
 
-static void count(struct glint_white *w, struct glint_bright *b, int height)
+static void count_pixels(struct glint_white *w, struct glint_bright *b,
+                         int height)
 {
     const int nx = b->width < WHITE_GRID_X ? b->width : WHITE_GRID_X;
     const int ny = height < WHITE_GRID_Y ? height : WHITE_GRID_Y;
-    struct grid row = grid_of(height, ny);
+    struct grid row = make_grid(height, ny);
 
     for (int j = 0; j < ny; j++) {
-        struct grid column = grid_of(b->width, nx);
+        struct grid column = make_grid(b->width, nx);
 
         glint_bright_seek_row(b, row.at);
         for (int i = 0; i < nx; i++) {
             w->at_least[bright_value_at(b, column.at)]++;
-            grid_next(&column);
+            advance_grid(&column);
         }
-        grid_next(&row);
+        advance_grid(&row);
     }
     w->n = nx * ny;
 }
@@ -79,7 +80,7 @@ void glint_white_measure(struct glint_white *white, struct glint_bright *bright,
     int code;
 
     *white = (struct glint_white){0};
-    count(white, bright, height);
+    count_pixels(white, bright, height);
     for (int value = 255; value >= 0; value--)
         white->at_least[value] += white->at_least[value + 1];
     code = glint_white_reached_by(white, WHITE_PART_LOG2);
@@ -93,7 +94,7 @@ void glint_white_measure(struct glint_white *white, struct glint_bright *bright,
 int glint_white_code(const struct glint_bright *bright, int32_t light_q20,
                      int32_t ev_q8)
 {
-    return code_of_stops(bright, glint_stops_q8(light_q20) + ev_q8);
+    return find_code(bright, glint_stops_q8(light_q20) + ev_q8);
 }
 
 int glint_white_reached_by(const struct glint_white *white, int part_log2)

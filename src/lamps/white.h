@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures the brightness distribution of a picture, and its white.
+ * Measures the brightness histogram of a picture, and its white.
  *
- *   in   a picture that bright has begun with
- *   out number of pixels of a grid that reach each brightness; codes
+ *    in   a picture for which glint_bright_begin() was called
+ *    out  number of pixels of a grid that reach each brightness; codes
  *
  * In an underexposed picture a lamp may be far darker than full white. So white
  * is the code at which codes clip if at least one pixel in 2^WHITE_PART_LOG2
  * clips. Else it is the code that this fraction of pixels reaches, but at least
- * WHITE_LEAST, so that noise is not taken for lamps. */
+ * WHITE_LEAST, so that noise is not mistaken for lamps.
+ */
 #ifndef GLINT_LAMPS_WHITE_H
 #define GLINT_LAMPS_WHITE_H
 
@@ -22,7 +23,7 @@ enum {
 };
 
 struct glint_white {
-    int n;                 /* pixels read */
+    int n;                 /* number of pixels read */
     int32_t at_least[257]; /* [i]: number of pixels read with brightness i or
                               more */
     int32_t light_q20;     /* linear light of white */
