@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * Mixes the polynomials of two neighbouring positions of a zoom.
+ * Mixes the polynomials of a ghost at two neighbouring positions of a zoom.
  *
- *   in   two transfers of the same ghost, angle and wavelength
- *   out  one: every coefficient and the box in proportion
+ *    in   two transfers of the same ghost, angle and wavelength
+ *    out  one transfer: each coefficient and the box interpolated linearly
  *
  * In the coordinates of its box a ghost changes slowly with the zoom. Between
- * both positions the weights are 0 or more and sum to 1, so that sums of
- * magnitudes do not exceed the larger sum of both, and the bounds that the
- * transfer relies on hold. In extrapolation the weights reach 2 and -1 and sums
- * triple, for which two bits are reserved. Each coefficient rounds once. The
- * unit is the coarser unit of both.
+ * both positions the weights are 0 or more and sum to 1, so that the sum of
+ * magnitudes of each output does not exceed the larger of the two sums, and the
+ * bounds on which the transfer relies hold. In extrapolation the weights reach
+ * 2 and -1 and the sums triple, for which two bits are reserved. Each
+ * coefficient is rounded once. The unit of the result is the coarser unit of
+ * the two.
  *
  * Barrels are mixed with the partners that pair.c finds. A barrel without a
  * partner keeps its position in the stop, as boxes may change faster than the
  * visible rays, and widens towards the position that lacks it, until it cuts
- * nothing. */
+ * nothing.
+ */
 #include "lens/blend.h"
 
 #include "base/q.h"
@@ -25,20 +27,21 @@
 enum {
     ROWS = GLINT_MAX_POWER + 1,
     BARREL = GLINT_OUT_BARREL_0,
-    OPEN_Q16 = 1 << 15, /* value of a barrel at its middle, where all light
-                           passes */
-    LEAST_UP = 16,      /* of units of 2^-30 or more, in which that is 2^29 */
+    OPEN_Q16 = 1 << 15, /* value of a barrel's polynomial at its middle, where
+                           all light passes */
+    LEAST_UP = 16, /* min exponent above 2^-46 of a barrel's unit: OPEN_Q16 is
+                      below 2^30 units */
     MOST_HEAD = 28,
-    NEAR_Q24 = 1 << 23, /* half widths */
-    LATE_Q30 = 3 << 28, /* fraction of the way between both positions after
+    NEAR_Q24 = 1 << 23, /* max move for first-order terms: half a half width */
+    LATE_Q30 = 3 << 28, /* fraction of the distance between both positions after
                            which a barrel opens */
-    MOST_MOVE = 8,      /* max distance of boxes, half widths */
+    MOST_MOVE = 8,      /* max distance between the boxes, half widths */
     BEYOND = 2          /* bits reserved for extrapolation, which triples
                            sums */
 };
 
 /* Returns X / 2^S, rounded, for any S of 0 or more. */
-static int64_t down(int64_t x, int s)
+static int64_t shift_right(int64_t x, int s)
 {
     return s > 62 ? 0 : q_shift(x, s);
 }
@@ -48,23 +51,23 @@ static uint8_t larger(uint8_t a, uint8_t b)
     return a > b ? a : b;
 }
 
-/* Returns A (1 - PART) + B PART in the unit 2^E. The unit of A is 2^EA, that of
- * B 2^EB; EA and EB must be at most E. */
-static int32_t mix(int32_t a, int32_t ea, int32_t b, int32_t eb, int32_t e,
-                   int32_t part_q30)
+/* Returns A (1 - PART) + B PART, rounded, in the unit 2^E. The units of A
+ * and B are 2^EA and 2^EB, at most 2^E. */
+static int32_t interpolate(int32_t a, int32_t ea, int32_t b, int32_t eb,
+                           int32_t e, int32_t part_q30)
 {
-    return (
-        int32_t)(down((int64_t)a * (TRANSFER_ONE_Q30 - part_q30), 30 + e - ea) +
-                 down((int64_t)b * part_q30, 30 + e - eb));
+    return (int32_t)(shift_right((int64_t)a * (TRANSFER_ONE_Q30 - part_q30),
+                                 30 + e - ea) +
+                     shift_right((int64_t)b * part_q30, 30 + e - eb));
 }
 
-/* Returns (B - A) / SIZE, where the units of B, A and SIZE are 2^EB, 2^EA and
- * 2^ES. Sets *FAR if the quotient exceeds MOST_MOVE. */
-static int32_t move_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
-                        int64_t size, int32_t es, int *far)
+/* Returns (B - A) / SIZE, where the units of B, A and SIZE are 2^EB, 2^EA
+ * and 2^ES. Sets *FAR if the magnitude of the quotient exceeds MOST_MOVE. */
+static int32_t compute_move_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
+                                int64_t size, int32_t es, int *far)
 {
     const int32_t e = ea > eb ? ea : eb;
-    const int64_t off = down(b, e - eb) - down(a, e - ea);
+    const int64_t off = shift_right(b, e - eb) - shift_right(a, e - ea);
     int64_t q;
 
     if (size <= 0 || es - e > 30 || e - es > 30) {
@@ -91,19 +94,20 @@ static void set_moves(struct glint_zoom_mix *blend, const int32_t box[3],
     for (int k = 0; k < 2; k++) {
         struct glint_blend_move *const m = &blend->move[k];
 
-        m->along_q24 =
-            move_q24(of[1][0], e[1], of[0][0], e[0], of[k][1], e[k], &far);
-        m->wider_q24 =
-            move_q24(of[1][1], e[1], of[0][1], e[0], of[k][1], e[k], &far);
-        m->higher_q24 =
-            move_q24(of[1][2], e[1], of[0][2], e[0], of[k][2], e[k], &far);
+        m->along_q24 = compute_move_q24(of[1][0], e[1], of[0][0], e[0],
+                                        of[k][1], e[k], &far);
+        m->wider_q24 = compute_move_q24(of[1][1], e[1], of[0][1], e[0],
+                                        of[k][1], e[k], &far);
+        m->higher_q24 = compute_move_q24(of[1][2], e[1], of[0][2], e[0],
+                                         of[k][2], e[k], &far);
     }
     for (int k = 0; k < 2 && far; k++)
         blend->move[k] = (struct glint_blend_move){0, 0, 0};
     blend->far = far;
 }
 
-/* Returns whether M is half a box or less. */
+/* Returns whether each component of M is at most half a half width or half
+ * height of the box. */
 static int is_small(const struct glint_blend_move *m)
 {
     return q_magnitude(m->along_q24) <= NEAR_Q24 &&
@@ -111,9 +115,9 @@ static int is_small(const struct glint_blend_move *m)
            q_magnitude(m->higher_q24) <= NEAR_Q24;
 }
 
-/* Records where rays pass the stop, if O is a stop output. */
-static void note_stop(struct glint_blend_stop *stop,
-                      const struct glint_blend_output *o)
+/* Records the position at which rays pass the stop, if O is a stop output. */
+static void record_stop(struct glint_blend_stop *stop,
+                        const struct glint_blend_output *o)
 {
     if (o->kind == GLINT_OUT_STOP_X) {
         stop->middle = o->row[0][0];
@@ -125,7 +129,7 @@ static void note_stop(struct glint_blend_stop *stop,
     }
 }
 
-static struct glint_blend_stop stop_of(struct glint_transfer *t)
+static struct glint_blend_stop make_stop(struct glint_transfer *t)
 {
     struct glint_blend_stop stop = {0, 0, 0, 0, 0};
 
@@ -133,7 +137,7 @@ static struct glint_blend_stop stop_of(struct glint_transfer *t)
         const struct glint_blend_output o = glint_blend_of(t, kind);
 
         if (transfer_has(t, kind))
-            note_stop(&stop, &o);
+            record_stop(&stop, &o);
     }
     return stop;
 }
@@ -147,10 +151,10 @@ int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
         (blend->part_q30 < 0 ? BEYOND : 0);
 
     set_moves(blend, box, exponent);
-    blend->stop[0] = stop_of(t);
+    blend->stop[0] = make_stop(t);
     for (int k = 0; k < 3; k++)
-        t->box[k] = mix(box[k], exponent, t->box[k], t->box_exponent, e,
-                        blend->part_q30);
+        t->box[k] = interpolate(box[k], exponent, t->box[k], t->box_exponent, e,
+                                blend->part_q30);
     t->box_exponent = e;
     return blend->part_q30 >= 0 || (!blend->far && is_small(&blend->move[1]) &&
                                     t->box[1] > 0 && t->box[2] > 0);
@@ -158,8 +162,8 @@ int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
 
 /* Returns the first-order change of the coefficient of u^A v^B when points of
  * the box move by M. */
-static int64_t moved(int32_t (*row)[GLINT_TABLE_WIDTH], int a, int b,
-                     const struct glint_blend_move *m)
+static int64_t compute_change(int32_t (*row)[GLINT_TABLE_WIDTH], int a, int b,
+                              const struct glint_blend_move *m)
 {
     int64_t sum = (int64_t)row[b][a] *
                   ((int64_t)a * m->wider_q24 + (int64_t)b * m->higher_q24);
@@ -173,9 +177,9 @@ static int64_t moved(int32_t (*row)[GLINT_TABLE_WIDTH], int a, int b,
  * of the transfer (unit 2^EXPONENT) and of O that make both refer to the same
  * point of the pupil. Returns whether the sums of the changes are small enough
  * for the transfer. */
-static int find_moved(const struct glint_zoom_mix *blend, int kind,
-                      int32_t exponent, const struct glint_blend_output *o,
-                      int32_t e, int32_t (*to)[GLINT_TABLE_WIDTH])
+static int find_changes(const struct glint_zoom_mix *blend, int kind,
+                        int32_t exponent, const struct glint_blend_output *o,
+                        int32_t e, int32_t (*to)[GLINT_TABLE_WIDTH])
 {
     int32_t(*const ours)[GLINT_TABLE_WIDTH] = blend->to->table[kind];
     const int64_t part = blend->part_q30 >> 15;
@@ -185,15 +189,17 @@ static int find_moved(const struct glint_zoom_mix *blend, int kind,
     for (int b = 0; b <= blend->to->degree_v[kind]; b++)
         for (int a = 0; a <= blend->to->degree_u[kind]; a++) {
             const int64_t x =
-                down(moved(ours, a, b, &blend->move[0]) * both_q15,
-                     15 + e - exponent) -
-                down(moved(o->row, a, b, &blend->move[1]) * both_q15,
-                     15 + e - o->exponent);
+                shift_right(compute_change(ours, a, b, &blend->move[0]) *
+                                both_q15,
+                            15 + e - exponent) -
+                shift_right(compute_change(o->row, a, b, &blend->move[1]) *
+                                both_q15,
+                            15 + e - o->exponent);
             const int64_t size = (int64_t)q_magnitude(x);
 
-            all += size +
-                   (int64_t)q_magnitude(mix(ours[b][a], exponent, o->row[b][a],
-                                            o->exponent, e, blend->part_q30));
+            all += size + (int64_t)q_magnitude(
+                              interpolate(ours[b][a], exponent, o->row[b][a],
+                                          o->exponent, e, blend->part_q30));
             to[b][a] = size < TRANSFER_ONE_Q30 ? (int32_t)x : 0;
         }
     return all < TRANSFER_ONE_Q30;
@@ -213,20 +219,21 @@ static int32_t mix_output(const struct glint_zoom_mix *blend, int kind,
 
     t->degree_u[kind] = larger(t->degree_u[kind], o->degree_u);
     t->degree_v[kind] = larger(t->degree_v[kind], o->degree_v);
-    moves = find_moved(blend, kind, exponent, o, e, more);
+    moves = find_changes(blend, kind, exponent, o, e, more);
     for (int b = 0; b <= t->degree_v[kind]; b++)
         for (int a = 0; a <= t->degree_u[kind]; a++)
             t->table[kind][b][a] =
-                mix(t->table[kind][b][a], exponent, o->row[b][a], o->exponent,
-                    e, blend->part_q30) +
+                interpolate(t->table[kind][b][a], exponent, o->row[b][a],
+                            o->exponent, e, blend->part_q30) +
                 (moves ? more[b][a] : 0);
     return e;
 }
 
 /* ------------------------------------------------------------------ energy */
 
-/* Returns the exponent of the energy's polynomial itself. */
-static int32_t energy_exponent(const struct glint_transfer *t)
+/* Returns the exponent of the unit of the energy polynomial, before its
+ * roots are taken. */
+static int32_t compute_energy_exponent(const struct glint_transfer *t)
 {
     int32_t e = t->exponent[GLINT_OUT_ENERGY];
 
@@ -235,12 +242,13 @@ static int32_t energy_exponent(const struct glint_transfer *t)
     return e + t->head;
 }
 
-/* Heads scale so that all values fit; a coarser unit leaves them more room. */
+/* The head of an energy is a scale with which all values fit; a coarser unit
+ * leaves more room for it. */
 static void mix_energy(const struct glint_zoom_mix *blend,
                        const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
-    const int32_t before = energy_exponent(t);
+    const int32_t before = compute_energy_exponent(t);
     const int32_t now = mix_output(blend, GLINT_OUT_ENERGY, before, o);
     int head = t->head + now - before, other = o->head + now - o->exponent;
     int32_t e;
@@ -255,8 +263,8 @@ static void mix_energy(const struct glint_zoom_mix *blend,
     t->exponent[GLINT_OUT_ENERGY] = e;
 }
 
-/* Multiplies output KIND by fraction. */
-static void scale(struct glint_transfer *t, int kind, int32_t share_q30)
+/* Multiplies output KIND by the fraction SHARE. */
+static void scale_output(struct glint_transfer *t, int kind, int32_t share_q30)
 {
     for (int b = 0; b < ROWS; b++)
         for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
@@ -267,14 +275,14 @@ void glint_blend_fade(struct glint_transfer *t, int32_t share_q30)
 {
     for (int k = 0; k < t->roots; k++)
         share_q30 = (int32_t)q_root((uint64_t)share_q30 << 30);
-    scale(t, GLINT_OUT_ENERGY, share_q30);
+    scale_output(t, GLINT_OUT_ENERGY, share_q30);
 }
 
 /* ----------------------------------------------------------------- barrels */
 
-/* Opens barrel KIND by the fraction SHARE: mixes it with a barrel that cuts
- * nothing. A barrel with a unit so fine that sums would reach 2^30 stays
- * unchanged; no lens has one. */
+/* Opens barrel KIND by the fraction SHARE: interpolates towards a barrel
+ * that cuts nothing. A barrel whose unit is so fine that sums would reach
+ * 2^30 stays unchanged; no lens has one. */
 static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
 {
     const int up = 46 + t->exponent[kind];
@@ -282,40 +290,45 @@ static void open_barrel(struct glint_transfer *t, int kind, int32_t share_q30)
     if (up < LEAST_UP)
         return;
     share_q30 = share_q30 > LATE_Q30 ? 4 * (share_q30 - LATE_Q30) : 0;
-    scale(t, kind, TRANSFER_ONE_Q30 - share_q30);
-    t->table[kind][0][0] += (int32_t)down((int64_t)OPEN_Q16 * share_q30, up);
+    scale_output(t, kind, TRANSFER_ONE_Q30 - share_q30);
+    t->table[kind][0][0] +=
+        (int32_t)shift_right((int64_t)OPEN_Q16 * share_q30, up);
 }
 
-/* Returns (B - A) / SIZE as move_q24() does; SIZE may be negative. */
-static int32_t turn_q24(int64_t b, int32_t eb, int64_t a, int32_t ea,
-                        int64_t size, int32_t es, int *far)
+/* Like compute_move_q24(), but SIZE may be negative. */
+static int32_t compute_signed_move_q24(int64_t b, int32_t eb, int64_t a,
+                                       int32_t ea, int64_t size, int32_t es,
+                                       int *far)
 {
-    return size < 0 ? move_q24(-b, eb, -a, ea, -size, es, far)
-                    : move_q24(b, eb, a, ea, size, es, far);
+    return size < 0 ? compute_move_q24(-b, eb, -a, ea, -size, es, far)
+                    : compute_move_q24(b, eb, a, ea, size, es, far);
 }
 
-/* Sets M to the move from the MIXED box to the box OF a position that preserves
- * positions in the stop. Returns whether M is small enough for first-order
- * terms. */
+/* Sets M to the move from the MIXED box to the box OF a position that
+ * preserves positions in the stop. Returns whether M is small enough for
+ * first-order terms. */
 static int find_in_stop(const struct glint_blend_stop *of,
                         const struct glint_blend_stop *mixed,
                         struct glint_blend_move *m)
 {
     int far = 0;
 
-    m->along_q24 = turn_q24(mixed->middle, mixed->x_exponent, of->middle,
-                            of->x_exponent, of->across, of->x_exponent, &far);
-    m->wider_q24 = turn_q24(mixed->across, mixed->x_exponent, of->across,
-                            of->x_exponent, of->across, of->x_exponent, &far);
-    m->higher_q24 = turn_q24(mixed->up, mixed->y_exponent, of->up,
-                             of->y_exponent, of->up, of->y_exponent, &far);
+    m->along_q24 = compute_signed_move_q24(mixed->middle, mixed->x_exponent,
+                                           of->middle, of->x_exponent,
+                                           of->across, of->x_exponent, &far);
+    m->wider_q24 = compute_signed_move_q24(mixed->across, mixed->x_exponent,
+                                           of->across, of->x_exponent,
+                                           of->across, of->x_exponent, &far);
+    m->higher_q24 =
+        compute_signed_move_q24(mixed->up, mixed->y_exponent, of->up,
+                                of->y_exponent, of->up, of->y_exponent, &far);
     return !far && is_small(m);
 }
 
-/* Returns the largest value of a barrel at the rim of the stop or the rim of
- * the box, whichever is nearer. */
-static int32_t at_rim_q16(const struct glint_blend_output *barrel,
-                          const struct glint_blend_stop *stop)
+/* Returns the max value of a barrel's polynomial at the rim of the stop or
+ * the rim of the box, whichever is nearer. */
+static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
+                                   const struct glint_blend_stop *stop)
 {
     const int32_t one = TRANSFER_ONE_Q30;
     const int32_t place[3][2] = {{-one, 0}, {one, 0}, {0, one}};
@@ -323,11 +336,12 @@ static int32_t at_rim_q16(const struct glint_blend_output *barrel,
 
     for (int k = 0; k < 3; k++) {
         int far = 0;
-        const int32_t u_q24 =
-            turn_q24(place[k][0], -30, stop->middle, stop->x_exponent,
-                     stop->across, stop->x_exponent, &far);
-        const int32_t v_q24 = turn_q24(place[k][1], -30, 0, stop->y_exponent,
-                                       stop->up, stop->y_exponent, &far);
+        const int32_t u_q24 = compute_signed_move_q24(
+            place[k][0], -30, stop->middle, stop->x_exponent, stop->across,
+            stop->x_exponent, &far);
+        const int32_t v_q24 =
+            compute_signed_move_q24(place[k][1], -30, 0, stop->y_exponent,
+                                    stop->up, stop->y_exponent, &far);
         const int32_t value_q16 = glint_blend_value_q16(
             barrel, q_clamp_sat(u_q24, -(1 << 24), 1 << 24),
             q_clamp_sat(v_q24 < 0 ? -(int64_t)v_q24 : v_q24, 0, 1 << 24));
@@ -337,12 +351,12 @@ static int32_t at_rim_q16(const struct glint_blend_output *barrel,
     return most;
 }
 
-/* Moves barrel KIND of SIDE to its position in the stop, if it cuts less there
- * and sums stay small enough for the transfer. */
+/* Moves barrel KIND of the position SIDE to its location in the stop, if the
+ * barrel then cuts less and sums stay small enough for the transfer. */
 static void keep_in_stop(const struct glint_zoom_mix *blend, int side, int kind)
 {
     struct glint_transfer *const t = blend->to;
-    const struct glint_blend_stop stop = stop_of(t);
+    const struct glint_blend_stop stop = make_stop(t);
     int32_t moved_row[ROWS][GLINT_TABLE_WIDTH];
     const struct glint_blend_output own = glint_blend_of(t, kind);
     struct glint_blend_output kept = own;
@@ -354,21 +368,21 @@ static void keep_in_stop(const struct glint_zoom_mix *blend, int side, int kind)
     kept.row = moved_row;
     for (int b = 0; b <= own.degree_v; b++)
         for (int a = 0; a <= own.degree_u; a++) {
-            const int64_t x = own.row[b][a] + moved(own.row, a, b, &m);
+            const int64_t x = own.row[b][a] + compute_change(own.row, a, b, &m);
 
             all += (int64_t)q_magnitude(x);
             kept.row[b][a] = all < TRANSFER_ONE_Q30 ? (int32_t)x : 0;
         }
     if (all >= TRANSFER_ONE_Q30 ||
-        at_rim_q16(&kept, &stop) >= at_rim_q16(&own, &stop))
+        find_max_at_rim_q16(&kept, &stop) >= find_max_at_rim_q16(&own, &stop))
         return;
     for (int b = 0; b <= own.degree_v; b++)
         for (int a = 0; a <= own.degree_u; a++)
             own.row[b][a] = kept.row[b][a];
 }
 
-/* Adds the barrel O, which exists at one position alone, opened by the zoom's
- * distance from that position. */
+/* Adds the barrel O, which exists at one position only, opened in proportion
+ * to the zoom's distance from that position. */
 static void add_barrel(struct glint_zoom_mix *blend,
                        const struct glint_blend_output *o)
 {
@@ -402,7 +416,7 @@ void glint_blend_output(struct glint_zoom_mix *blend,
 {
     struct glint_transfer *const t = blend->to;
 
-    note_stop(&blend->stop[1], o);
+    record_stop(&blend->stop[1], o);
     if (o->kind >= BARREL)
         mix_barrel(blend, o);
     else if (o->kind == GLINT_OUT_ENERGY)

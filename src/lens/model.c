@@ -1,20 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks a model file once, so that the transfer need not check anything.
+ * Checks a model file once, so that drawing need not check anything.
  *
- *   in   bytes that may hold anything
- *   out  a lens that points into them, or the reason why not
+ *    in   bytes that may hold anything
+ *    out  a lens that points into them, or the text of an error
  *
  * Size, checksum and name are those of any baked file (base/blob.h). The
  * transfer relies on this:
  *   - every table lies inside the file;
- *   - variables are within +-2^30 and so are their powers, and q_mul by them
- *     never makes an integer larger. With the sum of |coefficient| of an output
+ *   - variables are within +-2^30, and so are their powers, and q_mul by them
+ *     never increases a magnitude. With the sum of |coefficient| of an output
  *     below 2^30 no product, row or Horner step leaves that range, whatever
  *     the order of additions;
  *   - in the auto basis powers of u and v index a table, and powers of v are
  *     all odd or all even.
- * Vertices shift by any exponent; the limits here keep sums of exponents small.
+ *
+ * Vertices are shifted by exponents; the limits here keep sums of exponents
+ * small.
  */
 #include "glint/model.h"
 
@@ -23,33 +25,34 @@
 #include "base/q.h"
 #include "lens/box.h"
 
-/* The file is used in place: its layout is what these structs are. */
+/* The file is used in place: its layout is the layout of these structs. */
 STATIC_ASSERT(sizeof(struct glint_real) == 8);
 STATIC_ASSERT(sizeof(struct glint_model_header) == 344);
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-/* The header begins as that of every baked file does; its basis is the variant.
- */
+/* The header begins like the header of every baked file; its variant is the
+ * basis. */
 GLINT_BLOB_HEADER(struct glint_model_header, basis);
 
 enum {
-    LIMIT = 1 << 30, /* of sums of magnitudes; 1 in _q30 */
+    LIMIT = 1 << 30, /* max sum of magnitudes; 1 in _q30 */
     MAX_REAL_EXPONENT = 200,
-    MAX_SHIFT = 20, /* most bits that narrow coefficients are shifted by */
+    /* max number of bits by which narrow coefficients are shifted */
+    MAX_SHIFT = 20,
     MAX_ROOTS = 2,
     MAX_HEAD = 28,
-    /* least and most binary exponent of outputs and boxes */
+    /* range of the binary exponents of outputs and boxes */
     MIN_EXPONENT = -80,
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
-    /* log2 of the number of intervals of angle; each end of an interval is
-     * checked to have a box that is not negative */
+    /* log2 of the number of intervals of angle at whose ends a box is
+     * checked not to have a negative size */
     BOX_NODES_LOG2 = 5,
-    MAX_SHARED = 8 /* largest size of all tables that systems refer to, in sizes
-                      of the file; otherwise systems that share large tables
-                      would take quadratic time */
+    MAX_SHARED = 8 /* max total size of all tables that systems refer to, in
+                      file sizes; without a limit, systems that share large
+                      tables would need quadratic time */
 };
 
 static const char outside[] = "a table lies outside the file";
@@ -143,21 +146,21 @@ static const char *check_header(struct check *c)
 
 /* ---------------------------------------------------------- angles and box */
 
-static int64_t magnitude(int32_t x)
+static int64_t get_magnitude(int32_t x)
 {
     return x < 0 ? -(int64_t)x : x;
 }
 
-static int64_t magnitudes(const int32_t *x, uint32_t n)
+static int64_t sum_magnitudes(const int32_t *x, uint32_t n)
 {
     int64_t sum = 0;
 
     for (uint32_t k = 0; k < n; k++)
-        sum += magnitude(x[k]);
+        sum += get_magnitude(x[k]);
     return sum;
 }
 
-/* Checks the range of the y component. */
+/* Checks the range of the y component of directions. */
 static const char *check_across(struct check *c,
                                 const struct glint_model_system *s)
 {
@@ -171,8 +174,8 @@ static const char *check_across(struct check *c,
                : NULL;
 }
 
-/* Returns whether the polynomial P of a half size is below 0 at any of a row of
- * angles, at either end of the band. */
+/* Returns whether the polynomial P of a half size is negative at any of a
+ * series of angles, at either end of the band. */
 static int shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
 {
     const int32_t half = 1 << (BOX_NODES_LOG2 - 1);
@@ -186,8 +189,9 @@ static int shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
     return 0;
 }
 
-/* Does the same for a box of the lens basis, at a grid of directions. */
-static int lens_side_below_0(const int32_t p[GLINT_BOX_TERMS])
+/* Like shrinks_below_0(), for a box of the lens basis, at a grid of
+ * directions. */
+static int lens_shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
 {
     const int32_t half = 1 << (BOX_NODES_LOG2 - 2), step = LIMIT / half;
 
@@ -216,10 +220,10 @@ static const char *check_box(struct check *c,
         return outside;
     for (int k = 0; k < sides; k++) {
         box = box_unpack(box, s->box_terms, side);
-        if (magnitudes(side, GLINT_BOX_TERMS) >= LIMIT)
+        if (sum_magnitudes(side, GLINT_BOX_TERMS) >= LIMIT)
             return "a box reaches too far";
         if ((k == 1 || k == 2) &&
-            (lens ? lens_side_below_0(side) : shrinks_below_0(side)))
+            (lens ? lens_shrinks_below_0(side) : shrinks_below_0(side)))
             return "a box has a size below 0";
     }
     return NULL;
@@ -266,16 +270,16 @@ static const char *check_terms(struct check *c,
 
         if (reason)
             return reason;
-        for (uint32_t m = 0; m < k; m++) /* An output has few enough terms, 120
-                                            at most, to compare all. */
+        /* An output has at most 120 terms, few enough to compare all pairs. */
+        for (uint32_t m = 0; m < k; m++)
             if (power[m] == power[k])
                 return "an output has a term twice";
     }
     return NULL;
 }
 
-/* Checks coefficients of two sizes: see n_narrow in struct glint_model_output.
- */
+/* Checks coefficients stored in two sizes: see n_narrow in struct
+ * glint_model_output. */
 static const char *check_narrow(struct check *c,
                                 const struct glint_model_output *o)
 {
@@ -294,9 +298,9 @@ static const char *check_narrow(struct check *c,
     if (!wide)
         return outside;
     narrow = (const int16_t *)(const void *)(wide + n_wide);
-    sum = magnitudes(wide, n_wide);
+    sum = sum_magnitudes(wide, n_wide);
     for (uint32_t k = 0; k < n_narrow; k++)
-        sum += magnitude(narrow[k]) * (INT64_C(1) << shift);
+        sum += get_magnitude(narrow[k]) * (INT64_C(1) << shift);
     return sum < LIMIT ? NULL : too_large;
 }
 
@@ -381,8 +385,8 @@ static const char *check_order(const struct glint_model_system *last,
                : NULL;
 }
 
-/* Checks the ghosts. Their lists of systems must rise with the ghosts, so that
- * one pass shows that no two share a system. */
+/* Checks the ghosts. Their lists of systems must rise from ghost to ghost,
+ * so that one pass shows that no two ghosts share a system. */
 static const char *check_ghosts(const struct check *c)
 {
     const struct glint_model_header *h = c->header;
@@ -403,8 +407,8 @@ static const char *check_ghosts(const struct check *c)
         if (g->first_system < next)
             return "two ghosts share a system, or their lists do not rise";
         next = g->first_system + g->n_systems;
-        /* In the lens basis ranges of two components lie in no order; of two
-         * systems that overlap the first one counts. */
+        /* In the lens basis, ranges of two components have no order; where
+         * two systems overlap, the first is used. */
         for (uint32_t m = g->first_system + 1;
              m < next && !glint_basis_is_lens(h->basis); m++) {
             const char *reason = check_order(&c->system[m - 1], &c->system[m]);
@@ -418,8 +422,8 @@ static const char *check_ghosts(const struct check *c)
 
 /* ------------------------------------------------------------------ opening */
 
-/* Returns a text that states what is wrong with the header or with anything
- * that it points to, or NULL. */
+/* Returns the text of the first error in the header or in anything that it
+ * points to, or NULL. */
 static const char *check_contents(struct check *c)
 {
     const char *reason = check_header(c);

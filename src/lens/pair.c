@@ -1,27 +1,29 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds which barrels of two positions of a zoom are the same.
+ * Finds corresponding barrels of two positions of a zoom.
  *
- *   in   the barrels of a bundle at both positions, as polynomials
- *   out  for each barrel of the other position, the barrels of this position
- *        that it is mixed with
+ *    in   the barrels of a bundle at both positions, as polynomials
+ *    out  for each barrel of the other position, the barrels of this position
+ *         that it is mixed with
  *
  * Barrels have no names in a model. Two barrels are alike if their polynomials
- * have nearly the same values: relative to the box of each position, which
- * follows the visible rays, or at equal points of the pupil, as boxes may
- * change faster than barrels move. The pair that differs least is matched
- * first. A barrel without a partner cuts no ray, at the position that lacks it,
- * that the most similar barrel there does not cut; so it is paired with a copy
- * of that barrel. */
+ * have nearly the same values, compared either relative to the box of each
+ * position, which follows the visible rays, or at equal points of the pupil, as
+ * boxes may change faster than barrels move. The pair that differs least is
+ * matched first. A barrel without a partner cuts no ray, at the position that
+ * lacks it, that the most similar barrel there does not cut; so it is paired
+ * with a copy of that barrel.
+ */
 #include "base/q.h"
 #include "lens/blend.h"
 #include "lens/terms.h"
 
 enum {
     BARREL = GLINT_OUT_BARREL_0,
-    LIKE_Q16 = 1 << 15, /* max difference between the values of one barrel */
+    /* max difference between the values of corresponding barrels */
+    LIKE_Q16 = 1 << 15,
     FAR_Q16 = 1 << 28,
-    ACROSS = 3 /* of the places, in two rows */
+    ACROSS = 3 /* number of sample points in each of two rows */
 };
 
 struct glint_blend_output glint_blend_of(struct glint_transfer *t, int kind)
@@ -71,8 +73,8 @@ static int find_common(const struct glint_zoom_mix *blend, int64_t *first,
     return !blend->far && *first < *last;
 }
 
-/* Sets VALUES of a barrel: of this position if SIDE is 0, otherwise of the
- * other position. */
+/* Sets VALUES of barrel O at the sample points. SIDE: 0 for a barrel of this
+ * position, 1 for the other position. */
 static void set_values(const struct glint_zoom_mix *blend, int side,
                        const struct glint_blend_output *o,
                        int32_t (*values)[GLINT_BLEND_PLACES])
@@ -89,7 +91,8 @@ static void set_values(const struct glint_zoom_mix *blend, int side,
         if (side) {
             u = q_shift(u * (one - back->wider_q24), 24) - back->along_q24;
             v = q_shift(v * (one - back->higher_q24), 24);
-            /* Moves are rounded in units that may be as large as a box. */
+            /* Moves are rounded in units that may be as large as a box, so U
+             * and V are clamped to the box. */
             u = -smaller(one, -smaller(one, u));
             v = smaller(one, v);
         }
@@ -99,10 +102,10 @@ static void set_values(const struct glint_zoom_mix *blend, int side,
     }
 }
 
-/* Returns the largest difference of two barrels, compared in their boxes or at
- * points of the pupil, whichever gives less. */
-static int64_t apart_q16(const struct glint_zoom_mix *blend, int ours,
-                         int theirs)
+/* Returns the max difference between the values of two barrels, compared in
+ * their boxes or at points of the pupil, whichever is less. */
+static int64_t compute_difference_q16(const struct glint_zoom_mix *blend,
+                                      int ours, int theirs)
 {
     int64_t first, last, high, least = LIKE_Q16;
 
@@ -128,8 +131,8 @@ void glint_blend_look(struct glint_zoom_mix *blend,
         set_values(blend, 1, o, blend->barrel_q16[1][blend->n_others++]);
 }
 
-/* Finds the two barrels that differ least among OURS and THEIRS, which are bit
- * masks. Returns whether the two are alike. */
+/* Finds the two barrels that differ least, one of OURS and one of THEIRS,
+ * which are bit masks. Returns whether the two are alike. */
 static int find_pair(const struct glint_zoom_mix *blend, uint32_t ours,
                      uint32_t theirs, int pair[2])
 {
@@ -137,8 +140,9 @@ static int find_pair(const struct glint_zoom_mix *blend, uint32_t ours,
 
     for (int i = 0; ours >> i; i++)
         for (int k = 0; theirs >> k; k++) {
-            const int64_t off =
-                ours >> i & theirs >> k & 1 ? apart_q16(blend, i, k) : LIKE_Q16;
+            const int64_t off = ours >> i & theirs >> k & 1
+                                    ? compute_difference_q16(blend, i, k)
+                                    : LIKE_Q16;
 
             if (off < least) {
                 least = off;
@@ -149,23 +153,23 @@ static int find_pair(const struct glint_zoom_mix *blend, uint32_t ours,
     return least < LIKE_Q16;
 }
 
-static void mark(struct glint_zoom_mix *blend, const int pair[2])
+static void record_pair(struct glint_zoom_mix *blend, const int pair[2])
 {
     blend->partners[pair[1]] |= UINT32_C(1) << pair[0];
     blend->taken |= UINT32_C(1) << pair[0];
 }
 
-/* Finds partners for the unmatched barrels OURS and THEIRS among all barrels;
- * OWN is the mask of all barrels of this position. */
-static void pair_left(struct glint_zoom_mix *blend, uint32_t own, uint32_t ours,
-                      uint32_t theirs)
+/* Finds partners for the unmatched barrels OURS and THEIRS (bit masks) among
+ * all barrels. OWN: mask of all barrels of this position. */
+static void pair_unmatched(struct glint_zoom_mix *blend, uint32_t own,
+                           uint32_t ours, uint32_t theirs)
 {
     const uint32_t all = (UINT32_C(1) << blend->n_others) - 1;
     int pair[2];
 
     for (int i = 0; ours >> i; i++)
         if (find_pair(blend, ours & UINT32_C(1) << i, all, pair))
-            mark(blend, pair);
+            record_pair(blend, pair);
     for (int k = 0; theirs >> k; k++)
         if (find_pair(blend, own, theirs & UINT32_C(1) << k, pair)) {
             const struct glint_blend_output copy =
@@ -173,7 +177,7 @@ static void pair_left(struct glint_zoom_mix *blend, uint32_t own, uint32_t ours,
 
             pair[0] = glint_blend_put(blend->to, &copy);
             if (pair[0] >= 0)
-                mark(blend, pair);
+                record_pair(blend, pair);
         }
 }
 
@@ -191,12 +195,12 @@ void glint_blend_pair(struct glint_zoom_mix *blend)
             set_values(blend, 0, &o, blend->barrel_q16[0][k]);
     }
     while (find_pair(blend, ours, theirs, pair)) {
-        mark(blend, pair);
+        record_pair(blend, pair);
         ours &= ~(UINT32_C(1) << pair[0]);
         theirs &= ~(UINT32_C(1) << pair[1]);
     }
     if (blend->part_q30 > 0)
-        pair_left(blend, own, ours, theirs);
+        pair_unmatched(blend, own, ours, theirs);
 }
 
 int glint_blend_put(struct glint_transfer *t,

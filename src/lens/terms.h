@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shared by the two halves of the transfer: transfer.c, which substitutes angle
- * and wavelength into polynomials, and transfer_rays.c, which evaluates rays.
- * */
+ * Declarations that two modules share: transfer.c, which substitutes angle and
+ * wavelength into polynomials, and transfer_rays.c, which evaluates rays.
+ */
 #ifndef GLINT_LENS_TERMS_H
 #define GLINT_LENS_TERMS_H
 
 #include "base/q.h"
 #include "glint/transfer.h"
 
-enum { TRANSFER_MAX_EXPONENT = 15 }; /* largest power of any variable */
+enum { TRANSFER_MAX_EXPONENT = 15 }; /* max power of any variable */
 
 #define TRANSFER_ONE_Q30 (INT32_C(1) << 30)
 
-/* Sets the powers 0 .. N of X. */
+/* Sets POWER to the powers 0 .. N of X. */
 static inline void transfer_powers(int32_t x_q30, int n, int32_t *power_q30)
 {
     power_q30[0] = TRANSFER_ONE_Q30;
@@ -22,15 +22,16 @@ static inline void transfer_powers(int32_t x_q30, int n, int32_t *power_q30)
 }
 
 /* Returns the system of GHOST for this angle and wavelength, or NULL if no
- * light gets through. */
+ * light gets through the lens. */
 const struct glint_model_system *
 glint_transfer_system(const struct glint_lens *lens, int ghost,
                       int32_t sine_q30, int32_t wave_q24);
 
-/* Mixes GHOST of LENS into TRANSFER, which has the same ghost at another
- * position of a zoom, and the same angle and wavelength: PART of this one and
- * the rest of that. It has light. Returns 0, and does nothing, if their
- * energies are of other kinds. */
+/* Mixes the transfer of GHOST of LENS into TRANSFER, which is set to the
+ * same ghost, angle and wavelength at another zoom position: the result is
+ * PART of LENS and 1 - PART of TRANSFER. GHOST must have a system there.
+ * Returns 0, and does nothing, if the two energies have different
+ * representations. */
 int glint_transfer_mix(struct glint_transfer *transfer,
                        const struct glint_lens *lens, int ghost,
                        int32_t sine_q30, int32_t wave_q24, int32_t part_q30);

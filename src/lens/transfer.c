@@ -4,13 +4,14 @@
  * results are polynomials of the position in its box, which transfer_rays.c
  * evaluates.
  *
- *   in   a model, a ghost, the sine of the light's angle, a wavelength
- *   out  struct glint_transfer: tables of coefficients of u^a v^b, a box
+ *    in   a model, a ghost, the sine of the light's angle, a wavelength
+ *    out  struct glint_transfer: tables of coefficients of u^a v^b, a box
  *
- * Formats: variables are q30 and within +-2^30; coefficients and every
- * intermediate of an output are integers of that output's own unit, below 2^30
- * as bake has proven (bound in struct glint_model_output). So each product of
- * the two is below 2^60, and rounds to its unit by a shift of 30.
+ * Formats: variables are _q30 and within +-2^30. Coefficients and all
+ * intermediate values of an output are integers in that output's own unit,
+ * below 2^30, as baking has proven (bound in struct glint_model_output). So
+ * each product of a variable and a coefficient is below 2^60, and is rounded to
+ * the output's unit by a shift of 30.
  */
 #include "glint/transfer.h"
 
@@ -21,13 +22,13 @@
 #include "lens/box.h"
 #include "lens/terms.h"
 
-static const void *at(const struct glint_lens *lens, uint32_t offset)
+static const void *get_table(const struct glint_lens *lens, uint32_t offset)
 {
     return (const unsigned char *)lens->header + offset;
 }
 
-/* Maps X from LO .. HI to -1 .. 1, clamped. */
-static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
+/* Maps X from LO .. HI to -1 .. 1, clamped; _q30. */
+static int32_t normalise_q30(int32_t x, int32_t lo, int32_t hi)
 {
     const int64_t span = (int64_t)hi - lo;
 
@@ -58,7 +59,7 @@ static int is_in_across(const struct glint_lens *lens,
 
     if (!glint_basis_is_lens(lens->header->basis))
         return 1; /* in this case across_at has not been validated */
-    range_q30 = at(lens, s->across_at);
+    range_q30 = get_table(lens, s->across_at);
     return y_q30 >= range_q30[0] && y_q30 <= range_q30[1];
 }
 
@@ -90,26 +91,27 @@ glint_transfer_system(const struct glint_lens *lens, int ghost,
     return find_system(lens, ghost, sine_q30, 0, wave_q24);
 }
 
-/* Angle and wavelength of a bundle, relative to its system. */
+/* Angle and wavelength of a bundle, relative to the ranges of its system, as
+ * powers. */
 struct setting {
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
-    int lens;                         /* 1: the basis is the lens basis */
-    int32_t p_q30[GLINT_LENS_POWERS]; /* of the lens basis only */
+    int lens;                         /* 1: the model uses the lens basis */
+    int32_t p_q30[GLINT_LENS_POWERS]; /* set in the lens basis only */
 };
 
-static void settle(struct setting *set, const struct glint_lens *lens,
-                   const struct glint_model_system *s, int32_t sine_q30,
-                   int32_t y_q30, int32_t wave_q24)
+static void set_setting(struct setting *set, const struct glint_lens *lens,
+                        const struct glint_model_system *s, int32_t sine_q30,
+                        int32_t y_q30, int32_t wave_q24)
 {
     set->lens = glint_basis_is_lens(lens->header->basis);
-    transfer_powers(within_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30),
+    transfer_powers(normalise_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30),
                     TRANSFER_MAX_EXPONENT, set->s_q30);
-    transfer_powers(within_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24),
+    transfer_powers(normalise_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24),
                     TRANSFER_MAX_EXPONENT, set->w_q30);
     if (set->lens) {
-        const int32_t *range_q30 = at(lens, s->across_at);
+        const int32_t *range_q30 = get_table(lens, s->across_at);
 
-        transfer_powers(within_q30(y_q30, range_q30[0], range_q30[1]),
+        transfer_powers(normalise_q30(y_q30, range_q30[0], range_q30[1]),
                         GLINT_LENS_POWERS - 1, set->p_q30);
     }
 }
@@ -118,7 +120,7 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
                     const struct setting *set)
 {
     const struct glint_model_system *s = t->system;
-    const int32_t *box = at(lens, s->box_at);
+    const int32_t *box = get_table(lens, s->box_at);
     int32_t side[GLINT_BOX_TERMS];
 
     t->box_exponent = s->box_exponent;
@@ -129,16 +131,16 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
                                               set->p_q30[1], set->w_q30[1])
                               : box_side(side, set->s_q30[1], set->w_q30[1]);
     }
-    /* The check of a model looks at a grid of places; between them a half size
-     * that falls below 0 is 0. */
+    /* The check of a model tests a grid of positions; between them a half
+     * size may be negative and is clamped to 0. */
     for (int k = 1; k < 3; k++)
         t->box[k] = t->box[k] < 0 ? 0 : t->box[k];
 }
 
-/* Returns the coefficient VALUE of a term, times the powers of angle and
- * wavelength in POWER. */
-static WHOLLY_INLINE int32_t put_in(const struct setting *set, int32_t value,
-                                    uint16_t power)
+/* Returns the coefficient VALUE of a term, multiplied by the powers of angle
+ * and wavelength in POWER. */
+static WHOLLY_INLINE int32_t substitute(const struct setting *set,
+                                        int32_t value, uint16_t power)
 {
     const int c = power >> 8 & 15, d = power >> 12;
 
@@ -147,15 +149,15 @@ static WHOLLY_INLINE int32_t put_in(const struct setting *set, int32_t value,
     return d ? q_mul(value, set->w_q30[d], 30) : value;
 }
 
-/* The check of a model keeps powers of u and v to GLINT_MAX_POWER, and codes of
- * the lens basis below these. */
+/* The check of a model limits powers of u and v to GLINT_MAX_POWER, and
+ * codes of the lens basis to the values that these assertions assume. */
 STATIC_ASSERT(GLINT_MAX_POWER < GLINT_TABLE_WIDTH);
 STATIC_ASSERT(GLINT_LENS_POWERS <= TRANSFER_MAX_EXPONENT + 1);
 STATIC_ASSERT(GLINT_LENS_WAVE_POWERS <= TRANSFER_MAX_EXPONENT + 1);
 
-/* Does the same in the lens basis. */
-static int32_t put_lens_in(const struct setting *set, int32_t value,
-                           uint16_t power)
+/* Like substitute(), in the lens basis. */
+static int32_t substitute_lens(const struct setting *set, int32_t value,
+                               uint16_t power)
 {
     const unsigned code = power >> 8, of_s = code % GLINT_LENS_POWERS;
     const unsigned of_p = code / GLINT_LENS_POWERS % GLINT_LENS_POWERS;
@@ -184,16 +186,16 @@ static WHOLLY_INLINE void add_term(struct table *t, uint16_t power,
     t->degree_v = b > t->degree_v ? b : t->degree_v;
 }
 
-/* Sets TABLE to an output in the auto or the lens basis. */
+/* Sets TABLE to output O, in the auto basis or the lens basis. */
 static void fill_table(struct table *table, const struct glint_lens *lens,
                        const struct glint_model_output *o,
                        const struct setting *set)
 {
     const uint32_t n = o->n_terms, n_wide = n - o->n_narrow;
-    const int32_t *coef = at(lens, o->coef_at);
+    const int32_t *coef = get_table(lens, o->coef_at);
     const int32_t by = INT32_C(1) << o->narrow_shift;
     const int16_t *narrow = (const int16_t *)(const void *)(coef + n_wide);
-    const uint16_t *power = at(lens, o->term_at);
+    const uint16_t *power = get_table(lens, o->term_at);
 
     table->degree_u = table->degree_v = 0;
     for (int b = 0; b <= GLINT_MAX_POWER; b++)
@@ -201,14 +203,14 @@ static void fill_table(struct table *table, const struct glint_lens *lens,
             table->row[b][a] = 0;
     for (uint32_t k = 0; k < n && set->lens; k++)
         add_term(table, power[k],
-                 put_lens_in(set,
-                             k < n_wide ? coef[k] : narrow[k - n_wide] * by,
-                             power[k]));
+                 substitute_lens(set,
+                                 k < n_wide ? coef[k] : narrow[k - n_wide] * by,
+                                 power[k]));
     for (uint32_t k = 0; k < n_wide && !set->lens; k++)
-        add_term(table, power[k], put_in(set, coef[k], power[k]));
+        add_term(table, power[k], substitute(set, coef[k], power[k]));
     for (uint32_t k = n_wide; k < n && !set->lens; k++)
         add_term(table, power[k],
-                 put_in(set, narrow[k - n_wide] * by, power[k]));
+                 substitute(set, narrow[k - n_wide] * by, power[k]));
 }
 
 static void set_table(struct glint_transfer *t, const struct glint_lens *lens,
@@ -238,7 +240,7 @@ static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
     set_table(t, lens, o, set);
 }
 
-static void clear(struct glint_transfer *t)
+static void clear_outputs(struct glint_transfer *t)
 {
     t->outputs = 0;
     t->head = t->roots = t->energy_up = 0;
@@ -252,16 +254,17 @@ static void clear(struct glint_transfer *t)
     }
 }
 
-/* A light's direction as the systems use it. X is the sine of its angle; in the
- * lens basis, its x component. */
+/* The direction of a light as the systems use it. X is the sine of its
+ * angle; in the lens basis, the x component of the direction. */
 struct toward {
     int32_t x_q30, y_q30;
-    int mirror_x, mirror_y; /* 1: the light lies on the other side of the plane
-                               of symmetry */
+    int mirror_x, mirror_y; /* 1: the light lies on the opposite side of the
+                               plane of symmetry */
 };
 
-static struct toward toward_of(const struct glint_lens *lens, int32_t sine_q30,
-                               struct glint_azimuth azimuth)
+static struct toward compute_toward(const struct glint_lens *lens,
+                                    int32_t sine_q30,
+                                    struct glint_azimuth azimuth)
 {
     const uint32_t basis = lens->header->basis;
     struct toward d = {sine_q30, 0, 0, 0};
@@ -292,39 +295,40 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
                            int32_t sine_q30, struct glint_azimuth azimuth,
                            int32_t wave_q24)
 {
-    const struct toward d = toward_of(lens, sine_q30, azimuth);
+    const struct toward d = compute_toward(lens, sine_q30, azimuth);
     const struct glint_model_system *system;
     const struct glint_model_output *output;
     struct setting set;
 
-    if (lens->zoom) /* whose models are of round lenses */
+    if (lens->zoom) /* Models of a zoom are of lenses with rotational symmetry.
+                     */
         return lens->zoom->transfer(transfer, lens->zoom, ghost, sine_q30,
                                     wave_q24);
     system = find_system(lens, ghost, d.x_q30, d.y_q30, wave_q24);
     if (!system)
         return 0;
-    clear(transfer);
+    clear_outputs(transfer);
     transfer->system = system;
     transfer->annulus = (uint8_t)system->annulus;
-    settle(&set, lens, system, d.x_q30, d.y_q30, wave_q24);
+    set_setting(&set, lens, system, d.x_q30, d.y_q30, wave_q24);
     transfer->whole = (uint8_t)set.lens;
     transfer->window = glint_box_whole(transfer);
-    /* Mirroring in x equals mirroring in y and a half turn. */
+    /* Mirroring in x equals mirroring in y followed by a half turn. */
     transfer->sign = (int8_t)(d.mirror_x ? -1 : 1);
     transfer->side = (uint8_t)(d.mirror_x != d.mirror_y);
     set_box(transfer, lens, &set);
-    output = at(lens, system->output_at);
+    output = get_table(lens, system->output_at);
     for (uint32_t k = 0; k < system->n_outputs; k++)
         set_output(transfer, lens, &output[k], &set);
     return 1;
 }
 
-/* Returns output O of the other position of a mix; puts its coefficients into
- * ROW. */
-static struct glint_blend_output output_of(const struct glint_lens *lens,
-                                           const struct glint_model_output *o,
-                                           const struct setting *set,
-                                           int32_t (*row)[GLINT_TABLE_WIDTH])
+/* Returns output O of the other position of a mix, and writes its
+ * coefficients to ROW. */
+static struct glint_blend_output make_output(const struct glint_lens *lens,
+                                             const struct glint_model_output *o,
+                                             const struct setting *set,
+                                             int32_t (*row)[GLINT_TABLE_WIDTH])
 {
     struct table table = {row, 0, 0};
 
@@ -351,10 +355,10 @@ int glint_transfer_mix(struct glint_transfer *transfer,
 
     if (!system)
         return 0;
-    o = at(lens, system->output_at);
+    o = get_table(lens, system->output_at);
     if (o[GLINT_OUT_ENERGY].roots != transfer->roots)
         return 0;
-    settle(&set, lens, system, sine_q30, 0, wave_q24);
+    set_setting(&set, lens, system, sine_q30, 0, wave_q24);
     transfer->system = system;
     set_box(transfer, lens, &set);
     if (!glint_blend_box(&blend, box, box_exponent))
@@ -362,14 +366,14 @@ int glint_transfer_mix(struct glint_transfer *transfer,
     for (uint32_t k = 0; k < system->n_outputs; k++)
         if (o[k].kind >= GLINT_OUT_BARREL_0) {
             const struct glint_blend_output of =
-                output_of(lens, &o[k], &set, transfer->of_u);
+                make_output(lens, &o[k], &set, transfer->of_u);
 
             glint_blend_look(&blend, &of);
         }
     glint_blend_pair(&blend);
     for (uint32_t k = 0; k < system->n_outputs; k++) {
         const struct glint_blend_output of =
-            output_of(lens, &o[k], &set, transfer->of_u);
+            make_output(lens, &o[k], &set, transfer->of_u);
 
         glint_blend_output(&blend, &of);
     }

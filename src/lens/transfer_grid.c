@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Turns grids of rays into vertices of the picture: values of the polynomials
- * become pixels, stop radii and energies of fixed formats, turned by the
- * azimuth of the light. Rays with values that do not fit are invalid. */
+ * Converts grids of rays to vertices in the picture: values of the polynomials
+ * become pixels, stop radii and energies in fixed formats, rotated by the
+ * azimuth of the light. Rays whose values do not fit are invalid.
+ */
 #include "glint/transfer.h"
 
 #include <stddef.h>
@@ -19,18 +20,18 @@ STATIC_ASSERT((int)RAYS == (int)GLINT_TURNED);
 
 /* ---------------------------------------------------------------- vertices */
 
-/* The rays that are computed at once, before they become vertices. */
+/* Rays that are computed together, before they become vertices. */
 struct block {
-    /* x and y, then x and y of the mirrored rays */
+    /* x and y of the rays, then x and y of the mirrored rays */
     int32_t sensor_q8[4][RAYS], stop_q16[4][RAYS];
     int32_t barrel_q16[2][RAYS];
     int32_t energy_q16[RAYS];
-    int32_t lost[2][RAYS]; /* [0] of the rays, [1] of the mirrored rays: all
-                              bits set if the ray is invalid */
+    int32_t lost[2][RAYS]; /* [0]: rays, [1]: mirrored rays; all bits set if the
+                              ray is invalid */
 };
 
 /* Sets SCALED to X / 2^SHIFT, rounded. A ray whose value reaches LIMIT in
- * magnitude becomes invalid. */
+ * magnitude is marked invalid in LOST. */
 static void scale_rays(const int32_t *x, int shift, int32_t limit,
                        int32_t *scaled, int32_t *lost)
 {
@@ -39,7 +40,7 @@ static void scale_rays(const int32_t *x, int shift, int32_t limit,
             scaled[i] = q_scaled(x[i], shift, limit, &lost[i]);
         return;
     }
-    /* Sums below 2^30 + 61 + 2^29 do not overflow. */
+    /* The sum is below 2^30 + 61 + 2^29 and does not overflow. */
     for (int i = 0; i < RAYS; i++)
         scaled[i] = (x[i] + (INT32_C(1) << (shift - 1))) >> shift;
 }
@@ -81,7 +82,7 @@ static void set_barrels(const struct glint_transfer *t,
     }
 }
 
-/* Sets energies from _q29, raised by 2^UP, to _q16, clamped to 0 .. 1. */
+/* Converts energies from _q29, times 2^UP, to _q16, clamped to 0 .. 1. */
 static void set_energies(const int32_t *energy, int up, int32_t *energy_q16)
 {
     const int raise = up > 13 ? up - 13 : 0, lower = up < 13 ? 13 - up : 0;
@@ -95,16 +96,16 @@ static void set_energies(const int32_t *energy, int up, int32_t *energy_q16)
     }
 }
 
-/* Rotations of sensor and stop positions by the azimuth of the light, with the
- * shifts to the formats of a vertex. The sensor's rotation includes the factor
- * pixels per mm. */
+/* Rotations of sensor and stop positions by the azimuth of the light, with
+ * the shifts to the formats of a vertex. The sensor's rotation includes the
+ * factor from mm to pixels. */
 struct turns {
     struct glint_turn sensor, stop;
 };
 
-static struct glint_turn turn_of(const struct glint_place *p,
-                                 struct glint_real size, int exponent, int frac,
-                                 int32_t limit)
+static struct glint_turn make_turn(const struct glint_place *p,
+                                   struct glint_real size, int exponent,
+                                   int frac, int32_t limit)
 {
     return (struct glint_turn){
         (int32_t)q_shift((int64_t)p->cos_q30 * size.mantissa, 30),
@@ -112,20 +113,21 @@ static struct glint_turn turn_of(const struct glint_place *p,
         -(exponent + size.exponent + frac), limit};
 }
 
-static struct turns turns_of(const struct glint_transfer *t,
-                             const struct glint_place *p)
+static struct turns make_turns(const struct glint_transfer *t,
+                               const struct glint_place *p)
 {
     const struct glint_real one = {TRANSFER_ONE_Q30, -30};
     const struct glint_real stop = p->stop_scale.mantissa ? p->stop_scale : one;
 
     return (struct turns){
-        turn_of(p, p->pixels_per_mm, t->exponent[GLINT_OUT_SENSOR_X], 8,
-                GLINT_VERTEX_LIMIT_Q8 / 2),
-        turn_of(p, stop, t->exponent[GLINT_OUT_STOP_X], 16, LIMIT_Q16)};
+        make_turn(p, p->pixels_per_mm, t->exponent[GLINT_OUT_SENSOR_X], 8,
+                  GLINT_VERTEX_LIMIT_Q8 / 2),
+        make_turn(p, stop, t->exponent[GLINT_OUT_STOP_X], 16, LIMIT_Q16)};
 }
 
-static void turn(const struct glint_turn *turn, unsigned sets, const int32_t *x,
-                 const int32_t *y, int32_t (*out)[RAYS], int32_t (*lost)[RAYS])
+static void rotate(const struct glint_turn *turn, unsigned sets,
+                   const int32_t *x, const int32_t *y, int32_t (*out)[RAYS],
+                   int32_t (*lost)[RAYS])
 {
     const int usual = turn->shift >= 1 && turn->shift <= 62;
 
@@ -141,16 +143,16 @@ static void set_block(const struct glint_transfer *t, const struct turns *turns,
     for (int i = 0; i < RAYS; i++)
         b->lost[1][i] = b->lost[0][i];
     set_energies(rays[GLINT_OUT_ENERGY], t->energy_up, b->energy_q16);
-    turn(&turns->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
-         rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->lost);
-    turn(&turns->stop, t->sets, rays[GLINT_OUT_STOP_X], rays[GLINT_OUT_STOP_Y],
-         b->stop_q16, b->lost);
+    rotate(&turns->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
+           rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->lost);
+    rotate(&turns->stop, t->sets, rays[GLINT_OUT_STOP_X],
+           rays[GLINT_OUT_STOP_Y], b->stop_q16, b->lost);
 }
 
-/* Writes the first N rays of B as vertices: SIDE 0 the rays themselves, SIDE 1
- * the mirrored ones. */
-static void put_block(const struct block *b, const struct glint_place *p,
-                      int side, int n, struct glint_vertex *v)
+/* Writes the first N rays of B as vertices: the rays themselves if SIDE is
+ * 0, the mirrored rays if it is 1. */
+static void write_block(const struct block *b, const struct glint_place *p,
+                        int side, int n, struct glint_vertex *v)
 {
     for (int i = 0; i < n; i++)
         v[i] = (struct glint_vertex){
@@ -164,10 +166,10 @@ static void put_block(const struct block *b, const struct glint_place *p,
 
 /* --------------------------------------------------------------------- rows */
 
-/* Returns the coordinate of node K of a row of N_CELLS cells over MIDDLE +-
- * HALF. */
-static int32_t node_q30(int32_t middle_q30, int32_t half_q30, int k,
-                        int n_cells)
+/* Returns the coordinate of node K of a row of N_CELLS cells that spans
+ * MIDDLE +- HALF. */
+static int32_t compute_node_q30(int32_t middle_q30, int32_t half_q30, int k,
+                                int n_cells)
 {
     return middle_q30 +
            (int32_t)q_divide((int64_t)(2 * k - n_cells) * half_q30, n_cells);
@@ -200,7 +202,8 @@ static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
 }
 
 /* Returns the coordinate v of row J. */
-static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
+static int32_t compute_row_q30(const struct glint_transfer *t, int n_cells,
+                               int j)
 {
     /* index of the last row below the middle */
     const int last = n_cells / 2 - 1;
@@ -208,28 +211,28 @@ static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
     if (t->whole)
         return glint_transfer_v(t, j, n_cells);
     if (!t->annulus)
-        return node_q30(0, t->window.v_to_q30, j, n_cells);
+        return compute_node_q30(0, t->window.v_to_q30, j, n_cells);
     return j <= last ? -glint_transfer_v(t, last - j, last)
                      : glint_transfer_v(t, last - (n_cells - j), last);
 }
 
-/* Fills ROW with row J and MIRRORED with row N_CELLS - J, the mirror image of
- * row J. Either may be NULL; MIRRORED must be NULL where rows have no mirror
- * image. */
+/* Fills ROW with row J of the grid and MIRRORED with row N_CELLS - J, the
+ * mirror image of row J. Either may be NULL; MIRRORED must be NULL if rows
+ * have no mirror image. */
 static void set_row_pair(struct glint_transfer *t,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,
                          struct glint_vertex *mirrored)
 {
-    const struct turns turns = turns_of(t, place);
-    const int32_t v_q30 = row_q30(t, n_cells, j);
+    const struct turns turns = make_turns(t, place);
+    const int32_t v_q30 = compute_row_q30(t, n_cells, j);
 
     if (t->n_nodes != n_cells + 1) {
         t->n_nodes = n_cells + 1;
         for (int i = 0; i < n_cells + RAYS; i++)
             t->node_q30[i] =
-                node_q30(t->window.u_middle_q30, t->window.u_half_q30,
-                         i < n_cells ? i : n_cells, n_cells);
+                compute_node_q30(t->window.u_middle_q30, t->window.u_half_q30,
+                                 i < n_cells ? i : n_cells, n_cells);
     }
     for (int first = 0; first <= n_cells; first += RAYS) {
         const int n = n_cells + 1 - first < RAYS ? n_cells + 1 - first : RAYS;
@@ -239,13 +242,13 @@ static void set_row_pair(struct glint_transfer *t,
         glint_transfer_rays(t, v_q30, t->node_q30 + first, first == 0, rays);
         set_block(t, &turns, (const int32_t(*)[RAYS])rays, &b);
         if (row)
-            put_block(&b, place, t->side, n, row + first);
+            write_block(&b, place, t->side, n, row + first);
         if (mirrored)
-            put_block(&b, place, 1, n, mirrored + first);
+            write_block(&b, place, 1, n, mirrored + first);
     }
 }
 
-static void lose_row(struct glint_vertex *row, int n_cells)
+static void invalidate_row(struct glint_vertex *row, int n_cells)
 {
     for (int i = 0; i <= n_cells; i++)
         row[i].energy_q16 = -1;
@@ -256,7 +259,7 @@ void glint_transfer_row(struct glint_transfer *transfer,
                         struct glint_vertex *row)
 {
     if (is_hidden(transfer, n_cells, j))
-        lose_row(row, n_cells);
+        invalidate_row(row, n_cells);
     else if (transfer->whole || 2 * j <= n_cells)
         set_row_pair(transfer, place, n_cells, j, row, NULL);
     else
@@ -269,8 +272,8 @@ void glint_transfer_rows(struct glint_transfer *transfer,
                          struct glint_vertex *mirrored)
 {
     if (is_hidden(transfer, n_cells, j)) {
-        lose_row(row, n_cells);
-        lose_row(mirrored, n_cells);
+        invalidate_row(row, n_cells);
+        invalidate_row(mirrored, n_cells);
     } else if (transfer->whole) {
         set_row_pair(transfer, place, n_cells, j, row, NULL);
         set_row_pair(transfer, place, n_cells, n_cells - j, mirrored, NULL);
@@ -292,7 +295,7 @@ void glint_transfer_grid(struct glint_transfer *transfer,
             vertices + (ptrdiff_t)(n_cells - j) * nodes;
 
         if (is_hidden(transfer, n_cells, j))
-            lose_row(row, n_cells);
+            invalidate_row(row, n_cells);
         else if (alone)
             set_row_pair(transfer, place, n_cells, j, row, NULL);
         else if (2 * j <= n_cells)

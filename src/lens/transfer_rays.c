@@ -11,18 +11,18 @@
 
 enum { RAYS = GLINT_RAYS };
 
-/* Returns whether the powers of v of KIND are all odd. Otherwise they are all
+/* Returns whether all terms of KIND have odd powers of v. Otherwise all are
  * even, except in the lens basis, where both occur. */
 static int is_odd(int kind)
 {
     return kind & 1 && kind < GLINT_OUT_ENERGY;
 }
 
-/* Sets OF_U to the polynomial in u of those terms of KIND whose powers of v are
- * odd (if ODD), or even. */
-static void set_half(const struct glint_transfer *t,
-                     const struct glint_horner *k, int kind, int odd,
-                     int32_t v_q30, int32_t v2_q30, int32_t *of_u)
+/* Sets OF_U to the polynomial in u, along the row of rays at V, of those
+ * terms of KIND whose powers of v are odd (if ODD is set) or even. */
+static void set_parity(const struct glint_transfer *t,
+                       const struct glint_horner *k, int kind, int odd,
+                       int32_t v_q30, int32_t v2_q30, int32_t *of_u)
 {
     k->across(of_u, t->table[kind][odd], 2 * GLINT_TABLE_WIDTH,
               (t->degree_v[kind] - odd) / 2, v2_q30,
@@ -40,13 +40,13 @@ static void set_row(const struct glint_transfer *t,
     int32_t odd[GLINT_TABLE_WIDTH];
 
     if (!t->whole) {
-        set_half(t, k, kind, is_odd(kind), v_q30, v2_q30, of_u);
+        set_parity(t, k, kind, is_odd(kind), v_q30, v2_q30, of_u);
         return;
     }
-    set_half(t, k, kind, 0, v_q30, v2_q30, of_u);
+    set_parity(t, k, kind, 0, v_q30, v2_q30, of_u);
     if (t->degree_v[kind] == 0)
         return;
-    set_half(t, k, kind, 1, v_q30, v2_q30, odd);
+    set_parity(t, k, kind, 1, v_q30, v2_q30, odd);
     for (int a = 0; a <= t->degree_u[kind]; a++)
         of_u[a] += odd[a];
 }
@@ -63,8 +63,8 @@ static void set_rows(const struct glint_transfer *t,
             set_row(t, k, kind, v_q30, v2_q30, of_u[kind]);
 }
 
-/* Converts N values of the energy polynomial to energies. */
-static void raise_energies(const struct glint_transfer *t, int32_t *e, int n)
+/* Converts N values of the energy polynomial to energies, in place. */
+static void convert_energies(const struct glint_transfer *t, int32_t *e, int n)
 {
     const int32_t most = (INT32_C(1) << 29) >> t->head;
 
@@ -75,16 +75,17 @@ static void raise_energies(const struct glint_transfer *t, int32_t *e, int n)
             e[i] = q_mul(e[i], e[i], 29);
 }
 
-/* Computes the outputs of the rays at U, per kind. */
-static void rays_of_rows(const struct glint_transfer *t,
-                         const struct glint_horner *k, const int32_t *u_q30,
-                         int32_t (*out)[RAYS])
+/* Computes the outputs of the rays at U from the polynomials of their row,
+ * per kind. */
+static void evaluate_rays(const struct glint_transfer *t,
+                          const struct glint_horner *k, const int32_t *u_q30,
+                          int32_t (*out)[RAYS])
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (transfer_has(t, kind))
             k->along(out[kind], t->of_u[kind], t->degree_u[kind], u_q30, RAYS);
     if (transfer_has(t, GLINT_OUT_ENERGY))
-        raise_energies(t, out[GLINT_OUT_ENERGY], RAYS);
+        convert_energies(t, out[GLINT_OUT_ENERGY], RAYS);
 }
 
 void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
@@ -103,7 +104,7 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
         set_row(t, k, kind, v_q30, v2_q30, of_u);
         k->along(&out->at[kind], of_u, t->degree_u[kind], &u_q30, 1);
     }
-    raise_energies(t, &out->at[GLINT_OUT_ENERGY], 1);
+    convert_energies(t, &out->at[GLINT_OUT_ENERGY], 1);
 }
 
 void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
@@ -114,5 +115,5 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
 
     if (is_new)
         set_rows(transfer, k, v_q30, transfer->of_u);
-    rays_of_rows(transfer, k, u_q30, out);
+    evaluate_rays(transfer, k, u_q30, out);
 }

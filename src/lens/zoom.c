@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models of a zoom's positions as one lens.
+ * Combines the models of several zoom positions to one lens.
  *
- *   in   models of one lens: the same surfaces, film and band
- *   out  a header interpolated between the headers of two positions, a list of
- *        the ghosts of all models, and interpolated bundles
+ *    in   models of one lens, with the same surfaces, film and band
+ *    out  a header interpolated between the headers of two positions, a list of
+ *         the ghosts of all models, and interpolated bundles
  *
- * Ghosts of all models are the same pairs of surfaces in the same order; of
- * further parts of the pupil the list has the largest number in any model.
- * Where both neighbouring models divide the pupil of a ghost alike at an angle,
- * they are mixed; otherwise the nearer model is drawn. Where one model is dark,
- * the other is extrapolated with the help of a model farther off, or fades. */
+ * Ghosts of all models are the same pairs of surfaces in the same order. A
+ * ghost whose pupil is divided has further parts; the list has as many as the
+ * model with the most. Where both neighbouring models divide the pupil of a
+ * ghost alike at an angle, the two are mixed; otherwise the nearer model is
+ * drawn. Where one model has no light, the other is extrapolated using a third
+ * model farther away, or faded.
+ */
 #include "glint/model.h"
 
 #include "base/blob.h"
@@ -27,14 +29,14 @@ static const char *const fault_text[GLINT_BLOB_FAULTS] =
 
 /* ------------------------------------------------------------------- ghosts */
 
-static int n_whole(const struct glint_lens *lens)
+static int count_whole(const struct glint_lens *lens)
 {
     return (int)(lens->header->n_ghosts - lens->header->n_parts);
 }
 
-/* Returns how many further parts of ghost G the model LENS has. *NEXT is the
+/* Returns the number of further parts of ghost G in model LENS. *NEXT is the
  * index of the first part that has not been counted; it is advanced. */
-static int parts_of(const struct glint_lens *lens, int g, uint32_t *next)
+static int count_parts(const struct glint_lens *lens, int g, uint32_t *next)
 {
     const struct glint_model_ghost *const of = &lens->ghost[g];
     int n = 0;
@@ -47,11 +49,11 @@ static int parts_of(const struct glint_lens *lens, int g, uint32_t *next)
     return n;
 }
 
-/* Lists the ghosts of all models and the parts of each. Returns what is wrong,
- * or NULL. */
+/* Lists the ghosts of all models and their parts. Returns the text of an
+ * error, or NULL. */
 static const char *list_ghosts(struct glint_zoom_lens *z)
 {
-    const int n = n_whole(&z->model[0]);
+    const int n = count_whole(&z->model[0]);
     uint32_t next[GLINT_MAX_ZOOM_MODELS];
     int end = n;
 
@@ -67,7 +69,7 @@ static const char *list_ghosts(struct glint_zoom_lens *z)
         z->whole[g] = (int16_t)g;
         z->number[g] = 0;
         for (int k = 0; k < z->n_models; k++) {
-            const int parts = parts_of(&z->model[k], g, &next[k]);
+            const int parts = count_parts(&z->model[k], g, &next[k]);
 
             most = parts > most ? parts : most;
         }
@@ -87,23 +89,23 @@ static const char *list_ghosts(struct glint_zoom_lens *z)
     return NULL;
 }
 
-static int has(const struct glint_zoom_lens *z, int k, int g)
+static int has_ghost(const struct glint_zoom_lens *z, int k, int g)
 {
     return !z->has[k] || (z->has[k][g / 32] >> g % 32 & 1);
 }
 
-/* Finds, for each ghost, the models with this ghost on both sides of the zoom
- * position. END gets the first and the last model in use. */
+/* Finds, for each ghost, the nearest models with this ghost on both sides of
+ * the zoom position. END receives the first and the last model in use. */
 static void find_sides(struct glint_zoom_lens *z, int end[2])
 {
     end[0] = z->below;
     end[1] = z->below + 1;
-    for (int g = 0; g < n_whole(&z->model[0]); g++) {
+    for (int g = 0; g < count_whole(&z->model[0]); g++) {
         int below = z->below, above = z->below + 1;
 
-        while (!has(z, below, g))
+        while (!has_ghost(z, below, g))
             below--;
-        while (!has(z, above, g))
+        while (!has_ghost(z, above, g))
             above++;
         z->side[0][g] = (uint8_t)below;
         z->side[1][g] = (uint8_t)above;
@@ -126,11 +128,11 @@ static void set_places(struct glint_zoom_lens *z, int side, int g, uint32_t at,
 static void find_places(struct glint_zoom_lens *z, int k)
 {
     const struct glint_lens *const m = &z->model[k];
-    uint32_t next = (uint32_t)n_whole(m);
+    uint32_t next = (uint32_t)count_whole(m);
 
-    for (int g = 0; g < n_whole(m); g++) {
+    for (int g = 0; g < count_whole(m); g++) {
         const uint32_t at = next;
-        const int parts = parts_of(m, g, &next);
+        const int parts = count_parts(m, g, &next);
 
         for (int side = 0; side < 2; side++)
             if (z->side[side][g] == k)
@@ -141,8 +143,8 @@ static void find_places(struct glint_zoom_lens *z, int k)
 /* ------------------------------------------------------------------- header */
 
 /* Returns A (1 - PART) + B PART. */
-static struct glint_real between(struct glint_real a, struct glint_real b,
-                                 int32_t part_q30)
+static struct glint_real interpolate_real(struct glint_real a,
+                                          struct glint_real b, int32_t part_q30)
 {
     const int e = a.mantissa == 0           ? b.exponent
                   : b.mantissa == 0         ? a.exponent
@@ -161,7 +163,8 @@ static struct glint_real between(struct glint_real a, struct glint_real b,
 
 /* Returns the position of the zoom between model FROM (0) and model TO (1);
  * below 0 if the zoom is on the far side of FROM. */
-static int32_t way_q30(const struct glint_zoom_lens *z, int from, int to)
+static int32_t compute_way_q30(const struct glint_zoom_lens *z, int from,
+                               int to)
 {
     const int64_t at_q30 = z->along_q30[from];
 
@@ -174,28 +177,32 @@ static void set_header(struct glint_zoom_lens *z)
     const struct glint_model_header *const a = z->model[z->below].header;
     const struct glint_model_header *const b = z->model[z->below + 1].header;
     struct glint_model_header *const h = &z->header;
-    const int32_t part = way_q30(z, z->below, z->below + 1);
+    const int32_t part = compute_way_q30(z, z->below, z->below + 1);
 
-    h->focal_mm = between(a->focal_mm, b->focal_mm, part);
-    h->back_focal_mm = between(a->back_focal_mm, b->back_focal_mm, part);
+    h->focal_mm = interpolate_real(a->focal_mm, b->focal_mm, part);
+    h->back_focal_mm =
+        interpolate_real(a->back_focal_mm, b->back_focal_mm, part);
     h->entrance_radius_mm =
-        between(a->entrance_radius_mm, b->entrance_radius_mm, part);
-    h->stop_radius_mm = between(a->stop_radius_mm, b->stop_radius_mm, part);
-    h->f_number = between(a->f_number, b->f_number, part);
+        interpolate_real(a->entrance_radius_mm, b->entrance_radius_mm, part);
+    h->stop_radius_mm =
+        interpolate_real(a->stop_radius_mm, b->stop_radius_mm, part);
+    h->f_number = interpolate_real(a->f_number, b->f_number, part);
     for (int k = 0; k < GLINT_FLUX_TERMS; k++) {
-        h->direct_flux[k] = between(a->direct_flux[k], b->direct_flux[k], part);
+        h->direct_flux[k] =
+            interpolate_real(a->direct_flux[k], b->direct_flux[k], part);
         for (int i = 0; i < 2; i++)
-            h->stopped_flux[i][k] =
-                between(a->stopped_flux[i][k], b->stopped_flux[i][k], part);
+            h->stopped_flux[i][k] = interpolate_real(
+                a->stopped_flux[i][k], b->stopped_flux[i][k], part);
     }
 }
 
-static int same(struct glint_real a, struct glint_real b)
+static int is_equal(struct glint_real a, struct glint_real b)
 {
     return a.mantissa == b.mantissa && a.exponent == b.exponent;
 }
 
-/* Returns why B is not another position of the zoom A, or NULL if it is. */
+/* Returns the reason why B is not another position of the zoom A, or NULL if
+ * it is one. */
 static const char *check_pair(const struct glint_lens *a,
                               const struct glint_lens *b)
 {
@@ -203,14 +210,15 @@ static const char *check_pair(const struct glint_lens *a,
 
     if (h->basis != GLINT_BASIS_AUTO || g->basis != GLINT_BASIS_AUTO)
         return "a zoom's models have another basis than auto";
-    if (h->n_surfaces != g->n_surfaces || n_whole(a) != n_whole(b))
+    if (h->n_surfaces != g->n_surfaces || count_whole(a) != count_whole(b))
         return "a zoom's models are of different lenses";
-    if (!same(h->film_width_mm, g->film_width_mm) ||
-        !same(h->film_height_mm, g->film_height_mm) ||
-        !same(h->field_mm, g->field_mm) || h->wave_lo_q24 != g->wave_lo_q24 ||
-        h->wave_hi_q24 != g->wave_hi_q24 || h->sine_hi_q30 != g->sine_hi_q30)
+    if (!is_equal(h->film_width_mm, g->film_width_mm) ||
+        !is_equal(h->film_height_mm, g->film_height_mm) ||
+        !is_equal(h->field_mm, g->field_mm) ||
+        h->wave_lo_q24 != g->wave_lo_q24 || h->wave_hi_q24 != g->wave_hi_q24 ||
+        h->sine_hi_q30 != g->sine_hi_q30)
         return "a zoom's models differ in film, field, band or largest angle";
-    for (int k = 0; k < n_whole(a); k++)
+    for (int k = 0; k < count_whole(a); k++)
         if (a->ghost[k].i != b->ghost[k].i || a->ghost[k].j != b->ghost[k].j)
             return "a zoom's models have different ghosts";
     return NULL;
@@ -218,38 +226,37 @@ static const char *check_pair(const struct glint_lens *a,
 
 /* ---------------------------------------------------------------- transfers */
 
-/* Returns the model of entry E on SIDE. */
-static const struct glint_lens *model_of(const struct glint_zoom_lens *z, int e,
-                                         int side)
+/* Returns the model on SIDE of the ghost or part E. */
+static const struct glint_lens *get_model(const struct glint_zoom_lens *z,
+                                          int e, int side)
 {
     return &z->model[z->side[side][z->whole[e]]];
 }
 
-/* Returns the position of the zoom between both models of GHOST, 0 .. 1. */
-static int32_t part_of(const struct glint_zoom_lens *z, int ghost)
+/* Returns the position of the zoom between the two models of GHOST, 0 .. 1. */
+static int32_t compute_part_q30(const struct glint_zoom_lens *z, int ghost)
 {
     const int g = z->whole[ghost];
 
-    return way_q30(z, z->side[0][g], z->side[1][g]);
+    return compute_way_q30(z, z->side[0][g], z->side[1][g]);
 }
 
-/* Returns the annulus of the polynomials of entry E on SIDE at this angle and
- * wavelength, or -1 if the entry is dark there. */
-static int annulus_of(const struct glint_zoom_lens *z, int e, int side,
-                      int32_t sine_q30, int32_t wave_q24)
+/* Returns the annulus member of the system of entry E on SIDE at this angle
+ * and wavelength, or -1 if no light gets through there. */
+static int find_annulus(const struct glint_zoom_lens *z, int e, int side,
+                        int32_t sine_q30, int32_t wave_q24)
 {
     const int at = z->place[side][e];
     const struct glint_model_system *const s =
         at < 0 ? NULL
-               : glint_transfer_system(model_of(z, e, side), at, sine_q30,
+               : glint_transfer_system(get_model(z, e, side), at, sine_q30,
                                        wave_q24);
 
     return s ? s->annulus : -1;
 }
 
-/* Compares how both sides divide the pupil of ghost G: sets LIT[side] to
- * whether any part lets light through there. Returns whether the sides are
- * alike. */
+/* Returns whether both sides divide the pupil of ghost G alike. Sets
+ * LIT[side] to whether light gets through any part on that side. */
 static int is_alike(const struct glint_zoom_lens *z, int g, int32_t sine_q30,
                     int32_t wave_q24, int lit[2])
 {
@@ -258,8 +265,8 @@ static int is_alike(const struct glint_zoom_lens *z, int g, int32_t sine_q30,
     lit[0] = lit[1] = 0;
     for (int q = z->part_from[g] - 1; q < z->part_from[g + 1]; q++) {
         const int e = q < z->part_from[g] ? g : q;
-        const int a = annulus_of(z, e, 0, sine_q30, wave_q24);
-        const int b = annulus_of(z, e, 1, sine_q30, wave_q24);
+        const int a = find_annulus(z, e, 0, sine_q30, wave_q24);
+        const int b = find_annulus(z, e, 1, sine_q30, wave_q24);
 
         lit[0] |= a >= 0;
         lit[1] |= b >= 0;
@@ -268,19 +275,20 @@ static int is_alike(const struct glint_zoom_lens *z, int g, int32_t sine_q30,
     return alike;
 }
 
-/* Sets TRANSFER to entry E of SIDE alone. */
-static int of_side(struct glint_transfer *transfer,
-                   const struct glint_zoom_lens *z, int e, int side,
-                   int32_t sine_q30, int32_t wave_q24)
+/* Sets TRANSFER to entry E of the model on SIDE, without mixing. Returns
+ * whether light gets through. */
+static int set_from_side(struct glint_transfer *transfer,
+                         const struct glint_zoom_lens *z, int e, int side,
+                         int32_t sine_q30, int32_t wave_q24)
 {
     return z->place[side][e] >= 0 &&
-           glint_transfer_init(transfer, model_of(z, e, side),
+           glint_transfer_init(transfer, get_model(z, e, side),
                                z->place[side][e], sine_q30, wave_q24);
 }
 
-/* Finds the nearest model beyond SIDE that has ghost G and is at least as far
- * from SIDE as the two sides are apart, so that extrapolation at most doubles a
- * distance. Returns -1 if there is no such model. */
+/* Returns the nearest model beyond SIDE that has ghost G and is at least as
+ * far from SIDE as the two sides are from each other, so that extrapolation
+ * at most doubles a distance; -1 if there is none. */
 static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
 {
     const int from = z->side[side][g], step = side ? 1 : -1;
@@ -288,34 +296,35 @@ static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
         (int64_t)z->along_q30[z->side[1][g]] - z->along_q30[z->side[0][g]];
 
     for (int k = from + step; k >= 0 && k < z->n_models; k += step)
-        if (has(z, k, g) &&
+        if (has_ghost(z, k, g) &&
             step * ((int64_t)z->along_q30[k] - z->along_q30[from]) >= gap)
             return k;
     return -1;
 }
 
-/* Sets TRANSFER to ghost G, which must have light on SIDE alone and no further
- * parts there, extrapolated from SIDE and a model beyond it. Returns whether
- * this is possible. */
-static int draw_out(struct glint_transfer *transfer,
-                    const struct glint_zoom_lens *z, int g, int side,
-                    int32_t sine_q30, int32_t wave_q24)
+/* Sets TRANSFER to ghost G, extrapolated from SIDE and a model beyond it.
+ * The ghost must have light on SIDE only, and no further parts there.
+ * Returns whether this is possible. */
+static int extrapolate(struct glint_transfer *transfer,
+                       const struct glint_zoom_lens *z, int g, int side,
+                       int32_t sine_q30, int32_t wave_q24)
 {
     const int beyond = find_beyond(z, g, side);
     const struct glint_model_system *there;
 
     for (int q = z->part_from[g]; q < z->part_from[g + 1]; q++)
-        if (annulus_of(z, q, side, sine_q30, wave_q24) >= 0)
+        if (find_annulus(z, q, side, sine_q30, wave_q24) >= 0)
             return 0;
     if (beyond < 0)
         return 0;
     there = glint_transfer_system(&z->model[beyond], g, sine_q30, wave_q24);
     if (!there || there->annulus != 0 ||
-        annulus_of(z, g, side, sine_q30, wave_q24) != 0)
+        find_annulus(z, g, side, sine_q30, wave_q24) != 0)
         return 0;
-    return of_side(transfer, z, g, side, sine_q30, wave_q24) &&
+    return set_from_side(transfer, z, g, side, sine_q30, wave_q24) &&
            glint_transfer_mix(transfer, &z->model[beyond], g, sine_q30,
-                              wave_q24, way_q30(z, z->side[side][g], beyond));
+                              wave_q24,
+                              compute_way_q30(z, z->side[side][g], beyond));
 }
 
 static int transfer_between(struct glint_transfer *transfer,
@@ -323,34 +332,35 @@ static int transfer_between(struct glint_transfer *transfer,
                             int32_t sine_q30, int32_t wave_q24)
 {
     const struct glint_zoom_lens *const z = zoom;
-    const int32_t part_q30 = part_of(z, ghost);
+    const int32_t part_q30 = compute_part_q30(z, ghost);
     const int nearer = part_q30 >= TRANSFER_ONE_Q30 / 2;
     int lit[2];
     int alike;
 
     if (part_q30 <= 0 || part_q30 >= TRANSFER_ONE_Q30)
-        return of_side(transfer, z, ghost, part_q30 > 0, sine_q30, wave_q24);
+        return set_from_side(transfer, z, ghost, part_q30 > 0, sine_q30,
+                             wave_q24);
     alike = is_alike(z, z->whole[ghost], sine_q30, wave_q24, lit);
     if (!lit[0] || !lit[1]) {
         const int side = lit[1];
 
-        if (lit[side] && ghost < n_whole(&z->model[0]) &&
-            draw_out(transfer, z, ghost, side, sine_q30, wave_q24))
+        if (lit[side] && ghost < count_whole(&z->model[0]) &&
+            extrapolate(transfer, z, ghost, side, sine_q30, wave_q24))
             return 1;
-        if (!of_side(transfer, z, ghost, side, sine_q30, wave_q24))
+        if (!set_from_side(transfer, z, ghost, side, sine_q30, wave_q24))
             return 0;
         glint_blend_fade(transfer,
                          side ? part_q30 : TRANSFER_ONE_Q30 - part_q30);
         return 1;
     }
     if (!alike)
-        return of_side(transfer, z, ghost, nearer, sine_q30, wave_q24);
-    if (!of_side(transfer, z, ghost, 0, sine_q30, wave_q24))
+        return set_from_side(transfer, z, ghost, nearer, sine_q30, wave_q24);
+    if (!set_from_side(transfer, z, ghost, 0, sine_q30, wave_q24))
         return 0;
-    return glint_transfer_mix(transfer, model_of(z, ghost, 1),
+    return glint_transfer_mix(transfer, get_model(z, ghost, 1),
                               z->place[1][ghost], sine_q30, wave_q24,
                               part_q30) ||
-           !nearer || of_side(transfer, z, ghost, 1, sine_q30, wave_q24);
+           !nearer || set_from_side(transfer, z, ghost, 1, sine_q30, wave_q24);
 }
 
 /* ------------------------------------------------------------------ opening */
@@ -401,8 +411,8 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
         return GLINT_E_LENS;
     }
     z->header = *model[0].header;
-    z->header.n_ghosts = (uint32_t)z->part_from[n_whole(&model[0])];
-    z->header.n_parts = z->header.n_ghosts - (uint32_t)n_whole(&model[0]);
+    z->header.n_ghosts = (uint32_t)z->part_from[count_whole(&model[0])];
+    z->header.n_parts = z->header.n_ghosts - (uint32_t)count_whole(&model[0]);
     z->header.n_systems = 0;
     z->transfer = transfer_between;
     z->lens = (struct glint_lens){&z->header, z->ghost, NULL, z};
@@ -410,13 +420,13 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
     return GLINT_OK;
 }
 
-/* Records which ghosts each of the models M of the file has. */
+/* Records, for each model M of the file, which ghosts it has. */
 static enum glint_status set_lacks(struct glint_zoom_lens *zoom,
                                    struct glint_blob *blob,
                                    const struct glint_zoom_model *m,
                                    const char **reason)
 {
-    const uint32_t words = ((uint32_t)n_whole(&zoom->model[0]) + 31) / 32;
+    const uint32_t words = ((uint32_t)count_whole(&zoom->model[0]) + 31) / 32;
 
     for (int k = 0; k < zoom->n_models; k++) {
         const int end = k == 0 || k == zoom->n_models - 1;
