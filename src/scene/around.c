@@ -11,7 +11,7 @@ void glint_around_carve(struct glint_around *around, struct glint_arena *arena,
     const int longer = q_larger(width, height);
 
     *around = (struct glint_around){.width = width, .height = height};
-    /* Rows are read in pairs. */
+    /* At least 2 x 2 pixels, as rows are read in pairs. */
     around->cell_log2 = 1;
     while (longer >> around->cell_log2 > MOST_CELLS)
         around->cell_log2++;
@@ -30,9 +30,10 @@ struct look {
     struct glint_light_sum sum;
 };
 
-/* Returns the mean of N pixels, 1 .. 2^12, whose light is SUM. Whole cells have
- * 2^WHOLE_LOG2 pixels; only cells cut by the picture's edge need a division. */
-static uint16_t mean(int64_t sum_q20, int n, int whole_log2)
+/* Returns the mean of N pixels, 1 .. 2^12, whose light sums to SUM. Complete
+ * cells have 2^WHOLE_LOG2 pixels; only cells cut by the picture's edge need
+ * a division. */
+static uint16_t compute_mean(int64_t sum_q20, int n, int whole_log2)
 {
     const int64_t max_q20 = (int64_t)n << 21;
     const uint32_t sum_q15 =
@@ -44,8 +45,9 @@ static uint16_t mean(int64_t sum_q20, int n, int whole_log2)
     return (uint16_t)(mean_q15 < MOST_Q15 ? mean_q15 : MOST_Q15);
 }
 
-/* Adds rows Y0 .. Y1 - 1 of N pixels from X0 on to their cells. Not inlined, as
- * its codes and its caller's sums are too large for one stack frame. */
+/* Adds the light of N pixels from X0 on in rows Y0 .. Y1 - 1 to the sums of
+ * their cells. Not inlined, as its codes and its caller's sums are too large
+ * for one stack frame. */
 static NEVER_INLINE void add_stretch(const struct look *l, int x0, int n,
                                      int y0, int y1, int64_t (*rgb_q20)[3])
 {
@@ -65,7 +67,7 @@ static NEVER_INLINE void add_stretch(const struct look *l, int x0, int n,
     }
 }
 
-/* Fills row JOB of cells. */
+/* Fills row JOB of the grid of cells with the means of their pixels. */
 static void look_job(void *ctx, int job, int worker)
 {
     const struct look *l = ctx;
@@ -82,9 +84,9 @@ static void look_job(void *ctx, int job, int worker)
         add_stretch(l, x0, n, y0, y1, rgb_q20);
         for (int x = 0; x < n; x += side)
             for (int c = 0; c < 3; c++)
-                *to_q15++ =
-                    mean(rgb_q20[x >> a->cell_log2][c],
-                         q_smaller(side, n - x) * (y1 - y0), 2 * a->cell_log2);
+                *to_q15++ = compute_mean(rgb_q20[x >> a->cell_log2][c],
+                                         q_smaller(side, n - x) * (y1 - y0),
+                                         2 * a->cell_log2);
     }
 }
 
@@ -107,7 +109,7 @@ void glint_around_look(struct glint_around *around,
 
 /* ------------------------------------------------------------------- light */
 
-/* A position between two cells of an axis. */
+/* The two cells around a position on one axis, for interpolation. */
 struct between {
     int cell, next;
     int32_t part_q15; /* weight of next */
@@ -116,7 +118,7 @@ struct between {
 static struct between find_cells(int32_t share_q16, int side, int n,
                                  int cell_log2)
 {
-    /* in cells, from the middle of the first cell */
+    /* position in cells, from the middle of the first cell */
     const int64_t at_q15 =
         q_shift((int64_t)share_q16 * side, cell_log2 + 1) - (1 << 14);
     const int32_t held_q15 = q_clamp_sat(at_q15, 0, (n - 1) << 15);

@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Prepares a frame: positions of objects, potentially visible objects, and data
- * of lights. */
+ * Prepares a frame: positions of objects, the objects that may be visible, and
+ * the data of lights.
+ */
 #include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
 
 enum { ONE_Q30 = 1 << 30 };
 
-/* Returns the pixels that a ball may touch, from its bounding box. */
-static struct glint_box ball_box(const struct glint_scene *s,
-                                 const int32_t seen[3], int32_t reach)
+/* Returns the box of pixels that a ball may touch: the projection of its
+ * bounding box. SEEN: its centre in camera coordinates; REACH: its radius. */
+static struct glint_box compute_ball_box(const struct glint_scene *s,
+                                         const int32_t seen[3], int32_t reach)
 {
     int32_t v[8][3];
 
@@ -20,11 +22,11 @@ static struct glint_box ball_box(const struct glint_scene *s,
     return glint_view_box(&s->view, (const int32_t(*)[3])v, 8);
 }
 
-/* Returns the distance, at the far side of a ball, between the middle ray of a
- * pixel and its samples' rays, rounded up; four samples are 104/256 of a pixel
- * away. */
-static int32_t margin_of(const struct glint_scene *s, const int32_t seen[3],
-                         int32_t reach)
+/* Returns the distance, at the far side of a ball, between the ray through
+ * the middle of a pixel and the rays of its samples, steps, rounded up. With
+ * four samples, these are 104/256 of a pixel away. */
+static int32_t compute_margin(const struct glint_scene *s,
+                              const int32_t seen[3], int32_t reach)
 {
     const struct glint_scene_view *v = &s->view;
     const int64_t step_q56 =
@@ -60,8 +62,8 @@ int32_t glint_scene_place(const struct glint_scene *s, struct glint_placed *p)
         return GLINT_FAR;
     p->z[0] = seen[2] - p->reach;
     p->z[1] = seen[2] + p->reach;
-    p->box = ball_box(s, seen, p->reach + 2);
-    p->margin = margin_of(s, seen, p->reach);
+    p->box = compute_ball_box(s, seen, p->reach + 2);
+    p->margin = compute_margin(s, seen, p->reach);
     p->is_seen = !glint_box_empty(p->box);
     return p->is_seen ? seen[2] - p->reach : GLINT_FAR;
 }
@@ -114,16 +116,16 @@ void glint_scene_begin(struct glint_scene *scene,
         if (z < GLINT_FAR)
             farthest = q_larger(farthest, z + 2 * scene->placed[i].reach);
     }
-    if (scene->motion) /* lines may be nearer than all objects */
+    if (scene->motion) /* lines of a motion may be nearer than all objects */
         nearest = q_smaller(nearest, farthest >> 13);
-    /* All that is nearer than 2^-14 of the farthest z gets the same depth. */
+    /* All points nearer than 2^-14 of the max z get the same depth. */
     scene->nearest =
         q_clamp_sat(q_larger(nearest, farthest >> 14), 1, GLINT_SCENE_SPAN);
     place_planes(scene);
     glint_quick_begin(scene);
     if (scene->motion)
         scene->cfg.parts.motions->project(scene);
-    else /* shells and lines need true depths */
+    else /* shells and lines need exact depths */
         glint_scene_flatten(scene);
     scene->has_triangles = scene->is_spread = 0;
     if (scene->bins.start)

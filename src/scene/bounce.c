@@ -14,20 +14,20 @@
 #include "scene/parts.h"
 #include "scene/state.h"
 
-/* A ray on its way, and the surface that it starts from. */
+/* A ray after reflection or refraction, and the surface that it starts from. */
 struct passing {
     struct glint_scene_ray ray;
     uint32_t object, triangle;
-    int32_t weight_q15; /* weight of the light that it meets */
-    int is_bent;        /* true: it no longer follows the primary ray */
+    int32_t weight_q15; /* weight, in the pixel, of the light that it meets */
+    int is_bent; /* 1: its direction differs from that of the primary ray */
     int64_t spread_q40; /* angular variance of a pixel's rays at this point */
 };
 
-/* Starts a ray from SURFACE, on the side that it came from, or if BEYOND is set
- * on the other side. */
-static void start(const struct glint_scene *s,
-                  const struct glint_met_surface *surface, int beyond,
-                  struct passing *p)
+/* Starts a ray at SURFACE, on the side from which the previous ray came; if
+ * BEYOND is set, on the opposite side. */
+static void start_ray(const struct glint_scene *s,
+                      const struct glint_met_surface *surface, int beyond,
+                      struct passing *p)
 {
     const int is_mesh =
         s->placed[surface->object].object->kind == GLINT_OBJECT_MESH;
@@ -41,15 +41,16 @@ static void start(const struct glint_scene *s,
     p->triangle = surface->triangle;
 }
 
-/* Sets RGB to the light of the camera's picture in the direction of P. With the
- * picture's edge at 1, direction (x, y, z) is at (x, y) / z. M = max(|x|, |y|)
- * is z at the edge; outside, z is mirrored there: (x, y) / (2 M - z). The map
- * is continuous, and straight back is the middle again. */
-static void look_around(const struct glint_scene *s, const struct passing *p,
-                        int32_t rgb_q15[3])
+/* Sets RGB to the light of the camera's picture in the direction of P. In
+ * units in which the picture's edge is at 1, direction (x, y, z) maps to (x,
+ * y) / z. M = max(|x|, |y|) equals z at the edge; outside, z is mirrored
+ * there: (x, y) / (2 M - z). The map is continuous, and the direction
+ * opposite to the view maps to the middle again. */
+static void look_up_picture(const struct glint_scene *s,
+                            const struct passing *p, int32_t rgb_q15[3])
 {
     const struct glint_scene_view *v = &s->view;
-    /* Half the picture's width and height as tangents, 2^30 at most. */
+    /* Tangents of half the picture's width and height, at most 2^30. */
     const int64_t tan_x_q24 = q_shift(v->step_q56[0] * v->width, 25);
     const int64_t tan_y_q24 = q_shift(v->step_q56[1] * v->height, 25);
     const int64_t both_q24 = q_shift(tan_x_q24 * tan_y_q24, 24);
@@ -80,7 +81,7 @@ static void add_background(const struct glint_scene *s, const struct passing *p,
     int32_t light_q15[3];
 
     if (s->around.has_picture)
-        look_around(s, p, light_q15);
+        look_up_picture(s, p, light_q15);
     else
         glint_scene_behind(s, p->ray.toward_q30, p->spread_q40, light_q15);
     for (int c = 0; c < 3; c++)
@@ -89,8 +90,9 @@ static void add_background(const struct glint_scene *s, const struct passing *p,
             GLINT_SCENE_MOST_LIGHT);
 }
 
-static int next_surface(const struct glint_scene *s, const struct passing *p,
-                        struct glint_met_surface *next)
+static int find_next_surface(const struct glint_scene *s,
+                             const struct passing *p,
+                             struct glint_met_surface *next)
 {
     struct glint_met met;
 
@@ -98,8 +100,8 @@ static int next_surface(const struct glint_scene *s, const struct passing *p,
            glint_scene_surface(s, &p->ray, &met, next);
 }
 
-/* Refracts P's direction at SURFACE; returns 1 if it is totally reflected
- * instead. */
+/* Refracts P's direction at SURFACE. Returns 1 without changing it if total
+ * reflection occurs. */
 static int refract_ray(const struct glint_met_surface *surface,
                        uint32_t index_q16, struct passing *p)
 {
@@ -119,7 +121,8 @@ static int refract_ray(const struct glint_met_surface *surface,
     return 0;
 }
 
-/* Moves P through a sphere that it has entered, to where it leaves. */
+/* Moves P through the sphere that it has entered to the point where it
+ * leaves. */
 static void cross_sphere(const struct glint_scene *s,
                          const struct glint_met_surface *surface,
                          int is_straight, struct passing *p)
@@ -129,17 +132,17 @@ static void cross_sphere(const struct glint_scene *s,
     struct glint_chord chord;
 
     if (!glint_ray_sphere(&p->ray, ball->at, ball->radius, &chord))
-        return; /* grazing: the ray leaves where it entered */
+        return; /* grazing ray: it leaves where it entered */
     glint_chord_end(&chord, &p->ray, ball->at, 1, end.place, end.normal_q30);
     for (int k = 0; k < 3; k++)
         end.normal_q30[k] = -end.normal_q30[k];
     end.is_inside = 1;
     if (!is_straight)
         refract_ray(&end, (uint32_t)surface->material->index_q16, p);
-    start(s, &end, 1, p);
+    start_ray(s, &end, 1, p);
 }
 
-/* Continues P through SURFACE. */
+/* Continues P behind SURFACE. */
 static void pass_through(const struct glint_scene *s,
                          const struct glint_met_surface *surface,
                          struct passing *p)
@@ -154,18 +157,20 @@ static void pass_through(const struct glint_scene *s,
     p->is_bent |= !is_straight;
     if (!is_straight)
         is_mirrored = refract_ray(surface, (uint32_t)m->index_q16, p);
-    start(s, surface, !is_mirrored, p);
+    start_ray(s, surface, !is_mirrored, p);
     if (is_sphere && surface->is_inside && is_mirrored)
-        p->weight_q15 = 0; /* totally reflected light never leaves a ball */
+        /* light that is totally reflected never leaves a ball */
+        p->weight_q15 = 0;
     else if (is_sphere && !surface->is_inside && !is_mirrored)
         cross_sphere(s, surface, is_straight, p);
 }
 
 /* Returns the angular variance of a pixel's rays after reflection; a curved
  * mirror increases it. */
-static int64_t mirror_spread_q40(const struct glint_scene *s,
-                                 const struct glint_scene_ray *ray,
-                                 const struct glint_met_surface *surface)
+static int64_t
+compute_mirror_spread_q40(const struct glint_scene *s,
+                          const struct glint_scene_ray *ray,
+                          const struct glint_met_surface *surface)
 {
     if (s->model.header->background != GLINT_BACKGROUND_ENVIRONMENT)
         return 0;
@@ -173,17 +178,19 @@ static int64_t mirror_spread_q40(const struct glint_scene *s,
            (int64_t)s->cfg.parts.wards->spread(s, ray, surface) * 2048;
 }
 
-static void reflect(const struct glint_scene *s, const struct passing *from,
-                    const struct glint_met_surface *surface, int32_t rgb_q15[3])
+static void trace_reflection(const struct glint_scene *s,
+                             const struct passing *from,
+                             const struct glint_met_surface *surface,
+                             int32_t rgb_q15[3])
 {
     struct passing p = *from;
     struct glint_met_surface next;
 
     p.weight_q15 = q_mul(p.weight_q15, surface->material->reflect_q15, 15);
     glint_mirror(from->ray.toward_q30, surface->normal_q30, p.ray.toward_q30);
-    start(s, surface, 0, &p);
-    p.spread_q40 = mirror_spread_q40(s, &from->ray, surface);
-    if (next_surface(s, &p, &next))
+    start_ray(s, surface, 0, &p);
+    p.spread_q40 = compute_mirror_spread_q40(s, &from->ray, surface);
+    if (find_next_surface(s, &p, &next))
         glint_scene_phong(s, &p.ray, &next, p.weight_q15, rgb_q15);
     else
         add_background(s, &p, rgb_q15);
@@ -200,12 +207,12 @@ static void follow(const struct glint_scene *s,
     struct glint_met_surface at = *surface;
 
     if (at.material->reflect_q15)
-        reflect(s, &p, &at, shade->rgb_q15);
+        trace_reflection(s, &p, &at, shade->rgb_q15);
     for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++) {
         pass_through(s, &at, &p);
         if (p.weight_q15 == 0)
             return;
-        if (!next_surface(s, &p, &at)) {
+        if (!find_next_surface(s, &p, &at)) {
             const int is_picture =
                 s->model.header->background == GLINT_BACKGROUND_CAMERA;
 

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights: their brightness at a point, and whether they reach it. */
+ * Lights: the light that they cast on a point, and whether the point is in
+ * their shadow.
+ */
 #include "base/divide.h"
 #include "scene/state.h"
 
 enum { STEPS_LOG2 = 7 };
 
-/* log2(1 + i / 128). */
+/* log2(1 + i / 128), with 30 fraction bits. */
 /* clang-format off */
 static const int32_t log2_q30[(1 << STEPS_LOG2) + 2] = {
     0, 12055174, 24017256, 35887675, 47667823, 59359063,
@@ -32,8 +34,8 @@ static const int32_t log2_q30[(1 << STEPS_LOG2) + 2] = {
     1024560487, 1030794226, 1037002979, 1043186948, 1049346328, 1055481314,
     1061592099, 1067678873, 1073741824, 1079781138};
 
-/* Evenly distributed points of the unit disc: four, and sixteen along a
- * spiral. */
+/* Evenly distributed sample points of the unit disc: four, and sixteen along
+ * a spiral. */
 static const int32_t four_q15[4][2] = {
     {21773, 7925}, {-7925, 21773}, {-21773, -7925}, {7925, -21773}};
 static const int32_t sixteen_q15[16][2] = {
@@ -47,7 +49,7 @@ static const int32_t sixteen_q15[16][2] = {
 
 /* Returns -log2(X), _q26, with an error of 2^-23, by a parabola through three
  * neighbours of the table. X_Q30 must be 1 .. 2^30. */
-static int32_t minus_log2_q26(uint32_t x_q30)
+static int32_t compute_minus_log2_q26(uint32_t x_q30)
 {
     const int up = 31 - bit_length(x_q30), low = 30 - STEPS_LOG2;
     const uint32_t m_q30 = x_q30 << up; /* 2^30 .. 2^31 - 1 */
@@ -72,7 +74,8 @@ int32_t glint_power_q15(int32_t x_q30, int32_t k_q8)
 
     if (x_q30 <= 0)
         return 0;
-    down_q26 = q_shift((int64_t)minus_log2_q26((uint32_t)x_q30) * k_q8, 8);
+    down_q26 =
+        q_shift((int64_t)compute_minus_log2_q26((uint32_t)x_q30) * k_q8, 8);
     if (down_q26 >= INT64_C(17) << 26)
         return 0;
     f_q26 = (int32_t)(down_q26 & ((1 << 26) - 1));
@@ -87,11 +90,12 @@ int32_t glint_power_q15(int32_t x_q30, int32_t k_q8)
 
 /* ------------------------------------------------------------------- level */
 
-/* Returns REAL * 4^UNIT_LOG2 / SQUARE, q15, saturated. */
-static int32_t level_of(struct glint_real real, int unit_log2, uint64_t square)
+/* Returns REAL * 4^UNIT_LOG2 / SQUARE, _q15, saturated. */
+static int32_t compute_level(struct glint_real real, int unit_log2,
+                             uint64_t square)
 {
     const int up = q_up(square);
-    /* 2^63 / 2^UP times the quotient of the mantissa, below 2^63 */
+    /* quotient of the mantissa and SQUARE, times 2^63 / 2^UP; below 2^63 */
     const uint64_t over =
         (uint64_t)real.mantissa * q_reciprocal(q_upper(square, up));
     const int down = 63 - up - real.exponent - 2 * unit_log2 - 15;
@@ -126,8 +130,8 @@ int32_t glint_scene_light_at(const struct glint_scene *scene,
         return 0;
     square = (uint64_t)v3_dot(off, off);
     for (int k = 0; k < 3; k++)
-        level_q15[k] = level_of(lit->light->rgb[k],
-                                scene->model.header->unit_log2, square);
+        level_q15[k] = compute_level(lit->light->rgb[k],
+                                     scene->model.header->unit_log2, square);
     return (int32_t)glint_root(square);
 }
 
@@ -146,15 +150,16 @@ void glint_scene_frame_of(const int32_t d_q30[3], int32_t u_q30[3],
     glint_unit(cross, v_q30);
 }
 
-/* Turns RAY to point I of N of a disc of radius RADIUS, T steps away, spanned
- * by U and V. */
-static void aim(struct glint_scene_ray *ray, const int32_t u_q30[3],
-                const int32_t v_q30[3], int32_t t, int32_t radius, int i, int n)
+/* Turns RAY to sample point I of the N points of a disc of radius RADIUS, at
+ * distance T, in the plane of the unit vectors U and V. */
+static void aim_at_point(struct glint_scene_ray *ray, const int32_t u_q30[3],
+                         const int32_t v_q30[3], int32_t t, int32_t radius,
+                         int i, int n)
 {
     const int32_t *at_q15 = n == 4 ? four_q15[i] : sixteen_q15[i];
     int64_t to[3];
 
-    for (int k = 0; k < 3; k++) { /* 2^60, and 1.5 * 2^30 times 2^29 */
+    for (int k = 0; k < 3; k++) { /* at most 2^60, and 1.5 * 2^30 times 2^29 */
         const int64_t aside_q30 = q_shift(
             (int64_t)u_q30[k] * at_q15[0] + (int64_t)v_q30[k] * at_q15[1], 15);
 
@@ -171,7 +176,7 @@ void glint_scene_point(struct glint_scene_ray *ray, int32_t t, int32_t radius,
     if (radius == 0 || n == 1)
         return;
     glint_scene_frame_of(ray->toward_q30, u_q30, v_q30);
-    aim(ray, u_q30, v_q30, t, radius, i, n);
+    aim_at_point(ray, u_q30, v_q30, t, radius, i, n);
 }
 
 int32_t glint_rays_reach(const struct glint_scene *scene,
@@ -195,7 +200,7 @@ int32_t glint_rays_reach(const struct glint_scene *scene,
         struct glint_scene_ray to = middle;
 
         if (n > 1)
-            aim(&to, u_q30, v_q30, distance, radius, i, n);
+            aim_at_point(&to, u_q30, v_q30, distance, radius, i, n);
         reached += v3_dot(to.toward_q30, surface->face_q30) > 0 &&
                    !glint_scene_blocks(scene, &to, surface->object,
                                        surface->triangle, distance);

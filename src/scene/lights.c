@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights of the scene as lamps seen by the camera, for the lens, and the part
- * of the picture that the scene hides. */
+ * Lists the lights of the scene as lamps that the camera sees, which flare in
+ * the lens; and the fraction of a region of the picture that the scene hides.
+ */
 #include "base/real.h"
 #include "scene/state.h"
 
 enum { POINTS = 16 };
 
-/* Returns the number of the 16 points of LIT that the camera sees. RAY points
- * to its middle, T steps away. */
-static int share_of(const struct glint_scene *s, const struct glint_lit *lit,
-                    const struct glint_scene_ray *ray, int32_t t)
+/* Returns how many of the 16 sample points of LIT the camera sees. RAY
+ * points to the light's middle, at distance T. */
+static int count_visible_points(const struct glint_scene *s,
+                                const struct glint_lit *lit,
+                                const struct glint_scene_ray *ray, int32_t t)
 {
     const int n = lit->light->radius ? POINTS : 1;
     int seen = 0;
@@ -24,8 +26,8 @@ static int share_of(const struct glint_scene *s, const struct glint_lit *lit,
     return seen * (POINTS / n);
 }
 
-/* Sets the power of LAMP, T steps away: pi times the light of a white surface,
- * times the pixels per solid angle, f^2 / cosine^3. */
+/* Sets the power of LAMP, at distance T: pi times the light of a white
+ * surface, times the pixels per solid angle, f^2 / cosine^3. */
 static void set_power(const struct glint_scene *s, const struct glint_lit *lit,
                       int32_t t, int32_t cosine_q30,
                       struct glint_scene_lamp *lamp)
@@ -49,7 +51,8 @@ static void set_power(const struct glint_scene *s, const struct glint_lit *lit,
         lamp->rgb[c] = real_times(lit->light->rgb[c], factor);
 }
 
-/* Sets LAMP to light LIT; returns 0 if LIT is not in front of the camera. */
+/* Sets LAMP to the light LIT. Returns 0 if LIT is not in front of the
+ * camera. */
 static int project_light(const struct glint_scene *s,
                          const struct glint_lit *lit,
                          struct glint_scene_lamp *lamp)
@@ -70,7 +73,7 @@ static int project_light(const struct glint_scene *s,
     corner = glint_view_corner(&s->view, seen_q30);
     if (corner.w != 1)
         return 0;
-    lamp->share = share_of(s, lit, &ray, t);
+    lamp->share = count_visible_points(s, lit, &ray, t);
     lamp->x_q8 = corner.x + 128 * s->view.width;
     lamp->y_q8 = corner.y + 128 * s->view.height;
     radius = t == GLINT_FAR

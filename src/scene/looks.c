@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Changes of materials from frame to frame. A scene draws with its own copy of
- * the model's tables. */
+ * Changes the appearance (materials, lights of the environment) from frame to
+ * frame. A scene draws with its own copy of the model's tables.
+ */
 #include "scene/valid.h"
 #include "scene/parts.h"
 #include "scene/state.h"
@@ -18,9 +19,10 @@ void glint_scene_copy_looks(struct glint_scene *scene)
     scene->model.ward = scene->ward;
 }
 
-/* Returns the metal of material M, or NULL if M is not a metal. */
-static struct glint_scene_ward *metal_of(const struct glint_scene *s,
-                                         const struct glint_scene_material *m)
+/* Returns the parameters of metal of material M, or NULL if M is not a
+ * metal. */
+static struct glint_scene_ward *get_metal(const struct glint_scene *s,
+                                          const struct glint_scene_material *m)
 {
     return m->ward == GLINT_SCENE_NONE ? NULL : &s->ward[m->ward];
 }
@@ -35,7 +37,7 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
     if (material < 0 || material >= (int)scene->model.header->n_materials)
         return GLINT_E_ARGUMENT;
     m = &scene->material[material];
-    ward = metal_of(scene, m);
+    ward = get_metal(scene, m);
     *look = (struct glint_scene_look){.rgb_q15 = {0}};
     for (int k = 0; k < 3; k++) {
         look->rgb_q15[k] = m->rgb_q15[k];
@@ -46,10 +48,10 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
     return GLINT_OK;
 }
 
-/* Returns whether LOOK is in range, for a metal if IS_METAL; WARD receives the
- * metal's members. */
-static int is_look(const struct glint_scene_look *look, int is_metal,
-                   struct glint_scene_ward *ward)
+/* Returns whether all members of LOOK are in range; if IS_METAL is set, also
+ * those of a metal, which are stored in WARD. */
+static int is_valid_look(const struct glint_scene_look *look, int is_metal,
+                         struct glint_scene_ward *ward)
 {
     int any = 0;
 
@@ -75,10 +77,10 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
     if (material < 0 || material >= (int)scene->model.header->n_materials)
         return GLINT_E_ARGUMENT;
     m = &scene->material[material];
-    ward = metal_of(scene, m);
+    ward = get_metal(scene, m);
     if (ward)
         changed.norm = ward->norm;
-    if (!is_look(look, ward != NULL, &changed))
+    if (!is_valid_look(look, ward != NULL, &changed))
         return GLINT_E_ARGUMENT;
     for (int k = 0; k < 3; k++)
         m->rgb_q15[k] = look->rgb_q15[k];
@@ -90,7 +92,7 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
 }
 
 /* Returns whether object P may have material MATERIAL: a translucent medium
- * needs a map of the object. */
+ * needs a map for the object. */
 static int has_map(const struct glint_scene_model *m,
                    const struct glint_placed *p, uint32_t material)
 {
@@ -139,8 +141,8 @@ enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
 
 /* ------------------------------------------------------------- environments */
 
-/* Invalidates light that is computed once for several frames. */
-static enum glint_status relight(struct glint_scene *scene)
+/* Invalidates lighting that is cached for several frames. */
+static enum glint_status invalidate_light(struct glint_scene *scene)
 {
     if (scene->stones)
         scene->cfg.parts.stones->relight(scene);
@@ -155,7 +157,7 @@ enum glint_status glint_scene_set_environment(struct glint_scene *scene,
         environment >= (int)scene->model.header->n_environments)
         return GLINT_E_ARGUMENT;
     scene->cfg.parts.wards->show(scene, (uint32_t)environment);
-    return relight(scene);
+    return invalidate_light(scene);
 }
 
 enum glint_status glint_scene_scale_environment(struct glint_scene *scene,
@@ -165,7 +167,7 @@ enum glint_status glint_scene_scale_environment(struct glint_scene *scene,
         !glint_scene_is_light(&scale))
         return GLINT_E_ARGUMENT;
     scene->cfg.parts.wards->scale(scene, scale);
-    return relight(scene);
+    return invalidate_light(scene);
 }
 
 enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
@@ -175,5 +177,5 @@ enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
         !glint_scene_is_unit(turn_q30, 2))
         return GLINT_E_ARGUMENT;
     scene->cfg.parts.wards->turn(scene, turn_q30);
-    return relight(scene);
+    return invalidate_light(scene);
 }

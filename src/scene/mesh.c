@@ -20,13 +20,13 @@
 
 /* -------------------------------------------------------------------- small */
 
-/* Small triangles in the picture: all samples of a pixel are tested at once, in
- * 32 bits, in loops that compilers vectorize. The inside test is the same as
- * for large triangles; depths are interpolated linearly in the picture between
- * the corners' depths. */
+/* Small triangles in the picture: all samples of a pixel are tested at once,
+ * in 32 bits, in loops that compilers vectorise. The inside test equals that
+ * of large triangles; depths are interpolated linearly in the picture
+ * between the corners' depths. */
 
-/* The line through two corners: the function across x + down y + at of position
- * (x, y), above 0 on one side. */
+/* The line through two corners, as a function of position: across x + down y
+ * + at, positive on one side. */
 struct line {
     int64_t across, down, at;
 };
@@ -39,8 +39,8 @@ static inline int64_t line_at(const struct line *l, int64_t x, int64_t y)
 /* The lines of a small triangle, in 32 bits. */
 struct small {
     uint32_t id;
-    int32_t across[3], down[3]; /* change of the lines per pixel */
-    int32_t at[3];              /* lines at the first pixel of the box */
+    int32_t across[3], down[3]; /* change of the line functions per pixel */
+    int32_t at[3]; /* line functions at the first pixel of the box */
     struct glint_depth depth;
     int32_t off[3][GLINT_SCENE_SAMPLES], deeper[GLINT_SCENE_SAMPLES];
 };
@@ -49,9 +49,10 @@ enum { DEPTH_BITS = 12, MOST_DEEPER = 1 << 28 };
 
 /* Sets DEPTH_Q30 to the depths of the corners of a triangle; returns 0 if a
  * depth is out of range. */
-static inline int corner_depths(const struct glint_scene *s, uint32_t object,
-                                const struct glint_scene_triangle *t,
-                                int32_t depth_q30[3])
+static inline int compute_corner_depths(const struct glint_scene *s,
+                                        uint32_t object,
+                                        const struct glint_scene_triangle *t,
+                                        int32_t depth_q30[3])
 {
     const uint32_t first = s->placed[object].first_vertex;
     int fits = 1;
@@ -66,7 +67,8 @@ static inline int corner_depths(const struct glint_scene *s, uint32_t object,
     return fits;
 }
 
-/* Returns whether all samples of B see something nearer than DEPTH_Q30. */
+/* Returns whether everything that the samples of B see so far is nearer than
+ * DEPTH_Q30. */
 static int is_nearer(const struct glint_scene_worker *w, struct glint_box b,
                      int32_t depth_q30)
 {
@@ -84,12 +86,14 @@ static int is_nearer(const struct glint_scene_worker *w, struct glint_box b,
     return 1;
 }
 
-/* Samples inside lie between the corners, apart from rounding: each of three
- * lines may be 1 too low, together at most half of twice an area of 6, and
- * slopes of depth are truncated. Slopes, at most 2 * 2 * 48 * 256 range / area,
- * are below 2^20, so that depths are set as below. */
-static int is_hidden(const struct glint_scene_worker *w, uint32_t id,
-                     const struct glint_scene_triangle *t, struct glint_box b)
+/* Returns whether triangle ID is behind everything that the samples of B see
+ * so far. Samples inside lie between the corners, apart from rounding: each
+ * of three lines may be 1 too low, together at most half of twice an area of
+ * 6, and slopes of depth are truncated. Slopes, at most 2 * 2 * 48 * 256
+ * range / area, are below 2^20, so that depths are set as in set_depths(). */
+static int is_all_hidden(const struct glint_scene_worker *w, uint32_t id,
+                         const struct glint_scene_triangle *t,
+                         struct glint_box b)
 {
     enum { LEAST_AREA = 6, SLACK = 16, MOST_RANGE = 1 << 28 };
     const struct glint_scene *s = w->scene;
@@ -102,7 +106,7 @@ static int is_hidden(const struct glint_scene_worker *w, uint32_t id,
     area = (int64_t)q_magnitude(
         (int64_t)(c[1]->x - c[0]->x) * (c[2]->y - c[0]->y) -
         (int64_t)(c[1]->y - c[0]->y) * (c[2]->x - c[0]->x));
-    if (area < LEAST_AREA || !corner_depths(s, id >> 20, t, depth_q30))
+    if (area < LEAST_AREA || !compute_corner_depths(s, id >> 20, t, depth_q30))
         return 0;
     most = q_larger(depth_q30[0], q_larger(depth_q30[1], depth_q30[2]));
     range =
@@ -122,7 +126,7 @@ static int set_depths(const struct glint_scene *s, uint32_t object,
     int32_t depth_q30[3];
     int64_t all = 0, across = 0, down = 0;
 
-    if (!corner_depths(s, object, t, depth_q30))
+    if (!compute_corner_depths(s, object, t, depth_q30))
         return 0;
     for (int k = 0; k < 3; k++)
         all += line_at(&line[k], c->x, c->y);
@@ -144,7 +148,8 @@ static int set_depths(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Sets the data that all pixels share; the first pixel is at (X, Y). */
+/* Sets the values that all pixels share: lines at the first pixel, whose
+ * middle is at (X, Y), and the differences between samples. */
 static inline void set_small(const struct glint_scene *s, int n,
                              const struct line line[3], int32_t x_q8,
                              int32_t y_q8, struct small *small)
@@ -172,12 +177,12 @@ static inline void set_small(const struct glint_scene *s, int n,
                       DEPTH_BITS);
 }
 
-/* Draws N samples of a pixel with lines AT and depth Z at its middle. The loop
- * is written so that compilers vectorize it before they unroll it. */
-static inline void look_at_samples(const struct small *small, int n,
-                                   const int32_t at[3], int32_t z,
-                                   int32_t *restrict depth,
-                                   uint32_t *restrict id)
+/* Draws the N samples of a pixel whose line functions AT and depth Z are
+ * given at its middle. The loop is written so that compilers vectorise it
+ * before they unroll it. */
+static inline void draw_samples(const struct small *small, int n,
+                                const int32_t at[3], int32_t z,
+                                int32_t *restrict depth, uint32_t *restrict id)
 {
     const uint32_t own = small->id;
 
@@ -195,8 +200,9 @@ static inline void look_at_samples(const struct small *small, int n,
     }
 }
 
-static inline void look_at_rows(struct glint_scene_worker *w, int n,
-                                const struct small *small, struct glint_box b)
+static inline void draw_small_rows(struct glint_scene_worker *w, int n,
+                                   const struct small *small,
+                                   struct glint_box b)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_depth d = small->depth;
@@ -210,7 +216,7 @@ static inline void look_at_rows(struct glint_scene_worker *w, int n,
 
         for (int x = b.x0; x < b.x1; x++, k += n) {
             if ((at[0] | at[1] | at[2]) >= 0)
-                look_at_samples(
+                draw_samples(
                     small, n, at,
                     q_clamp_sat(depth >> DEPTH_BITS, -(3 << 29), 3 << 29),
                     w->depth + k, w->id + k);
@@ -223,9 +229,10 @@ static inline void look_at_rows(struct glint_scene_worker *w, int n,
     }
 }
 
-/* Draws triangle T, ID, in 32 bits; returns 0 if its depths need more bits. All
- * corners must be in the picture or near it, and lines below 2^30 in B. */
-static int look_small(struct glint_scene_worker *w, uint32_t id,
+/* Draws triangle T, with id ID, in 32 bits. Returns 0 if its depths need
+ * more bits. All corners must be in the picture or near it, and the line
+ * functions below 2^30 in B. */
+static int draw_small(struct glint_scene_worker *w, uint32_t id,
                       const struct glint_scene_triangle *t,
                       const struct line line[3], struct glint_box b)
 {
@@ -240,13 +247,13 @@ static int look_small(struct glint_scene_worker *w, uint32_t id,
         return 0;
     if (n == 1) {
         set_small(s, 1, line, x_q8, y_q8, &small);
-        look_at_rows(w, 1, &small, b);
+        draw_small_rows(w, 1, &small, b);
     } else if (n == 4) {
         set_small(s, 4, line, x_q8, y_q8, &small);
-        look_at_rows(w, 4, &small, b);
+        draw_small_rows(w, 4, &small, b);
     } else {
         set_small(s, n, line, x_q8, y_q8, &small);
-        look_at_rows(w, n, &small, b);
+        draw_small_rows(w, n, &small, b);
     }
     return 1;
 }
@@ -267,12 +274,12 @@ struct inside {
     const struct glint_scene_mesh *mesh;
     struct glint_scene_ray ray;
     struct glint_sheared sheared;
-    int32_t start; /* distance along the original ray at which it begins */
-    uint32_t but;  /* triangle that is skipped */
+    /* distance along the original ray at which this ray begins */
+    int32_t start;
+    uint32_t but; /* index of the triangle that is skipped */
 };
 
-/* Transforms RAY to the space of OBJECT; T is the distance at which it
- * begins. */
+/* Transforms RAY to the space of OBJECT, starting at distance T. */
 static int enter_space(const struct glint_scene *s, uint32_t object,
                        const struct glint_scene_ray *ray, int32_t t,
                        struct inside *in)
@@ -297,15 +304,15 @@ static int enter_space(const struct glint_scene *s, uint32_t object,
 /* The position of a ray in the grid. */
 struct walk {
     int32_t cell[3], step[3];
-    int64_t away[3];  /* distance to the side of the cell that the ray leaves
-                         by, steps */
+    int64_t away[3]; /* distance along the axis to the side of the cell at which
+                        the ray leaves, steps */
     int64_t speed[3]; /* |direction|, q30 */
 };
 
-/* Starts a walk at the point where the ray enters the grid; returns 0 if the
- * ray misses it. A start that rounding has moved outside the grid is clamped to
- * the nearest cell. */
-static int begin(struct inside *in, struct walk *w)
+/* Begins a walk at the point where the ray enters the grid. Returns 0 if the
+ * ray misses the grid. A start that rounding has moved outside the grid is
+ * clamped to the nearest cell. */
+static int begin_walk(struct inside *in, struct walk *w)
 {
     enum { SLACK = GLINT_SCENE_MARGIN / 2 };
     const struct glint_scene_mesh *m = in->mesh;
@@ -348,14 +355,14 @@ static int begin(struct inside *in, struct walk *w)
     return 1;
 }
 
-/* Moves to the next cell. Returns 0 if the grid ends, or if the next cell is
- * farther from the start of the walk than LIMIT. */
-static int go_on(const struct inside *in, struct walk *w, int64_t limit)
+/* Moves to the next cell. Returns 0 at the end of the grid, or if the next
+ * cell is farther from the start of the walk than LIMIT. */
+static int advance(const struct inside *in, struct walk *w, int64_t limit)
 {
     const struct glint_scene_mesh *m = in->mesh;
     int next = 0;
 
-    for (int k = 1; k < 3; k++) /* the largest speed is not 0 */
+    for (int k = 1; k < 3; k++) /* the max speed is never 0 */
         next = w->speed[k] > w->speed[next] ? k : next;
     for (int k = 0; k < 3; k++)
         if (w->away[k] * w->speed[next] < w->away[next] * w->speed[k])
@@ -369,8 +376,8 @@ static int go_on(const struct inside *in, struct walk *w, int64_t limit)
     return w->cell[next] >= 0 && w->cell[next] < (int32_t)m->cells[next];
 }
 
-/* Tests the triangles of the cell; sets MET to the nearest intersection within
- * MET->t. */
+/* Tests the triangles of the current cell. Sets MET to the nearest
+ * intersection within MET->t; returns whether there is one. */
 static int test_cell(const struct inside *in, const struct walk *w,
                      struct glint_met *met)
 {
@@ -401,9 +408,10 @@ static int test_cell(const struct inside *in, const struct walk *w,
     return any;
 }
 
-static int meet(const struct glint_scene *scene, uint32_t object,
-                uint32_t but_triangle, const struct glint_scene_ray *ray,
-                int any, struct glint_met *met)
+static int intersect_mesh(const struct glint_scene *scene, uint32_t object,
+                          uint32_t but_triangle,
+                          const struct glint_scene_ray *ray, int any,
+                          struct glint_met *met)
 {
     const struct glint_placed *p = &scene->placed[object];
     struct glint_chord chord;
@@ -415,18 +423,19 @@ static int meet(const struct glint_scene *scene, uint32_t object,
     if (!glint_ray_sphere(ray, p->centre, p->reach, &chord) ||
         chord.t[1] <= 0 || chord.t[0] >= met->t ||
         !enter_space(scene, object, ray, q_larger(0, chord.t[0]), &in) ||
-        !begin(&in, &w))
+        !begin_walk(&in, &w))
         return 0;
     do {
         found |= test_cell(&in, &w, met);
-    } while (!(found && any) && go_on(&in, &w, (int64_t)met->t - in.start));
+    } while (!(found && any) && advance(&in, &w, (int64_t)met->t - in.start));
     return found;
 }
 
-/* Uses the vertices in camera coordinates, computed once per frame. */
-static int hold(const struct glint_scene *scene, uint32_t object,
-                uint32_t triangle, const int32_t seen_q30[3],
-                struct glint_met *met)
+/* Intersects a primary ray with one triangle, using the vertices in camera
+ * coordinates, which are computed once per frame. */
+static int intersect_triangle(const struct glint_scene *scene, uint32_t object,
+                              uint32_t triangle, const int32_t seen_q30[3],
+                              struct glint_met *met)
 {
     const struct glint_scene_triangle *t =
         glint_mesh_triangle(scene, glint_mesh_of(scene, object), triangle);
@@ -450,9 +459,10 @@ static int hold(const struct glint_scene *scene, uint32_t object,
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* Sets TO to the mean of three rows of N numbers, weighted by SPOT. */
-static void mean(const struct glint_spot_on *spot, const int32_t *const row[3],
-                 int n, int32_t *to)
+/* Sets TO to the mean of three rows of N numbers, weighted by the weights in
+ * SPOT. */
+static void interpolate(const struct glint_spot_on *spot,
+                        const int32_t *const row[3], int n, int32_t *to)
 {
     for (int k = 0; k < n; k++) {
         int64_t sum = 0;
@@ -463,16 +473,16 @@ static void mean(const struct glint_spot_on *spot, const int32_t *const row[3],
     }
 }
 
-static void rows_of(const struct glint_scene *s,
-                    const struct glint_scene_triangle *t, uint32_t at, int n,
-                    const int32_t *row[3])
+static void get_rows(const struct glint_scene *s,
+                     const struct glint_scene_triangle *t, uint32_t at, int n,
+                     const int32_t *row[3])
 {
     for (int k = 0; k < 3; k++)
         row[k] =
             (const int32_t *)glint_mesh_table(s, at) + (size_t)n * t->vertex[k];
 }
 
-/* Returns log2 of the length of V, q16, or -2^24 if V is 0. */
+/* Returns log2 of the length of V, _q16, or -2^24 if V is 0. */
 static int32_t log2_length_q16(const int64_t v[3])
 {
     const uint64_t any =
@@ -485,18 +495,19 @@ static int32_t log2_length_q16(const int64_t v[3])
     return square ? q_log2_q16(square) / 2 + down * 65536 : -(1 << 24);
 }
 
-/* Sets u, v and the triangle's area in uv space. */
-static void map(const struct glint_scene *s, const struct glint_scene_mesh *m,
-                const struct glint_scene_triangle *t,
-                const int32_t *const vertex[3], const struct glint_met *met,
-                struct glint_met_surface *surface)
+/* Sets u, v and the scale of SURFACE from the triangle's area in uv space. */
+static void set_uv(const struct glint_scene *s,
+                   const struct glint_scene_mesh *m,
+                   const struct glint_scene_triangle *t,
+                   const int32_t *const vertex[3], const struct glint_met *met,
+                   struct glint_met_surface *surface)
 {
     const int32_t *uv_q16[3];
     int32_t first[3] = {0}, second[3] = {0}, uv[2][3] = {{0}};
     int64_t area[3], uv_area[3];
 
-    rows_of(s, t, m->uv_at, 2, uv_q16);
-    mean(&met->spot, uv_q16, 2, surface->uv_q16);
+    get_rows(s, t, m->uv_at, 2, uv_q16);
+    interpolate(&met->spot, uv_q16, 2, surface->uv_q16);
     v3_minus(vertex[1], vertex[0], first);
     v3_minus(vertex[2], vertex[0], second);
     for (int k = 0; k < 2; k++)
@@ -508,9 +519,9 @@ static void map(const struct glint_scene *s, const struct glint_scene_mesh *m,
         log2_length_q16(uv_area) - (32 << 16) - log2_length_q16(area);
 }
 
-static int surface_of(const struct glint_scene *scene,
-                      const struct glint_met *met,
-                      struct glint_met_surface *surface)
+static int set_surface(const struct glint_scene *scene,
+                       const struct glint_met *met,
+                       struct glint_met_surface *surface)
 {
     const struct glint_placed *p = &scene->placed[met->object];
     const struct glint_scene_mesh *m = glint_mesh_of(scene, met->object);
@@ -520,7 +531,7 @@ static int surface_of(const struct glint_scene *scene,
     int32_t place[3], normal_q30[3];
 
     glint_mesh_vertices(scene, m, met->triangle, vertex);
-    mean(&met->spot, vertex, 3, place);
+    interpolate(&met->spot, vertex, 3, place);
     v3_turn(&p->turn, place, surface->place);
     for (int k = 0; k < 3; k++)
         surface->place[k] += p->at[k];
@@ -530,8 +541,8 @@ static int surface_of(const struct glint_scene *scene,
     if (m->normal_at) {
         int64_t sum[3];
 
-        rows_of(scene, t, m->normal_at, 3, row);
-        mean(&met->spot, row, 3, normal_q30);
+        get_rows(scene, t, m->normal_at, 3, row);
+        interpolate(&met->spot, row, 3, normal_q30);
         for (int k = 0; k < 3; k++)
             sum[k] = normal_q30[k];
         if (!glint_unit(sum, normal_q30))
@@ -542,11 +553,12 @@ static int surface_of(const struct glint_scene *scene,
         surface->material = &scene->model.material[t->material];
     if (m->uv_at &&
         (surface->material->texture != GLINT_SCENE_NONE || p->skin >= 0))
-        map(scene, m, t, vertex, met, surface);
+        set_uv(scene, m, t, vertex, met, surface);
     return 1;
 }
 
-static int joins(const struct glint_scene *scene, uint32_t a, uint32_t b)
+static int is_smooth_pair(const struct glint_scene *scene, uint32_t a,
+                          uint32_t b)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(scene, a >> 20);
     const struct glint_scene_triangle *t =
@@ -563,8 +575,8 @@ static int joins(const struct glint_scene *scene, uint32_t a, uint32_t b)
 
 /* ------------------------------------------------------------------ corners */
 
-static const struct glint_corner *corner_of(const struct glint_scene *s,
-                                            uint32_t object, uint32_t vertex)
+static const struct glint_corner *get_corner(const struct glint_scene *s,
+                                             uint32_t object, uint32_t vertex)
 {
     return &s->corner[s->placed[object].first_vertex + vertex];
 }
@@ -586,34 +598,35 @@ static void move_vertices(struct glint_scene *s, uint32_t object)
     }
 }
 
-/* Returns the max offset of samples from the middle of their pixel. */
+/* Returns the max offset of a sample from the middle of its pixel, 1/256
+ * pixel. */
 static int32_t max_off_q8(const struct glint_scene *s)
 {
     return s->cfg.edge_samples > 4 ? 120 : 96;
 }
 
-/* Returns the first pixel that may have a sample at X or after it. */
-static int first_at(int32_t x_q8, int side, int32_t off_q8)
+/* Returns the first pixel that may have a sample at X or beyond. */
+static int find_first_pixel(int32_t x_q8, int side, int32_t off_q8)
 {
     return (x_q8 + 128 * (side - 1) - off_q8 + 255) >> 8;
 }
 
-/* Returns the index after the last pixel that may have a sample at X or before
- * it. */
-static int end_at(int32_t x_q8, int side, int32_t off_q8)
+/* Returns 1 + the last pixel that may have a sample at X or before. */
+static int find_end_pixel(int32_t x_q8, int side, int32_t off_q8)
 {
     return ((x_q8 + 128 * (side - 1) + off_q8) >> 8) + 1;
 }
 
-/* Lines of triangles up to this width and height are below 2^30 within 256 of
- * the triangle, and so are sums of two lines. */
+/* Max width and height of small triangles: their line functions are below
+ * 2^30 within 256 pixels of the triangle, and so are sums of two of them. */
 enum { SMALL_Q8 = 48 << 8 };
 
-/* Returns the pixels that a triangle may touch: all if a corner is behind the
- * camera or far off-screen. */
-static struct glint_box box_of(const struct glint_scene *s, uint32_t object,
-                               const struct glint_scene_triangle *t,
-                               int *is_small)
+/* Returns the box of pixels that a triangle may touch: the whole picture if
+ * a corner is behind the camera or far off-screen. */
+static struct glint_box compute_box(const struct glint_scene *s,
+                                    uint32_t object,
+                                    const struct glint_scene_triangle *t,
+                                    int *is_small)
 {
     const struct glint_box all = {0, 0, s->view.width, s->view.height};
     int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
@@ -621,7 +634,7 @@ static struct glint_box box_of(const struct glint_scene *s, uint32_t object,
     int n_near = 0, n_behind = 0;
 
     for (int k = 0; k < 3; k++) {
-        const struct glint_corner *c = corner_of(s, object, t->vertex[k]);
+        const struct glint_corner *c = get_corner(s, object, t->vertex[k]);
 
         n_near += c->w == 1;
         n_behind += c->w < 0;
@@ -636,17 +649,17 @@ static struct glint_box box_of(const struct glint_scene *s, uint32_t object,
         return (struct glint_box){0, 0, 0, 0};
     if (n_near < 3)
         return all;
-    return glint_box_cut(all,
-                         (struct glint_box){first_at(lo[0], all.x1, off_q8),
-                                            first_at(lo[1], all.y1, off_q8),
-                                            end_at(hi[0], all.x1, off_q8),
-                                            end_at(hi[1], all.y1, off_q8)});
+    return glint_box_cut(
+        all, (struct glint_box){find_first_pixel(lo[0], all.x1, off_q8),
+                                find_first_pixel(lo[1], all.y1, off_q8),
+                                find_end_pixel(hi[0], all.x1, off_q8),
+                                find_end_pixel(hi[1], all.y1, off_q8)});
 }
 
 /* -------------------------------------------------------------------- lists */
 
-/* Returns the number of entries of an object's triangles. */
-static int64_t span_of(struct glint_scene *s, uint32_t object)
+/* Returns the number of entries in the bins that an object's triangles need. */
+static int64_t count_entries(struct glint_scene *s, uint32_t object)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(s, object);
     int64_t n = 0;
@@ -655,7 +668,7 @@ static int64_t span_of(struct glint_scene *s, uint32_t object)
     for (uint32_t i = 0; i < m->n_triangles; i++)
         n += glint_bins_span(
             &s->bins,
-            box_of(s, object, glint_mesh_triangle(s, m, i), &is_small));
+            compute_box(s, object, glint_mesh_triangle(s, m, i), &is_small));
     return n;
 }
 
@@ -663,9 +676,9 @@ static int64_t span_of(struct glint_scene *s, uint32_t object)
 static int is_facing(const struct glint_scene *s, uint32_t object,
                      const struct glint_scene_triangle *t)
 {
-    const struct glint_corner *a = corner_of(s, object, t->vertex[0]);
-    const struct glint_corner *b = corner_of(s, object, t->vertex[1]);
-    const struct glint_corner *c = corner_of(s, object, t->vertex[2]);
+    const struct glint_corner *a = get_corner(s, object, t->vertex[0]);
+    const struct glint_corner *b = get_corner(s, object, t->vertex[1]);
+    const struct glint_corner *c = get_corner(s, object, t->vertex[2]);
 
     return a->w != 1 || b->w != 1 || c->w != 1 ||
            (int64_t)(b->x - a->x) * (c->y - a->y) >
@@ -674,9 +687,10 @@ static int is_facing(const struct glint_scene *s, uint32_t object,
 
 enum { BOTH_SIDES = -1 };
 
-/* Counts the triangles of all meshes, or lists those that face the camera, or
- * those that do not. */
-static void list(struct glint_scene *s, int facing)
+/* Counts the bin entries of the triangles of all meshes if FACING is
+ * BOTH_SIDES; else lists in the bins the triangles that face the camera (1) or
+ * those that do not (0). */
+static void list_triangles(struct glint_scene *s, int facing)
 {
     for (uint32_t k = 0; k < s->model.header->n_objects; k++) {
         const struct glint_scene_triangle *t;
@@ -693,7 +707,7 @@ static void list(struct glint_scene *s, int facing)
 
             if (facing != BOTH_SIDES && facing != is_facing(s, k, t))
                 continue;
-            b = box_of(s, k, t, &is_small);
+            b = compute_box(s, k, t, &is_small);
             if (glint_box_empty(b))
                 continue;
             if (facing != BOTH_SIDES)
@@ -717,7 +731,7 @@ static void project_meshes(struct glint_scene *s,
         if (p->object->kind != GLINT_OBJECT_MESH || !p->is_seen)
             continue;
         move_vertices(s, k);
-        span = span_of(s, k);
+        span = count_entries(s, k);
         need += span;
         if (stats->refs + span > s->cfg.max_refs) {
             p->is_seen = 0;
@@ -728,26 +742,27 @@ static void project_meshes(struct glint_scene *s,
         stats->triangles += (int)glint_mesh_of(s, k)->n_triangles;
     }
     stats->need_refs = q_clamp_sat(need, 0, INT32_MAX);
-    list(s, BOTH_SIDES);
+    list_triangles(s, BOTH_SIDES);
     glint_bins_sum(&s->bins);
-    list(s, 1); /* these hide most other triangles */
-    list(s, 0);
+    list_triangles(s, 1); /* facing triangles first, as they hide most others */
+    list_triangles(s, 0);
     glint_bins_close(&s->bins);
     s->has_triangles = stats->refs > 0;
 }
 
 /* --------------------------------------------------------------------- tile */
 
-static struct line line_of(const struct glint_corner *a,
-                           const struct glint_corner *b)
+static struct line compute_line(const struct glint_corner *a,
+                                const struct glint_corner *b)
 {
     return (struct line){(int64_t)a->y * b->w - (int64_t)b->y * a->w,
                          (int64_t)b->x * a->w - (int64_t)a->x * b->w,
                          (int64_t)a->x * b->y - (int64_t)b->x * a->y};
 }
 
-/* Adjusts a line so that samples on it are inside or outside according to the
- * sign of its first nonzero coefficient; returns 0 if all are 0. */
+/* Adjusts a line so that samples exactly on it count as inside or outside
+ * according to the sign of its first nonzero coefficient. Returns 0 if all
+ * coefficients are 0. */
 static int settle_line(struct line *l)
 {
     const int is_out =
@@ -760,18 +775,19 @@ static int settle_line(struct line *l)
     return 1;
 }
 
-/* Sets the three lines of a triangle, 0 or more inside; returns 0 if it is
- * edge-on or not visible. */
-static int lines_of(const struct glint_scene *s, uint32_t object,
-                    const struct glint_scene_triangle *t, struct line line[3])
+/* Sets the three lines of a triangle, whose functions are 0 or more inside.
+ * Returns 0 if the triangle is edge-on or not visible. */
+static int compute_lines(const struct glint_scene *s, uint32_t object,
+                         const struct glint_scene_triangle *t,
+                         struct line line[3])
 {
     const struct glint_corner *c[3];
     int64_t side;
 
     for (int k = 0; k < 3; k++)
-        c[k] = corner_of(s, object, t->vertex[k]);
+        c[k] = get_corner(s, object, t->vertex[k]);
     for (int k = 0; k < 3; k++)
-        line[k] = line_of(c[(k + 1) % 3], c[(k + 2) % 3]);
+        line[k] = compute_line(c[(k + 1) % 3], c[(k + 2) % 3]);
     side = line[0].across * c[0]->x + line[0].down * c[0]->y +
            line[0].at * c[0]->w;
     if (side == 0)
@@ -786,9 +802,9 @@ static int lines_of(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-static int depth_of(const struct glint_scene *s, uint32_t object,
-                    const struct glint_scene_triangle *t,
-                    struct glint_depth *depth)
+static int compute_depth(const struct glint_scene *s, uint32_t object,
+                         const struct glint_scene_triangle *t,
+                         struct glint_depth *depth)
 {
     const int32_t *at[3];
     int32_t normal_q30[3];
@@ -799,13 +815,14 @@ static int depth_of(const struct glint_scene *s, uint32_t object,
            glint_view_depth(&s->view, at[0], normal_q30, s->nearest, depth);
 }
 
-/* A triangle in the picture. */
+/* A projected triangle of any size. */
 struct seen {
     uint32_t id;
     struct line line[3];
     struct glint_depth depth;
-    /* Differences of lines and depth between a pixel's middle and its samples;
-     * for lines minus the max over the samples. */
+    /* Differences of line functions and depth between a pixel's middle and
+     * its samples; for lines minus their max over the samples, which is
+     * stored in most. */
     int64_t off[GLINT_SCENE_SAMPLES][3], most[3], deeper[GLINT_SCENE_SAMPLES];
 };
 
@@ -831,12 +848,11 @@ static void set_offsets(const struct glint_scene *s, struct seen *seen)
                           seen->depth.down * glint_sample(s, k, 1);
 }
 
-/* Draws the samples of a pixel, which begin at index I; AT has the lines at its
- * middle plus the max difference. */
-static inline void look_at_pixel(const struct glint_scene_worker *w,
-                                 const struct seen *seen, int64_t at_0,
-                                 int64_t at_1, int64_t at_2, int64_t depth,
-                                 int i)
+/* Draws the samples of a pixel, which begin at index I. AT_0 .. AT_2: the
+ * line functions at its middle plus most. */
+static inline void draw_pixel(const struct glint_scene_worker *w,
+                              const struct seen *seen, int64_t at_0,
+                              int64_t at_1, int64_t at_2, int64_t depth, int i)
 {
     const int n = w->scene->cfg.edge_samples, shift = seen->depth.shift;
 
@@ -858,9 +874,10 @@ static inline void look_at_pixel(const struct glint_scene_worker *w,
     }
 }
 
-/* Draws row by row, updating lines incrementally from pixel to pixel. */
-static void look_at_box(struct glint_scene_worker *w, const struct seen *seen,
-                        struct glint_box b)
+/* Draws the triangle in B row by row, updating the line functions
+ * incrementally from pixel to pixel. */
+static void draw_box(struct glint_scene_worker *w, const struct seen *seen,
+                     struct glint_box b)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_depth d = seen->depth;
@@ -878,8 +895,8 @@ static void look_at_box(struct glint_scene_worker *w, const struct seen *seen,
 
         for (int x = 0; x < b.x1 - b.x0; x++, i += n) {
             if ((at_0 | at_1 | at_2) >= 0)
-                look_at_pixel(w, seen, at_0, at_1, at_2,
-                              depth + 256 * x * d.across, i);
+                draw_pixel(w, seen, at_0, at_1, at_2,
+                           depth + 256 * x * d.across, i);
             at_0 += 256 * l[0].across;
             at_1 += 256 * l[1].across;
             at_2 += 256 * l[2].across;
@@ -888,24 +905,23 @@ static void look_at_box(struct glint_scene_worker *w, const struct seen *seen,
 }
 
 /* Draws a triangle of any size, in 64 bits. */
-static NEVER_INLINE void look_at_large(struct glint_scene_worker *w,
-                                       uint32_t id,
-                                       const struct glint_scene_triangle *t,
-                                       const struct line line[3],
-                                       struct glint_box b)
+static NEVER_INLINE void draw_large(struct glint_scene_worker *w, uint32_t id,
+                                    const struct glint_scene_triangle *t,
+                                    const struct line line[3],
+                                    struct glint_box b)
 {
     struct seen seen;
 
     seen.id = id;
     for (int k = 0; k < 3; k++)
         seen.line[k] = line[k];
-    if (!depth_of(w->scene, id >> 20, t, &seen.depth))
+    if (!compute_depth(w->scene, id >> 20, t, &seen.depth))
         return;
     set_offsets(w->scene, &seen);
-    look_at_box(w, &seen, b);
+    draw_box(w, &seen, b);
 }
 
-static void look_at_triangle(struct glint_scene_worker *w, uint32_t id)
+static void draw_triangle(struct glint_scene_worker *w, uint32_t id)
 {
     const struct glint_scene *s = w->scene;
     const uint32_t object = id >> 20;
@@ -913,16 +929,16 @@ static void look_at_triangle(struct glint_scene_worker *w, uint32_t id)
         glint_mesh_triangle(s, glint_mesh_of(s, object), id & 0xfffff);
     int is_small;
     const struct glint_box b =
-        glint_box_cut(w->touched, box_of(s, object, t, &is_small));
+        glint_box_cut(w->touched, compute_box(s, object, t, &is_small));
     struct line line[3];
 
-    if (glint_box_empty(b) || (is_small && is_hidden(w, id, t, b)) ||
-        !lines_of(s, object, t, line))
+    if (glint_box_empty(b) || (is_small && is_all_hidden(w, id, t, b)) ||
+        !compute_lines(s, object, t, line))
         return;
-    if (!is_small || !look_small(w, id, t, line, b))
-        look_at_large(w, id, t, line, b);
+    if (!is_small || !draw_small(w, id, t, line, b))
+        draw_large(w, id, t, line, b);
 }
 
 const struct glint_scene_meshes glint_scene_meshes = {
-    project_meshes, look_at_triangle,     meet, hold, surface_of,
-    joins,          glint_quick_mesh_find};
+    project_meshes, draw_triangle,  intersect_mesh,       intersect_triangle,
+    set_surface,    is_smooth_pair, glint_quick_mesh_find};

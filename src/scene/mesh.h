@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The tables of meshes in a baked scene, and the functions of their module. */
+ * Access to the tables of meshes in a baked scene, and functions that the mesh
+ * files share.
+ */
 #ifndef GLINT_SCENE_MESH_H
 #define GLINT_SCENE_MESH_H
 
@@ -27,8 +29,8 @@ glint_mesh_triangle(const struct glint_scene *s,
            i;
 }
 
-/* Sets AT to the addresses of a triangle's vertices, in the mesh's own
- * space. */
+/* Sets AT to the addresses of the three vertices of triangle I, in the
+ * mesh's own coordinates. */
 static inline void glint_mesh_vertices(const struct glint_scene *s,
                                        const struct glint_scene_mesh *m,
                                        uint32_t i, const int32_t *at[3])
@@ -40,7 +42,7 @@ static inline void glint_mesh_vertices(const struct glint_scene *s,
         at[k] = vertex + 3 * (size_t)t->vertex[k];
 }
 
-/* quick_mesh.c */
+/* Defined in quick_mesh.c; implements find of struct glint_scene_meshes. */
 int glint_quick_mesh_find(struct glint_scene_worker *w, uint32_t id,
                           int32_t x_q8, int32_t y_q8,
                           struct glint_met_surface *surface);

@@ -2,15 +2,16 @@
  *
  * Checks a baked scene once, so that drawing need not check anything.
  *
- *   in   bytes that may hold anything
- *   out  a model that points into them, or the text of an error
+ *    in   bytes that may hold anything
+ *    out  a model that points into them, or the text of an error
  *
  * Drawing relies on this:
  *   - every table lies inside the file, and every index inside its table;
  *   - every point that a file or a pose can specify is within
  *     GLINT_SCENE_SPAN, 2^28 steps, so that differences are below 2^29;
- *   - unit vectors are units to 2^-20;
- *   - weights and colours are 0 .. 1, and lights are not negative. */
+ *   - unit vectors have length 1 to within 2^-20;
+ *   - weights and colours are 0 .. 1, and lights are not negative.
+ */
 #include "base/blob.h"
 #include "base/compiler.h"
 #include "base/q.h"
@@ -97,9 +98,9 @@ static const char *check_triangles(struct check *c,
 
 /* Sets FIRST and LAST to the range of cells, along each axis, that the box of
  * triangle T overlaps. */
-static void cells_of(const struct glint_scene_mesh *m, const int32_t *vertex,
-                     const struct glint_scene_triangle *t, int32_t first[3],
-                     int32_t last[3])
+static void find_cells(const struct glint_scene_mesh *m, const int32_t *vertex,
+                       const struct glint_scene_triangle *t, int32_t first[3],
+                       int32_t last[3])
 {
     for (size_t k = 0; k < 3; k++) {
         const int32_t a = vertex[3 * (size_t)t->vertex[0] + k];
@@ -117,20 +118,22 @@ static void cells_of(const struct glint_scene_mesh *m, const int32_t *vertex,
 }
 
 /* Returns whether the box of T overlaps cell C. */
-static int is_needed(const struct glint_scene_mesh *m, const int32_t *vertex,
-                     const struct glint_scene_triangle *t, const uint32_t c[3])
+static int overlaps_cell(const struct glint_scene_mesh *m,
+                         const int32_t *vertex,
+                         const struct glint_scene_triangle *t,
+                         const uint32_t c[3])
 {
     int32_t first[3], last[3];
     int is = 1;
 
-    cells_of(m, vertex, t, first, last);
+    find_cells(m, vertex, t, first, last);
     for (int k = 0; k < 3; k++)
         is &= (int32_t)c[k] >= first[k] && (int32_t)c[k] <= last[k];
     return is;
 }
 
-/* Checks that each triangle is in the list of each cell that it overlaps. Lists
- * are sorted without duplicates, so if the number of such entries is right,
+/* Checks that each triangle is in the list of each cell that it overlaps.
+ * Lists are sorted without duplicates, so if the number of entries is right,
  * none is missing. */
 static const char *check_lists(const struct check *check,
                                const struct glint_scene_mesh *m,
@@ -146,7 +149,7 @@ static const char *check_lists(const struct check *check,
     for (uint32_t i = 0; i < m->n_triangles; i++) {
         int32_t first[3], last[3];
 
-        cells_of(m, vertex, &t[i], first, last);
+        find_cells(m, vertex, &t[i], first, last);
         missing += (uint64_t)(last[0] - first[0] + 1) *
                    (uint64_t)(last[1] - first[1] + 1) *
                    (uint64_t)(last[2] - first[2] + 1);
@@ -155,7 +158,7 @@ static const char *check_lists(const struct check *check,
         for (uint32_t i = start[0]; i < start[1]; i++) {
             if (i > start[0] && ref[i] <= ref[i - 1])
                 return "a grid's list does not rise";
-            missing -= (uint64_t)is_needed(m, vertex, &t[ref[i]], c);
+            missing -= (uint64_t)overlaps_cell(m, vertex, &t[ref[i]], c);
         }
         c[0]++;
         for (int k = 0; k < 2 && c[k] == m->cells[k]; k++) {
@@ -197,8 +200,7 @@ static const char *check_grid(struct check *c, const struct glint_scene_mesh *m)
     return check_lists(c, m, start, ref);
 }
 
-/* Return the text of an error, or NULL. Objects are checked last, as they refer
- * to everything else. */
+/* Checks one mesh. Returns the text of an error, or NULL. */
 static const char *check_mesh(struct check *check,
                               const struct glint_scene_mesh *mesh)
 {
@@ -260,10 +262,10 @@ static const char *check_stone(struct check *c,
     return NULL;
 }
 
-/* Returns log2 of the side of the translucent medium of SKIN, from its
+/* Returns log2 of the map's side in the translucent medium of SKIN, from its
  * unchecked header, or 0 if it is out of range. */
-static uint32_t side_log2_of(const struct glint_scene_model *m,
-                             const struct glint_scene_skin *skin)
+static uint32_t read_side_log2(const struct glint_scene_model *m,
+                               const struct glint_scene_skin *skin)
 {
     const unsigned char *file = (const unsigned char *)m->header;
     const struct glint_translucent_header *h =
@@ -322,7 +324,7 @@ static const char *check_skin(struct check *c, uint32_t i)
         if (m->skin[k].object == skin->object)
             return "an object has two maps";
     o = &m->object[skin->object];
-    log2 = side_log2_of(m, skin);
+    log2 = read_side_log2(m, skin);
     if (log2 == 0)
         return "the stone's side or kernel is out of range";
     if (o->kind == GLINT_OBJECT_PLANE)
@@ -333,7 +335,8 @@ static const char *check_skin(struct check *c, uint32_t i)
                                 UINT32_C(1) << log2);
 }
 
-/* Returns whether object I has the map that it needs if it is translucent. */
+/* Returns whether object I has a map if its material is translucent, which
+ * requires one. */
 static int has_map(const struct glint_scene_model *m, uint32_t i)
 {
     for (uint32_t k = 0; k < m->header->n_stones; k++) {
@@ -349,8 +352,9 @@ static int has_map(const struct glint_scene_model *m, uint32_t i)
     return 1;
 }
 
-/* Checks translucent media and skins, but not the files of translucent media;
- * their module checks those when it opens them. */
+/* Checks the tables of translucent media and of their maps (skins), but not
+ * the files of translucent media; their module checks those when it opens
+ * them. */
 static const char *check_stones(struct check *c)
 {
     const struct glint_scene_header *h = c->model.header;
@@ -455,7 +459,8 @@ static const char *check_material(const struct check *c,
     return NULL;
 }
 
-/* The environment's own file is checked by the module that shows it. */
+/* Checks an entry of the table of environments. The module that draws
+ * environments checks the environment's own file. */
 static const char *check_environment(struct check *c,
                                      const struct glint_scene_environment *e)
 {
@@ -470,8 +475,8 @@ static const char *check_environment(struct check *c,
                : OUTSIDE;
 }
 
-/* Checks that the last lights are suns; the lights of environments replace
- * them. */
+/* Checks that the lights at the end of the list, which environments replace,
+ * are suns. */
 static const char *check_suns(const struct glint_scene_model *m)
 {
     const struct glint_scene_header *h = m->header;
@@ -482,7 +487,8 @@ static const char *check_suns(const struct glint_scene_model *m)
     return NULL;
 }
 
-/* The motion's own file is checked by the module that plays it. */
+/* Checks the parameters of a motion. The module that plays motions checks
+ * the motion's own file. */
 static const char *check_motion(const struct glint_scene_header *h,
                                 const struct glint_scene_motion *m)
 {

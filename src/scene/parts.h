@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The functions of a scene's optional modules. Modules are linked only if their
- * address is used (glint/scene/scene.h). */
+ * Interfaces of a scene's optional modules: tables of functions, so that
+ * modules are linked only if a program names their address
+ * (glint/scene/scene.h).
+ */
 #ifndef GLINT_SCENE_PARTS_H
 #define GLINT_SCENE_PARTS_H
 
@@ -11,16 +13,18 @@ struct glint_scene_meshes {
     /* Transforms the vertices of all meshes to camera coordinates and sorts
      * triangles into tiles; called by glint_scene_begin(). */
     void (*project)(struct glint_scene *scene, struct glint_scene_stats *stats);
-    /* Draws the depth and ids of triangle ID into the samples of a tile. */
+    /* Rasterises triangle ID: writes its depth and id to the samples of the
+     * worker's tile. */
     void (*look)(struct glint_scene_worker *w, uint32_t id);
-    /* Intersects RAY with the mesh OBJECT, without triangle BUT_TRIANGLE. On
-     * entry MET->t is the max distance. Sets MET and returns 1 if a triangle is
-     * met nearer. If ANY is set, the first triangle found suffices. */
+    /* Intersects RAY with the mesh OBJECT, skipping triangle BUT_TRIANGLE.
+     * On entry MET->t is the max distance. Sets MET and returns 1 if the ray
+     * meets a triangle before that. If ANY is set, any intersection
+     * suffices. */
     int (*meet)(const struct glint_scene *scene, uint32_t object,
                 uint32_t but_triangle, const struct glint_scene_ray *ray,
                 int any, struct glint_met *met);
-    /* The same for TRIANGLE alone and a primary ray of direction SEEN_Q30 in
-     * camera coordinates. A point slightly outside is clamped to the
+    /* Intersects a primary ray of direction SEEN_Q30, in camera coordinates,
+     * with TRIANGLE alone. A point slightly outside is clamped to the
      * triangle. */
     int (*hold)(const struct glint_scene *scene, uint32_t object,
                 uint32_t triangle, const int32_t seen_q30[3],
@@ -40,34 +44,36 @@ struct glint_scene_textures {
     void (*colour)(const struct glint_scene *scene,
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface, int32_t rgb_q15[3]);
-    /* Prepares the table that decodes texels. */
+    /* Prepares the table CURVE that decodes texels. */
     void (*prepare)(struct glint_curve *curve);
 };
 
 struct glint_scene_bounces {
-    /* Adds the reflected and transmitted light at SURFACE. */
+    /* Adds the reflected and transmitted light at SURFACE to SHADE. */
     void (*follow)(const struct glint_scene *scene,
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface,
                    struct glint_met_shade *shade);
-    /* Allocate memory for the background picture, and store IMAGE there. */
+    /* Allocate memory for the background picture, and store a reduced IMAGE
+     * in it. */
     void (*carve)(struct glint_scene *scene, struct glint_arena *arena);
     void (*look)(struct glint_scene *scene, const struct glint_image *image);
 };
 
 struct glint_scene_wards {
-    /* Allocates the memory of the module; NULL while it is measured. */
+    /* Allocates the module's memory; returns NULL while ARENA only measures. */
     struct glint_ward_state *(*carve)(const struct glint_scene *scene,
                                       struct glint_arena *arena);
     /* Opens the environment and computes the lobes of all metals. */
     enum glint_status (*open)(struct glint_scene *scene);
     /* Recomputes the lobe of metal I. */
     void (*change)(const struct glint_scene *scene, uint32_t i);
-    /* Shows environment I, with its lights. */
+    /* Selects environment I with its lights. */
     void (*show)(struct glint_scene *scene, uint32_t i);
     /* Sets the factor of the environment's light to SCALE. */
     void (*scale)(struct glint_scene *scene, struct glint_real scale);
-    /* Rotates the environment by an angle of cosine and sine TURN_Q30. */
+    /* Rotates the environment by the angle whose cosine and sine are
+     * TURN_Q30. */
     void (*turn)(struct glint_scene *scene, const int32_t turn_q30[2]);
     /* Returns the variation of SURFACE's normal within the pixel of RAY, as in
      * spread_q30 of struct glint_brushed. */
@@ -89,25 +95,26 @@ struct glint_scene_wards {
                     const int32_t colour_q15[3], int32_t weight_q15,
                     int32_t rgb_q15[3]);
     /* Sets RGB_Q15 to the light that the metal of SURFACE reflects along RAY
-     * from a light of LEVEL_Q15 in direction TOWARD_Q30, whose angular radius
-     * is given by its sine. Returns 0, and sets nothing, if that is 0. */
+     * from a light of LEVEL_Q15 in direction TOWARD_Q30, whose angular
+     * radius is given by its sine. Returns 0, and sets nothing, if there is
+     * no such light. */
     int (*shine)(const struct glint_scene *scene,
                  const struct glint_scene_ray *ray,
                  const struct glint_met_surface *surface,
                  const struct glint_brushed *brushed,
                  const int32_t toward_q30[3], const int32_t level_q15[3],
                  int32_t radius_q30, int32_t rgb_q15[3]);
-    /* Sets RGB_Q15 to the environment's light from TOWARD_Q30, its bright
-     * lights included, averaged over a spot of angular variance SPREAD_Q40. */
+    /* Sets RGB_Q15 to the environment's light from TOWARD_Q30, including its
+     * bright lights, averaged over a spot of angular variance SPREAD_Q40. */
     void (*look)(const struct glint_scene *scene, const int32_t toward_q30[3],
                  int64_t spread_q40, int32_t rgb_q15[3]);
 };
 
 struct glint_scene_stones {
-    /* Allocates the memory of the module; NULL while it is measured. */
+    /* Allocates the module's memory; returns NULL while ARENA only measures. */
     struct glint_stone_state *(*carve)(const struct glint_scene *scene,
                                        struct glint_arena *arena);
-    /* Opens all translucent media. Of SCENE only the model is set at this
+    /* Opens all translucent media. Only the model of SCENE is set at this
      * time. */
     enum glint_status (*open)(struct glint_scene *scene);
     /* Updates the state after a change of environment light. */
@@ -128,10 +135,10 @@ struct glint_scene_stones {
 struct glint_highlight_state;
 
 struct glint_scene_highlights {
-    /* Allocates the memory of the module; NULL while it is measured. */
+    /* Allocates the module's memory; returns NULL while ARENA only measures. */
     struct glint_highlight_state *(*carve)(const struct glint_scene *scene,
                                            struct glint_arena *arena);
-    /* Begins a picture. */
+    /* Forgets the highlights of the last picture. */
     void (*begin)(struct glint_highlight_state *bright);
     /* Adds light of object OBJECT in the pixel whose middle is (X, Y), pixels
      * q8 from the top left corner: the fraction SHARE_Q4 of RGB_Q15. */

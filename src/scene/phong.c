@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reflection of ambient light and of lights [Phong75]. Light is q15 and
- * saturates at 2^30; products with weights, q15 up to 1, are below 2^45. */
+ * Reflection of ambient light and of lights, by the Phong model [Phong75].
+ * Light is _q15 and saturates at 2^30; products with weights, _q15 up to 1, are
+ * below 2^45.
+ */
 #include "base/divide.h"
 #include "scene/parts.h"
 #include "scene/state.h"
@@ -22,7 +24,7 @@ static inline void add_weighted(int32_t *to_q15, int64_t light_q15,
 
 /* ------------------------------------------------------------------- gloss */
 
-/* x^k below 2^-17 counts as 0: from y = 1 - 2^(-17 / k) on. */
+/* Values of x^k below 2^-17 count as 0: from y = 1 - 2^(-17 / k) on. */
 void glint_gloss_prepare(struct glint_gloss *gloss, int32_t power_q8)
 {
     int32_t end_q30 = 1 << 30;
@@ -43,10 +45,11 @@ void glint_gloss_prepare(struct glint_gloss *gloss, int32_t power_q8)
 
 /* Returns the specular factor of a light: the power of the cosine between the
  * ray and the light's mirrored direction L - 2 (L.N) N. */
-static inline int32_t gloss_q15(const struct glint_gloss *gloss,
-                                const struct glint_scene_ray *ray,
-                                const struct glint_met_surface *surface,
-                                const int32_t toward_q30[3], int32_t cosine_q30)
+static inline int32_t compute_gloss_q15(const struct glint_gloss *gloss,
+                                        const struct glint_scene_ray *ray,
+                                        const struct glint_met_surface *surface,
+                                        const int32_t toward_q30[3],
+                                        int32_t cosine_q30)
 {
     const int64_t beside_q60 =
         v3_dot(toward_q30, ray->toward_q30) -
@@ -68,8 +71,8 @@ static inline int32_t gloss_q15(const struct glint_gloss *gloss,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Adds the reflection in metal of the fraction SHARE_Q15 of LIT, T steps
- * away. */
+/* Adds the reflection, in a metal, of the fraction SHARE_Q15 of light LIT at
+ * distance T. */
 static void add_shine(const struct glint_scene *s,
                       const struct glint_scene_ray *ray,
                       const struct glint_met_surface *surface,
@@ -95,7 +98,8 @@ static void add_shine(const struct glint_scene *s,
         add_weighted(&rgb_q15[c], shine_q15[c], share_q15);
 }
 
-/* BRUSHED must be NULL if SURFACE is not a metal. */
+/* Adds the reflection of one light. BRUSHED must be NULL if SURFACE is not a
+ * metal. */
 static WHOLLY_INLINE void
 add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
           const struct glint_met_surface *surface,
@@ -120,15 +124,15 @@ add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
     if (share_q15 == 0)
         return;
     if (m->specular_q15)
-        gloss = gloss_q15(&s->gloss[m - s->model.material], ray, surface,
-                          toward_q30, cosine_q30);
+        gloss = compute_gloss_q15(&s->gloss[m - s->model.material], ray,
+                                  surface, toward_q30, cosine_q30);
     share_q15 = q_mul(share_q15, weight_q15, 15);
     if (brushed)
         add_shine(s, ray, surface, brushed, lit, t, toward_q30, level_q15,
                   share_q15, rgb_q15);
     if (brushed && !(colour_q15[0] | colour_q15[1] | colour_q15[2]))
         return;
-    /* below 2^30, and 2^32 together */
+    /* each below 2^30, and together below 2^32 */
     gloss *= m->specular_q15;
     cosine_q30 = q_mul(m->diffuse_q15, cosine_q30, 15);
     for (int c = 0; c < 3; c++) {
@@ -140,11 +144,12 @@ add_light(const struct glint_scene *s, const struct glint_scene_ray *ray,
     }
 }
 
-/* Inlined for the weight 1 of most pixels. */
-static WHOLLY_INLINE void phong(const struct glint_scene *scene,
-                                const struct glint_scene_ray *ray,
-                                const struct glint_met_surface *surface,
-                                int32_t weight_q15, int32_t rgb_q15[3])
+/* Inlined, so that compilers specialise it for weight 1, which most pixels
+ * have. */
+static WHOLLY_INLINE void add_phong(const struct glint_scene *scene,
+                                    const struct glint_scene_ray *ray,
+                                    const struct glint_met_surface *surface,
+                                    int32_t weight_q15, int32_t rgb_q15[3])
 {
     const struct glint_scene_material *m = surface->material;
     const struct glint_scene_wards *wards = scene->cfg.parts.wards;
@@ -183,14 +188,14 @@ void glint_scene_phong(const struct glint_scene *scene,
                        const struct glint_met_surface *surface,
                        int32_t weight_q15, int32_t rgb_q15[3])
 {
-    phong(scene, ray, surface, weight_q15, rgb_q15);
+    add_phong(scene, ray, surface, weight_q15, rgb_q15);
 }
 
-/* For a plane that only receives shadows: returns the fraction of the lights'
- * light that is shadowed. */
-static int caught_q8(const struct glint_scene *s,
-                     const struct glint_met_surface *surface,
-                     int32_t catcher_q15)
+/* Returns, for a plane that only receives shadows (a catcher), the fraction
+ * of the lights' light that is shadowed. */
+static int compute_shadowed_q8(const struct glint_scene *s,
+                               const struct glint_met_surface *surface,
+                               int32_t catcher_q15)
 {
     int64_t all = 0, gone = 0;
 
@@ -204,7 +209,7 @@ static int caught_q8(const struct glint_scene *s,
         light = q_larger(0, v3_cosine_q30(toward_q30, surface->normal_q30));
         light = light * ((int64_t)level_q15[0] + 2 * (int64_t)level_q15[1] +
                          level_q15[2]) >>
-                6; /* below 2^56; 32 of them below 2^61 */
+                6; /* below 2^56; 32 lights sum to less than 2^61 */
         all += light;
         if (light > 0)
             gone +=
@@ -231,10 +236,11 @@ void glint_scene_shade(const struct glint_scene *scene,
     *shade = (struct glint_met_shade){{0, 0, 0}, GLINT_COVER_ALL};
     if (scene->has_catchers && p->is_catcher) {
         shade->cover_q8 = q_smaller(
-            caught_q8(scene, surface, p->object->catcher_q15), GLINT_COVER_ALL);
+            compute_shadowed_q8(scene, surface, p->object->catcher_q15),
+            GLINT_COVER_ALL);
         return;
     }
-    phong(scene, ray, surface, GLINT_SCENE_ONE_Q15, shade->rgb_q15);
+    add_phong(scene, ray, surface, GLINT_SCENE_ONE_Q15, shade->rgb_q15);
     if (m->reflect_q15 || m->pass_q15)
         scene->cfg.parts.bounces->follow(scene, ray, surface, shade);
 }

@@ -8,8 +8,8 @@ enum { ONE_Q30 = 1 << 30, LEAST_UP = 17 };
 
 /* -------------------------------------------------------------------- rays */
 
-/* Coordinates are scaled so that the picture's farthest corner is 2^29 to 2^30
- * from the middle, or the picture's plane 2^28 away. */
+/* Coordinates are scaled so that the farthest corner of the picture has
+ * length 2^29 to 2^30, or the picture's plane is 2^28 away. */
 void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
                      int32_t y_q8, struct glint_scene_ray *ray,
                      int32_t seen_q30[3])
@@ -27,8 +27,8 @@ void glint_quick_ray(const struct glint_scene_view *view, int32_t x_q8,
 
 /* ------------------------------------------------------------------- balls */
 
-/* The fast path computes in units of the ball's radius. The camera must be
- * outside the ball and at most 2^13 radii away. */
+/* Prepares a ball for the fast path, which computes in units of the ball's
+ * radius. The camera must be outside the ball and at most 2^13 radii away. */
 static void begin_ball(const struct glint_scene *s, struct glint_placed *p)
 {
     int32_t to[3];
@@ -51,9 +51,10 @@ static void begin_ball(const struct glint_scene *s, struct glint_placed *p)
     p->over_up = up;
 }
 
-/* Prepares spans. With M towards the ball's middle and C the squared cosine of
- * its rim, position (X, Y) of the picture, in tangents, is on the ball if (M.x
- * X + M.y Y + M.z)^2 >= C (1 + X^2 + Y^2). */
+/* Prepares the row spans of a ball. With M the direction to the ball's
+ * middle and C the squared cosine of the angle to its rim, position (X, Y)
+ * of the picture, in tangents, is on the ball if (M.x X + M.y Y + M.z)^2 >=
+ * C (1 + X^2 + Y^2). */
 static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
 {
     int32_t seen[3], away;
@@ -66,7 +67,7 @@ static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
     for (int k = 0; k < 3; k++)
         to[k] = seen[k];
     away = (int32_t)glint_root((uint64_t)v3_dot(seen, seen));
-    /* with a margin for samples off the middles of rows */
+    /* includes a margin for samples off the middles of rows */
     sine_q30 = glint_ratio(
         ((uint64_t)p->radius + 2 * (uint64_t)p->margin) << 30, (uint64_t)away);
     if (!glint_unit(to, p->span.m_q30) || sine_q30 < 1 << 22 ||
@@ -84,7 +85,8 @@ static void begin_spans(const struct glint_scene *s, struct glint_placed *p)
     p->span.is_there = 1;
 }
 
-/* (C - M.x^2) X^2 - 2 M.x h X + C (1 + Y^2) - h^2 <= 0, h = M.y Y + M.z. */
+/* Solves (C - M.x^2) X^2 - 2 M.x h X + C (1 + Y^2) - h^2 <= 0 for X, where h
+ * = M.y Y + M.z. */
 int glint_scene_span(const struct glint_scene *s, const struct glint_placed *p,
                      int y, int32_t *x0, int32_t *x1)
 {
@@ -128,8 +130,8 @@ void glint_quick_begin(struct glint_scene *scene)
 }
 
 /* The ray passes the ball's middle at the distance |A|, A = L x D, in radii.
- * The unit normal is A x D - sqrt(1 - A.A) D. Near the rim that is not exact
- * enough. */
+ * The unit normal is A x D - sqrt(1 - A.A) D. Near the rim this is not
+ * accurate enough. */
 int glint_quick_meet(const struct glint_placed *p,
                      const struct glint_scene_ray *ray, int32_t across_q30[3],
                      int32_t *cosine_q30)
@@ -157,7 +159,7 @@ int glint_quick_meet(const struct glint_placed *p,
     return 1;
 }
 
-/* L.D - cosine, in radii. */
+/* The distance is L.D - cosine, in radii. */
 int32_t glint_quick_away(const struct glint_placed *p,
                          const struct glint_scene_ray *ray, int32_t cosine_q30)
 {
@@ -193,8 +195,8 @@ static int find_ball(const struct glint_placed *p,
 
 /* ------------------------------------------------------------------ planes */
 
-/* A direction error of 2^-24 shifts the point by as much in the picture, for
- * any orientation of the plane. */
+/* Finds the point of plane P on RAY. A direction error of 2^-24 shifts the
+ * point by as much in the picture, for any orientation of the plane. */
 static int find_plane(const struct glint_placed *p,
                       const struct glint_scene_ray *ray,
                       struct glint_met_surface *surface)

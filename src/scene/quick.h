@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fast path for surfaces in the middle of pixels: 26 bits suffice for shading,
- * and work that all pixels of an object share is done once.
- *
- * Visibility has been decided exactly before (visible.c). */
+ * Fast path for surfaces at the middle of pixels: uses 26 bits, which suffice
+ * for shading, and shares work among all pixels of an object. Visibility has
+ * been decided exactly before (visible.c).
+ */
 #ifndef GLINT_SCENE_QUICK_H
 #define GLINT_SCENE_QUICK_H
 
@@ -53,10 +53,10 @@ static inline void glint_quick_unit(const int32_t v[3], int32_t unit_q30[3])
 /* Prepares the balls of a frame. */
 void glint_quick_begin(struct glint_scene *scene);
 
-/* Sets RAY to the ray through (X, Y), with an error of 2^-24 per element, and
- * SURFACE to its intersection with ID, clamped to ID if that is a triangle.
- * Returns 0 if the fast path does not apply: near the rim of a ball, and for
- * triangles that come near the camera or have a texture. */
+/* Sets RAY to the ray through (X, Y), with an error of 2^-24 per element,
+ * and SURFACE to its intersection with object or triangle ID, clamped to the
+ * triangle. Returns 0 if the fast path does not apply: near the rim of a
+ * ball, and for triangles that come near the camera or have a texture. */
 int glint_quick_find(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
                      int32_t y_q8, struct glint_scene_ray *ray,
                      struct glint_met_surface *surface);

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Triangles in the middle of pixels. A few prepared triangles are cached. */
+ * The fast path (quick.h) for triangles. A worker caches a few prepared
+ * triangles.
+ */
 #include "base/divide.h"
 #include "scene/quick.h"
 #include "scene/mesh.h"
 
 /* --------------------------------------------------------------- triangles */
 
-/* Sets T's corners in the picture; returns 0 if a corner cannot be
+/* Sets the corners of T in the picture; returns 0 if a corner cannot be
  * projected. */
 static int set_corners(const struct glint_scene *s, uint32_t object,
                        const struct glint_scene_triangle *of,
@@ -49,7 +51,7 @@ static int set_corners(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Sets T's vertices and normals; normals face the camera. */
+/* Sets the vertices and normals of T; normals point to the camera's side. */
 static int set_surface(const struct glint_scene *s, uint32_t object,
                        const struct glint_scene_triangle *of,
                        struct glint_quick_triangle *t)
@@ -92,9 +94,10 @@ static int set_surface(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Returns the prepared triangle ID, or NULL if it cannot be prepared. */
-static struct glint_quick_triangle *triangle_of(struct glint_scene_worker *w,
-                                                uint32_t id)
+/* Returns the prepared triangle ID from the worker's cache, preparing it if
+ * necessary; NULL if it cannot be prepared. */
+static struct glint_quick_triangle *
+prepare_triangle(struct glint_scene_worker *w, uint32_t id)
 {
     const struct glint_scene *s = w->scene;
     struct glint_quick_triangle *t =
@@ -115,10 +118,11 @@ static struct glint_quick_triangle *triangle_of(struct glint_scene_worker *w,
     return t->is_there ? t : NULL;
 }
 
-/* Sets the weights of the second and third corner at a position of the picture:
- * perspective-correct fractions of the area, clamped to the triangle. */
-static void weigh(const struct glint_quick_triangle *t, int32_t x_q8,
-                  int32_t y_q8, int64_t part_q30[2])
+/* Sets PART to the weights of the second and third corner at a position of
+ * the picture: perspective-correct fractions of the area, clamped to the
+ * triangle. */
+static void compute_weights(const struct glint_quick_triangle *t, int32_t x_q8,
+                            int32_t y_q8, int64_t part_q30[2])
 {
     const int64_t x = x_q8 - t->x_q8, y = y_q8 - t->y_q8;
     uint64_t weight_q30[3], sum = 0;
@@ -155,7 +159,7 @@ static int find_triangle(const struct glint_quick_triangle *t, int32_t x_q8,
     int64_t part_q30[2];
     int32_t normal_q29[3];
 
-    weigh(t, x_q8, y_q8, part_q30);
+    compute_weights(t, x_q8, y_q8, part_q30);
     for (int k = 0; k < 3; k++) {
         surface->place[k] =
             t->place[0][k] + (int32_t)q_shift(part_q30[0] * t->place[1][k] +
@@ -182,7 +186,7 @@ int glint_quick_mesh_find(struct glint_scene_worker *w, uint32_t id,
                           int32_t x_q8, int32_t y_q8,
                           struct glint_met_surface *surface)
 {
-    const struct glint_quick_triangle *t = triangle_of(w, id);
+    const struct glint_quick_triangle *t = prepare_triangle(w, id);
 
     return t && find_triangle(t, x_q8, y_q8, surface);
 }

@@ -73,8 +73,8 @@ void glint_chord_end(const struct glint_chord *chord,
         from[i] = chord->middle[i] + (k ? along : -along);
         place[i] = q_narrow(centre[i] + q_shift(from[i], chord->up));
     }
-    glint_unit(from, normal_q30); /* the length of from is the radius, so not
-                                     0 */
+    /* The length of from is the radius, so it is not 0. */
+    glint_unit(from, normal_q30);
 }
 
 /* ------------------------------------------------------------------- plane */
@@ -101,7 +101,8 @@ int32_t glint_ray_plane(const struct glint_scene_ray *ray, const int32_t at[3],
 void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to)
 {
     const int32_t *d_q30 = ray->toward_q30;
-    uint64_t most = 1; /* not 0, as a direction has length 1 */
+    /* starts at 1, not 0, although a direction has length 1 */
+    uint64_t most = 1;
     int longest = 0, is_back;
     uint32_t one_over_q30;
 
@@ -115,8 +116,8 @@ void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to)
     is_back = d_q30[longest] < 0;
     for (int k = 0; k < 3; k++)
         to->axis[k] = (longest + 1 + k) % 3;
-    /* 2^63 / (4 * most) is q31; 4 * most is above 2^31 and may slightly exceed
-     * 2^32. */
+    /* The reciprocal is 2^63 / (4 * most), _q31; 4 * most is above 2^31 and
+     * may slightly exceed 2^32. */
     one_over_q30 =
         (q_reciprocal(most < ONE_Q30 ? (uint32_t)(4 * most) : UINT32_MAX) + 1) /
         2;
@@ -133,8 +134,8 @@ struct seen {
 
 /* Applies the shear to the vertices. Differences of points are within 2^29 and
  * the shear is at most 1, so x and y are below 2^30. */
-static void shear(const struct glint_sheared *ray,
-                  const int32_t *const vertex[3], struct seen *to)
+static void shear_vertices(const struct glint_sheared *ray,
+                           const int32_t *const vertex[3], struct seen *to)
 {
     for (int i = 0; i < 3; i++) {
         int32_t off[3];
@@ -148,13 +149,13 @@ static void shear(const struct glint_sheared *ray,
     }
 }
 
-/* Returns whether three numbers are all above 0, or all below. */
+/* Returns whether three numbers are all positive or all negative. */
 static int is_aside(const int32_t x[3])
 {
     return (x[0] & x[1] & x[2]) < 0 || (-x[0] & -x[1] & -x[2]) < 0;
 }
 
-/* Edges are below 2^61 and their sum below 3 * 2^61. */
+/* Sets the edge functions, below 2^61, and their sum, below 3 * 2^61. */
 static void set_edges(struct seen *s)
 {
     s->sum = 0;
@@ -180,8 +181,8 @@ void glint_weigh(const int64_t edge[3], int64_t sum, int32_t part_q30[3])
     part_q30[1] = ONE_Q30 - part_q30[0] - part_q30[2];
 }
 
-static void measure(const struct glint_sheared *ray, const struct seen *s,
-                    struct glint_spot_on *spot)
+static void set_spot(const struct glint_sheared *ray, const struct seen *s,
+                     struct glint_spot_on *spot)
 {
     spot->t = q_narrow(q_shift(
         q_shift(v3_dot(spot->part_q30, s->z), 30) * ray->along_q30, 30));
@@ -193,7 +194,7 @@ int glint_ray_triangle(const struct glint_sheared *ray,
 {
     struct seen s;
 
-    shear(ray, vertex, &s);
+    shear_vertices(ray, vertex, &s);
     if (is_aside(s.x) || is_aside(s.y))
         return 0;
     set_edges(&s);
@@ -202,7 +203,7 @@ int glint_ray_triangle(const struct glint_sheared *ray,
         s.sum == 0)
         return 0;
     glint_weigh(s.edge, s.sum, spot->part_q30);
-    measure(ray, &s, spot);
+    set_spot(ray, &s, spot);
     return spot->t > 0;
 }
 
@@ -212,7 +213,7 @@ int glint_ray_hold(const struct glint_sheared *ray,
     struct seen s;
     int64_t sum = 0;
 
-    shear(ray, vertex, &s);
+    shear_vertices(ray, vertex, &s);
     set_edges(&s);
     if (s.sum == 0)
         return 0;
@@ -225,7 +226,7 @@ int glint_ray_hold(const struct glint_sheared *ray,
         return 0;
     s.sum = sum;
     glint_weigh(s.edge, s.sum, spot->part_q30);
-    measure(ray, &s, spot);
+    set_spot(ray, &s, spot);
     return 1;
 }
 
@@ -242,8 +243,8 @@ int glint_triangle_normal(const int32_t *const vertex[3], int32_t normal_q30[3])
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* |N| is 1 only to within rounding; dividing by N.N, to first order, preserves
- * the length of D. */
+/* |N| is 1 only to within rounding; the division by N.N, to first order,
+ * preserves the length of D. */
 void glint_mirror(const int32_t d_q30[3], const int32_t n_q30[3],
                   int32_t to_q30[3])
 {
@@ -255,8 +256,8 @@ void glint_mirror(const int32_t d_q30[3], const int32_t n_q30[3],
         to_q30[k] = (int32_t)(d_q30[k] - q_shift(along_q30 * n_q30[k], 29));
 }
 
-/* sine is the sine before the surface; the sine behind it is eta * sine, below
- * 16. */
+/* Sines are of the angles to the normal: sine before the surface; behind it
+ * eta * sine, which is below 16. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3])
 {
@@ -271,7 +272,7 @@ int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
         return 0;
     cosine_q30 =
         glint_root((uint64_t)((INT64_C(1) << 60) - behind_q30 * behind_q30));
-    /* eta d + (eta cosine before - cosine behind) n */
+    /* eta d + (eta * cosine before - cosine behind) n */
     for (int k = 0; k < 3; k++)
         to[k] =
             q_shift(d_q30[k] * (int64_t)eta_q28, 28) -

@@ -30,10 +30,10 @@ struct glint_chord {
                      start */
 };
 
-/* Finds the chord of RAY in the sphere about CENTRE; returns 0 if the ray
- * misses it. RADIUS must be 1 .. 2^27. The ray's distance from the centre is |L
- * x D| with L from the ray's start to the centre; the products are exact, so
- * that no precision is lost at any distance. */
+/* Finds the chord of RAY in the sphere around CENTRE; returns 0 if the ray
+ * misses it. RADIUS must be 1 .. 2^27. The ray's distance from the centre is
+ * |L x D| with L from the ray's start to the centre; the products are exact,
+ * so that no precision is lost at any distance. */
 int glint_ray_sphere(const struct glint_scene_ray *ray, const int32_t centre[3],
                      int32_t radius, struct glint_chord *chord);
 
@@ -44,8 +44,8 @@ void glint_chord_end(const struct glint_chord *chord,
 
 /* ------------------------------------------------------------------- plane */
 
-/* Max distance of an intersection with a plane; farther points are moved here,
- * so that they stay in range. */
+/* Max distance of an intersection with a plane; farther intersections are
+ * moved to this distance, so that they stay in range. */
 #define GLINT_PLANE_END (INT32_C(1) << 28)
 
 /* Returns the distance along RAY to the plane through AT, 1 .. GLINT_PLANE_END,
@@ -60,28 +60,29 @@ int32_t glint_ray_plane(const struct glint_scene_ray *ray, const int32_t at[3],
 struct glint_sheared {
     int32_t at[3];
     int axis[3];          /* axes; the longest is last */
-    int32_t x_q29, y_q29; /* direction / its longest element */
+    int32_t x_q29, y_q29; /* direction divided by its longest element */
     int32_t along_q30;    /* 1 / the longest element; magnitude 2^30 ..
                              2^30.8 */
 };
 
 struct glint_spot_on {
-    int32_t t;           /* above 0 */
+    int32_t t;           /* distance along the ray, above 0 */
     int32_t part_q30[3]; /* weights of the vertices, which sum to 1 */
 };
 
 void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to);
 
-/* Finds the intersection of RAY and the triangle, edges included; returns 0 if
- * RAY misses it. Vertices are sheared and rounded in the same way in every
- * triangle that has them, and all else is exact: no ray passes between two
- * triangles that share an edge. */
+/* Finds the intersection of RAY and the triangle, edges included; returns 0
+ * if RAY misses it. A vertex is sheared and rounded in the same way in every
+ * triangle that has it, and all other steps are exact: no ray passes between
+ * two triangles that share an edge. */
 int glint_ray_triangle(const struct glint_sheared *ray,
                        const int32_t *const vertex[3],
                        struct glint_spot_on *spot);
 
-/* The same for a ray that is known to meet the triangle, or to miss it
- * slightly: SPOT is clamped to the triangle. Returns 0 if it has no area. */
+/* Like glint_ray_triangle(), for a ray that is known to meet the triangle or
+ * to miss it slightly: SPOT is clamped to the triangle. Returns 0 if the
+ * triangle has no area. */
 int glint_ray_hold(const struct glint_sheared *ray,
                    const int32_t *const vertex[3], struct glint_spot_on *spot);
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Memory of a scene, and the sequence of a frame's steps. */
+ * Allocates a scene's memory, and changes its objects, camera and lights
+ * between frames.
+ */
 #include "scene/visible.h"
 
 #include "base/compiler.h"
@@ -54,7 +56,7 @@ const char *glint_scene_lacks(const struct glint_scene_parts *parts,
     return NULL;
 }
 
-static size_t vertices_of(const struct glint_scene_model *m)
+static size_t count_vertices(const struct glint_scene_model *m)
 {
     size_t n = 0;
 
@@ -64,7 +66,7 @@ static size_t vertices_of(const struct glint_scene_model *m)
     return n;
 }
 
-/* Returns whether N is a power of two that is set in ALL. */
+/* Returns whether N is a power of two whose bit is set in ALL. */
 static int is_one_of(int n, int all)
 {
     return n > 0 && (n & all) == n && (n & (n - 1)) == 0;
@@ -81,8 +83,9 @@ static int is_in_range(const struct glint_scene_config *c)
            glint_workers_count(c->workers) <= 64;
 }
 
-/* Returns the number of items in a grid of shadows: all triangles and balls. */
-static size_t things_of(const struct glint_scene_model *m)
+/* Returns the max number of shadow casters in a sun's grid: all triangles
+ * and balls. */
+static size_t count_casters(const struct glint_scene_model *m)
 {
     size_t n = 0;
 
@@ -93,14 +96,14 @@ static size_t things_of(const struct glint_scene_model *m)
     return n;
 }
 
-/* Allocates the grids of suns that throw shadows. Not inlined, as its dummy for
+/* Allocates the shadow grids of suns. Not inlined, as the dummy for
  * measuring is large on the stack. */
 static NEVER_INLINE void carve_shadows(struct glint_scene *s,
                                        struct glint_arena *a)
 {
     const size_t cells = (size_t)1 << 2 * GLINT_SHADOW_CELLS_LOG2;
-    const size_t n_vertices = vertices_of(&s->model);
-    const size_t n_refs = 12 * things_of(&s->model) + 64;
+    const size_t n_vertices = count_vertices(&s->model);
+    const size_t n_refs = 12 * count_casters(&s->model) + 64;
 
     for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
         struct glint_shadow measured, *m;
@@ -120,11 +123,13 @@ static NEVER_INLINE void carve_shadows(struct glint_scene *s,
         m->vertex = glint_arena_take(a, n_vertices, sizeof *m->vertex);
         m->bins.start = glint_arena_take(a, cells + 1, sizeof *m->bins.start);
         m->bins.ref = glint_arena_take(a, n_refs, sizeof *m->bins.ref);
-        m->thing = glint_arena_take(a, things_of(&s->model), sizeof *m->thing);
+        m->thing =
+            glint_arena_take(a, count_casters(&s->model), sizeof *m->thing);
     }
 }
 
-/* WORKER must be NULL while memory is only measured. */
+/* Allocates the memory of a worker. WORKER must be NULL while memory is only
+ * measured. */
 static void carve_worker(struct glint_scene *s, struct glint_arena *a,
                          struct glint_scene_worker *worker)
 {
@@ -150,7 +155,7 @@ static void carve_worker(struct glint_scene *s, struct glint_arena *a,
         *worker = w;
 }
 
-/* Returns whether any material reflects or refracts rays to the camera's
+/* Returns whether any material reflects or refracts rays into the camera's
  * picture. */
 static int shows_picture(const struct glint_scene_model *model)
 {
@@ -164,7 +169,8 @@ static int shows_picture(const struct glint_scene_model *model)
     return any && h->background == GLINT_BACKGROUND_CAMERA;
 }
 
-/* Called twice: first to measure, when it returns NULL, then to allocate. */
+/* Called twice: first with an arena that only measures, when it returns
+ * NULL, then to allocate. */
 static struct glint_scene *carve(struct glint_arena *a,
                                  const struct glint_scene_config *cfg,
                                  const struct glint_scene_model *model)
@@ -173,7 +179,7 @@ static struct glint_scene *carve(struct glint_arena *a,
     struct glint_scene *placed = glint_arena_take(a, 1, sizeof *placed);
     struct glint_scene *s = placed ? placed : &measured;
     const struct glint_box all = {0, 0, cfg->width, cfg->height};
-    const size_t n_vertices = vertices_of(model);
+    const size_t n_vertices = count_vertices(model);
     const int n_workers = glint_workers_count(cfg->workers);
 
     *s = measured;
@@ -229,8 +235,8 @@ size_t glint_scene_bytes(const struct glint_scene_config *cfg,
     return arena.used;
 }
 
-/* Returns the index of the map of object I, or -1. */
-static int skin_of(const struct glint_scene_model *model, uint32_t i)
+/* Returns the index of the map (skin) of object I, or -1. */
+static int find_map(const struct glint_scene_model *model, uint32_t i)
 {
     for (uint32_t k = 0; k < model->header->n_skins; k++)
         if (model->skin[k].object == i)
@@ -251,7 +257,7 @@ static int place_objects(struct glint_scene *s)
                                              .radius = o->radius,
                                              .is_shown = !o->hidden,
                                              .is_catcher = o->catcher_q15 > 0,
-                                             .skin = skin_of(model, i),
+                                             .skin = find_map(model, i),
                                              .first_vertex = first};
         if (glint_scene_set_material(s, (int)i, (int)o->material) != GLINT_OK)
             return 0;
@@ -348,7 +354,7 @@ void glint_scene_turn_of(const int32_t q[4], struct glint_scene_turn *to)
         }
 }
 
-/* Returns whether P already has this pose. */
+/* Returns whether P already has the position AT and the rotation TURN. */
 static int is_same_pose(const struct glint_placed *p, const int32_t at[3],
                         const struct glint_scene_turn *turn)
 {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene as a pass: a pixel is shaded once, at its middle, per object that
+ * The pass of a scene: shades each pixel once, at its middle, per object that
  * its samples see; reflecting and transparent objects are shaded per sample.
- * The uncovered fraction of a pixel keeps its light. */
+ * The uncovered fraction of a pixel preserves its light.
+ */
 #include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
@@ -20,13 +21,13 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     return &scene->worker[worker];
 }
 
-static int go_on(void *state, struct glint_box tile)
+static int begin_tile(void *state, struct glint_box tile)
 {
     return glint_scene_look(state, tile);
 }
 
-/* Returns whether samples of ID are shaded one by one, as reflections and
- * transmitted objects have edges inside it. */
+/* Returns whether the samples of ID are shaded one by one, as reflections
+ * and transmitted objects have edges inside ID. */
 static inline int is_split(const struct glint_scene *s, uint32_t id)
 {
     return s->has_split && id != GLINT_NOTHING && s->placed[id >> 20].is_split;
@@ -38,9 +39,9 @@ enum {
                  find_surface() */
 };
 
-/* Returns the offset of sample K from a pixel's middle; for QUAD the corner
- * shared with the right and lower neighbours. */
-static int32_t off_of(const struct glint_scene *s, int k, int axis)
+/* Returns the offset of sample K from its pixel's middle, 1/256 pixel; for
+ * QUAD the corner shared with the right and lower neighbours. */
+static int32_t get_offset(const struct glint_scene *s, int k, int axis)
 {
     return k >= 0 ? glint_sample(s, k, axis) : k == QUAD ? 128 : 0;
 }
@@ -60,10 +61,10 @@ static NEVER_INLINE int find_at_length(struct glint_scene_worker *w,
         struct glint_met met;
         int32_t seen_q30[3];
 
-        const int32_t x_q8 = glint_place(s, x, 0) + off_of(s, at, 0);
-        const int32_t y_q8 = glint_place(s, y, 1) + off_of(s, at, 1);
+        const int32_t x_q8 = glint_place(s, x, 0) + get_offset(s, at, 0);
+        const int32_t y_q8 = glint_place(s, y, 1) + get_offset(s, at, 1);
 
-        /* find_surface() has tried the middle */
+        /* find_surface() has already tried the middle */
         if (i > 0 && glint_quick_find(w, id, x_q8, y_q8, ray, surface))
             return 1;
         glint_view_ray(&s->view, x_q8, y_q8, ray, seen_q30);
@@ -86,9 +87,9 @@ static inline int find_surface(struct glint_scene_worker *w, uint32_t id, int x,
            find_at_length(w, id, x, y, k, ray, surface);
 }
 
-/* Sets RGB_Q15 to the background of pixel (X, Y). */
-static void see_background(const struct glint_scene *s, int x, int y,
-                           int32_t rgb_q15[3])
+/* Sets RGB_Q15 to the background's light at pixel (X, Y). */
+static void compute_background(const struct glint_scene *s, int x, int y,
+                               int32_t rgb_q15[3])
 {
     struct glint_scene_ray ray = {.at = {0}};
     int32_t seen_q30[3];
@@ -116,12 +117,12 @@ static inline int shade_id(struct glint_scene_worker *w, uint32_t id, int x,
     }
     if (h->background != GLINT_BACKGROUND_CAMERA) {
         shade->cover_q8 = GLINT_COVER_ALL;
-        see_background(s, x, y, shade->rgb_q15);
+        compute_background(s, x, y, shade->rgb_q15);
     }
     return 0;
 }
 
-/* Returns whether the N samples of a pixel see nothing. */
+/* Returns whether none of the N samples of a pixel sees an object. */
 static inline int is_empty(const uint32_t *id, int n)
 {
     uint32_t all = id[0];
@@ -138,8 +139,8 @@ static inline int is_catcher(const struct glint_scene *s, uint32_t id)
            s->placed[id >> 20].is_catcher;
 }
 
-/* Returns whether two samples may be shaded as one: they see one object, or two
- * triangles of a smooth surface that share a vertex. */
+/* Returns whether two samples may be shaded as one: they see the same
+ * object, or two triangles of a smooth surface that share a vertex. */
 static int is_joined(const struct glint_scene *s, uint32_t a, uint32_t b)
 {
     return a == b ||
@@ -148,9 +149,11 @@ static int is_joined(const struct glint_scene *s, uint32_t a, uint32_t b)
             s->cfg.parts.meshes->joins(s, a, b));
 }
 
-/* Sets TIMES to the number of samples that each sample is shaded for. */
-static inline void share(const struct glint_scene *s, const uint32_t *id, int n,
-                         int times[GLINT_SCENE_SAMPLES])
+/* Sets TIMES to the number of samples that each sample is shaded for; 0 for
+ * samples that use the result of another sample. */
+static inline void group_samples(const struct glint_scene *s,
+                                 const uint32_t *id, int n,
+                                 int times[GLINT_SCENE_SAMPLES])
 {
     int first = 0;
 
@@ -168,12 +171,12 @@ static inline void share(const struct glint_scene *s, const uint32_t *id, int n,
     }
 }
 
-/* Records the light of SHADE above white as a highlight, with the fraction
- * SHARE_Q4 of a pixel whose middle is OFF_Q8 from the top left corner of pixel
- * (X, Y). */
-static inline void note(const struct glint_scene *s, uint32_t id,
-                        const struct glint_met_shade *shade, int x, int y,
-                        int32_t off_q8, int share_q4)
+/* Records the light of SHADE above white as a highlight. SHARE_Q4: fraction
+ * of a pixel. OFF_Q8: offset of that pixel's middle from the top left corner
+ * of pixel (X, Y). */
+static inline void record_highlight(const struct glint_scene *s, uint32_t id,
+                                    const struct glint_met_shade *shade, int x,
+                                    int y, int32_t off_q8, int share_q4)
 {
     const int32_t *rgb_q15 = shade->rgb_q15;
 
@@ -206,15 +209,15 @@ static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
     const int down = n == 16 ? 2 : n == 8;
     int times[GLINT_SCENE_SAMPLES];
 
-    share(s, id, n, times);
+    group_samples(s, id, n, times);
     for (int k = 0; k < n; k++) {
         struct glint_met_shade shade;
 
         if (times[k] == 0)
             continue;
         if (shade_id(w, id[k], x, y, k, &shade))
-            note(s, id[k], &shade, x, y, 128,
-                 times[k] << (4 - glint_samples_log2(n)));
+            record_highlight(s, id[k], &shade, x, y, 128,
+                             times[k] << (4 - glint_samples_log2(n)));
         add_samples(s, id[k], &shade, times[k], sum);
     }
     for (int c = 0; c < 3; c++)
@@ -224,8 +227,8 @@ static NEVER_INLINE void shade_samples(struct glint_scene_worker *w,
     sum->shadow_q10 = (sum->shadow_q10 + down) >> down;
 }
 
-/* Returns whether all N samples from ID on see THING. */
-static inline int is_one(const uint32_t *id, int n, uint32_t thing)
+/* Returns whether all N samples from ID on see the object or triangle THING. */
+static inline int all_see(const uint32_t *id, int n, uint32_t thing)
 {
     uint32_t other = 0;
 
@@ -234,7 +237,8 @@ static inline int is_one(const uint32_t *id, int n, uint32_t thing)
     return other == 0;
 }
 
-/* Returns whether N samples from ID on may share the shading of THING. */
+/* Returns whether the N samples from ID on may use the shading result of
+ * THING. */
 static int is_joined_to(const struct glint_scene *s, const uint32_t *id, int n,
                         uint32_t thing)
 {
@@ -281,9 +285,10 @@ static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
         return;
     }
     *sum = (struct glint_scene_sum){{0, 0, 0}, 0, 0};
-    if (quad || n == 1 || (is_one(id, n, id[0]) && !is_split(s, id[0]))) {
+    if (quad || n == 1 || (all_see(id, n, id[0]) && !is_split(s, id[0]))) {
         if (shade_id(w, id[0], x, y, quad ? QUAD : 0, &shade))
-            note(s, id[0], &shade, x, y, quad ? 256 : 128, quad ? 64 : 16);
+            record_highlight(s, id[0], &shade, x, y, quad ? 256 : 128,
+                             quad ? 64 : 16);
         add_samples(s, id[0], &shade, SUMMED, sum);
     } else {
         shade_samples(w, id, n, x, y, sum);
@@ -305,10 +310,10 @@ static inline void write_pixel(const struct glint_scene_worker *w,
                 (uint16_t)q_clamp_sat((sum_q17[c] + 1) >> 1, 0, 65535);
 }
 
-/* Sets N pixels from X on of row ROW to the same light and cover. */
-static void put_same(const struct glint_scene_worker *w,
-                     const struct glint_pass_rows *rows, int row, int x, int n,
-                     const int32_t rgb_q15[3], int cover_q8)
+/* Sets N pixels of row ROW from X on to the same light and cover. */
+static void write_run(const struct glint_scene_worker *w,
+                      const struct glint_pass_rows *rows, int row, int x, int n,
+                      const int32_t rgb_q15[3], int cover_q8)
 {
     const int first = x - w->tile.x0;
     uint16_t *to_q8 = &rows->cover->cover_q8[row][first];
@@ -334,7 +339,7 @@ static void put_same(const struct glint_scene_worker *w,
 }
 
 /* Adds full cover to pixels X0 .. X1 - 1 of row Y. */
-static void cover_wholly(const struct glint_scene *s, int y, int x0, int x1)
+static void add_full_cover(const struct glint_scene *s, int y, int x0, int x1)
 {
     enum { SIDE = 1 << GLINT_COVER_LOG2 };
     uint16_t *cover = &s->cover[(y >> GLINT_COVER_LOG2) * s->cover_across];
@@ -347,27 +352,28 @@ static void cover_wholly(const struct glint_scene *s, int y, int x0, int x1)
 }
 
 /* Sets pixels X0 .. X1 - 1 of row ROW to the background. */
-static void put_background(const struct glint_scene_worker *w,
-                           const struct glint_pass_rows *rows, int row, int x0,
-                           int x1)
+static void write_background(const struct glint_scene_worker *w,
+                             const struct glint_pass_rows *rows, int row,
+                             int x0, int x1)
 {
     static const int32_t none_q15[3];
     const struct glint_scene_header *h = w->scene->model.header;
 
     if (h->background == GLINT_BACKGROUND_CAMERA) {
-        put_same(w, rows, row, x0, x1 - x0, none_q15, 0);
+        write_run(w, rows, row, x0, x1 - x0, none_q15, 0);
         return;
     }
-    cover_wholly(w->scene, rows->y + row, x0, x1);
+    add_full_cover(w->scene, rows->y + row, x0, x1);
     if (h->background != GLINT_BACKGROUND_ENVIRONMENT) {
-        put_same(w, rows, row, x0, x1 - x0, h->background_q15, GLINT_COVER_ALL);
+        write_run(w, rows, row, x0, x1 - x0, h->background_q15,
+                  GLINT_COVER_ALL);
         return;
     }
     for (int x = x0; x < x1; x++) {
         int32_t rgb_q15[3];
 
-        see_background(w->scene, x, rows->y + row, rgb_q15);
-        put_same(w, rows, row, x, 1, rgb_q15, GLINT_COVER_ALL);
+        compute_background(w->scene, x, rows->y + row, rgb_q15);
+        write_run(w, rows, row, x, 1, rgb_q15, GLINT_COVER_ALL);
     }
 }
 
@@ -408,7 +414,7 @@ static inline int draw_row(struct glint_scene_worker *w,
     w->n_spans = w->n_over = 0;
     if (s->motion && is_in)
         s->cfg.parts.motions->list(w, y);
-    put_background(w, rows, row, w->tile.x0, x0);
+    write_background(w, rows, row, w->tile.x0, x0);
     for (int x = x0, end; x < x1; x = end) {
         if (x == same)
             same = w->n_spans ? q_smaller(s->cfg.parts.motions->next(w, x), x1)
@@ -416,14 +422,14 @@ static inline int draw_row(struct glint_scene_worker *w,
         for (end = x; end < same && !w->n_over && is_empty(id, n); id += n)
             end++;
         if (end > x) {
-            put_background(w, rows, row, x, end);
+            write_background(w, rows, row, x, end);
             continue;
         }
         any |= draw_pixel(w, rows, row, x, id, n);
         id += n;
         end = x + 1;
     }
-    put_background(w, rows, row, x1, w->tile.x1);
+    write_background(w, rows, row, x1, w->tile.x1);
     return any;
 }
 
@@ -444,10 +450,10 @@ static enum glint_given draw_rows(void *state,
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-/* Returns the pass of the scene. */
-static struct glint_pass pass_of(const struct glint_scene *scene)
+/* Returns the pass that draws the scene. */
+static struct glint_pass make_pass(const struct glint_scene *scene)
 {
-    return (struct glint_pass){scene, begin_row, go_on, draw_rows};
+    return (struct glint_pass){scene, begin_row, begin_tile, draw_rows};
 }
 
 /* ----------------------------------------------------------------- drawing */
@@ -469,7 +475,7 @@ static void row_job(void *ctx, int job, int worker)
 void glint_scene_draw(struct glint_scene *scene,
                       const struct glint_image *image)
 {
-    struct draw d = {.scene = scene, .pass = pass_of(scene)};
+    struct draw d = {.scene = scene, .pass = make_pass(scene)};
 
     glint_scene_spread(scene);
     glint_resolve_init(scene->resolve, image, scene->cfg.dither,

@@ -20,21 +20,22 @@
 
 enum {
     CELLS = 1 << GLINT_SHADOW_CELLS_LOG2,
-    SLACK = 4,  /* steps, for rounding */
+    SLACK = 4,  /* tolerance for rounding, steps */
     SORTED = 64 /* max length of lists that are sorted */
 };
 
-/* Returns the max displacement of rays over HEIGHT, which must be below
- * 2^32. */
-static inline int64_t lean_of(const struct glint_shadow *shadow, int64_t height)
+/* Returns the max displacement across the grid of slanted rays over HEIGHT,
+ * which must be below 2^32. */
+static inline int64_t compute_lean(const struct glint_shadow *shadow,
+                                   int64_t height)
 {
     return q_shift(height * shadow->lean_q30, 30);
 }
 
 /* Returns the position of X along AXIS of the grid, in 1/256 of a cell, within
  * +-2^15. X must be within +-2^33. A cell has at least SLACK steps. */
-static inline int32_t across_q8(const struct glint_shadow *shadow, int64_t x,
-                                int axis)
+static inline int32_t convert_to_cells_q8(const struct glint_shadow *shadow,
+                                          int64_t x, int axis)
 {
     return q_clamp_sat((x - shadow->lo[axis]) * shadow->cells_q32[axis] >> 24,
                        INT16_MIN, INT16_MAX);
@@ -42,15 +43,15 @@ static inline int32_t across_q8(const struct glint_shadow *shadow, int64_t x,
 
 /* --------------------------------------------------------------------- grid */
 
-static int throws(const struct glint_placed *p)
+static int casts_shadow(const struct glint_placed *p)
 {
     return p->is_shown && p->object->kind != GLINT_OBJECT_PLANE;
 }
 
 /* ------------------------------------------------------------------ extents */
 
-static void grow(struct glint_shadow *shadow, const int32_t at[3],
-                 int32_t reach)
+static void extend_bounds(struct glint_shadow *shadow, const int32_t at[3],
+                          int32_t reach)
 {
     for (int k = 0; k < 3; k++) {
         shadow->lo[k] = q_smaller(shadow->lo[k], at[k] - reach);
@@ -58,7 +59,7 @@ static void grow(struct glint_shadow *shadow, const int32_t at[3],
     }
 }
 
-/* Sets the bounding box of all objects that throw shadows; returns 0 if there
+/* Sets the bounding box of all objects that cast shadows; returns 0 if there
  * are none. */
 static int find_bounds(const struct glint_scene *s, struct glint_shadow *shadow)
 {
@@ -70,16 +71,16 @@ static int find_bounds(const struct glint_scene *s, struct glint_shadow *shadow)
         const struct glint_placed *p = &s->placed[i];
         int32_t at[3];
 
-        if (!throws(p))
+        if (!casts_shadow(p))
             continue;
         v3_turn(&shadow->turn, p->centre, at);
-        grow(shadow, at, p->reach + SLACK);
+        extend_bounds(shadow, at, p->reach + SLACK);
     }
     return shadow->lo[0] <= shadow->hi[0];
 }
 
-/* Enlarges the grid for slanted rays: it answers for points down to one size of
- * the objects below them. */
+/* Enlarges the grid for slanted rays, so that it is valid for points down to
+ * one size of the objects below them. */
 static void enlarge_grid(struct glint_shadow *shadow)
 {
     const int32_t side =
@@ -90,7 +91,8 @@ static void enlarge_grid(struct glint_shadow *shadow)
     if (shadow->lean_q30 == 0)
         return;
     shadow->lowest = q_larger(shadow->lo[2] - side, -GLINT_FAR);
-    lean = lean_of(shadow, (int64_t)shadow->hi[2] - shadow->lowest) + SLACK;
+    lean =
+        compute_lean(shadow, (int64_t)shadow->hi[2] - shadow->lowest) + SLACK;
     for (int k = 0; k < 2; k++) {
         shadow->lo[k] =
             q_clamp_sat(shadow->lo[k] - lean, -GLINT_FAR, GLINT_FAR);
@@ -101,8 +103,8 @@ static void enlarge_grid(struct glint_shadow *shadow)
 
 /* ------------------------------------------------------------------- lists */
 
-/* Returns the cells that T covers. */
-static struct glint_box cells_of(const struct glint_shadow_thing *t)
+/* Returns the range of grid cells that T covers. */
+static struct glint_box find_cells(const struct glint_shadow_thing *t)
 {
     return glint_box_cut((struct glint_box){0, 0, CELLS, CELLS},
                          (struct glint_box){t->lo[0] >> 8, t->lo[1] >> 8,
@@ -110,25 +112,26 @@ static struct glint_box cells_of(const struct glint_shadow_thing *t)
                                             (t->hi[1] >> 8) + 1});
 }
 
-/* Sets T to the box that an object within LO .. HI can shadow. */
-static void set_thing(const struct glint_shadow *shadow, const int32_t lo[3],
-                      const int32_t hi[3], uint32_t id,
-                      struct glint_shadow_thing *t)
+/* Sets T to the footprint of the region that an object within LO .. HI can
+ * shadow. */
+static void set_caster(const struct glint_shadow *shadow, const int32_t lo[3],
+                       const int32_t hi[3], uint32_t id,
+                       struct glint_shadow_thing *t)
 {
     const int64_t lean =
         SLACK + (shadow->lean_q30
-                     ? lean_of(shadow, (int64_t)hi[2] - shadow->lowest)
+                     ? compute_lean(shadow, (int64_t)hi[2] - shadow->lowest)
                      : 0);
 
     t->id = id;
     t->top = hi[2];
     for (int k = 0; k < 2; k++) {
-        t->lo[k] = (int16_t)across_q8(shadow, lo[k] - lean, k);
-        t->hi[k] = (int16_t)across_q8(shadow, hi[k] + lean, k);
+        t->lo[k] = (int16_t)convert_to_cells_q8(shadow, lo[k] - lean, k);
+        t->hi[k] = (int16_t)convert_to_cells_q8(shadow, hi[k] + lean, k);
     }
 }
 
-/* Lists the triangles of mesh I at THING; returns their number. */
+/* Writes the triangles of mesh I to THING; returns their number. */
 static int set_triangles(const struct glint_scene *s,
                          const struct glint_shadow *shadow, uint32_t i,
                          struct glint_shadow_thing *thing)
@@ -147,14 +150,15 @@ static int set_triangles(const struct glint_scene *s,
             lo[k] = q_smaller(a, q_smaller(b, c));
             hi[k] = q_larger(a, q_larger(b, c));
         }
-        set_thing(shadow, lo, hi, glint_id(i, n), thing++);
+        set_caster(shadow, lo, hi, glint_id(i, n), thing++);
     }
     return (int)mesh->n_triangles;
 }
 
-/* Lists all objects; returns the number of their entries in all cells. */
-static int64_t set_things(const struct glint_scene *s,
-                          struct glint_shadow *shadow)
+/* Lists all shadow casters; returns the number of entries that they need in
+ * all cells. */
+static int64_t set_casters(const struct glint_scene *s,
+                           struct glint_shadow *shadow)
 {
     int64_t n = 0;
 
@@ -164,7 +168,7 @@ static int64_t set_things(const struct glint_scene *s,
         struct glint_shadow_thing *t = &shadow->thing[shadow->n_things];
         int32_t at[3], lo[3], hi[3];
 
-        if (!throws(p))
+        if (!casts_shadow(p))
             continue;
         if (p->object->kind == GLINT_OBJECT_MESH) {
             shadow->n_things += set_triangles(s, shadow, i, t);
@@ -175,11 +179,11 @@ static int64_t set_things(const struct glint_scene *s,
             lo[k] = at[k] - p->radius;
             hi[k] = at[k] + p->radius;
         }
-        set_thing(shadow, lo, hi, glint_id(i, 0), t);
+        set_caster(shadow, lo, hi, glint_id(i, 0), t);
         shadow->n_things++;
     }
     for (int i = 0; i < shadow->n_things; i++) {
-        const struct glint_box b = cells_of(&shadow->thing[i]);
+        const struct glint_box b = find_cells(&shadow->thing[i]);
 
         if (!glint_box_empty(b))
             n += (int64_t)(b.x1 - b.x0) * (b.y1 - b.y0);
@@ -187,18 +191,18 @@ static int64_t set_things(const struct glint_scene *s,
     return n;
 }
 
-static void list(struct glint_shadow *shadow)
+static void list_by_cell(struct glint_shadow *shadow)
 {
     glint_bins_open(&shadow->bins);
     for (int i = 0; i < shadow->n_things; i++) {
-        const struct glint_box b = cells_of(&shadow->thing[i]);
+        const struct glint_box b = find_cells(&shadow->thing[i]);
 
         if (!glint_box_empty(b))
             glint_bins_count(&shadow->bins, b);
     }
     glint_bins_sum(&shadow->bins);
     for (int i = 0; i < shadow->n_things; i++) {
-        const struct glint_box b = cells_of(&shadow->thing[i]);
+        const struct glint_box b = find_cells(&shadow->thing[i]);
 
         for (int y = b.y0; y < b.y1; y++)
             for (int x = b.x0; x < b.x1; x++)
@@ -225,8 +229,8 @@ static void sort_lists(struct glint_shadow *shadow)
     }
 }
 
-/* Returns whether the list of CELL has an object other than OWN that is above
- * LOWEST and can shadow points within LO .. HI. */
+/* Returns whether CELL lists an object other than OWN that is above LOWEST
+ * and can shadow points within LO .. HI. */
 static int can_shadow(const struct glint_shadow *shadow, int cell, uint32_t own,
                       int32_t lowest, const int32_t lo_q8[2],
                       const int32_t hi_q8[2])
@@ -244,8 +248,8 @@ static int can_shadow(const struct glint_shadow *shadow, int cell, uint32_t own,
     return 0;
 }
 
-/* Returns whether no object can shadow ball I from the sun. Points on it are
- * computed to within 2^-20 of its radius (quick.c). */
+/* Returns whether no object can shadow ball I from the sun. Points on the
+ * ball are accurate to 2^-20 of its radius (quick.c). */
 static int is_open(const struct glint_scene *s,
                    const struct glint_shadow *shadow, uint32_t i)
 {
@@ -255,8 +259,8 @@ static int is_open(const struct glint_scene *s,
 
     v3_turn(&shadow->turn, p->at, at);
     for (int k = 0; k < 2; k++) {
-        lo_q8[k] = across_q8(shadow, (int64_t)at[k] - reach, k);
-        hi_q8[k] = across_q8(shadow, (int64_t)at[k] + reach, k);
+        lo_q8[k] = convert_to_cells_q8(shadow, (int64_t)at[k] - reach, k);
+        hi_q8[k] = convert_to_cells_q8(shadow, (int64_t)at[k] + reach, k);
         if (lo_q8[k] < 0 || hi_q8[k] >= CELLS << 8)
             return 0;
     }
@@ -292,7 +296,7 @@ static void turn_vertices(const struct glint_scene *s,
         const struct glint_scene_mesh *mesh;
         const int32_t *vertex;
 
-        if (!throws(p) || p->object->kind != GLINT_OBJECT_MESH)
+        if (!casts_shadow(p) || p->object->kind != GLINT_OBJECT_MESH)
             continue;
         mesh = glint_mesh_of(s, i);
         vertex = glint_mesh_table(s, mesh->vertex_at);
@@ -307,7 +311,7 @@ static void turn_vertices(const struct glint_scene *s,
     }
 }
 
-/* Sets the points of the disc and the slopes of their rays. */
+/* Sets the sample points of the sun's disc and the slopes of their rays. */
 static void set_points(const struct glint_scene *s, const struct glint_lit *lit,
                        struct glint_shadow *shadow)
 {
@@ -359,21 +363,21 @@ void glint_shadow_prepare(const struct glint_scene *s,
     glint_bins_init(&shadow->bins, (struct glint_box){0, 0, CELLS, CELLS}, 0,
                     shadow->bins.start, shadow->bins.ref);
     turn_vertices(s, shadow);
-    while (set_things(s, shadow) > shadow->max_refs)
+    while (set_casters(s, shadow) > shadow->max_refs)
         for (int k = 0; k < 2; k++)
             shadow->cells_q32[k] -= (shadow->cells_q32[k] + 3) / 4;
-    list(shadow);
+    list_by_cell(shadow);
     sort_lists(shadow);
     mark_open(s, shadow);
 }
 
 /* -------------------------------------------------------------------- boxes */
 
-/* Finds the point of plane P at (U, V) of the sun's grid; returns 0 if it is
- * out of range. */
-static int plane_place(const struct glint_shadow *shadow,
-                       const struct glint_placed *p, int32_t u, int32_t v,
-                       int32_t place[3])
+/* Sets PLACE to the point of plane P at (U, V) of the sun's grid; returns 0
+ * if it is out of range. */
+static int find_plane_point(const struct glint_shadow *shadow,
+                            const struct glint_placed *p, int32_t u, int32_t v,
+                            int32_t place[3])
 {
     int32_t at[3], n_q30[3], to[3] = {u, v, 0};
     int64_t off_q30, h;
@@ -403,28 +407,30 @@ struct glint_box glint_shadow_box(const struct glint_scene *s,
     for (int k = 0; k < 4; k++) {
         int32_t place[3];
 
-        if (!plane_place(shadow, p, k & 1 ? shadow->lo[0] : shadow->hi[0],
-                         k & 2 ? shadow->lo[1] : shadow->hi[1], place))
+        if (!find_plane_point(shadow, p, k & 1 ? shadow->lo[0] : shadow->hi[0],
+                              k & 2 ? shadow->lo[1] : shadow->hi[1], place))
             return (struct glint_box){0, 0, s->view.width, s->view.height};
         glint_view_seen(&s->view, place, seen[k]);
     }
     return glint_view_box(&s->view, (const int32_t(*)[3])seen, 4);
 }
 
-/* special cell values: no object is above; the grid does not answer */
+/* special cell indices: no object is above; the point is outside the range
+ * of the grid */
 enum { NONE = -1, BEYOND = -2 };
 
 /* -------------------------------------------------------------------- rays */
 
-/* Returns whether three numbers are all above 0, or all below. */
+/* Returns whether three numbers are all positive or all negative. */
 static int is_aside(const int32_t x[3])
 {
     return (x[0] & x[1] & x[2]) < 0 || (-x[0] & -x[1] & -x[2]) < 0;
 }
 
 /* Returns, by edge functions, whether a ray from AT of slope LEAN meets a
- * triangle above it. A triangle is at most 2^28 long, and AT, in one of its
- * cells, is as near; with the ray's displacement elements are below 2^30. */
+ * triangle above it. A triangle is at most 2^28 long, and AT, which is in
+ * one of its cells, is as near; with the ray's displacement all elements are
+ * below 2^30. */
 static int meets_triangle(const int32_t *const vertex[3], const int32_t at[3],
                           const int32_t lean_q30[2])
 {
@@ -484,15 +490,15 @@ static int meets_ball(const struct glint_shadow *shadow,
     return glint_ray_sphere(&ray, p->at, p->radius, &chord) && chord.t[1] > 0;
 }
 
-/* A point in the coordinates of the sun, and its cell. */
+/* A point in the coordinates of the sun's grid, and its cell. */
 struct below {
     int32_t at[3];
     int cell;
     int32_t across_q8[2];
 };
 
-/* Returns whether the ray meets any object of the list other than SURFACE
- * itself. */
+/* Returns whether the ray meets any object in the cell's list other than
+ * SURFACE itself. */
 static int
 is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
            const struct below *below, const struct glint_shadow_point *point,
@@ -535,7 +541,7 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
     return 0;
 }
 
-/* Sets BELOW to the coordinates and the cell of PLACE. */
+/* Sets BELOW to the grid coordinates and the cell of PLACE. */
 static WHOLLY_INLINE void project_place(const struct glint_shadow *shadow,
                                         const int32_t place[3],
                                         struct below *below)
@@ -548,7 +554,7 @@ static WHOLLY_INLINE void project_place(const struct glint_shadow *shadow,
         return;
     v3_turn(&shadow->turn, place, at);
     if (at[2] < shadow->lowest)
-        lean = lean_of(shadow, (int64_t)shadow->lowest - at[2]) + SLACK;
+        lean = compute_lean(shadow, (int64_t)shadow->lowest - at[2]) + SLACK;
     if (at[2] > shadow->hi[2] || at[0] < shadow->lo[0] - lean ||
         at[0] > shadow->hi[0] + lean || at[1] < shadow->lo[1] - lean ||
         at[1] > shadow->hi[1] + lean)
@@ -557,15 +563,15 @@ static WHOLLY_INLINE void project_place(const struct glint_shadow *shadow,
     if (lean)
         return;
     for (int k = 0; k < 2; k++)
-        below->across_q8[k] = across_q8(shadow, at[k], k);
+        below->across_q8[k] = convert_to_cells_q8(shadow, at[k], k);
     below->cell =
         (below->across_q8[1] >> 8) * CELLS + (below->across_q8[0] >> 8);
     if (shadow->bins.start[below->cell] == shadow->bins.start[below->cell + 1])
         below->cell = NONE;
 }
 
-/* Returns whether a point-like sun reaches SURFACE. No plane may throw shadows
- * on it, and BELOW must have a list. */
+/* Returns whether light of a point-like sun reaches SURFACE. No plane may
+ * cast shadows on it, and the cell of BELOW must have a list. */
 static int is_lit(const struct glint_scene *s,
                   const struct glint_shadow *shadow, const struct below *below,
                   const int32_t place[3],
@@ -577,32 +583,33 @@ static int is_lit(const struct glint_scene *s,
            !is_blocked(s, shadow, below, p, place, surface);
 }
 
-/* Returns REACHED / the number of points (1, 4 or 16). */
-static int32_t share(const struct glint_shadow *shadow, int reached)
+/* Returns REACHED divided by the number of sample points (1, 4 or 16), _q15. */
+static int32_t compute_share(const struct glint_shadow *shadow, int reached)
 {
     return reached << (shadow->n_points == 1   ? 15
                        : shadow->n_points == 4 ? 13
                                                : 11);
 }
 
-/* Returns the fraction of the disc's points above the plane of SURFACE, if
- * nothing else hides them. */
-static int32_t share_above(const struct glint_shadow *shadow,
-                           const struct glint_met_surface *surface)
+/* Returns the fraction of the disc's sample points that are above the plane
+ * of SURFACE. */
+static int32_t compute_share_above(const struct glint_shadow *shadow,
+                                   const struct glint_met_surface *surface)
 {
     int above = 0;
 
     for (int i = 0; i < shadow->n_points; i++)
         above += v3_dot(shadow->point[i].toward_q30, surface->face_q30) > 0;
-    return share(shadow, above);
+    return compute_share(shadow, above);
 }
 
-/* Returns the fraction of the disc's points that reach SURFACE, by testing
- * each. */
-static NEVER_INLINE int32_t
-share_of_points(const struct glint_scene *s, const struct glint_shadow *shadow,
-                const struct glint_met_surface *surface,
-                const struct below *below, const int32_t place[3])
+/* Returns the fraction of the disc's sample points whose light reaches
+ * SURFACE, by testing each. */
+static NEVER_INLINE int32_t test_points(const struct glint_scene *s,
+                                        const struct glint_shadow *shadow,
+                                        const struct glint_met_surface *surface,
+                                        const struct below *below,
+                                        const int32_t place[3])
 {
     const int asks_planes = glint_scene_other_planes(s, surface->object);
     struct glint_scene_ray ray;
@@ -627,7 +634,7 @@ share_of_points(const struct glint_scene *s, const struct glint_shadow *shadow,
                    (below->cell == NONE ||
                     !is_blocked(s, shadow, below, p, place, surface));
     }
-    return share(shadow, reached);
+    return compute_share(shadow, reached);
 }
 
 int32_t glint_shadow_reaches(const struct glint_scene *s,
@@ -642,12 +649,12 @@ int32_t glint_shadow_reaches(const struct glint_scene *s,
     else
         project_place(shadow, place, &below);
     if (below.cell == BEYOND || glint_scene_other_planes(s, surface->object))
-        return share_of_points(s, shadow, surface, &below, place);
+        return test_points(s, shadow, surface, &below, place);
     if (below.cell == NONE)
-        return share_above(shadow, surface);
+        return compute_share_above(shadow, surface);
     if (shadow->n_points == 1)
         return is_lit(s, shadow, &below, place, surface) << 15;
-    return share_of_points(s, shadow, surface, &below, place);
+    return test_points(s, shadow, surface, &below, place);
 }
 
 void glint_scene_forget_shadows(struct glint_scene *s)

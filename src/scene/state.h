@@ -21,7 +21,8 @@ enum {
     GLINT_SCENE_ONE_Q15 = 1 << 15,
     GLINT_SCENE_MOST_LIGHT = 1 << 30, /* max light, q15; larger light
                                          saturates */
-    GLINT_SCENE_LIFT = 4,     /* steps above a mesh from which its rays start */
+    /* distance of the start of secondary rays from a mesh, steps */
+    GLINT_SCENE_LIFT = 4,
     GLINT_SCENE_SAMPLES = 16, /* max samples per pixel */
     GLINT_SCENE_PASSES = 8,   /* max surfaces that a ray passes through */
     GLINT_COVER_LOG2 = 3 /* log2 of the side, in pixels, of the squares of the
@@ -34,37 +35,38 @@ enum {
 struct glint_placed {
     const struct glint_scene_object *object;
     int32_t at[3], radius;
-    /* Rotation of the object: its point p is at at + turn p. */
+    /* Rotation of the object: its point p is at position at + turn p. */
     struct glint_scene_turn turn;
     /* Bounding sphere; for a plane, its normal, _q30, and 0. */
     int32_t centre[3], reach;
     uint32_t material; /* material of the object's surfaces without their own
                           material */
     int is_shown;
-    int is_split, is_catcher; /* samples are shaded one by one; it only receives
-                                 shadows */
+    int is_split, is_catcher; /* is_split: samples are shaded one by one;
+                                 is_catcher: the object only receives shadows */
     int skin;                 /* index of its map if it is translucent, else
                                  -1 */
     int is_seen;              /* may be visible in this frame */
-    struct glint_box box;     /* pixels that it may touch */
+    struct glint_box box;     /* box of pixels that the object may touch */
     uint32_t first_vertex;    /* mesh: index among the vertices of all
                                  objects */
     int32_t margin;           /* sphere: a pixel's diagonal at its far side,
                                  steps, at least 1 */
     struct glint_depth depth; /* plane: 1 / z over the picture */
-    int32_t z[2];             /* min and max z; a plane may lie anywhere */
-    /* Sphere: 2^30 nearest / z. flat_depth: one depth for the whole sphere, if
-     * it suffices to order it against all balls that it may overlap, else 0.
-     * far_depth: the depth of its far side. */
+    int32_t z[2];             /* min and max z; not used for planes */
+    /* Sphere: depths, 2^30 nearest / z. flat_depth: a single depth for the
+     * whole sphere, if that orders it correctly against all balls that it
+     * may overlap, else 0. far_depth: depth of its far side. */
     int32_t flat_depth, far_depth;
     /* Sphere: (vector from the camera to its middle) / radius, with over_up
      * fraction bits; over_up is 0 if the quotient is out of range (quick.c). */
     int32_t over[3];
     int over_up;
-    /* Sphere: a bit per sun, by index, set if by the sun's grid nothing can
-     * shadow the points of the sphere that face it. */
+    /* Sphere: a bit per light index of a sun, set if no object can shadow
+     * the side of the sphere that faces that sun. */
     uint32_t open_to;
-    /* Coefficients for the pixels of a row that a ball may touch (quick.c). */
+    /* Coefficients for the span of pixels in a row that a ball may touch
+     * (quick.c). */
     struct {
         int is_there;
         int32_t m_q30[3], c_q30, a_q30;
@@ -87,22 +89,24 @@ struct glint_quick_triangle {
     int64_t at[3];
     int up;
     uint32_t one_over;
-    int32_t nearer_q30[3]; /* the min depth / the depth of each corner */
-    /* The first corner, and the differences of the others from it. */
+    int32_t nearer_q30[3]; /* min depth of the corners / depth of each corner */
+    /* The first corner, and the differences of the second and third corner
+     * from it. */
     int32_t place[3][3], normal_q29[3][3];
     int32_t face_q30[3];
 };
 
 enum { GLINT_SHADOW_CELLS_LOG2 = 6, GLINT_SHADOW_POINTS = 16 };
 
-/* A point of a sun's disc: its direction, and the slope of its rays relative to
- * the rays of the disc's middle, as tangents. */
+/* A sample point of a sun's disc: its direction, and the slope of its rays
+ * relative to the rays from the disc's middle, as tangents. */
 struct glint_shadow_point {
     int32_t toward_q30[3], lean_q30[2];
 };
 
-/* The box that an object can shadow, seen from a sun: its extent across, in
- * 1/256 of a cell, rounded down, and its top. */
+/* The footprint of the region that an object can shadow, seen from a sun:
+ * its extent across the rays, in 1/256 of a cell, rounded down, and its top
+ * (max h). */
 struct glint_shadow_thing {
     uint32_t id; /* object << 20 | triangle */
     int16_t lo[2], hi[2];
@@ -111,41 +115,41 @@ struct glint_shadow_thing {
 
 /* Objects that cast shadows, from the direction of a sun (shadow.c). */
 struct glint_shadow {
-    int light;                    /* index of the light */
-    int is_ready;                 /* nothing has moved since the grid was
-                                     built */
-    int is_empty;                 /* no object throws shadows */
+    int light;    /* index of the sun among the lights */
+    int is_ready; /* 1: nothing has moved since the grid was built */
+    int is_empty; /* 1: no object casts shadows */
     struct glint_scene_turn turn; /* rotation to coordinates u and v across the
                                      rays and h along them */
     int32_t lo[3], hi[3];         /* bounding box of the objects in the grid */
-    int32_t lowest;               /* min h of points that the grid answers
-                                     for */
-    int32_t cells_q32[2];         /* cells per step, up to 2^30 */
+    int32_t lowest;       /* min h of points for which the grid is valid */
+    int32_t cells_q32[2]; /* cells per step, up to 2^30 */
     int n_points;
-    int32_t lean_q30; /* max lean of all points */
+    int32_t lean_q30; /* max slope of the rays of all sample points */
     struct glint_shadow_point point[GLINT_SHADOW_POINTS];
     int32_t (*vertex)[3];             /* vertices of all meshes, rotated by
                                          turn */
-    struct glint_bins bins;           /* per cell: indices of objects */
-    struct glint_shadow_thing *thing; /* [n_things] */
+    struct glint_bins bins;           /* per cell: indices of things */
+    struct glint_shadow_thing *thing; /* [n_things]: shadow casters */
     int n_things;
     int max_refs; /* max entries; at least the number of objects */
 };
 
 /* A light at its position in this frame. */
 struct glint_lit {
-    struct glint_shadow *shadow; /* NULL: shadows are found by rays */
+    struct glint_shadow *shadow; /* shadow grid of a sun; NULL: shadows are
+                                    found by tracing rays */
     const struct glint_scene_light *light;
     int32_t at[3];         /* lamp: position */
-    int32_t toward_q30[3]; /* sun: direction */
-    int32_t rgb_q15[3];    /* sun: 0 .. 2^30 */
+    int32_t toward_q30[3]; /* sun: direction to it */
+    int32_t rgb_q15[3];    /* sun: its light, 0 .. 2^30 */
 };
 
-/* Intersection of a ray. */
+/* The intersection of a ray with an object. */
 struct glint_met {
     uint32_t object, triangle;
     int32_t t;
-    int end; /* end of a sphere's chord: 0 if the ray enters there, else 1 */
+    int end; /* end of a sphere's chord: 0 where the ray enters, 1 where it
+                leaves */
     struct glint_chord chord;
     struct glint_spot_on spot;
 };
@@ -157,13 +161,13 @@ struct glint_met_surface {
     uint32_t object, triangle;
     int32_t t, place[3];
     int32_t normal_q30[3], face_q30[3]; /* shading normal; geometric normal */
-    int is_inside;                      /* the ray comes from within */
+    int is_inside; /* 1: the ray comes from inside the object */
     int32_t uv_q16[2];
     /* log2 of the area in uv space per step^2; _q16 */
     int32_t uv_log2_q16;
 };
 
-/* Tangent frame of brushed metal at a point. */
+/* Tangent frame of brushed metal at a surface point. */
 struct glint_brushed {
     int32_t frame_q30[3][3]; /* rows: tangent, bitangent, normal; unit
                                 vectors */
@@ -175,7 +179,8 @@ struct glint_brushed {
 /* Light and cover of a pixel, as sums over four samples. */
 struct glint_scene_sum {
     int64_t rgb_q17[3];
-    int cover_q10, shadow_q10; /* cover of all objects; shadow on catchers */
+    int cover_q10, shadow_q10; /* cover_q10: cover of all objects; shadow_q10:
+                                  shadow on catchers */
 };
 
 enum {
@@ -187,7 +192,7 @@ enum {
  * for larger y. Max error 2^-11.5. */
 struct glint_gloss {
     int32_t end_q30;
-    int64_t scale_q30; /* 1 / end: 1 .. 2^13 */
+    int64_t scale_q30; /* 1 / end, 1 .. 2^13 */
     uint16_t at_q15[GLINT_GLOSS_STEPS + 1];
 };
 
@@ -198,7 +203,7 @@ struct glint_scene_worker {
     uint32_t *id;
     struct glint_box tile;
     struct glint_box touched; /* pixels of the tile that may see an object;
-                                 others have no samples */
+                                 other pixels have no samples */
     const struct glint_scene *scene;
     struct glint_tile_scratch scratch;
     /* [half a tile]: results for 2 x 2 pixels that see one object; they are
@@ -215,42 +220,45 @@ struct glint_scene {
     struct glint_scene_config cfg;
     struct glint_scene_model model;
     struct glint_scene_view view;
-    const int8_t (*sample_q8)[2]; /* samples of a pixel, relative to its
-                                     middle */
+    const int8_t (*sample_q8)[2]; /* positions of a pixel's samples, relative to
+                                     its middle */
     struct glint_placed *placed;  /* [n_objects] */
     struct glint_lit *lit;        /* [n_lights] */
-    uint32_t n_lit;               /* number of lights that shine; they come
-                                     first */
-    int32_t (*seen)[3];           /* camera coordinates of all vertices */
-    struct glint_corner *corner;  /* the vertices projected to the picture */
-    struct glint_bins bins;       /* bins of triangles, object << 20 |
-                                     triangle */
-    int32_t nearest;              /* min z of all objects, at least 1 */
-    int has_triangles;            /* bins are filled */
-    int n_planes;                 /* number of planes that throw shadows, */
-    uint32_t plane;               /* and the index of the last */
-    int has_split, has_catchers;  /* whether there are such objects */
+    uint32_t n_lit; /* number of lights that are on; they are the first ones */
+    int32_t (*seen)[3];          /* camera coordinates of all vertices */
+    struct glint_corner *corner; /* the vertices projected to the picture */
+    struct glint_bins bins; /* triangles by tile, as object << 20 | triangle */
+    int32_t nearest;        /* min z of all objects, at least 1 */
+    int has_triangles;      /* 1: bins are filled */
+    int n_planes;           /* number of planes that cast shadows */
+    uint32_t plane;         /* index of the last plane that casts shadows */
+    int has_split, has_catchers; /* 1: there are objects with is_split, or with
+                                    is_catcher */
     struct glint_scene_worker *worker; /* [workers] */
     struct glint_blend_rows *rows;     /* [workers] */
     struct glint_resolve *resolve;
-    struct glint_curve *curve; /* decodes textures; NULL: there are no
-                                  textures */
+    /* table that decodes texels; NULL: there are no textures */
+    struct glint_curve *curve;
     struct glint_gloss *gloss; /* [n_materials] */
-    /* The picture as background of mirrors and glass; not allocated if no
-     * material shows it. */
+    /* The camera's picture as background of mirrors and glass; not allocated
+     * if no material shows it. */
     struct glint_around around;
     struct glint_scene_material *material; /* [n_materials]: current
                                               materials */
     struct glint_scene_ward *ward;         /* [n_wards] */
-    struct glint_ward_state *wards;   /* NULL: neither environment nor metal */
-    struct glint_stone_state *stones; /* NULL: nothing is translucent */
+    /* metals and environments; NULL: there are none */
+    struct glint_ward_state *wards;
+    /* translucent media; NULL: there are none */
+    struct glint_stone_state *stones;
     uint32_t moved; /* number of changes of objects or lights */
-    int is_spread;  /* maps are up to date for the current frame */
-    struct glint_highlight_state *bright; /* NULL: highlights are not wanted */
-    struct glint_motion_state *motion;    /* NULL: nothing was recorded */
+    int is_spread;  /* 1: maps of translucent objects are up to date for the
+                       current frame */
+    /* NULL: highlights are not requested */
+    struct glint_highlight_state *bright;
+    struct glint_motion_state *motion; /* NULL: there is no recorded motion */
     int cover_across, cover_down;
-    uint16_t *cover; /* [cover_down][cover_across]: sums of q8 cover over 64
-                        pixels */
+    uint16_t *cover; /* [cover_down][cover_across]: sums of cover, _q8, over
+                        squares of 8 x 8 pixels */
 };
 
 static inline uint32_t glint_id(uint32_t object, uint32_t triangle)
@@ -267,8 +275,8 @@ const int8_t (*glint_scene_samples(int n))[2];
 /* Finds the balls for which one depth suffices; called after all are placed. */
 void glint_scene_flatten(struct glint_scene *scene);
 
-/* Confines catchers to pixels that may have shadows; called after the grids of
- * shadows are built. */
+/* Restricts catchers to pixels that may have shadows; called after the
+ * shadow grids are built. */
 void glint_scene_confine(struct glint_scene *scene);
 
 /* Narrows X0 .. X1 - 1 to the pixels of row Y that ball P may touch; returns 0
@@ -277,7 +285,8 @@ int glint_scene_span(const struct glint_scene *scene,
                      const struct glint_placed *p, int y, int32_t *x0,
                      int32_t *x1);
 
-/* Finds the visible objects in TILE; returns 0 if no object is visible. */
+/* Finds the visible objects at the samples of TILE; returns 0 if no object
+ * is visible. */
 int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile);
 
 /* Sets MET to the nearest intersection of RAY; returns 0 if there is none.
@@ -287,8 +296,8 @@ int glint_scene_meet(const struct glint_scene *scene,
                      const struct glint_scene_ray *ray, uint32_t object,
                      uint32_t triangle, struct glint_met *met);
 
-/* Returns whether RAY meets anything nearer than LIMIT, with the same objects
- * skipped. */
+/* Returns whether RAY meets anything nearer than LIMIT. Skips the same
+ * objects as glint_scene_meet(). */
 int glint_scene_blocks(const struct glint_scene *scene,
                        const struct glint_scene_ray *ray, uint32_t object,
                        uint32_t triangle, int32_t limit);
@@ -298,7 +307,7 @@ int glint_scene_planes_block(const struct glint_scene *scene,
                              const struct glint_scene_ray *ray,
                              uint32_t object);
 
-/* Returns whether any plane other than OBJECT throws shadows. */
+/* Returns whether any plane other than OBJECT casts shadows. */
 static inline int glint_scene_other_planes(const struct glint_scene *s,
                                            uint32_t object)
 {
@@ -322,21 +331,21 @@ int glint_scene_surface(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------- shade */
 
-/* Light sent back along a ray, and the fraction of the background that it
- * hides. */
+/* Light that a surface sends back along a ray, and the fraction of the
+ * background that the surface hides. */
 struct glint_met_shade {
     int32_t rgb_q15[3]; /* 0 .. 2^30 */
     int cover_q8;       /* 0 .. 256 */
 };
 
-/* Adds to RGB_Q15 the light of all lights that SURFACE reflects along RAY,
+/* Adds to RGB_Q15 the light that SURFACE reflects along RAY from all lights,
  * times WEIGHT_Q15. */
 void glint_scene_phong(const struct glint_scene *scene,
                        const struct glint_scene_ray *ray,
                        const struct glint_met_surface *surface,
                        int32_t weight_q15, int32_t rgb_q15[3]);
 
-/* Computes the light along primary ray RAY from SURFACE. */
+/* Sets SHADE to the light from SURFACE along the primary ray RAY. */
 void glint_scene_shade(const struct glint_scene *scene,
                        const struct glint_scene_ray *ray,
                        const struct glint_met_surface *surface,
@@ -348,18 +357,19 @@ int32_t glint_rays_reach(const struct glint_scene *scene,
                          const struct glint_met_surface *surface,
                          const struct glint_lit *lit);
 
-/* Builds the grid of LIT, which must be a sun. */
+/* Builds the shadow grid of LIT, which must be a sun. */
 void glint_shadow_prepare(const struct glint_scene *scene,
                           const struct glint_lit *lit,
                           struct glint_shadow *shadow);
 
-/* Returns the box of pixels that may have the sun's shadows on plane P. */
+/* Returns the box of pixels in which plane P may have shadows from the sun
+ * of SHADOW. */
 struct glint_box glint_shadow_box(const struct glint_scene *scene,
                                   const struct glint_shadow *shadow,
                                   const struct glint_placed *p);
 
-/* Returns the fraction of the grid's sun that reaches PLACE, the start of rays
- * from SURFACE. */
+/* Returns the fraction, 0 .. 32768, of the light of the sun of SHADOW that
+ * reaches PLACE, the start of rays from SURFACE. */
 int32_t glint_shadow_reaches(const struct glint_scene *scene,
                              const struct glint_shadow *shadow,
                              const struct glint_met_surface *surface,
@@ -409,8 +419,8 @@ int32_t glint_scene_light_at(const struct glint_scene *scene,
 /* Prepares the table of powers of exponent POWER_Q8. */
 void glint_gloss_prepare(struct glint_gloss *gloss, int32_t power_q8);
 
-/* Returns X^K with an error below 1/512. X_Q30 must be 0 .. 2^30, K_Q8 at least
- * 1. */
+/* Returns X^K, _q15, with an error below 1/512. X_Q30 must be 0 .. 2^30,
+ * K_Q8 at least 1. */
 int32_t glint_power_q15(int32_t x_q30, int32_t k_q8);
 
 /* Turns RAY, which points to the middle of a light T steps away, to point I of
@@ -435,7 +445,7 @@ static inline int glint_scene_wanted_highlights(const struct glint_scene *s)
                                   : 0;
 }
 
-/* Returns the angular variance of a pixel. */
+/* Returns the angular variance of a pixel, radians^2. */
 static inline int64_t glint_scene_pixel_q40(const struct glint_scene *scene)
 {
     const int64_t step_q30 = scene->view.step_q56[0] >> 18;

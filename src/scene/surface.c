@@ -5,9 +5,9 @@
 #include "scene/parts.h"
 #include "scene/state.h"
 
-static int meets_sphere(const struct glint_placed *p,
-                        const struct glint_scene_ray *ray,
-                        struct glint_met *met)
+static int intersect_sphere(const struct glint_placed *p,
+                            const struct glint_scene_ray *ray,
+                            struct glint_met *met)
 {
     if (!glint_ray_sphere(ray, p->at, p->radius, &met->chord))
         return 0;
@@ -16,18 +16,20 @@ static int meets_sphere(const struct glint_placed *p,
     return met->t > 0;
 }
 
-static int meets_plane(const struct glint_placed *p,
-                       const struct glint_scene_ray *ray, struct glint_met *met)
+static int intersect_plane(const struct glint_placed *p,
+                           const struct glint_scene_ray *ray,
+                           struct glint_met *met)
 {
     met->t = glint_ray_plane(ray, p->at, p->centre);
     return met->t > 0;
 }
 
-/* Intersects RAY with object I. On entry MET->t is the max distance. If ANY is
- * set, the nearest intersection is not needed. */
-static int meets(const struct glint_scene *s, uint32_t i,
-                 const struct glint_scene_ray *ray, uint32_t but_triangle,
-                 int any, struct glint_met *met)
+/* Intersects RAY with object I. On entry MET->t is the max distance. If ANY
+ * is set, any intersection suffices. */
+static int intersect_object(const struct glint_scene *s, uint32_t i,
+                            const struct glint_scene_ray *ray,
+                            uint32_t but_triangle, int any,
+                            struct glint_met *met)
 {
     const struct glint_placed *p = &s->placed[i];
     const int32_t limit = met->t;
@@ -37,8 +39,9 @@ static int meets(const struct glint_scene *s, uint32_t i,
     met->triangle = 0;
     if (p->object->kind == GLINT_OBJECT_MESH)
         return s->cfg.parts.meshes->meet(s, i, but_triangle, ray, any, met);
-    does = p->object->kind == GLINT_OBJECT_SPHERE ? meets_sphere(p, ray, met)
-                                                  : meets_plane(p, ray, met);
+    does = p->object->kind == GLINT_OBJECT_SPHERE
+               ? intersect_sphere(p, ray, met)
+               : intersect_plane(p, ray, met);
     return does && met->t < limit;
 }
 
@@ -64,8 +67,9 @@ int glint_scene_meet(const struct glint_scene *scene,
         struct glint_met next = {.t = met->t};
 
         if (may_be_met(scene, i, object) &&
-            meets(scene, i, ray, i == object ? triangle : GLINT_NOTHING, 0,
-                  &next)) {
+            intersect_object(scene, i, ray,
+                             i == object ? triangle : GLINT_NOTHING, 0,
+                             &next)) {
             *met = next;
             any = 1;
         }
@@ -81,8 +85,8 @@ int glint_scene_blocks(const struct glint_scene *scene,
         struct glint_met met = {.t = limit};
 
         if (may_be_met(scene, i, object) &&
-            meets(scene, i, ray, i == object ? triangle : GLINT_NOTHING, 1,
-                  &met))
+            intersect_object(scene, i, ray,
+                             i == object ? triangle : GLINT_NOTHING, 1, &met))
             return 1;
     }
     return 0;
@@ -96,7 +100,7 @@ int glint_scene_planes_block(const struct glint_scene *scene,
 
         if (scene->placed[i].object->kind == GLINT_OBJECT_PLANE &&
             may_be_met(scene, i, object) &&
-            meets_plane(&scene->placed[i], ray, &met))
+            intersect_plane(&scene->placed[i], ray, &met))
             return 1;
     }
     return 0;
@@ -128,30 +132,31 @@ int glint_scene_meet_id(const struct glint_scene *scene,
     if (p->object->kind == GLINT_OBJECT_MESH)
         return scene->cfg.parts.meshes->hold(scene, object, triangle, seen_q30,
                                              met);
-    return p->object->kind == GLINT_OBJECT_SPHERE ? meets_sphere(p, ray, met)
-                                                  : meets_plane(p, ray, met);
+    return p->object->kind == GLINT_OBJECT_SPHERE
+               ? intersect_sphere(p, ray, met)
+               : intersect_plane(p, ray, met);
 }
 
-static void flip(int32_t v[3])
+static void negate(int32_t v[3])
 {
     for (int k = 0; k < 3; k++)
         v[k] = -v[k];
 }
 
-static int plane_surface(const struct glint_scene_ray *ray,
-                         const struct glint_placed *p,
-                         const struct glint_met *met,
-                         struct glint_met_surface *surface)
+static int set_plane_surface(const struct glint_scene_ray *ray,
+                             const struct glint_placed *p,
+                             const struct glint_met *met,
+                             struct glint_met_surface *surface)
 {
     for (int k = 0; k < 3; k++)
         surface->normal_q30[k] = surface->face_q30[k] = p->centre[k];
     return glint_ray_go(ray, met->t, surface->place);
 }
 
-static int sphere_surface(const struct glint_scene_ray *ray,
-                          const struct glint_placed *p,
-                          const struct glint_met *met,
-                          struct glint_met_surface *surface)
+static int set_sphere_surface(const struct glint_scene_ray *ray,
+                              const struct glint_placed *p,
+                              const struct glint_met *met,
+                              struct glint_met_surface *surface)
 {
     glint_chord_end(&met->chord, ray, p->at, met->end, surface->place,
                     surface->normal_q30);
@@ -177,13 +182,13 @@ int glint_scene_surface(const struct glint_scene *scene,
     if (p->object->kind == GLINT_OBJECT_MESH)
         is = scene->cfg.parts.meshes->surface(scene, met, surface);
     else if (p->object->kind == GLINT_OBJECT_SPHERE)
-        is = sphere_surface(ray, p, met, surface);
+        is = set_sphere_surface(ray, p, met, surface);
     else
-        is = plane_surface(ray, p, met, surface);
+        is = set_plane_surface(ray, p, met, surface);
     surface->is_inside = v3_dot(ray->toward_q30, surface->face_q30) > 0;
     if (surface->is_inside) {
-        flip(surface->normal_q30);
-        flip(surface->face_q30);
+        negate(surface->normal_q30);
+        negate(surface->face_q30);
     }
     return is;
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Textures: bilinear in linear light, blended between the two levels whose
- * texels are about as large as the longer side of a pixel on the surface. */
+ * Samples textures: bilinear in linear light, blended between the two mip
+ * levels whose texels are about as large as the longer side of a pixel on the
+ * surface.
+ */
 #include "base/log2.h"
 #include "base/real.h"
 #include "scene/parts.h"
@@ -14,7 +16,7 @@ enum { LEAST_COSINE_Q30 = 1 << 22 };
 static void map_ball(const struct glint_placed *p, struct glint_met_surface *s)
 {
     glint_ball_uv(p, s, s->uv_q16);
-    /* 1 / (4 pi radius^2) */
+    /* area in uv space per step^2: 1 / (4 pi radius^2) */
     s->uv_log2_q16 =
         -Q_CONST(3.6514961, 16) - 2 * q_log2_q16((uint64_t)p->radius);
 }
@@ -30,7 +32,7 @@ static void map_plane(const struct glint_scene *scene,
     for (int k = 0; k < 2; k++) {
         const struct glint_real uv = real_of(k ? -at[2] : at[0], -unit_log2);
 
-        /* Whole repeats are removed. */
+        /* Integer repeats are removed. */
         s->uv_q16[k] =
             (int32_t)(real_integer(uv, 16, INT64_C(1) << 62) & ((1 << 24) - 1));
     }
@@ -39,12 +41,12 @@ static void map_plane(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------- texels */
 
-/* Returns the level, q16, from the longer side of a pixel on the surface in
- * texels. */
-static int32_t level_of(const struct glint_scene *scene,
-                        const struct glint_scene_ray *ray,
-                        const struct glint_met_surface *s,
-                        const struct glint_scene_texture *t)
+/* Returns the mip level, _q16, from the length in texels of the longer side
+ * of a pixel on the surface. */
+static int32_t compute_level(const struct glint_scene *scene,
+                             const struct glint_scene_ray *ray,
+                             const struct glint_met_surface *s,
+                             const struct glint_scene_texture *t)
 {
     const int32_t cosine_q30 = q_larger(
         -v3_cosine_q30(ray->toward_q30, s->face_q30), LEAST_COSINE_Q30);
@@ -59,9 +61,9 @@ static int32_t level_of(const struct glint_scene *scene,
     return q_clamp_sat(side_q16 + area_q16 / 2, 0, most << 16);
 }
 
-/* Sets I to the two texels around a coordinate; returns the weight of the
- * second. */
-static uint32_t between(int32_t uv_q16, uint32_t log2, uint32_t i[2])
+/* Sets I to the indices of the two texels around a coordinate; returns the
+ * weight of the second. */
+static uint32_t find_texels(int32_t uv_q16, uint32_t log2, uint32_t i[2])
 {
     const int64_t at_q16 = (int64_t)uv_q16 * (1 << log2) - (1 << 15);
     const uint32_t mask = (1U << log2) - 1;
@@ -71,10 +73,10 @@ static uint32_t between(int32_t uv_q16, uint32_t log2, uint32_t i[2])
     return (uint32_t)at_q16 & 0xffff;
 }
 
-/* Sets RGB_Q20 to the light of T at (U, V) in level LEVEL. */
-static void sample(const struct glint_scene *scene,
-                   const struct glint_scene_texture *t, const int32_t uv_q16[2],
-                   int level, int32_t rgb_q20[3])
+/* Sets RGB_Q20 to the light of T at (U, V) in mip level LEVEL, interpolated. */
+static void sample_level(const struct glint_scene *scene,
+                         const struct glint_scene_texture *t,
+                         const int32_t uv_q16[2], int level, int32_t rgb_q20[3])
 {
     const uint8_t *texel = (const uint8_t *)scene->model.header + t->texel_at;
     const int32_t *light_q20 = scene->curve->decode_q20;
@@ -85,8 +87,8 @@ static void sample(const struct glint_scene *scene,
         w -= w > 0;
         h -= h > 0;
     }
-    fx = between(uv_q16[0], w, x);
-    fy = between(uv_q16[1], h, y);
+    fx = find_texels(uv_q16[0], w, x);
+    fy = find_texels(uv_q16[1], h, y);
     for (size_t c = 0; c < 3; c++) {
         int64_t row_q20[2];
 
@@ -115,10 +117,10 @@ static void colour(const struct glint_scene *scene,
         map_ball(p, &s);
     else if (p->object->kind == GLINT_OBJECT_PLANE)
         map_plane(scene, p, &s);
-    level_q16 = level_of(scene, ray, &s, t);
-    sample(scene, t, s.uv_q16, level_q16 >> 16, fine_q20);
+    level_q16 = compute_level(scene, ray, &s, t);
+    sample_level(scene, t, s.uv_q16, level_q16 >> 16, fine_q20);
     if (level_q16 & 0xffff)
-        sample(scene, t, s.uv_q16, (level_q16 >> 16) + 1, coarse_q20);
+        sample_level(scene, t, s.uv_q16, (level_q16 >> 16) + 1, coarse_q20);
     for (int c = 0; c < 3; c++) {
         if (level_q16 & 0xffff)
             fine_q20[c] +=

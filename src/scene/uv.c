@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Texture coordinates u and v of balls. */
+ * Computes texture coordinates u and v of balls.
+ */
 #include "scene/state.h"
 
-/* Returns atan(Y / X) / 2 pi, q30, with an error of 2^-19, by a polynomial for
- * ratios up to 1. X and Y must not be negative, nor both 0. */
-static int32_t quarter_turn(int32_t x, int32_t y)
+/* Returns atan(Y / X) / 2 pi, _q30, with an error of 2^-19, by a polynomial
+ * for ratios up to 1. X and Y must not be negative, nor both 0. */
+static int32_t compute_quarter_turn(int32_t x, int32_t y)
 {
     const int is_steep = y > x;
     const uint64_t small = (uint64_t)(is_steep ? x : y);
@@ -22,14 +23,14 @@ static int32_t quarter_turn(int32_t x, int32_t y)
     return is_steep ? (1 << 28) - a_q30 : a_q30;
 }
 
-/* Returns the angle of (X, Y) / 2 pi, -1/2 .. 1/2, q30. */
-static int32_t turn_of(int32_t x, int32_t y)
+/* Returns the angle of (X, Y) in turns, -1/2 .. 1/2, _q30. */
+static int32_t compute_turn(int32_t x, int32_t y)
 {
     int32_t a_q30;
 
     if (x == 0 && y == 0)
         return 0;
-    a_q30 = quarter_turn(x < 0 ? -x : x, y < 0 ? -y : y);
+    a_q30 = compute_quarter_turn(x < 0 ? -x : x, y < 0 ? -y : y);
     a_q30 = x < 0 ? (1 << 29) - a_q30 : a_q30;
     return y < 0 ? -a_q30 : a_q30;
 }
@@ -44,6 +45,7 @@ void glint_ball_uv(const struct glint_placed *p,
         n_q30[k] = -n_q30[k];
     across = (int32_t)glint_root((uint64_t)((int64_t)n_q30[0] * n_q30[0] +
                                             (int64_t)n_q30[2] * n_q30[2]));
-    uv_q16[0] = (int32_t)q_shift((1 << 29) + turn_of(-n_q30[2], n_q30[0]), 14);
-    uv_q16[1] = (int32_t)q_shift(turn_of(n_q30[1], across), 13);
+    uv_q16[0] =
+        (int32_t)q_shift((1 << 29) + compute_turn(-n_q30[2], n_q30[0]), 14);
+    uv_q16[1] = (int32_t)q_shift(compute_turn(n_q30[1], across), 13);
 }

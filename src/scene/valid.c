@@ -34,7 +34,7 @@ int glint_scene_is_unit(const int32_t *v_q30, int n)
 
     if (!glint_scene_within(v_q30, n, ONE_Q30 + (1 << 12)))
         return 0;
-    for (int k = 0; k < n; k++) /* below 4 * 2^57 */
+    for (int k = 0; k < n; k++) /* each below 2^57, four in all */
         square_q56 += q_shift((int64_t)v_q30[k] * v_q30[k], 4);
     return glint_scene_between(square_q56 - (INT64_C(1) << 56),
                                -(INT64_C(1) << 37), INT64_C(1) << 37);
@@ -66,8 +66,8 @@ int glint_scene_fits(const struct glint_scene_model *model,
 
     if (object->kind == GLINT_OBJECT_MESH) {
         mesh = &model->mesh[object->mesh];
-        /* The margin is two steps for rounding of vertices on the ball, and two
-         * for rounding of rotations. */
+        /* The margin of 4 is two steps for rounding of vertices on the ball,
+         * and two for rounding of rotations. */
         reach = glint_scene_length(mesh->centre) + mesh->radius + 4;
     }
     return reach < GLINT_SCENE_SPAN &&

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Ranges of the values of a scene: checked in its file, and again when a
- * program changes them. */
+ * Checks that the values of a scene are in range: those in its file, and those
+ * that a program changes.
+ */
 #ifndef GLINT_SCENE_VALID_H
 #define GLINT_SCENE_VALID_H
 
@@ -10,7 +11,8 @@
 /* Returns the error of a camera as text, or NULL if it is valid. */
 const char *glint_scene_camera_fault(const struct glint_scene_camera *camera);
 
-/* The same for brushed metal. */
+/* Returns the error of the parameters of brushed metal as text, or NULL if
+ * they are valid. */
 const char *glint_scene_ward_fault(const struct glint_scene_ward *ward);
 
 /* Returns whether NAME is terminated and printable, and not empty. */
@@ -25,7 +27,7 @@ static inline int glint_scene_between(int64_t x, int64_t lo, int64_t hi)
 /* Returns whether each of the N elements of V is within +-LIMIT. */
 int glint_scene_within(const int32_t *v, int n, int32_t limit);
 
-/* Returns whether X is 0 or a positive number in the form of glint_real. */
+/* Returns whether X is 0, or positive and a normalised glint_real. */
 int glint_scene_is_light(const struct glint_real *x);
 
 /* Returns whether V[N] is a unit vector to within 2^-20. N must be 1 .. 4. */

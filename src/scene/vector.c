@@ -18,15 +18,15 @@ const uint8_t glint_root_start_q7[96] = {
  * with a relative error of at most 2^-31. The table has an error of 2^-6.9;
  * each of three Newton steps squares it (times 3/2): 2^-13.2, 2^-25.9, then the
  * last digit. */
-static uint32_t inverse_root_q31(uint64_t s_q64)
+static uint32_t compute_inverse_root_q31(uint64_t s_q64)
 {
     const uint32_t hi = (uint32_t)(s_q64 >> 32), lo = (uint32_t)s_q64;
     uint64_t r_q31 = (uint64_t)glint_inverse_root_start((uint32_t)(s_q64 >> 57))
                      << 24;
 
     for (int i = 0; i < 3; i++) {
-        /* sqrt(S) from the current r, q32, at most 1.01; then r (3 - S r^2) /
-         * 2. */
+        /* sqrt(S) from the current r, _q32, at most 1.01; then a Newton
+         * step, r (3 - S r^2) / 2. */
         const uint64_t root_q32 = (hi * r_q31 + (lo * r_q31 >> 32)) >> 31;
         const int64_t rest_q62 =
             (INT64_C(1) << 62) - (int64_t)(root_q32 * r_q31 >> 1);
@@ -47,7 +47,7 @@ uint32_t glint_root(uint64_t x)
 
     if (x < 2)
         return (uint32_t)x;
-    root = (s_q64 >> 32) * inverse_root_q31(s_q64) >> (31 + down);
+    root = (s_q64 >> 32) * compute_inverse_root_q31(s_q64) >> (31 + down);
     if (root > UINT32_MAX)
         root = UINT32_MAX;
     while (root * root > x)
@@ -76,7 +76,7 @@ int glint_unit(const int64_t v[3], int32_t unit_q30[3])
     for (int k = 0; k < 3; k++)
         square += (uint64_t)(w[k] * w[k]); /* below 3 * 2^62 */
     is_short = square < UINT64_C(1) << 62; /* from 2^60 on */
-    r_q31 = inverse_root_q31(square << 2 * is_short);
+    r_q31 = compute_inverse_root_q31(square << 2 * is_short);
     for (int k = 0; k < 3; k++)
         unit_q30[k] = (int32_t)q_clamp_sat(
             (w[k] * (int64_t)r_q31 + (INT64_C(1) << (32 - is_short))) >>

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Vectors of three, roots and ratios, without division.
+ * Vectors of three elements, square roots and ratios, without division.
  *
  * Points are int32 steps within +-2^28, differences of points within +-2^29,
- * and directions int32 _q30 of length 1. */
+ * and directions int32 _q30 of length 1.
+ */
 #ifndef GLINT_SCENE_VECTOR_H
 #define GLINT_SCENE_VECTOR_H
 
 #include "base/q.h"
 
-/* Larger than any distance between two points, which is at most 2^29
- * sqrt(3). */
+/* Exceeds any distance between two points, which is at most 2^29 sqrt(3). */
 #define GLINT_FAR (INT32_C(1) << 30)
 
 /* Returns A . B exactly. Elements must be within +-2^30, so that the result is
@@ -37,7 +37,7 @@ static inline void v3_minus(const int32_t a[3], const int32_t b[3],
         to[k] = q_narrow((int64_t)a[k] - b[k]);
 }
 
-/* Returns A . B of two directions, q30. */
+/* Returns A . B of two directions, the cosine of their angle, _q30. */
 static inline int32_t v3_cosine_q30(const int32_t a_q30[3],
                                     const int32_t b_q30[3])
 {
@@ -49,7 +49,7 @@ struct glint_scene_turn {
     int32_t row_q30[3][3];
 };
 
-/* Sets TO to M V. |V| must be below 2^30, and so |TO| is. */
+/* Sets TO to M V. |V| must be below 2^30, so |TO| is, too. */
 static inline void v3_turn(const struct glint_scene_turn *m, const int32_t v[3],
                            int32_t to[3])
 {
@@ -57,7 +57,7 @@ static inline void v3_turn(const struct glint_scene_turn *m, const int32_t v[3],
         to[k] = q_narrow(q_shift(v3_dot(m->row_q30[k], v), 30));
 }
 
-/* The same with M transposed, the inverse rotation. */
+/* Sets TO to V rotated by the inverse (transpose) of M. */
 static inline void v3_turn_back(const struct glint_scene_turn *m,
                                 const int32_t v[3], int32_t to[3])
 {
@@ -75,7 +75,8 @@ enum { GLINT_ROOT_FIRST = 32 };
  * 1. */
 extern const uint8_t glint_root_start_q7[128 - GLINT_ROOT_FIRST];
 
-/* Returns the same for interval I, 32 .. 127; relative error at most 2^-6.9. */
+/* Returns the table value for interval I, 32 .. 127; relative error at most
+ * 2^-6.9. */
 static inline uint32_t glint_inverse_root_start(uint32_t i)
 {
     return glint_root_start_q7[i - GLINT_ROOT_FIRST];

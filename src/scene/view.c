@@ -6,9 +6,9 @@
 enum { NEAR_BITS = 22, FAR_BITS = 16 };
 
 /* Returns the tangent of 1/256 pixel, _q56, if TAN is the tangent of half of
- * SIDE pixels. TAN is at most 2^6, so that 128 SIDE results are at most
+ * SIDE pixels. TAN is at most 2^6, so 128 SIDE times the result is at most
  * 2^62. */
-static int64_t step_of(int32_t tan_q24, int side)
+static int64_t compute_step(int32_t tan_q24, int side)
 {
     return q_divide((int64_t)tan_q24 << 25, side > 1 ? side : 1);
 }
@@ -27,10 +27,10 @@ int glint_view_init(struct glint_scene_view *view,
     view->width = width;
     view->height = height;
     if (camera->kind == GLINT_CAMERA_CORNERS) {
-        view->step_q56[0] = step_of(camera->tan_x_q24, width - 1);
-        view->step_q56[1] = step_of(camera->tan_y_q24, height - 1);
+        view->step_q56[0] = compute_step(camera->tan_x_q24, width - 1);
+        view->step_q56[1] = compute_step(camera->tan_y_q24, height - 1);
     } else if (camera->kind == GLINT_CAMERA_FIELD) {
-        view->step_q56[0] = step_of(camera->tan_x_q24, width);
+        view->step_q56[0] = compute_step(camera->tan_x_q24, width);
         view->step_q56[1] = view->step_q56[0];
     } else {
         if (focal_q16 < 1 << 10 || focal_q16 > INT64_C(1) << 40)
@@ -80,9 +80,9 @@ void glint_view_seen(const struct glint_scene_view *view,
 
 /* ---------------------------------------------------------------- corners */
 
-/* Returns X / 2^DOWN, rounded. The result must fit 32 bits; DOWN may be
+/* Returns X / 2^DOWN, rounded. The result must fit into 32 bits; DOWN may be
  * negative. */
-static int32_t shorter(int64_t x, int down)
+static int32_t shift_rounded(int64_t x, int down)
 {
     if (down > 62)
         return 0;
@@ -93,11 +93,11 @@ static int32_t shorter(int64_t x, int down)
 /* Returns X times the focal length / Z, where ONE_OVER must be 2^63 / (Z 2^UP);
  * sets *FITS to 0 if the result is too large. X is scaled up to 2^30 first, so
  * that small quotients keep 30 bits. */
-static int32_t place_q8(int32_t x, struct glint_real focal_q8,
-                        uint32_t one_over, int up, int *fits)
+static int32_t project_q8(int32_t x, struct glint_real focal_q8,
+                          uint32_t one_over, int up, int *fits)
 {
     const int more = 30 - bit_length(q_magnitude(x));
-    const int64_t over_z = (int64_t)shorter(x, -more) * one_over >> 31;
+    const int64_t over_z = (int64_t)shift_rounded(x, -more) * one_over >> 31;
     const int64_t product = over_z * focal_q8.mantissa; /* below 2^62 */
     const int down = 32 - up + more - focal_q8.exponent;
 
@@ -110,9 +110,9 @@ static int32_t place_q8(int32_t x, struct glint_real focal_q8,
     return (int32_t)q_shift(product, down);
 }
 
-/* Returns the direction to V as homogeneous coordinates of 16 bits. */
-static struct glint_corner direction(const struct glint_scene_view *view,
-                                     const int32_t v[3])
+/* Returns the direction to V, in homogeneous picture coordinates of 16 bits. */
+static struct glint_corner
+compute_direction(const struct glint_scene_view *view, const int32_t v[3])
 {
     const struct glint_real *f = view->focal_q8;
     const int64_t x = (int64_t)v[0] * f[0].mantissa;
@@ -122,9 +122,9 @@ static struct glint_corner direction(const struct glint_scene_view *view,
     const int n_z = v[2] ? bit_length(q_magnitude(v[2])) : -999;
     const int most = q_larger(n_z, q_larger(n_x, n_y)) - FAR_BITS;
 
-    return (struct glint_corner){shorter(x, most - f[0].exponent),
-                                 shorter(y, most - f[1].exponent),
-                                 shorter(v[2], most)};
+    return (struct glint_corner){shift_rounded(x, most - f[0].exponent),
+                                 shift_rounded(y, most - f[1].exponent),
+                                 shift_rounded(v[2], most)};
 }
 
 struct glint_corner glint_view_corner(const struct glint_scene_view *view,
@@ -137,10 +137,10 @@ struct glint_corner glint_view_corner(const struct glint_scene_view *view,
         const int up = q_up((uint64_t)v[2]);
         const uint32_t one_over = q_reciprocal((uint32_t)v[2] << up);
 
-        c.x = place_q8(v[0], view->focal_q8[0], one_over, up, &fits);
-        c.y = -place_q8(v[1], view->focal_q8[1], one_over, up, &fits);
+        c.x = project_q8(v[0], view->focal_q8[0], one_over, up, &fits);
+        c.y = -project_q8(v[1], view->focal_q8[1], one_over, up, &fits);
     }
-    return fits ? c : direction(view, v);
+    return fits ? c : compute_direction(view, v);
 }
 
 struct glint_box glint_view_box(const struct glint_scene_view *view,
@@ -168,8 +168,8 @@ struct glint_box glint_view_box(const struct glint_scene_view *view,
 
 /* ------------------------------------------------------------------ depths */
 
-/* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1). Coefficients
- * get the most fraction bits with which each term stays below 2^60. */
+/* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1).
+ * Coefficients get as many fraction bits as keep each term below 2^60. */
 int glint_view_depth(const struct glint_scene_view *view, const int32_t v[3],
                      const int32_t normal_q30[3], int32_t nearest,
                      struct glint_depth *depth)

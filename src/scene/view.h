@@ -17,9 +17,9 @@ struct glint_scene_view {
     int32_t at[3];
     struct glint_scene_turn turn; /* world to camera coordinates */
     int width, height;
-    /* tangents of 1/256 pixel across and down */
+    /* tangents of 1/256 pixel, across and down */
     int64_t step_q56[2];
-    int64_t per_tan_q8; /* 256 * pixels across per unit of tangent */
+    int64_t per_tan_q8; /* 256 * number of pixels across per unit of tangent */
     int wide;           /* number of bits by which tangents exceed 2, or 0 */
     struct glint_real focal_q8[2];
 };
@@ -31,8 +31,8 @@ struct glint_corner {
     int32_t x, y, w;
 };
 
-/* 1 / z of a plane: at position (x, y) of the picture, 2^30 * (min z of the
- * frame) / z is (across x + down y + at) >> shift. */
+/* 1 / z of a plane as a function of position: at (x, y) of the picture, 2^30
+ * * (min z of the frame) / z is (across x + down y + at) >> shift. */
 struct glint_depth {
     int64_t across, down, at;
     int shift;

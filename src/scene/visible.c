@@ -10,8 +10,9 @@
 #include "scene/visible.h"
 #include "scene/parts.h"
 
-/* Sample positions: the corners of a rotated square; eight and sixteen samples,
- * each in its own row and column, as evenly spread as that allows. */
+/* Sample positions, 1/256 pixel: four at the corners of a rotated square;
+ * eight and sixteen, each in its own row and column, spread as evenly as
+ * possible. */
 /* clang-format off */
 static const int8_t one_q8[1][2] = {{0, 0}};
 static const int8_t four_q8[4][2] = {
@@ -39,18 +40,19 @@ struct look {
     int32_t seen_q30[3]; /* the ray's direction in camera coordinates */
 };
 
-/* Finds the chord in PLACED of the ray through (X, Y). */
-static int look_at(const struct glint_scene *s,
-                   const struct glint_placed *placed, int32_t x_q8,
-                   int32_t y_q8, struct look *look)
+/* Sets LOOK to the ray through (X, Y) and its chord in the ball PLACED;
+ * returns whether it meets the ball. */
+static int trace_chord(const struct glint_scene *s,
+                       const struct glint_placed *placed, int32_t x_q8,
+                       int32_t y_q8, struct look *look)
 {
     glint_view_ray(&s->view, x_q8, y_q8, &look->ray, look->seen_q30);
     return glint_ray_sphere(&look->ray, placed->at, placed->radius,
                             &look->chord);
 }
 
-static void put_look(struct glint_scene_worker *w, const struct look *look,
-                     uint32_t id, int x, int y, int k)
+static void put_sample(struct glint_scene_worker *w, const struct look *look,
+                       uint32_t id, int x, int y, int k)
 {
     const int32_t t = look->chord.t[look->chord.t[0] <= 0];
     const int32_t z = q_larger(1, q_mul(t, look->seen_q30[2], 30));
@@ -64,7 +66,7 @@ static void put_look(struct glint_scene_worker *w, const struct look *look,
 }
 
 /* Returns whether everything that samples FIRST .. END - 1 see so far is
- * farther than the ball's far side. */
+ * farther than the far side of the ball. */
 static int is_nearer(const struct glint_scene_worker *w,
                      const struct glint_placed *placed, int first, int end)
 {
@@ -75,7 +77,7 @@ static int is_nearer(const struct glint_scene_worker *w,
     return placed->flat_depth && most < placed->far_depth;
 }
 
-/* Sets samples FIRST .. END - 1 to the ball. */
+/* Sets samples FIRST .. END - 1 to the ball's id and flat depth. */
 static void set_samples(struct glint_scene_worker *w,
                         const struct glint_placed *placed, uint32_t id,
                         int first, int end)
@@ -100,15 +102,15 @@ static int is_well_inside(const struct glint_placed *placed,
 
 /* Draws the ball in a pixel; returns whether all samples of the pixel, and rays
  * slightly beside them, meet the ball. */
-static int look_at_pixel(struct glint_scene_worker *w,
-                         const struct glint_placed *placed, uint32_t id, int x,
-                         int y)
+static int draw_ball_pixel(struct glint_scene_worker *w,
+                           const struct glint_placed *placed, uint32_t id,
+                           int x, int y)
 {
     const struct glint_scene *s = w->scene;
     const int32_t x_q8 = glint_place(s, x, 0), y_q8 = glint_place(s, y, 1);
     const int n = s->cfg.edge_samples;
     struct look look;
-    const int meets = look_at(s, placed, x_q8, y_q8, &look);
+    const int meets = trace_chord(s, placed, x_q8, y_q8, &look);
     const int is_inside = meets && is_well_inside(placed, &look);
     const int first = glint_sample_index(w, x, y, 0);
 
@@ -118,7 +120,7 @@ static int look_at_pixel(struct glint_scene_worker *w,
     }
     if (is_inside || (meets && n == 1)) {
         for (int k = 0; k < n; k++)
-            put_look(w, &look, id, x, y, k);
+            put_sample(w, &look, id, x, y, k);
         return is_inside;
     }
     if (n == 1 || (!meets && !glint_ray_sphere(&look.ray, placed->at,
@@ -126,25 +128,25 @@ static int look_at_pixel(struct glint_scene_worker *w,
                                                &look.chord)))
         return 0;
     for (int k = 0; k < n; k++)
-        if (look_at(s, placed, x_q8 + glint_sample(s, k, 0),
-                    y_q8 + glint_sample(s, k, 1), &look))
-            put_look(w, &look, id, x, y, k);
+        if (trace_chord(s, placed, x_q8 + glint_sample(s, k, 0),
+                        y_q8 + glint_sample(s, k, 1), &look))
+            put_sample(w, &look, id, x, y, k);
     return 0;
 }
 
 /* Draws a ball in row Y. Pixels between two pixels well inside are inside, too:
  * if one depth suffices for the ball, rays are traced there only where the ball
  * may be hidden. */
-static void look_at_row(struct glint_scene_worker *w,
-                        const struct glint_placed *placed, uint32_t id,
-                        struct glint_box b, int y)
+static void draw_ball_row(struct glint_scene_worker *w,
+                          const struct glint_placed *placed, uint32_t id,
+                          struct glint_box b, int y)
 {
     const int n = w->scene->cfg.edge_samples;
     int x = b.x0, end = b.x1, is_in = 0;
 
     while (x < end && !is_in)
-        is_in = look_at_pixel(w, placed, id, x++, y) && placed->flat_depth;
-    while (is_in && x < end && !look_at_pixel(w, placed, id, end - 1, y))
+        is_in = draw_ball_pixel(w, placed, id, x++, y) && placed->flat_depth;
+    while (is_in && x < end && !draw_ball_pixel(w, placed, id, end - 1, y))
         end--;
     for (; x < end - is_in; x++) {
         const int first = glint_sample_index(w, x, y, 0);
@@ -152,7 +154,7 @@ static void look_at_row(struct glint_scene_worker *w,
         if (is_nearer(w, placed, first, first + n))
             set_samples(w, placed, id, first, first + n);
         else
-            look_at_pixel(w, placed, id, x, y);
+            draw_ball_pixel(w, placed, id, x, y);
     }
 }
 
@@ -163,10 +165,10 @@ struct deeper {
     int64_t by[GLINT_SCENE_SAMPLES];
 };
 
-static inline void look_at_plane_row(struct glint_scene_worker *w,
-                                     const struct glint_depth *depth,
-                                     const struct deeper *deeper, uint32_t id,
-                                     int n, int x0, int x1, int y)
+static inline void draw_plane_row(struct glint_scene_worker *w,
+                                  const struct glint_depth *depth,
+                                  const struct deeper *deeper, uint32_t id,
+                                  int n, int x0, int x1, int y)
 {
     const struct glint_scene *s = w->scene;
     const int first = glint_sample_index(w, x0, y, 0);
@@ -189,8 +191,8 @@ static inline void look_at_plane_row(struct glint_scene_worker *w,
     }
 }
 
-static void look_at_plane(struct glint_scene_worker *w,
-                          const struct glint_placed *placed, uint32_t id)
+static void draw_plane(struct glint_scene_worker *w,
+                       const struct glint_placed *placed, uint32_t id)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_box b = glint_box_cut(w->tile, placed->box);
@@ -203,14 +205,14 @@ static void look_at_plane(struct glint_scene_worker *w,
             d->across * glint_sample(s, k, 0) + d->down * glint_sample(s, k, 1);
     for (int y = b.y0; y < b.y1; y++)
         if (n == 4)
-            look_at_plane_row(w, d, &deeper, id, 4, b.x0, b.x1, y);
+            draw_plane_row(w, d, &deeper, id, 4, b.x0, b.x1, y);
         else
-            look_at_plane_row(w, d, &deeper, id, n, b.x0, b.x1, y);
+            draw_plane_row(w, d, &deeper, id, n, b.x0, b.x1, y);
 }
 
 /* ------------------------------------------------------------------- frame */
 
-enum { MOST_COMPARED = 64 /* max number of objects for pairwise comparison */ };
+enum { MOST_COMPARED = 64 /* max number of objects for comparing all pairs */ };
 
 /* Returns whether A and B may partly hide each other, so that one depth per
  * ball does not order them. */
@@ -243,7 +245,7 @@ void glint_scene_flatten(struct glint_scene *s)
     }
 }
 
-/* Returns whether all of P is on the camera's side of PLANE. */
+/* Returns whether all of P is in front of PLANE, on the camera's side. */
 static int is_before(const struct glint_scene *s, const struct glint_placed *p,
                      const struct glint_placed *plane)
 {
@@ -258,9 +260,10 @@ static int is_before(const struct glint_scene *s, const struct glint_placed *p,
            q_magnitude(away) > (uint64_t)p->reach + 2;
 }
 
-/* Restricts a catcher to the pixels that may have shadows, or objects that it
- * may hide. */
-static void confine(const struct glint_scene *s, struct glint_placed *plane)
+/* Restricts a catcher to the pixels that may have shadows, or objects that
+ * the catcher may hide. */
+static void confine_catcher(const struct glint_scene *s,
+                            struct glint_placed *plane)
 {
     struct glint_box box = {0, 0, 0, 0};
 
@@ -289,15 +292,15 @@ void glint_scene_confine(struct glint_scene *s)
 {
     for (uint32_t i = 0; i < s->model.header->n_objects; i++)
         if (s->placed[i].is_seen && s->placed[i].object->catcher_q15)
-            confine(s, &s->placed[i]);
+            confine_catcher(s, &s->placed[i]);
 }
 
 /* -------------------------------------------------------------------- tile */
 
-/* Returns the pixels of a tile that may see an object. Meshes count if the tile
- * lists triangles. */
-static struct glint_box touch(const struct glint_scene *s,
-                              struct glint_box tile, int has_triangles)
+/* Returns the box of pixels of a tile that may see an object. Meshes count
+ * if the tile lists triangles. */
+static struct glint_box find_touched(const struct glint_scene *s,
+                                     struct glint_box tile, int has_triangles)
 {
     struct glint_box all = {0, 0, 0, 0};
 
@@ -311,7 +314,7 @@ static struct glint_box touch(const struct glint_scene *s,
     return all;
 }
 
-static void clear(struct glint_scene_worker *w)
+static void clear_samples(struct glint_scene_worker *w)
 {
     const struct glint_box b = w->touched;
     const int n = w->scene->cfg.edge_samples * (b.x1 - b.x0);
@@ -335,11 +338,11 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
         s->has_triangles && s->bins.start[at] < s->bins.start[at + 1];
 
     w->tile = tile;
-    w->touched = touch(s, tile, has_triangles);
+    w->touched = find_touched(s, tile, has_triangles);
     if (s->motion)
         w->touched =
             glint_box_join(w->touched, s->cfg.parts.motions->touch(s, tile));
-    clear(w);
+    clear_samples(w);
     if (glint_box_empty(w->touched))
         return s->model.header->background != GLINT_BACKGROUND_CAMERA;
     for (int32_t i = has_triangles ? s->bins.start[at] : 0;
@@ -348,7 +351,7 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
     for (uint32_t i = 0; i < s->model.header->n_objects; i++)
         if (s->placed[i].is_seen &&
             s->placed[i].object->kind == GLINT_OBJECT_PLANE)
-            look_at_plane(w, &s->placed[i], glint_id(i, 0));
+            draw_plane(w, &s->placed[i], glint_id(i, 0));
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         const struct glint_placed *placed = &s->placed[i];
         const struct glint_box b = glint_box_cut(tile, placed->box);
@@ -359,7 +362,7 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
             struct glint_box row = b;
 
             if (glint_scene_span(s, placed, y, &row.x0, &row.x1))
-                look_at_row(w, placed, glint_id(i, 0), row, y);
+                draw_ball_row(w, placed, glint_id(i, 0), row, y);
         }
     }
     return 1;

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The samples of a tile. Each keeps the nearest object, or the lower index of
- * two equally near objects, in any order of drawing. */
+ * Writes samples of a tile. Each sample keeps the nearest object, or the one
+ * with the lower index of two equally near objects, so that the order of
+ * drawing does not matter.
+ */
 #ifndef GLINT_SCENE_VISIBLE_H
 #define GLINT_SCENE_VISIBLE_H
 
@@ -21,7 +23,7 @@ static inline int32_t glint_sample(const struct glint_scene *s, int k, int axis)
     return s->sample_q8[k][axis];
 }
 
-/* Returns log2 of N samples of a pixel: 0, 2, 3 or 4. */
+/* Returns log2 of the number N of samples of a pixel: 0, 2, 3 or 4. */
 static inline int glint_samples_log2(int n)
 {
     return n == 1 ? 0 : n == 4 ? 2 : n == 8 ? 3 : 4;
@@ -69,8 +71,8 @@ int glint_quick_meet(const struct glint_placed *p,
                      const struct glint_scene_ray *ray, int32_t across_q30[3],
                      int32_t *cosine_q30);
 
-/* Returns the distance along RAY of that intersection, steps, with an error of
- * 2^-13 radii. */
+/* Returns the distance along RAY of the intersection that glint_quick_meet()
+ * found, steps, with an error of 2^-13 radii. */
 int32_t glint_quick_away(const struct glint_placed *p,
                          const struct glint_scene_ray *ray, int32_t cosine_q30);
 
@@ -79,7 +81,7 @@ int32_t glint_quick_away(const struct glint_placed *p,
 /* Overlays of a recorded motion.
  */
 
-/* Pixels X0 .. X1 - 1 of a row that a layer may touch. */
+/* A run of pixels in a row, X0 .. X1 - 1, that a layer may touch. */
 struct glint_layer_span {
     int layer;
     enum glint_scene_kind kind;
@@ -95,20 +97,20 @@ struct glint_scene_motions {
     void (*carve_worker)(const struct glint_scene *scene,
                          struct glint_arena *arena,
                          struct glint_scene_worker *worker);
-    /* Opens the motion and seeks frame 0. */
+    /* Opens the motion and seeks its frame 0. */
     enum glint_status (*open)(struct glint_scene *scene);
-    /* Finds the positions of shells, lines and box in the picture. */
+    /* Projects shells, lines and box to the picture. */
     void (*project)(struct glint_scene *scene);
     /* Returns the number of layers of KIND in the picture. */
     int (*count)(const struct glint_scene *scene, enum glint_scene_kind kind);
-    /* Returns the pixels of TILE that layers may touch. */
+    /* Returns the box of pixels of TILE that layers may touch. */
     struct glint_box (*touch)(const struct glint_scene *scene,
                               struct glint_box tile);
     /* Lists in W the layers that may touch row Y of its tile, from back to
      * front. */
     void (*list)(struct glint_scene_worker *w, int y);
-    /* Sets W->over to the listed layers over pixel X. Returns the end of the
-     * run of pixels with the same layers. */
+    /* Sets W->over to those listed layers that cover pixel X. Returns the
+     * end of the run of pixels with the same layers. */
     int (*next)(struct glint_scene_worker *w, int x);
     /* Composites W->over over pixel (X, Y), whose light so far is SUM. */
     void (*over)(const struct glint_scene_worker *w, int x, int y,
