@@ -117,7 +117,7 @@ static pid_t start_child(const struct glint_assimp *face, const int pipe_fd[2],
 
 /* Waits for CHILD; kills it first unless IS_WANTED. Returns the reason why
  * it failed, or NULL. */
-static const char *end(pid_t child, int is_wanted)
+static const char *end_child(pid_t child, int is_wanted)
 {
     int status = 0;
 
@@ -280,7 +280,7 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
                        : glint_input_append(&in, data, bytes, max, error);
     glint_input_close(&in);
     if (child > 0) {
-        failure = end(child, status == GLINT_OK);
+        failure = end_child(child, status == GLINT_OK);
         if (status == GLINT_OK)
             status = check_result(*data, bytes, path, failure, error);
     }

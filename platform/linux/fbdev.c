@@ -249,14 +249,15 @@ static enum glint_status adopt_layout(struct glint_fbdev *fb,
     return GLINT_OK;
 }
 
-static void unmap(struct glint_fbdev *fb)
+static void unmap_panel(struct glint_fbdev *fb)
 {
     if (fb->map)
         munmap(fb->map, fb->map_bytes);
     fb->map = NULL;
 }
 
-static enum glint_status map(struct glint_fbdev *fb, struct glint_error *error)
+static enum glint_status map_panel(struct glint_fbdev *fb,
+                                   struct glint_error *error)
 {
     void *at;
 
@@ -275,7 +276,7 @@ static uint8_t *get_row(const struct glint_fbdev *fb, uint32_t y)
     return fb->map + fb->skip_bytes + y * fb->stride_bytes;
 }
 
-static bool pan(struct glint_fbdev *fb, int page)
+static bool pan_to_page(struct glint_fbdev *fb, int page)
 {
     struct fb_var_screeninfo to = fb->var;
 
@@ -297,7 +298,7 @@ static bool try_pages(struct glint_fbdev *fb,
         return false;
     memset(get_row(fb, 0), 0, 2 * (size_t)height * fb->stride_bytes);
     watch_pan(fb);
-    return pan(fb, 1) && pan(fb, 0);
+    return pan_to_page(fb, 1) && pan_to_page(fb, 0);
 }
 
 /* Sets up layout, mapping and number of screens of FB for the mode in
@@ -308,7 +309,7 @@ static enum glint_status enter_mode(struct glint_fbdev *fb,
     struct fb_fix_screeninfo fix;
     enum glint_status status;
 
-    unmap(fb);
+    unmap_panel(fb);
     glint_panel_close(&fb->panel);
     fb->home = fb->var;
     if (fb->home.yoffset == fb->var.yres)
@@ -320,7 +321,7 @@ static enum glint_status enter_mode(struct glint_fbdev *fb,
         return report_failure(fb, "FBIOGET_FSCREENINFO", error);
     status = adopt_layout(fb, &fix, error);
     if (!status)
-        status = map(fb, error);
+        status = map_panel(fb, error);
     if (status)
         return status;
     fb->n_pages = try_pages(fb, &fix) ? 2 : 1;
@@ -424,7 +425,7 @@ static enum glint_status draw_hidden(struct glint_fbdev *fb,
     const int page = fb->var.yoffset < fb->var.yres ? 1 : 0;
 
     draw_to_map(fb, image, get_row(fb, (uint32_t)page * fb->var.yres), page);
-    if (pan(fb, page))
+    if (pan_to_page(fb, page))
         return GLINT_OK;
     if (errno == ENODEV)
         return report_failure(fb, "FBIOPAN_DISPLAY", error);
@@ -474,7 +475,7 @@ static void close_fb(struct glint_sink *sink)
 
     end_pan(fb);
     release_console(&fb->console_fd);
-    unmap(fb);
+    unmap_panel(fb);
     glint_panel_close(&fb->panel);
     if (fb->fd >= 0)
         close(fb->fd);

@@ -677,8 +677,8 @@ static bool decode_jpeg(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     return done;
 }
 
-static void show(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
-                 struct glint_source_frame *frame)
+static void set_frame(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
+                      struct glint_source_frame *frame)
 {
     const struct glint_v4l2_format *f = &v->device.format;
 
@@ -738,7 +738,7 @@ static enum glint_status take_frame(struct glint_v4l2 *v,
     queue_idle(v);
     switch (take_newest(v, &newest, frame)) {
     case GLINT_V4L2_TAKEN:
-        show(v, &newest, frame);
+        set_frame(v, &newest, frame);
         if (frame->image.plane[0] || v->n_useless < USELESS)
             return GLINT_OK;
         break;

@@ -191,9 +191,9 @@ static enum glint_status prepare_planes(struct glint_y4m_sink *y,
     return GLINT_OK;
 }
 
-static enum glint_status begin(struct glint_y4m_sink *y,
-                               const struct glint_image *image,
-                               struct glint_error *error)
+static enum glint_status open_stream(struct glint_y4m_sink *y,
+                                     const struct glint_image *image,
+                                     struct glint_error *error)
 {
     struct glint_y4m_header header;
     enum glint_status status;
@@ -232,7 +232,7 @@ static enum glint_status put(struct glint_sink *sink,
     enum glint_status status = GLINT_OK;
 
     if (!y->is_open)
-        status = begin(y, image, error);
+        status = open_stream(y, image, error);
     if (status)
         return status;
     if (image->format != y->like.format || image->width != y->like.width ||

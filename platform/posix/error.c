@@ -52,7 +52,7 @@ void glint_utf8_clean(char *text)
     }
 }
 
-/* characters shown of a file name, to leave room for the cause */
+/* max characters of a file name in a message, to leave room for the cause */
 #define FILE_CHARS 120
 
 enum glint_status glint_error_report(struct glint_error *error,

@@ -112,8 +112,8 @@ static size_t expected_bytes(const struct glint_input *in, size_t max)
     return (uintmax_t)st.st_size < max ? (size_t)st.st_size + 1 : max + 1;
 }
 
-static enum glint_status grow(struct glint_input *in, uint8_t **data,
-                              size_t size, struct glint_error *error)
+static enum glint_status grow_buffer(struct glint_input *in, uint8_t **data,
+                                     size_t size, struct glint_error *error)
 {
     uint8_t *const moved = realloc(*data, size);
 
@@ -131,7 +131,7 @@ enum glint_status glint_input_append(struct glint_input *in, uint8_t **data,
     size_t size = *bytes + expected_bytes(in, max);
     ptrdiff_t n;
 
-    if (grow(in, data, size, error))
+    if (grow_buffer(in, data, size, error))
         return GLINT_E_MEMORY;
     while ((n = glint_input_some(in, *data + *bytes, size - *bytes)) > 0) {
         *bytes += (size_t)n;
@@ -141,7 +141,7 @@ enum glint_status glint_input_append(struct glint_input *in, uint8_t **data,
         if (*bytes < size)
             continue;
         size += size / 2 + FIRST_BYTES;
-        if (grow(in, data, size, error))
+        if (grow_buffer(in, data, size, error))
             return GLINT_E_MEMORY;
     }
     if (n < 0)

@@ -873,7 +873,7 @@ void glint_y4m_light_init(struct glint_y4m_light *light,
     fill_tables(l, header->transfer);
 }
 
-static int32_t decode(const struct glint_y4m_light *l, int32_t v_q20)
+static int32_t decode_code(const struct glint_y4m_light *l, int32_t v_q20)
 {
     const int32_t *const at = l->decode_q24 + (v_q20 >> 8);
 
@@ -883,7 +883,7 @@ static int32_t decode(const struct glint_y4m_light *l, int32_t v_q20)
            (int32_t)(((int64_t)(at[1] - at[0]) * (v_q20 & 255) + 128) >> 8);
 }
 
-static int32_t encode(const struct glint_y4m_light *l, int64_t light)
+static int32_t encode_light(const struct glint_y4m_light *l, int64_t light)
 {
     int octave = 0;
     int64_t place; /* position in the octave, entries with 16 fraction bits */
@@ -941,7 +941,7 @@ static void convert_to_rgb(const struct glint_y4m_light *l,
 }
 
 /* Multiplies LIGHT by the matrix M; each row of M sums up to 65536. */
-static void multiply(const int32_t m_q16[3][3], int64_t light[3])
+static void multiply_matrix(const int32_t m_q16[3][3], int64_t light[3])
 {
     const int64_t r = light[0], g = light[1], b = light[2];
 
@@ -982,13 +982,13 @@ static void compute_change(const struct glint_y4m_light *l,
         light[c] = (int64_t)(held * WHITE_Q24);
     }
     if (l->primaries != GLINT_PRIMARIES_BT709)
-        multiply(glint_primaries_from_bt709_q16[l->primaries], light);
+        multiply_matrix(glint_primaries_from_bt709_q16[l->primaries], light);
     for (int c = 0; c < 3; c++) {
-        const int32_t own = decode(l, rgb_q20[c]);
+        const int32_t own = decode_code(l, rgb_q20[c]);
         const int64_t left =
             cover_q8 ? ((int64_t)own * (256 - cover_q8) + 128) >> 8 : own;
 
-        d[c] = encode(l, left + light[c]) - rgb_q20[c];
+        d[c] = encode_light(l, left + light[c]) - rgb_q20[c];
         if (!cover_q8 && (d[c] < 0 || light[c] == 0))
             d[c] = 0;
     }
@@ -1086,11 +1086,11 @@ static void convert_ycc(const struct glint_y4m_light *from,
 
     convert_to_rgb(from, ycc, rgb_q20);
     for (int c = 0; c < 3; c++)
-        rgb[c] = decode(from, rgb_q20[c]);
+        rgb[c] = decode_code(from, rgb_q20[c]);
     if (from->primaries != GLINT_PRIMARIES_BT709)
-        multiply(glint_primaries_to_bt709_q16[from->primaries], rgb);
+        multiply_matrix(glint_primaries_to_bt709_q16[from->primaries], rgb);
     for (int c = 0; c < 3; c++)
-        rgb[c] = encode(to, rgb[c]);
+        rgb[c] = encode_light(to, rgb[c]);
     convert_to_ycc(to, rgb, ycc_q20);
 }
 
