@@ -14,7 +14,7 @@ void glint_ground_take(struct glint_ground *ground,
                        ground->rgb[0][0]);
 }
 
-static double decode(int code)
+static double decode_srgb(int code)
 {
     const double v = code / 255.0;
 
@@ -33,9 +33,9 @@ static void list_slopes(struct slopes *slope)
     *slope = (struct slopes){{0}, {0}};
     for (int code = 0; code + GLINT_SEEN_CODES <= 255; code++)
         slope->visible[code] =
-            1 / (decode(code + GLINT_SEEN_CODES) - decode(code));
+            1 / (decode_srgb(code + GLINT_SEEN_CODES) - decode_srgb(code));
     for (int code = GLINT_SEEN_BRIGHT; code < GLINT_SEEN_WHITE; code++)
-        slope->white[code] = 1 / (1 - decode(code));
+        slope->white[code] = 1 / (1 - decode_srgb(code));
 }
 
 /* Returns the max over the channels of a pixel's added light divided by the
