@@ -158,7 +158,7 @@ static int is_before(const void *order, int i, int j)
     return dx < dy && dx < (dx ^ dy) ? py < qy : px < qx;
 }
 
-static void swap(void *order, int i, int j)
+static void swap_lights(void *order, int i, int j)
 {
     const struct order *const o = order;
     const struct glint_light old = o->light[i];
@@ -167,9 +167,9 @@ static void swap(void *order, int i, int j)
     o->light[j] = old;
 }
 
-static void sort(struct order *o, int n)
+static void sort_lights(struct order *o, int n)
 {
-    const struct glint_heap heap = {is_before, swap, o};
+    const struct glint_heap heap = {is_before, swap_lights, o};
 
     glint_heap_sort(&heap, n);
 }
@@ -182,7 +182,7 @@ static void sort_along(struct glint_light *b, int n, int round)
     struct order o = {b, 0, k * UINT32_C(1640531527) >> 2,
                       k * UINT32_C(2654435769) % UINT32_C(0x3fffffff)};
 
-    sort(&o, n);
+    sort_lights(&o, n);
 }
 
 /* ----------------------------------------------------------------- merging */
@@ -306,7 +306,7 @@ static void finish_lights(struct glint_light *b, int n)
     for (int i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
             b[i].rgb_q14[c] = q_narrow(q_shift(b[i].rgb_q14[c], HELD));
-    sort(&brightest_first, n);
+    sort_lights(&brightest_first, n);
 }
 
 int glint_lights_merge(struct glint_light *lights, int n_lights,

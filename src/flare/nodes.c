@@ -131,7 +131,8 @@ enum {
 
 /* Returns the merged light of a ghost, which is stored in the memory of its
  * first bundle. */
-static struct glint_light *gathered(struct glint_flare *f, int ghost, int light)
+static struct glint_light *get_merged(struct glint_flare *f, int ghost,
+                                      int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;
     const int64_t at =
@@ -204,7 +205,7 @@ static void merge_rest(struct glint_flare *f, struct glint_light *b, int ghost,
     b->power = real_times(part.power, real_of(left_q8, -8));
     part.power =
         real_times(part.power, real_of(GLINT_DIM_WHOLE_Q8 - left_q8, -8));
-    glint_light_merge(gathered(f, ghost, f->plan.frame->dim->nearest[i]),
+    glint_light_merge(get_merged(f, ghost, f->plan.frame->dim->nearest[i]),
                       &part);
 }
 
@@ -223,7 +224,7 @@ static void gather_job(void *ctx, int ghost, int worker)
 
     (void)worker;
     for (; n < g->n_lights; n++) {
-        b = gathered(g->flare, ghost, n);
+        b = get_merged(g->flare, ghost, n);
         if (!b)
             break;
         *b = g->flare->plan.light[n];
@@ -231,7 +232,7 @@ static void gather_job(void *ctx, int ghost, int worker)
             b->rgb_q14[c] *= 1 << GLINT_LIGHT_HELD;
     }
     for (int i = n - 1; i >= 0; i--) {
-        b = gathered(g->flare, ghost, i);
+        b = get_merged(g->flare, ghost, i);
         if (!b)
             continue;
         merge_rest(g->flare, b, ghost, i);
@@ -240,7 +241,7 @@ static void gather_job(void *ctx, int ghost, int worker)
     }
 }
 
-static void gather(struct glint_flare *flare, int n_lights)
+static void merge_near_lights(struct glint_flare *flare, int n_lights)
 {
     struct gather gather = {flare, n_lights};
 
@@ -251,5 +252,5 @@ static void gather(struct glint_flare *flare, int n_lights)
 }
 
 const struct glint_dim_method glint_dim_method = {
-    fill_nodes,         gather, gathered, kept_q8, glint_dim_share_q8,
-    glint_dim_ratio_q16};
+    fill_nodes, merge_near_lights,  get_merged,
+    kept_q8,    glint_dim_share_q8, glint_dim_ratio_q16};

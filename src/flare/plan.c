@@ -31,7 +31,7 @@ static int64_t convert_to_pixels_q8(const struct glint_plan *p,
 
 /* Returns X, a length within a ghost in pixels, after the ghost's
  * enlargement. */
-static int64_t enlarge(const struct glint_bundle_plan *s, int64_t x_q8)
+static int64_t enlarge_length(const struct glint_bundle_plan *s, int64_t x_q8)
 {
     return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
 }
@@ -61,11 +61,12 @@ static struct reach compute_reach(const struct glint_plan *p,
     return (struct reach){
         convert_to_pixels_q8(p, t, (e->low + e->high) / 2),
         convert_to_pixels_q8(p, t, (e->y_low + e->y_high) / 2),
-        enlarge(planned, convert_to_pixels_q8(
-                             p, t, q_divide((e->high - e->low) * 11, 20))) +
+        enlarge_length(
+            planned,
+            convert_to_pixels_q8(p, t, q_divide((e->high - e->low) * 11, 20))) +
             256,
-        enlarge(planned,
-                convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
+        enlarge_length(planned,
+                       convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
             256};
 }
 
@@ -420,12 +421,13 @@ static struct glint_real compute_area(const struct glint_plan *p,
 {
     const int64_t high = compute_half_height(e);
     const int64_t wide_q8 =
-        enlarge(planned, convert_to_pixels_q8(
-                             p, t, q_divide((e->high - e->low) * 3, 5))) +
+        enlarge_length(
+            planned,
+            convert_to_pixels_q8(p, t, q_divide((e->high - e->low) * 3, 5))) +
         256;
     const int64_t high_q8 =
-        enlarge(planned,
-                convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
+        enlarge_length(planned,
+                       convert_to_pixels_q8(p, t, high + q_divide(high, 10))) +
         256;
 
     return real_times(real_of(wide_q8, -7), real_of(high_q8, -7));

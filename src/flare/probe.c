@@ -132,8 +132,9 @@ static void add_cell(struct glint_probe *s, const struct glint_probe_node *a,
     s->least_area = area < s->least_area ? area : s->least_area;
 }
 
-static void extend(const struct glint_probe *s, struct glint_probe_extent *e,
-                   const struct glint_probe_node *n)
+static void extend_extent(const struct glint_probe *s,
+                          struct glint_probe_extent *e,
+                          const struct glint_probe_node *n)
 {
     const int64_t x = n->at[GLINT_OUT_SENSOR_X], y = n->at[GLINT_OUT_SENSOR_Y];
     const int64_t away = y < 0 ? -y : y;
@@ -154,10 +155,10 @@ static void add_reach(struct glint_probe *s, const struct glint_probe_node *a,
 {
     if (!(a->inside || b->inside || c->inside || d->inside))
         return;
-    extend(s, &s->reach, a);
-    extend(s, &s->reach, b);
-    extend(s, &s->reach, c);
-    extend(s, &s->reach, d);
+    extend_extent(s, &s->reach, a);
+    extend_extent(s, &s->reach, b);
+    extend_extent(s, &s->reach, c);
+    extend_extent(s, &s->reach, d);
 }
 
 static void add_seen(struct glint_probe *s, const struct glint_probe_node *n)
@@ -165,7 +166,7 @@ static void add_seen(struct glint_probe *s, const struct glint_probe_node *n)
     if (!n->inside)
         return;
     s->n_inside++;
-    extend(s, &s->seen, n);
+    extend_extent(s, &s->seen, n);
     s->energy = n->at[GLINT_OUT_ENERGY] > s->energy ? n->at[GLINT_OUT_ENERGY]
                                                     : s->energy;
 }

@@ -124,7 +124,8 @@ static void test_barrels(struct glint_window_nodes *n,
 
 /* -------------------------------------------------------------------- cells */
 
-static void extend(struct extent *e, int32_t across_q16, int32_t down_q16)
+static void extend_extent(struct extent *e, int32_t across_q16,
+                          int32_t down_q16)
 {
     const int32_t at_q16[2] = {across_q16, down_q16};
 
@@ -165,8 +166,8 @@ static void extend_to_circle(struct extent *e,
     part_q16 =
         (int32_t)q_divide((n->radius - here) * ONE_NODE_Q16, there - here + 1) *
         step;
-    extend(e, i * ONE_NODE_Q16 + (way == 0 ? part_q16 : 0),
-           j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
+    extend_extent(e, i * ONE_NODE_Q16 + (way == 0 ? part_q16 : 0),
+                  j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
 }
 
 /* Returns whether the cell at (I, J) is small compared with the stop and
@@ -197,8 +198,8 @@ static void add_cell(struct extent *e, const struct glint_window_nodes *n,
         n->beyond[j + 1][i + 1])
         return;
     if (!is_fine(n, i, j)) {
-        extend(e, i * ONE_NODE_Q16, j * ONE_NODE_Q16);
-        extend(e, (i + 1) * ONE_NODE_Q16, (j + 1) * ONE_NODE_Q16);
+        extend_extent(e, i * ONE_NODE_Q16, j * ONE_NODE_Q16);
+        extend_extent(e, (i + 1) * ONE_NODE_Q16, (j + 1) * ONE_NODE_Q16);
         return;
     }
     for (int corner = 0; corner < 4; corner++) {
@@ -206,7 +207,7 @@ static void add_cell(struct extent *e, const struct glint_window_nodes *n,
 
         if (!n->inside[j + low][i + right])
             continue;
-        extend(e, (i + right) * ONE_NODE_Q16, (j + low) * ONE_NODE_Q16);
+        extend_extent(e, (i + right) * ONE_NODE_Q16, (j + low) * ONE_NODE_Q16);
         extend_to_circle(e, n, i + right, j + low, 0, right ? -1 : 1);
         extend_to_circle(e, n, i + right, j + low, 1, low ? -1 : 1);
     }
@@ -234,7 +235,7 @@ static struct extent find_extent(struct glint_window_nodes *n,
 /* Extends E along axis K, 0 across or 1 down, by 1 / PART of its size on
  * either side, within 0 .. STEPS: between the lines of the grid a circle
  * that spans six or more cells bulges by a hundredth of its size. */
-static void enlarge(struct extent *e, int k, int steps, int part)
+static void enlarge_extent(struct extent *e, int k, int steps, int part)
 {
     const int32_t most_q16 = steps * ONE_NODE_Q16;
     const int32_t more_q16 = (e->high_q16[k] - e->low_q16[k]) / part + 1;
@@ -283,9 +284,10 @@ int glint_window_find(struct glint_window_nodes *nodes,
 
         if (e.high_q16[0] < 0)
             return 0;
-        enlarge(&e, 0, ACROSS - 1, 48);
-        enlarge(&e, 1, DOWN - 1, 24); /* E covers half the height, so 1/24 of it
-                                        is 1/48 of the whole height. */
+        enlarge_extent(&e, 0, ACROSS - 1, 48);
+        enlarge_extent(&e, 1, DOWN - 1,
+                       24); /* E covers half the height, so 1/24 of it
+                       is 1/48 of the whole height. */
         more =
             narrow_window(t, &e) && t->window.u_half_q30 > LEAST_HALF_Q30 &&
             (int64_t)t->window.v_to_q30 - t->window.v_from_q30 > LEAST_HALF_Q30;
