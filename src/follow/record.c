@@ -584,7 +584,8 @@ static int32_t level_step_q30(const struct glint_record_step *step, int32_t ms)
     return q_clamp_sat(part_q30, 0, FULL_Q30);
 }
 
-static void rise(struct glint_record *r, const struct glint_record_step *step)
+static void raise_level(struct glint_record *r,
+                        const struct glint_record_step *step)
 {
     const int32_t part_q30 = level_step_q30(step, step->cfg->attack_ms);
 
@@ -594,7 +595,8 @@ static void rise(struct glint_record *r, const struct glint_record_step *step)
     r->state = r->level_q30 == FULL_Q30 ? GLINT_LAMP_STEADY : GLINT_LAMP_RISING;
 }
 
-static void fade(struct glint_record *r, const struct glint_record_step *step)
+static void lower_level(struct glint_record *r,
+                        const struct glint_record_step *step)
 {
     const int is_out = r->state == GLINT_LAMP_LEAVING && r->lost_us > 0;
     const int32_t part_q30 = level_step_q30(
@@ -608,9 +610,9 @@ void glint_record_set_level(struct glint_record *r,
                             const struct glint_record_step *step)
 {
     if (r->lost_us == 0 && r->is_shown)
-        rise(r, step);
+        raise_level(r, step);
     else
-        fade(r, step);
+        lower_level(r, step);
 }
 
 /* Sets the axis to half the angle of (COS2, SIN2); horizontal if both are 0. */
