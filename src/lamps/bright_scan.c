@@ -148,12 +148,12 @@ struct extremes {
     uint8_t most[4], least[4];
 };
 
-static WHOLLY_INLINE uint8_t larger(uint8_t a, uint8_t b)
+static WHOLLY_INLINE uint8_t max_u8(uint8_t a, uint8_t b)
 {
     return a > b ? a : b;
 }
 
-static WHOLLY_INLINE uint8_t smaller(uint8_t a, uint8_t b)
+static WHOLLY_INLINE uint8_t min_u8(uint8_t a, uint8_t b)
 {
     return a < b ? a : b;
 }
@@ -169,23 +169,23 @@ static NEVER_INLINE void find_halves(uint8_t half[16], const uint8_t *p, int n)
     uint8_t most[32];
 
     for (int i = 0; i < 16; i++)
-        most[i] = larger(larger(p[i], q[i]), larger(r[i], s[i]));
+        most[i] = max_u8(max_u8(p[i], q[i]), max_u8(r[i], s[i]));
     for (int i = 0; i < 16; i++)
         most[16 + i] =
-            (uint8_t)(255 - smaller(smaller(p[i], q[i]), smaller(r[i], s[i])));
+            (uint8_t)(255 - min_u8(min_u8(p[i], q[i]), min_u8(r[i], s[i])));
     for (int i = 0; i < 8; i++)
-        half[i] = larger(most[i], most[i + 8]);
+        half[i] = max_u8(most[i], most[i + 8]);
     for (int i = 0; i < 8; i++)
-        half[8 + i] = larger(most[16 + i], most[24 + i]);
+        half[8 + i] = max_u8(most[16 + i], most[24 + i]);
 }
 
 static WHOLLY_INLINE void unite_halves(struct extremes *e,
                                        const uint8_t half[16])
 {
     for (int i = 0; i < 4; i++)
-        e->most[i] = larger(half[i], half[i + 4]);
+        e->most[i] = max_u8(half[i], half[i + 4]);
     for (int i = 0; i < 4; i++)
-        e->least[i] = (uint8_t)(255 - larger(half[8 + i], half[12 + i]));
+        e->least[i] = (uint8_t)(255 - max_u8(half[8 + i], half[12 + i]));
 }
 
 static WHOLLY_INLINE void find_extremes(struct extremes *e, const uint8_t *p,
@@ -206,8 +206,8 @@ static WHOLLY_INLINE int get_max(const struct extremes *e)
 
 static WHOLLY_INLINE int get_min(const struct extremes *e)
 {
-    return smaller(smaller(e->least[0], e->least[1]),
-                   smaller(e->least[2], e->least[3]));
+    return min_u8(min_u8(e->least[0], e->least[1]),
+                  min_u8(e->least[2], e->least[3]));
 }
 
 /* Returns the max contribution to any channel of chroma in the range LEAST
@@ -312,14 +312,14 @@ static void set_quiet(struct quiet *quiet, int y, int loud)
 
 static WHOLLY_INLINE uint8_t find_max_of_8(const uint8_t *p)
 {
-    return larger(larger(larger(p[0], p[16]), larger(p[32], p[48])),
-                  larger(larger(p[64], p[80]), larger(p[96], p[112])));
+    return max_u8(max_u8(max_u8(p[0], p[16]), max_u8(p[32], p[48])),
+                  max_u8(max_u8(p[64], p[80]), max_u8(p[96], p[112])));
 }
 
 static WHOLLY_INLINE uint8_t find_min_of_8(const uint8_t *p)
 {
-    return smaller(smaller(smaller(p[0], p[16]), smaller(p[32], p[48])),
-                   smaller(smaller(p[64], p[80]), smaller(p[96], p[112])));
+    return min_u8(min_u8(min_u8(p[0], p[16]), min_u8(p[32], p[48])),
+                  min_u8(min_u8(p[64], p[80]), min_u8(p[96], p[112])));
 }
 
 /* Sets ABOVE[i] to nonzero if any byte, of index i modulo 16, of TOGETHER
@@ -331,14 +331,14 @@ static NEVER_INLINE void find_above(uint8_t above[restrict 16],
     uint8_t most[16], inverse[16];
 
     for (int i = 0; i < 16; i++)
-        most[i] = larger(find_max_of_8(p + i), find_max_of_8(p + 128 + i));
+        most[i] = max_u8(find_max_of_8(p + i), find_max_of_8(p + 128 + i));
     for (int i = 0; i < 16; i++)
-        inverse[i] = (uint8_t)(255 - smaller(find_min_of_8(p + i),
-                                             find_min_of_8(p + 128 + i)));
+        inverse[i] = (uint8_t)(255 - min_u8(find_min_of_8(p + i),
+                                            find_min_of_8(p + 128 + i)));
     for (int i = 0; i < 16; i++)
         above[i] =
-            (uint8_t)((larger(most[i], quiet->most[i]) ^ quiet->most[i]) |
-                      (larger(inverse[i], quiet->inverse[i]) ^
+            (uint8_t)((max_u8(most[i], quiet->most[i]) ^ quiet->most[i]) |
+                      (max_u8(inverse[i], quiet->inverse[i]) ^
                        quiet->inverse[i]));
 }
 
@@ -431,8 +431,8 @@ static WHOLLY_INLINE int may_be_bright_shared(const struct glint_bright *b,
         b, get_max(&luma),
         (const int[]){bright_larger(e.most[cb], e.most[cb + 2]),
                       bright_larger(e.most[cr], e.most[cr + 2])},
-        (const int[]){smaller(e.least[cb], e.least[cb + 2]),
-                      smaller(e.least[cr], e.least[cr + 2])});
+        (const int[]){min_u8(e.least[cb], e.least[cb + 2]),
+                      min_u8(e.least[cr], e.least[cr + 2])});
 }
 
 static int mark_row_shared(struct glint_bright *b)

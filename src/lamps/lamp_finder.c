@@ -41,7 +41,7 @@ static int is_before(const void *finder, int a, int b)
     return is_brighter(f, f->order[a], f->order[b]);
 }
 
-static void swap(void *finder, int a, int b)
+static void swap_candidates(void *finder, int a, int b)
 {
     const struct glint_lamp_finder *const f = finder;
     const int32_t old = f->order[a];
@@ -53,7 +53,7 @@ static void swap(void *finder, int a, int b)
 /* Returns a heap of the candidates whose root is the faintest candidate. */
 static struct glint_heap make_heap(struct glint_lamp_finder *f)
 {
-    return (struct glint_heap){is_before, swap, f};
+    return (struct glint_heap){is_before, swap_candidates, f};
 }
 
 static void sort_by_flux(struct glint_lamp_finder *f)

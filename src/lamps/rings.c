@@ -235,7 +235,7 @@ struct part {
     int64_t n;
 };
 
-static void sort(struct part *part, int n)
+static void sort_parts(struct part *part, int n)
 {
     for (int i = 1; i < n; i++)
         for (int j = i; j > 0 && part[j - 1].mean_q20 > part[j].mean_q20; j--) {
@@ -282,7 +282,7 @@ static void set_background(struct glint_profile_channel *of,
             part[n++].n = sectors->n[i];
             all += sectors->n[i];
         }
-    sort(part, n);
+    sort_parts(part, n);
     of->black_q20 = compute_mean_between(part, n, all, 2, 6);
     if (of->black_q20 > MAX_BLACK_Q20)
         of->black_q20 = MAX_BLACK_Q20;

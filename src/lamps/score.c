@@ -131,7 +131,7 @@ static int32_t compute_mean(const int32_t *v, int n)
     return n ? sum / n : 0;
 }
 
-static void sort(int32_t *v, int n)
+static void sort_values(int32_t *v, int n)
 {
     for (int i = 1; i < n; i++)
         for (int j = i; j > 0 && v[j] < v[j - 1]; j--) {
@@ -173,7 +173,7 @@ static void measure_ring(struct ring *ring, const struct glint_score *s,
 
     if (n == 0)
         return;
-    sort(found_q8, n);
+    sort_values(found_q8, n);
     ring->mean_q8 = compute_mean(found_q8, n);
     ring->lower_q8 = found_q8[n / 4];
     ring->upper_q8 = found_q8[n - 1 - n / 4];
