@@ -46,15 +46,15 @@ static int64_t shift_right(int64_t x, int s)
     return s > 62 ? 0 : q_shift(x, s);
 }
 
-static uint8_t larger(uint8_t a, uint8_t b)
+static uint8_t max_u8(uint8_t a, uint8_t b)
 {
     return a > b ? a : b;
 }
 
 /* Returns A (1 - PART) + B PART, rounded, in the unit 2^E. The units of A
  * and B are 2^EA and 2^EB, at most 2^E. */
-static int32_t interpolate(int32_t a, int32_t ea, int32_t b, int32_t eb,
-                           int32_t e, int32_t part_q30)
+static int32_t mix_coefficient(int32_t a, int32_t ea, int32_t b, int32_t eb,
+                               int32_t e, int32_t part_q30)
 {
     return (int32_t)(shift_right((int64_t)a * (TRANSFER_ONE_Q30 - part_q30),
                                  30 + e - ea) +
@@ -153,8 +153,8 @@ int glint_blend_box(struct glint_zoom_mix *blend, const int32_t box[3],
     set_moves(blend, box, exponent);
     blend->stop[0] = make_stop(t);
     for (int k = 0; k < 3; k++)
-        t->box[k] = interpolate(box[k], exponent, t->box[k], t->box_exponent, e,
-                                blend->part_q30);
+        t->box[k] = mix_coefficient(box[k], exponent, t->box[k],
+                                    t->box_exponent, e, blend->part_q30);
     t->box_exponent = e;
     return blend->part_q30 >= 0 || (!blend->far && is_small(&blend->move[1]) &&
                                     t->box[1] > 0 && t->box[2] > 0);
@@ -197,9 +197,9 @@ static int find_changes(const struct glint_zoom_mix *blend, int kind,
                             15 + e - o->exponent);
             const int64_t size = (int64_t)q_magnitude(x);
 
-            all += size + (int64_t)q_magnitude(
-                              interpolate(ours[b][a], exponent, o->row[b][a],
-                                          o->exponent, e, blend->part_q30));
+            all += size + (int64_t)q_magnitude(mix_coefficient(
+                              ours[b][a], exponent, o->row[b][a], o->exponent,
+                              e, blend->part_q30));
             to[b][a] = size < TRANSFER_ONE_Q30 ? (int32_t)x : 0;
         }
     return all < TRANSFER_ONE_Q30;
@@ -217,14 +217,14 @@ static int32_t mix_output(const struct glint_zoom_mix *blend, int kind,
     int32_t more[ROWS][GLINT_TABLE_WIDTH];
     int moves;
 
-    t->degree_u[kind] = larger(t->degree_u[kind], o->degree_u);
-    t->degree_v[kind] = larger(t->degree_v[kind], o->degree_v);
+    t->degree_u[kind] = max_u8(t->degree_u[kind], o->degree_u);
+    t->degree_v[kind] = max_u8(t->degree_v[kind], o->degree_v);
     moves = find_changes(blend, kind, exponent, o, e, more);
     for (int b = 0; b <= t->degree_v[kind]; b++)
         for (int a = 0; a <= t->degree_u[kind]; a++)
             t->table[kind][b][a] =
-                interpolate(t->table[kind][b][a], exponent, o->row[b][a],
-                            o->exponent, e, blend->part_q30) +
+                mix_coefficient(t->table[kind][b][a], exponent, o->row[b][a],
+                                o->exponent, e, blend->part_q30) +
                 (moves ? more[b][a] : 0);
     return e;
 }

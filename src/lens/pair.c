@@ -53,7 +53,7 @@ int32_t glint_blend_value_q16(const struct glint_blend_output *o, int64_t u_q24,
     return q_clamp_sat(sum, -FAR_Q16, FAR_Q16);
 }
 
-static int64_t smaller(int64_t a, int64_t b)
+static int64_t min_i64(int64_t a, int64_t b)
 {
     return a < b ? a : b;
 }
@@ -67,9 +67,9 @@ static int find_common(const struct glint_zoom_mix *blend, int64_t *first,
     const struct glint_blend_move *const to = &blend->move[0];
     const int64_t one = 1 << 24, half = one + to->wider_q24;
 
-    *first = -smaller(one, half - to->along_q24);
-    *last = smaller(one, half + to->along_q24);
-    *high = smaller(one, one + to->higher_q24);
+    *first = -min_i64(one, half - to->along_q24);
+    *last = min_i64(one, half + to->along_q24);
+    *high = min_i64(one, one + to->higher_q24);
     return !blend->far && *first < *last;
 }
 
@@ -93,8 +93,8 @@ static void set_values(const struct glint_zoom_mix *blend, int side,
             v = q_shift(v * (one - back->higher_q24), 24);
             /* Moves are rounded in units that may be as large as a box, so U
              * and V are clamped to the box. */
-            u = -smaller(one, -smaller(one, u));
-            v = smaller(one, v);
+            u = -min_i64(one, -min_i64(one, u));
+            v = min_i64(one, v);
         }
         values[0][k] = glint_blend_value_q16(o, (k % ACROSS - 1) * one,
                                              k < ACROSS ? 0 : one);
@@ -119,7 +119,7 @@ static int64_t compute_difference_q16(const struct glint_zoom_mix *blend,
 
             most = off > most ? off : most;
         }
-        least = smaller(least, most);
+        least = min_i64(least, most);
     }
     return least;
 }

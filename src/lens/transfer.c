@@ -139,8 +139,8 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
 
 /* Returns the coefficient VALUE of a term, multiplied by the powers of angle
  * and wavelength in POWER. */
-static WHOLLY_INLINE int32_t substitute(const struct setting *set,
-                                        int32_t value, uint16_t power)
+static WHOLLY_INLINE int32_t substitute_term(const struct setting *set,
+                                             int32_t value, uint16_t power)
 {
     const int c = power >> 8 & 15, d = power >> 12;
 
@@ -155,7 +155,7 @@ STATIC_ASSERT(GLINT_MAX_POWER < GLINT_TABLE_WIDTH);
 STATIC_ASSERT(GLINT_LENS_POWERS <= TRANSFER_MAX_EXPONENT + 1);
 STATIC_ASSERT(GLINT_LENS_WAVE_POWERS <= TRANSFER_MAX_EXPONENT + 1);
 
-/* Like substitute(), in the lens basis. */
+/* Like substitute_term(), in the lens basis. */
 static int32_t substitute_lens(const struct setting *set, int32_t value,
                                uint16_t power)
 {
@@ -207,10 +207,10 @@ static void fill_table(struct table *table, const struct glint_lens *lens,
                                  k < n_wide ? coef[k] : narrow[k - n_wide] * by,
                                  power[k]));
     for (uint32_t k = 0; k < n_wide && !set->lens; k++)
-        add_term(table, power[k], substitute(set, coef[k], power[k]));
+        add_term(table, power[k], substitute_term(set, coef[k], power[k]));
     for (uint32_t k = n_wide; k < n && !set->lens; k++)
         add_term(table, power[k],
-                 substitute(set, narrow[k - n_wide] * by, power[k]));
+                 substitute_term(set, narrow[k - n_wide] * by, power[k]));
 }
 
 static void set_table(struct glint_transfer *t, const struct glint_lens *lens,

@@ -125,9 +125,9 @@ static struct turns make_turns(const struct glint_transfer *t,
         make_turn(p, stop, t->exponent[GLINT_OUT_STOP_X], 16, LIMIT_Q16)};
 }
 
-static void rotate(const struct glint_turn *turn, unsigned sets,
-                   const int32_t *x, const int32_t *y, int32_t (*out)[RAYS],
-                   int32_t (*lost)[RAYS])
+static void rotate_rays(const struct glint_turn *turn, unsigned sets,
+                        const int32_t *x, const int32_t *y,
+                        int32_t (*out)[RAYS], int32_t (*lost)[RAYS])
 {
     const int usual = turn->shift >= 1 && turn->shift <= 62;
 
@@ -143,10 +143,10 @@ static void set_block(const struct glint_transfer *t, const struct turns *turns,
     for (int i = 0; i < RAYS; i++)
         b->lost[1][i] = b->lost[0][i];
     set_energies(rays[GLINT_OUT_ENERGY], t->energy_up, b->energy_q16);
-    rotate(&turns->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
-           rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->lost);
-    rotate(&turns->stop, t->sets, rays[GLINT_OUT_STOP_X],
-           rays[GLINT_OUT_STOP_Y], b->stop_q16, b->lost);
+    rotate_rays(&turns->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
+                rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->lost);
+    rotate_rays(&turns->stop, t->sets, rays[GLINT_OUT_STOP_X],
+                rays[GLINT_OUT_STOP_Y], b->stop_q16, b->lost);
 }
 
 /* Writes the first N rays of B as vertices: the rays themselves if SIDE is

@@ -305,9 +305,9 @@ static int find_beyond(const struct glint_zoom_lens *z, int g, int side)
 /* Sets TRANSFER to ghost G, extrapolated from SIDE and a model beyond it.
  * The ghost must have light on SIDE only, and no further parts there.
  * Returns whether this is possible. */
-static int extrapolate(struct glint_transfer *transfer,
-                       const struct glint_zoom_lens *z, int g, int side,
-                       int32_t sine_q30, int32_t wave_q24)
+static int extrapolate_ghost(struct glint_transfer *transfer,
+                             const struct glint_zoom_lens *z, int g, int side,
+                             int32_t sine_q30, int32_t wave_q24)
 {
     const int beyond = find_beyond(z, g, side);
     const struct glint_model_system *there;
@@ -345,7 +345,7 @@ static int transfer_between(struct glint_transfer *transfer,
         const int side = lit[1];
 
         if (lit[side] && ghost < count_whole(&z->model[0]) &&
-            extrapolate(transfer, z, ghost, side, sine_q30, wave_q24))
+            extrapolate_ghost(transfer, z, ghost, side, sine_q30, wave_q24))
             return 1;
         if (!set_from_side(transfer, z, ghost, side, sine_q30, wave_q24))
             return 0;
