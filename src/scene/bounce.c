@@ -196,10 +196,10 @@ static void trace_reflection(const struct glint_scene *s,
         add_background(s, &p, rgb_q15);
 }
 
-static void follow(const struct glint_scene *s,
-                   const struct glint_scene_ray *ray,
-                   const struct glint_met_surface *surface,
-                   struct glint_met_shade *shade)
+static void add_bounces(const struct glint_scene *s,
+                        const struct glint_scene_ray *ray,
+                        const struct glint_met_surface *surface,
+                        struct glint_met_shade *shade)
 {
     struct passing p = {.ray = *ray,
                         .weight_q15 = GLINT_SCENE_ONE_Q15,
@@ -238,5 +238,5 @@ static void store_background(struct glint_scene *scene,
     glint_around_look(&scene->around, image, scene->cfg.workers);
 }
 
-const struct glint_scene_bounces glint_scene_bounces = {follow, carve,
+const struct glint_scene_bounces glint_scene_bounces = {add_bounces, carve,
                                                         store_background};

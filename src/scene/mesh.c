@@ -357,7 +357,7 @@ static int begin_walk(struct inside *in, struct walk *w)
 
 /* Moves to the next cell. Returns 0 at the end of the grid, or if the next
  * cell is farther from the start of the walk than LIMIT. */
-static int advance(const struct inside *in, struct walk *w, int64_t limit)
+static int advance_walk(const struct inside *in, struct walk *w, int64_t limit)
 {
     const struct glint_scene_mesh *m = in->mesh;
     int next = 0;
@@ -427,7 +427,8 @@ static int intersect_mesh(const struct glint_scene *scene, uint32_t object,
         return 0;
     do {
         found |= test_cell(&in, &w, met);
-    } while (!(found && any) && advance(&in, &w, (int64_t)met->t - in.start));
+    } while (!(found && any) &&
+             advance_walk(&in, &w, (int64_t)met->t - in.start));
     return found;
 }
 
@@ -461,8 +462,8 @@ static int intersect_triangle(const struct glint_scene *scene, uint32_t object,
 
 /* Sets TO to the mean of three rows of N numbers, weighted by the weights in
  * SPOT. */
-static void interpolate(const struct glint_spot_on *spot,
-                        const int32_t *const row[3], int n, int32_t *to)
+static void interpolate_rows(const struct glint_spot_on *spot,
+                             const int32_t *const row[3], int n, int32_t *to)
 {
     for (int k = 0; k < n; k++) {
         int64_t sum = 0;
@@ -507,7 +508,7 @@ static void set_uv(const struct glint_scene *s,
     int64_t area[3], uv_area[3];
 
     get_rows(s, t, m->uv_at, 2, uv_q16);
-    interpolate(&met->spot, uv_q16, 2, surface->uv_q16);
+    interpolate_rows(&met->spot, uv_q16, 2, surface->uv_q16);
     v3_minus(vertex[1], vertex[0], first);
     v3_minus(vertex[2], vertex[0], second);
     for (int k = 0; k < 2; k++)
@@ -531,7 +532,7 @@ static int set_surface(const struct glint_scene *scene,
     int32_t place[3], normal_q30[3];
 
     glint_mesh_vertices(scene, m, met->triangle, vertex);
-    interpolate(&met->spot, vertex, 3, place);
+    interpolate_rows(&met->spot, vertex, 3, place);
     v3_turn(&p->turn, place, surface->place);
     for (int k = 0; k < 3; k++)
         surface->place[k] += p->at[k];
@@ -542,7 +543,7 @@ static int set_surface(const struct glint_scene *scene,
         int64_t sum[3];
 
         get_rows(scene, t, m->normal_at, 3, row);
-        interpolate(&met->spot, row, 3, normal_q30);
+        interpolate_rows(&met->spot, row, 3, normal_q30);
         for (int k = 0; k < 3; k++)
             sum[k] = normal_q30[k];
         if (!glint_unit(sum, normal_q30))

@@ -126,9 +126,9 @@ struct glint_shadow {
     int n_points;
     int32_t lean_q30; /* max slope of the rays of all sample points */
     struct glint_shadow_point point[GLINT_SHADOW_POINTS];
-    int32_t (*vertex)[3];             /* vertices of all meshes, rotated by
-                                         turn */
-    struct glint_bins bins;           /* per cell: indices of things */
+    int32_t (*vertex)[3];   /* vertices of all meshes, rotated by
+                               turn */
+    struct glint_bins bins; /* per cell: indices of elements of thing */
     struct glint_shadow_thing *thing; /* [n_things]: shadow casters */
     int n_things;
     int max_refs; /* max entries; at least the number of objects */

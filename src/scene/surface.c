@@ -137,7 +137,7 @@ int glint_scene_meet_id(const struct glint_scene *scene,
                : intersect_plane(p, ray, met);
 }
 
-static void negate(int32_t v[3])
+static void negate_vector(int32_t v[3])
 {
     for (int k = 0; k < 3; k++)
         v[k] = -v[k];
@@ -187,8 +187,8 @@ int glint_scene_surface(const struct glint_scene *scene,
         is = set_plane_surface(ray, p, met, surface);
     surface->is_inside = v3_dot(ray->toward_q30, surface->face_q30) > 0;
     if (surface->is_inside) {
-        negate(surface->normal_q30);
-        negate(surface->face_q30);
+        negate_vector(surface->normal_q30);
+        negate_vector(surface->face_q30);
     }
     return is;
 }

@@ -103,9 +103,10 @@ static void sample_level(const struct glint_scene *scene,
     }
 }
 
-static void colour(const struct glint_scene *scene,
-                   const struct glint_scene_ray *ray,
-                   const struct glint_met_surface *surface, int32_t rgb_q15[3])
+static void multiply_by_texture(const struct glint_scene *scene,
+                                const struct glint_scene_ray *ray,
+                                const struct glint_met_surface *surface,
+                                int32_t rgb_q15[3])
 {
     const struct glint_scene_texture *t =
         &scene->model.texture[surface->material->texture];
@@ -129,9 +130,10 @@ static void colour(const struct glint_scene *scene,
     }
 }
 
-static void prepare(struct glint_curve *curve)
+static void prepare_curve(struct glint_curve *curve)
 {
     glint_curve_init(curve, GLINT_TONE_SRGB);
 }
 
-const struct glint_scene_textures glint_scene_textures = {colour, prepare};
+const struct glint_scene_textures glint_scene_textures = {multiply_by_texture,
+                                                          prepare_curve};
