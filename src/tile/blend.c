@@ -4,7 +4,7 @@
 #include "base/q.h"
 
 /* Returns LIGHT behind a cover: LIGHT (1 - COVER). */
-static int64_t attenuate(int64_t light, int cover_q8)
+static int64_t attenuate_light(int64_t light, int cover_q8)
 {
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
 }
@@ -25,8 +25,9 @@ static void add_codes(const struct glint_pass_rows *rows, int row, int n_x,
         }
         for (int x = 0; x < n_x && covers; x++)
             to_q16[x] = (uint16_t)q_clamp_sat(
-                attenuate(to_q16[x], s->next.cover_q8[row][x]) + more_q16[x], 0,
-                65535);
+                attenuate_light(to_q16[x], s->next.cover_q8[row][x]) +
+                    more_q16[x],
+                0, 65535);
     }
 }
 
@@ -35,11 +36,11 @@ static void add_linear(const struct glint_pass_rows *rows, int n_x,
 {
     for (int c = 0; c < 3; c++)
         for (int x = 0; x < n_x; x++)
-            rows->light_q20[c][x] =
-                q_clamp_sat(attenuate(rows->light_q20[c][x],
-                                      covers ? s->next.cover_q8[0][x] : 0) +
-                                s->light_q20[c][x],
-                            INT32_MIN, INT32_MAX);
+            rows->light_q20[c][x] = q_clamp_sat(
+                attenuate_light(rows->light_q20[c][x],
+                                covers ? s->next.cover_q8[0][x] : 0) +
+                    s->light_q20[c][x],
+                INT32_MIN, INT32_MAX);
 }
 
 /* Combines the cover of a pass with the cover so far. COVERED is 0 if no
@@ -52,8 +53,9 @@ static void add_cover(struct glint_blend_rows *s, int row, int n_x, int covered)
         const int64_t shows_q8 =
             covered ? GLINT_COVER_ALL - to_q8[x] : GLINT_COVER_ALL;
 
-        to_q8[x] = (uint16_t)(GLINT_COVER_ALL -
-                              attenuate(shows_q8, s->next.cover_q8[row][x]));
+        to_q8[x] =
+            (uint16_t)(GLINT_COVER_ALL -
+                       attenuate_light(shows_q8, s->next.cover_q8[row][x]));
     }
 }
 
