@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Functions for the end of a process must run whatever ends it.
+ * Tests glint_at_death(): registered functions run at every end of a process:
+ * signal, fault, abort() and exit().
  */
 #include <stdint.h>
 
@@ -16,28 +17,28 @@
 #include "posix/at_death.h"
 #include "support/test.h"
 
-static int told[2]; /* pipe from the child */
+static int child_pipe[2]; /* pipe from the child to the test */
 
-static void tell(char c)
+static void write_child_pipe(char c)
 {
-    if (write(told[1], &c, 1) != 1)
+    if (write(child_pipe[1], &c, 1) != 1)
         _exit(98);
 }
 
-static void first(void)
+static void write_1(void)
 {
-    tell('1');
+    write_child_pipe('1');
 }
 
-static void second(void)
+static void write_2(void)
 {
-    tell('2');
+    write_child_pipe('2');
 }
 
-/* Runs DIE in a child that has two functions to run at its end. It must end
- * with the exit code CODE, as of a shell: 128 and more for a signal; the
- * functions must write TEXT. */
-static void must_end(void (*die)(int), int number, int code, const char *text)
+/* Runs DIE(NUMBER) in a child that has registered two functions. Checks that
+ * the child ends with CODE, an exit code as a shell reports it (128 + N for
+ * signal N), and that the functions wrote TEXT. */
+static void expect_end(void (*die)(int), int number, int code, const char *text)
 {
     const struct rlimit no_core = {0, 0};
     ssize_t n;
@@ -45,41 +46,41 @@ static void must_end(void (*die)(int), int number, int code, const char *text)
     char wrote[8];
     int how;
 
-    assert_int_equal(pipe(told), 0);
+    assert_int_equal(pipe(child_pipe), 0);
     child = fork();
     if (child == 0) {
         for (int i = 1; i < SIGRTMIN; i++)
-            signal(i, SIG_DFL); /* in place of cmocka's */
-        close(told[0]);
+            signal(i, SIG_DFL); /* replaces cmocka's handler */
+        close(child_pipe[0]);
         setrlimit(RLIMIT_CORE, &no_core);
-        if (!glint_at_death(first) || !glint_at_death(second) ||
-            !glint_at_death(first))
+        if (!glint_at_death(write_1) || !glint_at_death(write_2) ||
+            !glint_at_death(write_1))
             _exit(97);
         die(number);
         _exit(0);
     }
-    close(told[1]);
+    close(child_pipe[1]);
     assert_int_equal(waitpid(child, &how, 0), child);
-    n = read(told[0], wrote, 7);
+    n = read(child_pipe[0], wrote, 7);
     assert_true(n >= 0);
     wrote[n] = 0;
-    close(told[0]);
+    close(child_pipe[0]);
     assert_int_equal(WIFSIGNALED(how) ? 128 + WTERMSIG(how) : WEXITSTATUS(how),
                      code);
     assert_string_equal(wrote, text);
 }
 
-static void by_raise(int number)
+static void end_by_raise(int number)
 {
     raise(number);
 }
 
-static void by_exit(int number)
+static void end_by_exit(int number)
 {
     exit(number);
 }
 
-static void by_abort(int number)
+static void end_by_abort(int number)
 {
     (void)number;
     abort();
@@ -87,7 +88,7 @@ static void by_abort(int number)
 
 static int report_at_work(void)
 {
-    tell('r');
+    write_child_pipe('r');
     return 1;
 }
 
@@ -96,25 +97,25 @@ static int report_idle(void)
     return 0;
 }
 
-static void by_library(int number)
+static void end_by_library(int number)
 {
     glint_at_death_in_library(number ? report_at_work : report_idle);
     abort();
 }
 
-static void by_exit_of_library(int number)
+static void end_by_library_exit(int number)
 {
     glint_at_death_in_library(report_at_work);
     exit(number);
 }
 
-static void by_quick_exit(int number)
+static void end_by_quick_exit(int number)
 {
     _exit(number);
 }
 
-/* Ends the process by a true fault, not one that a sanitizer sees coming. */
-static void by_fault(int number)
+/* Ends the process by a real page fault, which sanitizers do not intercept. */
+static void end_by_fault(int number)
 {
     const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);
     volatile char *const page =
@@ -126,17 +127,17 @@ static void by_fault(int number)
 
 static void handle_own(int number)
 {
-    tell('h');
+    write_child_pipe('h');
     glint_at_death_by(number);
 }
 
-static void by_own_handler(int number)
+static void end_by_own_handler(int number)
 {
     signal(number, handle_own);
     raise(number);
 }
 
-static void by_ignored(int number)
+static void end_by_ignored(int number)
 {
     signal(number, SIG_IGN);
     raise(number);
@@ -150,41 +151,42 @@ TEST(signals)
                                  SIGILL,  SIGFPE,  SIGTRAP};
 
     for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
-        must_end(by_raise, deadly[i], 128 + deadly[i], "21");
+        expect_end(end_by_raise, deadly[i], 128 + deadly[i], "21");
 }
 
 TEST(faults)
 {
-    must_end(by_fault, 0, 128 + SIGSEGV, "21");
-    must_end(by_abort, 0, 128 + SIGABRT, "21");
+    expect_end(end_by_fault, 0, 128 + SIGSEGV, "21");
+    expect_end(end_by_abort, 0, 128 + SIGABRT, "21");
 }
 
-/* An abort in a library is an exit with 1, one of glint itself a death. */
+/* abort() in a library ends the process with exit code 1, abort() in glint
+ * itself with SIGABRT. */
 TEST(library)
 {
-    must_end(by_library, 1, 1, "21r");
-    must_end(by_exit_of_library, 4, 4, "21r");
-    must_end(by_library, 0, 128 + SIGABRT, "21");
+    expect_end(end_by_library, 1, 1, "21r");
+    expect_end(end_by_library_exit, 4, 4, "21r");
+    expect_end(end_by_library, 0, 128 + SIGABRT, "21");
 }
 
 TEST(exit)
 {
-    must_end(by_exit, 3, 3, "21");
-    must_end(by_quick_exit, 3, 3, "");
+    expect_end(end_by_exit, 3, 3, "21");
+    expect_end(end_by_quick_exit, 3, 3, "");
 }
 
-/* A handler of the application's own that ends the process by
- * glint_at_death_by() must have the functions run. */
+/* Checks that the functions run when a handler of the application ends the
+ * process with glint_at_death_by(). */
 TEST(own_handler)
 {
-    must_end(by_own_handler, SIGINT, 128 + SIGINT, "h21");
+    expect_end(end_by_own_handler, SIGINT, 128 + SIGINT, "h21");
 }
 
-/* SIGPIPE and SIGXFSZ are ignored from the first call on, so that the child
- * comes to its exit code 0. */
+/* Checks that SIGPIPE and SIGXFSZ are ignored from the first call on: the
+ * child survives both and ends with its own exit code. */
 TEST(ignored)
 {
-    must_end(by_ignored, SIGHUP, 5, "");
-    must_end(by_raise, SIGPIPE, 0, "");
-    must_end(by_raise, SIGXFSZ, 0, "");
+    expect_end(end_by_ignored, SIGHUP, 5, "");
+    expect_end(end_by_raise, SIGPIPE, 0, "");
+    expect_end(end_by_raise, SIGXFSZ, 0, "");
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * File types by the ending of a name.
+ * Tests finding a file's type by its name's extension.
  */
 #include <stdint.h>
 

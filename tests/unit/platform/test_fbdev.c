@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * A framebuffer and a console that are files, and an ioctl() that answers for
- * them: what is drawn where, and that any call may fail.
+ * Tests the framebuffer sink on a fake framebuffer and console (files, and an
+ * ioctl() of the test): which pixels are drawn, and that the failure of any
+ * call is handled.
  */
 #include <stdint.h>
 
@@ -25,9 +26,9 @@
 
 /* ---------------------------------------------------------------- scenery */
 
-/* Resets the framebuffer to 8 x 6 pixels of XRGB8888 in rows of 40 bytes, with
- * no lines beyond those in view. */
-static void reset(void)
+/* Sets the fake framebuffer to 8 x 6 pixels of XRGB8888, 40 bytes per row,
+ * without off-screen rows. */
+static void reset_one_page(void)
 {
     uint8_t old[256];
     int fd;
@@ -59,17 +60,17 @@ static void reset(void)
     fake_fb_calls = fake_fb_fail_at = fake_fb_maps = 0;
 }
 
-/* Resets the framebuffer to two screens that pan line by line, as vc4 has
- * them. */
-static void reset_pages(void)
+/* Sets the fake framebuffer to two screens with vertical panning in steps of
+ * one row, as the vc4 driver has them. */
+static void reset_two_pages(void)
 {
-    reset();
+    reset_one_page();
     fake_fb->var.yres_virtual = 12;
     fake_fb->fix.ypanstep = 1;
     fake_fb->can_pan = true;
 }
 
-static const uint8_t *memory(void)
+static const uint8_t *read_memory(void)
 {
     static uint8_t mem[FB_BYTES];
     const int fd = open(fake_fb_path, O_RDONLY);
@@ -79,7 +80,7 @@ static const uint8_t *memory(void)
     return mem;
 }
 
-static void scribble(off_t at, uint8_t value)
+static void write_memory(off_t at, uint8_t value)
 {
     const int fd = open(fake_fb_path, O_WRONLY);
 
@@ -87,8 +88,9 @@ static void scribble(off_t at, uint8_t value)
     close(fd);
 }
 
-/* Returns a grey picture of one code. */
-static const struct glint_image *grey(int width, int height, int code)
+/* Returns a WIDTH x HEIGHT grey image whose pixels all have code CODE. */
+static const struct glint_image *make_grey_image(int width, int height,
+                                                 int code)
 {
     static uint8_t mem[64 * 64];
     static struct glint_image image;
@@ -100,7 +102,7 @@ static const struct glint_image *grey(int width, int height, int code)
     return &image;
 }
 
-static void must_open(struct glint_fbdev *fb,
+static void open_sink(struct glint_fbdev *fb,
                       const struct glint_fbdev_options *options)
 {
     static const struct glint_fbdev_options none;
@@ -110,7 +112,7 @@ static void must_open(struct glint_fbdev *fb,
         fail_msg("%s", error.text);
 }
 
-static void must_put(struct glint_fbdev *fb, const struct glint_image *image)
+static void draw_image(struct glint_fbdev *fb, const struct glint_image *image)
 {
     struct glint_error error;
 
@@ -118,11 +120,11 @@ static void must_put(struct glint_fbdev *fb, const struct glint_image *image)
         fail_msg("%s", error.text);
 }
 
-/* Checks six rows of 40 bytes from FIRST on: CODE in the 32 bytes of pixels (0
- * in their fourth), and untouched bytes behind these. */
+/* Checks six rows of 40 bytes from byte FIRST on: each pixel is CODE, CODE,
+ * CODE, 0, and the 8 bytes of padding are unchanged. */
 static void expect_screen(size_t first, int code)
 {
-    const uint8_t *const mem = memory() + first;
+    const uint8_t *const mem = read_memory() + first;
 
     for (int y = 0; y < 6; y++)
         for (int x = 0; x < 40; x++) {
@@ -136,8 +138,8 @@ static void expect_screen(size_t first, int code)
 
 /* ------------------------------------------------------------------- tests */
 
-/* Runs in a child: shows the second screen, then ends by signal HOW; 0: by
- * exit(). */
+/* Runs in a child process: shows the second screen, then ends by signal HOW,
+ * or by exit() if HOW is 0. */
 static void end_child(int how)
 {
     static const struct glint_fbdev_options options = {.console = true};
@@ -145,14 +147,14 @@ static void end_child(int how)
 
     for (int i = 1; i < SIGRTMIN; i++)
         signal(i, SIG_DFL);
-    must_open(&fb, NULL); /* so that lists are in another order */
+    open_sink(&fb, NULL); /* changes the order of the list of open sinks */
     fb.sink.close(&fb.sink);
-    must_open(&fb, &options);
-    must_put(&fb, grey(8, 6, 1));
+    open_sink(&fb, &options);
+    draw_image(&fb, make_grey_image(8, 6, 1));
     if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
         _exit(99);
     if (fork() == 0)
-        exit(0); /* The end of its own child changes nothing. */
+        exit(0); /* The end of this grandchild must not restore the console. */
     while (wait(NULL) < 0)
         ;
     if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
@@ -164,12 +166,12 @@ static void end_child(int how)
 
 TEST_BEFORE
 {
-    reset();
+    reset_one_page();
 }
 
-/* Whatever ends a process, the console must be text and the first screen in
- * view. This test must come first: the first open takes the signals for the
- * whole process. */
+/* Checks that the console returns to text mode and the first screen to view
+ * after each end of a process. Runs first, as the first open installs the
+ * signal handlers of the whole process. */
 TEST(every_end)
 {
     static const int ends[] = {0,       SIGINT,  SIGTERM, SIGHUP,
@@ -179,7 +181,7 @@ TEST(every_end)
         int how;
         pid_t child;
 
-        reset_pages();
+        reset_two_pages();
         child = fork();
         if (child == 0)
             end_child(ends[i]);
@@ -190,7 +192,7 @@ TEST(every_end)
             assert_int_equal(WTERMSIG(how), ends[i]);
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
-        /* Panning back must come before text. */
+        /* The sink pans back before it sets text mode. */
         assert_int_equal(fake_fb->yoffset_at_text, 0);
     }
 }
@@ -199,36 +201,37 @@ TEST(draws)
 {
     struct glint_fbdev fb;
 
-    must_open(&fb, NULL);
+    open_sink(&fb, NULL);
     assert_string_equal(fb.id, "fake");
     assert_int_equal(fb.n_pages, 1);
-    must_put(&fb, grey(8, 6, 100));
+    draw_image(&fb, make_grey_image(8, 6, 100));
     expect_screen(0, 100);
-    must_put(&fb, grey(16, 12, 50));
+    draw_image(&fb, make_grey_image(16, 12, 50));
     expect_screen(0, 50);
-    assert_int_equal(memory()[6 * 40], 0xaa); /* below the screen */
+    assert_int_equal(read_memory()[6 * 40], 0xaa); /* row below the screen */
     fb.sink.close(&fb.sink);
     fb.sink.close(&fb.sink);
     assert_int_equal(fb.fd, -1);
     assert_int_equal(fake_fb_maps, 0);
 }
 
-/* Where the picture does not reach, black must be drawn, whatever the last
- * picture covered. */
+/* Checks that the area around the image is black, whatever the previous
+ * image covered. */
 TEST(borders)
 {
     struct glint_fbdev fb;
     const uint8_t *mem;
 
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 100));
-    must_put(&fb, grey(8, 2, 50));
-    mem = memory();
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 100));
+    draw_image(&fb, make_grey_image(8, 2, 50));
+    mem = read_memory();
     for (int y = 0; y < 6; y++)
         assert_int_equal(mem[40 * y], y == 2 || y == 3 ? 50 : 0);
-    scribble(0, 123); /* Black is not drawn again. */
-    must_put(&fb, grey(8, 2, 50));
-    assert_int_equal(memory()[0], 123);
+    /* The border is not redrawn for an image of the same size. */
+    write_memory(0, 123);
+    draw_image(&fb, make_grey_image(8, 2, 50));
+    assert_int_equal(read_memory()[0], 123);
     fb.sink.close(&fb.sink);
 }
 
@@ -237,24 +240,24 @@ TEST(odd_start)
     struct glint_fbdev fb;
 
     fake_fb->fix.smem_start = 0xfd000064;
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 77));
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 77));
     expect_screen(0x64, 77);
-    assert_int_equal(memory()[0x63], 0xaa);
+    assert_int_equal(read_memory()[0x63], 0xaa);
     fb.sink.close(&fb.sink);
-    /* After a console has scrolled, the part in view begins lower down. */
-    reset();
+    /* A console that has scrolled shows rows further down. */
+    reset_one_page();
     fake_fb->var.yres_virtual = 20;
     fake_fb->var.yoffset = 5;
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 78));
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 78));
     expect_screen(5 * 40, 78);
-    assert_int_equal(memory()[5 * 40 - 1], 0xaa);
-    must_put(&fb, grey(8, 2, 78));
+    assert_int_equal(read_memory()[5 * 40 - 1], 0xaa);
+    draw_image(&fb, make_grey_image(8, 2, 78));
     fake_fb->var.yoffset = 14;
-    must_put(&fb, grey(8, 2, 79));
-    assert_int_equal(memory()[14 * 40], 0);
-    assert_int_equal(memory()[16 * 40], 79);
+    draw_image(&fb, make_grey_image(8, 2, 79));
+    assert_int_equal(read_memory()[14 * 40], 0);
+    assert_int_equal(read_memory()[16 * 40], 79);
     fb.sink.close(&fb.sink);
 }
 
@@ -262,25 +265,25 @@ TEST(pages)
 {
     struct glint_fbdev fb;
 
-    reset_pages();
-    must_open(&fb, NULL);
+    reset_two_pages();
+    open_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 2);
     assert_int_equal(fake_fb->var.yoffset, 0);
     for (int i = 1; i <= 5; i++) {
         const uint32_t shown = i % 2 ? 6 : 0;
-        const int before = memory()[(6 - shown) * 40];
+        const int before = read_memory()[(6 - shown) * 40];
 
-        must_put(&fb, grey(8, 6, 10 * i));
+        draw_image(&fb, make_grey_image(8, 6, 10 * i));
         assert_int_equal(fake_fb->var.yoffset, shown);
-        assert_int_equal(memory()[shown * 40], 10 * i);
-        assert_int_equal(memory()[(6 - shown) * 40], before);
+        assert_int_equal(read_memory()[shown * 40], 10 * i);
+        assert_int_equal(read_memory()[(6 - shown) * 40], before);
     }
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->var.yoffset, 0);
-    /* A glint that was killed left the second page in view. */
+    /* A killed glint left the second page in view. */
     fake_fb->var.yoffset = 6;
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 1));
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 1));
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->var.yoffset, 0);
 }
@@ -289,37 +292,38 @@ TEST(no_pages)
 {
     struct glint_fbdev fb;
 
-    reset_pages();
+    reset_two_pages();
     fake_fb->can_pan = false;
-    must_open(&fb, NULL);
+    open_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
-    must_put(&fb, grey(8, 6, 9));
-    assert_int_equal(memory()[0], 9);
+    draw_image(&fb, make_grey_image(8, 6, 9));
+    assert_int_equal(read_memory()[0], 9);
     fb.sink.close(&fb.sink);
 
-    reset_pages();
-    fake_fb->fix.smem_len = 11 * 40; /* less than 12 lines */
-    must_open(&fb, NULL);
+    reset_two_pages();
+    fake_fb->fix.smem_len = 11 * 40; /* less than two pages of 6 rows */
+    open_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     assert_int_equal(fake_fb->n_pan, 0);
     fb.sink.close(&fb.sink);
 
-    reset_pages();
+    reset_two_pages();
     fake_fb->fix.ypanstep =
-        4; /* The 6 lines of a page are not multiple of 4. */
-    must_open(&fb, NULL);
+        4; /* The 6 rows of a page are not a multiple of 4. */
+    open_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     fb.sink.close(&fb.sink);
 
-    reset_pages(); /* The driver can pan at first, then not. */
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 9));
+    reset_two_pages(); /* The first panning request succeeds, later ones fail.
+                        */
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 9));
     fake_fb->can_pan = false;
     fake_fb->n_pan = 0;
-    must_put(&fb, grey(8, 6, 11));
-    assert_int_equal(memory()[fake_fb->var.yoffset * 40], 11);
-    must_put(&fb, grey(8, 6, 12));
-    assert_int_equal(fake_fb->n_pan, 1); /* not tried again */
+    draw_image(&fb, make_grey_image(8, 6, 11));
+    assert_int_equal(read_memory()[fake_fb->var.yoffset * 40], 11);
+    draw_image(&fb, make_grey_image(8, 6, 12));
+    assert_int_equal(fake_fb->n_pan, 1); /* not repeated after the failure */
     fb.sink.close(&fb.sink);
 }
 
@@ -328,22 +332,22 @@ TEST(vsync)
     const struct glint_fbdev_options options = {.vsync = true};
     struct glint_fbdev fb;
 
-    must_open(&fb, &options);
+    open_sink(&fb, &options);
     for (int i = 0; i < 3; i++)
-        must_put(&fb, grey(8, 6, i));
-    /* A failed wait is not tried again. */
+        draw_image(&fb, make_grey_image(8, 6, i));
+    /* After a failure the sink stops waiting for vsync. */
     assert_int_equal(fake_fb->n_vsync, 1);
     fb.sink.close(&fb.sink);
-    reset();
+    reset_one_page();
     fake_fb->vsync_errno = 0;
-    must_open(&fb, &options);
+    open_sink(&fb, &options);
     for (int i = 0; i < 3; i++)
-        must_put(&fb, grey(8, 6, i));
+        draw_image(&fb, make_grey_image(8, 6, i));
     assert_int_equal(fake_fb->n_vsync, 3);
     fb.sink.close(&fb.sink);
     fake_fb->n_vsync = 0;
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 1));
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 1));
     assert_int_equal(fake_fb->n_vsync, 0);
     fb.sink.close(&fb.sink);
 }
@@ -355,63 +359,64 @@ TEST(goes_away)
     char want[128];
 
     snprintf(want, sizeof want, "%s: the framebuffer went away", fake_fb_path);
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 5));
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 5));
     fake_fb->gone = true;
-    assert_int_equal(fb.sink.put(&fb.sink, grey(8, 6, 6), &error),
+    assert_int_equal(fb.sink.put(&fb.sink, make_grey_image(8, 6, 6), &error),
                      GLINT_E_DEVICE);
     assert_string_equal(error.text, want);
-    assert_int_equal(memory()[0], 5);
+    assert_int_equal(read_memory()[0], 5);
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb_maps, 0);
 }
 
-/* Another program sets 16 bits, then two screens of 32: both must be
- * followed. */
+/* Checks that the sink adopts the modes that another program sets: 16 bits
+ * per pixel, then two screens of 32 bits. */
 TEST(mode_changes)
 {
     struct glint_fbdev fb;
     const uint8_t *mem;
 
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 255));
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 255));
     fake_fb->var.bits_per_pixel = 16;
     fake_fb->var.red = (struct fb_bitfield){11, 5, 0};
     fake_fb->var.green = (struct fb_bitfield){5, 6, 0};
     fake_fb->var.blue = (struct fb_bitfield){0, 5, 0};
     fake_fb->var.xres = 4;
     fake_fb->fix.line_length = 64;
-    must_put(&fb, grey(4, 6, 255));
+    draw_image(&fb, make_grey_image(4, 6, 255));
     assert_int_equal(fb.width, 4);
-    mem = memory();
+    mem = read_memory();
     for (int i = 0; i < 8; i++)
         assert_int_equal(mem[5 * 64 + i], 255);
     assert_int_equal(mem[5 * 64 + 8], 0xaa);
-    reset_pages();
-    must_put(&fb, grey(8, 6, 3));
+    reset_two_pages();
+    draw_image(&fb, make_grey_image(8, 6, 3));
     assert_int_equal(fb.n_pages, 2);
-    assert_int_equal(memory()[6 * 40], 3);
-    /* The page must be mapped again and its old map undone. */
+    assert_int_equal(read_memory()[6 * 40], 3);
+    /* The page is mapped again and its old mapping removed. */
     assert_int_equal(fake_fb_maps, 0);
     fb.sink.close(&fb.sink);
 }
 
-/* A driver that reports no bit fields must get the usual ones. */
+/* Checks that the usual bit fields (XRGB8888) are used with a driver that
+ * reports none. */
 TEST(no_fields)
 {
     static const struct fb_bitfield none;
     struct glint_fbdev fb;
 
     fake_fb->var.red = fake_fb->var.green = fake_fb->var.blue = none;
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 100));
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 100));
     expect_screen(0, 100);
     fb.sink.close(&fb.sink);
     fake_fb->var.bits_per_pixel = 16;
-    must_open(&fb, NULL);
-    must_put(&fb, grey(8, 6, 255));
+    open_sink(&fb, NULL);
+    draw_image(&fb, make_grey_image(8, 6, 255));
     assert_int_equal(fb.layout.green.length, 6);
-    assert_int_equal(memory()[15], 255);
+    assert_int_equal(read_memory()[15], 255);
     fb.sink.close(&fb.sink);
 }
 
@@ -442,35 +447,35 @@ TEST(refuses)
     expect_refused("there is no framebuffer");
     fake_fb->open_errno = EACCES;
     expect_refused("usermod -aG video");
-    reset();
+    reset_one_page();
     fake_fb->fix.visual = FB_VISUAL_PSEUDOCOLOR;
     fake_fb->var.bits_per_pixel = 8;
     expect_refused("pixels of 8 bits (type 0, visual 3) are not packed");
-    reset();
+    reset_one_page();
     fake_fb->fix.type = FB_TYPE_PLANES;
     expect_refused("not packed true colour");
-    reset();
+    reset_one_page();
     fake_fb->var.grayscale = 1;
     expect_refused("not packed true colour");
-    reset();
+    reset_one_page();
     fake_fb->var.bits_per_pixel = 4000000000;
     expect_refused("not packed true colour");
-    reset();
+    reset_one_page();
     fake_fb->fix.line_length = 31;
     expect_refused("too few for 8 x 6");
-    reset();
+    reset_one_page();
     fake_fb->fix.line_length = 0;
     expect_refused("too few for 8 x 6");
-    reset();
+    reset_one_page();
     fake_fb->fix.smem_len = 6 * 40 - 1;
     expect_refused("too few for 8 x 6");
-    reset();
+    reset_one_page();
     fake_fb->var.yres = 0;
     expect_refused("is 8 x 0 pixels large");
-    reset();
+    reset_one_page();
     fake_fb->var.xres = 100000;
     expect_refused("is 100000 x 6 pixels large");
-    reset();
+    reset_one_page();
     fake_fb->gone = true;
     expect_refused("went away");
     assert_int_equal(glint_fbdev_open(&fb, "/dev/null", &none, &error),
@@ -501,10 +506,10 @@ static void check_console(bool taken, int during, int after)
     static const struct glint_fbdev_options options = {.console = true};
     struct glint_fbdev fb;
 
-    must_open(&fb, &options);
+    open_sink(&fb, &options);
     assert_int_equal(fb.has_note, !taken);
     assert_int_equal(fake_fb->tty_mode, during);
-    must_put(&fb, grey(8, 6, 1));
+    draw_image(&fb, make_grey_image(8, 6, 1));
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->tty_mode, after);
     if (!taken)
@@ -514,18 +519,19 @@ static void check_console(bool taken, int during, int after)
 TEST(console)
 {
     check_console(true, KD_GRAPHICS, KD_TEXT);
-    fake_fb->tty_mode = KD_GRAPHICS; /* A killed program left it so. */
+    /* A killed program left graphics mode set. */
+    fake_fb->tty_mode = KD_GRAPHICS;
     check_console(true, KD_GRAPHICS, KD_TEXT);
-    fake_fb->tty_mode = KD_GRAPHICS; /* An X server has the console. */
+    fake_fb->tty_mode = KD_GRAPHICS; /* An X server owns the console. */
     fake_fb->tty_switching = VT_PROCESS;
     check_console(false, KD_GRAPHICS, KD_GRAPHICS);
-    reset();
+    reset_one_page();
     fake_fb->tty_errno = EACCES;
     check_console(false, KD_TEXT, KD_TEXT);
 }
 
-/* A console that was given back must be left alone at the end of the process,
- * even though another file has its descriptor. */
+/* Checks that a console which was released is not touched at the end of the
+ * process, even if another file has reused its descriptor. */
 TEST(let_go)
 {
     int how;
@@ -546,9 +552,9 @@ TEST(let_go)
 
 /* ---------------------------------------------------------------- failures */
 
-/* Draws three frames of two sizes. Returns false if something failed, which
- * must have been reported. */
-static bool live(void)
+/* Draws three frames of two sizes. Returns false if a call failed; then an
+ * error message is expected. */
+static bool draw_frames(void)
 {
     static const struct glint_fbdev_options options = {.console = true,
                                                        .vsync = true};
@@ -558,11 +564,11 @@ static bool live(void)
         glint_fbdev_open(&fb, fake_fb_path, &options, &error);
 
     if (!status) {
-        status = fb.sink.put(&fb.sink, grey(8, 6, 1), &error);
+        status = fb.sink.put(&fb.sink, make_grey_image(8, 6, 1), &error);
         if (!status)
-            status = fb.sink.put(&fb.sink, grey(8, 6, 2), &error);
+            status = fb.sink.put(&fb.sink, make_grey_image(8, 6, 2), &error);
         if (!status)
-            status = fb.sink.put(&fb.sink, grey(4, 6, 3), &error);
+            status = fb.sink.put(&fb.sink, make_grey_image(4, 6, 3), &error);
         fake_fb_fail_at = 0;
         fb.sink.close(&fb.sink);
     }
@@ -582,11 +588,11 @@ static void check_failures(bool pages)
     do {
         n++;
         if (pages)
-            reset_pages();
+            reset_two_pages();
         else
-            reset();
+            reset_one_page();
         fake_fb_fail_at = n;
-        n_failed += !live();
+        n_failed += !draw_frames();
         n_last = fake_fb_calls;
         fake_fb_fail_at = 0;
         assert_int_equal(fake_fb_maps, 0);
@@ -594,7 +600,7 @@ static void check_failures(bool pages)
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
     } while (n <= n_last);
-    assert_true(n_failed >= 8); /* Some calls may fail unnoticed. */
+    assert_true(n_failed >= 8); /* Failures of some calls are not reported. */
     assert_true(n > 15);
 }
 

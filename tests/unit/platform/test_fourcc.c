@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * FOURCCs and colours of V4L2, to formats of glint and back.
+ * Tests the conversion of V4L2 FOURCCs and colour spaces to glint's formats and
+ * back.
  */
 #include <stdint.h>
 
@@ -9,7 +10,7 @@
 
 #include <linux/videodev2.h>
 
-static uint32_t parsed(const char *text)
+static uint32_t parse(const char *text)
 {
     uint32_t fourcc = 0;
 
@@ -21,7 +22,7 @@ static void expect_format(const char *text, enum glint_pixel_format want)
 {
     enum glint_pixel_format format = GLINT_LINEAR_Q20;
 
-    assert_true(glint_fourcc_to_format(parsed(text), &format));
+    assert_true(glint_fourcc_to_format(parse(text), &format));
     assert_int_equal(format, want);
 }
 
@@ -49,7 +50,8 @@ TEST(formats)
     expect_format("RGBP", GLINT_RGB565);
 }
 
-/* FOURCCs by hand: 'Y' is the lowest byte. */
+/* Expected FOURCCs are computed by hand: the first letter is the lowest
+ * byte. */
 TEST(words)
 {
     assert_int_equal(glint_fourcc_of(GLINT_YUYV), 0x56595559);
@@ -57,10 +59,10 @@ TEST(words)
     assert_int_equal(glint_fourcc_of(GLINT_XRGB8888), 0x34325258);
     assert_int_equal(glint_fourcc_of(GLINT_I444), 0);
     assert_int_equal(glint_fourcc_of(GLINT_LINEAR_Q20), 0);
-    assert_int_equal(parsed("MJPG"), 0x47504a4d);
-    assert_int_equal(parsed("mjpeg"), 0x47504a4d);
-    /* Unknown codes are taken as they are. */
-    assert_int_equal(parsed("pRAA"), 0x41415270);
+    assert_int_equal(parse("MJPG"), 0x47504a4d);
+    assert_int_equal(parse("mjpeg"), 0x47504a4d);
+    /* Unknown codes are returned unchanged. */
+    assert_int_equal(parse("pRAA"), 0x41415270);
 }
 
 TEST(there_and_back)
@@ -75,7 +77,7 @@ TEST(there_and_back)
         assert_true(glint_fourcc_to_format(fourcc, &format));
         assert_int_equal(format, i);
         glint_fourcc_text(fourcc, text);
-        assert_int_equal(parsed(text), fourcc);
+        assert_int_equal(parse(text), fourcc);
     }
 }
 
@@ -85,7 +87,7 @@ TEST(refuses)
     uint32_t fourcc;
     char text[5];
 
-    assert_false(glint_fourcc_to_format(parsed("MJPG"), &format));
+    assert_false(glint_fourcc_to_format(parse("MJPG"), &format));
     assert_false(glint_fourcc_to_format(0, &format));
     assert_false(glint_fourcc_parse("", &fourcc));
     assert_false(glint_fourcc_parse("YUV", &fourcc));
@@ -111,7 +113,8 @@ TEST(colour_defaults)
 {
     struct glint_image i;
 
-    /* vivid and most webcams say sRGB, and leave the rest to defaults. */
+    /* vivid and most webcams report sRGB and leave the other fields at their
+     * defaults. */
     assert_true(read_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_LIMITED);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
@@ -144,8 +147,8 @@ TEST(colour_stated)
     assert_int_equal(i.range, GLINT_RANGE_FULL);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
-    /* A driver may name colours that have no counterpart; this must be
-     * reported. */
+    /* Checks that a colour space without a counterpart in glint returns
+     * false. */
     assert_false(read_colour(&i, GLINT_NV12, V4L2_COLORSPACE_BT2020, 0, 0, 0));
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_false(read_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Picture files that are opened, lit and written must keep all that they hold:
- * PNM and PFM, which need no plug-in.
+ * Tests editing image files in place: everything but the added light is
+ * preserved. Uses PNM and PFM, which need no plug-in.
  */
 #include <stdint.h>
 
@@ -29,8 +29,9 @@ static void expect_file(const char *name, const char *data, size_t bytes)
     assert_memory_equal(got, data, bytes);
 }
 
-/* Opens NAME, adds LIGHT to all of it, and writes it as TO. */
-static void light_up(const char *name, const char *to, float light)
+/* Opens NAME, adds LIGHT (1 = white) to all pixels, and writes the result to
+ * TO. */
+static void add_light_to_file(const char *name, const char *to, float light)
 {
     struct glint_kept kept;
     struct glint_kept_options options = {.quality = 0};
@@ -50,18 +51,19 @@ static void light_up(const char *name, const char *to, float light)
 static void check_same(const char *name, const char *data, size_t bytes)
 {
     scratch_put(name, data, bytes);
-    light_up(name,
-             name[0] == 'a'   ? "b.pfm"
-             : name[0] == 'c' ? "b.pgm"
-                              : "b.ppm",
-             0);
+    add_light_to_file(name,
+                      name[0] == 'a'   ? "b.pfm"
+                      : name[0] == 'c' ? "b.pgm"
+                                       : "b.ppm",
+                      0);
     expect_file(name[0] == 'a'   ? "b.pfm"
                 : name[0] == 'c' ? "b.pgm"
                                  : "b.ppm",
                 data, bytes);
 }
 
-/* Comments, depth, byte order and bytes behind the picture must stay. */
+/* Checks that comments, bit depth, byte order and bytes after the image are
+ * preserved. */
 TEST(stays)
 {
     check_same("x.ppm", BYTES("P6 #hello\n2 1 #x\n255\nabcdef"));
@@ -76,15 +78,15 @@ TEST(stays)
 TEST(light)
 {
     scratch_put("x.pfm", BYTES("Pf 1 2 1 \x40\0\0\0\xbf\x80\0\0"));
-    light_up("x.pfm", "y.pfm", 1);
+    add_light_to_file("x.pfm", "y.pfm", 1);
     expect_file("y.pfm", BYTES("Pf 1 2 1 \x40\x40\0\0\0\0\0\0"));
     scratch_put("x.ppm", BYTES("P6 1 1 65535\n\0\0\0\0\xff\xff"));
-    light_up("x.ppm", "y.ppm", 0.5F);
+    add_light_to_file("x.ppm", "y.ppm", 0.5F);
     expect_file("y.ppm", BYTES("P6 1 1 65535\n\xbc\x40\xbc\x40\xff\xff"));
 }
 
-/* A file of another type must have a depth that this type takes, and losses
- * must be reported. */
+/* Checks conversion to another file type: the bit depth becomes one that the
+ * type supports, and losses are reported. */
 TEST(converts)
 {
     struct glint_kept kept;
@@ -102,7 +104,7 @@ TEST(converts)
     unlink(scratch_path("x.pfm"));
     expect_file("y.ppm", BYTES("P6\n1 1\n65535\n\xff\xff\xff\xff\0\0"));
     scratch_put("x.pgm", BYTES("P5 1 1 255\n\xbc"));
-    light_up("x.pgm", "y.ppm", 0);
+    add_light_to_file("x.pgm", "y.ppm", 0);
     expect_file("y.ppm", BYTES("P6\n1 1\n255\n\xbc\xbc\xbc"));
 }
 
@@ -141,7 +143,8 @@ TEST(refuses)
     refuse(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"), "is a video");
     assert_int_equal(glint_kept_open(&kept, "/nowhere/x", &error), GLINT_E_IO);
     assert_int_equal(glint_kept_check("a.y4m", &error), GLINT_E_UNSUPPORTED);
-    if (!stated) { /* A loaded plug-in stays. */
+    /* A plug-in that is loaded already cannot be made unavailable. */
+    if (!stated) {
         setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
         refuse(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"), "plug-in");
         unsetenv("GLINT_OIIO");

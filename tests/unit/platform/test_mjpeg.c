@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * MJPEG: frames that libjpeg writes here must come back as the planes that they
- * were made of, and as libjpeg's own scan lines; then habits of cameras, and
- * damage on the way.
+ * Tests the MJPEG decoder: frames encoded here by libjpeg decode to the planes
+ * they were made of and to libjpeg's own scan lines; deviations of real cameras
+ * are accepted; damaged frames are handled.
  */
 #include <stdint.h>
 
@@ -24,12 +24,14 @@ static struct glint_error error;
 
 /* ---------------------------------------------------------- frames to test */
 
-/* How a frame is coded. */
+/* Parameters for encoding a frame. */
 struct coding {
     int width, height;
-    int factor[3][2]; /* sampling of Y, Cb, Cr across, down, 1 .. 4; 0: none */
-    int restart;      /* MCUs between restart markers; 0: no markers */
-    bool optimised;   /* Huffman tables of its own */
+    /* sampling factors of Y, Cb, Cr, horizontal and vertical, 1 .. 4; 0:
+     * component absent */
+    int factor[3][2];
+    int restart;    /* MCUs between restart markers; 0: no markers */
+    bool optimised; /* optimised Huffman tables instead of the standard's */
     bool noisy;
 };
 
@@ -38,7 +40,8 @@ static const struct coding y422 = {64, 48, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 0};
 static const struct coding grey = {64, 48, {{1, 1}, {0, 0}, {0, 0}}, 0, 0, 0};
 
 struct bytes {
-    uint8_t *data; /* exactly N bytes: reads beyond show */
+    /* N bytes, allocated exactly, so that ASan detects overreads */
+    uint8_t *data;
     size_t n;
 };
 
@@ -51,9 +54,9 @@ static struct bytes copy_of(const void *data, size_t n)
     return b;
 }
 
-/* Returns the sample of plane P at (X, Y): gradients that differ by plane, with
- * noise on top where asked. */
-static uint8_t sample(const struct coding *c, int p, int x, int y)
+/* Returns the sample of plane P at (X, Y): a gradient per plane, plus noise
+ * if C is noisy. */
+static uint8_t sample_at(const struct coding *c, int p, int x, int y)
 {
     static const int base[] = {20, 60, 200}, dx[] = {2, 1, -1},
                      dy[] = {1, 2, 0};
@@ -63,7 +66,7 @@ static uint8_t sample(const struct coding *c, int p, int x, int y)
     return (uint8_t)(c->noisy ? value + (int)(hash >> 27) : value % 256);
 }
 
-static int n_planes(const struct coding *c)
+static int count_planes(const struct coding *c)
 {
     return c->factor[1][0] ? 3 : 1;
 }
@@ -75,19 +78,19 @@ static void write_planes(struct jpeg_compress_struct *j, const struct coding *c)
     JSAMPARRAY planes[3] = {row[0], row[1], row[2]};
 
     for (int mcu = 0; j->next_scanline < j->image_height; mcu++) {
-        for (int p = 0; p < n_planes(c); p++)
+        for (int p = 0; p < count_planes(c); p++)
             for (int y = 0; y < c->factor[p][1] * 8; y++) {
                 row[p][y] = mem[p][y];
                 for (int x = 0; x < 2048; x++)
                     mem[p][y][x] =
-                        sample(c, p, x, mcu * c->factor[p][1] * 8 + y);
+                        sample_at(c, p, x, mcu * c->factor[p][1] * 8 + y);
             }
         jpeg_write_raw_data(j, planes, (JDIMENSION)(j->max_v_samp_factor * 8));
     }
 }
 
-/* Returns a frame of coding C; TUNE may change settings before it is
- * written. */
+/* Returns a frame encoded with C. TUNE, unless NULL, changes libjpeg's
+ * settings before encoding. */
 static struct bytes encode(const struct coding *c,
                            void (*tune)(struct jpeg_compress_struct *))
 {
@@ -102,14 +105,14 @@ static struct bytes encode(const struct coding *c,
     jpeg_mem_dest(&j, &data, &n);
     j.image_width = (JDIMENSION)c->width;
     j.image_height = (JDIMENSION)c->height;
-    j.input_components = n_planes(c);
-    j.in_color_space = n_planes(c) == 3 ? JCS_YCbCr : JCS_GRAYSCALE;
+    j.input_components = count_planes(c);
+    j.in_color_space = count_planes(c) == 3 ? JCS_YCbCr : JCS_GRAYSCALE;
     jpeg_set_defaults(&j);
     jpeg_set_quality(&j, 100, TRUE);
     j.restart_interval = (unsigned)c->restart;
     j.optimize_coding = c->optimised;
     j.raw_data_in = TRUE;
-    for (int p = 0; p < n_planes(c); p++) {
+    for (int p = 0; p < count_planes(c); p++) {
         j.comp_info[p].h_samp_factor = c->factor[p][0];
         j.comp_info[p].v_samp_factor = c->factor[p][1];
     }
@@ -125,7 +128,7 @@ static struct bytes encode(const struct coding *c,
 }
 
 /* Returns the offset of the first segment MARKER at or after AT. */
-static size_t find(const struct bytes *b, int marker, size_t at)
+static size_t find_segment(const struct bytes *b, int marker, size_t at)
 {
     while (at + 1 < b->n && (b->data[at] != 0xff || b->data[at + 1] != marker))
         at++;
@@ -134,8 +137,8 @@ static size_t find(const struct bytes *b, int marker, size_t at)
 }
 
 /* Replaces CUT bytes at AT by INSERT[N]. */
-static void splice(struct bytes *b, size_t at, size_t cut, const void *insert,
-                   size_t n)
+static void replace_bytes(struct bytes *b, size_t at, size_t cut,
+                          const void *insert, size_t n)
 {
     uint8_t *const data = malloc(b->n - cut + n);
 
@@ -148,13 +151,13 @@ static void splice(struct bytes *b, size_t at, size_t cut, const void *insert,
     b->n += n - cut;
 }
 
-static void strip(struct bytes *b, int marker, int times)
+static void remove_segments(struct bytes *b, int marker, int times)
 {
     for (int i = 0; i < times; i++) {
-        const size_t at = find(b, marker, 0);
+        const size_t at = find_segment(b, marker, 0);
         const size_t length = (size_t)(b->data[at + 2] << 8 | b->data[at + 3]);
 
-        splice(b, at, 2 + length, "", 0);
+        replace_bytes(b, at, 2 + length, "", 0);
     }
 }
 
@@ -168,7 +171,7 @@ static struct glint_mjpeg *open_decoder(int width, int height)
     return d;
 }
 
-/* Returns the picture of a frame that must decode. */
+/* Decodes frame B, checks that this succeeds, and returns the image. */
 static struct glint_image decode(struct glint_mjpeg *d, const struct bytes *b)
 {
     struct glint_image image;
@@ -198,8 +201,8 @@ static void expect_planes(const struct glint_image *i, const struct coding *c)
     assert_int_equal(i->range, GLINT_RANGE_FULL);
     assert_int_equal(i->matrix, GLINT_MATRIX_BT601);
     assert_int_equal(i->transfer, GLINT_TONE_SRGB);
-    assert_int_equal(glint_image_planes(i->format), n_planes(c));
-    for (int p = 0; p < n_planes(c); p++) {
+    assert_int_equal(glint_image_planes(i->format), count_planes(c));
+    for (int p = 0; p < count_planes(c); p++) {
         const int across = (int)glint_image_row_bytes(i->format, p, i->width);
         const int down = glint_image_plane_height(i->format, p, i->height);
 
@@ -207,17 +210,17 @@ static void expect_planes(const struct glint_image *i, const struct coding *c)
             for (int x = 0; x < across; x++) {
                 const int is = i->plane[p][y * i->stride_bytes[p] + x];
 
-                if (abs(is - sample(c, p, x, y)) > 3)
+                if (abs(is - sample_at(c, p, x, y)) > 3)
                     fail_msg("plane %d, %d, %d: %d is not %d", p, x, y, is,
-                             sample(c, p, x, y));
+                             sample_at(c, p, x, y));
             }
     }
-    for (int p = n_planes(c); p < 3; p++)
+    for (int p = count_planes(c); p < 3; p++)
         assert_null(i->plane[p]);
 }
 
-/* Checks the planes against scan lines of libjpeg, with chroma repeated and not
- * filtered. */
+/* Checks the planes against libjpeg's scan lines, decoded with chroma
+ * replicated, not interpolated. */
 static void expect_scanlines(const struct glint_image *i, const struct bytes *b)
 {
     const int halved = i->format == GLINT_I420 || i->format == GLINT_I422;
@@ -275,7 +278,7 @@ TEST(codings)
         {{{1, 2}, {1, 2}, {1, 2}}, GLINT_I444},
         {{{1, 3}, {1, 3}, {1, 3}}, GLINT_I444},
         {{{2, 1}, {1, 1}, {1, 1}}, GLINT_I422},
-        {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422}, /* as ffmpeg does */
+        {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422}, /* as ffmpeg encodes 4:2:2 */
         {{{2, 2}, {1, 1}, {1, 1}}, GLINT_I420},
     };
     static const int size[][2] = {
@@ -293,16 +296,17 @@ TEST(codings)
         }
 }
 
-/* A frame written by hand, without Huffman tables: one block of 8 x 8, with all
- * steps of the quantiser 1. The difference of DC is 400: class 9, 1111110;
- * 110010000; then end of block, 1010; padding. All samples must be 128 + 400 /
- * 8 = 178. */
+/* A frame written by hand, without Huffman tables: one block of 8 x 8 and
+ * quantiser steps of 1. The DC difference is 400: category 9 (code 1111110),
+ * value 110010000, end of block 1010, padding. All samples decode to 128 +
+ * 400 / 8 = 178. */
 TEST(by_hand)
 {
     static const uint8_t head[] = {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0};
     static const uint8_t tail[] = {
-        0xff, 0xc0, 0,    11,   8,   0, 8, 0, 8,  1, 1, 0x11, 0, /* frame */
-        0xff, 0xda, 0,    8,    1,   1, 0, 0, 63, 0,             /* scan */
+        /* frame header (SOF0) */
+        0xff, 0xc0, 0,    11,   8,   0, 8, 0, 8, 1,  1, 0x11,
+        0,    0xff, 0xda, 0,    8,   1, 1, 0, 0, 63, 0, /* scan header (SOS) */
         0xfd, 0x90, 0xaf, 0xff, 0xd9};
     uint8_t frame[sizeof head + 64 + sizeof tail];
     struct glint_mjpeg *const d = open_decoder(8, 8);
@@ -334,12 +338,12 @@ TEST(no_huffman_tables)
 
     own.optimised = true;
     other = encode(&own, NULL);
-    strip(&b, 0xc4, 4);
+    remove_segments(&b, 0xc4, 4);
     image = decode(d, &b);
     expect_planes(&image, &y422);
     image = decode(d, &other);
     expect_planes(&image, &own);
-    image = decode(d, &b); /* tables of OTHER are forgotten */
+    image = decode(d, &b); /* the tables of OTHER must not be used */
     expect_planes(&image, &y422);
     free(other.data);
     free(b.data);
@@ -351,7 +355,7 @@ TEST(nothing_is_kept)
     struct glint_mjpeg *const d = open_decoder(64, 48);
     struct bytes whole = encode(&y422, NULL), bare = encode(&y422, NULL);
 
-    strip(&bare, 0xdb, 2);
+    remove_segments(&bare, 0xdb, 2);
     decode(d, &whole);
     expect_refusal(d, &bare, GLINT_E_FORMAT, "Quantization table");
     decode(d, &whole);
@@ -360,7 +364,8 @@ TEST(nothing_is_kept)
     glint_mjpeg_close(d);
 }
 
-/* Frames must decode with every combination of these habits of cameras. */
+/* Checks that frames decode with every combination of these deviations of
+ * cameras. */
 TEST(camera_habits)
 {
     static const uint8_t avi1[] = {0xff, 0xe0, 0, 16, 'A', 'V', 'I', '1', 0,
@@ -377,23 +382,26 @@ TEST(camera_habits)
         struct bytes b = encode(&c, NULL);
         struct glint_image image;
 
-        if (habits & 1) { /* AVI1 replaces JFIF. */
-            strip(&b, 0xe0, 1);
-            splice(&b, 2, 0, avi1, sizeof avi1);
+        if (habits & 1) { /* An AVI1 segment replaces JFIF. */
+            remove_segments(&b, 0xe0, 1);
+            replace_bytes(&b, 2, 0, avi1, sizeof avi1);
         }
-        if (habits & 2) /* A start of image stands among the headers. */
-            splice(&b, find(&b, 0xdb, 0), 0, soi, sizeof soi);
-        if (habits & 4) /* A second start of image comes at once. */
-            splice(&b, 0, 0, soi, sizeof soi);
-        if (habits & 8) /* Two bytes precede the third restart marker. */
-            splice(&b, find(&b, 0xd2, 300), 0, "\x12\x34", 2);
-        if (habits & 16) /* Half of the frame follows once more. */
-            splice(&b, b.n, 0, b.data, b.n / 2);
-        else if (habits & 32) /* The end of image is missing. */
+        /* An additional start of image precedes the quantiser tables. */
+        if (habits & 2)
+            replace_bytes(&b, find_segment(&b, 0xdb, 0), 0, soi, sizeof soi);
+        if (habits & 4) /* A second start of image follows the first. */
+            replace_bytes(&b, 0, 0, soi, sizeof soi);
+        if (habits & 8) /* Two extra bytes precede the third restart marker. */
+            replace_bytes(&b, find_segment(&b, 0xd2, 300), 0, "\x12\x34", 2);
+        if (habits & 16) /* Half of the frame is repeated after its end. */
+            replace_bytes(&b, b.n, 0, b.data, b.n / 2);
+        else if (habits & 32) /* The end-of-image marker is missing. */
             b.n -= 2;
         if (habits & 64) {
-            splice(&b, find(&b, 0xdb, 0), 0, comment, sizeof comment);
-            splice(&b, find(&b, 0xdb, 0), 0, filler, sizeof filler);
+            replace_bytes(&b, find_segment(&b, 0xdb, 0), 0, comment,
+                          sizeof comment);
+            replace_bytes(&b, find_segment(&b, 0xdb, 0), 0, filler,
+                          sizeof filler);
         }
         b = (struct bytes){realloc(b.data, b.n), b.n};
         image = decode(d, &b);
@@ -456,8 +464,9 @@ static void tune_scans(struct jpeg_compress_struct *j)
     j->num_scans = 2;
 }
 
-static void refuse(struct coding c, void (*tune)(struct jpeg_compress_struct *),
-                   const char *text)
+static void check_refusal(struct coding c,
+                          void (*tune)(struct jpeg_compress_struct *),
+                          const char *text)
 {
     struct glint_mjpeg *const d = open_decoder(64, 48);
     const struct bytes b = encode(&c, tune);
@@ -478,13 +487,13 @@ TEST(refusals)
     };
     struct coding c = y444;
 
-    refuse(y444, tune_progressive, "several scans");
-    refuse(y444, tune_scans, "several scans");
-    refuse(y420, tune_arithmetic, "arithmetic");
-    refuse(y444, tune_rgb, "components");
+    check_refusal(y444, tune_progressive, "several scans");
+    check_refusal(y444, tune_scans, "several scans");
+    check_refusal(y420, tune_arithmetic, "arithmetic");
+    check_refusal(y444, tune_rgb, "colours");
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
         memcpy(c.factor, odd[i], sizeof c.factor);
-        refuse(c, NULL, "subsampling");
+        check_refusal(c, NULL, "subsampling");
     }
     assert_string_equal(
         error.text,
@@ -495,7 +504,7 @@ TEST(deep_and_odd_processes)
 {
     struct glint_mjpeg *const d = open_decoder(64, 48);
     struct bytes b = encode(&y420, NULL);
-    const size_t frame = find(&b, 0xc0, 0);
+    const size_t frame = find_segment(&b, 0xc0, 0);
 
     b.data[frame + 4] = 12;
     expect_refusal(d, &b, GLINT_E_UNSUPPORTED, "precision 12");
@@ -503,7 +512,7 @@ TEST(deep_and_odd_processes)
     b.data[frame + 1] = 0xc3;
     expect_refusal(d, &b, GLINT_E_UNSUPPORTED, "SOF type 0xc3");
     b.data[frame + 1] = 0xc0;
-    b.data[frame + 6] = 0; /* height 0: given later by a marker */
+    b.data[frame + 6] = 0; /* height 0: a later DNL marker would set it */
     expect_refusal(d, &b, GLINT_E_FORMAT, "Empty JPEG image");
     free(b.data);
     glint_mjpeg_close(d);
@@ -569,8 +578,9 @@ TEST(every_truncation)
     check_truncations(c);
 }
 
-/* Sends stderr to FILE; returns a descriptor to bring it back with. */
-static int divert(FILE *file)
+/* Redirects stderr to FILE. Returns a duplicate of the old stderr, to
+ * restore it with. */
+static int redirect_stderr(FILE *file)
 {
     const int kept = dup(STDERR_FILENO);
 
@@ -578,8 +588,8 @@ static int divert(FILE *file)
     return kept;
 }
 
-/* Whatever the damage, decoding must return without a message, and the next
- * frame must be right. */
+/* Checks that decoding frames with random damage prints nothing to stderr,
+ * and that the next intact frame decodes correctly. */
 TEST(damage)
 {
     struct coding c = {48, 32, {{2, 1}, {1, 1}, {1, 1}}, 3, 0, 1};
@@ -591,7 +601,7 @@ TEST(damage)
     struct glint_image image;
 
     assert_non_null(said);
-    kept = divert(said);
+    kept = redirect_stderr(said);
     for (int i = 0; i < 3000; i++) {
         struct bytes b = copy_of(whole.data, whole.n);
         enum glint_status status;
@@ -610,7 +620,8 @@ TEST(damage)
     assert_int_equal(fseek(said, 0, SEEK_END), 0);
     assert_int_equal(ftell(said), 0);
     fclose(said);
-    assert_in_range(n_refused, 300, 2999); /* some is not noticed */
+    /* Some damage cannot be detected. */
+    assert_in_range(n_refused, 300, 2999);
     image = decode(d, &whole);
     expect_planes(&image, &c);
     free(whole.data);
@@ -628,9 +639,9 @@ TEST(garbage)
 
         for (size_t i = 0; i < n; i++)
             noise[i] = n % 3 ? (uint8_t)(rng_bits(&seed) >> 8) : 0;
-        splice(&b, 0, 0, noise, n);
+        replace_bytes(&b, 0, 0, noise, n);
         expect_refusal(d, &b, GLINT_E_FORMAT, "");
-        /* Behind a start of image noise may look like a large frame. */
+        /* Noise after a start-of-image marker may look like a large frame. */
         if (n > 2) {
             struct glint_image image;
 
@@ -643,8 +654,8 @@ TEST(garbage)
     glint_mjpeg_close(d);
 }
 
-/* A restart interval that is lost shifts all that follow: the numbers of the
- * restart markers must show it. */
+/* Checks that a missing restart interval, which would shift all later
+ * blocks, is detected by the numbers of the restart markers. */
 TEST(lost_interval)
 {
     struct coding c = y422;
@@ -655,14 +666,15 @@ TEST(lost_interval)
     c.restart = 4;
     c.noisy = true;
     b = encode(&c, NULL);
-    from = find(&b, 0xd1, 300);
-    splice(&b, from, find(&b, 0xd2, from) - from, "", 0);
+    from = find_segment(&b, 0xd1, 300);
+    replace_bytes(&b, from, find_segment(&b, 0xd2, from) - from, "", 0);
     expect_refusal(d, &b, GLINT_E_FORMAT, "instead of RST1");
     free(b.data);
     glint_mjpeg_close(d);
 }
 
-/* The heap after a hundred frames, good and bad, must be that after ten. */
+/* Checks that the heap in use after 100 valid and damaged frames equals that
+ * after 10. */
 TEST(memory_is_constant)
 {
     struct glint_mjpeg *const d = open_decoder(720, 405);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Without libjpeg an MJPEG camera must be refused with a message.
+ * Checks that an MJPEG camera is rejected with a message in a build without
+ * libjpeg.
  */
 #include <stdint.h>
 

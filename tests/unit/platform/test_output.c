@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Output files must be whole or not be there, whatever goes wrong.
+ * Tests output files: after any failure a file is either complete or absent.
  */
 /* NOLINTNEXTLINE(bugprone-reserved-identifier): flock */
 #define _DEFAULT_SOURCE
@@ -25,7 +25,7 @@
 #include "support/test.h"
 
 static char path[64];
-static int close_errno; /* the next close() fails with this; 0: it does not */
+static int close_errno; /* errno of the next close(); 0: close() succeeds */
 
 int __wrap_close(int fd)
 {
@@ -42,7 +42,7 @@ TEST_OPEN
     snprintf(path, sizeof path, "%s/x.ppm", scratch_dir);
 }
 
-static void put_file(const char *text)
+static void write_file(const char *text)
 {
     FILE *const f = fopen(path, "w");
 
@@ -63,7 +63,7 @@ static void expect_file(const char *text)
     free(data);
 }
 
-static mode_t mode_of(const char *name)
+static mode_t read_mode(const char *name)
 {
     struct stat st;
 
@@ -108,14 +108,14 @@ static void check_death(int signal_number, int handled)
     assert_int_equal(scratch_count(scratch_dir), 0);
 }
 
-/* A signal must leave no file behind. This test must come first: the first open
- * takes the signals for the whole process. */
+/* Checks that no file is left behind by a signal. Runs first, as the first
+ * open installs the signal handlers of the whole process. */
 TEST(signals)
 {
     check_death(SIGINT, 0);
     check_death(SIGTERM, 0);
     check_death(SIGHUP, 0);
-    check_death(SIGHUP, 1); /* nohup leaves the signal ignored. */
+    check_death(SIGHUP, 1); /* nohup sets SIGHUP to be ignored. */
 }
 
 TEST(exit)
@@ -147,9 +147,9 @@ TEST(commit)
     assert_ok(glint_output_commit(&out, &error));
     umask(old);
     expect_file("one");
-    assert_int_equal(mode_of(path), 0640);
+    assert_int_equal(read_mode(path), 0640);
     assert_int_equal(scratch_count(scratch_dir), 1);
-    glint_output_abort(&out); /* Nothing is left to undo. */
+    glint_output_abort(&out); /* nothing to remove after a commit */
     unlink(path);
 }
 
@@ -168,7 +168,7 @@ TEST(replaces_at_commit)
     struct glint_error error;
     struct glint_output out;
 
-    put_file("old");
+    write_file("old");
     chmod(path, 0604);
     open_text(&out, "new");
     expect_file("old");
@@ -177,13 +177,13 @@ TEST(replaces_at_commit)
     open_text(&out, "new");
     assert_ok(glint_output_commit(&out, &error));
     expect_file("new");
-    assert_int_equal(mode_of(path), 0604);
+    assert_int_equal(read_mode(path), 0604);
     assert_int_equal(scratch_count(scratch_dir), 1);
     unlink(path);
 }
 
-/* A temporary file is locked, so that no other process takes it for one that
- * was left behind. */
+/* Checks that a temporary file is locked, which prevents other processes
+ * from deleting it as left over. */
 TEST(locked)
 {
     struct glint_output out;
@@ -198,7 +198,7 @@ TEST(locked)
     close(fd);
 }
 
-/* A temporary name that somebody else has taken is left alone. */
+/* Checks that an existing file with the temporary name is not overwritten. */
 TEST(taken_name)
 {
     struct glint_error error;
@@ -209,7 +209,7 @@ TEST(taken_name)
     open_text(&out, "one");
     assert_int_equal(sscanf(strrchr(out.tmp, '-'), "-%u", &n), 1);
     glint_output_abort(&out);
-    put_file("theirs");
+    write_file("theirs");
     snprintf(taken, sizeof taken, "%s/.glint-%ld-%u.ppm", scratch_dir,
              (long)getpid(), n + 1);
     assert_int_equal(rename(path, taken), 0);
@@ -222,8 +222,8 @@ TEST(taken_name)
     unlink(path);
 }
 
-/* What was flushed must be in the file before it is committed, and be there
- * only once. */
+/* Checks that flushed data is in the file before the commit, and only once
+ * after it. */
 TEST(flush)
 {
     struct glint_error error;
@@ -240,13 +240,14 @@ TEST(flush)
     unlink(path);
 }
 
-/* Some file systems say only at close() that data has been lost. */
+/* Checks that data loss which a file system reports only at close() is an
+ * error. */
 TEST(close_fails)
 {
     struct glint_error error;
     struct glint_output out;
 
-    put_file("old");
+    write_file("old");
     open_text(&out, "new");
     close_errno = EIO;
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
@@ -267,7 +268,7 @@ TEST(follows_links)
     struct stat st;
 
     snprintf(link_path, sizeof link_path, "%s/link.ppm", scratch_dir);
-    put_file("old");
+    write_file("old");
     assert_int_equal(symlink(path, link_path), 0);
     assert_ok(glint_output_open(&out, link_path, GLINT_OUTPUT_BINARY, &error));
     assert_ok(glint_output_write(&out, "new", 3, &error));
@@ -279,8 +280,8 @@ TEST(follows_links)
     unlink(path);
 }
 
-/* Small writes, large ones, and one of exactly the buffer's size must be
- * written in order. */
+/* Checks that writes smaller than, larger than and equal to the buffer
+ * arrive in order. */
 TEST(sizes)
 {
     static const size_t sizes[] = {1, 65535, 1, 65536, 3, 200000, 65537, 7};
@@ -321,15 +322,15 @@ TEST(full_device)
     assert_int_equal(glint_output_write(&out, data, 1, &error), GLINT_E_OUTPUT);
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
 
-    /* Data that fits the buffer fails at the end alone. */
+    /* Data that fits into the buffer fails only at the commit. */
     assert_ok(glint_output_open(&out, "/dev/full", GLINT_OUTPUT_TEXT, &error));
     assert_ok(glint_output_write(&out, data, 10, &error));
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
     assert_int_equal(out.fd, -1);
 }
 
-/* Returns 0 if a full disk is reported; a limit on the size of files stands for
- * it. */
+/* Writes more than the process's file size limit, which simulates a full
+ * disk. Returns 0 if the error is reported. */
 static int overflow_disk(void)
 {
     static uint8_t data[100000];
@@ -349,7 +350,7 @@ TEST(full_disk)
 {
     int how;
 
-    put_file("old");
+    write_file("old");
     const pid_t child = fork();
     if (child == 0)
         _exit(overflow_disk());
@@ -380,8 +381,7 @@ TEST(closed_pipe)
     close(fd[1]);
 }
 
-/* A pipe that does not block and is read slowly must get everything in the
- * end. */
+/* Checks that all data reaches a non-blocking pipe with a slow reader. */
 TEST(nonblocking_pipe)
 {
     static uint8_t data[300000];
@@ -413,7 +413,7 @@ TEST(nonblocking_pipe)
     assert_int_equal(how, 0);
 }
 
-static void refuse(const char *name, const char *text)
+static void check_refusal(const char *name, const char *text)
 {
     struct glint_error error;
     struct glint_output out;
@@ -430,13 +430,15 @@ TEST(refuses)
     struct glint_error error;
     struct glint_output out;
 
-    refuse("/nowhere/x.ppm", "/nowhere/x.ppm: cannot create a temporary file "
-                             "in its folder: No such file or directory");
-    refuse("", ": No such file or directory");
+    check_refusal("/nowhere/x.ppm",
+                  "/nowhere/x.ppm: cannot create a file beside it: "
+                  "No such file or directory");
+    check_refusal("", ": No such file or directory");
     snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
-    refuse(scratch_dir, text);
+    check_refusal(scratch_dir, text);
 
-    /* A name that is too long must lose its beginning, not the cause. */
+    /* The message truncates a long name at its beginning and keeps the
+     * cause. */
     snprintf(name, sizeof name, "/nowhere/%0250d/x\n.ppm", 1);
     assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
                      GLINT_E_OUTPUT);

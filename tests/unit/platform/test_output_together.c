@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A file that another process replaces just when it is opened, as shards do
- * that end together, is replaced all the same.
+ * Checks that a file is replaced even if another process replaces it at the
+ * same moment, as when shards finish together.
  */
 #include <stdint.h>
 
@@ -12,7 +12,8 @@
 #include "support/scratch.h"
 #include "support/test.h"
 
-static int others; /* processes that come between, one each time */
+/* number of times that another process replaces the file during the open */
+static int others;
 
 char *__real_realpath(const char *path, char *resolved);
 char *__wrap_realpath(const char *path, char *resolved);
@@ -34,7 +35,7 @@ char *__wrap_realpath(const char *path, char *resolved)
     return __real_realpath(path, resolved);
 }
 
-static void put(const char *path, const char *text)
+static void write_file(const char *path, const char *text)
 {
     struct glint_error error = {""};
     struct glint_output out;
@@ -50,9 +51,9 @@ TEST(together)
     FILE *f;
 
     snprintf(path, sizeof path, "%s/manifest.jsonl", scratch_dir);
-    put(path, "first");
+    write_file(path, "first");
     others = 3;
-    put(path, "second");
+    write_file(path, "second");
     assert_int_equal(others, 0);
     f = fopen(path, "r");
     assert_non_null(f);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pictures on panels of every layout: colours, places, sizes.
+ * Tests drawing images on panels of every pixel layout: colours, position,
+ * size.
  */
 #include <stdint.h>
 
@@ -18,20 +19,20 @@ static const struct glint_pixel_layout xrgb8888 = {
 
 /* ------------------------------------------------------------------ colours */
 
-/* Constants of the standards, 6 digits: R' per Cr, G' per Cb and per Cr, B' per
- * Cb, for codes of full range. */
+/* YCbCr to RGB coefficients of the standards, full range, 6 digits: Cr to
+ * R', Cb to G', Cr to G', Cb to B'. */
 static const double constants[2][4] = {
     [GLINT_MATRIX_BT601] = {1.402, -.344136, -.714136, 1.772},
     [GLINT_MATRIX_BT709] = {1.5748, -.187324, -.468124, 1.8556},
 };
 
-static int rounded(double code)
+static int round_to_code(double code)
 {
     return (int)floor(fmin(fmax(code, 0), 255) + .5);
 }
 
-static void reference(int rgb[3], const struct glint_image *image, double luma,
-                      double cb, double cr)
+static void compute_reference(int rgb[3], const struct glint_image *image,
+                              double luma, double cb, double cr)
 {
     const bool full = image->range == GLINT_RANGE_FULL;
     const double *const k = constants[image->matrix];
@@ -39,9 +40,9 @@ static void reference(int rgb[3], const struct glint_image *image, double luma,
     const double u = full ? cb - 128 : (cb - 128) * 255 / 224;
     const double v = full ? cr - 128 : (cr - 128) * 255 / 224;
 
-    rgb[0] = rounded(y + k[0] * v);
-    rgb[1] = rounded(y + k[1] * u + k[2] * v);
-    rgb[2] = rounded(y + k[3] * u);
+    rgb[0] = round_to_code(y + k[0] * v);
+    rgb[1] = round_to_code(y + k[1] * u + k[2] * v);
+    rgb[2] = round_to_code(y + k[3] * u);
 }
 
 struct tally {
@@ -49,9 +50,10 @@ struct tally {
     int worst;
 };
 
-/* Checks a row of all luma codes with chroma CB, CR, and counts it in T. */
-static void tally_row(struct tally *t, struct glint_row_rgb *row,
-                      struct glint_image *image, int cb, int cr)
+/* Converts a row of all luma codes with chroma (CB, CR), compares each pixel
+ * with reference() and adds the differences to tally T. */
+static void check_luma_row(struct tally *t, struct glint_row_rgb *row,
+                           struct glint_image *image, int cb, int cr)
 {
     memset(image->plane[1], cb, 256);
     memset(image->plane[2], cr, 256);
@@ -59,7 +61,7 @@ static void tally_row(struct tally *t, struct glint_row_rgb *row,
     for (int y = 0; y < 256; y++) {
         int want[3];
 
-        reference(want, image, y, cb, cr);
+        compute_reference(want, image, y, cb, cr);
         for (int i = 0; i < 3; i++) {
             const int off = abs(row->channel[i][y] - want[i]);
 
@@ -67,7 +69,7 @@ static void tally_row(struct tally *t, struct glint_row_rgb *row,
             t->n_equal += off == 0;
             t->worst = off > t->worst ? off : t->worst;
             if (cb == 128 && cr == 128)
-                assert_int_equal(off, 0); /* greys are exact */
+                assert_int_equal(off, 0); /* greys have no error */
         }
     }
 }
@@ -92,7 +94,7 @@ static void check_mix(enum glint_matrix matrix, enum glint_range range)
         codes[i] = (uint8_t)i;
     for (int cb = 0; cb < 256; cb += STEP)
         for (int cr = 0; cr < 256; cr += STEP)
-            tally_row(&t, &row, &image, cb, cr);
+            check_luma_row(&t, &row, &image, cb, cr);
     print_message("matrix %d range %d: %.3f %% equal, worst %d\n", matrix,
                   range, 100. * (double)t.n_equal / (double)t.n, t.worst);
     assert_int_equal(t.worst, 1);
@@ -109,8 +111,8 @@ TEST(every_colour)
 
 /* ------------------------------------------------------------------- bars */
 
-/* Layouts, with the pixels of red, green, blue, white, black and mid grey by
- * hand. */
+/* Panel layouts, with the words expected for red, green, blue, white, black
+ * and mid grey. */
 static const struct layout_case {
     const char *name;
     struct glint_pixel_layout layout;
@@ -160,7 +162,7 @@ static const struct layout_case {
      {0x3f000, 0xfc0, 0x3f, 0x3ffff, 0, 0x20820}},
 };
 
-static uint32_t word_at(const uint8_t *px, int bytes)
+static uint32_t read_word(const uint8_t *px, int bytes)
 {
     uint32_t word = 0;
 
@@ -175,9 +177,9 @@ static void expect_words(const struct layout_case *c, const uint8_t *mem)
     const int bytes = c->layout.bytes;
 
     for (int i = 0; i < 6; i++)
-        if (word_at(mem + i * bytes, bytes) != c->word[i])
+        if (read_word(mem + i * bytes, bytes) != c->word[i])
             fail_msg("%s: bar %d is %08x", c->name, i,
-                     (unsigned)word_at(mem + i * bytes, bytes));
+                     (unsigned)read_word(mem + i * bytes, bytes));
     assert_memory_equal(mem + 6 * bytes, &beyond, 4);
 }
 
@@ -200,13 +202,14 @@ TEST(layouts)
         glint_panel_draw(&panel, &image, mem, 6 * cfg.layout.bytes);
         expect_words(&layouts[i], mem);
         glint_panel_clear(&panel, mem, 6 * cfg.layout.bytes);
-        assert_int_equal(word_at(mem + 5 * cfg.layout.bytes, cfg.layout.bytes),
-                         layouts[i].word[4]);
+        assert_int_equal(
+            read_word(mem + 5 * cfg.layout.bytes, cfg.layout.bytes),
+            layouts[i].word[4]);
         glint_panel_close(&panel);
     }
 }
 
-/* Codes of RGB565, which are widened to 8 bits on the way, must come back on a
+/* Checks that RGB565 codes, widened to 8 bits in between, are unchanged on a
  * panel of 16 bits. */
 TEST(writes_565_there_and_back)
 {
@@ -231,7 +234,7 @@ TEST(writes_565_there_and_back)
     glint_panel_close(&panel);
 }
 
-/* Each code of 8 bits must become the nearest one of 1 to 8 bits. */
+/* Checks that each 8-bit code becomes the nearest code of 1 .. 8 bits. */
 TEST(fewer_bits)
 {
     uint8_t ramp[256], mem[2 * 256];
@@ -251,7 +254,7 @@ TEST(fewer_bits)
         glint_row_pack_write(&pack, mem, channel, 0, 256);
         for (int i = 0; i < 256; i++) {
             const int most = (1 << n) - 1;
-            const int got = (int)word_at(mem + 2 * i, 2) & most;
+            const int got = (int)read_word(mem + 2 * i, 2) & most;
 
             assert_int_equal(got, (int)floor(i * most / 255. + .5));
         }
@@ -261,14 +264,14 @@ TEST(fewer_bits)
 TEST(refuses_layouts)
 {
     static const struct glint_pixel_layout bad[] = {
-        {1, {5, 3}, {2, 3}, {0, 2}, {0, 0}},      /* 8 bits a pixel */
-        {5, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* 40 bits a pixel */
-        {2, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* red beyond the word */
+        {1, {5, 3}, {2, 3}, {0, 2}, {0, 0}},      /* 8 bits per pixel */
+        {5, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* 40 bits per pixel */
+        {2, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* red above the word */
         {4, {16, 8}, {12, 8}, {0, 8}, {0, 0}},    /* green overlaps red */
-        {4, {16, 8}, {8, 8}, {0, 8}, {20, 8}},    /* alpha overlaps */
+        {4, {16, 8}, {8, 8}, {0, 8}, {20, 8}},    /* alpha overlaps blue */
         {4, {16, 8}, {8, 8}, {0, 0}, {0, 0}},     /* no blue */
-        {4, {-1, 8}, {8, 8}, {16, 8}, {0, 0}},    /* red before the word */
-        {4, {16, 8}, {8, 8}, {0, 8}, {28, 8}},    /* alpha beyond the word */
+        {4, {-1, 8}, {8, 8}, {16, 8}, {0, 0}},    /* red below the word */
+        {4, {16, 8}, {8, 8}, {0, 8}, {28, 8}},    /* alpha above the word */
         {4, {16, 2000}, {8, 8}, {0, 8}, {28, 8}}, /* red of 2000 bits */
     };
     struct glint_panel_config cfg = {.width = 8,
@@ -298,9 +301,9 @@ TEST(refuses_layouts)
 
 /* ------------------------------------------------------------------ formats */
 
-/* Returns the malloc'ed memory of a picture in FORMAT with random codes. Its
- * rows are PAD bytes farther apart than they need be, and upside down in memory
- * where PAD is negative. */
+/* Returns an image of random codes in FORMAT; the caller frees the memory.
+ * Rows have |PAD| bytes of padding; the image is stored bottom row first if
+ * PAD is negative. */
 static uint8_t *make_picture(struct glint_image *image,
                              enum glint_pixel_format format, int width,
                              int height, int pad)
@@ -331,9 +334,9 @@ static uint8_t *make_picture(struct glint_image *image,
     return mem;
 }
 
-/* Returns Y', Cb or Cr of a pixel, for I of 0, 1 or 2, by each format's own
- * definition. */
-static int sample_of(const struct glint_image *im, int i, int x, int y)
+/* Returns Y', Cb or Cr (I = 0, 1, 2) of pixel (X, Y), read by the definition
+ * of the image's format. */
+static int read_sample(const struct glint_image *im, int i, int x, int y)
 {
     const uint8_t *row[3];
 
@@ -364,7 +367,8 @@ static int sample_of(const struct glint_image *im, int i, int x, int y)
     }
 }
 
-static void pixel_of(int rgb[3], const struct glint_image *im, int x, int y)
+static void compute_pixel(int rgb[3], const struct glint_image *im, int x,
+                          int y)
 {
     const uint8_t *const row = im->plane[0] + y * im->stride_bytes[0];
 
@@ -388,15 +392,15 @@ static void pixel_of(int rgb[3], const struct glint_image *im, int x, int y)
     case GLINT_RGB565: {
         const int word = row[2 * x] | row[2 * x + 1] << 8;
 
-        /* This is what repeated bits give, within 1. */
+        /* within 1 of widening by repeated bits */
         rgb[0] = (word >> 11) * 255 / 31;
         rgb[1] = (word >> 5 & 63) * 255 / 63;
         rgb[2] = (word & 31) * 255 / 31;
         return;
     }
     default:
-        reference(rgb, im, sample_of(im, 0, x, y), sample_of(im, 1, x, y),
-                  sample_of(im, 2, x, y));
+        compute_reference(rgb, im, read_sample(im, 0, x, y),
+                          read_sample(im, 1, x, y), read_sample(im, 2, x, y));
     }
 }
 
@@ -405,7 +409,7 @@ static void expect_pixel(const struct glint_image *im, int from_x, int from_y,
 {
     int want[3];
 
-    pixel_of(want, im, from_x, from_y);
+    compute_pixel(want, im, from_x, from_y);
     for (int i = 0; i < 3; i++)
         if (abs(px[2 - i] - want[i]) > 1)
             fail_msg("format %d, %d x %d, pixel %d %d, channel %d: %d, not %d",
@@ -442,8 +446,8 @@ static void check_format(enum glint_pixel_format format, int width, int height,
     free(mem);
 }
 
-/* Every format must be shown right. Blocks from malloc end where the picture
- * ends, so that a sanitizer sees reads beyond it. */
+/* Checks that every format is drawn correctly. Each image is an exact
+ * allocation, so that a sanitizer detects overreads. */
 TEST(formats)
 {
     for (int f = GLINT_RGB24; f <= GLINT_XBGR8888; f++) {
@@ -452,11 +456,12 @@ TEST(formats)
         if (format == GLINT_LINEAR_Q20)
             continue;
         check_format(format, 64, 4, 0, 64);
-        check_format(format, 101, 3, 0, 101); /* odd sides */
+        check_format(format, 101, 3, 0, 101); /* odd width and height */
         check_format(format, 1, 1, 0, 1);
         check_format(format, 37, 5, 11, 37);
         check_format(format, 37, 5, -3, 37);
-        check_format(format, 66, 3, 0, 63); /* cut, from an odd pixel */
+        /* cropped, starting at an odd pixel */
+        check_format(format, 66, 3, 0, 63);
         check_format(format, 33, 3, 0, 70); /* centred on a wider panel */
     }
 }
@@ -496,8 +501,8 @@ TEST(areas)
     expect_area(480, 320, 640, 360, GLINT_PANEL_CENTRE, 0, 0, 480, 320);
 }
 
-/* Draws the grey ramp 0 .. 8 as 9 x 1 pixels, or as 3 x 3 with DOWN, and sets
- * SHOWN to what each pixel of the panel shows. */
+/* Draws the grey ramp 0 .. 8 as an image of 9 x 1 pixels, or 3 x 3 if DOWN,
+ * and stores the code of each panel pixel in SHOWN. */
 static void draw_ramp(uint8_t *shown, bool down, int panel_width,
                       int panel_height, int bytes)
 {
@@ -544,7 +549,8 @@ TEST(nearest)
     }
 }
 
-/* Nothing may be touched around the picture and behind the rows. */
+/* Checks that bytes around the image and in the padding of rows are not
+ * written. */
 TEST(borders)
 {
     enum { STRIDE = 53, ROWS = 12 };
@@ -578,8 +584,8 @@ TEST(borders)
 
 /* ------------------------------------------------------------------- dither */
 
-/* Over 8 x 8 pixels of one code, the mean of the codes of 5 bits must be code *
- * 31 / 255 within 1/64. */
+/* Checks that ordered dither to 5 bits keeps the mean of 8 x 8 equal pixels
+ * within 1/64 of code * 31 / 255. */
 TEST(dither)
 {
     struct glint_panel_config cfg = {
@@ -601,7 +607,7 @@ TEST(dither)
         memset(codes, code, sizeof codes);
         glint_panel_draw(&panel, &image, mem, 16);
         for (int i = 0; i < 64; i++)
-            sum += (int)word_at(mem + 2 * i, 2) >> 11;
+            sum += (int)read_word(mem + 2 * i, 2) >> 11;
         if (fabs(sum / 64. - code * 31 / 255.) > 1 / 64.)
             fail_msg("code %d: %d / 64", code, sum);
     }

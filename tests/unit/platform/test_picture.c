@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Picture files are identified by content and saved by extension. Tests of the
- * image plug-in are skipped where $GLINT_OIIO does not name it.
+ * Tests image files: the type is detected by content when loading and chosen by
+ * extension when saving. Tests of the image plug-in are skipped unless
+ * $GLINT_OIIO names it.
  */
 #include <stdint.h>
 
@@ -36,7 +37,7 @@ TEST(by_content)
 {
     expect_load("a.png", BYTES("P6 2 1 255 abcdef"), "abcdef");
     expect_load("a", BYTES("P5 2 1 255 ab"), "aaabbb");
-    /* Linear 0, 0.5 and 1; then -1, 2 and not a number. */
+    /* Linear 0, 0.5 and 1; then -1, 2 and NaN. */
     expect_load("a.ppm",
                 BYTES("PF 2 1 1 \0\0\0\0\x3f\0\0\0\x3f\x80\0\0"
                       "\xbf\x80\0\0\x40\0\0\0\x7f\xc0\0\0"),
@@ -135,8 +136,8 @@ static void check_8bit(const char *name)
     unlink(scratch_path(name));
 }
 
-/* Checks that floats come back within 1 %: EXR and PFM keep them exactly, and
- * these values suit the 8 bits of HDR. */
+/* Checks that floats are read back within 1 %: EXR and PFM are lossless, and
+ * HDR's 8-bit mantissa resolves these values. */
 static void check_float(const char *name)
 {
     float values[] = {0, 0.5F, 1, 1000, 500, 250};

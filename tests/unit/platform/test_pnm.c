@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * PPM, PGM and PFM: files written by hand, hostile headers, every
- * truncation.
+ * Tests PPM, PGM and PFM: hand-written files, hostile headers, truncation at
+ * every byte.
  */
 #include <stdint.h>
 
@@ -18,7 +18,8 @@
 
 static struct glint_error error;
 
-/* Returns a copy without the 0 at its end, so that ASan sees overruns. */
+/* Returns an allocated copy of exactly BYTES bytes, so that ASan detects
+ * overreads. */
 static void *copy_of(const void *data, size_t bytes)
 {
     void *const copy = malloc(bytes ? bytes : 1);
@@ -73,7 +74,7 @@ TEST(kinds)
 {
     expect_pnm(BYTES("P6\n2 1\n255\nabcdef"), GLINT_RGB24, 2, 1, "abcdef");
     expect_pnm(BYTES("P5\n2 3\n255\nabcdef"), GLINT_GREY, 2, 3, "abcdef");
-    /* Another picture follows in the same file. */
+    /* Bytes after the first image are ignored. */
     expect_pnm(BYTES("P5 1 1 255 aP5 1 1 255 b"), GLINT_GREY, 1, 1, "a");
     /* samples may look like white space */
     expect_pnm(BYTES("P5\n3 1\n255\n\n #"), GLINT_GREY, 3, 1, "\n #");
@@ -83,26 +84,28 @@ TEST(comments)
 {
     expect_pnm(BYTES("P5#made by\n# GIMP\n 2\t\r\n#x\n1#y\n255\nab"),
                GLINT_GREY, 2, 1, "ab");
-    /* a comment may end the header; its line feed is the white space */
+    /* A comment may end the header; its line feed is the separator. */
     expect_pnm(BYTES("P5 2 1 255#end\nab"), GLINT_GREY, 2, 1, "ab");
     expect_pnm(BYTES("P5 0002 01 00255 ab"), GLINT_GREY, 2, 1, "ab");
 }
 
 TEST(maxima)
 {
-    /* 1 of 2 is 127.5, which rounds up; 3 counts as 2 */
+    /* 1 of 2 is 127.5 and rounds up; 3 is clamped to 2. */
     expect_pnm(BYTES("P5 4 1 2 \x00\x01\x02\x03"), GLINT_GREY, 4, 1,
                "\x00\x80\xff\xff");
     expect_pnm(BYTES("P5 2 1 1 \x00\x01"), GLINT_GREY, 2, 1, "\x00\xff");
-    /* 16 bits: 128 is 0.498 and rounds down, 129 is 0.502 and rounds up */
+    /* 16 bits: 128 of 65535 is 0.498 of an 8-bit step and rounds down; 129
+     * is 0.502 and rounds up. */
     expect_pnm(BYTES("P5 5 1 65535 \x00\x80\x00\x81\xff\xff\x80\x80\x00\x00"),
                GLINT_GREY, 5, 1, "\x00\x01\xff\x80\x00");
-    /* 10 bits, and a sample above the maximum */
+    /* 10 bits, and a sample above the maximum, which is clamped */
     expect_pnm(BYTES("P6 1 1 1023 \x03\xff\x02\x00\xff\xff"), GLINT_RGB24, 1, 1,
                "\xff\x80\xff");
 }
 
-static void refuse_pnm(enum glint_status status, const char *data, size_t bytes)
+static void check_pnm_refusal(enum glint_status status, const char *data,
+                              size_t bytes)
 {
     struct glint_image image = {.width = 77};
 
@@ -114,28 +117,28 @@ static void refuse_pnm(enum glint_status status, const char *data, size_t bytes)
 
 TEST(hostile_headers)
 {
-    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES(""));
-    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P"));
-    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6"));
-    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P61 1 255 abc"));
-    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P3 1 1 255 1 2 3"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 0 1 255 abc"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 0 255 abc"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 -1 1 255 abc"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1.5 1 255 abc"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 0 abc"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 65536 abcdef"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 255"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 255abc"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 255#abc"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 # 255 abc"));
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 \0001 1 255 abc"));
-    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6 32769 1 255 abc"));
-    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6 1 32769 255 abc"));
-    refuse_pnm(GLINT_E_UNSUPPORTED,
-               BYTES("P6 99999999999999999999 4294967297 255 abc"));
-    /* A size is believed only where the samples are there. */
-    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 8192 8192 65535 abc"));
+    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES(""));
+    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P"));
+    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P6"));
+    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P61 1 255 abc"));
+    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P3 1 1 255 1 2 3"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 0 1 255 abc"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 0 255 abc"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 -1 1 255 abc"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1.5 1 255 abc"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 0 abc"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 65536 abcdef"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 255"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 255abc"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 255#abc"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 1 1 # 255 abc"));
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 \0001 1 255 abc"));
+    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P6 32769 1 255 abc"));
+    check_pnm_refusal(GLINT_E_UNSUPPORTED, BYTES("P6 1 32769 255 abc"));
+    check_pnm_refusal(GLINT_E_UNSUPPORTED,
+                      BYTES("P6 99999999999999999999 4294967297 255 abc"));
+    /* Nothing is allocated for a size whose samples are missing. */
+    check_pnm_refusal(GLINT_E_FORMAT, BYTES("P6 8192 8192 65535 abc"));
     assert_string_equal(
         error.text,
         "x.ppm: ends after 3 of 402653184 bytes of a 8192 x 8192 picture");
@@ -148,16 +151,15 @@ TEST(truncated_pnm)
     struct glint_image image;
 
     for (size_t n = 0; n < sizeof ppm - 1; n++)
-        refuse_pnm(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, ppm, n);
+        check_pnm_refusal(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, ppm, n);
     assert_ok(read_pnm(&image, ppm, sizeof ppm - 1));
     free(image.plane[0]);
 }
 
 /* --------------------------------------------------------------------- PFM */
 
-/* A PFM file has the bottom row first: two_pixels, as 1 x 2 pixels, are stored
- * as 0, 3, 4, then 1, -2, 0.5. The macros are the bytes, least first; TWO is
- * -2. */
+/* PFM stores the bottom row first: two_pixels as a 1 x 2 image is stored as
+ * 0, 3, 4, then 1, -2, 0.5. The macros are little-endian floats; TWO is -2. */
 #define ONE   "\x00\x00\x80\x3f"
 #define TWO   "\x00\x00\x00\xc0"
 #define HALF  "\x00\x00\x00\x3f"
@@ -206,7 +208,8 @@ TEST(special_floats)
     free(floats.rgb);
 }
 
-static void refuse_pfm(enum glint_status status, const char *data, size_t bytes)
+static void check_pfm_refusal(enum glint_status status, const char *data,
+                              size_t bytes)
 {
     struct glint_float_image floats = {77, 0, NULL};
 
@@ -218,23 +221,25 @@ static void refuse_pfm(enum glint_status status, const char *data, size_t bytes)
 
 TEST(hostile_pfm)
 {
-    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES(""));
-    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("PF"));
-    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("PG\n1 1\n-1\n"));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 0 1 -1 " ONE));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 0 -1 " ONE));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 -1 -1 " ONE));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 0 " ONE));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 nan " ONE));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 -inf " ONE));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 -1x " ONE));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1x 1 -1 " ONE));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 -1\0 " ONE));
-    refuse_pfm(GLINT_E_FORMAT,
-               BYTES("Pf 1 1 -1.0000000000000000000000000000000000000 " ONE));
-    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("Pf 32769 1 -1 " ONE));
-    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("Pf 1 9999999999999999 -1 " ONE));
-    refuse_pfm(GLINT_E_FORMAT, BYTES("PF 8192 8192 -1 " ONE));
+    check_pfm_refusal(GLINT_E_UNSUPPORTED, BYTES(""));
+    check_pfm_refusal(GLINT_E_UNSUPPORTED, BYTES("PF"));
+    check_pfm_refusal(GLINT_E_UNSUPPORTED, BYTES("PG\n1 1\n-1\n"));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 0 1 -1 " ONE));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 0 -1 " ONE));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 -1 -1 " ONE));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 0 " ONE));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 nan " ONE));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 -inf " ONE));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 -1x " ONE));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1x 1 -1 " ONE));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("Pf 1 1 -1\0 " ONE));
+    check_pfm_refusal(
+        GLINT_E_FORMAT,
+        BYTES("Pf 1 1 -1.0000000000000000000000000000000000000 " ONE));
+    check_pfm_refusal(GLINT_E_UNSUPPORTED, BYTES("Pf 32769 1 -1 " ONE));
+    check_pfm_refusal(GLINT_E_UNSUPPORTED,
+                      BYTES("Pf 1 9999999999999999 -1 " ONE));
+    check_pfm_refusal(GLINT_E_FORMAT, BYTES("PF 8192 8192 -1 " ONE));
 }
 
 TEST(truncated_pfm)
@@ -242,7 +247,7 @@ TEST(truncated_pfm)
     static const char pfm[] = "PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF;
 
     for (size_t n = 0; n < sizeof pfm - 1; n++)
-        refuse_pfm(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, pfm, n);
+        check_pfm_refusal(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, pfm, n);
 }
 
 /* ----------------------------------------------------------------- writing */
@@ -280,7 +285,7 @@ TEST(write_ppm)
     assert_ok(glint_pnm_write(&out, &image, &error));
     expect_path(&out, BYTES("P6\n2 2\n255\nabcdefghijkl"));
 
-    image.plane[0] = padded + 8; /* upside down */
+    image.plane[0] = padded + 8; /* bottom row first in memory */
     image.stride_bytes[0] = -8;
     open_path(&out);
     assert_ok(glint_pnm_write(&out, &image, &error));
@@ -299,8 +304,8 @@ TEST(write_pfm)
     expect_path(&out, BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF));
 }
 
-/* Rows of odd width, more of them than are encoded at a time, must come
- * back. */
+/* Checks a round trip with an odd width and more rows than are encoded at a
+ * time. */
 TEST(pfm_round_trip)
 {
     enum { W = 333, H = 3, N = W * H * 3 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pool must run every job exactly once, whatever the number of threads.
+ * Tests the thread pool: every job runs exactly once, for any number of
+ * threads.
  */
 #include <stdint.h>
 
@@ -24,13 +25,15 @@
 #define MAX_JOBS 1000
 
 struct tally {
-    int runs[MAX_JOBS];          /* how often each job ran */
-    int busy[GLINT_MAX_WORKERS]; /* atomic: threads now in this worker */
+    int runs[MAX_JOBS]; /* number of runs of each job */
+    /* atomic; number of threads that use each worker index at present */
+    int busy[GLINT_MAX_WORKERS];
     int n_workers;
-    int clashes; /* atomic */
+    /* atomic; number of times that two threads used one worker index */
+    int clashes;
 };
 
-static void count(void *ctx, int job, int worker)
+static void count_run(void *ctx, int job, int worker)
 {
     struct tally *const t = ctx;
 
@@ -56,7 +59,7 @@ static void check_rounds(int n_threads)
 
         memset(&tally, 0, sizeof tally);
         tally.n_workers = n_threads;
-        glint_workers_run(workers, n, count, &tally);
+        glint_workers_run(workers, n, count_run, &tally);
         assert_int_equal(tally.clashes, 0);
         for (int job = 0; job < MAX_JOBS; job++)
             assert_int_equal(tally.runs[job], job < n);
@@ -72,14 +75,15 @@ TEST(every_job_once)
         check_rounds(n_threads[i]);
 }
 
-static void add(void *ctx, int job, int worker)
+static void add_job(void *ctx, int job, int worker)
 {
     uint64_t *const sums = ctx;
 
     sums[worker] += (uint64_t)job;
 }
 
-/* Results of jobs must be there when run() returns, round after round. */
+/* Checks that the results of all jobs are visible when run() returns, in
+ * many rounds. */
 TEST(results_are_visible)
 {
     struct glint_workers *workers;
@@ -88,7 +92,7 @@ TEST(results_are_visible)
     for (int round = 0; round < 2000; round++) {
         uint64_t sums[4] = {0, 0, 0, 0};
 
-        workers->run(workers, 100, add, sums);
+        workers->run(workers, 100, add_job, sums);
         assert_int_equal(sums[0] + sums[1] + sums[2] + sums[3], 4950);
     }
     glint_pool_destroy(workers);
@@ -115,7 +119,7 @@ TEST(refuses)
     assert_null(workers);
 }
 
-/* As many workers as processors are online. */
+/* Checks that a pool of default size has one worker per online processor. */
 TEST(one_per_processor)
 {
     const long n = sysconf(_SC_NPROCESSORS_ONLN);
@@ -128,7 +132,8 @@ TEST(one_per_processor)
 
 /* ------------------------------------------------------------------ threads */
 
-static int threads_left = -1; /* threads that may still start; -1: no limit */
+/* number of threads that pthread_create() still starts; -1: no limit */
+static int threads_left = -1;
 
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
                           void *(*start)(void *), void *arg);
@@ -144,7 +149,7 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
     return __real_pthread_create(thread, attr, start, arg);
 }
 
-/* Where no more threads can start, those that did must do all the work. */
+/* Checks that a pool that could not start all threads still runs all jobs. */
 TEST(fewer_threads)
 {
     for (int left = 0; left < 4; left++) {
@@ -155,7 +160,7 @@ TEST(fewer_threads)
         assert_ok(glint_pool_create(&workers, 8));
         threads_left = -1;
         assert_int_equal(workers->n, left + 1);
-        workers->run(workers, 100, add, sums);
+        workers->run(workers, 100, add_job, sums);
         for (int i = 0; i < 8; i++) {
             assert_true(i <= left || sums[i] == 0);
             sum += sums[i];
@@ -167,9 +172,9 @@ TEST(fewer_threads)
 
 /* ------------------------------------------------------------------- stacks */
 
-/* Fills as much of the stack as baking may need. A function of its own, so that
- * its callers do not need that much. */
-__attribute__((noinline)) static int dig(void *ctx)
+/* Touches as much stack as baking may need. Not inlined, so that its callers
+ * do not need that much stack themselves. */
+__attribute__((noinline)) static int use_stack(void *ctx)
 {
     volatile char hole[GLINT_BAKE_STACK_BYTES];
 
@@ -178,21 +183,21 @@ __attribute__((noinline)) static int dig(void *ctx)
     return *(int *)ctx + hole[512];
 }
 
-/* Only the helper fills its stack; the caller waits, so that the helper gets
- * the job. */
-static void dig_job(void *ctx, int job, int worker)
+/* The calling thread waits, so that the helper thread runs dig() on its own
+ * stack. */
+static void use_stack_in_helper(void *ctx, int job, int worker)
 {
     int *const dug = ctx;
 
     (void)job;
     if (worker > 0)
-        __atomic_store_n(dug, dig(&worker), __ATOMIC_SEQ_CST);
+        __atomic_store_n(dug, use_stack(&worker), __ATOMIC_SEQ_CST);
     while (!__atomic_load_n(dug, __ATOMIC_SEQ_CST))
         sched_yield();
 }
 
-/* Runs WORK in a child whose threads get 256 KiB of stack by default. */
-static void with_little(int (*work)(void))
+/* Runs WORK in a child whose threads have 256 KiB of stack by default. */
+static void run_with_small_stack(int (*work)(void))
 {
     const struct rlimit little = {256 << 10, 256 << 10};
     const pid_t child = fork();
@@ -207,44 +212,46 @@ static void with_little(int (*work)(void))
     assert_int_equal(WEXITSTATUS(how), 0);
 }
 
-static int dig_in_pool(void)
+static int use_stack_in_pool(void)
 {
     struct glint_workers *workers;
     int dug = 0;
 
     if (glint_pool_create(&workers, 2) != GLINT_OK)
         return 1;
-    workers->run(workers, 2, dig_job, &dug);
+    workers->run(workers, 2, use_stack_in_helper, &dug);
     return dug != 2;
 }
 
-static int dig_on_stack(void)
+static int use_stack_on_thread(void)
 {
     int two = 2;
 
-    return glint_process_on_stack(GLINT_WORKER_STACK_BYTES, dig, &two) != 3;
+    return glint_process_on_stack(GLINT_WORKER_STACK_BYTES, use_stack, &two) !=
+           3;
 }
 
 TEST(stacks)
 {
-    with_little(dig_in_pool);
-    with_little(dig_on_stack);
-    threads_left = 0; /* Without threads dig() must be called directly. */
-    assert_int_equal(glint_process_on_stack(SIZE_MAX / 4, dig, &(int){4}), 5);
+    run_with_small_stack(use_stack_in_pool);
+    run_with_small_stack(use_stack_on_thread);
+    threads_left = 0; /* If no thread can start, dig() is called directly. */
+    assert_int_equal(glint_process_on_stack(SIZE_MAX / 4, use_stack, &(int){4}),
+                     5);
     threads_left = -1;
 }
 
 /* ------------------------------------------------------------------- faults */
 
-static int told[2]; /* pipe from the child */
+static int child_pipe[2]; /* pipe from the child to the test */
 
-static void tell(void)
+static void write_child_pipe(void)
 {
-    if (write(told[1], "x", 1) != 1)
+    if (write(child_pipe[1], "x", 1) != 1)
         _exit(98);
 }
 
-/* Faults in the helper alone; the caller waits. */
+/* Faults in the helper thread; the calling thread waits. */
 static void fault_job(void *ctx, int job, int worker)
 {
     volatile char *const nowhere = ctx;
@@ -255,7 +262,8 @@ static void fault_job(void *ctx, int job, int worker)
     *nowhere = 1;
 }
 
-/* A fault of a helper must run the functions for the end of a process. */
+/* Checks that a fault in a helper thread runs the functions registered for
+ * the end of the process. */
 TEST(fault_in_helper)
 {
     const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);
@@ -267,22 +275,22 @@ TEST(fault_in_helper)
     pid_t child;
     int how;
 
-    assert_int_equal(pipe(told), 0);
+    assert_int_equal(pipe(child_pipe), 0);
     child = fork();
     if (child == 0) {
-        signal(SIGSEGV, SIG_DFL); /* in place of cmocka's */
+        signal(SIGSEGV, SIG_DFL); /* replaces cmocka's handler */
         signal(SIGBUS, SIG_DFL);
         setrlimit(RLIMIT_CORE, &no_core);
-        if (!glint_at_death(tell) || glint_pool_create(&workers, 2))
+        if (!glint_at_death(write_child_pipe) || glint_pool_create(&workers, 2))
             _exit(97);
         workers->run(workers, 2, fault_job, nowhere);
         _exit(96);
     }
-    close(told[1]);
+    close(child_pipe[1]);
     assert_int_equal(waitpid(child, &how, 0), child);
     assert_true(WIFSIGNALED(how));
     assert_int_equal(WTERMSIG(how), SIGSEGV);
-    assert_int_equal(read(told[0], text, sizeof text), 1);
-    close(told[0]);
+    assert_int_equal(read(child_pipe[0], text, sizeof text), 1);
+    close(child_pipe[0]);
     munmap(nowhere, bytes);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pixels as files hold them: what is seen of them, what light changes, and what
- * stays.
+ * Tests pixels in the format of image files: reading them as linear light,
+ * adding light, and preserving everything else.
  */
 #include <stdint.h>
 
@@ -12,8 +12,8 @@
 #include "formats/samples.h"
 #include "support/test.h"
 
-/* Returns WIDTH x HEIGHT pixels over MEM, of three channels of SAMPLE, or of
- * four with alpha. */
+/* Returns a description of WIDTH x HEIGHT pixels at MEM: three channels of
+ * type SAMPLE, or four with alpha. */
 static struct glint_samples samples_of(int width, int height,
                                        enum glint_sample sample, bool has_alpha,
                                        void *mem)
@@ -50,13 +50,14 @@ TEST(half)
     }
     assert_int_equal(glint_half_encode(1), 0x3c00);
     assert_int_equal(glint_half_encode(65520), 0x7c00);
-    /* Ties go to even. */
+    /* Ties round to even. */
     assert_int_equal(glint_half_encode(1.00048828125F), 0x3c00);
     assert_int_equal(glint_half_encode(-0x1p-25F), 0x8000);
     assert_true(isnan(glint_half_decode(glint_half_encode(NAN))));
 }
 
-/* Curves by hand: sRGB of 0.5 is 0.21404, BT.709 of 0.5 is 0.25959. */
+/* Expected values are computed by hand: sRGB 0.5 is 0.21404 linear, BT.709
+ * 0.5 is 0.25959. */
 TEST(curves)
 {
     struct glint_tone_curve t;
@@ -71,15 +72,15 @@ TEST(curves)
     assert_true(fabs(glint_tone_curve_decode(&t, -0.5) + 0.25) < 1e-9);
 }
 
-/* Writes V as a big-endian word of a profile. */
-static void put32(uint8_t *at, uint32_t v)
+/* Writes V as a big-endian word of an ICC profile. */
+static void write_be32(uint8_t *at, uint32_t v)
 {
     for (int i = 0; i < 4; i++)
         at[i] = (uint8_t)(v >> (24 - 8 * i));
 }
 
-/* Makes a profile of one gamma in 8.8 fixed point and of Adobe RGB's primaries;
- * returns its bytes. */
+/* Writes an ICC profile with Adobe RGB's primaries and a gamma of GAMMA_Q8;
+ * returns its size in bytes. */
 static size_t make_profile(uint8_t p[400], unsigned gamma_q8)
 {
     static const char *const names[] = {"rXYZ", "gXYZ", "bXYZ",
@@ -90,25 +91,25 @@ static size_t make_profile(uint8_t p[400], unsigned gamma_q8)
     memset(p, 0, 400);
     memcpy(p + 16, "RGB XYZ ", 8);
     memcpy(p + 36, "acsp", 4);
-    put32(p + 128, 6);
+    write_be32(p + 128, 6);
     for (int i = 0; i < 6; i++) {
         const int at = i < 3 ? 204 + 20 * i : 264;
 
         memcpy(p + 132 + 12 * i, names[i], 4);
-        put32(p + 136 + 12 * i, (uint32_t)at);
-        put32(p + 140 + 12 * i, i < 3 ? 20 : 14);
+        write_be32(p + 136 + 12 * i, (uint32_t)at);
+        write_be32(p + 140 + 12 * i, i < 3 ? 20 : 14);
         memcpy(p + at, i < 3 ? "XYZ " : "curv", 4);
         for (int k = 0; k < 3 && i < 3; k++)
-            put32(p + at + 8 + 4 * k, (uint32_t)xyz_q16[i][k]);
+            write_be32(p + at + 8 + 4 * k, (uint32_t)xyz_q16[i][k]);
     }
-    put32(p + 272, 1);
+    write_be32(p + 272, 1);
     p[276] = (uint8_t)(gamma_q8 >> 8);
     p[277] = (uint8_t)gamma_q8;
     return 400;
 }
 
-/* Adobe RGB by hand: a half is 0.5^2.19922 = 0.21776, and its green has -0.398
- * of sRGB's red. */
+/* Expected values are computed by hand: Adobe RGB 0.5 is 0.5^2.19922 =
+ * 0.21776 linear, and Adobe green contributes -0.398 to sRGB red. */
 TEST(profile)
 {
     struct glint_colours c;
@@ -125,7 +126,7 @@ TEST(profile)
     assert_false(glint_icc_read(&c, p, 100));
     memcpy(p + 16, "CMYK", 4);
     assert_false(glint_icc_read(&c, p, sizeof p));
-    for (size_t n = 0; n < 400; n++) { /* cut off anywhere */
+    for (size_t n = 0; n < 400; n++) { /* truncated at any byte */
         make_profile(p, 563);
         uint8_t *const exact = malloc(n + 1);
 
@@ -135,7 +136,8 @@ TEST(profile)
     }
 }
 
-/* A curve of entries must take any float, also one beyond its ends. */
+/* Checks that a tone curve table accepts any float and clamps those outside
+ * its range. */
 TEST(tables_of_any_float)
 {
     struct glint_tone_curve t = {
@@ -167,7 +169,7 @@ TEST(light_is_added)
     assert_memory_equal(mem + 3, before + 3, 6);
 }
 
-/* Floats must go beyond white; a value that is no number must stay. */
+/* Checks that floats may exceed white and that NaN is preserved. */
 TEST(floats)
 {
     float mem[] = {2, -0.25F, NAN};
@@ -177,7 +179,7 @@ TEST(floats)
     double white;
 
     assert_ok(glint_samples_proxy(&s, &proxy, &white));
-    assert_true(white >= 2); /* the brightest hundredth is this pixel */
+    assert_true(white >= 2); /* the brightest 1 % is this pixel */
     assert_int_equal(proxy.plane[0][1], 0);
     assert_int_equal(proxy.plane[0][2], 0);
     free(proxy.plane[0]);
@@ -187,8 +189,8 @@ TEST(floats)
     assert_true(isnan(mem[2]));
 }
 
-/* Transparent pixels must show no lamps unless they are premultiplied, and
- * alpha must not change. */
+/* Checks that transparent pixels count as dark unless alpha is
+ * premultiplied, and that alpha is preserved. */
 TEST(alpha)
 {
     uint8_t mem[] = {255, 255, 255, 0, 200, 200, 200, 255};
@@ -216,9 +218,9 @@ static void expect_near(float is, double wanted)
     assert_true(fabs((double)is - wanted) < 1e-6);
 }
 
-/* What an object covers becomes as opaque as it covers, straight or
- * premultiplied: half of an object of light 0.5 over a pixel of alpha 0.25 and
- * light 0.2. */
+/* Checks the alpha of a pixel after an object is composited onto it,
+ * straight and premultiplied: an object of coverage 0.5 and light 0.5 over a
+ * pixel of alpha 0.25 and light 0.2. */
 TEST(cover)
 {
     const double behind = 0.25 * 0.2, light = 0.5 * behind + 0.5 * 0.5;
@@ -239,7 +241,8 @@ TEST(cover)
         glint_samples_light(&s, 0, 0, seen);
         expect_near(seen[0], light);
         expect_near(mem[7], 0.5);
-        /* light without cover leaves alpha, and what nothing shows */
+        /* Light with coverage 0 changes neither alpha nor the colour of a
+         * fully transparent pixel. */
         mem[3] = 0;
         glint_samples_set(&s, 0, 0, rgb, 0);
         expect_near(mem[3], 0);
@@ -249,8 +252,8 @@ TEST(cover)
     }
 }
 
-/* A picture stored as 2 x 3 pixels must stand upright by each orientation of
- * EXIF. Each string has the letters of the upright pixels. */
+/* Checks the 8 EXIF orientations of an image stored as 2 x 3 pixels. Each
+ * string lists the letters of the pixels of the upright image. */
 TEST(orientations)
 {
     static const char *const upright[] = {"abcdef", "badcfe", "fedcba",
@@ -274,8 +277,8 @@ TEST(orientations)
     }
 }
 
-/* The data window is smaller than the part that is seen, and reaches beyond
- * it. */
+/* Checks an EXR data window that is smaller than the display window and
+ * extends outside it. */
 TEST(windows)
 {
     float mem[] = {1, 1, 1, 0.5F, 0.5F, 0.5F};
@@ -284,7 +287,7 @@ TEST(windows)
     struct glint_image image;
     float rgb[3];
 
-    s.x = -1; /* The second pixel is the first in view. */
+    s.x = -1; /* The second pixel is the first inside the display window. */
     s.window_width = 1;
     s.window_height = 2;
     glint_samples_light(&s, 0, 0, rgb);
@@ -296,8 +299,9 @@ TEST(windows)
     assert_true(mem[0] <= 1 && mem[3] >= 4.5F);
 }
 
-/* Straight alpha in 8 bits must become premultiplied floats and come back;
- * without alpha, pixels must be as over black. */
+/* Checks conversion from 8 bits with straight alpha to premultiplied floats
+ * and back. A destination without alpha receives the pixels composited over
+ * black. */
 TEST(convert)
 {
     uint8_t mem[] = {188, 0, 255, 128}, back[4], flat[3];
@@ -316,5 +320,5 @@ TEST(convert)
     glint_samples_convert(&again, &to);
     assert_memory_equal(back, mem, 4);
     glint_samples_convert(&opaque, &from);
-    assert_int_equal(flat[2], 188); /* half of white */
+    assert_int_equal(flat[2], 188); /* half of white, encoded */
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sinks that write: planes, Y4M, V4L2 outputs.
+ * Tests the sinks that write frames: raw planes, Y4M, V4L2 output devices.
  */
 #include <stdarg.h>
 #include <stdint.h>
@@ -24,7 +24,7 @@
 #include "support/scratch.h"
 #include "support/test.h"
 
-/* Returns an image over MEM. */
+/* Returns an image with its planes in MEM. */
 static struct glint_image image_of(enum glint_pixel_format format, int width,
                                    int height, void *mem)
 {
@@ -36,8 +36,8 @@ static struct glint_image image_of(enum glint_pixel_format format, int width,
 
 /* ------------------------------------------------------------------ planes */
 
-/* Checks that FROM, 3 x 3 pixels of FORMAT, becomes WANT, its planes one after
- * the other. */
+/* Converts FROM, 3 x 3 pixels of FORMAT, to PLANAR and checks that the
+ * concatenated planes equal WANT. */
 static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
                           enum glint_pixel_format planar, const char *want)
 {
@@ -61,7 +61,7 @@ static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
     assert_int_equal(mem[n], '-');
 }
 
-/* Letters stand for samples: luma a.., Cb A.., Cr 1.. */
+/* Letters are samples: luma a .., Cb A .., Cr 1 .. */
 TEST(planes)
 {
     expect_planes(GLINT_YUYV, (const uint8_t *)"aAb1cB.2dCe3fD.4gEh5iF.6",
@@ -78,10 +78,9 @@ TEST(planes)
                   "abcdefghi");
 }
 
-/* Sets YCC to Y', Cb, Cr of a colour by the standards' weights of red and
- * blue. */
-static void reference(int ycc[3], const int rgb[3],
-                      const struct glint_image *as)
+/* Computes Y', Cb and Cr of an RGB colour with the standard's coefficients. */
+static void compute_reference(int ycc[3], const int rgb[3],
+                              const struct glint_image *as)
 {
     const bool full = as->range == GLINT_RANGE_FULL;
     const double kr = as->matrix == GLINT_MATRIX_BT601 ? .299 : .2126;
@@ -117,18 +116,19 @@ static void check_colours(enum glint_matrix matrix, enum glint_range range)
             const int px[] = {rgb[3 * x], rgb[3 * x + 1], rgb[3 * x + 2]};
             int want[3];
 
-            reference(want, px, &to);
+            compute_reference(want, px, &to);
             for (int k = 0; k < 3; k++) {
                 assert_true(abs(ycc[256 * k + x] - want[k]) <= 1);
                 n_off += ycc[256 * k + x] != want[k];
             }
         }
     }
-    assert_true(n_off < 256 * 256 * 3 / 500); /* Only ties may differ. */
+    /* Only ties may round differently. */
+    assert_true(n_off < 256 * 256 * 3 / 500);
 }
 
-/* Pure blue and red of full range would have a chroma of 255.5, and must get
- * 255. */
+/* Checks that pure blue and red of full range, whose chroma would be 255.5,
+ * are clamped to 255. */
 static void check_last_codes(void)
 {
     uint8_t rgb[] = {0, 0, 255, 255, 0, 0}, ycc[6], work[64];
@@ -196,8 +196,8 @@ TEST(y4m)
     expect_file(want, sizeof want - 1);
 }
 
-/* A format that Y4M has must not be copied first; RGB must be converted and
- * declared limited. */
+/* Checks that a format which Y4M supports is written without a copy, and
+ * that RGB is converted and declared as limited range. */
 TEST(y4m_formats)
 {
     static const char planes[] = "YUV4MPEG2 W2 H2 F0:0 Ip A1:1 C420jpeg "
@@ -222,8 +222,8 @@ TEST(y4m_formats)
     expect_file(white, sizeof white - 1);
 }
 
-/* A pipe of 64 KiB that nobody reads: frames must be dropped, not waited
- * for. */
+/* Checks that frames are dropped, without blocking, when nobody reads a pipe
+ * of 64 KiB. */
 TEST(y4m_slow_reader)
 {
     static uint8_t mem[4096 * 3], sink_hole[65536];
@@ -236,7 +236,7 @@ TEST(y4m_slow_reader)
     assert_int_equal(pipe(fd), 0);
     snprintf(name, sizeof name, "/dev/fd/%d", fd[1]);
     glint_y4m_sink_open(&y4m, name, 25, 1);
-    for (int i = 0; i < 4; i++) /* 12288 bytes and a line each */
+    for (int i = 0; i < 4; i++) /* 12288 bytes and the line FRAME each */
         assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     assert_int_equal(y4m.n_dropped, 0);
     assert_int_equal(fcntl(fd[1], F_SETFL, O_NONBLOCK), 0);
@@ -282,11 +282,11 @@ TEST(null)
 /* ------------------------------------------------------------- V4L2 output */
 
 static struct {
-    uint32_t caps, stride, size, fourcc; /* 0: as asked */
-    unsigned long fail_request;          /* request of ioctl() that fails */
+    uint32_t caps, stride, size, fourcc; /* 0: the requested value */
+    unsigned long fail_request;          /* ioctl() request that fails */
     int fail_errno, write_errno;
     int n_streaming;
-    ssize_t most; /* bytes that a write takes; 0: all */
+    ssize_t most; /* max bytes per write(); 0: no limit */
     struct v4l2_format set;
     struct v4l2_streamparm parm;
 } node;
@@ -356,7 +356,7 @@ static void reset_node(void)
     assert_int_equal(truncate(scratch_file, 0), 0);
 }
 
-static void must_open(struct glint_v4l2_sink *out,
+static void open_sink(struct glint_v4l2_sink *out,
                       const struct glint_image *like)
 {
     struct glint_error error;
@@ -373,7 +373,7 @@ TEST(v4l2)
 
     reset_node();
     image.matrix = GLINT_MATRIX_BT709;
-    must_open(&out, &image);
+    open_sink(&out, &image);
     assert_string_equal(out.card, "fake");
     assert_int_equal(node.set.fmt.pix.pixelformat, V4L2_PIX_FMT_YUYV);
     assert_int_equal(node.set.fmt.pix.ycbcr_enc, V4L2_YCBCR_ENC_709);
@@ -390,7 +390,7 @@ TEST(v4l2)
     assert_int_equal(out.fd, -1);
 }
 
-/* Rows of the device or of the picture may be longer than they need be. */
+/* Checks rows with padding, of the device and of the image. */
 TEST(v4l2_strides)
 {
     static const uint8_t zero;
@@ -406,7 +406,7 @@ TEST(v4l2_strides)
     reset_node();
     node.stride = 6;
     node.size = 100;
-    must_open(&out, &image);
+    open_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
     expect_file(want, 18);
     out.sink.close(&out.sink);
@@ -414,7 +414,7 @@ TEST(v4l2_strides)
     reset_node();
     image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1..cBd2");
     image.stride_bytes[0] = 6;
-    must_open(&out, &image);
+    open_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
     expect_file("aAb1cBd2", 8);
     out.sink.close(&out.sink);
@@ -422,15 +422,15 @@ TEST(v4l2_strides)
     reset_node();
     image = image_of(GLINT_NV12, 2, 2, (void *)"abcdA1");
     node.stride = 3;
-    must_open(&out, &image);
+    open_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
     expect_file("ab\0cd\0A1", 9);
     out.sink.close(&out.sink);
 
-    reset_node(); /* planes that do not follow each other */
+    reset_node(); /* planes that are not contiguous */
     image = image_of(GLINT_NV12, 2, 2, (void *)"abcd..A1");
     image.plane[1] += 2;
-    must_open(&out, &image);
+    open_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
     expect_file("abcdA1", 6);
     out.sink.close(&out.sink);
@@ -443,7 +443,7 @@ TEST(v4l2_no_room)
     struct glint_error error;
 
     reset_node();
-    must_open(&out, &image);
+    open_sink(&out, &image);
     node.write_errno = EAGAIN;
     assert_ok(out.sink.put(&out.sink, &image, &error));
     assert_int_equal(out.n_dropped, 1);
@@ -502,7 +502,7 @@ TEST(v4l2_refuses)
     node.fail_request = VIDIOC_QUERYCAP;
     node.fail_errno = ENODEV;
     expect_refused(GLINT_E_DEVICE, "VIDIOC_QUERYCAP: No such device");
-    node.caps = 0; /* a plain file */
+    node.caps = 0; /* a regular file */
     expect_refused(GLINT_E_DEVICE, "is not a video device");
     image.format = GLINT_I444;
     assert_int_equal(
@@ -513,18 +513,18 @@ TEST(v4l2_refuses)
         glint_v4l2_sink_open(&out, "/dev/video-none", &image, 0, 0, &error),
         GLINT_E_DEVICE);
     assert_non_null(strstr(error.text, "modprobe v4l2loopback"));
-    /* The driver names these pixels by another FOURCC. */
+    /* The driver reports this pixel format by another FOURCC. */
     reset_node();
     node.fourcc = V4L2_PIX_FMT_BGR32;
     image.format = GLINT_XRGB8888;
-    must_open(&out, &image);
+    open_sink(&out, &image);
     out.sink.close(&out.sink);
     image.format = GLINT_YUYV;
-    /* The driver takes no rate. */
+    /* The driver has no frame rate setting. */
     reset_node();
     node.fail_request = VIDIOC_S_PARM;
     node.fail_errno = ENOTTY;
-    must_open(&out, &image);
+    open_sink(&out, &image);
     image.width = 1;
     assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_E_DEVICE);
     out.sink.close(&out.sink);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Text from files: what of it reaches a terminal, and what is written in
- * JSON.
+ * Tests text from untrusted files: which characters are printed to a terminal,
+ * and how JSON strings are escaped.
  */
 #include <stdint.h>
 
@@ -75,7 +75,8 @@ TEST(writer)
 {
     FILE *file = tmpfile();
     struct json_writer json = {.to = file};
-    const char *volatile const none = NULL; /* unknown to the compiler */
+    /* volatile: hides the value from the compiler */
+    const char *volatile const none = NULL;
     char got[256];
 
     assert_non_null(file);

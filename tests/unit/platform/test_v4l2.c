@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The V4L2 source with a driver that behaves: which format is chosen, where its
- * planes lie, which frames are shown and which are counted.
+ * Tests the V4L2 source on a fake driver without faults: the choice of format,
+ * the layout of planes, which frames are delivered, and the counts of dropped
+ * frames.
  */
 #include "support/fakes/camera_check.h"
 
@@ -9,8 +10,9 @@
 
 /* ------------------------------------------------------------------ formats */
 
-/* Returns the FOURCC chosen from the N modes of LIST for 64 x 48 at FPS. */
-static uint32_t chosen(const struct fake_mode *list, int n, int fps)
+/* Returns the FOURCC that the source chooses from the N modes of LIST when
+ * 64 x 48 pixels at FPS frames per second are requested. */
+static uint32_t choose_fourcc(const struct fake_mode *list, int n, int fps)
 {
     struct glint_v4l2_config wish = any_camera;
     uint32_t fourcc;
@@ -50,18 +52,19 @@ TEST(cheapest)
     static const struct fake_mode foreign[] = {
         {V4L2_PIX_FMT_H264, 64, 48, 30, 1}, {V4L2_PIX_FMT_GREY, 64, 48, 30, 1}};
 
-    assert_int_equal(chosen(equal, 4, 30), V4L2_PIX_FMT_YUYV);
-    assert_int_equal(chosen(equal, 3, 30), V4L2_PIX_FMT_NV12);
-    assert_int_equal(chosen(equal, 2, 30), V4L2_PIX_FMT_RGB24);
-    assert_int_equal(chosen(slow, 3, 30), V4L2_PIX_FMT_MJPEG);
-    assert_int_equal(chosen(slow, 3, 10), V4L2_PIX_FMT_YUYV);
-    assert_int_equal(chosen(slow, 3, 60), V4L2_PIX_FMT_YUYV); /* no mode can */
-    assert_int_equal(chosen(small, 2, 30), V4L2_PIX_FMT_RGB24);
-    assert_int_equal(chosen(foreign, 2, 30), V4L2_PIX_FMT_GREY);
+    assert_int_equal(choose_fourcc(equal, 4, 30), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(choose_fourcc(equal, 3, 30), V4L2_PIX_FMT_NV12);
+    assert_int_equal(choose_fourcc(equal, 2, 30), V4L2_PIX_FMT_RGB24);
+    assert_int_equal(choose_fourcc(slow, 3, 30), V4L2_PIX_FMT_MJPEG);
+    assert_int_equal(choose_fourcc(slow, 3, 10), V4L2_PIX_FMT_YUYV);
+    /* no mode reaches the rate */
+    assert_int_equal(choose_fourcc(slow, 3, 60), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(choose_fourcc(small, 2, 30), V4L2_PIX_FMT_RGB24);
+    assert_int_equal(choose_fourcc(foreign, 2, 30), V4L2_PIX_FMT_GREY);
 }
 
-/* Without a size, a rate must be looked for at the size that the camera is set
- * to. */
+/* Checks that a rate requested without a size is searched among the modes of
+ * the camera's present size. */
 TEST(rate_alone)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -76,9 +79,9 @@ TEST(rate_alone)
     must_close();
 }
 
-/* Intervals of 333334 units of 100 ns, as some USB cameras say it, must count
- * as 30 frames a second, and so must those of 1001/30000 s; 24 frames a second
- * must not count as 25. */
+/* Checks that intervals of 333334 units of 100 ns (reported by some USB
+ * cameras) and of 1001/30000 s match a request of 30 frames per second, and
+ * that 24 frames per second do not match 25. */
 TEST(almost_the_rate)
 {
     static const struct fake_mode usb[] = {
@@ -91,9 +94,9 @@ TEST(almost_the_rate)
         {V4L2_PIX_FMT_YUYV, 64, 48, 24, 1},
         {V4L2_PIX_FMT_MJPEG, 64, 48, 25, 1}};
 
-    assert_int_equal(chosen(usb, 2, 30), V4L2_PIX_FMT_YUYV);
-    assert_int_equal(chosen(ntsc, 2, 30), V4L2_PIX_FMT_YUYV);
-    assert_int_equal(chosen(film, 2, 25), V4L2_PIX_FMT_MJPEG);
+    assert_int_equal(choose_fourcc(usb, 2, 30), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(choose_fourcc(ntsc, 2, 30), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(choose_fourcc(film, 2, 25), V4L2_PIX_FMT_MJPEG);
 }
 
 TEST(stepwise)
@@ -115,7 +118,7 @@ TEST(stepwise)
     must_close();
 }
 
-/* Without libjpeg MJPG must not be chosen. */
+/* Checks that MJPG is not chosen in a build without libjpeg. */
 TEST(no_jpeg)
 {
     fake_lacks_jpeg = true;
@@ -141,7 +144,8 @@ TEST(unread_format)
                 "does not support NV12 (the driver returns YUYV instead)");
 }
 
-/* A camera that chooses another format than was requested must be believed. */
+/* Checks that the format which the camera sets is used, even if another was
+ * requested. */
 TEST(believes)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -172,7 +176,7 @@ TEST(odd_rates)
         fake_camera_reset();
         camera.rate = odd[i];
         must_open(NULL);
-        /* Such a rate counts as unknown. */
+        /* A rate out of range is reported as unknown. */
         assert_int_equal(v4l2.device.format.fps_num, 0);
         must_close();
     }
@@ -215,8 +219,8 @@ TEST(colours)
     must_close();
 }
 
-/* A device may have a long name, as udev makes them, but not a longer one than
- * there is room for. */
+/* Checks that a long device name, as udev creates them, is accepted, and
+ * that one longer than the buffer is rejected. */
 TEST(long_names)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -231,7 +235,7 @@ TEST(long_names)
     name[120] = 'x';
     name[399] = '\0';
     must_refuse(&wish, GLINT_E_DEVICE, "name is too long");
-    wish.device = "77"; /* for /dev/video77 */
+    wish.device = "77"; /* short for /dev/video77 */
     must_open(&wish);
     must_close();
 }
@@ -247,7 +251,8 @@ static void use_format(uint32_t fourcc, bool multiplanar)
         camera.caps = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
 }
 
-/* Checks a plane's offset from the start of BLOCK, and its stride. */
+/* Checks the plane's offset from the start of BLOCK and its stride, in
+ * bytes. */
 static void expect_plane(int plane, const uint8_t *block, ptrdiff_t offset,
                          ptrdiff_t stride)
 {
@@ -255,7 +260,7 @@ static void expect_plane(int plane, const uint8_t *block, ptrdiff_t offset,
     assert_int_equal(frame.image.stride_bytes[plane], stride);
 }
 
-static const uint8_t *block_of(int k)
+static const uint8_t *find_block(int k)
 {
     return camera.buffer[0].map[k];
 }
@@ -267,7 +272,7 @@ TEST(strides)
     must_open(NULL);
     fake_camera_deliver(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, block_of(0), 0, 2 * 64 + 24);
+    expect_plane(0, find_block(0), 0, 2 * 64 + 24);
     done();
     must_close();
     camera.stride_more = 0;
@@ -275,7 +280,7 @@ TEST(strides)
     must_open(NULL);
     fake_camera_deliver(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, block_of(0), 0, 2 * 64);
+    expect_plane(0, find_block(0), 0, 2 * 64);
     done();
     must_close();
 }
@@ -287,8 +292,8 @@ TEST(one_block)
     must_open(NULL);
     fake_camera_deliver(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, block_of(0), 0, 80);
-    expect_plane(1, block_of(0), 80 * 48, 80);
+    expect_plane(0, find_block(0), 0, 80);
+    expect_plane(1, find_block(0), 80 * 48, 80);
     done();
     must_close();
     use_format(V4L2_PIX_FMT_YUV420, true);
@@ -296,9 +301,9 @@ TEST(one_block)
     must_open(NULL);
     fake_camera_deliver(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, block_of(0), 0, 80);
-    expect_plane(1, block_of(0), 80 * 48, 40);
-    expect_plane(2, block_of(0), 80 * 48 + 40 * 24, 40);
+    expect_plane(0, find_block(0), 0, 80);
+    expect_plane(1, find_block(0), 80 * 48, 40);
+    expect_plane(2, find_block(0), 80 * 48 + 40 * 24, 40);
     done();
     must_close();
 }
@@ -314,19 +319,19 @@ TEST(several_blocks)
     fake_camera_deliver(0, 9);
     assert_int_equal(next(), GLINT_OK);
     assert_int_equal(frame.image.format, GLINT_NV12);
-    expect_plane(0, block_of(0), 0, 80);
-    expect_plane(1, block_of(1), 0, 80);
+    expect_plane(0, find_block(0), 0, 80);
+    expect_plane(1, find_block(1), 0, 80);
     done();
     must_close();
     use_format(V4L2_PIX_FMT_YUV420M, true);
     must_open(NULL);
     f = fake_camera_deliver(0, 9);
-    f->is_odd = true; /* Sizes below are meant literally. */
+    f->is_odd = true; /* keeps the sizes below as they are set */
     f->bytesused[0] = 64 * 48;
     f->bytesused[1] = f->bytesused[2] = 32 * 24;
     assert_int_equal(next(), GLINT_OK);
     assert_non_null(frame.image.plane[0]);
-    expect_plane(2, block_of(2), 0, 32);
+    expect_plane(2, find_block(2), 0, 32);
     done();
     f = fake_camera_deliver(1, 9);
     f->is_odd = true;
@@ -337,7 +342,7 @@ TEST(several_blocks)
     must_close();
 }
 
-/* Data of the driver's own may come before the picture. */
+/* Checks that data which the driver puts before the image is skipped. */
 TEST(data_offset)
 {
     struct fake_frame *f;
@@ -350,7 +355,7 @@ TEST(data_offset)
     f->data_offset[0] = 32;
     f->bytesused[0] = 2 * 64 * 48 + 32;
     assert_int_equal(next(), GLINT_OK);
-    expect_plane(0, block_of(0), 32, 2 * 64);
+    expect_plane(0, find_block(0), 32, 2 * 64);
     done();
     f = fake_camera_deliver(1, 9);
     f->is_odd = true;
@@ -360,7 +365,7 @@ TEST(data_offset)
     assert_int_equal(frame.n_corrupt, 1);
     f = fake_camera_deliver(2, 9);
     f->is_odd = true;
-    f->data_offset[0] = 4000; /* beyond the used bytes */
+    f->data_offset[0] = 4000; /* beyond the 100 bytes used */
     f->bytesused[0] = 100;
     must_get_nothing();
     assert_int_equal(frame.n_corrupt, 1);
@@ -374,7 +379,8 @@ TEST(too_small)
         NULL, GLINT_E_DEVICE,
         "64x48 YUYV needs more bytes than the 6143 that the driver reports");
     fake_camera_reset();
-    camera.length_less = 1; /* The driver hides this. */
+    /* The driver reports a larger buffer than it has. */
+    camera.length_less = 1;
     must_open(NULL);
     fake_camera_deliver(0, 9);
     must_get_nothing();
@@ -412,8 +418,8 @@ TEST(damaged)
     must_close();
 }
 
-/* A damaged frame must not take the place of a whole one that comes after or
- * before it. */
+/* Checks that an intact frame is delivered even if a damaged frame precedes
+ * or follows it. */
 TEST(damaged_among_whole)
 {
     must_open(NULL);
@@ -439,17 +445,18 @@ TEST(newest)
     assert_int_equal(frame.n_dropped, 0);
     assert_int_equal(frame.sequence, 2);
     assert_int_equal(frame.time_us, 5002);
-    assert_int_equal(camera.n_queued, 3); /* One of the four is lent. */
+    /* One of the four buffers is lent to the caller. */
+    assert_int_equal(camera.n_queued, 3);
     fake_camera_deliver(3, 13);
     done();
     assert_int_equal(camera.n_queued, 4);
-    done(); /* A second time changes nothing. */
+    done(); /* A second release has no effect. */
     assert_int_equal(camera.n_queued, 4);
     must_get(13);
     must_close();
 }
 
-static int64_t stamp_of(int64_t stamp_us, bool unknown_clock)
+static int64_t read_stamp(int64_t stamp_us, bool unknown_clock)
 {
     struct fake_frame *f = fake_camera_deliver(0, 1);
 
@@ -459,22 +466,22 @@ static int64_t stamp_of(int64_t stamp_us, bool unknown_clock)
     return frame.time_us;
 }
 
-/* A stamp of an unknown clock must be believed if it can be right; no stamp may
- * be later than now. */
+/* Checks that a plausible time stamp of an unknown clock is used, and that
+ * no time stamp is later than the present. */
 TEST(stamps)
 {
     const int64_t now_us = fake_camera_now();
 
     must_open(NULL);
-    assert_int_equal(stamp_of(now_us - 30000, false), now_us - 30000);
-    assert_int_equal(stamp_of(now_us - 30000, true), now_us - 30000);
-    assert_int_equal(stamp_of(now_us - 9000000, true), now_us);
-    assert_int_equal(stamp_of(now_us + 5000, false), now_us);
-    assert_int_equal(stamp_of(now_us + 5000, true), now_us);
+    assert_int_equal(read_stamp(now_us - 30000, false), now_us - 30000);
+    assert_int_equal(read_stamp(now_us - 30000, true), now_us - 30000);
+    assert_int_equal(read_stamp(now_us - 9000000, true), now_us);
+    assert_int_equal(read_stamp(now_us + 5000, false), now_us);
+    assert_int_equal(read_stamp(now_us + 5000, true), now_us);
     must_close();
 }
 
-/* A lent frame must stay as it is while others come and go. */
+/* Checks that a lent frame is unchanged while other frames arrive. */
 TEST(lent)
 {
     struct glint_source_frame kept;
@@ -494,8 +501,8 @@ TEST(lent)
     must_close();
 }
 
-/* A camera that is open must not stream, but its format must be locked, until
- * start; after a restart likewise. A call of next starts it, too. */
+/* Checks that an open camera has its format locked but does not stream
+ * before start(), also after a restart, and that next() starts it as well. */
 TEST(streams_when_started)
 {
     assert_int_equal(
@@ -521,7 +528,7 @@ TEST(streams_when_started)
     must_close();
 }
 
-static int dropped(uint32_t sequence)
+static int count_dropped(uint32_t sequence)
 {
     fake_camera_deliver(sequence, 9);
     must_get(9);
@@ -531,36 +538,41 @@ static int dropped(uint32_t sequence)
 TEST(sequence)
 {
     must_open(NULL);
-    assert_int_equal(dropped(1000), 0); /* A count may begin anywhere. */
-    assert_int_equal(dropped(1001), 0);
-    assert_int_equal(dropped(1005), 3);
-    assert_int_equal(dropped(1005), 0);
-    assert_int_equal(dropped(3), 0); /* the count restarted */
-    assert_int_equal(dropped(4), 0);
+    /* The sequence may start at any number. */
+    assert_int_equal(count_dropped(1000), 0);
+    assert_int_equal(count_dropped(1001), 0);
+    assert_int_equal(count_dropped(1005), 3);
+    assert_int_equal(count_dropped(1005), 0);
+    assert_int_equal(count_dropped(3),
+                     0); /* sequence restarted by the driver */
+    assert_int_equal(count_dropped(4), 0);
     must_close();
     must_open(NULL);
-    assert_int_equal(dropped(UINT32_MAX - 1), 0);
-    assert_int_equal(dropped(UINT32_MAX), 0);
-    assert_int_equal(dropped(0), 0);
-    assert_int_equal(dropped(2), 1);
+    assert_int_equal(count_dropped(UINT32_MAX - 1), 0);
+    assert_int_equal(count_dropped(UINT32_MAX), 0);
+    assert_int_equal(count_dropped(0), 0);
+    assert_int_equal(count_dropped(2), 1);
     must_close();
     must_open(NULL);
-    assert_int_equal(dropped(0), 0); /* from before, as of v4l2loopback */
-    assert_int_equal(dropped(28), 0);
-    assert_int_equal(dropped(30), 1);
+    /* left over from before the stream, as v4l2loopback sends it */
+    assert_int_equal(count_dropped(0), 0);
+    assert_int_equal(count_dropped(28), 0);
+    assert_int_equal(count_dropped(30), 1);
     must_close();
-    must_open(NULL); /* Some drivers never count. */
+    must_open(NULL); /* Some drivers leave the sequence at 0. */
     for (int i = 0; i < 5; i++)
-        assert_int_equal(dropped(0), 0);
+        assert_int_equal(count_dropped(0), 0);
     must_close();
 }
 
-/* Gaps and damage before the frame that is shown must be added up. */
+/* Checks that gaps and damaged frames before a delivered frame are counted
+ * together. */
 TEST(gaps_add_up)
 {
     must_open(NULL);
-    assert_int_equal(dropped(6), 0); /* a number from before */
-    assert_int_equal(dropped(0), 0);
+    assert_int_equal(count_dropped(6),
+                     0); /* left over from before the stream */
+    assert_int_equal(count_dropped(0), 0);
     fake_camera_deliver(2, 1)->flags = V4L2_BUF_FLAG_ERROR;
     fake_camera_deliver(5, 2);
     fake_camera_deliver(7, 3);
@@ -571,12 +583,12 @@ TEST(gaps_add_up)
     must_close();
 }
 
-/* Leaps of the sequence must not count as gaps, and their sum must not
- * overflow. */
+/* Checks that implausible jumps of the sequence are not counted as dropped
+ * frames, and that their sum does not overflow. */
 TEST(leaps)
 {
     must_open(NULL);
-    assert_int_equal(dropped(0), 0);
+    assert_int_equal(count_dropped(0), 0);
     for (uint32_t i = 1; i <= 3; i++)
         fake_camera_deliver(i * 0x7fffffff, 9);
     must_get(9);
@@ -636,8 +648,8 @@ TEST(memory)
     check_io(GLINT_V4L2_READ, GLINT_V4L2_READ);
 }
 
-/* A kind of memory that the device lacks must be reported as such, not as a
- * failed request. */
+/* Checks that a type of memory which the device lacks is reported as such,
+ * not as a failed request. */
 TEST(no_such_memory)
 {
     assert_int_equal(try_open(NULL, GLINT_V4L2_READ), GLINT_E_DEVICE);
@@ -664,8 +676,8 @@ TEST(few_buffers)
     must_refuse(NULL, GLINT_E_DEVICE, "VIDIOC_REQBUFS: Cannot allocate memory");
 }
 
-/* The message must name the request that failed, even where another way was
- * tried after it or something was put right. */
+/* Checks that the message names the request that failed first, even if a
+ * fallback was tried or a resource freed after it. */
 TEST(names_what_failed)
 {
     fake_camera_refuse(VIDIOC_QUERYBUF, EIO, 1);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Faults of the V4L2 source: which it survives, which end it, after what time
- * and with which message; and that no resource leaks.
+ * Tests the V4L2 source on a fake driver with faults: which faults it recovers
+ * from, which end the stream, after what time and with which message, and that
+ * no resource leaks.
  */
 #include "support/fakes/camera_check.h"
 #include "support/scratch.h"
@@ -24,11 +25,11 @@ TEST(queueing_fails_once)
     must_get(1);
     assert_int_equal(camera.n_queued, 3);
     fake_camera_deliver(1, 2);
-    must_get(2); /* The failed request is tried again first. */
+    must_get(2); /* The failed request is repeated before any other. */
     assert_int_equal(camera.n_queued, 4);
     assert_int_equal(v4l2.source.n_restarts, 0);
     must_close();
-    fake_camera_refuse(VIDIOC_QBUF, EIO, 1); /* at the start, too */
+    fake_camera_refuse(VIDIOC_QBUF, EIO, 1); /* also while the stream starts */
     must_open(NULL);
     assert_int_equal(camera.n_queued, 3);
     must_get_nothing();
@@ -83,7 +84,7 @@ TEST(refuses)
     must_refuse(NULL, GLINT_E_DEVICE, "'Fake' does not capture pictures");
 }
 
-/* The source must do without these requests. */
+/* Checks that the source works on drivers that lack these requests. */
 TEST(does_without)
 {
     static const unsigned long request[] = {
@@ -103,7 +104,8 @@ TEST(does_without)
 
 /* ---------------------------------------------------------- broken streams */
 
-/* Checks that the next frame is WIDTH wide and that its first byte is CODE. */
+/* Checks that the next frame has WIDTH pixels per row and that its first
+ * byte is CODE. */
 static void must_get_wide(int width, int code)
 {
     assert_int_equal(next(), GLINT_OK);
@@ -113,8 +115,8 @@ static void must_get_wide(int width, int code)
     done();
 }
 
-/* A stream that breaks must be begun again, at the size that another program
- * has set meanwhile. */
+/* Checks that a broken stream is restarted, at the size that another program
+ * has set in the meantime. */
 TEST(broken_stream)
 {
     must_open(NULL);
@@ -128,12 +130,11 @@ TEST(broken_stream)
     assert_int_equal(v4l2.device.format.width, 32);
     fake_camera_deliver(0, 2);
     must_get_wide(32, 2);
-    assert_int_equal(frame.n_dropped, 0); /* counted from 0 again */
+    assert_int_equal(frame.n_dropped, 0); /* the count restarted at 0 */
     must_close();
 }
 
-/* When it is begun again, the format may be another one that is read, and
- * change back. */
+/* Checks that a restart may change to another supported format and back. */
 TEST(other_format)
 {
     must_open(NULL);
@@ -153,8 +154,8 @@ TEST(other_format)
     must_close();
 }
 
-/* Requests that fail while the stream is begun again must be tried again for a
- * while. */
+/* Checks that requests which fail during a restart are repeated for a
+ * limited time. */
 TEST(stubborn)
 {
     static const unsigned long request[] = {VIDIOC_REQBUFS, VIDIOC_STREAMON,
@@ -174,8 +175,8 @@ TEST(stubborn)
     }
 }
 
-/* Where the stream cannot be begun again, this must end with a message that
- * names the request. */
+/* Checks that a stream which cannot be restarted ends with a message that
+ * names the failed request. */
 TEST(never_again)
 {
     static const struct {
@@ -211,8 +212,7 @@ TEST(never_again)
     }
 }
 
-/* After each frame there must again be the whole time for trying to begin the
- * stream again. */
+/* Checks that each delivered frame resets the time limit for restarts. */
 TEST(patience)
 {
     must_open(NULL);
@@ -235,14 +235,15 @@ TEST(gone)
     must_open(NULL);
     fake_camera_deliver(0, 1);
     assert_int_equal(next(), GLINT_OK);
-    camera.is_gone = true; /* A frame is lent meanwhile. */
+    camera.is_gone = true; /* while a frame is lent */
     done();
     assert_int_equal(next(), GLINT_E_DEVICE);
     assert_string_equal(said.text, FAKE_PATH ": the camera is gone");
     must_close();
     must_refuse(NULL, GLINT_E_DEVICE, "no such device; --list-devices");
 
-    for (int i = 0; i < 2; i++) { /* Either request may be the first to fail. */
+    /* number of the request that reports the loss first */
+    for (int i = 0; i < 2; i++) {
         fake_camera_reset();
         must_open(NULL);
         camera.is_broken = i == 1;
@@ -254,9 +255,9 @@ TEST(gone)
     }
 }
 
-/* Checks that a stream of damaged frames alone ends with a message: frames that
- * the driver marks, or that do not decode. */
-static void damaged_to_the_end(bool as_jpeg)
+/* Checks that a stream of only damaged frames, marked by the driver or
+ * undecodable (AS_JPEG), ends with a message. */
+static void check_damaged_stream(bool as_jpeg)
 {
     static const char garbage[] = "not a JPEG at all";
     uint32_t sequence = 0;
@@ -283,19 +284,20 @@ static void damaged_to_the_end(bool as_jpeg)
     assert_int_equal(status, GLINT_E_DEVICE);
     assert_string_equal(said.text, FAKE_PATH ": all frames are damaged, and "
                                              "restarting does not help");
-    assert_int_equal(n_frames, 60); /* in two seconds */
+    assert_int_equal(n_frames, 60); /* two seconds at 30 frames per second */
     assert_int_equal(n_corrupt, 60);
     must_close();
 }
 
 TEST(all_damaged)
 {
-    damaged_to_the_end(false);
+    check_damaged_stream(false);
     if (glint_mjpeg_available())
-        damaged_to_the_end(true);
+        check_damaged_stream(true);
 }
 
-/* One whole frame in thirty must be enough to continue without a restart. */
+/* Checks that one intact frame in thirty is enough to continue without a
+ * restart. */
 TEST(many_damaged)
 {
     must_open(NULL);
@@ -312,7 +314,7 @@ TEST(many_damaged)
     must_close();
 }
 
-/* A driver that gives back a buffer which it does not have must lead to a
+/* Checks that a driver which returns a buffer that was not queued causes a
  * restart. */
 TEST(wrong_index)
 {
@@ -350,13 +352,13 @@ TEST(silence)
     fake_camera_pass(2100000);
     must_get_nothing();
     assert_int_equal(v4l2.source.n_restarts, 0);
-    fake_camera_pass(40000); /* 2 s and 4 frames in all */
+    fake_camera_pass(40000); /* longer than the time limit: 2 s and 4 frames */
     must_get_nothing();
     assert_int_equal(v4l2.source.n_restarts, 1);
-    fake_camera_deliver(0, 1); /* helped by the restart */
+    fake_camera_deliver(0, 1); /* The restart makes frames arrive. */
     must_get(1);
     assert_int_equal(follow(10000, &failed_ms), GLINT_E_DEVICE);
-    /* The restart did not help. */
+    /* The restart has no effect. */
     assert_in_range(failed_ms, 4200, 4400);
     assert_string_equal(said.text, FAKE_PATH ": no frames come, and restarting "
                                              "does not help");
@@ -405,7 +407,7 @@ TEST(timings_change)
     use_hdmi();
     must_open(NULL);
     assert_true(v4l2.device.has_signal);
-    camera.n_events = 1; /* The event brings no change. */
+    camera.n_events = 1; /* an event without a change */
     fake_camera_deliver(0, 1);
     must_get(1);
     assert_int_equal(v4l2.source.n_restarts, 0);
@@ -419,8 +421,8 @@ TEST(timings_change)
     must_close();
 }
 
-/* A signal may be away for as long as it likes, and come back, with events or
- * without. */
+/* Checks that the input's signal may be absent for any time and return, with
+ * or without events. */
 TEST(signal_lost)
 {
     int failed_ms;
@@ -446,8 +448,8 @@ TEST(signal_lost)
     }
 }
 
-/* Without a signal there are no timings to set, and those of the input must
- * do. */
+/* Checks that the input's present timings are used while no signal is
+ * detected. */
 TEST(no_signal_yet)
 {
     use_hdmi();
@@ -460,8 +462,8 @@ TEST(no_signal_yet)
     must_close();
 }
 
-/* The signal comes and goes without a frame between, for longer than the time
- * for trying: a cable is being plugged in. */
+/* Checks a signal that is lost and returns repeatedly without a frame, for
+ * longer than the time limit for restarts, as while a cable is plugged in. */
 TEST(signal_wavers)
 {
     int failed_ms;
@@ -477,7 +479,7 @@ TEST(signal_wavers)
         camera.n_events = 1;
         assert_int_equal(follow(1500, &failed_ms), GLINT_OK);
     }
-    /* The signal is back, and then the camera breaks. */
+    /* The signal returns, and then the camera fails. */
     camera.has_signal = true;
     camera.n_events = 1;
     camera.is_broken = true;
@@ -487,8 +489,8 @@ TEST(signal_wavers)
     must_close();
 }
 
-/* A driver that reports a change at every start must not keep the program
- * busy. */
+/* Checks that a driver which reports a change at every start does not cause
+ * a busy loop. */
 TEST(endless_changes)
 {
     int64_t start;
@@ -535,9 +537,9 @@ TEST(restarts_user_memory_and_reads)
 
 static int n_got;
 
-/* Runs through frames, a broken stream and a changed source, whatever fails.
- * Sets *N_CALLS to the calls that could fail. */
-static enum glint_status live(enum glint_v4l2_io io, int *n_calls)
+/* Runs a sequence of frames, a broken stream and a changed source. Sets
+ * *N_CALLS to the number of calls that can fail. Returns the first error. */
+static enum glint_status run_session(enum glint_v4l2_io io, int *n_calls)
 {
     enum glint_status status = try_open(NULL, io);
 
@@ -574,13 +576,13 @@ static void check_failures(int number, bool forever, enum glint_v4l2_io io,
                                    : V4L2_CAP_VIDEO_CAPTURE);
         fake_camera_fail_at(n, number, forever);
         n_got = 0;
-        status = live(io, &n_calls);
+        status = run_session(io, &n_calls);
         if (status != GLINT_OK) {
             n_failed++;
             assert_true(status == GLINT_E_DEVICE || status == GLINT_E_MEMORY);
             assert_non_null(strstr(said.text, FAKE_PATH ": "));
         }
-        /* One frame may be lost, and one more at each new start. */
+        /* One frame may be lost, and one more at each restart. */
         if (status == GLINT_OK && !forever && fourcc != V4L2_PIX_FMT_MJPEG)
             assert_true(n_got >= 8);
         must_be_closed();

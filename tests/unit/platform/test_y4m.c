@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * YUV4MPEG2: headers, odd sizes, every truncation, round trips.
+ * Tests YUV4MPEG2: headers, odd sizes, truncation at every byte, round trips.
  */
 #include <stdint.h>
 
@@ -15,7 +15,7 @@
 #include "support/test.h"
 #include "video/y4m.h"
 
-/* Two frames of 9 bytes of luma and 4 and 4 of chroma, 17 in all. */
+/* Two frames of 17 bytes: 9 of luma, 4 and 4 of chroma. */
 #define SMALL                  \
     "YUV4MPEG2 W3 H3 F25:1\n"  \
     "FRAME\nabcdefghiCDEFcdef" \
@@ -23,14 +23,15 @@
 
 static struct glint_error error;
 
-/* A source of bytes that come CHUNK at a time, then fail or end. */
+/* A byte stream in memory that returns CHUNK bytes per read, then ends or
+ * fails. */
 struct memory {
     const char *data;
     size_t bytes, at, chunk;
     bool fails;
 };
 
-static ptrdiff_t pull(void *ctx, void *dst, size_t bytes)
+static ptrdiff_t read_memory(void *ctx, void *dst, size_t bytes)
 {
     struct memory *const m = ctx;
     size_t n = m->bytes - m->at;
@@ -77,7 +78,7 @@ TEST(ffmpeg_header)
     assert_memory_equal(printed, line, sizeof line - 1);
     assert_int_equal(printed[len - 1], '\n');
 
-    h.range = GLINT_RANGE_FULL; /* another range than was read */
+    h.range = GLINT_RANGE_FULL; /* differs from the range that was read */
     glint_y4m_header_print(printed, &h);
     assert_non_null(strstr(printed, " XCOLORRANGE=FULL\n"));
     assert_null(strstr(printed, "LIMITED"));
@@ -141,7 +142,7 @@ TEST(range_and_matrix)
     assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
 }
 
-static void refuse(enum glint_status status, const char *line)
+static void check_refusal(enum glint_status status, const char *line)
 {
     struct glint_y4m_header h = {.width = 77};
 
@@ -182,20 +183,19 @@ TEST(hostile_headers)
     };
 
     for (size_t i = 0; i < sizeof malformed / sizeof *malformed; i++)
-        refuse(GLINT_E_FORMAT, malformed[i]);
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W32769 H3");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H32769");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W4294967299 H3");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C440");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C444alphap10");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420jpegp10");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 Cmono8");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p11");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p100");
-    assert_string_equal(
-        error.text,
-        "x.y4m: C420p100 is not a supported colour space: 420, 422, 444 (up to "
-        "p16), 411, 444alpha and mono (up to mono16) are");
+        check_refusal(GLINT_E_FORMAT, malformed[i]);
+    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W32769 H3");
+    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H32769");
+    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W4294967299 H3");
+    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C440");
+    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C444alphap10");
+    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420jpegp10");
+    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 Cmono8");
+    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p11");
+    check_refusal(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p100");
+    assert_string_equal(error.text,
+                        "x.y4m: C420p100 is none of 420, 422, 444 (to p16), "
+                        "411, 444alpha and mono (to mono16)");
 }
 
 TEST(own_header)
@@ -224,8 +224,8 @@ TEST(frames)
         struct glint_y4m_reader reader;
         const struct glint_image *frame;
 
-        assert_ok(
-            glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error));
+        assert_ok(glint_y4m_reader_start(&reader, read_memory, &memory, "x.y4m",
+                                         &error));
         assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
         assert_int_equal(frame->format, GLINT_I420);
         assert_int_equal(frame->transfer, GLINT_TONE_BT709);
@@ -246,8 +246,8 @@ TEST(frames)
     }
 }
 
-/* Reads DATA to its end or its first error, and sets *FRAMES to the number of
- * whole frames. */
+/* Reads the stream DATA until its end or first error. Sets *FRAMES to the
+ * number of complete frames. Returns the status. */
 static enum glint_status read_all(const char *data, size_t bytes, long *frames,
                                   bool fails)
 {
@@ -255,7 +255,7 @@ static enum glint_status read_all(const char *data, size_t bytes, long *frames,
     struct glint_y4m_reader reader;
     const struct glint_image *frame = NULL;
     enum glint_status status =
-        glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error);
+        glint_y4m_reader_start(&reader, read_memory, &memory, "x.y4m", &error);
 
     while (!status &&
            !(status = glint_y4m_reader_next(&reader, &frame, &error)) && frame)
@@ -265,8 +265,8 @@ static enum glint_status read_all(const char *data, size_t bytes, long *frames,
     return status;
 }
 
-/* Cut at any byte, the stream must end with the right message. The header has
- * 22 bytes, the first frame 6 + 17, the second 14 + 17. */
+/* Checks that a stream truncated at any byte ends with the right message.
+ * The header has 22 bytes, the first frame 6 + 17, the second 14 + 17. */
 TEST(every_truncation)
 {
     long frames;
@@ -353,7 +353,7 @@ static void expect_path(const char *want, size_t want_bytes)
     free(data);
 }
 
-/* Checks that DATA copied frame by frame to a file is the same again. */
+/* Checks that DATA, copied frame by frame to a file, is unchanged. */
 static void check_copy(const char *data, size_t bytes)
 {
     struct memory memory = {data, bytes, 0, 5000, false};
@@ -361,7 +361,8 @@ static void check_copy(const char *data, size_t bytes)
     struct glint_y4m_writer writer;
     const struct glint_image *frame;
 
-    assert_ok(glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error));
+    assert_ok(
+        glint_y4m_reader_start(&reader, read_memory, &memory, "x.y4m", &error));
     assert_ok(
         glint_y4m_writer_open(&writer, scratch_file, &reader.header, &error));
     while (!glint_y4m_reader_next(&reader, &frame, &error) && frame)
@@ -382,13 +383,13 @@ TEST(copies)
     check_copy(BYTES("YUV4MPEG2 W2 H1 F5:1 Cmono XCOLORRANGE=FULL\n"
                      "FRAME\nab"));
     check_copy(BYTES("YUV4MPEG2 W1 H1 F5:1\nFRAME\nabc"));
-    /* A stream may have no frames. */
+    /* A stream without frames is valid. */
     check_copy(BYTES("YUV4MPEG2 W8192 H8192 F5:1\n"));
 }
 
 /* --------------------------------------------------------- depth and layout */
 
-/* Checks what is seen of a frame as it is stored. */
+/* Reads the frame in DATA and checks that its 8-bit planes equal SEEN. */
 static void check_planes(const char *data, size_t bytes, const char *seen,
                          size_t n_seen)
 {
@@ -396,7 +397,8 @@ static void check_planes(const char *data, size_t bytes, const char *seen,
     struct memory m = {data, bytes, 0, 7, false};
     struct glint_y4m_reader reader;
 
-    assert_ok(glint_y4m_reader_start(&reader, pull, &m, "x.y4m", &error));
+    assert_ok(
+        glint_y4m_reader_start(&reader, read_memory, &m, "x.y4m", &error));
     assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
     assert_non_null(frame);
     assert_memory_equal(frame->plane[0], seen, n_seen);
@@ -420,10 +422,10 @@ TEST(deep_frames)
     check_planes(BYTES("YUV4MPEG2 W1 H1 C444alpha\nFRAME\nabcd"), BYTES("abc"));
 }
 
-/* Sets PLANES to a frame of 3 x 3 pixels of TAG, luma CODE and chroma MIDDLE,
- * and adds LAYER to it. */
-static void light_up(const char *tag, int code, int middle, const float *layer,
-                     uint8_t planes[72])
+/* Fills PLANES with a frame of 3 x 3 pixels in format TAG, luma CODE, chroma
+ * MIDDLE, and adds the light of LAYER to it. */
+static void add_light_to_frame(const char *tag, int code, int middle,
+                               const float *layer, uint8_t planes[72])
 {
     static struct glint_y4m_light light;
     struct glint_y4m_header h;
@@ -446,37 +448,41 @@ static void light_up(const char *tag, int code, int middle, const float *layer,
     glint_y4m_light_add(&light, planes, layer);
 }
 
-static int wide_at(const uint8_t *planes, int i)
+static int read_16bit(const uint8_t *planes, int i)
 {
     return planes[2 * i] | planes[2 * i + 1] << 8;
 }
 
-/* White light of 0.18 must become 0.409 by BT.709 (by hand: 1.099 * 0.18^0.45 -
- * 0.099 = 0.4090), which is 64 + 876 * 0.4090 = 422.3 in 10 bits. */
+/* Checks that white light of 0.18 becomes 0.409 by BT.709 (by hand: 1.099 *
+ * 0.18^0.45 - 0.099 = 0.4090), which is 64 + 876 * 0.4090 = 422.3 in 10
+ * bits. */
 TEST(light)
 {
     float layer[27] = {0};
     uint8_t planes[72];
 
-    light_up("C420p10", 500, 512, layer, planes);
+    add_light_to_frame("C420p10", 500, 512, layer, planes);
     for (int i = 0; i < 9; i++)
-        assert_int_equal(wide_at(planes, i), 500);
+        assert_int_equal(read_16bit(planes, i), 500);
     layer[3 * 4] = layer[3 * 4 + 1] = layer[3 * 4 + 2] = 0.18F;
-    light_up("C420p10", 64, 512, layer, planes);
+    add_light_to_frame("C420p10", 64, 512, layer, planes);
     for (int i = 0; i < 17; i++)
-        assert_int_equal(wide_at(planes, i), i == 4 ? 422 : i < 9 ? 64 : 512);
-    light_up("Cmono12 XCOLORRANGE=FULL", 0, 0, layer, planes);
-    assert_int_equal(wide_at(planes, 4), 1675); /* 4095 * 0.40901 */
-    layer[3 * 8] = 9; /* red light of 9, which clips, on the last of 3 x 3
-                       * pixels, whose chroma sample has no other pixel */
-    light_up("C420p10", 64, 512, layer, planes);
-    assert_int_equal(wide_at(planes, 8), 326);  /* 64 + 876 * 0.299 */
-    assert_int_equal(wide_at(planes, 12), 361); /* 512 - 896 * 0.1687 */
-    assert_int_equal(wide_at(planes, 16), 960); /* 512 + 896 * 0.5 */
-    assert_int_equal(wide_at(planes, 9), 512);
+        assert_int_equal(read_16bit(planes, i), i == 4  ? 422
+                                                : i < 9 ? 64
+                                                        : 512);
+    add_light_to_frame("Cmono12 XCOLORRANGE=FULL", 0, 0, layer, planes);
+    assert_int_equal(read_16bit(planes, 4), 1675); /* 4095 * 0.40901 */
+    /* red light of 9, which clips, on the last of 3 x 3 pixels, the only
+     * pixel of its chroma sample */
+    layer[3 * 8] = 9;
+    add_light_to_frame("C420p10", 64, 512, layer, planes);
+    assert_int_equal(read_16bit(planes, 8), 326);  /* 64 + 876 * 0.299 */
+    assert_int_equal(read_16bit(planes, 12), 361); /* 512 - 896 * 0.1687 */
+    assert_int_equal(read_16bit(planes, 16), 960); /* 512 + 896 * 0.5 */
+    assert_int_equal(read_16bit(planes, 9), 512);
 }
 
-/* A code that is white or beyond must stay, and alpha, too. */
+/* Checks that codes at or above white, and alpha, are unchanged. */
 TEST(light_stays)
 {
     float layer[27];
@@ -484,19 +490,20 @@ TEST(light_stays)
 
     for (int i = 0; i < 27; i++)
         layer[i] = 0.5F;
-    light_up("C444p12 XCOLORRANGE=LIMITED", 3760, 2048, layer, planes);
+    add_light_to_frame("C444p12 XCOLORRANGE=LIMITED", 3760, 2048, layer,
+                       planes);
     for (int i = 0; i < 27; i++)
-        assert_int_equal(wide_at(planes, i), i < 9 ? 3760 : 2048);
-    light_up("C444p12", 4000, 2048, layer, planes);
-    assert_int_equal(wide_at(planes, 0), 4000);
-    light_up("C444alpha", 16, 128, layer, planes);
+        assert_int_equal(read_16bit(planes, i), i < 9 ? 3760 : 2048);
+    add_light_to_frame("C444p12", 4000, 2048, layer, planes);
+    assert_int_equal(read_16bit(planes, 0), 4000);
+    add_light_to_frame("C444alpha", 16, 128, layer, planes);
     assert_int_equal(planes[35], 128);
     assert_in_range(planes[0], 170, 176);
 }
 
-/* Returns the light of code V by the formulas of the standards, 1 = diffuse
- * white: 203 cd/m2 of PQ, the light of code 0.75 of HLG [BT.2408]. */
-static double reference(enum glint_transfer_curve curve, double v)
+/* Returns the linear light of code V by the standards' formulas, 1 = diffuse
+ * white: 203 cd/m2 for PQ, code 0.75 for HLG [BT.2408]. */
+static double compute_light(enum glint_transfer_curve curve, double v)
 {
     const double a = 0.17883277, b = 1 - 4 * a, c = 0.5 - a * log(4 * a);
     double p;
@@ -530,13 +537,13 @@ static double reference(enum glint_transfer_curve curve, double v)
     }
 }
 
-/* The tables must be those of the formulas. */
+/* Checks the transfer tables against the standards' formulas. */
 TEST(transfers)
 {
     for (int t = 0; t < GLINT_TRANSFERS; t++)
         for (int i = 0; i <= GLINT_Y4M_STEPS; i++) {
             const double want =
-                reference((enum glint_transfer_curve)t, i / 4096.0);
+                compute_light((enum glint_transfer_curve)t, i / 4096.0);
             const int32_t light_q24 = glint_transfer_light_q24(
                 (enum glint_transfer_curve)t, i, GLINT_Y4M_STEPS);
 
@@ -549,21 +556,21 @@ TEST(transfers)
     assert_int_equal(glint_primaries_of_tag("film"), -1);
 }
 
-/* Returns the code V, 0 .. 1, of LIGHT. */
-static double reference_code(enum glint_transfer_curve curve, double light)
+/* Returns the code V, 0 .. 1, of LIGHT, by bisection. */
+static double compute_code(enum glint_transfer_curve curve, double light)
 {
     double low = 0, high = 1;
 
     for (int i = 0; i < 60; i++) {
         const double middle = (low + high) / 2;
 
-        *(reference(curve, middle) < light ? &low : &high) = middle;
+        *(compute_light(curve, middle) < light ? &low : &high) = middle;
     }
     return high;
 }
 
-/* Adds LIGHT, of BT.709's red if IS_RED, to grounds of 0.001 to 4 times white
- * of CURVE, in 16 bits, and compares what is added with LIGHT. */
+/* Adds LIGHT (red of BT.709 if IS_RED, else white) to 16-bit grounds of
+ * 0.001 .. 4 times white in CURVE, and compares the increase with LIGHT. */
 static void check_added(enum glint_transfer_curve curve,
                         enum glint_primaries primaries, double light,
                         bool is_red)
@@ -571,7 +578,7 @@ static void check_added(enum glint_transfer_curve curve,
     static const double red_2020[] = {0.627404, 0.069097, 0.016391};
     static struct glint_y4m_light y4m;
     struct glint_y4m_header h;
-    const double most = fmin(4, reference(curve, 1) - light);
+    const double most = fmin(4, compute_light(curve, 1) - light);
     float layer[3] = {(float)light, is_red ? 0 : (float)light,
                       is_red ? 0 : (float)light};
 
@@ -580,25 +587,25 @@ static void check_added(enum glint_transfer_curve curve,
     h.transfer = curve;
     h.primaries = primaries;
     glint_y4m_light_init(&y4m, &h);
-    /* Codes of the logarithms begin above 0. */
-    for (double ground = fmax(0.001, 2 * reference(curve, 1e-5)); ground < most;
-         ground *= 1.7) {
-        const int code = (int)(65535 * reference_code(curve, ground) + 0.5);
+    /* Logarithmic curves have no codes near 0 light. */
+    for (double ground = fmax(0.001, 2 * compute_light(curve, 1e-5));
+         ground < most; ground *= 1.7) {
+        const int code = (int)(65535 * compute_code(curve, ground) + 0.5);
         uint8_t planes[6] = {
             (uint8_t)code, (uint8_t)(code >> 8), 0, 128, 0, 128};
         double y, cb, cr, rgb[3];
 
         glint_y4m_light_add(&y4m, planes, layer);
-        y = wide_at(planes, 0) / 65535.0;
-        cb = (wide_at(planes, 1) - 32768) / 65535.0;
-        cr = (wide_at(planes, 2) - 32768) / 65535.0;
+        y = read_16bit(planes, 0) / 65535.0;
+        cb = (read_16bit(planes, 1) - 32768) / 65535.0;
+        cr = (read_16bit(planes, 2) - 32768) / 65535.0;
         rgb[0] = y + 2 * (1 - 0.2627) * cr;
         rgb[2] = y + 2 * (1 - 0.0593) * cb;
         rgb[1] = (y - 0.2627 * rgb[0] - 0.0593 * rgb[2]) / 0.678;
         for (int c = 0; c < 3; c++) {
             const double want = light * (is_red ? red_2020[c] : 1);
-            const double got =
-                reference(curve, rgb[c]) - reference(curve, code / 65535.0);
+            const double got = compute_light(curve, rgb[c]) -
+                               compute_light(curve, code / 65535.0);
 
             assert_true(fabs(got - want) <=
                         0.02 * want + 2e-4 * (ground + light));
@@ -606,8 +613,8 @@ static void check_added(enum glint_transfer_curve curve,
     }
 }
 
-/* Light must be added in the light of the stated transfer and primaries, within
- * 2 % and the steps of 16 bits. */
+/* Checks that light is added in the linear light of the stream's transfer
+ * function and primaries, within 2 % and the rounding to 16 bits. */
 TEST(light_of_transfers)
 {
     for (int t = 0; t < GLINT_TRANSFERS; t++)
@@ -621,8 +628,8 @@ TEST(light_of_transfers)
         }
 }
 
-/* Writes a stream of PQ to a file and compares the copy that is seen: white of
- * 203 cd/m2 and all above must be white of BT.709, of 8 bits too. */
+/* Checks the SDR copy of a PQ stream: white (203 cd/m2) and everything above
+ * becomes white of BT.709, also in 8 bits. */
 TEST(graded_copy)
 {
     static const double nits[] = {0, 20.3, 203, 4000};
@@ -634,13 +641,13 @@ TEST(graded_copy)
     struct memory memory = {bytes, at + 8, 0, 7, false};
 
     for (int i = 0; i < 4; i++) {
-        const int code = (int)(64.5 + 876 * reference_code(GLINT_TRANSFER_PQ,
-                                                           nits[i] / 203));
+        const int code =
+            (int)(64.5 + 876 * compute_code(GLINT_TRANSFER_PQ, nits[i] / 203));
 
         bytes[at + 2 * (size_t)i] = (char)code;
         bytes[at + 2 * (size_t)i + 1] = (char)(code >> 8);
     }
-    assert_ok(glint_y4m_reader_start(&in, pull, &memory, "pq", &error));
+    assert_ok(glint_y4m_reader_start(&in, read_memory, &memory, "pq", &error));
     in.header.transfer = GLINT_TRANSFER_PQ;
     in.header.primaries = GLINT_PRIMARIES_BT2020;
     assert_ok(glint_y4m_reader_next(&in, &frame, &error));
@@ -649,8 +656,8 @@ TEST(graded_copy)
     glint_y4m_reader_close(&in);
 }
 
-/* 720 x 405 pixels as ffmpeg writes them, with 203 rows of chroma, must be
- * copied. */
+/* Checks that a video of 720 x 405 pixels with 203 rows of chroma, as ffmpeg
+ * writes it, is copied unchanged. */
 TEST(odd_video)
 {
     enum { FRAME = 720 * 405 + 2 * 360 * 203, HEADER = 80 };
@@ -671,7 +678,8 @@ TEST(odd_video)
     free(data);
 }
 
-/* Rows with padding, and rows upside down, must be written without it. */
+/* Checks that images with padded rows, or stored bottom row first, are
+ * written without padding, top row first. */
 TEST(strides)
 {
     uint8_t luma[] = "ab--cd--ef--", cb[] = "y-z-", cr[] = "Y-Z-";

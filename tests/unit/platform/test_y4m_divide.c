@@ -1,23 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * Multiplications in place of divisions must give what divisions do:
- * y4m_share() for every number, y4m_part() at both ends of each run of numbers
- * with one quotient. That is enough, as a quotient never falls when its number
- * rises.
+ * Tests division by multiplication: y4m_share() for every numerator, y4m_part()
+ * at both ends of each run of numerators with the same quotient, which suffices
+ * because the quotient is monotonic.
  */
 
 #include "support/test.h"
 #include "video/y4m_divide.h"
 
-/* Returns N / D to nearest, ties away from 0; D is above 0. */
+/* Returns N / D, rounded to nearest, ties away from 0; D > 0. */
 static int64_t divide(int64_t n, int64_t d)
 {
     return n >= 0 ? (2 * n + d) / (2 * d) : -((-2 * n + d) / (2 * d));
 }
 
-/* Returns for how many K from -MOST to MOST the fraction K 2^UP / D is wrong.
- */
-static long wrong_shares(int32_t most, int up, int32_t d)
+/* Returns the number of K in -MOST .. MOST for which K 2^UP / D is wrong. */
+static long count_wrong_shares(int32_t most, int up, int32_t d)
 {
     const int64_t factor = y4m_share_factor(up, d);
     long wrong = 0;
@@ -27,30 +25,30 @@ static long wrong_shares(int32_t most, int up, int32_t d)
     return wrong;
 }
 
-/* Codes of all depths must be divided right, in full and limited range. */
+/* Checks the division of codes of 8 .. 16 bits, in full and limited range. */
 TEST(codes)
 {
     for (int bits = 8; bits <= 16; bits++) {
         const int32_t most = (1 << bits) - 1;
 
-        assert_int_equal(wrong_shares(most, 20, most), 0);
-        assert_int_equal(wrong_shares(most, 20, 219 << (bits - 8)), 0);
-        assert_int_equal(wrong_shares(most, 20, 224 << (bits - 8)), 0);
+        assert_int_equal(count_wrong_shares(most, 20, most), 0);
+        assert_int_equal(count_wrong_shares(most, 20, 219 << (bits - 8)), 0);
+        assert_int_equal(count_wrong_shares(most, 20, 224 << (bits - 8)), 0);
     }
 }
 
 static const int32_t kr_q16[2] = {13933, 19595}, kb_q16[2] = {4732, 7471};
 
-/* Differences of colour must be divided right, for BT.709 and BT.601. */
+/* Checks the division of colour differences, for BT.709 and BT.601. */
 TEST(differences)
 {
     for (int m = 0; m < 2; m++) {
-        assert_int_equal(wrong_shares(1 << 20, 15, 65536 - kr_q16[m]), 0);
-        assert_int_equal(wrong_shares(1 << 20, 15, 65536 - kb_q16[m]), 0);
+        assert_int_equal(count_wrong_shares(1 << 20, 15, 65536 - kr_q16[m]), 0);
+        assert_int_equal(count_wrong_shares(1 << 20, 15, 65536 - kb_q16[m]), 0);
     }
 }
 
-static int32_t held(int64_t v)
+static int32_t clamp_quotient(int64_t v)
 {
     return v < 0 ? 0 : v > 1 << 20 ? 1 << 20 : (int32_t)v;
 }
@@ -64,10 +62,11 @@ TEST(green)
         const int64_t factor = y4m_part_factor(d);
 
         for (int64_t q = -2; q <= (1 << 20) + 2; q++) {
-            const int64_t first = q * d - d / 2; /* first with quotient Q */
+            /* first numerator with quotient Q */
+            const int64_t first = q * d - d / 2;
 
             for (int64_t n = first - 2; n <= first + 2; n++)
-                wrong += y4m_part(n, d, factor) != held(divide(n, d));
+                wrong += y4m_part(n, d, factor) != clamp_quotient(divide(n, d));
         }
         wrong += y4m_part(-(INT64_C(1) << 40), d, factor) != 0;
         wrong += y4m_part(INT64_C(1) << 40, d, factor) != 1 << 20;
