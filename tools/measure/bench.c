@@ -97,14 +97,14 @@ static double floor_ms_of(const struct bench *b, const struct bench_case *c)
 }
 
 /* Returns the width of STAGE's column, characters. */
-static int column(const char *stage)
+static int column_width(const char *stage)
 {
     const int n = (int)strlen(stage);
 
     return n > 7 ? n : 7;
 }
 
-static void print(const struct bench *b)
+static void print_table(const struct bench *b)
 {
     const struct bench_subject *const s = b->subject;
     const int whole = s->n_stages - 1;
@@ -114,7 +114,7 @@ static void print(const struct bench *b)
            b->cases[0]->canvas->image.height, bench_format[b->word], b->rounds);
     printf("%s %8s %7s ", s->heads, "ms", "ratio");
     for (int k = 0; k < whole; k++)
-        printf(" %*s", column(s->stage[k]), s->stage[k]);
+        printf(" %*s", column_width(s->stage[k]), s->stage[k]);
     printf("  %s\n", s->tail);
     for (int i = 0; i < b->n_cases; i++) {
         const struct bench_case *const c = b->cases[i];
@@ -124,7 +124,8 @@ static void print(const struct bench *b)
         printf(" %8.3f %7.1f ", bench_ms(b, c, whole),
                bench_ms(b, c, whole) / floor_ms);
         for (int k = 0; k < whole; k++)
-            printf(" %*.2f", column(s->stage[k]), bench_ms(b, c, k) / floor_ms);
+            printf(" %*.2f", column_width(s->stage[k]),
+                   bench_ms(b, c, k) / floor_ms);
         printf("  ");
         s->print_result(b, c);
         printf("\n");
@@ -180,7 +181,7 @@ int bench_run_all(struct bench *b, int n_names, const char *const *names)
     if (code == EXIT_OK)
         code = run_rounds(b);
     if (code == EXIT_OK)
-        (b->tool->json ? print_json : print)(b);
+        (b->tool->json ? print_json : print_table)(b);
     return code;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bench: draws cases in turns and times them by stage. The bench's
- * subject is flares (bench_flare.c) or a scene (bench_scene.c).
+ * glint bench: draws several cases in turns and times the stages of each frame.
+ * A case draws flares (bench_flare.c) or a scene (bench_scene.c).
  */
 #ifndef GLINT_TOOLS_LAB_BENCH_H
 #define GLINT_TOOLS_LAB_BENCH_H
@@ -18,7 +18,7 @@ enum {
 
 /* A case that is timed. The first member of each subject's own struct. */
 struct bench_case {
-    const char *name; /* name of the lens or scene */
+    const char *name; /* of the lens or scene */
     struct canvas *canvas;
     struct glint_workers *workers;
     int threads;
@@ -36,9 +36,11 @@ struct bench_variation {
     const char *option; /* option of the engine, and its value */
     double value;
     int lights;
-    double angle;      /* angle of the light off the axis, degrees; 0: 12 */
-    double star_stops; /* only starbursts, of lamps this many stops above
-                          white */
+    /* angle between the light and the optical axis, degrees; 0: default of
+     * 12 */
+    double angle;
+    /* above 0: draws only starbursts, of lamps this many stops above white */
+    double star_stops;
 };
 
 struct bench;
@@ -48,7 +50,8 @@ struct bench_subject {
     const char *word; /* name of the subject in JSON */
     const char *help;
     const struct option *own;
-    unsigned groups; /* groups of engine options that the subject supports */
+    /* GLINT_OPTIONS groups that the subject supports, one bit each */
+    unsigned groups;
     int max_rounds;
     /* Names of the stages; the last stage is the whole frame. */
     int n_stages;
@@ -80,8 +83,9 @@ extern const struct bench_subject bench_flare, bench_scene;
 struct bench {
     const struct bench_subject *subject;
     struct tool *tool;
-    struct settings base;            /* settings of the command line */
-    int width, height, rounds, word; /* word: index in bench_format */
+    struct settings base; /* settings of the command line */
+    /* word: index in bench_format, the pixel format */
+    int width, height, rounds, word;
     bool all;
     bool moving;               /* The first light moves from round to round. */
     struct glint_workers *two; /* two threads */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bench of flares: the lenses, pictures and options to time.
+ * glint bench of flares: lenses, image sizes and options to time.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -56,7 +56,7 @@ struct flare_case {
     struct glint_engine *engine;
     struct glint_lamp *lamp;
     int n_lamps;
-    bool is_star; /* only starbursts are drawn */
+    bool is_star; /* draws only starbursts */
     double scale;
     struct glint_engine_report report;
 };
@@ -84,8 +84,8 @@ static const struct bench_variation all[] = {
     {.lights = 1, .angle = 75}, /* outside the field of baked models */
 };
 
-/* Sets the exposure of T. For a light far off-screen uses the exposure of a
- * light in the picture. */
+/* Sets the exposure of T from its own flare. A light far off-screen uses the
+ * exposure of the same light in the image. */
 static enum glint_status expose(struct flare_case *t,
                                 const struct bench_variation *v)
 {
@@ -105,8 +105,8 @@ static enum glint_status expose(struct flare_case *t,
 }
 
 /* Adds the case of LENS with variation V. Returns an exit code. */
-static int add(struct bench *b, const struct opened_lens *lens,
-               const struct bench_variation *v)
+static int add_case(struct bench *b, const struct opened_lens *lens,
+                    const struct bench_variation *v)
 {
     struct flare_case *const t =
         (struct flare_case *)bench_add(b, lens->table.name, v);
@@ -135,14 +135,14 @@ static int add(struct bench *b, const struct opened_lens *lens,
 }
 
 /* Adds the variations of V[N] that this CPU supports. */
-static int add_list(struct bench *b, const struct opened_lens *lens,
-                    const struct bench_variation *v, size_t n)
+static int add_supported(struct bench *b, const struct opened_lens *lens,
+                         const struct bench_variation *v, size_t n)
 {
     int code = EXIT_OK;
 
     for (size_t i = 0; i < n && code == EXIT_OK; i++)
         if (bench_is_possible(&v[i]))
-            code = add(b, lens, &v[i]);
+            code = add_case(b, lens, &v[i]);
     return code;
 }
 
@@ -174,8 +174,8 @@ static enum glint_status bench_run(struct bench *b, struct bench_case *c,
 
 static int add_cases(struct bench *b, const struct opened_lens *lens)
 {
-    return b->all ? add_list(b, lens, all, sizeof all / sizeof *all)
-                  : add(b, lens, &plain);
+    return b->all ? add_supported(b, lens, all, sizeof all / sizeof *all)
+                  : add_case(b, lens, &plain);
 }
 
 static int open_lens(struct bench *b, struct lenses *lenses, const char *name)
@@ -251,8 +251,8 @@ static void print_result(const struct bench *b, const struct bench_case *c)
            (double)(r->peak_bytes + r->star_bytes) / (1 << 20));
 }
 
-static void json(struct json_writer *to, const struct bench *b,
-                 const struct bench_case *c)
+static void write_json(struct json_writer *to, const struct bench *b,
+                       const struct bench_case *c)
 {
     const struct flare_case *const t = (const struct flare_case *)c;
     const struct glint_engine_report *const r = &t->report;
@@ -278,7 +278,7 @@ enum { OPT_MOVING = BENCH_OWN };
 static const struct option own[] = {{"moving", no_argument, NULL, OPT_MOVING},
                                     BENCH_OPTIONS};
 
-static int take(struct bench *b, int c, const char *value)
+static int parse_option(struct bench *b, int c, const char *value)
 {
     (void)value;
     if (c != OPT_MOVING)
@@ -297,11 +297,11 @@ const struct bench_subject bench_flare = {
     .heads = "lens                        size light th by    sets ",
     .tail = "  prims    MiB",
     .case_bytes = sizeof(struct flare_case),
-    .take = take,
+    .take = parse_option,
     .open = open_flares,
     .draw = bench_run,
     .print_case = print_case,
     .print_result = print_result,
-    .json = json,
+    .json = write_json,
     .close_case = close_case,
     .close = close_flares};

@@ -71,9 +71,9 @@ static const struct bench_variation all[] = {
     {.width = 3840, .height = 2160},
 };
 
-/* Sets the first object's position to its current value, so that lists of
- * shadows are rebuilt as if it had moved. */
-static void stir(void *ctx, struct glint_scene *scene)
+/* Reassigns the first object's position, so that the shadow lists are
+ * rebuilt as if the object had moved. */
+static void invalidate_shadows(void *ctx, struct glint_scene *scene)
 {
     const struct scene_frame *const frame = ctx;
     const struct glint_scene_model *const model = frame->model;
@@ -90,7 +90,7 @@ static int open_frame(struct scene_case *t, struct scene_frame *frame,
 {
     int code = scene_frame_open(frame, &t->tool, model, dials);
 
-    frame->pose = stir;
+    frame->pose = invalidate_shadows;
     frame->pose_ctx = frame;
     canvas_fresh(t->base.canvas);
     return code == EXIT_OK ? scene_frame_draw(frame, &t->base.canvas->image)
@@ -99,8 +99,8 @@ static int open_frame(struct scene_case *t, struct scene_frame *frame,
 
 /* Sets DIALS to the quality parameters of the command line plus the option of
  * V. Returns false if V changes nothing. */
-static bool choose(const struct bench *b, const struct bench_variation *v,
-                   struct scene_dials *dials)
+static bool set_dials(const struct bench *b, const struct bench_variation *v,
+                      struct scene_dials *dials)
 {
     struct glint_options options = b->base.options;
     struct scene_dials plain = {.width = b->width,
@@ -130,14 +130,14 @@ static bool choose(const struct bench *b, const struct bench_variation *v,
            dials->width != plain.width || dials->height != plain.height;
 }
 
-static int add(struct bench *b, const struct bench_variation *v)
+static int add_case(struct bench *b, const struct bench_variation *v)
 {
     struct opened *const o = b->opened;
     struct scene_dials dials;
     struct scene_case *t;
     int code;
 
-    if (!choose(b, v, &dials) || !bench_is_possible(v))
+    if (!set_dials(b, v, &dials) || !bench_is_possible(v))
         return EXIT_OK;
     t = (struct scene_case *)bench_add(b, o->scene.model.header->name, v);
     if (!t)
@@ -158,11 +158,11 @@ static int add(struct bench *b, const struct bench_variation *v)
 static int add_cases(struct bench *b)
 {
     static const struct bench_variation plain = {0};
-    int code = add(b, &plain);
+    int code = add_case(b, &plain);
 
     for (size_t i = 0;
          i < sizeof all / sizeof *all && b->all && code == EXIT_OK; i++)
-        code = add(b, &all[i]);
+        code = add_case(b, &all[i]);
     return code;
 }
 
@@ -186,7 +186,8 @@ static void time_stages(struct scene_frame *frame,
     at_s[4] = tool_seconds();
 }
 
-static enum glint_status draw(struct bench *b, struct bench_case *c, int round)
+static enum glint_status draw_frame(struct bench *b, struct bench_case *c,
+                                    int round)
 {
     static const int span[][3] = {{PREPARE, 0, 1},
                                   {AROUND, 1, 2},
@@ -222,7 +223,9 @@ static int open_bare(struct bench *b, struct opened *o)
 {
     const int code = baked_scene_open(b->tool, o->file, &o->bare);
 
-    if (code == EXIT_OK) /* its checksum has been verified */
+    /* The checksum was verified when the scene was opened, so the header may
+     * be changed. */
+    if (code == EXIT_OK)
         ((struct glint_scene_header *)o->bare.data)->shadow = 0;
     return code;
 }
@@ -298,8 +301,8 @@ static void print_result(const struct bench *b, const struct bench_case *c)
            (double)(t->frame.bytes + o->scene.bytes) / (1 << 20));
 }
 
-static void json(struct json_writer *to, const struct bench *b,
-                 const struct bench_case *c)
+static void write_json(struct json_writer *to, const struct bench *b,
+                       const struct bench_case *c)
 {
     const struct scene_case *const t = (const struct scene_case *)c;
     const struct glint_scene_config *const cfg = &t->frame.cfg;
@@ -324,7 +327,7 @@ static void json(struct json_writer *to, const struct bench *b,
 static const struct option own[] = {
     {"scene", required_argument, NULL, BENCH_OWN}, BENCH_OPTIONS};
 
-static int take(struct bench *b, int c, const char *value)
+static int parse_option(struct bench *b, int c, const char *value)
 {
     struct opened *o = b->opened;
 
@@ -351,11 +354,11 @@ const struct bench_subject bench_scene = {
     .heads = "scene                 size edges points shading th sets ",
     .tail = " covers     MiB",
     .case_bytes = sizeof(struct scene_case),
-    .take = take,
+    .take = parse_option,
     .open = open_scene,
-    .draw = draw,
+    .draw = draw_frame,
     .print_case = print_case,
     .print_result = print_result,
-    .json = json,
+    .json = write_json,
     .close_case = close_case,
     .close = close_scene};

@@ -12,8 +12,8 @@
 
 /* ------------------------------------------------------------------ canvas */
 
-/* Fills the fresh picture with a pattern of dim codes, 16 .. 87. */
-static void paint(struct canvas *c)
+/* Fills the background with a pattern of dark codes, 16 .. 87. */
+static void fill_background(struct canvas *c)
 {
     for (size_t i = 0; i < c->bytes; i++)
         c->fresh[i] = (uint8_t)(16 + i % 97 / 3 + (i >> 12) % 40);
@@ -36,7 +36,7 @@ enum glint_status canvas_init(struct canvas *c, enum glint_pixel_format format,
         return GLINT_E_MEMORY;
     }
     glint_image_place(&c->image, c->mem);
-    paint(c);
+    fill_background(c);
     canvas_fresh(c);
     return GLINT_OK;
 }
@@ -53,8 +53,8 @@ void canvas_finish(struct canvas *c)
     c->fresh = c->mem = NULL;
 }
 
-/* Adds LAYER[256], which stays in the cache, to each 256 bytes of PX with
- * saturation, in a loop that compilers vectorise. */
+/* Adds LAYER[256] with saturation to each 256 bytes of PX. The layer stays
+ * in the CPU cache, and compilers vectorise the loop. */
 static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
                       size_t bytes)
 {
@@ -80,7 +80,7 @@ void canvas_time_floor(struct canvas *c, int round)
 
 /* ------------------------------------------------------------------- lamps */
 
-static double power_of(int i, int n)
+static double lamp_power(int i, int n)
 {
     return 1.0 / (n > 64 ? 1 + i : n);
 }
@@ -90,7 +90,7 @@ void canvas_lamps(struct glint_lamp *lamp, int n, double angle)
     for (int i = 0; i < n; i++)
         lamp[i] = (struct glint_lamp){i ? fmod(angle + 2.39 * i, 24) : angle,
                                       fmod(33 + 137.5 * i, 360),
-                                      power_of(i, n),
+                                      lamp_power(i, n),
                                       {1, 1, 1},
                                       {0, 0},
                                       0};
@@ -158,7 +158,7 @@ static enum glint_status draw_exact(const struct tool *tool,
         status = glint_setup_init(setup, &lens->table, camera.n_blades,
                                   camera.blade_rotation_deg, s->wavelength_nm,
                                   s->n_wavelengths, &error);
-    camera.waves.kind = GLINT_WAVES_LIST; /* all ghosts have all of them */
+    camera.waves.kind = GLINT_WAVES_LIST; /* All ghosts get all wavelengths. */
     if (status == GLINT_OK)
         status = glint_engine_setup(setup, NULL, &camera, &dirt, &error);
     if (status == GLINT_OK)
@@ -172,7 +172,7 @@ static enum glint_status draw_exact(const struct tool *tool,
     return status;
 }
 
-static uint64_t mix(uint64_t hash, const void *data, size_t bytes)
+static uint64_t hash_bytes(uint64_t hash, const void *data, size_t bytes)
 {
     const uint8_t *p = data;
 
@@ -181,11 +181,12 @@ static uint64_t mix(uint64_t hash, const void *data, size_t bytes)
     return hash;
 }
 
-/* Returns a hash of all inputs of the picture; the tracer's code is not
- * included. */
-static uint64_t key_of(const struct opened_lens *lens, const struct settings *s,
-                       const struct glint_lamp *lamp, int n_lamps, int grid,
-                       const struct glint_float_image *to)
+/* Returns a hash of everything that determines the exact image, except the
+ * ray tracer's code. */
+static uint64_t compute_key(const struct opened_lens *lens,
+                            const struct settings *s,
+                            const struct glint_lamp *lamp, int n_lamps,
+                            int grid, const struct glint_float_image *to)
 {
     const int only_ghost = settings_only_ghost(s);
     const struct glint_view view =
@@ -197,30 +198,31 @@ static uint64_t key_of(const struct opened_lens *lens, const struct settings *s,
 
     glint_bake_defaults(&options);
     hash = glint_bake_key(&lens->table, &options);
-    hash = mix(hash, &to->width, sizeof to->width);
-    hash = mix(hash, &to->height, sizeof to->height);
-    hash = mix(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
-    hash = mix(hash, &camera.n_blades, sizeof camera.n_blades);
-    hash =
-        mix(hash, &camera.blade_rotation_deg, sizeof camera.blade_rotation_deg);
+    hash = hash_bytes(hash, &to->width, sizeof to->width);
+    hash = hash_bytes(hash, &to->height, sizeof to->height);
+    hash = hash_bytes(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
+    hash = hash_bytes(hash, &camera.n_blades, sizeof camera.n_blades);
+    hash = hash_bytes(hash, &camera.blade_rotation_deg,
+                      sizeof camera.blade_rotation_deg);
     if (i->roundness > 0 || i->softness > 0 || i->dust > 0 || i->mask) {
         const double iris[] = {i->roundness, i->softness, i->dust,
                                i->dust_seed};
 
-        hash = mix(hash, iris, sizeof iris);
-        hash = i->mask ? mix(hash, i->mask,
-                             (size_t)i->mask_width * (size_t)i->mask_height)
-                       : hash;
+        hash = hash_bytes(hash, iris, sizeof iris);
+        hash = i->mask
+                   ? hash_bytes(hash, i->mask,
+                                (size_t)i->mask_width * (size_t)i->mask_height)
+                   : hash;
     }
-    hash = mix(hash, s->wavelength_nm,
-               (size_t)s->n_wavelengths * sizeof *s->wavelength_nm);
-    hash = mix(hash, &only_ghost, sizeof only_ghost);
-    hash = mix(hash, &s->options.balance, sizeof s->options.balance);
-    hash = mix(hash, &grid, sizeof grid);
-    return mix(hash, lamp, (size_t)n_lamps * sizeof *lamp);
+    hash = hash_bytes(hash, s->wavelength_nm,
+                      (size_t)s->n_wavelengths * sizeof *s->wavelength_nm);
+    hash = hash_bytes(hash, &only_ghost, sizeof only_ghost);
+    hash = hash_bytes(hash, &s->options.balance, sizeof s->options.balance);
+    hash = hash_bytes(hash, &grid, sizeof grid);
+    return hash_bytes(hash, lamp, (size_t)n_lamps * sizeof *lamp);
 }
 
-static bool load(const char *path, struct glint_float_image *to)
+static bool load_cached(const char *path, struct glint_float_image *to)
 {
     struct glint_float_image kept = {0, 0, NULL};
     struct glint_error error = {""};
@@ -243,7 +245,7 @@ enum glint_status canvas_exact(const struct tool *tool,
                                const struct glint_lamp *lamp, int n_lamps,
                                int grid, struct glint_float_image *to)
 {
-    const uint64_t key = key_of(lens, settings, lamp, n_lamps, grid, to);
+    const uint64_t key = compute_key(lens, settings, lamp, n_lamps, grid, to);
     struct glint_error error = {""};
     char file[64], path[1024];
     enum glint_status status;
@@ -252,7 +254,7 @@ enum glint_status canvas_exact(const struct tool *tool,
     snprintf(file, sizeof file, "exact-%08lx%08lx.pfm",
              (unsigned long)(key >> 32), (unsigned long)(key & 0xffffffff));
     kept = model_cache_path(path, sizeof path, file);
-    if (kept && load(path, to))
+    if (kept && load_cached(path, to))
         return GLINT_OK;
     status = draw_exact(tool, lens, settings, lamp, n_lamps, grid, to);
     if (status == GLINT_OK && kept &&
@@ -293,7 +295,7 @@ const char *canvas_machine(void)
     return name ? name + 2 : "unknown";
 }
 
-static int by_size(const void *a, const void *b)
+static int compare_doubles(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
 
@@ -305,6 +307,6 @@ double canvas_median(const double *values, int n)
     double sorted[CANVAS_MAX];
 
     memcpy(sorted, values, (size_t)n * sizeof *values);
-    qsort(sorted, (size_t)n, sizeof *sorted, by_size);
+    qsort(sorted, (size_t)n, sizeof *sorted, compare_doubles);
     return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
 }

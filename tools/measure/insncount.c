@@ -71,7 +71,7 @@ static int stage_of(const char *function)
     return INHERIT;
 }
 
-static void enter(unsigned cpu, void *ctx)
+static void run_block(unsigned cpu, void *ctx)
 {
     const struct block *b = ctx;
 
@@ -115,7 +115,7 @@ static void report(uint64_t id, void *ctx)
     qemu_plugin_outs(line);
 }
 
-static void take_mark(char *text)
+static void parse_mark(char *text)
 {
     char *colon = strchr(text, ':');
 
@@ -126,7 +126,7 @@ static void take_mark(char *text)
     mark[n_marks++].name = colon + 1;
 }
 
-static void count(uint64_t id, struct qemu_plugin_tb *tb)
+static void translate_block(uint64_t id, struct qemu_plugin_tb *tb)
 {
     const char *name = qemu_plugin_insn_symbol(qemu_plugin_tb_get_insn(tb, 0));
     struct block *b = malloc(sizeof *b); /* never freed, as QEMU may run the
@@ -137,7 +137,7 @@ static void count(uint64_t id, struct qemu_plugin_tb *tb)
         abort();
     b->n = (int)qemu_plugin_tb_n_insns(tb);
     b->stage = stage_of(name ? name : "?");
-    qemu_plugin_register_vcpu_tb_exec_cb(tb, enter, 0, b);
+    qemu_plugin_register_vcpu_tb_exec_cb(tb, run_block, 0, b);
 }
 
 EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
@@ -159,11 +159,11 @@ EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
         else if (strcmp(text, "skip") == 0)
             n_skipped = atoi(value);
         else if (strcmp(text, "at") == 0)
-            take_mark(value);
+            parse_mark(value);
         else
             return -1;
     }
-    qemu_plugin_register_vcpu_tb_trans_cb(id, count);
+    qemu_plugin_register_vcpu_tb_trans_cb(id, translate_block);
     qemu_plugin_register_atexit_cb(id, report, NULL);
     return 0;
 }

@@ -32,7 +32,8 @@ struct sweep_parameter {
 extern const struct sweep_parameter sweep_parameter[];
 extern const int n_sweep_parameters;
 
-/* how a point's parameters are set */
+/* how a point's parameters are set: all at their defaults, one changed,
+ * several changed, or by --quality */
 enum sweep_kind { SWEEP_STANDARD, SWEEP_ALONE, SWEEP_TOGETHER, SWEEP_QUALITY };
 
 struct sweep_setting {
@@ -64,7 +65,7 @@ enum sweep_metric {
 /* A setting measured in a case. */
 struct sweep_point {
     struct sweep_setting set;
-    int of;                       /* index of the point's case */
+    int of;                       /* index of the case */
     double metric[SWEEP_METRICS]; /* NAN: not measured */
     bool front; /* on the Pareto front of its case: no other point is both
                    cheaper and better */
@@ -75,7 +76,7 @@ struct sweep_case {
     int width, height, n_lamps;
     double angle;
     bool together; /* combinations of parameters are measured in this case */
-    int first, n;  /* indices of the case's points: first .. first + n - 1 */
+    int first, n;  /* the case's points are first .. first + n - 1 */
 };
 
 /* A picture for the page: small, sRGB codes, [height][width][3]. */
@@ -119,8 +120,8 @@ int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
 /* Marks the points on the Pareto front of each case. */
 void sweep_mark_fronts(struct sweep *s);
 
-/* Sets FRONT[N] to the indices of the points on the Pareto front, the cheapest
- * first, and returns their number. Points with NAN are left out. */
+/* Sets FRONT[N] to the indices of the points on the Pareto front, by rising
+ * cost, and returns their number. Points with NAN are ignored. */
 int sweep_front(const double *cost, const double *quality, int n, int *front);
 
 /* Means of a setting over all cases with combined parameters: geometric mean of
@@ -132,19 +133,18 @@ struct sweep_mean {
     bool front;
 };
 
-/* Returns the means of all settings, malloc'ed, the cheapest first, and marks
- * the Pareto front, without settings whose flux error is above MAX_FLUX_ERROR.
- * Sets *N to their number. Returns NULL and sets *N to 0 if there is no
- * memory. */
+/* Returns the means of all settings, by rising cost, or NULL if there is no
+ * memory; the caller frees them. Sets *N to their number. Marks the Pareto
+ * front among settings whose flux error is at most MAX_FLUX_ERROR. */
 struct sweep_mean *sweep_means(const struct sweep *s, int *n);
 
-/* Sorts MEAN[N] by cost, the cheapest first. */
+/* Sorts MEAN[N] by rising cost. */
 void sweep_sort(struct sweep_mean *mean, int n);
 
 /* Returns by how many dB MEAN[I] lies above the best PSNR that --quality
- * reaches at up to 1.02 times its cost; 2 percent are noise. MEAN[N] must be
- * sorted by cost. PSNR is interpolated between neighbouring settings of
- * --quality that draw the same number of pixels. */
+ * reaches at up to 1.02 times its cost (2 % is measurement noise). MEAN[N]
+ * must be sorted by cost. PSNR is interpolated between neighbouring settings
+ * of --quality that draw the same number of pixels. */
 double sweep_above(const struct sweep_mean *mean, int n, int i);
 
 /* ------------------------------------------------------------------- output */

@@ -16,7 +16,7 @@ static const char *const metrics[SWEEP_METRICS] = {
     "model_bytes", "psnr_db",  "ssim",  "p99",          "flux_error",
     "ghosts",      "bundles",  "edges", "tiles"};
 
-/* Prints a comma, and X after it if X is finite. */
+/* Prints a comma, followed by X if X is finite. */
 static void print_number(FILE *file, double x)
 {
     fputc(',', file);

@@ -7,7 +7,7 @@
 
 /* ------------------------------------------------------------------- front */
 
-static bool is_true(double flux_error)
+static bool is_flux_true(double flux_error)
 {
     return fabs(flux_error) <= MAX_FLUX_ERROR;
 }
@@ -18,7 +18,7 @@ struct entry {
 };
 
 /* Orders entries by rising cost, at equal cost by falling quality. */
-static int by_cost(const void *a, const void *b)
+static int compare_cost(const void *a, const void *b)
 {
     const struct entry *x = a, *y = b;
 
@@ -39,7 +39,7 @@ int sweep_front(const double *cost, const double *quality, int n, int *front)
     for (int i = 0; i < n; i++)
         if (isfinite(cost[i]) && isfinite(quality[i]))
             all[n_all++] = (struct entry){cost[i], quality[i], i};
-    qsort(all, (size_t)n_all, sizeof *all, by_cost);
+    qsort(all, (size_t)n_all, sizeof *all, compare_cost);
     for (int i = 0; i < n_all; i++)
         if (n_front == 0 || all[i].quality > quality[front[n_front - 1]])
             front[n_front++] = all[i].number;
@@ -57,7 +57,7 @@ void sweep_mark_fronts(struct sweep *s)
         int *const front = malloc((size_t)k->n * sizeof *front), n = 0;
 
         for (int i = 0; i < k->n && cost && quality; i++) {
-            cost[i] = is_true(point[i].metric[SWEEP_FLUX_ERROR])
+            cost[i] = is_flux_true(point[i].metric[SWEEP_FLUX_ERROR])
                           ? point[i].metric[SWEEP_RATIO]
                           : (double)NAN;
             quality[i] = point[i].metric[SWEEP_PSNR_DB];
@@ -77,7 +77,7 @@ void sweep_mark_fronts(struct sweep *s)
 /* Sets M to the means of setting I over all cases with combined parameters,
  * which all have the same settings. Returns false if a case has not measured
  * it. */
-static bool mean_of(const struct sweep *s, int i, struct sweep_mean *m)
+static bool compute_mean(const struct sweep *s, int i, struct sweep_mean *m)
 {
     int n = 0;
 
@@ -106,7 +106,7 @@ static bool mean_of(const struct sweep *s, int i, struct sweep_mean *m)
 }
 
 /* Orders means by rising cost, at equal cost by falling PSNR. */
-static int by_mean_cost(const void *a, const void *b)
+static int compare_mean_cost(const void *a, const void *b)
 {
     const struct sweep_mean *x = a, *y = b;
 
@@ -118,7 +118,7 @@ static int by_mean_cost(const void *a, const void *b)
 void sweep_sort(struct sweep_mean *mean, int n)
 {
     if (n > 0)
-        qsort(mean, (size_t)n, sizeof *mean, by_mean_cost);
+        qsort(mean, (size_t)n, sizeof *mean, compare_mean_cost);
 }
 
 /* Marks the Pareto front of MEAN[N], which must be sorted by cost. */
@@ -127,7 +127,8 @@ static void mark_means(struct sweep_mean *mean, int n)
     double best = -HUGE_VAL;
 
     for (int i = 0; i < n; i++) {
-        mean[i].front = is_true(mean[i].flux_error) && mean[i].psnr_db > best;
+        mean[i].front =
+            is_flux_true(mean[i].flux_error) && mean[i].psnr_db > best;
         if (mean[i].front)
             best = mean[i].psnr_db;
     }
@@ -142,7 +143,7 @@ struct sweep_mean *sweep_means(const struct sweep *s, int *n)
     while (first < s->n_cases && !s->scase[first].together)
         first++;
     for (int i = 0; mean && first < s->n_cases && i < s->scase[first].n; i++)
-        *n += mean_of(s, i, &mean[*n]);
+        *n += compute_mean(s, i, &mean[*n]);
     sweep_sort(mean, *n);
     mark_means(mean, *n);
     return mean;
@@ -160,8 +161,8 @@ static bool same_pixels(const struct sweep_mean *a, const struct sweep_mean *b)
 
 /* Returns the PSNR at COST, interpolated between A and B linearly in
  * log(cost). */
-static double between(const struct sweep_mean *a, const struct sweep_mean *b,
-                      double cost)
+static double interpolate_psnr(const struct sweep_mean *a,
+                               const struct sweep_mean *b, double cost)
 {
     return a->psnr_db + (b->psnr_db - a->psnr_db) * log(cost / a->cost) /
                             log(b->cost / a->cost);
@@ -181,7 +182,7 @@ double sweep_above(const struct sweep_mean *mean, int n, int i)
         if (m->cost <= cost)
             best = fmax(best, m->psnr_db);
         else if (last && last->cost <= cost && same_pixels(last, m))
-            best = fmax(best, between(last, m, cost));
+            best = fmax(best, interpolate_psnr(last, m, cost));
         last = m;
     }
     return mean[i].psnr_db - best;

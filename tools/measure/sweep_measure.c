@@ -19,7 +19,7 @@ struct sweep_lens {
     struct opened_lens lens;
 };
 
-/* A point being measured. */
+/* A point that is being measured. */
 struct run {
     struct sweep_point *point;
     const struct sweep_lens *open;
@@ -30,7 +30,7 @@ struct run {
     double spent_ms;
 };
 
-/* State of measuring a case. */
+/* State of measuring one case. */
 struct bay {
     struct sweep *s;
     const struct sweep_case *c;
@@ -50,11 +50,11 @@ static bool is_same(const struct settings *a, const struct settings *b)
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
 
-/* Returns the lens opened for SET, shared by all settings that open it alike.
- * On failure reports the error, sets *CODE to the exit code and returns
- * NULL. */
+/* Returns the lens opened for SET; settings that open it with the same
+ * options share one. On failure reports the error, sets *CODE to the exit
+ * code and returns NULL. */
 static const struct sweep_lens *
-opened_for(struct bay *b, const struct sweep_setting *set, int *code)
+find_lens(struct bay *b, const struct sweep_setting *set, int *code)
 {
     struct settings asked = b->s->base;
     struct sweep_lens *open;
@@ -82,7 +82,7 @@ static int make_run(struct bay *b, struct run *r)
     enum glint_status status;
     int code = EXIT_OK;
 
-    r->open = opened_for(b, &r->point->set, &code);
+    r->open = find_lens(b, &r->point->set, &code);
     if (!r->open)
         return code;
     asked = r->open->settings;
@@ -133,9 +133,9 @@ static void free_bay(struct bay *b)
 
 /* ------------------------------------------------------------------ timing */
 
-/* Draws R's frame and records time and instructions. In ROUND -1 only draws it,
- * so that its memory is touched. */
-static enum glint_status draw(struct bay *b, struct run *r, int round)
+/* Draws R's frame and records its time and instructions. ROUND -1 warms up
+ * and records nothing. */
+static enum glint_status draw_run(struct bay *b, struct run *r, int round)
 {
     const int counter = b->s->counter;
     enum glint_status status;
@@ -159,8 +159,9 @@ static enum glint_status draw(struct bay *b, struct run *r, int round)
 
 /* Times all points and the memory floor in turns. Progress rises from FROM to
  * TO. */
-static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
-                                  double from, double to)
+static enum glint_status time_points(struct bay *b,
+                                     struct tool_progress *progress,
+                                     double from, double to)
 {
     const int n = b->s->rounds;
     enum glint_status status = GLINT_OK;
@@ -169,7 +170,7 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
         canvas_time_floor(&b->canvas, round < 0 ? 0 : round);
         for (int i = 0; i < b->c->n && status == GLINT_OK; i++)
             if (round < 1 || b->run[i].spent_ms < MAX_POINT_MS)
-                status = draw(b, &b->run[i], round);
+                status = draw_run(b, &b->run[i], round);
         tool_progress_show(progress,
                            from + (to - from) * (round + 2) / (n + 1));
     }
@@ -191,7 +192,7 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
 
 /* ---------------------------------------------------------------- pictures */
 
-static double sum_of(const struct glint_float_image *image)
+static double sum_pixels(const struct glint_float_image *image)
 {
     double sum = 0;
 
@@ -201,8 +202,8 @@ static double sum_of(const struct glint_float_image *image)
     return sum;
 }
 
-/* Sets flux_error of R: the light of its flare, planned as for codes but drawn
- * linearly, divided by the exact picture's light, minus 1. */
+/* Sets flux_error of R: total light of its flare / light of the exact image
+ * - 1. The flare is planned as for codes but drawn in linear light. */
 static enum glint_status measure_flux(struct bay *b, struct run *r)
 {
     const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
@@ -217,15 +218,15 @@ static enum glint_status measure_flux(struct bay *b, struct run *r)
             GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, layer.rgb, &report);
     if (status == GLINT_OK)
         r->point->metric[SWEEP_FLUX_ERROR] =
-            sum_of(&layer) / (b->exposure * sum_of(&b->exact)) - 1;
+            sum_pixels(&layer) / (b->exposure * sum_pixels(&b->exact)) - 1;
     free(layer.rgb);
     return status;
 }
 
-/* Sets TO, WIDTH x HEIGHT pixels, to means of BY x BY pixels of CODES; rows of
- * CODES are STRIDE bytes apart. */
-static void shrink(const uint8_t *codes, int stride, int by, uint8_t *to,
-                   int width, int height)
+/* Reduces CODES, whose rows are STRIDE bytes apart, to TO, WIDTH x HEIGHT
+ * pixels: each is the mean of BY x BY pixels. */
+static void reduce_image(const uint8_t *codes, int stride, int by, uint8_t *to,
+                         int width, int height)
 {
     for (int y = 0; y < height; y++)
         for (int i = 0; i < 3 * width; i++) {
@@ -261,7 +262,7 @@ static bool keep_picture(struct bay *b, int point, const uint8_t *codes)
     if (!p->rgb)
         return false;
     s->n_pictures++;
-    shrink(codes, 3 * b->c->width, by, p->rgb, p->width, p->height);
+    reduce_image(codes, 3 * b->c->width, by, p->rgb, p->width, p->height);
     return true;
 }
 
@@ -331,7 +332,7 @@ int sweep_measure(struct sweep *s, int c, struct tool_progress *progress)
     b->c = &s->scase[c];
     code = make_bay(b);
     if (code == EXIT_OK)
-        status = time_all(b, progress, from, (from + to) / 2);
+        status = time_points(b, progress, from, (from + to) / 2);
     if (code == EXIT_OK && status == GLINT_OK)
         status = measure_all(b, progress, (from + to) / 2, to);
     if (code == EXIT_OK && status != GLINT_OK)

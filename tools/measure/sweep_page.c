@@ -21,7 +21,7 @@ static const char head[] =
 
 /* ------------------------------------------------------------------- table */
 
-static void table_of_names(const struct sweep *s, FILE *file)
+static void write_names_table(const struct sweep *s, FILE *file)
 {
     fputs("<h2>Named qualities</h2>\n<table>", file);
     html_row(file, "th",
@@ -48,7 +48,7 @@ static void table_of_names(const struct sweep *s, FILE *file)
 }
 
 /* Prints the Pareto front of the means, which --quality should follow. */
-static void table_of_front(const struct sweep *s, FILE *file)
+static void write_front_table(const struct sweep *s, FILE *file)
 {
     int n;
     struct sweep_mean *const mean = sweep_means(s, &n);
@@ -71,9 +71,9 @@ static void table_of_front(const struct sweep *s, FILE *file)
 
 /* ---------------------------------------------------------------- pictures */
 
-static void figure(const struct sweep *s, FILE *file,
-                   const struct sweep_picture *q, const uint8_t *rgb,
-                   const char *what)
+static void write_figure(const struct sweep *s, FILE *file,
+                         const struct sweep_picture *q, const uint8_t *rgb,
+                         const char *what)
 {
     const struct sweep_point *p = q->point >= 0 ? &s->point[q->point] : NULL;
     char words[160] = "exact";
@@ -91,9 +91,9 @@ static void figure(const struct sweep *s, FILE *file,
 }
 
 /* Writes a picture of grey plus 16 times the difference of Q and EXACT. */
-static void difference(const struct sweep *s, FILE *file,
-                       const struct sweep_picture *q,
-                       const struct sweep_picture *exact)
+static void write_difference(const struct sweep *s, FILE *file,
+                             const struct sweep_picture *q,
+                             const struct sweep_picture *exact)
 {
     const size_t n = 3 * (size_t)q->width * (size_t)q->height;
     uint8_t *const far = malloc(n);
@@ -104,11 +104,11 @@ static void difference(const struct sweep *s, FILE *file,
         far[i] = (uint8_t)(d < 0 ? 0 : d > 255 ? 255 : d);
     }
     if (far)
-        figure(s, file, q, far, ", difference");
+        write_figure(s, file, q, far, ", difference");
     free(far);
 }
 
-static void strips(const struct sweep *s, FILE *file)
+static void write_strips(const struct sweep *s, FILE *file)
 {
     const struct sweep_picture *exact = NULL;
 
@@ -127,9 +127,9 @@ static void strips(const struct sweep *s, FILE *file)
                     c->n_lamps > 1 ? "s" : "", c->angle);
         }
         fputs("<div>", file); /* two pictures side by side */
-        figure(s, file, q, q->rgb, "");
+        write_figure(s, file, q, q->rgb, "");
         if (q != exact)
-            difference(s, file, q, exact);
+            write_difference(s, file, q, exact);
         fputs("</div>\n", file);
     }
 }
@@ -139,12 +139,12 @@ void sweep_write_page(const struct sweep *s, FILE *file)
     html_begin(file, "What accuracy costs",
                "figcaption{max-width:320px}img{width:320px}");
     fputs(head, file);
-    table_of_names(s, file);
+    write_names_table(s, file);
     fputs("<h2>Error against time</h2>\n", file);
     sweep_write_front_svg(s, file);
-    table_of_front(s, file);
+    write_front_table(s, file);
     fputs("<h2>Each dial by itself</h2>\n", file);
     sweep_write_dials_svg(s, file);
-    strips(s, file);
+    write_strips(s, file);
     html_end(file);
 }

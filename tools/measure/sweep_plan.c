@@ -7,17 +7,17 @@
 
 enum { QUALITY_STEPS = 8 };
 
-/* Values of --quality between its QUALITY_STEPS steps: half as many pixels with
+/* Values of --quality between its QUALITY_STEPS steps: half resolution with
  * finer grids, and the default with a finer model. */
 static const double between_steps[] = {0.0625, 0.505};
 
 enum { GRID, QUANTUM, CULL, DIM, WHOLE, HALF, TOLERANCE };
 
-/* The last list of each parameter has the values that are combined with other
- * parameters. Not combined are apart and max_lights, which lose more than they
- * save, wavelengths, which loses colour, the tolerance, as each value costs a
- * bake, and tile, which changes no picture. A single wavelength is the middle
- * one, drawn in grey. */
+/* The last list of each parameter has the values that are combined with
+ * other parameters. Not combined are: apart and max_lights, which lose more
+ * than they save; wavelengths, which loses colour; the tolerance, as each
+ * value costs a bake; and tile, which does not change the image. A single
+ * wavelength is the middle one, drawn in grey. */
 /* clang-format off */
 const struct sweep_parameter sweep_parameter[] = {
     [GRID] = {"grid", "grid", 64, false, false, 9, 5,
@@ -63,7 +63,7 @@ static void set_parameter(struct settings *s, const struct sweep_parameter *p,
 void sweep_set(struct settings *s, const struct sweep_setting *set,
                bool opening)
 {
-    /* Disabled, as a limit of work would make grids coarser. */
+    /* A limit of work would make grids coarser. */
     settings_set_number(s, "work", 0);
     if (!opening && set->quality >= 0)
         settings_set_quality(s, set->quality);
@@ -77,7 +77,8 @@ void sweep_set(struct settings *s, const struct sweep_setting *set,
     s->tolerance = set->value[TOLERANCE];
 }
 
-/* Sets the parameters in VALUE that --quality in S determines. */
+/* Sets those parameters in VALUE that --quality determines to their values
+ * in S. */
 static void read_quality(const struct settings *s, double *value)
 {
     value[GRID] = s->dials.fineness;
@@ -91,7 +92,7 @@ static void read_quality(const struct settings *s, double *value)
 
 /* ------------------------------------------------------------------- points */
 
-static struct sweep_setting standard(enum sweep_kind kind)
+static struct sweep_setting make_standard(enum sweep_kind kind)
 {
     struct sweep_setting set = {.kind = kind, .alone = -1, .quality = -1};
 
@@ -100,8 +101,8 @@ static struct sweep_setting standard(enum sweep_kind kind)
     return set;
 }
 
-static enum glint_status add(struct sweep *s, int c,
-                             const struct sweep_setting *set)
+static enum glint_status add_point(struct sweep *s, int c,
+                                   const struct sweep_setting *set)
 {
     struct sweep_point *const point =
         text_grow(s->point, s->n_points, sizeof *point);
@@ -130,13 +131,13 @@ static enum glint_status add_alone(struct sweep *s, int c)
             (s->small && p->opens))
             continue;
         for (int i = 0; i < p->n_values && status == GLINT_OK; i++) {
-            struct sweep_setting set = standard(SWEEP_ALONE);
+            struct sweep_setting set = make_standard(SWEEP_ALONE);
 
             set.alone = d;
             set.value[d] = p->value[i];
             if (p->value[i] != p->standard &&
                 (!s->small || i == 0 || i + 1 == p->n_values))
-                status = add(s, c, &set);
+                status = add_point(s, c, &set);
         }
     }
     return status;
@@ -150,7 +151,7 @@ static enum glint_status add_together(struct sweep *s, int c)
     int at[MAX_PARAMETERS] = {0}, d = 0;
 
     while (d < n_sweep_parameters && status == GLINT_OK) {
-        struct sweep_setting set = standard(SWEEP_TOGETHER);
+        struct sweep_setting set = make_standard(SWEEP_TOGETHER);
         int n_differ = 0;
 
         for (d = 0; d < n_sweep_parameters; d++)
@@ -159,7 +160,7 @@ static enum glint_status add_together(struct sweep *s, int c)
                 n_differ += set.value[d] != sweep_parameter[d].standard;
             }
         if (n_differ > 1)
-            status = add(s, c, &set);
+            status = add_point(s, c, &set);
         for (d = 0; d < n_sweep_parameters; d++) {
             if (++at[d] <
                 (s->small && d > 1 ? 1 : sweep_parameter[d].n_together))
@@ -172,7 +173,7 @@ static enum glint_status add_together(struct sweep *s, int c)
 
 static enum glint_status add_quality(struct sweep *s, int c, double quality)
 {
-    struct sweep_setting set = standard(SWEEP_QUALITY);
+    struct sweep_setting set = make_standard(SWEEP_QUALITY);
     struct settings settings = s->base;
 
     set.quality = quality;
@@ -180,13 +181,13 @@ static enum glint_status add_quality(struct sweep *s, int c, double quality)
     read_quality(&settings, set.value);
     if (s->small)
         set.value[TOLERANCE] = sweep_parameter[TOLERANCE].standard;
-    return add(s, c, &set);
+    return add_point(s, c, &set);
 }
 
 static enum glint_status plan_case(struct sweep *s, int c)
 {
-    const struct sweep_setting plain = standard(SWEEP_STANDARD);
-    enum glint_status status = add(s, c, &plain);
+    const struct sweep_setting plain = make_standard(SWEEP_STANDARD);
+    enum glint_status status = add_point(s, c, &plain);
 
     if (status == GLINT_OK)
         status = add_alone(s, c);

@@ -17,14 +17,14 @@
 #include "model/settings.h"
 #include "options/command_line.h"
 
-/* Options of all these commands, to begin their OPTIONS with. */
+/* the options that all these commands accept, the first in their OPTIONS */
 #define BAKE_LINE_OPTIONS                      \
     {                                          \
         "output", required_argument, NULL, 'o' \
     }
 
-/* Applies option NAME, of code C, with the value optarg. Returns -1, or an exit
- * code after printing the error. */
+/* Applies option NAME, whose code is C, with the value optarg. Returns -1,
+ * or an exit code after printing the error. */
 typedef int bake_line_fn(struct tool *tool, void *line, int c,
                          const char *name);
 
@@ -36,7 +36,8 @@ int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,
                     void *line, const char *text);
 
-/* Returns whether standard output is free for a report. */
+/* Returns whether a report may be printed to standard output, as the output
+ * file does not go there. */
 bool bake_line_tells(const struct tool *tool);
 
 #endif

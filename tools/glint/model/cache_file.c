@@ -57,15 +57,15 @@ void cache_file_make_folders(char *path)
 
 /* Checks whether nobody but this user, its group and root could have written
  * the file or folder of ST. */
-static bool is_ours(const struct stat *st)
+static bool is_trusted(const struct stat *st)
 {
     return (st->st_uid == geteuid() || st->st_uid == 0) &&
            !(st->st_mode & S_IWOTH);
 }
 
-/* Checks whether the folder of PATH is ours: others could put older models of
- * ours there under other names. */
-static bool is_folder_ours(const char *path)
+/* Checks whether only this user, its group and root may write to the folder
+ * of PATH: others could put older models there under other names. */
+static bool is_folder_trusted(const char *path)
 {
     char folder[CACHE_PATH_BYTES];
     const char *const slash = strrchr(path, '/');
@@ -76,7 +76,7 @@ static bool is_folder_ours(const char *path)
         return false;
     memcpy(folder, path, n);
     folder[n] = '\0';
-    return stat(folder, &st) == 0 && is_ours(&st);
+    return stat(folder, &st) == 0 && is_trusted(&st);
 }
 
 uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
@@ -91,8 +91,8 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
     *bytes = 0;
     if (in.fd < 0)
         return NULL;
-    if (fstat(in.fd, &st) < 0 || !S_ISREG(st.st_mode) || !is_ours(&st) ||
-        !is_folder_ours(path) ||
+    if (fstat(in.fd, &st) < 0 || !S_ISREG(st.st_mode) || !is_trusted(&st) ||
+        !is_folder_trusted(path) ||
         glint_input_append(&in, &data, bytes, max, &error) != GLINT_OK) {
         free(data);
         data = NULL;
@@ -101,10 +101,11 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
     return data;
 }
 
-/* Refuses to write through a link, into a FIFO and the like. Removes a file
- * that another user owns or that all may write to, and with it its permission
- * bits. */
-static enum glint_status clear_way(const char *path, struct glint_error *error)
+/* Refuses to write through a link or into a file that is not regular.
+ * Removes a file that other users own or may write to, so that the new file
+ * gets fresh permissions. */
+static enum glint_status remove_untrusted(const char *path,
+                                          struct glint_error *error)
 {
     struct stat st;
 
@@ -112,9 +113,9 @@ static enum glint_status clear_way(const char *path, struct glint_error *error)
         return GLINT_OK;
     if (!S_ISREG(st.st_mode))
         return glint_error_report(error, GLINT_E_OUTPUT, path,
-                                  "is not a regular file; remove it");
-    /* A failure needs no report: replacing the file will fail, too. */
-    if (!is_ours(&st))
+                                  "is no file; remove it");
+    /* Not reported: replacing the file fails later as well. */
+    if (!is_trusted(&st))
         unlink(path);
     return GLINT_OK;
 }
@@ -125,12 +126,11 @@ enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
     enum glint_status status;
 
     cache_file_make_folders(path);
-    status =
-        is_folder_ours(path)
-            ? clear_way(path, error)
-            : glint_error_report(
-                  error, GLINT_E_OUTPUT, path,
-                  "is in a folder that other users may write to; chmod o-w it");
+    status = is_folder_trusted(path)
+                 ? remove_untrusted(path, error)
+                 : glint_error_report(error, GLINT_E_OUTPUT, path,
+                                      "is in a folder that others may write "
+                                      "to; chmod o-w makes it a cache");
     return status == GLINT_OK ? glint_output_save(path, GLINT_OUTPUT_BINARY,
                                                   data, bytes, error)
                               : status;
@@ -167,8 +167,9 @@ int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx)
     return -1;
 }
 
-/* The name goes first: who opens it later makes a file of its own, and who
- * waits for this one finds the file in the cache. */
+/* Removes the lock's name before releasing it: a process that opens the name
+ * later creates its own file, and one that waits for this lock finds the
+ * model in the cache. */
 void cache_file_unlock(const char *path, int lock)
 {
     char name[CACHE_PATH_BYTES + 8];

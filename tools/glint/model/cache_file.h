@@ -18,14 +18,14 @@ enum { CACHE_PATH_BYTES = 1024 };
 /* Sets PATH to the folder of the cache. Returns false if no folder is known. */
 bool cache_file_folder(char *path, size_t bytes);
 
-/* Appends "/NAME-KEY.SUFFIX" to the folder in PATH, with '_' for characters
- * of NAME other than letters, digits and "-_.". Returns false if it is too
- * long. */
+/* Appends "/NAME-KEY.SUFFIX" to the folder in PATH. Characters of NAME other
+ * than letters, digits and "-_." become '_'. Returns false if the path is
+ * too long. */
 bool cache_file_name(char *path, size_t bytes, const char *name, uint64_t key,
                      const char *suffix);
 
-/* Makes the folders above PATH. Reports no failure: writing the file fails
- * later. */
+/* Creates the folders above PATH. Failures are not reported, as writing the
+ * file fails later. */
 void cache_file_make_folders(char *path);
 
 /* Returns the contents of the file PATH, malloc'ed, or NULL if the file is
@@ -37,10 +37,10 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes);
 enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                                    struct glint_error *error);
 
-/* Keeps other processes from making the file PATH until the lock is released.
- * Calls WAITS with CTX before it waits for a process that holds the lock.
- * Returns a descriptor for cache_file_unlock(), or -1 if locking fails; the
- * caller then makes the file without a lock. */
+/* Locks the file PATH against creation by other processes. Calls WAITS with
+ * CTX before waiting for a process that holds the lock. Returns a descriptor
+ * for cache_file_unlock(), or -1 if locking fails; the caller then creates
+ * the file without a lock. */
 int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx);
 void cache_file_unlock(const char *path, int lock);
 

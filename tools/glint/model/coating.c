@@ -21,8 +21,8 @@ int coating_take(const struct tool *tool, struct coating *c, const char *text)
                       text, error.text);
 }
 
-/* Returns the name of COATING, or NULL. */
-static const char *name_of(const struct glint_coating *coating)
+/* Returns the name of COATING, or NULL if it has none. */
+static const char *find_name(const struct glint_coating *coating)
 {
     struct glint_coating known;
     const char *name;
@@ -41,7 +41,7 @@ static const char *name_of(const struct glint_coating *coating)
 
 void coating_print(FILE *file, const struct glint_coating *c)
 {
-    const char *name = name_of(c);
+    const char *name = find_name(c);
 
     if (c->n_films == 0)
         fprintf(file, "none");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * --coating: the films on the surfaces of a lens table between air and glass.
+ * --coating: anti-reflection films on the air-glass surfaces of a lens table.
  */
 #ifndef GLINT_TOOLS_MODEL_COATING_H
 #define GLINT_TOOLS_MODEL_COATING_H
@@ -10,8 +10,9 @@
 enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_DEALT };
 
 struct coating {
-    enum coating_kind kind; /* kind of coating; by default the table's own */
-    bool given;             /* --coating was given, even if as the default */
+    enum coating_kind kind; /* by default the table's own coatings */
+    /* --coating is on the command line, even if with the default value */
+    bool given;
     int n_coatings;
     struct glint_coating coating[GLINT_MAX_COATINGS];
 };
@@ -45,8 +46,9 @@ void coating_print(FILE *file, const struct glint_coating *coating);
 void coating_apply(const struct coating *coating,
                    struct glint_prescription *lens);
 
-/* Returns EXIT_OK if --coating was not given; else prints a usage error, as the
- * model PATH has coatings of its own, and returns its code. */
+/* Returns EXIT_OK if --coating was not given; else prints a usage error,
+ * since the model PATH was baked with its own coatings, and returns the exit
+ * code. */
 int coating_of_model(const struct tool *tool, const struct coating *coating,
                      const char *path);
 

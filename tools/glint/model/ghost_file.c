@@ -13,17 +13,17 @@
 
 enum { MOST_BYTES = 1 << 20 };
 
-/* A file being read. */
+/* State of reading a file. */
 struct reading {
     const struct glint_setup *setup;
     const char *lens;
-    int n; /* number of ghosts, without parts */
+    int n; /* number of ghosts; parts of pupils are not counted */
     struct glint_tint *tint;
     bool *solo, *mute;
 };
 
-/* Returns the next word of *REST, which blanks end, and moves *REST past it;
- * NULL if none is left. */
+/* Returns the next word of *REST, delimited by blanks, and moves *REST past
+ * it. Returns NULL if there is none. */
 static char *next_word(char **rest)
 {
     char *word = *rest + strspn(*rest, " \t"), *end;
@@ -37,7 +37,7 @@ static char *next_word(char **rest)
 }
 
 /* Returns the number of the ghost WORD, "12" or "7-3", or -1. */
-static int ghost_of(const struct reading *r, const char *word)
+static int parse_ghost(const struct reading *r, const char *word)
 {
     const char *const dash = strchr(word, '-');
     int ghost = -1, i, j;
@@ -57,7 +57,7 @@ static int ghost_of(const struct reading *r, const char *word)
     return -1;
 }
 
-static const char *take_gain(struct glint_tint *tint, const char *text)
+static const char *parse_gain(struct glint_tint *tint, const char *text)
 {
     double gain;
 
@@ -67,7 +67,7 @@ static const char *take_gain(struct glint_tint *tint, const char *text)
     return NULL;
 }
 
-static const char *take_tint(struct glint_tint *tint, const char *text)
+static const char *parse_tint(struct glint_tint *tint, const char *text)
 {
     double rgb[3];
 
@@ -82,7 +82,7 @@ static const char *take_tint(struct glint_tint *tint, const char *text)
 }
 
 /* Parses the words after a ghost. Returns NULL, or the error as text. */
-static const char *take_words(struct reading *r, int ghost, char *rest)
+static const char *parse_words(struct reading *r, int ghost, char *rest)
 {
     static const char *const words[] = {"mute", "solo", "gain", "tint", NULL};
     const char *cause = NULL;
@@ -97,10 +97,10 @@ static const char *take_words(struct reading *r, int ghost, char *rest)
             r->solo[ghost] = true;
             break;
         case 2:
-            cause = take_gain(&r->tint[ghost], next_word(&rest));
+            cause = parse_gain(&r->tint[ghost], next_word(&rest));
             break;
         case 3:
-            cause = take_tint(&r->tint[ghost], next_word(&rest));
+            cause = parse_tint(&r->tint[ghost], next_word(&rest));
             break;
         default:
             cause = "expected mute, solo, gain G or tint R,G,B after a ghost";
@@ -110,7 +110,7 @@ static const char *take_words(struct reading *r, int ghost, char *rest)
     return cause;
 }
 
-static const char *take_line(void *ctx, struct text_lines *lines, char *line)
+static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
 {
     struct reading *const r = ctx;
     char *rest = line, *word;
@@ -127,9 +127,9 @@ static const char *take_line(void *ctx, struct text_lines *lines, char *line)
                    : "the file lists ghosts of another lens (glint explain "
                      "--save-ghosts writes those of this lens)";
     }
-    ghost = ghost_of(r, word);
+    ghost = parse_ghost(r, word);
     if (ghost >= 0)
-        return take_words(r, ghost, rest);
+        return parse_words(r, ghost, rest);
     return text_lines_cause(
         lines,
         "no ghost '%.20s': lines begin with a number, 0 to %d, or the two "
@@ -137,9 +137,9 @@ static const char *take_line(void *ctx, struct text_lines *lines, char *line)
         word, r->n - 1);
 }
 
-/* Mutes the ghosts that are not solo, if any is, and gives parts the tints of
- * their ghosts. */
-static void finish(struct reading *r)
+/* Mutes all ghosts that are not solo if any ghost is solo, and copies the
+ * tints of ghosts to the parts of their pupils. */
+static void finish_tints(struct reading *r)
 {
     bool any_solo = false;
 
@@ -155,7 +155,7 @@ static void finish(struct reading *r)
                 r->tint[i] = r->tint[k];
 }
 
-static bool hold(struct reading *r)
+static bool allocate_tints(struct reading *r)
 {
     const size_t n = (size_t)r->setup->n_ghosts + 1;
 
@@ -179,14 +179,14 @@ enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
     enum glint_status status =
         text_lines_open(&lines, name, text, bytes, error);
 
-    if (status == GLINT_OK && !hold(&r))
+    if (status == GLINT_OK && !allocate_tints(&r))
         status = glint_error_report(error, GLINT_E_MEMORY, name, "%s",
                                     text_no_memory);
     if (status == GLINT_OK)
-        status = text_lines_each(&lines, take_line, &r, error);
+        status = text_lines_each(&lines, parse_line, &r, error);
     text_lines_close(&lines);
     if (status == GLINT_OK)
-        finish(&r);
+        finish_tints(&r);
     else {
         free(r.tint);
         r.tint = NULL;

@@ -18,22 +18,21 @@
 #include "glint/setup.h"
 #include "glint/status.h"
 
-/* Reads PATH and sets *TINTS to the factors of all ghosts and parts of SETUP;
- * the caller frees it. If the file names a lens, the name must be LENS. Errors:
- * GLINT_E_IO, GLINT_E_MEMORY, GLINT_E_FORMAT. */
+/* Reads PATH and sets *TINTS to the colour factors of all ghosts and pupil
+ * parts of SETUP; the caller frees it. If the file names a lens, the name
+ * must be LENS. Errors: GLINT_E_IO, GLINT_E_MEMORY, GLINT_E_FORMAT. */
 enum glint_status ghost_file_read(struct glint_tint **tints, const char *path,
                                   const struct glint_setup *setup,
                                   const char *lens, struct glint_error *error);
 
-/* Parses TEXT[BYTES] as ghost_file_read() parses a file; NAME is used in
- * errors. */
+/* Parses TEXT[BYTES] in the same way; NAME is the file's name in errors. */
 enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
                                    const char *text, size_t bytes,
                                    const struct glint_setup *setup,
                                    const char *lens, struct glint_error *error);
 
-/* Writes to TEXT[ROOM] the line of a file that sets GHOST to TINT, or, if TINT
- * is NULL, leaves the ghost as it is. */
+/* Writes to TEXT[ROOM] the line of a file that sets GHOST to TINT; if TINT
+ * is NULL, the line leaves the ghost unchanged. */
 void ghost_file_line(char *text, size_t room, int ghost,
                      const struct glint_tint *tint);
 

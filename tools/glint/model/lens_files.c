@@ -19,8 +19,9 @@
 
 enum { ABOVE = 3, NAME_CHARS = 64, PATH_CHARS = 1024 };
 
-/* Sets PATH to the folder UP levels above glint's own file; 1 is the folder
- * that contains it. Returns false if all users may write there. */
+/* Sets PATH to the folder UP levels above the program or plug-in that
+ * contains this code; 1 is its own folder. Returns false if all users may
+ * write to that folder. */
 static bool folder_above(int up, char *path, size_t bytes)
 {
     struct stat st;
@@ -65,7 +66,7 @@ bool lens_folder(int i, const char *kind, char *path, size_t bytes)
     return true;
 }
 
-/* Folders that are searched within a folder of lenses; "" is the folder
+/* Subfolders of a folder of lenses that are searched; "" is the folder
  * itself. */
 static const char *const rooms[] = {"",      "/anamorphic", "/normal", "/phone",
                                     "/tele", "/vision",     "/wide",   "/zoom"};
@@ -93,7 +94,7 @@ struct list {
     int n;
 };
 
-static bool has(const struct list *l, const char *name, size_t length)
+static bool has_name(const struct list *l, const char *name, size_t length)
 {
     for (int i = 0; i < l->n; i++)
         if (strlen(l->name[i]) == length &&
@@ -102,11 +103,11 @@ static bool has(const struct list *l, const char *name, size_t length)
     return false;
 }
 
-static bool add(struct list *l, const char *name, size_t length)
+static bool add_name(struct list *l, const char *name, size_t length)
 {
     void *more;
 
-    if (length >= NAME_CHARS || has(l, name, length))
+    if (length >= NAME_CHARS || has_name(l, name, length))
         return true;
     more = text_grow(l->name, l->n, sizeof *l->name);
     if (!more)
@@ -130,21 +131,21 @@ static bool add_folder(struct list *l, const char *path)
         const size_t n = strlen(entry->d_name);
 
         if (n > 5 && strcmp(entry->d_name + n - 5, ".lens") == 0)
-            ok = add(l, entry->d_name, n - 5);
+            ok = add_name(l, entry->d_name, n - 5);
     }
     if (folder)
         closedir(folder);
     return ok;
 }
 
-static int by_name(const void *a, const void *b)
+static int compare_names(const void *a, const void *b)
 {
     return strcmp(a, b);
 }
 
-/* Prints a warning if the folder of one's own lenses cannot be read: they would
- * be missed in silence. */
-static void check_own(void)
+/* Prints a warning if the folder $GLINT_LENSES cannot be read; else its
+ * lenses would be missing without a message. */
+static void check_user_folder(void)
 {
     const char *own = glint_process_setting("GLINT_LENSES");
     DIR *folder = own && *own ? opendir(own) : NULL;
@@ -162,14 +163,14 @@ int lens_files_each(lens_files_fn *each, void *ctx)
     char path[PATH_CHARS], room[PATH_CHARS + 16];
     bool ok = true;
 
-    pthread_once(&once, check_own);
+    pthread_once(&once, check_user_folder);
     for (int i = 0; ok && lens_folder(i, "lenses", path, sizeof path); i++)
         for (int r = 0; ok && *path && r < N_ROOMS; r++) {
             snprintf(room, sizeof room, "%s%s", path, rooms[r]);
             ok = add_folder(&l, room);
         }
     if (l.n > 0)
-        qsort(l.name, (size_t)l.n, sizeof *l.name, by_name);
+        qsort(l.name, (size_t)l.n, sizeof *l.name, compare_names);
     for (int i = 0; ok && i < l.n && each(ctx, l.name[i]); i++)
         ;
     free(l.name);

@@ -21,12 +21,12 @@ static bool model_path(char *path, size_t bytes, const char *lens, uint64_t key)
            model_cache_name(path, bytes, lens, key);
 }
 
-static uint64_t key_of(const struct glint_lens *lens)
+static uint64_t make_key(const struct glint_lens *lens)
 {
     return lens->header->key[0] | (uint64_t)lens->header->key[1] << 32;
 }
 
-static uint8_t *read_ours(const char *path, size_t *bytes)
+static uint8_t *read_cached(const char *path, size_t *bytes)
 {
     return cache_file_read(path, MAX_BYTES, bytes);
 }
@@ -43,11 +43,11 @@ static uint8_t *read_installed(const char *path, size_t *bytes)
                : NULL;
 }
 
-/* Opens the model in PATH, reading it by READ. Returns false if it is damaged
+/* Reads the model PATH by READ and opens it. Returns false if it is damaged
  * or has another key. */
-static bool load(const char *path, uint64_t key,
-                 uint8_t *(*read)(const char *path, size_t *bytes),
-                 struct model_file *model)
+static bool load_model(const char *path, uint64_t key,
+                       uint8_t *(*read)(const char *path, size_t *bytes),
+                       struct model_file *model)
 {
     uint8_t *data;
     const char *reason;
@@ -59,7 +59,7 @@ static bool load(const char *path, uint64_t key,
     model->data = data;
     if (glint_lens_open(&model->lens, data, model->bytes, &reason) ==
             GLINT_OK &&
-        key_of(&model->lens) == key)
+        make_key(&model->lens) == key)
         return true;
     model_file_close(model);
     return false;
@@ -74,7 +74,7 @@ static bool load_installed(const char *lens, uint64_t key,
 
     for (int i = 0; lens_folder(i, "models", path, sizeof path); i++)
         if (model_cache_name(path, sizeof path, lens, key) &&
-            load(path, key, read_installed, model))
+            load_model(path, key, read_installed, model))
             return true;
     return false;
 }
@@ -87,7 +87,7 @@ bool model_is_cached(const struct glint_prescription *lens,
     char path[CACHE_PATH_BYTES];
     const bool is = load_installed(lens->name, key, &model) ||
                     (model_path(path, sizeof path, lens->name, key) &&
-                     load(path, key, read_ours, &model));
+                     load_model(path, key, read_cached, &model));
 
     model_file_close(&model);
     return is;
@@ -107,8 +107,8 @@ bool model_cache_path(char *path, size_t bytes, const char *file)
     return true;
 }
 
-static void keep(const struct tool *tool, char *path,
-                 const struct model_file *model)
+static void write_cached(const struct tool *tool, char *path,
+                         const struct model_file *model)
 {
     struct glint_error error = {""};
 
@@ -118,11 +118,12 @@ static void keep(const struct tool *tool, char *path,
                 tool->name, error.text);
 }
 
-/* Bakes the model of LENS into MODEL, and caches it in PATH, unless PATH is
- * NULL. */
-static int bake(const struct tool *tool, const struct glint_prescription *lens,
-                struct glint_bake_options options, char *path,
-                struct model_file *model)
+/* Bakes the model of LENS into MODEL and writes it to the cache file PATH,
+ * unless that is NULL. Returns an exit code. */
+static int bake_model(const struct tool *tool,
+                      const struct glint_prescription *lens,
+                      struct glint_bake_options options, char *path,
+                      struct model_file *model)
 {
     struct glint_error error = {""};
     struct glint_bake_report report;
@@ -150,7 +151,7 @@ static int bake(const struct tool *tool, const struct glint_prescription *lens,
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
     if (path)
-        keep(tool, path, model);
+        write_cached(tool, path, model);
     return EXIT_OK;
 }
 
@@ -190,15 +191,15 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
         return EXIT_OK;
     if (!model_path(path, sizeof path, lens->name, key))
         return tool->no_bake ? refuse_bake(tool, lens)
-                             : bake(tool, lens, options, NULL, model);
-    if (load(path, key, read_ours, model))
+                             : bake_model(tool, lens, options, NULL, model);
+    if (load_model(path, key, read_cached, model))
         return EXIT_OK;
     if (tool->no_bake)
         return refuse_bake(tool, lens);
     /* Another process may be baking the same model. */
     lock = cache_file_lock(path, report_wait, &wait);
-    if (!load(path, key, read_ours, model))
-        code = bake(tool, lens, options, path, model);
+    if (!load_model(path, key, read_cached, model))
+        code = bake_model(tool, lens, options, path, model);
     cache_file_unlock(path, lock);
     return code;
 }

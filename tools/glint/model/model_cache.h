@@ -3,24 +3,24 @@
  * Cache of the models of lens tables. A model is baked when it is first needed.
  *
  * Models are in share/glint/models, if glint was installed with them, or in
- * $XDG_CACHE_HOME/glint, or ~/.cache/glint. Their names have the lens's name
- * and a hash of the table and the options, so that a change of either never
- * finds an old model. If no file can be written, the model is baked in every
- * run. */
+ * $XDG_CACHE_HOME/glint, or ~/.cache/glint. A file name contains the lens's
+ * name and a hash of table and options, so that an outdated model is never
+ * found. If no file can be written, the model is baked in every run.
+ */
 #ifndef GLINT_TOOLS_MODEL_MODEL_CACHE_H
 #define GLINT_TOOLS_MODEL_MODEL_CACHE_H
 
 #include "model/model_file.h"
 
-/* Opens as MODEL the model of LENS by OPTIONS: the installed model, the cached
- * model, or a new model, which it bakes and caches. It sets workers and
- * progress of OPTIONS itself. Returns an exit code, after printing the reason
- * on failure. */
+/* Opens the model of LENS baked with OPTIONS as MODEL: the installed model,
+ * the cached model, or a new model, which is baked and cached. Overwrites
+ * workers and progress of OPTIONS. Returns an exit code, after printing the
+ * reason on failure. */
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  struct glint_bake_options options, struct model_file *model);
 
-/* Returns whether the model is installed or cached, so that it need not be
- * baked. */
+/* Returns whether the model is installed or cached, so that no bake is
+ * needed. */
 bool model_is_cached(const struct glint_prescription *lens,
                      const struct glint_bake_options *options);
 
@@ -28,8 +28,8 @@ bool model_is_cached(const struct glint_prescription *lens,
  * long. */
 bool model_cache_name(char *path, size_t bytes, const char *lens, uint64_t key);
 
-/* Sets PATH to the path of FILE in the cache, and makes the folder. Returns
- * false if there is no cache. */
+/* Sets PATH to the path of FILE in the cache folder, and creates the folder.
+ * Returns false if there is no cache. */
 bool model_cache_path(char *path, size_t bytes, const char *file);
 
 #endif

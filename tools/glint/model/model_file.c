@@ -35,7 +35,7 @@ bool tool_is_model(const char *path)
 
     if (!tool_is_file_name(path))
         return false;
-    /* A pipe can be read only once, so it is not opened for a check. */
+    /* A pipe can be read only once, so it is not opened here. */
     if (stat(path, &st) < 0 || !S_ISREG(st.st_mode))
         return false;
     file = fopen(path, "rb");
@@ -75,7 +75,7 @@ int tool_model(const struct tool *tool, const char *path,
     *model = (struct model_file){.data = NULL};
     status =
         glint_input_slurp(&data, &model->bytes, path, MAX_MODEL_BYTES, &error);
-    model->data = data; /* malloc aligns it */
+    model->data = data; /* malloc() aligns it */
     if (status == GLINT_OK) {
         status = open_data(model, &reason);
         if (status == GLINT_OK)
@@ -106,7 +106,7 @@ enum glint_status model_file_zoom(struct model_file *model, double zoom,
                                   struct glint_error *error)
 {
     const int32_t whole_q30 = INT32_C(1) << 30;
-    /* focal lengths on barrels are rounded */
+    /* tolerance: focal lengths engraved on barrels are rounded */
     const double slack = 1.002;
     struct glint_zoom_lens *const z = model->zoom;
     const int32_t before_q30 = z->now_q30;

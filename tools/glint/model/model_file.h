@@ -13,21 +13,23 @@
 #include "glint/model.h"
 #include "options/tool.h"
 
-/* A baked lens in memory; closed if all is 0. */
+/* A baked lens in memory. All zero bytes: closed. */
 struct model_file {
     struct glint_lens lens; /* points into data */
     void *data;
     size_t bytes;
-    struct glint_zoom_lens *zoom; /* a zoom lens, of which LENS is one position;
-                                     NULL if it does not zoom */
+    /* the zoom lens of which LENS is one position; NULL if the lens does not
+     * zoom */
+    struct glint_zoom_lens *zoom;
 };
 
-/* Returns whether ARGUMENT names a file: it has a slash or ends in .lens,
- * .glint, .env or .motion. Any other name is of a lens that comes with glint,
- * even if the current folder has a file of that name. */
+/* Returns whether ARGUMENT is a file name: it contains a slash or ends in
+ * .lens, .glint, .env or .motion. Any other name is that of a lens that
+ * comes with glint, even if the current folder has a file of that name. */
 bool tool_is_file_name(const char *argument);
 
-/* Returns whether PATH names a file that begins as models do. */
+/* Returns whether PATH is a regular file that begins with the magic number
+ * of models. */
 bool tool_is_model(const char *path);
 
 /* Reads and checks the model at PATH. Returns an exit code; on failure prints
@@ -35,16 +37,16 @@ bool tool_is_model(const char *path);
 int tool_model(const struct tool *tool, const char *path,
                struct model_file *model);
 
-/* Sets MODEL, of a zoom lens, to ZOOM: its focal length in mm, or 0 to 1 from
+/* Moves the zoom lens of MODEL to ZOOM: a focal length in mm, or 0 .. 1 from
  * its first position to its last. Returns GLINT_E_ARGUMENT if ZOOM is out of
  * range: ERROR states the range, and MODEL is unchanged. */
 enum glint_status model_file_zoom(struct model_file *model, double zoom,
                                   struct glint_error *error);
 
-/* Returns the number of positions of ZOOM that have all ghosts. */
+/* Returns the number of baked positions of ZOOM that have all ghosts. */
 int model_file_positions(const struct glint_zoom_lens *zoom);
 
-/* Closes MODEL, unless it is closed already. */
+/* Closes MODEL; does nothing if it is closed. */
 void model_file_close(struct model_file *model);
 
 /* Returns X as a double. */

@@ -234,8 +234,8 @@ static void print_title(const char *more)
            more);
 }
 
-/* Prints the line of a ghost, or of a part of one, with a plus after its
- * number, and leaves the line open. */
+/* Prints the table line of a ghost, or of one part of its pupil (marked by a
+ * plus after the number), without a line feed. */
 static void print_ghost(const struct glint_lens *lens, uint32_t entry,
                         const struct model_summary *sum)
 {
@@ -346,7 +346,7 @@ static void print_details(const struct model_summary *sum)
     }
 }
 
-/* Prints the ghosts that miss a target, or ALL. */
+/* Prints the ghosts that miss a target; all ghosts if ALL. */
 static void print_fits(const struct glint_lens *lens, bool all)
 {
     bool titled = false;
@@ -390,7 +390,8 @@ void model_report_info(const struct tool *tool, const struct model_file *model)
 {
     struct model_file shown = *model;
 
-    if (shown.zoom) /* between positions a lens has no systems to tell of */
+    /* Between its positions a zoom lens has no polynomial systems to report. */
+    if (shown.zoom)
         shown.lens = shown.zoom->model[0];
     (tool->json ? json_info : print_info)(tool, &shown);
 }

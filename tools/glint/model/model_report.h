@@ -8,12 +8,12 @@
 #include "model/model_file.h"
 #include "options/tool.h"
 
-/* Prints the contents of the model; with -v also each polynomial system. */
+/* Prints a summary of the model; with -v also each polynomial system. */
 void model_report_info(const struct tool *tool, const struct model_file *model);
 
-/* Prints the report of a model baked in SECONDS: the ghosts that miss an error
- * target (with -v all ghosts), and sums. With -q it prints no text, only
- * JSON. */
+/* Prints the report of a model that took SECONDS to bake: the ghosts that
+ * miss an error target (with -v all ghosts), and totals. With -q it prints
+ * no text, only JSON. */
 void model_report_bake(const struct tool *tool, const struct glint_lens *lens,
                        double seconds, const struct glint_bake_report *report);
 

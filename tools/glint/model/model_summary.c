@@ -51,7 +51,8 @@ model_outputs_of(const struct glint_lens *lens,
     return (const void *)(base + s->output_at);
 }
 
-/* Returns the 32-bit words of a system's box. */
+/* Returns the number of 32-bit words that the bounding box of system S
+ * occupies. */
 static size_t box_words(const struct glint_model_system *s)
 {
     size_t n = 0;
@@ -97,8 +98,8 @@ static double error_of(uint16_t stored)
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
 
-static void add(struct model_errors *e, const struct glint_model_output *o,
-                double unit)
+static void add_errors(struct model_errors *e,
+                       const struct glint_model_output *o, double unit)
 {
     const double rms = error_of(o->rms);
     const double step = ldexp(unit, o->exponent);
@@ -124,8 +125,8 @@ struct model_summary model_summary_of(const struct glint_lens *lens,
         const struct glint_model_output *o = model_outputs_of(lens, s);
 
         for (uint32_t m = 0; m < s->n_outputs; m++)
-            add(&sum.of[o[m].kind], &o[m],
-                o[m].kind <= GLINT_OUT_SENSOR_Y ? px : 1);
+            add_errors(&sum.of[o[m].kind], &o[m],
+                       o[m].kind <= GLINT_OUT_SENSOR_Y ? px : 1);
     }
     return sum;
 }
@@ -171,13 +172,14 @@ uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry)
     return k;
 }
 
-static bool is_of(const struct glint_lens *lens, uint32_t entry, uint32_t ghost)
+static bool is_part_of(const struct glint_lens *lens, uint32_t entry,
+                       uint32_t ghost)
 {
     return lens->ghost[entry].i == lens->ghost[ghost].i &&
            lens->ghost[entry].j == lens->ghost[ghost].j;
 }
 
-/* Adds system SYSTEM to MISS if it misses. */
+/* Adds system SYSTEM to MISS if one of its outputs misses its target. */
 static void add_miss(const struct glint_lens *lens, uint32_t system,
                      struct model_miss *miss)
 {
@@ -210,7 +212,7 @@ struct model_miss model_miss_of(const struct glint_lens *lens, uint32_t ghost)
     for (uint32_t entry = ghost; entry < lens->header->n_ghosts; entry++) {
         const struct model_span span = model_span_of_ghost(lens, entry);
 
-        for (uint32_t k = 0; is_of(lens, entry, ghost) && k < span.n; k++)
+        for (uint32_t k = 0; is_part_of(lens, entry, ghost) && k < span.n; k++)
             add_miss(lens, span.first + k, &miss);
     }
     return miss;

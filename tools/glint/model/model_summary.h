@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * model_summary.h - size and errors of a baked lens, summed over systems, for
- * reports.
+ * model_summary.h - size and errors of a baked lens, summed over its polynomial
+ * systems, for reports.
  */
 #ifndef GLINT_TOOLS_MODEL_MODEL_SUMMARY_H
 #define GLINT_TOOLS_MODEL_MODEL_SUMMARY_H
@@ -11,9 +11,9 @@
 extern const char *const model_output_names[GLINT_OUT_KINDS];
 extern const char *const model_output_units[GLINT_OUT_KINDS];
 
-/* Error targets: a ghost meets them if its 99th percentiles are not larger.
- * Positions: a quarter of a pixel at a width of 1920; other outputs: errors of
- * similar visibility. */
+/* Error targets: a ghost meets a target if the 99th percentile of the error
+ * is not larger. Positions: a quarter of a pixel at a width of 1920; other
+ * outputs: errors of similar visibility. */
 extern const double model_output_targets[GLINT_OUT_KINDS];
 
 const char *model_basis_name(const struct glint_lens *lens);
@@ -34,14 +34,15 @@ const struct glint_model_output *
 model_outputs_of(const struct glint_lens *lens,
                  const struct glint_model_system *system);
 
-/* Returns the bytes of a span in the file, if its systems shared no data. */
+/* Returns the bytes that SPAN would occupy in the file if its systems shared
+ * no data. */
 size_t model_span_bytes(const struct glint_lens *lens, struct model_span span);
 
-/* Sets RANGE_DEG to the min and max angle that a span covers. */
+/* Sets RANGE_DEG to the min and max angle that SPAN covers. */
 void model_span_angles(const struct glint_lens *lens, struct model_span span,
                        double range_deg[2]);
 
-/* Errors of an output over the systems of a span that have it. */
+/* Errors of one output, over the systems of a span that have this output. */
 struct model_errors {
     uint32_t n;
     double terms, mean2, p50;         /* means */
@@ -55,9 +56,11 @@ struct model_summary {
 
 struct model_summary model_summary_of(const struct glint_lens *lens,
                                       struct model_span span);
-double model_terms(const struct model_summary *sum); /* sum over all outputs */
+/* polynomial terms, summed over all outputs */
+double model_terms(const struct model_summary *sum);
 double
-model_mean_terms(const struct model_summary *sum); /* mean over the outputs */
+/* polynomial terms per output, mean */
+model_mean_terms(const struct model_summary *sum);
 
 /* Returns whether any output misses its target. */
 bool model_misses(const struct model_summary *sum);
@@ -66,16 +69,17 @@ bool model_misses(const struct model_summary *sum);
  * once. */
 uint32_t model_ghost_count(const struct glint_lens *lens);
 
-/* Returns the number of the ghost to which ENTRY, a ghost or a part of its
- * pupil, belongs. */
+/* Returns the number of the ghost to which ENTRY belongs; an entry is a
+ * ghost or a part of a ghost's pupil. */
 uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry);
 
-/* Where a ghost misses its targets. */
+/* The zones in which a ghost misses its targets. A zone is a range of
+ * angles. */
 struct model_miss {
     uint32_t zones;      /* number of zones and parts that miss; 0: no miss */
     double angle_deg[2]; /* min and max angle of these zones */
     int output;          /* output with the largest error / target */
-    double p99, over;    /* its error, and error / target */
+    double p99, over;    /* error of that output, and error / target */
 };
 
 /* Returns where GHOST, with all parts of its pupil, misses targets. */

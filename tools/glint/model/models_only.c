@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Replaces opened_table.c, table_file.c and stop_mask.c in programs without
- * the offline half, which read baked models only.
+ * Replaces opened_table.c, table_file.c and stop_mask.c in programs without the
+ * offline half (ray tracing and baking), which read baked models only.
  */
 #include <errno.h>
 #include <string.h>
@@ -49,8 +49,8 @@ int stop_mask_read(const struct tool *tool, const char *file,
         tool, "%s is a picture; this program does not read pictures", file);
 }
 
-/* Reports that there is no model. Never reached, as all opened lenses have a
- * model. */
+/* Returns an error, as there is no model. Never called, as every opened lens
+ * has a model. */
 enum glint_status opened_table_setup(struct opened_lens *lens,
                                      const struct glint_engine_camera *camera,
                                      struct glint_error *error)

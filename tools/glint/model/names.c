@@ -13,7 +13,7 @@ bool tool_begins_as(const char *argument, uint32_t magic)
     struct stat st;
     FILE *file;
 
-    /* A pipe can be read only once, so it is not opened for a check. */
+    /* A pipe can be read only once, so it is not opened here. */
     if (!tool_is_file_name(argument) || stat(argument, &st) < 0 ||
         !S_ISREG(st.st_mode))
         return false;

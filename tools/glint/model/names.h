@@ -11,9 +11,9 @@ bool tool_begins_as(const char *argument, uint32_t magic);
 
 enum { TOOL_PATH_BYTES = 4096 };
 
-/* Sets PATH to NAME, relative to the folder of the file TEXT. Returns
- * GLINT_E_IO if PATH is too long, GLINT_E_ARGUMENT if it is the file WRITTEN,
- * which may be NULL. */
+/* Sets PATH to NAME, which is relative to the folder of the file TEXT.
+ * Returns GLINT_E_IO if PATH is too long, GLINT_E_ARGUMENT if it is the
+ * output file WRITTEN (may be NULL). */
 enum glint_status tool_find_input(const char *text, const char *name,
                                   const char *written,
                                   char path[TOOL_PATH_BYTES],
@@ -22,13 +22,12 @@ enum glint_status tool_find_input(const char *text, const char *name,
 /* Sets NAME to the name of the file PATH without folder and extension. */
 void tool_scene_name(const char *path, char name[64]);
 
-/* An FNV-1a hash starts as TOOL_KEY_BEGIN; tool_key_mix() adds DATA[BYTES] to
- * it. */
+/* FNV-1a hash: start with TOOL_KEY_BEGIN; tool_key_mix() adds DATA[BYTES]. */
 #define TOOL_KEY_BEGIN UINT64_C(14695981039346656037)
 void tool_key_mix(uint64_t *key, const void *data, size_t bytes);
 
-/* Returns EXIT_OK unless the scene PATH is the file that TOOL would overwrite;
- * then prints a usage error and returns its code. */
+/* Returns EXIT_OK unless the scene PATH is the output file of TOOL; then
+ * prints a usage error and returns its exit code. */
 int tool_scene_is_kept(const struct tool *tool, const char *path);
 
 #endif

@@ -88,8 +88,8 @@ static int check_band(const struct tool *tool, const struct opened_lens *lens,
     return EXIT_OK;
 }
 
-/* Warns if the picture is larger than the field that the model was baked
- * for. */
+/* Prints a warning if the image is larger than the field that the model was
+ * baked for. */
 static void warn_field(const struct tool *tool, const struct opened_lens *lens,
                        const struct glint_engine_camera *camera)
 {
@@ -104,7 +104,8 @@ static void warn_field(const struct tool *tool, const struct opened_lens *lens,
                 tool->name, field);
 }
 
-/* Zooms the model of PATH to where the line says. */
+/* Moves the zoom lens of the model PATH to the position that --zoom
+ * requests. */
 static int zoom_model(const struct tool *tool, struct model_file *model,
                       const struct zoom_option *o, const char *path)
 {
@@ -137,7 +138,7 @@ static int open_model(const struct tool *tool, struct opened_lens *lens,
     snprintf(lens->table.name, sizeof lens->table.name, "%s", h->name);
     lens->table.film_width_mm = model_real_of(h->film_width_mm);
     lens->table.film_height_mm = model_real_of(h->film_height_mm);
-    lens->table.stop_is_circle = false; /* models do not say */
+    lens->table.stop_is_circle = false; /* not stored in models */
     warn_field(tool, lens, &settings->camera);
     return EXIT_OK;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A lens that is opened to draw with: its table or model, and the setup that
- * settings give it.
+ * A lens that is opened for drawing: its table or model, and the optical setup
+ * that the settings define.
  *
  *     code = opened_lens_open(tool, &lens, &settings, "heliar-tronnier");
  *     opened_lens_engine(tool, &lens, &settings, width, height, &cfg);
@@ -14,49 +14,54 @@
 #include "model/settings.h"
 #include "model/stop_mask.h"
 
-/* Closed if all is 0. SETUP points to TABLE: see opened_lens_moved(). */
+/* An opened lens. All zero bytes: closed. SETUP points to TABLE: see
+ * opened_lens_moved(). */
 struct opened_lens {
-    struct glint_prescription table; /* of a model only its name and film */
-    struct model_file model;         /* closed for exact rays */
+    /* for a model only name and film are set */
+    struct glint_prescription table;
+    struct model_file model; /* closed if rays are exact */
     struct glint_setup setup;
-    struct glint_projection projection; /* of --projection lens; else zeros */
-    struct glint_tint *tints;           /* by --ghosts */
-    struct stop_mask mask;              /* of --stop-mask */
-    struct glint_dirt *dirt;            /* on the stop, of SETUP */
-    struct glint_front_dirt *front;     /* on the front element; NULL: none */
+    /* of --projection lens; else all zero */
+    struct glint_projection projection;
+    struct glint_tint *tints;       /* of --ghosts */
+    struct stop_mask mask;          /* of --stop-mask */
+    struct glint_dirt *dirt;        /* dirt on the stop; SETUP uses it */
+    struct glint_front_dirt *front; /* on the front element; NULL: none */
 };
 
-/* Reads the table or model NAME and prepares LENS, which is closed, as SETTINGS
- * say. The model of a table is baked if there is none yet, unless rays are
- * exact. Returns an exit code; opened_lens_close() in any case. */
+/* Reads the table or model NAME and prepares LENS, which must be closed,
+ * with SETTINGS. If a table has no model yet, it is baked, unless rays are
+ * exact. Returns an exit code. Call opened_lens_close() also after a
+ * failure. */
 int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
                      const struct settings *settings, const char *name);
 
 void opened_lens_close(struct opened_lens *lens);
 
-/* Points the setup of LENS to its own table, after LENS was copied here. */
+/* Points the setup of LENS to its own table again, after LENS was copied to
+ * a new address. */
 void opened_lens_moved(struct opened_lens *lens);
 
-/* Makes the setup of LENS for the stop of SETTINGS. GLINT_E_ARGUMENT with
- * ERROR: the model was not baked for so wide a stop. */
+/* Sets up LENS with the stop of SETTINGS. Returns GLINT_E_ARGUMENT if the
+ * model was not baked for so wide a stop; ERROR states the limit. */
 enum glint_status opened_lens_stop(struct opened_lens *lens,
                                    const struct settings *settings,
                                    struct glint_error *error);
 
-/* Zooms LENS, whose model is that of a zoom, as model_file_zoom().
- * GLINT_E_ARGUMENT: ERROR states why not. */
+/* Moves the zoom lens LENS to ZOOM, as model_file_zoom(). Returns
+ * GLINT_E_ARGUMENT if that is impossible; ERROR states why. */
 enum glint_status opened_lens_zoom(struct opened_lens *lens,
                                    const struct settings *settings, double zoom,
                                    struct glint_error *error);
 
-/* Lays the dirt of CAMERA and the mask of the picture FILE, NULL for none, on
- * the front element of LENS. Returns an exit code. */
+/* Puts the dirt of CAMERA and the mask in the image FILE (NULL: none) on the
+ * front element of LENS. Returns an exit code. */
 int opened_lens_front(const struct tool *tool, struct opened_lens *lens,
                       const struct glint_engine_camera *camera,
                       const char *file);
 
-/* Returns the camera of SETTINGS, with the mask of LENS: where the line
- * requests no shape of the stop, a circle if the table of LENS says so. */
+/* Returns the camera of SETTINGS with the stop mask of LENS. If the command
+ * line does not set the stop's shape, it is a circle if the table says so. */
 struct glint_engine_camera opened_lens_camera(const struct opened_lens *lens,
                                               const struct settings *settings);
 
@@ -64,8 +69,7 @@ struct glint_view opened_lens_view(const struct opened_lens *lens,
                                    const struct settings *settings, int width,
                                    int height);
 
-/* Sets CFG to the configuration of an engine for pictures of WIDTH x HEIGHT
- * through LENS. */
+/* Sets CFG to an engine for images of WIDTH x HEIGHT through LENS. */
 void opened_lens_engine(const struct tool *tool, const struct opened_lens *lens,
                         const struct settings *settings, int width, int height,
                         struct glint_engine_config *cfg);

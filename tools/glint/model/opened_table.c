@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A lens opened from its table, whose model is baked, or found in the cache.
+ * Opens a lens from its table; its model is read from the cache, or baked.
  */
 #include <math.h>
 
@@ -32,8 +32,8 @@ struct glint_bake_options opened_table_bake(const struct glint_prescription *l,
     return o;
 }
 
-/* Sets how the lens images angles, and *DEG to the largest angle of the
- * picture. */
+/* Sets the projection of LENS, and *DEG to the largest angle in the image,
+ * degrees. */
 static enum glint_status set_projection(struct opened_lens *lens,
                                         const struct glint_engine_camera *c,
                                         double *deg, struct glint_error *error)
@@ -57,7 +57,7 @@ static enum glint_status set_projection(struct opened_lens *lens,
     return GLINT_OK;
 }
 
-/* Rejects inputs that are not pictures before anything is baked. */
+/* Rejects an input that is not an image before the lens is baked. */
 static int check_picture(const struct tool *tool, const char *picture)
 {
     struct glint_error error = {""};
@@ -70,7 +70,7 @@ static int check_picture(const struct tool *tool, const char *picture)
     return EXIT_OK;
 }
 
-/* Finds or bakes the model of LENS, for a picture up to DEG off the axis. */
+/* Finds or bakes the model of LENS for lights up to DEG off the axis. */
 static int find_model(const struct tool *tool, struct opened_lens *lens,
                       const struct settings *settings, double deg)
 {
@@ -101,7 +101,7 @@ int opened_table(const struct tool *tool, struct opened_lens *lens,
     if (code != EXIT_OK)
         return code;
     coating_apply(&settings->coating, &lens->table);
-    /* A model serves all stops narrower than its own. */
+    /* A model serves all stops that are narrower than its own. */
     if (o->f_number > 0 &&
         (o->rays == GLINT_RAYS_EXACT || o->f_number < lens->table.f_number))
         status =

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens a lens from its table, which needs the offline half. Programs that
- * accept only baked models link models_only.c instead. */
+ * Opens a lens from its table, which needs the offline half (ray tracing and
+ * baking). Programs that accept only baked models link models_only.c instead.
+ */
 #ifndef GLINT_TOOLS_MODEL_OPENED_TABLE_H
 #define GLINT_TOOLS_MODEL_OPENED_TABLE_H
 
@@ -12,18 +13,18 @@
 int opened_table(const struct tool *tool, struct opened_lens *lens,
                  const struct settings *settings, const char *name);
 
-/* Returns the options to bake a model of LENS with for SETTINGS. */
+/* Returns the bake options for LENS that SETTINGS imply. */
 struct glint_bake_options
 opened_table_bake(const struct glint_prescription *lens,
                   const struct settings *settings);
 
-/* Makes the setup of LENS, which must have no model, with the stop and colours
- * of CAMERA, by glint_engine_setup(). */
+/* Sets up LENS, which must have no model, with the stop and colours of
+ * CAMERA, by glint_engine_setup(). */
 enum glint_status opened_table_setup(struct opened_lens *lens,
                                      const struct glint_engine_camera *camera,
                                      struct glint_error *error);
 
-/* Returns the functions that trace the rays of a frame without a model. */
+/* Returns the functions that trace a frame's rays exactly, without a model. */
 const struct glint_frame_rays *opened_table_rays(void);
 
 #endif

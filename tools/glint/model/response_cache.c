@@ -6,15 +6,16 @@
 
 #include "model/cache_file.h"
 
-static void tell(const struct tool *tool, const char *lens, const char *what,
-                 const char *where)
+static void print_response(const struct tool *tool, const char *lens,
+                           const char *what, const char *where)
 {
     if (tool->verbose && !tool->quiet)
         fprintf(stderr, "glint %s: response of %s: %s%s\n", tool->name, lens,
                 what, where);
 }
 
-static bool path_of(char path[CACHE_PATH_BYTES], const char *lens, uint64_t key)
+static bool find_path(char path[CACHE_PATH_BYTES], const char *lens,
+                      uint64_t key)
 {
     return cache_file_folder(path, CACHE_PATH_BYTES) &&
            cache_file_name(path, CACHE_PATH_BYTES, lens, key, "response");
@@ -26,12 +27,12 @@ static int read_entry(void *ctx, const char *lens, uint64_t key, void *data,
     char path[CACHE_PATH_BYTES];
     size_t got = 0;
     uint8_t *const file =
-        path_of(path, lens, key) ? cache_file_read(path, bytes, &got) : NULL;
+        find_path(path, lens, key) ? cache_file_read(path, bytes, &got) : NULL;
     const bool is_read = file && got == bytes;
 
     if (is_read) {
         memcpy(data, file, bytes);
-        tell(ctx, lens, "read from ", path);
+        print_response(ctx, lens, "read from ", path);
     }
     free(file);
     return is_read;
@@ -43,12 +44,12 @@ static void write_entry(void *ctx, const char *lens, uint64_t key,
     char path[CACHE_PATH_BYTES];
     struct glint_error error = {""};
 
-    if (!path_of(path, lens, key))
-        tell(ctx, lens, "measured", "");
+    if (!find_path(path, lens, key))
+        print_response(ctx, lens, "measured", "");
     else if (cache_file_write(path, data, bytes, &error) == GLINT_OK)
-        tell(ctx, lens, "measured, kept in ", path);
+        print_response(ctx, lens, "measured, kept in ", path);
     else
-        tell(ctx, lens, "measured, not kept: ", error.text);
+        print_response(ctx, lens, "measured, not kept: ", error.text);
 }
 
 struct glint_engine_cache response_cache(const struct tool *tool)

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Cache of lens responses, in files of the folder of baked models. If no file
- * can be written, responses are measured in every run. */
+ * Cache of lens responses (brightness of a lens's flare by angle), in the
+ * folder of baked models. If no file can be written, responses are measured in
+ * every run.
+ */
 #ifndef GLINT_TOOLS_MODEL_RESPONSE_CACHE_H
 #define GLINT_TOOLS_MODEL_RESPONSE_CACHE_H
 
 #include "glint/engine.h"
 #include "options/tool.h"
 
-/* Returns the cache, which TOOL must outlive. If TOOL is verbose, the cache
+/* Returns the cache. TOOL must outlive it. If TOOL is verbose, the cache
  * prints for each response whether it was read or measured. */
 struct glint_engine_cache response_cache(const struct tool *tool);
 

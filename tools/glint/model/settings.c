@@ -5,8 +5,9 @@
 
 /* ------------------------------------------------------------------ options */
 
-/* Sets what follows from the options, all of which are valid. */
-static void resolve(struct settings *s)
+/* Computes the members of S that are derived from its options, which must be
+ * valid. */
+static void compute_derived(struct settings *s)
 {
     const struct glint_options *const o = &s->options;
     const struct glint_quality quality = glint_options_quality(o);
@@ -35,7 +36,7 @@ void settings_defaults(struct settings *settings)
     o->starburst = 0;
     o->coating = "table";
     o->wavelengths = "650,532,450";
-    resolve(settings);
+    compute_derived(settings);
 }
 
 void settings_defaults_photo(struct settings *settings)
@@ -44,7 +45,7 @@ void settings_defaults_photo(struct settings *settings)
     glint_options_defaults(&settings->options);
     settings->coating.kind = COATING_MIXED;
     settings->roundness = PHOTO_ROUNDNESS;
-    resolve(settings);
+    compute_derived(settings);
 }
 
 int settings_option(const struct tool *tool, struct settings *settings,
@@ -55,7 +56,7 @@ int settings_option(const struct tool *tool, struct settings *settings,
     if (code == -1 && option == ENGINE_OPTION_OF(coating))
         code = coating_take(tool, &settings->coating, value);
     if (code == -1)
-        resolve(settings);
+        compute_derived(settings);
     return code;
 }
 
@@ -66,7 +67,7 @@ bool settings_set(struct settings *settings, const char *name, const char *text)
     if (glint_options_set_text(&settings->options, name, text, &error) !=
         GLINT_OK)
         return false;
-    resolve(settings);
+    compute_derived(settings);
     return true;
 }
 
@@ -77,7 +78,7 @@ bool settings_set_number(struct settings *settings, const char *name,
 
     if (glint_options_set(&settings->options, name, value, &error) != GLINT_OK)
         return false;
-    resolve(settings);
+    compute_derived(settings);
     return true;
 }
 

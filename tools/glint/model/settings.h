@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The options that set what is drawn and how, for all commands that draw.
+ * Options common to all commands that draw flares: what is drawn, and how.
  */
 #ifndef GLINT_TOOLS_MODEL_SETTINGS_H
 #define GLINT_TOOLS_MODEL_SETTINGS_H
@@ -13,27 +13,34 @@
 #include "options/json_writer.h"
 #include "options/tool.h"
 
-enum { SETTINGS_MAX_LAMPS = 1024 }; /* lamps by hand; a file may have more */
+/* max lamps on the command line; files may have more */
+enum { SETTINGS_MAX_LAMPS = 1024 };
 
 struct settings {
-    struct glint_options options; /* as set */
+    struct glint_options options; /* values as set on the command line */
 
-    double roundness; /* of the blades, unless --stop has a shape */
+    /* roundness of the aperture blades, 0 .. 1, unless --stop sets a shape */
+    double roundness;
 
-    /* What follows from options. Setting one overwrites all of these. */
+    /* The members from here to TOLERANCE are computed from OPTIONS, and
+     * overwritten whenever an option is set. */
     struct coating coating;
     struct zoom_option zoom;
-    struct glint_engine_camera camera;           /* without masks */
-    bool has_stop;                               /* the line names a shape */
-    double wavelength_nm[GLINT_MAX_WAVELENGTHS]; /* of the camera's waves */
+    struct glint_engine_camera camera; /* without masks */
+    bool has_stop; /* the command line sets the stop's shape */
+    /* wavelengths of the camera, nm */
+    double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     int n_wavelengths;
-    struct glint_dials dials; /* but for max_lights and area_points by option */
-    double quantum;           /* dials.irradiance_steps, in percent */
-    double tolerance;         /* tolerance that a model is baked with */
+    /* quality parameters; max_lights and area_points are set by their own
+     * options */
+    struct glint_dials dials;
+    double quantum;   /* dials.irradiance_steps, in percent */
+    double tolerance; /* error tolerance of the bake */
 
-    double max_deg; /* largest angle of the lamps that a model is baked for */
-    /* The input picture: it is validated before a lens is baked. NULL: that is
-     * not known yet. */
+    /* max angle of lamps that the model is baked for, degrees */
+    double max_deg;
+    /* The input image, which is validated before a lens is baked. NULL: not
+     * known yet. */
     const char *picture;
     const char *f_number_from; /* "FILE:LINE" that sets the f-number; NULL: the
                                   command line */
@@ -48,58 +55,60 @@ struct settings {
     "random\n"                                                                \
     "  --json   -q   -v   --help   --help-all   --version\n"
 
-/* Sets SETTINGS to the defaults of a plain picture of a lens, without a star,
- * with the coatings of the lens table, straight blades and three wavelengths;
- * or of flares on photographs, as in the table of options, with blades of
- * PHOTO_ROUNDNESS: spikes of straight ones are thinner and longer than those of
- * lamps in photographs. */
+/* settings_defaults() sets the defaults of a plain image of a lens: no
+ * starburst, the table's coatings, straight blades, three wavelengths.
+ * settings_defaults_photo() sets those of flares on photographs: the option
+ * table's defaults, and blades of PHOTO_ROUNDNESS, as spikes of straight
+ * blades are thinner and longer than those in photographs. */
 #define PHOTO_ROUNDNESS 0.2
 void settings_defaults(struct settings *settings);
 void settings_defaults_photo(struct settings *settings);
 
-/* Sets the engine's option of CODE. Returns -1, or -2 if it is none of these,
- * or an exit code. */
+/* Sets the engine option OPTION to VALUE. Returns -1 on success, -2 if
+ * OPTION is not an engine option, else an exit code. */
 int settings_option(const struct tool *tool, struct settings *settings,
                     int option, const char *value);
 
-/* Prints why the f-number of S is not possible, TEXT, and which line of a file
- * requests it. Returns an exit code. */
+/* Prints TEXT, the reason why the f-number of S is impossible, and the line
+ * of the file that requests it, if any. Returns an exit code. */
 int settings_refuse_stop(const struct tool *tool, const struct settings *s,
                          const char *text);
 
-/* Set the option NAME. Return false, and change nothing, if it does not accept
- * TEXT, or VALUE: a number, the index of a word, or 0 or 1. */
+/* Set the option NAME. TEXT is its value as text; VALUE is a number, the
+ * index of a word, or 0 or 1 for a flag. Return false, without a change, if
+ * the value is invalid. */
 bool settings_set(struct settings *settings, const char *name,
                   const char *text);
 bool settings_set_number(struct settings *settings, const char *name,
                          double value);
 
-/* The same of --quality. */
+/* Sets --quality, 0 .. 1. */
 void settings_set_quality(struct settings *settings, double quality);
 
 /* Returns whether --grid, --quality or --error was given. */
 bool settings_has_grid(const struct settings *settings);
 
-/* Returns the index of the only ghost that is drawn; -1: all are. */
+/* Returns the index of the only ghost that is drawn, or -1 if all are drawn. */
 int settings_only_ghost(const struct settings *settings);
 
-/* Returns whether light is spread over the picture. */
+/* Returns whether a veil, light spread over the whole image, is drawn. */
 bool settings_has_veil(const struct settings *settings);
 
-/* Returns the factor on all light, gain * 2^EV. */
+/* Returns the factor for all light, gain * 2^EV. */
 double settings_scale(const struct settings *settings);
 
-/* Writes the report of a frame as members of an object. */
+/* Writes the report of a frame as members of a JSON object. */
 void settings_json(struct json_writer *json,
                    const struct glint_engine_report *report);
 
-/* Writes as text how many lights there were and are drawn. */
+/* Writes the numbers of lights found and drawn as text. */
 void settings_lights_text(const struct glint_engine_report *report,
                           char text[64]);
 
-/* Warns on standard error of lights that lie beyond the model or were merged
- * because they were too many; even with -q, if bundles are missing or the frame
- * is drawn coarser; with -v, of cells that give no light. */
+/* Prints warnings to standard error: lights outside the model's angles, and
+ * lights that were merged because there are too many; even with -q: ray
+ * bundles are missing or the frame is drawn coarser; with -v: cells without
+ * light. */
 void settings_warn_lights(const struct tool *tool,
                           const struct glint_engine_report *report);
 

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * --stop-mask: a picture in the stop; of --front-mask, on the front element. */
+ * --stop-mask and --front-mask: an image that multiplies the light in the stop
+ * or on the front element.
+ */
 #include <stddef.h>
 #include <stdlib.h>
 
 #include "formats/picture.h"
 #include "model/stop_mask.h"
 
-/* Sets TO to the luma of the picture's codes. */
-static void to_luma(const struct glint_image *image, uint8_t *to)
+/* Sets TO[height][width] to the luma codes of IMAGE. */
+static void read_luma(const struct glint_image *image, uint8_t *to)
 {
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x++) {
@@ -31,7 +33,7 @@ int stop_mask_read(const struct tool *tool, const char *file,
         return tool_fail(tool, status, error.text);
     mask->luma = malloc((size_t)image.width * (size_t)image.height);
     if (mask->luma)
-        to_luma(&image, mask->luma);
+        read_luma(&image, mask->luma);
     glint_picture_free(&image);
     return mask->luma ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
 }

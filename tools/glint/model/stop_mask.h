@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * --stop-mask and --front-mask: a picture that light is multiplied by.
+ * --stop-mask and --front-mask: an image that multiplies the light.
  */
 #ifndef GLINT_TOOLS_MODEL_STOP_MASK_H
 #define GLINT_TOOLS_MODEL_STOP_MASK_H
@@ -9,14 +9,14 @@
 
 #include "options/tool.h"
 
-/* A mask as it was read. luma is NULL if there is no mask. */
+/* A mask in memory. luma is NULL if there is no mask. */
 struct stop_mask {
     uint8_t *luma; /* [height][width] */
     int width, height;
 };
 
-/* Reads the luma of the picture in FILE into MASK, whose luma the caller frees;
- * luma is NULL on failure. Returns an exit code. */
+/* Reads the luma of the image FILE into MASK; the caller frees its luma,
+ * which is NULL on failure. Returns an exit code. */
 int stop_mask_read(const struct tool *tool, const char *file,
                    struct stop_mask *mask);
 

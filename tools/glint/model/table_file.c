@@ -13,7 +13,7 @@
 #include "posix/error.h"
 #include "posix/input.h"
 
-static bool offer(void *suggest, const char *name)
+static bool add_suggestion(void *suggest, const char *name)
 {
     suggest_try(suggest, name, strlen(name));
     return true;
@@ -24,10 +24,10 @@ struct lens_matches {
     const char *word;
     int n;
     char text[400]; /* ", NAME, NAME or NAME" */
-    size_t last;    /* where its last comma is */
+    size_t last;    /* offset of its last comma */
 };
 
-static bool match(void *matches, const char *name)
+static bool add_match(void *matches, const char *name)
 {
     struct lens_matches *m = matches;
     const size_t at = strlen(m->text);
@@ -40,13 +40,13 @@ static bool match(void *matches, const char *name)
     return true;
 }
 
-/* Prints the lenses whose names contain NAME; returns how many there are. */
+/* Prints the lenses whose names contain NAME. Returns their number. */
 static int print_matches(const struct tool *tool, const char *name)
 {
     struct lens_matches m = {.word = name};
 
     if (strlen(name) >= 3)
-        lens_files_each(match, &m);
+        lens_files_each(add_match, &m);
     if (m.n > 1)
         tool_error(
             tool,
@@ -69,7 +69,7 @@ static void print_no_lens(const struct tool *tool, const char *name)
     if (print_matches(tool, name) > 1)
         return;
     suggest_begin(&s, name);
-    lens_files_each(offer, &s);
+    lens_files_each(add_suggestion, &s);
     tool_error(tool,
                "%s: neither a file nor a lens that comes with glint "
                "(%s%s)",

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reading the table of a lens from its file.
+ * Reads lens tables (.lens files).
  */
 #ifndef GLINT_TOOLS_MODEL_TABLE_FILE_H
 #define GLINT_TOOLS_MODEL_TABLE_FILE_H
@@ -8,14 +8,14 @@
 #include "glint/prescription.h"
 #include "options/tool.h"
 
-/* Returns the file of lens ARGUMENT: ARGUMENT if it is a file, or PATH, set to
- * the table of the lens with this name. If there is none, prints similar names
- * and returns NULL. */
+/* Returns the file of the lens ARGUMENT: ARGUMENT itself if it is a file;
+ * else PATH, which is set to the table of the lens with this name. If there
+ * is none, prints similar names and returns NULL. */
 const char *tool_lens_file(const struct tool *tool, const char *argument,
                            char *path, size_t bytes);
 
-/* Reads lens ARGUMENT: a file, or the name of a table that comes with glint.
- * Returns an exit code, after printing the reason on failure. */
+/* Reads the lens ARGUMENT, a file name or the name of a table that comes
+ * with glint. Returns an exit code, after printing the reason on failure. */
 int tool_lens(const struct tool *tool, const char *argument,
               struct glint_prescription *lens);
 

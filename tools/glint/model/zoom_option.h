@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * --zoom and --focus: where a lens table's moving groups are. */
+ * --zoom and --focus: positions of the moving groups of a lens table.
+ */
 #ifndef GLINT_TOOLS_MODEL_ZOOM_OPTION_H
 #define GLINT_TOOLS_MODEL_ZOOM_OPTION_H
 
 #include "options/tool.h"
 
 struct zoom_option {
-    double zoom;     /* focal length in mm, or 0 .. 1: position from the table's
-                        first to last */
-    double focus_m;  /* 0: infinity */
-    bool is_zoomed;  /* --zoom was given; else the first position of the
-                        table */
+    /* focal length in mm, or 0 .. 1 from the table's first position to its
+     * last */
+    double zoom;
+    double focus_m; /* 0: infinity */
+    /* --zoom was given; else the table's first position is used */
+    bool is_zoomed;
     bool is_focused; /* --focus was given */
 };
 
@@ -34,8 +36,8 @@ struct zoom_option {
 bool zoom_option_take(struct zoom_option *option, const char *text);
 bool zoom_option_focus(struct zoom_option *option, const char *text);
 
-/* Zooms and focuses LENS, which was just read. Returns an exit code after
- * printing what is wrong. */
+/* Moves the groups of LENS, which was just read, to zoom and focus. Returns
+ * an exit code, after printing the reason on failure. */
 int zoom_option_apply(const struct tool *tool, const struct zoom_option *option,
                       struct glint_prescription *lens);
 

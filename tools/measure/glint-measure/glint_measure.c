@@ -33,7 +33,7 @@
 
 enum { TEXT = 1 << 14, TABLE_ROWS = 2 * RECIPE_ROWS };
 
-/* A table of cells, "| a | b |". */
+/* A Markdown table, "| a | b |" per line. */
 struct table {
     char *line[TABLE_ROWS];
     int n;
@@ -91,7 +91,7 @@ static int run_row(const struct recipe *r, const struct recipe_row *row,
 }
 
 /* Returns the metric NAME of JSON, or NAN if it is missing. */
-static double metric_of(const char *json, const char *name, size_t length)
+static double find_metric(const char *json, const char *name, size_t length)
 {
     for (const char *at = strchr(json, '"'); at; at = strchr(at + 1, '"'))
         if (strncmp(at + 1, name, length) == 0 &&
@@ -134,7 +134,7 @@ static int measure(const struct recipe *r, const struct recipe_row *row,
 
 /* --------------------------------------------------------------------- csv */
 
-static void first_line(const char *command, char text[128])
+static void read_first_line(const char *command, char text[128])
 {
     FILE *const pipe = popen(command, "r"); /* NOLINT: our own command */
 
@@ -156,8 +156,9 @@ static void append_csv(const struct recipe *r, const struct recipe_row *row,
     if (!file)
         return;
     if (!conditions[0][0])
-        first_line("git describe --always --dirty --abbrev=8", conditions[0]);
-    first_line("cut -d ' ' -f 1 /proc/loadavg", conditions[1]);
+        read_first_line("git describe --always --dirty --abbrev=8",
+                        conditions[0]);
+    read_first_line("cut -d ' ' -f 1 /proc/loadavg", conditions[1]);
     if (is_new)
         fputs("figure,parameters,metric,value,revision,machine,load\n", file);
     for (const char *at = r->metrics; at; at = strchr(at, ',')) {
@@ -170,7 +171,7 @@ static void append_csv(const struct recipe *r, const struct recipe_row *row,
                 fputc(*c == ',' ? ' ' : *c, file);
         }
         fprintf(file, ",%.*s,%.9g,%s,%s,%s\n", (int)length, at,
-                metric_of(json, at, length), conditions[0], canvas_machine(),
+                find_metric(json, at, length), conditions[0], canvas_machine(),
                 conditions[1]);
     }
     fclose(file);
@@ -178,8 +179,8 @@ static void append_csv(const struct recipe *r, const struct recipe_row *row,
 
 /* ------------------------------------------------------------------- table */
 
-/* Writes the value of {NAME%FORMAT~TOLERANCE} at AT to TO. Returns false if the
- * row has no such metric. */
+/* Writes the metric that the placeholder {NAME%FORMAT~TOLERANCE} at AT names
+ * to TO. Returns false if the row has no such metric. */
 static bool write_value(const char *at, const struct recipe_row *row,
                         const char *json, char *to, size_t bytes)
 {
@@ -204,7 +205,7 @@ static bool write_value(const char *at, const struct recipe_row *row,
     }
     snprintf(format, sizeof format, "%.*s", (int)strcspn(at + length, "~}"),
              at + length);
-    x = metric_of(json, name, length);
+    x = find_metric(json, name, length);
     if (!isfinite(x))
         return false;
     if (format[1] == '.')
@@ -219,7 +220,8 @@ static bool write_value(const char *at, const struct recipe_row *row,
     }
 }
 
-/* Writes the cell of COLUMN, or nothing if a metric is missing. */
+/* Writes the text of COLUMN's cell to TO, or an empty text if a metric is
+ * missing. */
 static void write_cell(const struct recipe_column *column,
                        const struct recipe_row *row, const char *json, char *to,
                        size_t bytes)
@@ -243,11 +245,11 @@ static void write_cell(const struct recipe_column *column,
     }
 }
 
-/* Returns ROW as a malloc'ed table line, or NULL if it has no metric, such as
- * the projection of a lens that is not round. OVER: the row reached its
- * limit. */
-static char *line_of(const struct recipe *r, const struct recipe_row *row,
-                     const char *json, bool over)
+/* Returns ROW as a table line, which the caller frees, or NULL if it has no
+ * metric, such as the projection of an anamorphic lens. OVER: the row
+ * reached its CPU limit. */
+static char *make_line(const struct recipe *r, const struct recipe_row *row,
+                       const char *json, bool over)
 {
     static char line[TEXT];
     size_t used = 1;
@@ -268,7 +270,7 @@ static char *line_of(const struct recipe *r, const struct recipe_row *row,
 }
 
 /* Copies cell NUMBER of LINE to CELL. */
-static void cell_of(const char *line, int number, char cell[256])
+static void copy_cell(const char *line, int number, char cell[256])
 {
     size_t length;
 
@@ -287,8 +289,8 @@ static bool same_keys(const struct recipe *r, const char *a, const char *b)
     char cell[2][256];
 
     for (int i = 0; i < r->n_columns; i++) {
-        cell_of(a, i, cell[0]);
-        cell_of(b, i, cell[1]);
+        copy_cell(a, i, cell[0]);
+        copy_cell(b, i, cell[1]);
         if (r->column[i].is_key && strcmp(cell[0], cell[1]) != 0)
             return false;
     }
@@ -357,7 +359,7 @@ static bool compare_cell(const struct recipe *r,
          at = strchr(at + 1, '{')) {
         const size_t length = strcspn(at + 1, "%}");
         const char *const tilde = at + strcspn(at, "~}");
-        const double x = metric_of(json, at + 1, length);
+        const double x = find_metric(json, at + 1, length);
         char *end;
         double was;
 
@@ -376,11 +378,12 @@ static bool compare_cell(const struct recipe *r,
     return fine;
 }
 
-/* Compares the measured row JSON with the row of the table. */
+/* Compares the metrics JSON with the row of the table that has the same
+ * keys. Returns whether all are within tolerance. */
 static bool compare_row(const struct recipe *r, const struct recipe_row *row,
                         const struct table *t, const char *json)
 {
-    char *const line = line_of(r, row, json, false);
+    char *const line = make_line(r, row, json, false);
     char cell[256];
     bool fine = true;
 
@@ -388,7 +391,7 @@ static bool compare_row(const struct recipe *r, const struct recipe_row *row,
         if (!line || !same_keys(r, t->line[i], line))
             continue;
         for (int k = 0; k < r->n_columns; k++) {
-            cell_of(t->line[i], k, cell);
+            copy_cell(t->line[i], k, cell);
             fine = compare_cell(r, &r->column[k], cell, json) && fine;
         }
         printf("%s %s: %s\n", fine ? "ok" : "FAIL", r->name, line);
@@ -412,7 +415,7 @@ static bool is_quick(const struct recipe *r, const struct recipe_row *row)
 
 /* If some rows have ASSIGNMENT, removes the other rows; else sets it in all
  * rows. */
-static void choose(struct recipe *r, const char *assignment)
+static void select_rows(struct recipe *r, const char *assignment)
 {
     int n = 0;
 
@@ -427,8 +430,9 @@ static void choose(struct recipe *r, const char *assignment)
     r->n_rows = n > 0 ? n : r->n_rows;
 }
 
-/* Measures all rows of R, or only the rows of --quick. */
-static int run(struct recipe *r, const char *self, bool quick)
+/* Measures the rows of R, if QUICK only those listed for --quick. Returns an
+ * exit code. */
+static int measure_recipe(struct recipe *r, const char *self, bool quick)
 {
     static char json[TEXT];
     struct table t = {.n = 0};
@@ -445,7 +449,7 @@ static int run(struct recipe *r, const char *self, bool quick)
         if (quick)
             bad += !compare_row(r, &r->row[i], &t, json);
         else
-            put_line(r, &t, line_of(r, &r->row[i], json, code == -1));
+            put_line(r, &t, make_line(r, &r->row[i], json, code == -1));
         code = EXIT_OK;
     }
     if (code == EXIT_OK && !quick)
@@ -482,7 +486,7 @@ int main(int argc, char **argv)
     }
     if (strcmp(argv[1], "--quick") == 0) {
         for (char *at = text; (at = recipe_read(&r, at, NULL));) {
-            const int one = run(&r, argv[0], true);
+            const int one = measure_recipe(&r, argv[0], true);
 
             code = code == EXIT_OK ? one : code;
         }
@@ -494,6 +498,6 @@ int main(int argc, char **argv)
         return EXIT_USAGE;
     }
     for (int i = 2; i < argc; i++)
-        choose(&r, argv[i]);
-    return run(&r, argv[0], false);
+        select_rows(&r, argv[i]);
+    return measure_recipe(&r, argv[0], false);
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures how far lights and ghosts move if the direction of a light at a
- * pixel is computed from the lens's real projection instead of the arc tangent
- * of its position. Lights are at the corner of the film and half-way to it; the
- * position of a ghost is the mean of its rays.
+ * Measures how far lights and ghosts move if a pixel's direction is computed by
+ * the lens's real projection instead of the arc tangent of its position
+ * (pinhole). Lights are at the corner of the film and half-way to it; a ghost's
+ * position is the mean of its rays.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 #include "measure/glint-measure/row.h"
 
 enum {
-    RAYS = 24, /* rays of a ghost, across and down */
+    RAYS = 24, /* rays of a ghost in x and in y */
     TRACED_DEG = 85
 };
 
@@ -23,15 +23,16 @@ struct places {
     double field_mm;
 };
 
-/* Position of a ghost. */
+/* mean position of a ghost's rays on the sensor, mm, and their light */
 struct ghost {
     double x_mm, light;
 };
 
-/* Returns the position of GHOST for a light at THETA_DEG; it is not valid if no
- * ray gets through. */
-static struct ghost find(const struct figure_row *row, const struct places *r,
-                         int ghost, double theta_deg)
+/* Traces GHOST for a light at THETA_DEG and returns its position; light is 0
+ * if no ray passes. */
+static struct ghost find_ghost(const struct figure_row *row,
+                               const struct places *r, int ghost,
+                               double theta_deg)
 {
     const double stop = r->setup.optics.stop_radius_mm;
     const double theta = theta_deg * GLINT_PI / 180;
@@ -78,8 +79,8 @@ static void write_place(struct figure_row *row, const struct places *r,
     if (by_lens > TRACED_DEG)
         return;
     for (int k = 0; k < r->setup.n_ghosts; k++) {
-        const struct ghost a = find(row, r, k, by_tan);
-        const struct ghost b = find(row, r, k, by_lens);
+        const struct ghost a = find_ghost(row, r, k, by_tan);
+        const struct ghost b = find_ghost(row, r, k, by_lens);
         const double by = fabs(b.x_mm - a.x_mm) * px;
 
         if (!(a.light > 0 && b.light > 0))
@@ -106,7 +107,7 @@ int row_places(struct figure_row *row)
     if (!r)
         return tool_fail(row->tool, GLINT_E_MEMORY, NULL);
     status = glint_setup_init(&r->setup, &row->table, 0, 0, nm, 1, &error);
-    /* Lenses that are not round have no projection. */
+    /* Only rotationally symmetric lenses have a projection. */
     if (status == GLINT_OK && glint_prescription_is_round(&row->table)) {
         status = glint_projection_of(&r->projection, &row->table, &r->miss_deg,
                                      &error);

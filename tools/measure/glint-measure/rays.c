@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures the error of a model against exact rays.
- *
- * It compares every ghost at the angles of the accuracy table and every STEP
- * degrees up to the model's largest, at every wavelength. Rays start on a grid
- * over the bounding box of rays that pass stop and barrels; only rays that land
- * in the picture's circle count.
- *
- * A ray that the model has no polynomials for counts as an error of FAR pixels
- * in percentiles, and is left out of root mean squares.
+ * Measures the error of a model against exact rays. Every ghost is compared at
+ * the angles of the accuracy table and every STEP degrees up to the model's max
+ * angle, at every wavelength. Rays start on a grid over the bounding box of the
+ * rays that pass stop and barrels; only rays that land in the image circle
+ * count. A ray that no polynomial of the model covers counts as an error of FAR
+ * pixels in percentiles, and is left out of root mean squares.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -22,8 +19,8 @@
 
 enum {
     ACROSS = 40,
-    DOWN = 20, /* steps over the half with y >= 0; the other half is its mirror
-                  image */
+    /* steps in y over the half y >= 0; the other half is its mirror image */
+    DOWN = 20,
     BINS = 400,
     BINS_A_DECADE = 50,
     MOST_ANGLES = 2000,
@@ -49,13 +46,14 @@ struct task {
     int n_ghosts;
     double angle[MOST_ANGLES];
     int n_angles;
-    double picture_mm; /* half the picture's diagonal, or the radius of the
-                          field if that is smaller */
+    /* radius of the image circle: half the image's diagonal, or the radius
+     * of the field if that is smaller */
+    double picture_mm;
 };
 
 /* ------------------------------------------------------------------ tallies */
 
-static int bin_of(double error)
+static int find_bin(double error)
 {
     const int bin = (int)(BINS_A_DECADE * log10(fmax(error, 1e-5) / 1e-5));
 
@@ -66,9 +64,9 @@ static void tally_add(struct tally *t, const double error[], double light)
 {
     t->rays++;
     t->light += light;
-    t->sensor[bin_of(
+    t->sensor[find_bin(
         hypot(error[GLINT_OUT_SENSOR_X], error[GLINT_OUT_SENSOR_Y]))]++;
-    t->energy[bin_of(fabs(error[GLINT_OUT_ENERGY]))]++;
+    t->energy[find_bin(fabs(error[GLINT_OUT_ENERGY]))]++;
     for (int kind = 0; kind <= GLINT_OUT_ENERGY; kind++)
         t->sum2[kind] +=
             error[kind] * error[kind] * (kind == GLINT_OUT_ENERGY ? light : 1);
@@ -80,8 +78,8 @@ static void tally_add_lost(struct tally *t, double light)
     t->lost++;
     t->light += light;
     t->light_lost += light;
-    t->sensor[bin_of(FAR)]++;
-    t->energy[bin_of(1)]++;
+    t->sensor[find_bin(FAR)]++;
+    t->energy[find_bin(1)]++;
 }
 
 /* Adds WEIGHT times FROM to T. */
@@ -129,14 +127,15 @@ static double stop_rms(const struct tally *t)
     return hypot(rms_of(t, GLINT_OUT_STOP_X), rms_of(t, GLINT_OUT_STOP_Y));
 }
 
-static bool misses(const struct tally *t)
+static bool misses_target(const struct tally *t)
 {
     return sensor_p99(t) > SENSOR_PX || stop_rms(t) > STOP_RMS;
 }
 
 /* --------------------------------------------------------------------- rays */
 
-/* The polynomials of one ghost that a model has at one angle and wavelength. */
+/* The polynomial systems of one ghost, one per part of its pupil, at one
+ * angle and wavelength. */
 struct parts {
     int n;
     struct glint_transfer part[MOST_PARTS];
@@ -245,15 +244,15 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* light of all ghosts at one angle, and the light of rays that the model
- * lacks */
+/* light of all ghosts at one angle; lost: of rays that the model does not
+ * cover */
 struct light {
     double all, lost;
 };
 
-/* Compares all rays of GHOST: adds their errors to SUM and their light to
- * LIGHT, and counts in ANGLES the angles at which the ghost is visible, and the
- * angles at which it misses the target. */
+/* Compares all rays of GHOST. Adds their errors to SUM and their light to
+ * LIGHT. Adds to ANGLES the number of angles at which the ghost is visible,
+ * and the number at which it misses the target. */
 static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
                           int angles[2], struct light *light)
 {
@@ -264,7 +263,7 @@ static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
             compare_bundle(t, ghost, t->angle[k], t->row->nm[w], &here);
         tally_join(sum, &here, 1);
         angles[0] += here.rays > 0;
-        angles[1] += misses(&here);
+        angles[1] += misses_target(&here);
         light[k].all += here.light;
         light[k].lost += here.light_lost;
     }
@@ -294,7 +293,7 @@ static void compare_all(struct figure_row *row, const struct task *t)
         if (sum.rays == 0)
             continue;
         ghosts++;
-        missing += misses(&sum);
+        missing += misses_target(&sum);
         tally_join(&all, &sum, 1);
         tally_join(&equally, &sum, 1 / sum.rays);
     }
@@ -325,7 +324,7 @@ static void add_angle(struct task *t, double angle_deg)
         t->angle[t->n_angles++] = angle_deg;
 }
 
-static int by_size(const void *a, const void *b)
+static int compare_doubles(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
 
@@ -340,7 +339,7 @@ static void set_angles(struct task *t, double step_deg)
         add_angle(t, listed[k]);
     for (int k = 1; k < MOST_ANGLES && k * step_deg < 90; k++)
         add_angle(t, k * step_deg);
-    qsort(t->angle, (size_t)t->n_angles, sizeof *t->angle, by_size);
+    qsort(t->angle, (size_t)t->n_angles, sizeof *t->angle, compare_doubles);
 }
 
 int row_rays(struct figure_row *row)

@@ -20,7 +20,7 @@ static size_t pooled;
 
 /* Returns a copy in the pool of PREFIX followed by TEXT[LENGTH], or an empty
  * text if the pool is full. */
-static char *keep(const char *prefix, const char *text, size_t length)
+static char *copy_to_pool(const char *prefix, const char *text, size_t length)
 {
     char *const to = pool + pooled;
     const size_t bytes = strlen(prefix) + length + 1;
@@ -35,7 +35,7 @@ static char *keep(const char *prefix, const char *text, size_t length)
 /* Adds the words of TEXT to ROW. */
 static void add_words(struct recipe_row *row, const char *text)
 {
-    char *word, *rest = keep("", text, strlen(text));
+    char *word, *rest = copy_to_pool("", text, strlen(text));
 
     while ((word = strtok_r(rest, " ", &rest)))
         if (row->n < ROW_PARAMETERS)
@@ -78,7 +78,7 @@ bool recipe_row_has(const struct recipe_row *row, const char *words)
 
 /* Replaces each of the N rows from FIRST on by one row per value of VARY, "NAME
  * VALUE VALUE...". */
-static void multiply(struct recipe *r, const char *vary)
+static void multiply_rows(struct recipe *r, const char *vary)
 {
     const int n = r->n_rows;
     const size_t length = strcspn(vary, " ");
@@ -93,7 +93,8 @@ static void multiply(struct recipe *r, const char *vary)
             *row = r->row[i];
             snprintf(name, sizeof name, "%.*s=", (int)length, vary);
             if (row->n < ROW_PARAMETERS)
-                row->set[row->n++] = keep(name, value, strcspn(value, " "));
+                row->set[row->n++] =
+                    copy_to_pool(name, value, strcspn(value, " "));
             r->n_rows++;
         }
     memmove(r->row, r->row + n, (size_t)(r->n_rows - n) * sizeof *r->row);
@@ -112,8 +113,8 @@ static void label_rows(struct recipe *r, const struct recipe_lines *l)
 
             if (!colon || row.n == ROW_PARAMETERS)
                 continue;
-            row.set[row.n++] =
-                keep("label=", l->label[k], (size_t)(colon - l->label[k]));
+            row.set[row.n++] = copy_to_pool("label=", l->label[k],
+                                            (size_t)(colon - l->label[k]));
             add_words(&row, colon + 1);
             r->row[r->n_rows++] = row;
         }
@@ -149,7 +150,7 @@ static void add_files(struct recipe *r, const struct recipe_lines *l,
 static void add_lenses(struct recipe *r, const struct recipe_lines *l,
                        const char *line)
 {
-    char *rest = keep("", line, strlen(line)), *word;
+    char *rest = copy_to_pool("", line, strlen(line)), *word;
     const char *set = line;
 
     for (; *set && strcspn(set, "=") >= strcspn(set, " ");
@@ -164,14 +165,14 @@ static void make_rows(struct recipe *r, const struct recipe_lines *l)
     for (int i = 0; i < l->n_lenses; i++)
         add_lenses(r, l, l->lens[i]);
     for (int i = 0; i < l->n_vary; i++)
-        multiply(r, l->vary[i]);
+        multiply_rows(r, l->vary[i]);
     label_rows(r, l);
 }
 
 /* ------------------------------------------------------------------ reading */
 
 /* Collects the metrics of column C; a column without metrics becomes a key. */
-static void note_column(struct recipe *r, struct recipe_column *c)
+static void collect_metrics(struct recipe *r, struct recipe_column *c)
 {
     c->is_key = true;
     for (const char *at = strchr(c->cell, '{'); at; at = strchr(at + 1, '{')) {
@@ -187,7 +188,7 @@ static void note_column(struct recipe *r, struct recipe_column *c)
 }
 
 /* Parses "TITLE = CELL | TITLE = CELL ...". */
-static void take_columns(struct recipe *r, char *text)
+static void parse_columns(struct recipe *r, char *text)
 {
     for (char *next; text && r->n_columns < RECIPE_LINES; text = next) {
         char *const equals = strstr(text, " = ");
@@ -201,11 +202,11 @@ static void take_columns(struct recipe *r, char *text)
             return;
         *equals = '\0';
         r->column[r->n_columns] = (struct recipe_column){text, equals + 3, 0};
-        note_column(r, &r->column[r->n_columns++]);
+        collect_metrics(r, &r->column[r->n_columns++]);
     }
 }
 
-static void take_line(struct recipe *r, struct recipe_lines *l, char *line)
+static void parse_line(struct recipe *r, struct recipe_lines *l, char *line)
 {
     static const char *const words[] = {"lens",   "vary",  "case", "set",
                                         "column", "quick", "limit"};
@@ -225,7 +226,7 @@ static void take_line(struct recipe *r, struct recipe_lines *l, char *line)
     else if (word == 3 && l->n_set < ROW_PARAMETERS)
         l->set[l->n_set++] = rest;
     else if (word == 4)
-        take_columns(r, rest);
+        parse_columns(r, rest);
     else if (word == 5 && r->n_quick < RECIPE_LINES)
         r->quick[r->n_quick++] = rest;
     else if (word == 6)
@@ -255,7 +256,7 @@ char *recipe_read(struct recipe *r, char *text, const char *name)
             is_it = !name || strcmp(line, name) == 0;
             r->name = line;
         } else if (is_it) {
-            take_line(r, &l, line + strspn(line, " "));
+            parse_line(r, &l, line + strspn(line, " "));
         }
         next = rest;
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Recipes of figures, read from tools/measure/recipes, and their rows.
+ * Recipes: text files in tools/measure/recipes that define the rows and columns
+ * of each table of measurements.
  */
 #ifndef GLINT_TOOLS_MEASURE_RECIPES_H
 #define GLINT_TOOLS_MEASURE_RECIPES_H

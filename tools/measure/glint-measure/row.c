@@ -25,7 +25,7 @@ enum glint_status measured_frame(struct glint_engine *engine,
                                  const struct glint_lamp *lamps, int n,
                                  double scale, const struct glint_image *image,
                                  struct glint_engine_report *report);
-static enum glint_status (*volatile measured)(
+static enum glint_status (*volatile measured_call)(
     struct glint_engine *, const struct glint_lamp *, int, double,
     const struct glint_image *, struct glint_engine_report *) = measured_frame;
 
@@ -48,7 +48,7 @@ static bool has_word(const char *words, const char *word, size_t length)
     return false;
 }
 
-/* Returns whether one of NAMES, with commas, is among the metrics. */
+/* Returns whether one of NAMES, separated by commas, is among the metrics. */
 static bool has_metric(const struct figure_row *row, const char *names)
 {
     for (const char *at = names; at; at = strchr(at, ',')) {
@@ -69,7 +69,7 @@ static double cpu_seconds(void)
 
 /* --------------------------------------------------------------- parameters */
 
-static bool take_own(struct figure_row *r, const char *name, const char *value)
+static bool parse_own(struct figure_row *r, const char *name, const char *value)
 {
     const struct {
         const char *name;
@@ -116,7 +116,7 @@ static bool take_own(struct figure_row *r, const char *name, const char *value)
     return settings_set(&r->settings, name, value);
 }
 
-static int take(struct figure_row *row, const char *assignment)
+static int parse_assignment(struct figure_row *row, const char *assignment)
 {
     const size_t length = strcspn(assignment, "=");
     char name[32];
@@ -125,7 +125,7 @@ static int take(struct figure_row *row, const char *assignment)
         return tool_usage(row->tool, "'%s' is not PARAMETER=VALUE", assignment);
     memcpy(name, assignment, length);
     name[length] = '\0';
-    return take_own(row, name, assignment + length + 1)
+    return parse_own(row, name, assignment + length + 1)
                ? EXIT_OK
                : tool_usage(row->tool, "no parameter, or not a value of it: %s",
                             assignment);
@@ -156,7 +156,7 @@ int row_open(struct figure_row *row, struct tool *tool, int n,
                                .step_deg = 0.7};
     settings_defaults(&row->settings);
     for (int i = 0; i < n && code == EXIT_OK; i++)
-        code = take(row, assignment[i]);
+        code = parse_assignment(row, assignment[i]);
     return code == EXIT_OK && !row->lens
                ? tool_usage(tool, "--row needs lens=LENS")
                : code;
@@ -166,7 +166,7 @@ int row_open(struct figure_row *row, struct tool *tool, int n,
 
 /* Bakes the table as 'glint bake' does and opens the model; writes the CPU
  * seconds. */
-static int bake(struct figure_row *r)
+static int bake_table(struct figure_row *r)
 {
     struct glint_bake_options options;
     struct glint_bake_report report;
@@ -211,7 +211,7 @@ static int open_lens(struct figure_row *r)
         return code;
     r->settings.max_deg = fmax(r->settings.max_deg, r->theta);
     if (r->bake_stop >= 0 && r->table.n_surfaces)
-        return bake(r);
+        return bake_table(r);
     if (!has_metric(r, ROW_BAKE "," ROW_PICTURE "," ROW_FRAME "," ROW_RAYS))
         return EXIT_OK;
     return opened_lens_open(r->tool, &r->opened, &r->settings, r->lens);
@@ -295,7 +295,7 @@ static enum glint_status draw(struct figure_row *r, struct frame *f,
         memset(f->codes, 0, 3 * (size_t)r->width * (size_t)r->height);
         glint_image_place(&layer, f->codes);
     }
-    return (is_last ? measured : glint_engine_draw_at)(
+    return (is_last ? measured_call : glint_engine_draw_at)(
         f->engine, f->lamp, r->n_lights, f->exposure, to, &f->report);
 }
 
@@ -364,7 +364,7 @@ static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
     if (other && copy)
         code = row_open(other, r->tool, r->n, r->assignment);
     while (code == EXIT_OK && (word = strtok_r(rest, ";", &rest)))
-        code = take(other, word);
+        code = parse_assignment(other, word);
     if (code == EXIT_OK)
         code = open_lens(other);
     if (code == EXIT_OK)
@@ -385,8 +385,8 @@ static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
     return status;
 }
 
-/* Finds the exposure and draws the picture to compare with: the reference, or
- * the exact picture. */
+/* Sets the exposure and draws the image to compare with: the reference row,
+ * or exact rays. */
 static enum glint_status expose(struct figure_row *r, struct frame *f)
 {
     enum glint_status status = GLINT_OK;

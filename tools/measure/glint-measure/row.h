@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * One row of a figure: a lens and values of parameters, and the metrics that
- * are measured with them and printed as JSON.
+ * One row of a table of measurements: a lens and values of parameters. The
+ * metrics measured with them are printed as JSON.
  */
 #ifndef GLINT_TOOLS_MEASURE_ROW_H
 #define GLINT_TOOLS_MEASURE_ROW_H
@@ -22,12 +22,12 @@ struct figure_row {
                                         name is set */
     int width, height, n_lights;
     double theta, phi; /* direction of the first light, degrees */
-    double stops;      /* power of all lights in stops above white, at an
-                          exposure of 1; NAN: the exposure is set by the flare's
-                          brightness */
-    int dust_log2;     /* cells per side of tables of dust; 0: by quality */
-    int grid;          /* cells per side of the exact picture's rays */
-    int rounds;        /* frames drawn; times are their minimum */
+    /* power of all lights, stops above white at an exposure of 1; NAN: the
+     * exposure is computed from the flare's brightness */
+    double stops;
+    int dust_log2; /* cells per side of tables of dust; 0: by quality */
+    int grid;      /* cells per side of the exact picture's rays */
+    int rounds;    /* frames drawn; times are their minimum */
     /* linear: the flare in linear light; codes: in sRGB codes on black; frame:
      * drawn in place onto a dim YUYV frame, as glint bench does. */
     const char *picture;

@@ -35,12 +35,12 @@ void plot_init(struct plot *p, FILE *file, int number, const char *title)
                        .top = number / 2 * PLOT_HEIGHT};
 }
 
-static bool is_there(const struct plot_axis *a, double v)
+static bool is_on_axis(const struct plot_axis *a, double v)
 {
     return isfinite(v) && (!a->is_log || v > 0);
 }
 
-static void stretch(struct plot_axis *a, double v)
+static void extend_axis(struct plot_axis *a, double v)
 {
     if (a->lo > a->hi)
         a->lo = a->hi = v;
@@ -50,40 +50,41 @@ static void stretch(struct plot_axis *a, double v)
 
 void plot_stretch(struct plot *p, double x, double y)
 {
-    if (is_there(&p->x, x) && is_there(&p->y, y)) {
-        stretch(&p->x, x);
-        stretch(&p->y, y);
+    if (is_on_axis(&p->x, x) && is_on_axis(&p->y, y)) {
+        extend_axis(&p->x, x);
+        extend_axis(&p->y, y);
     }
 }
 
-/* Returns the position of V along the axis, 0 to 1. */
-static double along(const struct plot_axis *a, double v)
+/* Returns the position of V along axis A, 0 to 1. */
+static double axis_fraction(const struct plot_axis *a, double v)
 {
     return a->is_log ? log(v / a->lo) / log(a->hi / a->lo)
                      : (v - a->lo) / (a->hi - a->lo);
 }
 
-static double at_x(const struct plot *p, double x)
+static double x_px(const struct plot *p, double x)
 {
-    return p->left + LEFT + along(&p->x, x) * (PLOT_WIDTH - LEFT - RIGHT);
+    return p->left + LEFT +
+           axis_fraction(&p->x, x) * (PLOT_WIDTH - LEFT - RIGHT);
 }
 
-static double at_y(const struct plot *p, double y)
+static double y_px(const struct plot *p, double y)
 {
     return p->top + PLOT_HEIGHT - BOTTOM -
-           along(&p->y, y) * (PLOT_HEIGHT - TOP - BOTTOM);
+           axis_fraction(&p->y, y) * (PLOT_HEIGHT - TOP - BOTTOM);
 }
 
-static void text(const struct plot *p, double x, double y, const char *anchor,
-                 const char *more, const char *words)
+static void draw_text(const struct plot *p, double x, double y,
+                      const char *anchor, const char *more, const char *words)
 {
     fprintf(p->file,
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>%s</text>\n", x,
             y, anchor, more, words);
 }
 
-static void stroke(const struct plot *p, double x0, double y0, double x1,
-                   double y1, const char *colour, double width)
+static void draw_stroke(const struct plot *p, double x0, double y0, double x1,
+                        double y1, const char *colour, double width)
 {
     fprintf(p->file,
             "<path d=\"M%.1f %.1fL%.1f %.1f\" fill=\"none\" stroke=\"%s\" "
@@ -92,7 +93,7 @@ static void stroke(const struct plot *p, double x0, double y0, double x1,
 }
 
 /* Widens the axis a little beyond its outermost points. */
-static void widen(struct plot_axis *a)
+static void widen_axis(struct plot_axis *a)
 {
     if (a->lo > a->hi)
         a->lo = a->is_log ? 1 : 0, a->hi = 1;
@@ -110,7 +111,7 @@ static void widen(struct plot_axis *a)
     }
 }
 
-static void tick(const struct plot *p, bool is_x, double v)
+static void draw_tick(const struct plot *p, bool is_x, double v)
 {
     const double bottom = p->top + PLOT_HEIGHT - BOTTOM;
     const double left = p->left + LEFT;
@@ -118,12 +119,12 @@ static void tick(const struct plot *p, bool is_x, double v)
 
     snprintf(words, sizeof words, "%.6g", v);
     if (is_x) {
-        stroke(p, at_x(p, v), p->top + TOP, at_x(p, v), bottom, "#ddd", 1);
-        text(p, at_x(p, v), bottom + 14, "middle", "", words);
+        draw_stroke(p, x_px(p, v), p->top + TOP, x_px(p, v), bottom, "#ddd", 1);
+        draw_text(p, x_px(p, v), bottom + 14, "middle", "", words);
     } else {
-        stroke(p, left, at_y(p, v), p->left + PLOT_WIDTH - RIGHT, at_y(p, v),
-               "#ddd", 1);
-        text(p, left - 5, at_y(p, v) + 4, "end", "", words);
+        draw_stroke(p, left, y_px(p, v), p->left + PLOT_WIDTH - RIGHT,
+                    y_px(p, v), "#ddd", 1);
+        draw_text(p, left - 5, y_px(p, v) + 4, "end", "", words);
     }
 }
 
@@ -131,7 +132,8 @@ static void tick(const struct plot *p, bool is_x, double v)
  * Logarithmic: at 1, 2 and 5 times powers of ten, at more if the axis spans
  * less than a factor of 12, only at some powers if it spans four decades or
  * more. */
-static void ticks(const struct plot *p, const struct plot_axis *a, bool is_x)
+static void draw_ticks(const struct plot *p, const struct plot_axis *a,
+                       bool is_x)
 {
     static const double mantissa[] = {1, 2, 5, 0.7, 1.5, 3};
     const int every = a->is_log ? 1 + (int)log10(a->hi / a->lo) / 8 : 1;
@@ -144,7 +146,7 @@ static void ticks(const struct plot *p, const struct plot_axis *a, bool is_x)
                 const double v = mantissa[k] * pow(10, e);
 
                 if (v >= a->lo && v <= a->hi)
-                    tick(p, is_x, v);
+                    draw_tick(p, is_x, v);
             }
         return;
     }
@@ -152,7 +154,7 @@ static void ticks(const struct plot *p, const struct plot_axis *a, bool is_x)
             : (a->hi - a->lo) / step > 7 ? 2
                                          : 1;
     for (int k = (int)ceil(a->lo / step); k * step <= a->hi; k++)
-        tick(p, is_x, k * step);
+        draw_tick(p, is_x, k * step);
 }
 
 void plot_frame(struct plot *p)
@@ -160,21 +162,21 @@ void plot_frame(struct plot *p)
     const double middle = p->top + (TOP + PLOT_HEIGHT - BOTTOM) / 2.0;
     char turn[64];
 
-    widen(&p->x);
-    widen(&p->y);
-    ticks(p, &p->x, true);
-    ticks(p, &p->y, false);
-    text(p, p->left + LEFT, p->top + 15, "start", " font-weight=\"bold\"",
-         p->title);
-    text(p, p->left + (LEFT + PLOT_WIDTH - RIGHT) / 2.0,
-         p->top + PLOT_HEIGHT - 8, "middle", "", p->x.words);
+    widen_axis(&p->x);
+    widen_axis(&p->y);
+    draw_ticks(p, &p->x, true);
+    draw_ticks(p, &p->y, false);
+    draw_text(p, p->left + LEFT, p->top + 15, "start", " font-weight=\"bold\"",
+              p->title);
+    draw_text(p, p->left + (LEFT + PLOT_WIDTH - RIGHT) / 2.0,
+              p->top + PLOT_HEIGHT - 8, "middle", "", p->x.words);
     snprintf(turn, sizeof turn, " transform=\"rotate(-90 %d %.1f)\"",
              p->left + 13, middle);
-    text(p, p->left + 13, middle, "middle", turn, p->y.words);
+    draw_text(p, p->left + 13, middle, "middle", turn, p->y.words);
 }
 
-static void mark(const struct plot *p, double x, double y, char kind,
-                 const char *colour, const char *tip)
+static void draw_mark(const struct plot *p, double x, double y, char kind,
+                      const char *colour, const char *tip)
 {
     const bool hollow = isupper((unsigned char)kind);
     const double r = kind == '.' ? 1.6 : 3.3;
@@ -205,24 +207,24 @@ static void mark(const struct plot *p, double x, double y, char kind,
 void plot_mark(const struct plot *p, double x, double y, char kind,
                const char *colour, const char *tip)
 {
-    if (is_there(&p->x, x) && is_there(&p->y, y))
-        mark(p, at_x(p, x), at_y(p, y), kind, colour, tip);
+    if (is_on_axis(&p->x, x) && is_on_axis(&p->y, y))
+        draw_mark(p, x_px(p, x), y_px(p, y), kind, colour, tip);
 }
 
 void plot_line(const struct plot *p, double x0, double y0, double x1, double y1,
                const char *colour, bool thick)
 {
-    if (is_there(&p->x, x0) && is_there(&p->x, x1) && is_there(&p->y, y0) &&
-        is_there(&p->y, y1))
-        stroke(p, at_x(p, x0), at_y(p, y0), at_x(p, x1), at_y(p, y1), colour,
-               thick ? 2 : 1);
+    if (is_on_axis(&p->x, x0) && is_on_axis(&p->x, x1) &&
+        is_on_axis(&p->y, y0) && is_on_axis(&p->y, y1))
+        draw_stroke(p, x_px(p, x0), y_px(p, y0), x_px(p, x1), y_px(p, y1),
+                    colour, thick ? 2 : 1);
 }
 
 void plot_words(const struct plot *p, double x, double y, const char *words)
 {
-    if (is_there(&p->x, x) && is_there(&p->y, y))
-        text(p, at_x(p, x) + 5, at_y(p, y) + 11, "start",
-             " font-size=\"9\" fill=\"#555\"", words);
+    if (is_on_axis(&p->x, x) && is_on_axis(&p->y, y))
+        draw_text(p, x_px(p, x) + 5, y_px(p, y) + 11, "start",
+                  " font-size=\"9\" fill=\"#555\"", words);
 }
 
 void plot_key(struct plot *p, char kind, const char *colour, const char *words)
@@ -232,8 +234,8 @@ void plot_key(struct plot *p, char kind, const char *colour, const char *words)
         p->left + LEFT + 6 + column * (PLOT_WIDTH - LEFT) / (double)KEYS;
     const double y = p->top + 29 + 14 * row;
 
-    mark(p, x, y, kind, colour, NULL);
-    text(p, x + 8, y + 4, "start", "", words);
+    draw_mark(p, x, y, kind, colour, NULL);
+    draw_text(p, x + 8, y + 4, "start", "", words);
     p->n_keys++;
 }
 

@@ -43,8 +43,9 @@ void plot_stretch(struct plot *plot, double x, double y);
 /* Draws title, axes and grid, after stretching and before marks. */
 void plot_frame(struct plot *plot);
 
-/* Draws a mark of KIND 'o' circle, '.' small circle, 's' square or 'd' diamond,
- * hollow if it is a capital. TIP is the tooltip, or NULL. */
+/* Draws a mark at (X, Y). KIND: 'o' circle, '.' small circle, 's' square,
+ * 'd' diamond; hollow if it is a capital letter. TIP is the tooltip, or
+ * NULL. */
 void plot_mark(const struct plot *plot, double x, double y, char kind,
                const char *colour, const char *tip);
 void plot_line(const struct plot *plot, double x0, double y0, double x1,
@@ -66,9 +67,9 @@ void html_begin(FILE *file, const char *title, const char *style);
 /* Writes TEXT with < > & and " escaped. */
 void html_text(FILE *file, const char *text);
 
-/* Writes a table row with cells of TAG, th or td: the text of FORMAT, up to
- * 1023 bytes, split at each |. A cell that begins with ! gets the class
- * worse. */
+/* Writes a table row with cells <TAG> (th or td): the printf text of FORMAT,
+ * up to 1023 bytes, split at each |. A cell that begins with ! gets the CSS
+ * class "worse". */
 void html_row(FILE *file, const char *tag, const char *format, ...)
     GLINT_PRINTF(3, 4);
 

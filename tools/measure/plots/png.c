@@ -16,21 +16,21 @@ struct bytes {
     size_t n;
 };
 
-static void put(struct bytes *b, const void *data, size_t n)
+static void append_bytes(struct bytes *b, const void *data, size_t n)
 {
     memcpy(b->at + b->n, data, n);
     b->n += n;
 }
 
-static void put_u32(struct bytes *b, uint32_t v)
+static void append_be32(struct bytes *b, uint32_t v)
 {
     const uint8_t big[4] = {(uint8_t)(v >> 24), (uint8_t)(v >> 16),
                             (uint8_t)(v >> 8), (uint8_t)v};
 
-    put(b, big, 4);
+    append_bytes(b, big, 4);
 }
 
-static uint32_t crc_of(const uint8_t *data, size_t n)
+static uint32_t compute_crc(const uint8_t *data, size_t n)
 {
     uint32_t crc = UINT32_MAX;
 
@@ -48,8 +48,8 @@ static size_t begin_chunk(struct bytes *b, const char *type)
 {
     const size_t start = b->n;
 
-    put_u32(b, 0);
-    put(b, type, 4);
+    append_be32(b, 0);
+    append_bytes(b, type, 4);
     return start;
 }
 
@@ -58,35 +58,35 @@ static void end_chunk(struct bytes *b, size_t start)
     const size_t length = b->n - start - 8, end = b->n;
 
     b->n = start;
-    put_u32(b, (uint32_t)length);
+    append_be32(b, (uint32_t)length);
     b->n = end;
-    put_u32(b, crc_of(b->at + start + 4, length + 4));
+    append_be32(b, compute_crc(b->at + start + 4, length + 4));
 }
 
 /* Appends ROWS[N], rows that begin with the filter byte 0, as uncompressed zlib
  * data. */
-static void put_pixels(struct bytes *b, const uint8_t *rows, size_t n)
+static void append_pixels(struct bytes *b, const uint8_t *rows, size_t n)
 {
     uint32_t a = 1, c = 0;
 
-    put(b, "\x78\x01", 2);
+    append_bytes(b, "\x78\x01", 2);
     for (size_t at = 0; at < n; at += BLOCK) {
         const size_t part = n - at < BLOCK ? n - at : BLOCK;
         const uint8_t header[5] = {at + part == n, (uint8_t)part,
                                    (uint8_t)(part >> 8), (uint8_t)~part,
                                    (uint8_t)(~part >> 8)};
 
-        put(b, header, 5);
-        put(b, rows + at, part);
+        append_bytes(b, header, 5);
+        append_bytes(b, rows + at, part);
     }
     for (size_t i = 0; i < n; i++) {
         a = (a + rows[i]) % 65521; /* NOLINT: ROWS has N bytes */
         c = (c + a) % 65521;
     }
-    put_u32(b, c << 16 | a);
+    append_be32(b, c << 16 | a);
 }
 
-static void base64(FILE *file, const uint8_t *data, size_t n)
+static void write_base64(FILE *file, const uint8_t *data, size_t n)
 {
     static const char digit[] =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -105,7 +105,7 @@ static void base64(FILE *file, const uint8_t *data, size_t n)
 
 /* Returns an uncompressed PNG file, which the caller frees; its member at is
  * NULL if there is no memory. */
-static struct bytes png_of(const uint8_t *rgb, int width, int height)
+static struct bytes make_png(const uint8_t *rgb, int width, int height)
 {
     const size_t row = 3 * (size_t)width, n = (row + 1) * (size_t)height;
     uint8_t *rows = malloc(n);
@@ -121,15 +121,15 @@ static struct bytes png_of(const uint8_t *rgb, int width, int height)
         rows[(size_t)y * (row + 1)] = 0;
         memcpy(rows + (size_t)y * (row + 1) + 1, rgb + (size_t)y * row, row);
     }
-    put(&b, "\x89PNG\r\n\x1a\n", 8);
+    append_bytes(&b, "\x89PNG\r\n\x1a\n", 8);
     start = begin_chunk(&b, "IHDR");
-    put_u32(&b, (uint32_t)width);
-    put_u32(&b, (uint32_t)height);
-    put(&b, "\x08\x02\0\0", 5); /* 8 bits, RGB, no filter and interlace; the
-                                   last 0 is the string's */
+    append_be32(&b, (uint32_t)width);
+    append_be32(&b, (uint32_t)height);
+    append_bytes(&b, "\x08\x02\0\0", 5); /* 8 bits, RGB, no filter and
+                                   interlace; the last 0 is the string's */
     end_chunk(&b, start);
     start = begin_chunk(&b, "IDAT");
-    put_pixels(&b, rows, n);
+    append_pixels(&b, rows, n);
     end_chunk(&b, start);
     end_chunk(&b, begin_chunk(&b, "IEND"));
     free(rows);
@@ -138,7 +138,8 @@ static struct bytes png_of(const uint8_t *rgb, int width, int height)
 
 /* Returns a compressed PNG file, encoded by the image plug-in; at is NULL if
  * the plug-in is missing or fails. */
-static struct bytes compressed_png_of(const uint8_t *rgb, int width, int height)
+static struct bytes make_compressed_png(const uint8_t *rgb, int width,
+                                        int height)
 {
     const size_t row = 3 * (size_t)width, n = row * (size_t)height;
     struct glint_oiio_pixels pixels = {.width = width, .height = height};
@@ -162,14 +163,14 @@ static struct bytes compressed_png_of(const uint8_t *rgb, int width, int height)
 
 void html_png(FILE *file, const uint8_t *rgb, int width, int height)
 {
-    const struct bytes stored = png_of(rgb, width, height);
-    const struct bytes small = compressed_png_of(rgb, width, height);
+    const struct bytes stored = make_png(rgb, width, height);
+    const struct bytes small = make_compressed_png(rgb, width, height);
     const bool is_small = small.at && (!stored.at || small.n < stored.n);
     const struct bytes b = is_small ? small : stored;
 
     if (b.at) {
         fputs("data:image/png;base64,", file);
-        base64(file, b.at, b.n);
+        write_base64(file, b.at, b.n);
     }
     free(stored.at);
     free(small.at);
