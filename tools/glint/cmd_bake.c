@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake: turns a lens table into a model; scenes, environments and motions
- * have commands of their own.
+ * glint bake: bakes a lens table into a model. Scenes, environments and motions
+ * have their own bake commands, which this one calls.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -60,13 +60,15 @@ struct bake {
     struct coating coating;
     struct zoom_option zoom;
     double f_number;
-    int positions;     /* of a zoom; 0: one model */
-    double halfway_db; /* below 0: not requested */
+    int positions; /* positions of a zoom lens; 0: a single model */
+    /* max error half-way between positions, dB; below 0: not requested */
+    double halfway_db;
     struct glint_bake_options options;
     struct tool_progress progress;
 };
 
-static int take(struct tool *tool, struct bake *b, int c, const char *name)
+static int parse_option(struct tool *tool, struct bake *b, int c,
+                        const char *name)
 {
     struct glint_bake_options *o = &b->options;
     bool ok = true;
@@ -130,7 +132,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
 
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0)
-        if ((code = take(tool, b, c, options[index].name)) >= 0)
+        if ((code = parse_option(tool, b, c, options[index].name)) >= 0)
             return code;
     code = tool_inputs(tool, argc, argv, 1, "takes one lens");
     if (code >= 0)
@@ -147,8 +149,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
     return -1;
 }
 
-static int report(const struct tool *tool, const void *model, size_t bytes,
-                  double seconds, const struct glint_bake_report *r)
+static int print_report(const struct tool *tool, const void *model,
+                        size_t bytes, double seconds,
+                        const struct glint_bake_report *r)
 {
     const char *reason;
     struct glint_lens lens;
@@ -159,7 +162,7 @@ static int report(const struct tool *tool, const void *model, size_t bytes,
     return EXIT_OK;
 }
 
-/* Bakes LENS into OUT and finishes it, or aborts it. Returns an exit code. */
+/* Bakes LENS into OUT, and commits or aborts OUT. Returns an exit code. */
 static int bake_into(struct glint_output *out, struct tool *tool,
                      struct bake *b, const struct glint_prescription *lens)
 {
@@ -185,14 +188,15 @@ static int bake_into(struct glint_output *out, struct tool *tool,
     if (status != GLINT_OK)
         code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
     else if (strcmp(b->output, "-") != 0)
-        code = report(tool, model, bytes, tool_seconds() - start, &r);
+        code = print_report(tool, model, bytes, tool_seconds() - start, &r);
     free(model);
     return code;
 }
 
-/* Prints what was baked, unless the model was written to standard output. */
-static void tell_zoom(const struct tool *tool, const struct bake *b,
-                      const struct zoom_baked *baked, double seconds)
+/* Prints a summary of the bake, unless the model was written to standard
+ * output. */
+static void print_zoom_report(const struct tool *tool, const struct bake *b,
+                              const struct zoom_baked *baked, double seconds)
 {
     struct json_writer json = {.to = stdout};
 
@@ -222,7 +226,7 @@ static void tell_zoom(const struct tool *tool, const struct bake *b,
                b->halfway_db);
 }
 
-/* Bakes LENS, unchanged since it was read, at all positions into OUT. */
+/* Bakes LENS, as it was read, at all positions into OUT. */
 static int bake_positions(struct glint_output *out, struct tool *tool,
                           struct bake *b, const struct glint_prescription *lens)
 {
@@ -244,13 +248,13 @@ static int bake_positions(struct glint_output *out, struct tool *tool,
     free(baked.data);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
-    tell_zoom(tool, b, &baked, tool_seconds() - start);
+    print_zoom_report(tool, b, &baked, tool_seconds() - start);
     return EXIT_OK;
 }
 
-/* Bakes the lens NAME. The output is opened before, as baking can take
+/* Bakes the lens NAME. The output is opened first, as baking can take
  * minutes. */
-static int run(struct tool *tool, struct bake *b, const char *name)
+static int bake_name(struct tool *tool, struct bake *b, const char *name)
 {
     struct glint_prescription *lens = malloc(sizeof *lens);
     struct glint_error error = {""};
@@ -296,12 +300,12 @@ static int bake_lens(struct tool *tool, int argc, char **argv)
         return code;
     code = tool_start(tool);
     if (code == EXIT_OK)
-        code = run(tool, &b, argv[optind]);
+        code = bake_name(tool, &b, argv[optind]);
     tool_finish(tool);
     return code;
 }
 
-/* Runs the bake command for the type of the first input that is not a lens. */
+/* Calls the bake command for the type of the first input that is not a lens. */
 static int bake_any(struct tool *tool, int argc, char **argv)
 {
     static const struct {
@@ -328,7 +332,8 @@ int cmd_bake(int argc, char **argv)
 
     if (code != EXIT_OK && tool.json &&
         !(tool.written && strcmp(tool.written, "-") == 0))
-        /* Options that follow were not read yet. */
+        /* The options that follow the error have not been read, so --json is
+         * searched for here. */
         json_write(&(struct json_writer){.to = stdout},
                    "{error: %s, file: %s, exit: %d}\n", cause.text,
                    optind < argc && *argv[optind] != '-' ? argv[optind] : NULL,

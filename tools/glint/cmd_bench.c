@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bench: times frames, and compares them with touching their memory.
+ * glint bench: times frames, and compares the times with the time to touch the
+ * same memory.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -8,8 +9,9 @@
 #include "measure/bench.h"
 #include "options/command_line.h"
 
-/* Takes option C. Returns 1; 0: not that value; -2: another option. */
-static int take(struct bench *b, int c)
+/* Applies option C with the value optarg. Returns 1 on success, 0 if the
+ * value is invalid, -2 if C is unknown. */
+static int parse_option(struct bench *b, int c)
 {
     switch (c) {
     case 'a':
@@ -35,7 +37,7 @@ static int parse(struct bench *b, int argc, char **argv)
 
     while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, &at)) >=
            0) {
-        const int taken = take(b, c);
+        const int taken = parse_option(b, c);
 
         if (taken == 0)
             return tool_refuse(b->tool, options[at].name, optarg);
@@ -50,8 +52,8 @@ static int parse(struct bench *b, int argc, char **argv)
     return -1;
 }
 
-/* Returns whether the line has --scene: then it is another bench, with other
- * options. */
+/* Returns whether the command line has --scene, which selects the bench of
+ * scenes with other options. */
 static bool has_scene(int argc, char **argv)
 {
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)

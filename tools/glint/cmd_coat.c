@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint coat: what a coating reflects, by wavelength and angle.
+ * glint coat: reflectance of a coating by wavelength and angle.
  */
 #include <errno.h>
 #include <math.h>
@@ -48,21 +48,21 @@ struct coat {
     const char *output;
     int surface; /* -1: a coating alone, without a lens */
     struct coating on_lens;
-    double glass[2]; /* nd and Vd */
+    double glass[2]; /* index nd and Abbe number Vd */
     int n_angles;
     double angle_deg[MAX_ANGLES];
     double band_nm[2];
     struct glint_coating coating;
-    char name[MAX_TEXT]; /* for titles */
+    char name[MAX_TEXT]; /* name in titles */
 };
 
-/* Fractions of light reflected. */
+/* Reflectances, 0 .. 1, of s and p polarised light, and their mean. */
 struct reflected {
     double s, p, both;
 };
 
-static struct reflected reflected_at(const struct coat *c, double nm,
-                                     double degrees)
+static struct reflected compute_reflectance(const struct coat *c, double nm,
+                                            double degrees)
 {
     struct glint_film_at film[GLINT_MAX_FILMS];
     const int n = glint_coating_at(&c->coating, nm, film);
@@ -74,7 +74,7 @@ static struct reflected reflected_at(const struct coat *c, double nm,
     return r;
 }
 
-/* Returns the Kth wavelength of the table, 0 .. STEPS. */
+/* Returns wavelength K of the table, K = 0 .. STEPS, nm. */
 static double nm_at(const struct coat *c, int k)
 {
     return c->band_nm[0] + (c->band_nm[1] - c->band_nm[0]) * k / STEPS;
@@ -91,8 +91,10 @@ static void print_text(const struct coat *c)
     for (int k = 0; k <= STEPS; k += 2) {
         printf("%8.1f", nm_at(c, k));
         for (int a = 0; a < c->n_angles; a++)
-            printf("  %7.3f %%",
-                   100 * reflected_at(c, nm_at(c, k), c->angle_deg[a]).both);
+            printf(
+                "  %7.3f %%",
+                100 *
+                    compute_reflectance(c, nm_at(c, k), c->angle_deg[a]).both);
         printf("\n");
     }
 }
@@ -110,7 +112,7 @@ static void print_json(const struct coat *c)
     for (int k = 0; k <= STEPS; k++)
         for (int a = 0; a < c->n_angles; a++) {
             const struct reflected r =
-                reflected_at(c, nm_at(c, k), c->angle_deg[a]);
+                compute_reflectance(c, nm_at(c, k), c->angle_deg[a]);
 
             json_write(&json, "{nm: %g, deg: %g, s: %.9g, p: %.9g}",
                        nm_at(c, k), c->angle_deg[a], r.s, r.p);
@@ -120,33 +122,33 @@ static void print_json(const struct coat *c)
 
 /* ------------------------------------------------------------------- plots */
 
-/* A curve of a panel: percent reflected as a function of X. */
+/* A curve in a panel: reflectance in percent as a function of X. */
 struct curve {
     const struct coat *c;
-    double fixed; /* angle or wavelength */
-    int kind;     /* 0: by wavelength; 1: s, 2: p by angle */
+    double fixed; /* the angle (degrees) or wavelength (nm) that is constant */
+    int kind;     /* 0: mean by wavelength; 1: s, 2: p polarisation by angle */
     double lo, hi;
 };
 
-static double percent_of(const struct curve *v, double x)
+static double compute_percent(const struct curve *v, double x)
 {
-    const struct reflected r = v->kind ? reflected_at(v->c, v->fixed, x)
-                                       : reflected_at(v->c, x, v->fixed);
+    const struct reflected r = v->kind ? compute_reflectance(v->c, v->fixed, x)
+                                       : compute_reflectance(v->c, x, v->fixed);
 
     return 100 * (v->kind == 0 ? r.both : v->kind == 1 ? r.s : r.p);
 }
 
-static void stretch_by(struct plot *plot, const struct curve *v)
+static void extend_axes(struct plot *plot, const struct curve *v)
 {
     for (int i = 0; i <= 2 * STEPS; i++) {
         const double x = v->lo + (v->hi - v->lo) * i / (2 * STEPS);
 
-        plot_stretch(plot, x, percent_of(v, x));
+        plot_stretch(plot, x, compute_percent(v, x));
     }
 }
 
-static void draw(const struct plot *plot, const struct curve *v,
-                 const char *colour)
+static void draw_curve(const struct plot *plot, const struct curve *v,
+                       const char *colour)
 {
     enum { N = 200 };
 
@@ -154,12 +156,12 @@ static void draw(const struct plot *plot, const struct curve *v,
         const double x0 = v->lo + (v->hi - v->lo) * i / N;
         const double x1 = v->lo + (v->hi - v->lo) * (i + 1) / N;
 
-        plot_line(plot, x0, percent_of(v, x0), x1, percent_of(v, x1), colour,
-                  v->kind != 2);
+        plot_line(plot, x0, compute_percent(v, x0), x1, compute_percent(v, x1),
+                  colour, v->kind != 2);
     }
 }
 
-static void by_wavelength(const struct coat *c, struct plot *plot)
+static void plot_wavelengths(const struct coat *c, struct plot *plot)
 {
     struct curve v = {c, 0, 0, c->band_nm[0], c->band_nm[1]};
     char words[32];
@@ -169,18 +171,18 @@ static void by_wavelength(const struct coat *c, struct plot *plot)
     plot_stretch(plot, v.lo, 0);
     for (int a = 0; a < c->n_angles; a++) {
         v.fixed = c->angle_deg[a];
-        stretch_by(plot, &v);
+        extend_axes(plot, &v);
     }
     plot_frame(plot);
     for (int a = 0; a < c->n_angles; a++) {
         v.fixed = c->angle_deg[a];
-        draw(plot, &v, plot_colour(a));
+        draw_curve(plot, &v, plot_colour(a));
         snprintf(words, sizeof words, "%g degrees", v.fixed);
         plot_key(plot, 's', plot_colour(a), words);
     }
 }
 
-static void by_angle(const struct coat *c, struct plot *plot)
+static void plot_angles(const struct coat *c, struct plot *plot)
 {
     static const double nm[3] = {450, 550, 650};
     static const char *const colour[3] = {"#1f6fb2", "#3a8f3a", "#c0281a"};
@@ -189,11 +191,11 @@ static void by_angle(const struct coat *c, struct plot *plot)
     plot->x.words = "degrees";
     plot->y.words = "% reflected, s thick, p thin";
     for (int k = 0; k < 6; k++)
-        stretch_by(plot, &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75});
+        extend_axes(plot, &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75});
     plot_frame(plot);
     for (int k = 0; k < 6; k++)
-        draw(plot, &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75},
-             colour[k / 2]);
+        draw_curve(plot, &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75},
+                   colour[k / 2]);
     for (int k = 0; k < 3; k++) {
         snprintf(words, sizeof words, "%g nm", nm[k]);
         plot_key(plot, 's', colour[k], words);
@@ -206,9 +208,9 @@ static void write_plot(const struct coat *c, FILE *file)
 
     plot_open(file, 2);
     plot_init(&plot, file, 0, c->name);
-    by_wavelength(c, &plot);
+    plot_wavelengths(c, &plot);
     plot_init(&plot, file, 1, "by angle");
-    by_angle(c, &plot);
+    plot_angles(c, &plot);
     plot_close(file);
 }
 
@@ -225,7 +227,7 @@ static int save(const struct tool *tool, const struct coat *c)
 
 /* ----------------------------------------------------------------- options */
 
-static int take(struct tool *tool, void *ctx, int c, const char *value)
+static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
 {
     struct coat *o = ctx;
     bool good = true;
@@ -264,8 +266,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct coat *o)
         {"band", required_argument, NULL, 'b'},
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
-    int code =
-        tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options, take, o);
+    int code = tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options,
+                         parse_option, o);
 
     if (code < 0)
         code =
@@ -285,7 +287,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct coat *o)
 
 /* ------------------------------------------------------------------ coating */
 
-static int of_lens(const struct tool *tool, const char *name, struct coat *c)
+static int coat_of_lens(const struct tool *tool, const char *name,
+                        struct coat *c)
 {
     struct glint_prescription *lens = calloc(1, sizeof *lens);
     int code;
@@ -304,7 +307,8 @@ static int of_lens(const struct tool *tool, const char *name, struct coat *c)
         c->coating = s->coating;
         snprintf(c->name, sizeof c->name, "%.60s, surface %d", lens->name,
                  c->surface);
-        if (s->vd <= 0 && c->surface > 0) /* the glass is before it */
+        /* the glass is on the other side of the surface */
+        if (s->vd <= 0 && c->surface > 0)
             s--;
         else if (c->surface > 0 && s[-1].vd > 0)
             code = tool_usage(tool, "surface %d of %s is cemented", c->surface,
@@ -316,7 +320,8 @@ static int of_lens(const struct tool *tool, const char *name, struct coat *c)
     return code;
 }
 
-static int of_coating(const struct tool *tool, const char *text, struct coat *c)
+static int coat_of_text(const struct tool *tool, const char *text,
+                        struct coat *c)
 {
     struct glint_coating read[GLINT_MAX_COATINGS];
     struct glint_error error;
@@ -343,8 +348,8 @@ int cmd_coat(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    code = c.surface < 0 ? of_coating(&tool, argv[optind], &c)
-                         : of_lens(&tool, argv[optind], &c);
+    code = c.surface < 0 ? coat_of_text(&tool, argv[optind], &c)
+                         : coat_of_lens(&tool, argv[optind], &c);
     if (code != EXIT_OK)
         return code;
     if (tool.json)

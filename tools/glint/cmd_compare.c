@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint compare: measures how far two pictures are apart.
+ * glint compare: measures the difference of two images.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ static const char help_end[] = COMMON_HELP;
 struct asked {
     const char *name[2];
     bool fit;
-    /* --exposure gave stops, or "auto"; if neither, the kinds of the pictures
+    /* --exposure: stops, or "auto". If neither is set, the image types
      * decide. */
     bool has_ev, is_auto;
     double ev;
@@ -59,7 +59,7 @@ static void print_json(const struct glint_measure *m, bool identical)
                m->flux, m->factor, m->exposure, identical);
 }
 
-static void print(const struct glint_measure *m, bool identical)
+static void print_text(const struct glint_measure *m, bool identical)
 {
     const char *words = identical ? "identical: "
                         : m->psnr_db == 999
@@ -77,8 +77,8 @@ static void print(const struct glint_measure *m, bool identical)
 
 /* ---------------------------------------------------------------- comparing */
 
-/* Returns whether the picture NAME may hold floats: by its extension, or
- * because it is a pipe ("-"), without an extension. */
+/* Returns whether the image NAME may contain floats: by its extension, or
+ * because it is a pipe ("-"), which has none. */
 static bool has_floats(const char *name)
 {
     return glint_picture_is_float(name) || strcmp(name, "-") == 0;
@@ -106,7 +106,7 @@ static int measure(const struct tool *tool, const struct asked *a,
     if (tool->json)
         print_json(&m, identical);
     else
-        print(&m, identical);
+        print_text(&m, identical);
     return EXIT_OK;
 }
 
@@ -139,7 +139,7 @@ static int compare(const struct tool *tool, const struct asked *a)
 
 /* ------------------------------------------------------------------ options */
 
-static bool take_exposure(struct asked *a, const char *text)
+static bool parse_exposure(struct asked *a, const char *text)
 {
     a->is_auto = strcmp(text, "auto") == 0;
     a->has_ev = !a->is_auto;
@@ -159,7 +159,7 @@ int cmd_compare(int argc, char **argv)
     while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
            0) {
         a.fit |= c == 'f';
-        if (c == 'x' && !take_exposure(&a, optarg))
+        if (c == 'x' && !parse_exposure(&a, optarg))
             return tool_refuse(&tool, "exposure", optarg);
         if (c == 'f' || c == 'x')
             continue;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint draw: a lens as an SVG figure.
+ * glint draw: draws the cross section of a lens as SVG.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -41,10 +41,10 @@ struct draw {
     struct lens_drawing drawing;
     const char *output;
     struct zoom_option zoom;
-    double f_number; /* 0: the table's */
+    double f_number; /* 0: f-number of the table */
 };
 
-static int take(struct tool *tool, void *ctx, int c, const char *value)
+static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
 {
     struct draw *o = ctx;
     bool good = true;
@@ -87,8 +87,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct draw *o)
         ZOOM_OPTIONS('z', 'F'),
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
-    int code =
-        tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options, take, o);
+    int code = tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options,
+                         parse_option, o);
 
     if (code < 0)
         code = tool_inputs(tool, argc, argv, 1, "takes one lens");

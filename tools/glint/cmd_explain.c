@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint explain: reports what one frame draws, what it leaves out and why, and
- * cost and light of each part.
+ * glint explain: reports what one frame draws, what it drops and why, and the
+ * cost and light of each ghost, light and wavelength.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -67,9 +67,9 @@ enum { AUTO, CODES, LINEAR };
 struct explain_command {
     struct drawing drawing;
     const char *input, *output, *ghosts, *sheet;
-    int width, height; /* 0: those of the input */
+    int width, height; /* 0: size of the input */
     int picture, top;
-    struct glint_image image; /* the input, over which the flare is drawn */
+    struct glint_image image; /* the input, on which the flare is drawn */
 };
 
 static const struct option own[] = {
@@ -81,7 +81,8 @@ static const struct option own[] = {
     {"ghost-sheet", required_argument, NULL, OPT_GHOST_SHEET},
     {NULL, 0, NULL, 0}};
 
-static bool take(struct explain_command *c, int option, const char *value)
+static bool parse_option(struct explain_command *c, int option,
+                         const char *value)
 {
     static const char *const pictures[] = {"codes", "linear", NULL};
 
@@ -148,7 +149,7 @@ static int parse(struct tool *tool, int argc, char **argv,
         code = drawing_line_option(tool, &c->drawing.line, option, optarg);
         if (code == -2 && (option == 'o' || option >= ENGINE_OPTIONS_END)) {
             code = -1;
-            if (!take(c, option, optarg))
+            if (!parse_option(c, option, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if (code == -2)
             code = tool_option(tool, option, optarg);
@@ -161,7 +162,7 @@ static int parse(struct tool *tool, int argc, char **argv,
             : tool_inputs(tool, argc, argv, 1, "needs one picture, or --size");
     if (code >= 0)
         return code;
-    c->input = argv[optind]; /* or NULL at the end */
+    c->input = argv[optind]; /* NULL if there is no argument */
     return check(tool, c);
 }
 
@@ -187,8 +188,8 @@ static int load(struct tool *tool, struct explain_command *c)
     return EXIT_OK;
 }
 
-/* Draws the flare as glint render does, and sets c->image to the picture of 8
- * bits that glint render would save. */
+/* Draws the flare as glint render does, and converts c->image to the 8-bit
+ * image that glint render would save. */
 static enum glint_status draw_linear(struct explain_command *c)
 {
     struct drawing *drawing = &c->drawing;
@@ -229,7 +230,7 @@ static enum glint_status draw_linear(struct explain_command *c)
 
 /* ------------------------------------------------------------------ result */
 
-/* Saves the picture of SCENE, or if that is NULL of the flare. */
+/* Saves the image of SCENE, or that of the flare if SCENE is NULL. */
 static int save(struct tool *tool, const struct explain_command *c,
                 struct glint_explain *e, const struct explain_title *title,
                 const struct explained_scene *scene)
@@ -246,7 +247,7 @@ static int save(struct tool *tool, const struct explain_command *c,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Writes the files of single ghosts that were requested. */
+/* Writes the requested files with images of single ghosts. */
 static int save_ghosts(struct tool *tool, const struct explain_command *c,
                        struct glint_explain *e)
 {
@@ -267,9 +268,10 @@ static int save_ghosts(struct tool *tool, const struct explain_command *c,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Prints the explanation of the scene, before that of FLARE, if any. */
-static int tell_scene(struct tool *tool, const struct explain_command *c,
-                      struct glint_explain *flare)
+/* Prints the explanation of the scene, followed by that of FLARE unless that
+ * is NULL. */
+static int print_scene(struct tool *tool, const struct explain_command *c,
+                       struct glint_explain *flare)
 {
     struct json_writer json = {.to = stdout};
     struct explained_scene scene;
@@ -293,7 +295,8 @@ static int tell_scene(struct tool *tool, const struct explain_command *c,
     return code;
 }
 
-static int tell(struct tool *tool, struct explain_command *c, bool linear)
+static int print_explanation(struct tool *tool, struct explain_command *c,
+                             bool linear)
 {
     struct drawing *drawing = &c->drawing;
     const struct explain_title title = {
@@ -313,7 +316,7 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
     int code = EXIT_OK;
 
     if (status == GLINT_OK && drawing->files.scene.is_open)
-        code = tell_scene(tool, c, &e);
+        code = print_scene(tool, c, &e);
     if (status != GLINT_OK)
         code = tool_fail(tool, status, NULL);
     else if (tool->json)
@@ -323,7 +326,7 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
     if (code == EXIT_OK && tool->json && drawing->files.scene.is_open)
         printf("}\n");
     if (status == GLINT_OK && drawing->run.n_lamps == 0 && !tool->quiet) {
-        fflush(stdout); /* This follows the text above. */
+        fflush(stdout); /* standard error follows the report */
         overlay_say_none(drawing, false, stderr);
     }
     if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
@@ -334,7 +337,7 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
     return code;
 }
 
-/* Refuses, before there is work, a picture that cannot be written. */
+/* Rejects an image that cannot be written before the work begins. */
 static int check_picture(const struct tool *tool, const char *path)
 {
     struct glint_error error = {""};
@@ -387,8 +390,8 @@ static int run(struct tool *tool, struct explain_command *c)
         return tool_fail(tool, status, NULL);
     code = drawing_finish(tool, &c->drawing);
     if (code == EXIT_OK)
-        code = c->drawing.files.has_lens ? tell(tool, c, linear)
-                                         : tell_scene(tool, c, NULL);
+        code = c->drawing.files.has_lens ? print_explanation(tool, c, linear)
+                                         : print_scene(tool, c, NULL);
     return code;
 }
 

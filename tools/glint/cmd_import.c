@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint import: the lens files of other programs as tables.
+ * glint import: converts lens files of other programs to lens tables.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +52,7 @@ struct import {
     double film_mm[2], f_number;
 };
 
-static bool take_format(struct import *o, const char *value)
+static bool parse_format(struct import *o, const char *value)
 {
     for (int k = 0; (o->format = import_format_at(k)) != NULL; k++)
         if (strcmp(o->format->name, value) == 0)
@@ -60,7 +60,7 @@ static bool take_format(struct import *o, const char *value)
     return false;
 }
 
-static bool take_film(struct import *o, const char *value)
+static bool parse_film(struct import *o, const char *value)
 {
     const char *by = strchr(value, 'x');
     char width[24];
@@ -75,7 +75,7 @@ static bool take_film(struct import *o, const char *value)
            o->film_mm[1] <= 1000;
 }
 
-static int take(struct tool *tool, void *ctx, int c, const char *value)
+static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
 {
     struct import *o = ctx;
     bool good = true;
@@ -85,9 +85,9 @@ static int take(struct tool *tool, void *ctx, int c, const char *value)
     else if (c == 's')
         o->strict = true;
     else if (c == 'F')
-        good = take_format(o, value);
+        good = parse_format(o, value);
     else if (c == 'm')
-        good = take_film(o, value);
+        good = parse_film(o, value);
     else if (c == 'f')
         good = tool_number(value, &o->f_number) && o->f_number >= 0.5 &&
                o->f_number <= 1000;
@@ -112,8 +112,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct import *o)
         {"lens", required_argument, NULL, 'k'},
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
-    int code =
-        tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options, take, o);
+    int code = tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options,
+                         parse_option, o);
 
     if (code < 0)
         code = tool_inputs(tool, argc, argv, 1, "takes one file");
@@ -135,8 +135,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct import *o)
     return code == EXIT_OK ? -1 : code;
 }
 
-/* Sets NAME to that of the file PATH, in the letters that names of lenses have.
- */
+/* Sets NAME to the name of the file PATH, reduced to the characters allowed
+ * in lens names. */
 static void set_name(char name[GLINT_NAME_BYTES], const char *path)
 {
     const char *stem = strrchr(path, '/');
@@ -163,7 +163,8 @@ static void set_name(char name[GLINT_NAME_BYTES], const char *path)
     name[n] = '\0';
 }
 
-/* Prints all notes, but of what --strict refuses guesses alone. */
+/* Prints all notes of the import; if --strict rejects the lens, only those
+ * about guessed values. */
 static void print_notes(const struct tool *tool, const struct imported *lens)
 {
     const bool refused = lens->strict && lens->n_guesses > 0;
@@ -225,7 +226,7 @@ static int save(const struct tool *tool, const struct import *o,
     return code;
 }
 
-static int run(struct tool *tool, struct import *o, const char *path)
+static int import_file(struct tool *tool, struct import *o, const char *path)
 {
     struct glint_error error = {""};
     enum glint_status status;
@@ -270,7 +271,7 @@ int cmd_import(int argc, char **argv)
     if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = run(&tool, o, argv[optind]);
+            code = import_file(&tool, o, argv[optind]);
         tool_finish(&tool);
     }
     free(o);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint info: prints the data of a lens table or of a model.
+ * glint info: prints the data of a lens table, model, scene, environment,
+ * motion or translucent medium.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -81,7 +82,7 @@ static void print_json(const struct info *info)
     json_write(&json, "]}\n");
 }
 
-/* Prints the zoom position and focus of L. */
+/* Prints zoom position and focus of L. */
 static void print_moves(const struct glint_prescription *l,
                         const struct glint_optics *o)
 {
@@ -156,8 +157,8 @@ static void print_coatings(const struct glint_prescription *l)
     }
 }
 
-static int info_of_model(const struct tool *tool, const char *path,
-                         const struct zoom_option *zoom)
+static int print_model(const struct tool *tool, const char *path,
+                       const struct zoom_option *zoom)
 {
     struct model_file model;
     int code = tool_model(tool, path, &model);
@@ -177,7 +178,7 @@ static int info_of_model(const struct tool *tool, const char *path,
     return code;
 }
 
-static int info_of_scene(const struct tool *tool, const char *path)
+static int print_scene(const struct tool *tool, const char *path)
 {
     struct baked_scene scene;
     const int code = baked_scene_open(tool, path, &scene);
@@ -189,7 +190,7 @@ static int info_of_scene(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
-static int info_of_environment(const struct tool *tool, const char *path)
+static int print_environment(const struct tool *tool, const char *path)
 {
     struct environment_file file;
     const int code = environment_file_open(tool, path, NULL, NULL, &file);
@@ -201,8 +202,8 @@ static int info_of_environment(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
-static int info_of_motion(const struct tool *tool, const char *path,
-                          const char *poses)
+static int print_motion(const struct tool *tool, const char *path,
+                        const char *poses)
 {
     struct motion_file file;
     int code = motion_file_open(tool, path, &file);
@@ -219,10 +220,10 @@ static int info_of_motion(const struct tool *tool, const char *path,
 
 /* Options of the command line. */
 struct asked {
-    double f_number; /* 0: the table's */
+    double f_number; /* 0: f-number of the table */
     struct coating coating;
     struct zoom_option zoom;
-    const char *poses; /* NULL: none */
+    const char *poses; /* file of poses to print; NULL: none */
 };
 
 static int parse(struct tool *tool, int argc, char **argv, struct asked *asked)
@@ -262,7 +263,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct asked *asked)
     return -1;
 }
 
-static int info_of_stone(const struct tool *tool, const char *path)
+static int print_medium(const struct tool *tool, const char *path)
 {
     struct glint_error error = {""};
     struct stone_file file;
@@ -276,10 +277,11 @@ static int info_of_stone(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
-/* Prints what PATH is if that is not a lens, for which a line may STOP or coat.
- * Returns an exit code, or -1: it is one. */
-static int info_of_other(const struct tool *tool, const char *path, bool stop,
-                         const char *poses)
+/* Prints the file PATH if it is not a lens. STOP: the command line has
+ * options for a lens, which are then errors. Returns an exit code, or -1 if
+ * PATH is a lens. */
+static int print_non_lens(const struct tool *tool, const char *path, bool stop,
+                          const char *poses)
 {
     const bool is_motion =
         motion_file_is_source(path) || motion_file_is_baked(path);
@@ -299,17 +301,17 @@ static int info_of_other(const struct tool *tool, const char *path, bool stop,
             : is_around ? "an environment"
                         : "a stone");
     if (is_motion)
-        return info_of_motion(tool, path, poses);
+        return print_motion(tool, path, poses);
     if (poses)
-        return tool_usage(tool, "--poses needs a motion");
-    return is_scene    ? info_of_scene(tool, path)
-           : is_around ? info_of_environment(tool, path)
-           : is_stone  ? info_of_stone(tool, path)
+        return tool_usage(tool, "--poses are of a motion");
+    return is_scene    ? print_scene(tool, path)
+           : is_around ? print_environment(tool, path)
+           : is_stone  ? print_medium(tool, path)
                        : -1;
 }
 
-static int info_of_table(const struct tool *tool, const char *path,
-                         const struct asked *asked, struct info *info)
+static int print_table(const struct tool *tool, const char *path,
+                       const struct asked *asked, struct info *info)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -343,11 +345,11 @@ int cmd_info(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    code = info_of_other(&tool, argv[optind],
-                         asked.f_number != 0 || asked.zoom.is_zoomed ||
-                             asked.zoom.is_focused ||
-                             asked.coating.kind != COATING_TABLE,
-                         asked.poses);
+    code = print_non_lens(&tool, argv[optind],
+                          asked.f_number != 0 || asked.zoom.is_zoomed ||
+                              asked.zoom.is_focused ||
+                              asked.coating.kind != COATING_TABLE,
+                          asked.poses);
     if (code >= 0)
         return code;
     if (tool_is_model(argv[optind]) &&
@@ -357,11 +359,11 @@ int cmd_info(int argc, char **argv)
         return asked.f_number != 0
                    ? tool_usage(&tool, "the f-number of a model was "
                                        "chosen when it was baked")
-                   : info_of_model(&tool, argv[optind], &asked.zoom);
+                   : print_model(&tool, argv[optind], &asked.zoom);
     info = calloc(1, sizeof *info);
     if (!info)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    code = info_of_table(&tool, argv[optind], &asked, info);
+    code = print_table(&tool, argv[optind], &asked, info);
     free(info);
     return code;
 }

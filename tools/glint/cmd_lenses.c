@@ -61,22 +61,23 @@ enum { MAX_ONLY = 64 };
 struct lenses {
     struct json_writer json;
     struct tool *tool;
-    const char *folder; /* folder that models are put into; NULL: none */
+    const char *folder; /* folder to write models to; NULL: none */
     const char *only[MAX_ONLY];
     int n_only, n, code;
-    bool names; /* lists no more than names */
-    bool exact; /* flares of lenses without a model are traced */
+    bool names; /* prints only names */
+    bool exact; /* traces the flares of lenses that have no model */
     char **words;
     int n_words;
-    const char *html; /* page to write, or NULL */
+    const char *html; /* HTML page to write, or NULL */
     FILE *page;
-    struct tool_progress progress; /* of a page */
-    int n_files, n_looked;         /* of all lenses, and those looked at */
+    struct tool_progress progress; /* while a page is written */
+    /* number of lens files, and number of those processed */
+    int n_files, n_looked;
 };
 
 struct entry {
     struct glint_prescription table;
-    struct settings settings; /* settings of a run without options */
+    struct settings settings; /* settings of a command without options */
     struct glint_optics optics;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
     int n_ghosts;
@@ -84,8 +85,8 @@ struct entry {
     bool is_baked;
 };
 
-/* Sets SETTINGS to those that overlay, live and explain have without options,
- * or if PLAIN to those of render. */
+/* Sets SETTINGS to the defaults of overlay, live and explain, or to those of
+ * render if PLAIN. */
 static void set_settings(struct settings *settings, bool plain)
 {
     if (plain)
@@ -113,10 +114,10 @@ static int set_entry(const struct tool *tool, const char *name, struct entry *e,
 
 /* ------------------------------------------------------------------ tables */
 
-/* Degrees: lenses whose corner is wider by the tangent have it by their own
- * projection, for which 85 chief rays are traced, instead. */
+/* Half the field of view above which the pinhole angle is replaced by the
+ * lens's own projection, for which 85 chief rays are traced, degrees. */
 #define WIDE_DEG 40.0
-/* Degrees: the widest angle that a light of a picture has. */
+/* max angle of a light in an image, degrees */
 #define WIDEST_DEG 89.9
 
 static double corner_deg(const struct entry *e)
@@ -172,8 +173,8 @@ static void print_text(struct lenses *l, const char *name,
 
 /* ------------------------------------------------------------------ a page */
 
-/* Sets SETTINGS to those by which thumbnails of E are drawn. Three wavelengths
- * and coarse grids do for pictures that small. */
+/* Sets SETTINGS for drawing thumbnails of E: three wavelengths and coarse
+ * grids suffice for images of that size. */
 static void set_flares(struct settings *settings, const struct entry *e)
 {
     set_settings(settings, false);
@@ -183,8 +184,7 @@ static void set_flares(struct settings *settings, const struct entry *e)
     settings_set_quality(settings, 0.25);
 }
 
-/* Writes thumbnails of the flare, if there is a model to draw them by, or rays
- * are exact. */
+/* Writes thumbnails of the flare if the lens has a model or rays are exact. */
 static void print_flares(struct lenses *l, const char *name,
                          const struct entry *e)
 {
@@ -258,9 +258,9 @@ static int save_model(const struct tool *tool, const char *path,
                      model->bytes);
 }
 
-/* Puts the model of E into the folder, unless it is there already. It is copied
- * from where models are kept, or baked. */
-static int put_model(const struct lenses *l, const struct entry *e)
+/* Copies the model of E from the cache to the folder, or bakes it, unless
+ * the folder has it already. */
+static int write_model(const struct lenses *l, const struct entry *e)
 {
     const uint64_t key = glint_bake_key(&e->table, &e->options);
     struct model_file model = {.data = NULL};
@@ -299,9 +299,9 @@ static bool print_name(struct lenses *l, const char *name)
     return true;
 }
 
-/* Lists the lens NAME, or puts its models into the folder. Returns whether to
- * continue: a mistake in a table is reported and does not end the list. */
-static bool one(void *ctx, const char *name)
+/* Lists the lens NAME, or writes its model to the folder. Returns whether to
+ * continue: an error in a table is reported and does not end the list. */
+static bool list_lens(void *ctx, const char *name)
 {
     struct lenses *l = ctx;
     struct entry *e;
@@ -327,11 +327,11 @@ static bool one(void *ctx, const char *name)
     if (code == EXIT_OK && l->names)
         print_name(l, name);
     else if (code == EXIT_OK && l->folder) {
-        code = put_model(l, e);
+        code = write_model(l, e);
         if (code == EXIT_OK)
             code = set_entry(l->tool, name, e, true);
         if (code == EXIT_OK)
-            code = put_model(l, e);
+            code = write_model(l, e);
         l->n++;
     } else if (code == EXIT_OK)
         (l->page         ? print_html
@@ -343,15 +343,15 @@ static bool one(void *ctx, const char *name)
     return code == EXIT_OK || code == EXIT_LENS;
 }
 
-static bool stop_looking(void *ctx, const char *name)
+static bool stop_at_first(void *ctx, const char *name)
 {
     (void)ctx;
     (void)name;
     return false;
 }
 
-/* Prints that no lens matches. Returns an exit code. */
-static int tell_none(const struct lenses *l)
+/* Prints that no lens matches the words. Returns an exit code. */
+static int report_no_match(const struct lenses *l)
 {
     if (l->n_words)
         return lens_words_missed(l->tool, l->words, l->n_words);
@@ -360,8 +360,8 @@ static int tell_none(const struct lenses *l)
     return EXIT_LENS;
 }
 
-/* Lists into the page L->html, which stays as it was if there is nothing to
- * list. */
+/* Writes the list to the HTML page L->html; leaves the file unchanged if the
+ * list is empty. */
 static int run_page(struct lenses *l)
 {
     char *text = NULL;
@@ -370,9 +370,9 @@ static int run_page(struct lenses *l)
 
     l->page = glint_memory_file_open(&text, &bytes);
     if (l->page) {
-        l->n_files = lens_files_each(stop_looking, l);
+        l->n_files = lens_files_each(stop_at_first, l);
         tool_progress_start(&l->progress, l->tool, "lenses");
-        n = lens_files_each(one, l);
+        n = lens_files_each(list_lens, l);
         tool_progress_end(&l->progress);
         page_end(l->page);
         if (n < 0 || l->n == 0)
@@ -381,14 +381,14 @@ static int run_page(struct lenses *l)
     if (n < 0 || l->n == 0) {
         free(text);
         return n < 0                ? tool_fail(l->tool, GLINT_E_MEMORY, NULL)
-               : l->code == EXIT_OK ? tell_none(l)
+               : l->code == EXIT_OK ? report_no_match(l)
                                     : l->code;
     }
     code = tool_save_text(l->tool, l->html, l->page, &text, &bytes);
     return code == EXIT_OK ? l->code : code;
 }
 
-static int run(struct lenses *l)
+static int run_list(struct lenses *l)
 {
     const int code = lens_names_check(l->only, l->n_only);
 
@@ -400,10 +400,10 @@ static int run(struct lenses *l)
         fprintf(stderr, "glint lenses: %s: %s\n", l->folder, strerror(errno));
         return EXIT_OUTPUT;
     }
-    if (lens_files_each(one, l) < 0)
+    if (lens_files_each(list_lens, l) < 0)
         return tool_fail(l->tool, GLINT_E_MEMORY, NULL);
     if (l->n == 0 && l->code == EXIT_OK)
-        return tell_none(l);
+        return report_no_match(l);
     if (l->tool->json && !l->folder && !l->names && l->n > 0)
         json_write(&l->json, "\n]}\n");
     return l->code;
@@ -466,7 +466,7 @@ int cmd_lenses(int argc, char **argv)
     if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = run(&l);
+            code = run_list(&l);
         tool_finish(&tool);
     }
     return code;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint lint: what patents and copies misprint.
+ * glint lint: finds misprinted numbers in a lens table: single changes after
+ * which the table has its stated focal length and back focus.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -14,19 +15,23 @@
 enum slip { SLIP_SIGN, SLIP_SWAP, SLIP_DIGIT, SLIP_POINT };
 
 struct mend {
-    int line, column; /* of the number */
+    int line, column; /* position of the number in the file */
     enum slip slip;
     char from[24], to[24];
-    double focal_mm, back_mm; /* then */
-    bool listed; /* the glass is the catalogue's, or another surface's */
-    double off;  /* how far these are from the stated ones, relative */
+    double focal_mm, back_mm; /* with the changed number */
+    /* the glass is in the catalogue or is used by another surface */
+    bool listed;
+    /* relative difference of focal length and back focus from the stated
+     * values */
+    double off;
 };
 
 enum { MENDS = 8, LENS_TEXT = 1 << 16 };
 
-/* Limits of the map of glasses: min and max Vd at an nd. Makers' maps from
- * fluorite and fluor crowns over the lanthanum crowns to the densest, and down
- * the flints, with lead and without; two widths of a label beyond. */
+/* Limits of the glass map: min and max Vd at an index nd. From fluorite and
+ * fluor crowns over lanthanum crowns to the densest glasses, and down the
+ * flints, with lead and without; widened by twice a label's width on the
+ * makers' maps. */
 static const struct {
     double nd, least, most;
 } ends[] = {{1.42, 60.0, 97.5}, {1.45, 56.0, 96.0}, {1.50, 48.0, 84.0},
@@ -37,8 +42,9 @@ static const struct {
 
 enum { N_ENDS = sizeof ends / sizeof *ends };
 
-/* Plastics of phone lenses have a lower Vd than flints of their nd: from 1.529,
- * 45.4 by polycarbonate, 1.585, 29.9, to the densest, 1.705, 14.0. */
+/* Plastics of phone lenses have a lower Vd than flints of the same nd: from
+ * (nd 1.529, Vd 45.4) over polycarbonate (1.585, 29.9) to the densest
+ * (1.705, 14.0). */
 static bool is_plastic(double nd, double vd)
 {
     const double slope = nd < 1.585 ? 270 : 125;
@@ -48,8 +54,8 @@ static bool is_plastic(double nd, double vd)
            vd <= fmax(least + 6.5, 35);
 }
 
-/* Returns whether a glass with these values exists or existed: between crowns
- * with fluorides and flints; if MOULDED, also a plastic. */
+/* Returns whether a glass with nd and Vd exists or existed: between fluoride
+ * crowns and flints; if MOULDED, also a plastic. */
 static bool is_known_glass(double nd, double vd, bool moulded)
 {
     int k = 0;
@@ -66,8 +72,8 @@ static bool is_known_glass(double nd, double vd, bool moulded)
            vd <= ends[k].most + part * (ends[k + 1].most - ends[k].most);
 }
 
-/* Returns whether the glass behind surface K of LENS is also behind another
- * surface, or in the catalogue. */
+/* Returns whether the glass behind surface K of LENS is in the catalogue or
+ * also behind another surface. */
 static bool glass_is_listed(const struct glint_prescription *lens, int k)
 {
     const struct glint_surface *s = &lens->surface[k];
@@ -91,23 +97,23 @@ static bool glass_is_listed(const struct glint_prescription *lens, int k)
     return false;
 }
 
-/* Returns whether the glass behind S, which is not the last surface, has a side
- * that is ground by nobody. */
+/* Returns whether the element behind surface S, which is not the last, has
+ * an aspheric side, as moulded elements do. */
 static bool is_moulded(const struct glint_surface *s)
 {
     return glint_surface_is_shaped(&s[0]) || glint_surface_is_shaped(&s[1]);
 }
 
-/* Returns whether ND has more than three decimals: rounder ones are shared, as
- * 1.755 is by a lanthanum crown and a flint. */
+/* Returns whether ND has more than three decimals. Indices with fewer are
+ * shared by different glasses, as 1.755 by a lanthanum crown and a flint. */
 static bool is_precise(double nd)
 {
     return fabs(1e3 * nd - nearbyint(1e3 * nd)) > 1e-6;
 }
 
-/* Returns the first surface of LENS whose glass is none, or has the nd of
- * another in the table, of four decimals or more, at a Vd that is apart, -1 if
- * all are well. TEXT[BYTES] states why. */
+/* Returns the first surface of LENS whose glass does not exist, or has the
+ * nd (four decimals or more) of another glass in the table but a different
+ * Vd; -1 if there is none. Writes the reason to TEXT[BYTES]. */
 static int glass_suspect(const struct glint_prescription *lens, char *text,
                          size_t bytes)
 {
@@ -133,21 +139,22 @@ static int glass_suspect(const struct glint_prescription *lens, char *text,
     return -1;
 }
 
-/* A number of the table, and what is tried for it. */
+/* A number of the table, and the corrections tried for it. */
 struct search {
     const char *text;
     size_t bytes;
-    size_t at, length; /* the number */
+    size_t at, length; /* range of the number in TEXT */
     int line, column;
-    int surface; /* of the line, -1: the stop */
-    int glass;   /* surface whose glass alone is wrong; -1: more is */
+    int surface; /* surface of the line; -1: the stop */
+    /* surface whose glass is the only error; -1: there are others */
+    int glass;
     struct mend *mend;
     int n;
     char edited[LENS_TEXT + 32];
 };
 
-/* Parses TEXT[BYTES] into LENS. Returns whether it is a table without errors;
- * if not, ERROR states the first error. */
+/* Parses TEXT[BYTES] into LENS. Returns whether it is a table without
+ * errors; else ERROR states the first error. */
 static bool table_is_right(const char *text, size_t bytes, const char *file,
                            struct glint_prescription *lens,
                            struct glint_error *error)
@@ -164,13 +171,14 @@ static bool table_is_right(const char *text, size_t bytes, const char *file,
     return k < 0;
 }
 
-static double off_by(double got, double stated)
+static double relative_difference(double got, double stated)
 {
     return stated > 0 ? fabs(got / stated - 1) : 0;
 }
 
-/* Returns whether A is likelier than B: a glass that there is, a sign or a swap
- * before a digit, then what meets the stated values better. */
+/* Returns whether A is more likely than B: an existing glass first, then a
+ * sign or swapped digits before a wrong digit, then the smaller difference
+ * from the stated values. */
 static bool is_likelier(const struct mend *a, const struct mend *b)
 {
     const bool first = a->slip <= SLIP_SWAP, second = b->slip <= SLIP_SWAP;
@@ -180,7 +188,7 @@ static bool is_likelier(const struct mend *a, const struct mend *b)
                                   : a->off < b->off;
 }
 
-static void keep(struct search *s, const struct mend *found)
+static void insert_mend(struct search *s, const struct mend *found)
 {
     int k = s->n < MENDS ? s->n : MENDS;
 
@@ -193,7 +201,8 @@ static void keep(struct search *s, const struct mend *found)
 }
 
 /* Tests the table with NUMBER in place of the current number. */
-static void try(struct search *s, const char *number, enum slip slip)
+static void try_number_text(struct search *s, const char *number,
+                            enum slip slip)
 {
     static struct glint_prescription lens;
     struct glint_error error = {""};
@@ -216,9 +225,10 @@ static void try(struct search *s, const char *number, enum slip slip)
     found.listed = s->glass >= 0 && glass_is_listed(&lens, s->glass);
     found.focal_mm = optics.focal_mm;
     found.back_mm = optics.back_focal_mm;
-    found.off = fmax(off_by(optics.focal_mm, lens.check_focal_mm),
-                     off_by(optics.back_focal_mm, lens.check_back_mm));
-    keep(s, &found);
+    found.off =
+        fmax(relative_difference(optics.focal_mm, lens.check_focal_mm),
+             relative_difference(optics.back_focal_mm, lens.check_back_mm));
+    insert_mend(s, &found);
 }
 
 static bool is_digit(char c)
@@ -237,14 +247,14 @@ static void try_digits(struct search *s, char number[24])
         for (int digit = 0; digit < 10; digit++) {
             number[i] = (char)('0' + digit);
             if (number[i] != was)
-                try(s, number, SLIP_DIGIT);
+                try_number_text(s, number, SLIP_DIGIT);
         }
         number[i] = was;
         if (next >= s->length || !is_digit(number[next]) || number[next] == was)
             continue;
         number[i] = number[next];
         number[next] = was;
-        try(s, number, SLIP_SWAP);
+        try_number_text(s, number, SLIP_SWAP);
         number[next] = number[i];
         number[i] = was;
     }
@@ -263,11 +273,11 @@ static void try_point(struct search *s, const char number[24])
         memcpy(moved, number, sizeof moved);
         moved[i] = number[i + way];
         moved[i + way] = '.';
-        try(s, moved, SLIP_POINT);
+        try_number_text(s, moved, SLIP_POINT);
     }
 }
 
-/* Tries all slips of the number at S->at. */
+/* Tries all misprints of the number at S->at. */
 static void try_number(struct search *s)
 {
     char number[24] = "", flipped[24];
@@ -276,16 +286,16 @@ static void try_number(struct search *s)
         return;
     memcpy(number, s->text + s->at, s->length);
     if (number[0] == '-')
-        try(s, number + 1, SLIP_SIGN);
+        try_number_text(s, number + 1, SLIP_SIGN);
     else {
         snprintf(flipped, sizeof flipped, "-%.21s", number);
-        try(s, flipped, SLIP_SIGN);
+        try_number_text(s, flipped, SLIP_SIGN);
     }
     try_digits(s, number);
     try_point(s, number);
 }
 
-/* Tries all slips of the numbers in the line START .. END. */
+/* Tries all misprints of the numbers in the line START .. END. */
 static void try_line(struct search *s, size_t start, size_t end)
 {
     size_t at = start;
@@ -308,11 +318,10 @@ static void try_line(struct search *s, size_t start, size_t end)
     }
 }
 
-/* Tries all slips of one number of surfaces and the stop: a sign, two digits
- * that changed places, a wrong digit, a decimal point. If all but a glass is
- * right, only its nd and Vd are tried. Fills MEND with those
- * after which TEXT is right, the likeliest first, MENDS at most; returns how
- * many there are. */
+/* Tries all misprints of one number of the surfaces and the stop: a sign,
+ * two swapped digits, a wrong digit, the decimal point. If a glass is the
+ * only error, tries only its nd and Vd. Fills MEND with those that make TEXT
+ * correct, the likeliest first, at most MENDS; returns their total number. */
 static int find_mends(const char *text, size_t bytes, struct mend mend[MENDS])
 {
     static struct search s;
@@ -345,7 +354,7 @@ static int find_mends(const char *text, size_t bytes, struct mend mend[MENDS])
         }
         at = end + 1;
     }
-    s.mend = NULL; /* it is the caller's */
+    s.mend = NULL; /* it points to the caller's array */
     return s.n;
 }
 
@@ -404,7 +413,7 @@ static void print_json(const char *wrong, const struct mend *mend, int n)
     json_write(&json, "]}\n");
 }
 
-static int lint(const struct tool *tool, const char *name)
+static int lint_file(const struct tool *tool, const char *name)
 {
     static struct glint_prescription lens;
     struct mend mend[MENDS];
@@ -450,7 +459,7 @@ int cmd_lint(int argc, char **argv)
         return code;
     code = tool_start(&tool);
     if (code == EXIT_OK)
-        code = lint(&tool, argv[optind]);
+        code = lint_file(&tool, argv[optind]);
     tool_finish(&tool);
     return code;
 }

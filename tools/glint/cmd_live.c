@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint live: its options.
+ * glint live: parses its command line and configuration file.
  */
 #include <limits.h>
 #include <stdlib.h>
@@ -102,9 +102,11 @@ static const struct option own[] = {
     {"config", required_argument, NULL, OPT_CONFIG},
     {NULL, 0, NULL, 0}};
 
-static const struct option *options; /* these, and those of the engine */
+/* options of glint live, and those of the engine */
+static const struct option *options;
 
-/* The command line, which a reload parses again. */
+/* The command line, which is parsed again when the configuration is
+ * reloaded. */
 struct line {
     struct tool *tool;
     int argc;
@@ -129,7 +131,7 @@ static void set_defaults(struct live_options *o)
 }
 
 /* Parses TEXT, "30" or "30000/1001", as a frame rate. */
-static bool take_rate(const char *text, int *num, int *den)
+static bool parse_rate(const char *text, int *num, int *den)
 {
     char top[16];
     const char *slash = strchr(text, '/');
@@ -173,7 +175,7 @@ static int take_camera(struct live_wish *wish, int option, const char *value)
         good = tool_size(value, &c->width, &c->height);
         break;
     case 'r':
-        good = take_rate(value, &c->fps_num, &c->fps_den);
+        good = parse_rate(value, &c->fps_num, &c->fps_den);
         break;
     case 'f':
         good = glint_fourcc_parse(value, &c->fourcc);
@@ -199,8 +201,10 @@ static int take_camera(struct live_wish *wish, int option, const char *value)
     return good && word >= 0 ? -1 : -3;
 }
 
-/* Applies any option that only glint live has; returns as take_camera(). */
-static int take(struct live_options *o, int option, const char *value)
+/* Applies an option that only glint live has. Returns the same values as
+ * take_camera(). */
+static int parse_own_option(struct live_options *o, int option,
+                            const char *value)
 {
     static const char *const stats[] = {"auto", "line", "json", "none", NULL};
     static const char *const fits[] = {"scale", "centre", NULL};
@@ -221,7 +225,7 @@ static int take(struct live_options *o, int option, const char *value)
     case OPT_RECONNECT:
         o->reconnect = true;
         break;
-    case OPT_CONFIG: /* was read before */
+    case OPT_CONFIG: /* read before the other options */
         break;
     case OPT_STATS:
         o->report = (enum live_report)(word = tool_word(value, stats));
@@ -250,7 +254,7 @@ static int take(struct live_options *o, int option, const char *value)
     return good && word >= 0 ? -1 : -3;
 }
 
-static const char *name_of(int option)
+static const char *find_option_name(int option)
 {
     const struct option *o = options;
 
@@ -259,22 +263,22 @@ static const char *name_of(int option)
     return o->name;
 }
 
-static int take_any(struct line *line, int option, const char *value)
+static int parse_option(struct line *line, int option, const char *value)
 {
     int code = drawing_line_option(line->tool, &line->into->drawing.line,
                                    option, value);
 
     if (code == -2)
-        code = take(line->into, option, value);
+        code = parse_own_option(line->into, option, value);
     if (code == -3)
-        return tool_refuse(line->tool, name_of(option), value);
+        return tool_refuse(line->tool, find_option_name(option), value);
     return code == -2 ? tool_option(line->tool, option, value) : code;
 }
 
-static int take_from_file(void *ctx, const struct option *option,
-                          const char *value)
+static int parse_file_option(void *ctx, const struct option *option,
+                             const char *value)
 {
-    return take_any(ctx, option->val, value);
+    return parse_option(ctx, option->val, value);
 }
 
 static int parse_line(struct line *line)
@@ -283,16 +287,16 @@ static int parse_line(struct line *line)
 
     optind = 1;
     while ((c = tool_getopt(line->argc, line->argv, SHORT, options, NULL)) >= 0)
-        if ((code = take_any(line, c, optarg)) >= 0)
+        if ((code = parse_option(line, c, optarg)) >= 0)
             return code;
     return optind == line->argc ? -1
                                 : tool_usage(line->tool, "'%s' is no option",
                                              line->argv[optind]);
 }
 
-/* Rejects options O by which an output would overwrite an input, CONFIG (may be
- * NULL) or another output. Returns -1 if there is no such output, else an exit
- * code. */
+/* Rejects options O with which an output would overwrite an input, the file
+ * CONFIG (may be NULL) or another output. Returns -1 if there is no
+ * conflict, else an exit code. */
 static int check_apart(const struct tool *tool, const struct live_options *o,
                        const char *config)
 {
@@ -310,9 +314,9 @@ static int check_apart(const struct tool *tool, const struct live_options *o,
     return code == EXIT_OK ? -1 : code;
 }
 
-/* Reads options into INTO, first from the file of --config, then from the line,
- * so that the line wins. CONFIG holds the strings of the file. Returns -1 or an
- * exit code. */
+/* Reads options into INTO: first from the file of --config, then from the
+ * command line, which overrides the file. CONFIG owns the strings of the
+ * file. Returns -1 or an exit code. */
 static int parse(struct line *line, struct config *config,
                  struct live_options *into)
 {
@@ -345,7 +349,7 @@ static int reread(void *ctx, struct tool *tool, struct live_options *into)
     return parse(line, &line->again, into);
 }
 
-static int list(struct tool *tool, const struct live_options *o)
+static int list_cameras(struct tool *tool, const struct live_options *o)
 {
     struct glint_error error = {""};
     const enum glint_status status =
@@ -364,7 +368,7 @@ int cmd_live(int argc, char **argv)
     struct line line = {.tool = &tool,
                         .argc = argc,
                         .argv = argv,
-                        .config = {&tool, NULL, take_from_file, &line, NULL},
+                        .config = {&tool, NULL, parse_file_option, &line, NULL},
                         .into = o};
     int code;
 
@@ -377,7 +381,7 @@ int cmd_live(int argc, char **argv)
     line.again = line.config;
     code = parse(&line, &line.config, o);
     if (code < 0 && (o->list_devices || o->list_formats))
-        code = list(&tool, o);
+        code = list_cameras(&tool, o);
     else if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint overlay: adds the flare of the lamps in a picture or video to it.
+ * glint overlay: adds the flare of the lamps in an image or video to it.
  */
 #include <errno.h>
 #include <limits.h>
@@ -71,14 +71,14 @@ static const char help[] =
 
 /* ------------------------------------------------------------------ options */
 
-static bool take_word(const char *text, const char *const *words, int *value)
+static bool parse_word(const char *text, const char *const *words, int *value)
 {
     *value = tool_word(text, words);
     return *value >= 0;
 }
 
-/* Takes TEXT, "A-B". */
-static bool take_frames(struct overlay *o, const char *text)
+/* Parses the range of frames TEXT, "A-B". */
+static bool parse_frames(struct overlay *o, const char *text)
 {
     char first[12];
     const size_t n = strcspn(text, "-");
@@ -91,8 +91,8 @@ static bool take_frames(struct overlay *o, const char *text)
            tool_integer(text + n + 1, o->first, INT_MAX - 1, &o->last);
 }
 
-/* Takes TEXT, "WxH". */
-static bool take_size(struct overlay *o, const char *text)
+/* Parses the size TEXT, "WxH". */
+static bool parse_size(struct overlay *o, const char *text)
 {
     char width[12];
     const size_t n = strcspn(text, "x");
@@ -105,7 +105,7 @@ static bool take_size(struct overlay *o, const char *text)
            tool_integer(text + n + 1, 1, GLINT_MAX_SIDE, &o->raw.height);
 }
 
-static bool take(struct overlay *o, int option, const char *value)
+static bool parse_option(struct overlay *o, int option, const char *value)
 {
     static const char *const ranges[] = {"auto", "full", "limited", NULL};
     static const char *const matrices[] = {"auto", "601", "709", "2020", NULL};
@@ -115,9 +115,9 @@ static bool take(struct overlay *o, int option, const char *value)
 
     switch (option) {
     case 'r':
-        return take_word(value, ranges, &o->range);
+        return parse_word(value, ranges, &o->range);
     case 'x':
-        return take_word(value, matrices, &o->matrix);
+        return parse_word(value, matrices, &o->matrix);
     case '4':
         o->transfer = tool_word(value, glint_transfer_words);
         return o->transfer >= 0 || strcmp(value, "auto") == 0;
@@ -126,7 +126,7 @@ static bool take(struct overlay *o, int option, const char *value)
         o->has_raw = true;
         return o->raw.format >= 0;
     case '2':
-        return take_size(o, value);
+        return parse_size(o, value);
     case '3':
         return tool_integer(value, 1, 4 * GLINT_MAX_SIDE, &o->raw.stride);
     case 'Q':
@@ -140,7 +140,7 @@ static bool take(struct overlay *o, int option, const char *value)
         o->has_layers_type = true;
         return word >= 0;
     case 'F':
-        return take_frames(o, value);
+        return parse_frames(o, value);
     case 'W':
         return tool_integer(value, 0, INT_MAX, &o->warm_up);
     case 'B':
@@ -179,8 +179,8 @@ static int check_raw(const struct tool *tool, const struct overlay *o)
     return EXIT_OK;
 }
 
-/* Rejects options of N inputs that write one file, and files without headers,
- * whose names do not say what to write. */
+/* Rejects options for N inputs that write a single file, and raw files,
+ * whose names do not state the output format. */
 static int check_folder(const struct tool *tool, const struct overlay *o, int n)
 {
     if (o->has_raw)
@@ -196,7 +196,7 @@ static int check_folder(const struct tool *tool, const struct overlay *o, int n)
     return EXIT_OK;
 }
 
-/* Checks what a line of one input says. Returns -1 or an exit code. */
+/* Checks the options of one input. Returns -1 or an exit code. */
 static int check_line(const struct tool *tool, int argc, char **argv,
                       struct overlay *o)
 {
@@ -233,8 +233,9 @@ static int check_line(const struct tool *tool, int argc, char **argv,
     return -1;
 }
 
-/* Parses a line, and moves its inputs to ARGV[optind] on. OUTPUT: where the
- * picture goes; NULL: as -o says, and if that is a folder it is *FOLDER. */
+/* Parses the command line and moves its inputs to ARGV[optind] on. OUTPUT:
+ * the output file; NULL: as given by -o; if that is a folder, it is stored
+ * in *FOLDER. */
 static int parse(struct tool *tool, int argc, char **argv, struct overlay *o,
                  const char *output, const char **folder)
 {
@@ -260,7 +261,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o,
         else if (c == 'e')
             o->encode = optarg;
         else if (strchr("rx4123nQLTFWB", c)) {
-            if (!take(o, c, optarg))
+            if (!parse_option(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
             return code;
@@ -333,8 +334,8 @@ static void print_result(const struct tool *tool, struct overlay *o)
         print_figures(o);
 }
 
-/* Refuses an input that is not there, or empty, before a lens is baked; a
- * picture is to be one before that, too. Returns an exit code. */
+/* Rejects an input that is missing, empty or not an image before a lens is
+ * baked. Returns an exit code. */
 static int check_input(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
@@ -365,8 +366,8 @@ static int check_input(struct tool *tool, struct overlay *o)
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Refuses, before there is work, an output that does not go with the input or
- * cannot be written. */
+/* Rejects an output that cannot be written or does not fit the type of the
+ * input before the work begins. */
 static int check_output(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
@@ -403,8 +404,8 @@ static int check_output(struct tool *tool, struct overlay *o)
     return EXIT_OUTPUT;
 }
 
-/* Sets S where nothing is drawn: glint bakes no model and measures no
- * brightness, unless key frames, lines of control or a zoom may need them. */
+/* Sets S so that no model is baked and no brightness is measured if nothing
+ * is drawn, unless key frames, control lines or a zoom may need them later. */
 static void draw_nothing(struct settings *s, bool is_zoomed)
 {
     struct glint_options *const o = &s->options;
@@ -455,13 +456,13 @@ static int run(struct tool *tool, struct overlay *o)
 
 /* ------------------------------------------------------------------ folders */
 
-/* Adds a flare to the input of a line, as overlay_folder() to several. OUTPUT:
- * see parse(). */
+/* Adds a flare to the input of a command line, for overlay_folder() to one
+ * of several. OUTPUT: see parse(). */
 static int overlay_line(int argc, char **argv, const char *output);
 
-/* Adds flares to the N inputs ARGV[FIRST] on, each into a file of its name in
- * FOLDER. One that fails does not stop the others, unless the line or the lens
- * is wrong. Returns the largest exit code. */
+/* Adds flares to the N inputs ARGV[FIRST] on; each is written to FOLDER
+ * under its own name. An input that fails does not stop the others, unless
+ * the command line or the lens is wrong. Returns the largest exit code. */
 static int overlay_folder(const struct tool *tool, char **argv, int first,
                           int n, const char *folder,
                           const struct glint_options *options)
@@ -497,7 +498,7 @@ static int overlay_folder(const struct tool *tool, char **argv, int first,
                 "in %s\n",
                 n - done, n, folder);
     if (done == 0 && is_new)
-        rmdir(folder); /* it stays if there is something in it */
+        rmdir(folder); /* has no effect if the folder is not empty */
     return code;
 }
 

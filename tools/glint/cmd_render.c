@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint render: draws the flare alone, in linear light.
+ * glint render: draws a flare without an input image, in linear light.
  */
 #include <inttypes.h>
 #include <limits.h>
@@ -49,18 +49,19 @@ struct render {
     struct opened_lens lens;
     const char *output;
     struct json_writer json;
-    bool linear; /* the output takes floats */
+    bool linear; /* the output format stores floats */
     int width, height;
     bool exact;
     const char *lights_file;
     int n_lamps;
-    struct glint_lamp *lamp; /* lamps by hand, at most SETTINGS_MAX_LAMPS, then
-                                those of the file */
+    /* lamps of the command line, at most SETTINGS_MAX_LAMPS, followed by
+     * those of the file */
+    struct glint_lamp *lamp;
     struct glint_float_image image;
     double ms;
 };
 
-static int take(struct tool *tool, struct render *r, int c)
+static int parse_option(struct tool *tool, struct render *r, int c)
 {
     static const char *const engines[] = {"model", "exact", NULL};
     int word;
@@ -118,7 +119,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
                             NULL)) >= 0) {
         code = settings_option(tool, &r->settings, c, optarg);
         if (code == -2)
-            code = take(tool, r, c);
+            code = parse_option(tool, r, c);
         if (code >= 0)
             return code;
     }
@@ -138,10 +139,10 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
 
 /* ------------------------------------------------------------------ engines */
 
-/* Returns the points that the lamps are drawn as, several for a lamp of visible
- * extent, malloc'ed, and sets *N to their number. Returns NULL without
- * memory. */
-static struct glint_lamp *points_of(const struct render *r, int *n)
+/* Returns the point lights that the lamps are drawn as, several for a lamp
+ * of visible extent; the caller frees them. Sets *N to their number. Returns
+ * NULL if there is no memory. */
+static struct glint_lamp *make_points(const struct render *r, int *n)
 {
     const struct glint_view view =
         opened_lens_view(&r->lens, &r->settings, r->width, r->height);
@@ -172,7 +173,7 @@ static int render_exact(struct tool *tool, struct render *r)
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
     struct tool_progress progress;
     int n_points = 0;
-    struct glint_lamp *points = points_of(r, &n_points);
+    struct glint_lamp *points = make_points(r, &n_points);
     struct glint_exact_config cfg = {
         .setup = &r->lens.setup,
         .view = opened_lens_view(&r->lens, &r->settings, r->width, r->height),
@@ -211,8 +212,8 @@ static int render_exact(struct tool *tool, struct render *r)
     return EXIT_OK;
 }
 
-static void say_lights(const struct tool *tool,
-                       const struct glint_engine_report *report)
+static void print_lights(const struct tool *tool,
+                         const struct glint_engine_report *report)
 {
     char lights[64];
 
@@ -251,11 +252,11 @@ static int render_model(struct tool *tool, struct render *r)
         json_write(&r->json, "{engine: %s", "model");
         settings_json(&r->json, &report);
     }
-    say_lights(tool, &report);
+    print_lights(tool, &report);
     return EXIT_OK;
 }
 
-/* Adds the lamps of frame 0 of the file to those by hand. */
+/* Appends the lamps of frame 0 of the file to those of the command line. */
 static int read_lamps(struct tool *tool, struct render *r)
 {
     const struct glint_view view =
@@ -287,7 +288,7 @@ static int read_lamps(struct tool *tool, struct render *r)
     return code;
 }
 
-/* Refuses an output over LENS or a file of an option. */
+/* Rejects an output that would overwrite LENS or an option's file. */
 static int check_apart(const struct tool *tool, const struct render *r,
                        const char *lens)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint styles: one photograph in each style, as a contact sheet.
+ * glint styles: draws one photograph in each style, as a contact sheet.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +48,7 @@ struct styles_command {
     struct glint_image drawn;
 };
 
-/* Takes the options of the line into C; DRAWING gets those of overlay. */
+/* Parses the command line into C; options of glint overlay go to DRAWING. */
 static int parse(struct tool *tool, struct styles_command *c,
                  struct drawing *drawing)
 {
@@ -76,8 +76,8 @@ static int parse(struct tool *tool, struct styles_command *c,
     return optind + 1 < c->argc ? tool_usage(tool, "takes one picture") : -1;
 }
 
-/* Loads the photograph that comes with glint, the small one if the other needs
- * a missing image plug-in. GLINT_E_ARGUMENT: neither is there. */
+/* Loads the photograph that comes with glint; the small one if the large one
+ * needs a missing plug-in. Returns GLINT_E_ARGUMENT if neither is installed. */
 static enum glint_status load_photograph(struct glint_image *image,
                                          struct glint_error *error)
 {
@@ -122,12 +122,13 @@ static int load(struct tool *tool, struct styles_command *c)
     return EXIT_OK;
 }
 
-static void caption_of(char text[CAPTION_BYTES], const struct style *style)
+static void make_caption(char text[CAPTION_BYTES], const struct style *style)
 {
     snprintf(text, CAPTION_BYTES, "%s: %s", style->name, style->about);
 }
 
-/* Opens SHEET for N pictures like SMALL, with room for the longest caption. */
+/* Opens SHEET for N images of the size of SMALL, with space for the longest
+ * caption. */
 static enum glint_status open_sheet(struct sheet *sheet, int n,
                                     const struct glint_image *small)
 {
@@ -137,7 +138,7 @@ static enum glint_status open_sheet(struct sheet *sheet, int n,
     for (int k = 0; k < n; k++) {
         int rows;
 
-        caption_of(text, &styles[k]);
+        make_caption(text, &styles[k]);
         rows = sheet_caption_lines(small->width, text);
         most = rows > most ? rows : most;
     }
@@ -153,11 +154,11 @@ static void copy_rows(const struct glint_image *to,
                3 * (size_t)to->width);
 }
 
-/* Draws the input in STYLE as the picture K of SHEET, which the first one
- * opens. */
-static int put(struct tool *tool, struct styles_command *c,
-               struct drawing *drawing, const struct style *style,
-               struct sheet *sheet, int k, int n)
+/* Draws the input in STYLE as image K of SHEET; the first call opens the
+ * sheet. */
+static int draw_style(struct tool *tool, struct styles_command *c,
+                      struct drawing *drawing, const struct style *style,
+                      struct sheet *sheet, int k, int n)
 {
     struct glint_image small = {.plane = {NULL}};
     enum glint_status status;
@@ -176,15 +177,16 @@ static int put(struct tool *tool, struct styles_command *c,
         const struct glint_image to = sheet_picture(sheet, k);
 
         copy_rows(&to, &small);
-        caption_of(text, style);
+        make_caption(text, style);
         sheet_caption(sheet, k, text);
     }
     free(small.plane[0]);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
-static int draw(struct tool *tool, struct styles_command *c,
-                const struct style *style, struct sheet *sheet, int k, int n)
+static int draw_styles(struct tool *tool, struct styles_command *c,
+                       const struct style *style, struct sheet *sheet, int k,
+                       int n)
 {
     struct drawing *const drawing = calloc(1, sizeof *drawing);
     int code;
@@ -198,7 +200,7 @@ static int draw(struct tool *tool, struct styles_command *c,
     if (code < 0)
         code = drawing_open_lens(tool, drawing);
     if (code == EXIT_OK)
-        code = put(tool, c, drawing, style, sheet, k, n);
+        code = draw_style(tool, c, drawing, style, sheet, k, n);
     drawing_close(drawing);
     free(drawing);
     return code;
@@ -217,7 +219,7 @@ static int draw_sheet(struct tool *tool, struct styles_command *c)
     for (int k = 0; k < n && code == EXIT_OK; k++) {
         if (!tool->quiet)
             fprintf(stderr, "glint styles: %s\n", styles[k].name);
-        code = draw(tool, c, &styles[k], &sheet, k, n);
+        code = draw_styles(tool, c, &styles[k], &sheet, k, n);
     }
     if (code == EXIT_OK) {
         status = glint_picture_save(c->output, &sheet.image, &error);
@@ -228,7 +230,7 @@ static int draw_sheet(struct tool *tool, struct styles_command *c)
     return code;
 }
 
-static void list(void)
+static void list_styles(void)
 {
     for (const struct style *s = styles; s->name; s++) {
         printf("%-9s %s\n         ", s->name, s->about);
@@ -238,7 +240,7 @@ static void list(void)
     }
 }
 
-/* Returns an exit code, or -1 if OUT may be written. */
+/* Returns -1 if OUT may be written, else an exit code. */
 static int check_output(const struct tool *tool, const struct styles_command *c)
 {
     struct glint_error error = {""};
@@ -296,7 +298,7 @@ int cmd_styles(int argc, char **argv)
     if (code >= 0)
         return code;
     if (!c.output) {
-        list();
+        list_styles();
         return EXIT_OK;
     }
     code = tool_start(&tool);

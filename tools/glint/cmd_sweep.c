@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint sweep: measures what accuracy costs, dial by dial and together.
+ * glint sweep: measures time and error by quality parameter, single and
+ * combined.
  */
 #include <errno.h>
 #include <limits.h>
@@ -70,8 +71,9 @@ static void add_case(struct sweep *s, struct sweep_case c)
         s->scase[s->n_cases++] = c;
 }
 
-/* Adds, for the first lens, a smaller picture with one light and with 16 that
- * can merge: exact pictures take time in proportion to lights. */
+/* Adds, for the first lens, a smaller image with one light and one with 16
+ * lights that can merge. It is smaller because the time of exact images is
+ * proportional to the number of lights. */
 static void add_more(struct sweep *s)
 {
     const struct sweep_case c = {
@@ -141,7 +143,7 @@ static int save_all(const struct sweep *s, const char *folder)
 
 /* ----------------------------------------------------------------- command */
 
-static void say_case(const struct sweep *s, int c)
+static void print_case(const struct sweep *s, int c)
 {
     const struct sweep_case *k = &s->scase[c];
 
@@ -159,7 +161,7 @@ static int measure(struct sweep *s)
     int code = EXIT_OK;
 
     for (int c = 0; c < s->n_cases && code == EXIT_OK; c++) {
-        say_case(s, c);
+        print_case(s, c);
         tool_progress_start(&progress, s->tool, "sweep");
         code = sweep_measure(s, c, &progress);
         tool_progress_end(&progress);
@@ -197,7 +199,7 @@ static int run(struct sweep *s, const struct asked *a)
     return save_all(s, a->folder);
 }
 
-static bool take_sizes(const char *text, struct asked *a)
+static bool parse_sizes(const char *text, struct asked *a)
 {
     char copy[128], *word, *rest = copy;
 
@@ -212,7 +214,7 @@ static bool take_sizes(const char *text, struct asked *a)
 
 /* Parses up to MAX_LIST numbers within LOW .. HIGH. Returns their number, or 0
  * if TEXT is malformed. */
-static int take_numbers(const char *text, double low, double high, double *to)
+static int parse_numbers(const char *text, double low, double high, double *to)
 {
     const int n = tool_numbers(text, to, MAX_LIST);
 
@@ -222,11 +224,11 @@ static int take_numbers(const char *text, double low, double high, double *to)
     return n;
 }
 
-static bool take_lights(const char *text, struct asked *a)
+static bool parse_lights(const char *text, struct asked *a)
 {
     double v[MAX_LIST];
 
-    a->n_lights = take_numbers(text, 1, 10000, v);
+    a->n_lights = parse_numbers(text, 1, 10000, v);
     for (int i = 0; i < a->n_lights; i++) {
         if (v[i] != floor(v[i]))
             return false;
@@ -246,20 +248,20 @@ static const struct option options[] = {
     {"small", no_argument, NULL, OPT_SMALL},
     TOOL_COMMON_OPTIONS};
 
-/* Takes option C with the value optarg. Returns 1, or 0 if the option does not
- * take that value, or -2 if C is another option. */
-static int take(struct sweep *s, struct asked *a, int c)
+/* Applies option C with the value optarg. Returns 1 on success, 0 if the
+ * value is invalid, -2 if C is unknown. */
+static int parse_option(struct sweep *s, struct asked *a, int c)
 {
     switch (c) {
     case 'o':
         a->folder = optarg;
         return 1;
     case 's':
-        return take_sizes(optarg, a);
+        return parse_sizes(optarg, a);
     case 'l':
-        return take_lights(optarg, a);
+        return parse_lights(optarg, a);
     case 'a':
-        return (a->n_angles = take_numbers(optarg, 0, 60, a->angle)) > 0;
+        return (a->n_angles = parse_numbers(optarg, 0, 60, a->angle)) > 0;
     case 'r':
         return tool_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
     case OPT_SMALL:
@@ -276,7 +278,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
 
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &at)) >= 0) {
-        const int taken = take(s, a, c);
+        const int taken = parse_option(s, a, c);
 
         if (taken == 0)
             return tool_refuse(tool, options[at].name, optarg);
@@ -292,9 +294,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
     return -1;
 }
 
-/* Sets the lenses, sizes, numbers of lights, angles, rounds and grid that no
- * option has set. */
-static void fill_in(struct sweep *s, struct asked *a)
+/* Sets the lenses, sizes, numbers of lights, angles, rounds and grid that
+ * the command line does not set. */
+static void set_defaults(struct sweep *s, struct asked *a)
 {
     const int n =
         s->small ? 1 : (int)(sizeof default_lenses / sizeof *default_lenses);
@@ -340,7 +342,7 @@ int cmd_sweep(int argc, char **argv)
     if (code < 0)
         code = tool_start(&tool);
     if (code == EXIT_OK && tool.workers && asked.folder) {
-        fill_in(s, &asked);
+        set_defaults(s, &asked);
         code = run(s, &asked);
     }
     close_sweep(s);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint synth: data sets for flare removal.
+ * glint synth: writes data sets for training flare removal.
  *
- * Any number of processes can fill the folder of a set, be killed, and
- * continue. Every file is written beside its place and renamed when it is
- * complete, the item's line, items/NUMBER.json, last. An item exists if its
- * line and all its pictures do. The manifest has all lines in order, and is
- * written when all items exist.
+ * Several processes can write to the folder of a set, be killed, and continue.
+ * Every file is written under a temporary name and renamed when it is complete,
+ * the item's description, items/NUMBER.json, last. An item exists if its
+ * description and all its images exist. The manifest contains all descriptions
+ * in order; it is written when all items exist.
  */
 #include <dirent.h>
 #include <errno.h>
@@ -30,21 +30,25 @@ enum { SYNTH_MAX_FILES = 6, SYNTH_PATH_BYTES = 4096 };
 /* One file of each item. */
 struct synth_file {
     const char *folder,
-        *prefix;     /* "in/put/" and what comes before the number */
-    unsigned layers; /* summed, a bit each of enum synth_layer; 0: the fraction
-                        that lights cover */
-    bool is_noisy;   /* as a sensor sees it */
+        /* "in/put/" and the beginning of the file name before the number */
+        *prefix;
+    /* layers that are summed, one bit per enum synth_layer; 0: the image
+     * shows the fraction of each pixel that lights cover */
+    unsigned layers;
+    bool is_noisy; /* with sensor noise */
 };
 
 struct synth_layout {
-    const char *name, *type; /* type of file unless another is requested */
-    struct synth_file file[SYNTH_MAX_FILES]; /* up to one without a folder */
+    const char *name, *type; /* type: file type unless another is requested */
+    /* ends with an entry whose folder is NULL */
+    struct synth_file file[SYNTH_MAX_FILES];
 };
 
 struct synth_set {
     const char *folder, *type;
     const struct synth_layout *layout;
-    int count, shard, shards; /* items shard, shard + shards ... below count */
+    /* this process draws items shard, shard + shards, ... below count */
+    int count, shard, shards;
 };
 
 #define BASE   (1u << SYNTH_BASE)
@@ -59,8 +63,8 @@ static const struct synth_layout layouts[] = {
       {"gt/", "", BASE | SOURCE, false},
       {"flare/", "", GLARE | GHOSTS, false},
       {"mask/", "", 0, false}}},
-    /* Flares on black, which a loader of [Dai22] puts on pictures of its own,
-     * and pairs to test with. */
+    /* Flares on black, which the data loader of [Dai22] adds to its own
+     * images, and pairs for testing. */
     {"flare7k",
      "png",
      {{"Flare7K/Scattering_Flare/Compound_Flare/", "", SOURCE | GLARE, false},
@@ -70,7 +74,7 @@ static const struct synth_layout layouts[] = {
        true},
       {"test_data/synthetic/gt/", "gt_", BASE | SOURCE, false},
       {"test_data/synthetic/mask/", "mask_", 0, false}}},
-    /* The test half of [Dai23]: ghosts alone trouble the picture. */
+    /* The test set of [Dai23]: the images differ by ghosts alone. */
     {"bracketflare",
      "png",
      {{"test/lq/", "", BASE | SOURCE | GHOSTS, true},
@@ -84,8 +88,8 @@ static const struct synth_layout layouts[] = {
       {"scenes/", "", BASE, false}}},
 };
 
-/* Returns the layout NAME, or NULL. */
-static const struct synth_layout *layout_named(const char *name)
+/* Returns the layout NAME, or NULL if there is none. */
+static const struct synth_layout *find_layout(const char *name)
 {
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
         if (strcmp(layouts[i].name, name) == 0)
@@ -93,8 +97,8 @@ static const struct synth_layout *layout_named(const char *name)
     return NULL;
 }
 
-/* Sets PATH to FILE of item NUMBER in FOLDER. Returns false if PATH is too
- * long. */
+/* Sets PATH to the path of FILE for item NUMBER in FOLDER. Returns false if
+ * PATH is too long. */
 static bool file_path(char path[SYNTH_PATH_BYTES], const char *folder,
                       const struct synth_file *file, int number,
                       const char *type)
@@ -119,7 +123,7 @@ static bool line_path(char path[SYNTH_PATH_BYTES], const struct synth_set *set,
 
 /* ------------------------------------------------------------------ folders */
 
-/* Makes the folder PATH and those above it, up to the last slash. */
+/* Creates the folder PATH and the folders above it, up to the last slash. */
 static int make_folder(const struct tool *tool, char *path)
 {
     struct glint_error error;
@@ -136,7 +140,7 @@ static int make_folder(const struct tool *tool, char *path)
     return EXIT_OK;
 }
 
-/* Makes the folders of SET alone. */
+/* Creates the folders of SET. */
 static int make_folders(const struct tool *tool, const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
@@ -155,8 +159,8 @@ static int make_folders(const struct tool *tool, const struct synth_set *set)
                                    : too_long(tool, set);
 }
 
-/* Refuses a folder where a set was begun: a line's item would take the place of
- * one of its own. */
+/* Rejects a folder that contains a set: the item of --item would overwrite
+ * one of the set's items. */
 static int check_apart(const struct tool *tool, const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
@@ -169,8 +173,8 @@ static int check_apart(const struct tool *tool, const struct synth_set *set)
         set->folder, path);
 }
 
-/* Rejects a count below the number of items in SET: a set never shrinks, or its
- * manifest would be wrong. */
+/* Rejects a count below the number of items in SET. A set never shrinks, as
+ * its manifest would be wrong. */
 static int check_count(const struct tool *tool, const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
@@ -189,7 +193,7 @@ static int check_count(const struct tool *tool, const struct synth_set *set)
     }
     if (dir)
         closedir(dir);
-    if (set->count == 0 || last < set->count) /* 0 draws nothing */
+    if (set->count == 0 || last < set->count) /* a count of 0 draws nothing */
         return EXIT_OK;
     return tool_usage(tool,
                       "%s has items up to %ld, and --count %d would leave some "
@@ -197,9 +201,9 @@ static int check_count(const struct tool *tool, const struct synth_set *set)
                       set->folder, last, set->count, last + 1);
 }
 
-/* Makes the folders of SET. SETTINGS, a line, states what all items are drawn
- * with. Returns an exit code: EXIT_USAGE if the folder was begun with others,
- * or has items beyond SET's count. */
+/* Creates the folders of SET. SETTINGS is a line of JSON with what all items
+ * have in common. Returns an exit code: EXIT_USAGE if the folder was begun
+ * with other settings or has items beyond SET's count. */
 static int begin_set(const struct tool *tool, const struct synth_set *set,
                      const char *settings)
 {
@@ -232,9 +236,9 @@ static int begin_set(const struct tool *tool, const struct synth_set *set,
                             set->folder, path);
 }
 
-/* Writes SETTINGS to synth.json, once nothing is wrong with them. */
-static int keep_settings(const struct tool *tool, const struct synth_set *set,
-                         const char *settings)
+/* Writes SETTINGS to synth.json after they were validated. */
+static int write_settings(const struct tool *tool, const struct synth_set *set,
+                          const char *settings)
 {
     char path[SYNTH_PATH_BYTES];
 
@@ -259,12 +263,12 @@ static bool has_item(const struct synth_set *set, int number)
     return is_there;
 }
 
-/* Writes FILE of ITEM; RGB is scratch memory for its light. */
-static enum glint_status put_file(const struct synth_set *set,
-                                  const struct synth_file *file,
-                                  const struct synth_item *item,
-                                  const struct synth_drawing *d, float *rgb,
-                                  struct glint_error *error)
+/* Writes FILE of ITEM; RGB is scratch memory for its pixels. */
+static enum glint_status write_file(const struct synth_set *set,
+                                    const struct synth_file *file,
+                                    const struct synth_item *item,
+                                    const struct synth_drawing *d, float *rgb,
+                                    struct glint_error *error)
 {
     const size_t n = 3 * (size_t)d->width * (size_t)d->height;
     const struct glint_float_image light = {d->width, d->height, rgb};
@@ -282,7 +286,8 @@ static enum glint_status put_file(const struct synth_set *set,
     if (file->layers) {
         codes = glint_measure_encode(&light, 1);
     } else if ((codes = malloc(n))) {
-        for (size_t i = 0; i < n; i++) /* a fraction, not light */
+        /* a fraction, not light: stored without the sRGB curve */
+        for (size_t i = 0; i < n; i++)
             codes[i] = (uint8_t)(d->cover[i] * 255 + 0.5F);
     }
     if (!codes)
@@ -293,11 +298,11 @@ static enum glint_status put_file(const struct synth_set *set,
     return status;
 }
 
-/* Writes the files of ITEM, and its line. Returns an exit code. */
-static int put_item(const struct tool *tool, const struct synth_set *set,
-                    const struct synth_item *item,
-                    const struct synth_result *result,
-                    const struct synth_drawing *drawing)
+/* Writes the files of ITEM, then its description. Returns an exit code. */
+static int write_item(const struct tool *tool, const struct synth_set *set,
+                      const struct synth_item *item,
+                      const struct synth_result *result,
+                      const struct synth_drawing *drawing)
 {
     const size_t n = 3 * (size_t)drawing->width * (size_t)drawing->height;
     const struct synth_file *const file = set->layout->file;
@@ -310,7 +315,7 @@ static int put_item(const struct tool *tool, const struct synth_set *set,
 
     for (int i = 0; i < SYNTH_MAX_FILES && file[i].folder && status == GLINT_OK;
          i++)
-        status = put_file(set, &file[i], item, drawing, rgb, &error);
+        status = write_file(set, &file[i], item, drawing, rgb, &error);
     free(rgb);
     line_path(path, set, (int)item->number);
     if (status != GLINT_OK)
@@ -324,10 +329,10 @@ static int put_item(const struct tool *tool, const struct synth_set *set,
 /* ---------------------------------------------------------------- manifests */
 
 /* Appends the file PATH to OUT. */
-static enum glint_status append(struct glint_output *out, const char *path,
-                                struct glint_error *error)
+static enum glint_status append_file(struct glint_output *out, const char *path,
+                                     struct glint_error *error)
 {
-    uint8_t part[4096]; /* a line of three lights has 1.5 KiB */
+    uint8_t part[4096]; /* a description of three lights has 1.5 KiB */
     struct glint_input in;
     enum glint_status status = glint_input_open_file(&in, path, error);
     ptrdiff_t n = 0;
@@ -342,8 +347,8 @@ static enum glint_status append(struct glint_output *out, const char *path,
     return status;
 }
 
-/* Writes the lines of items FIRST, FIRST + STEP ... to NAME. Does nothing, and
- * sets IS_WHOLE to false, if one is not there. */
+/* Writes the descriptions of items FIRST, FIRST + STEP, ... to the file
+ * NAME. If one is missing, writes nothing and sets *IS_WHOLE to false. */
 static int write_lines(const struct tool *tool, const struct synth_set *set,
                        const char *name, int first, int step, bool *is_whole)
 {
@@ -361,7 +366,7 @@ static int write_lines(const struct tool *tool, const struct synth_set *set,
     status = glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error);
     for (int i = first; i < set->count && status == GLINT_OK; i += step) {
         line_path(line, set, i);
-        status = append(&out, line, &error);
+        status = append_file(&out, line, &error);
     }
     status = glint_output_end(&out, status, &error);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
@@ -383,15 +388,16 @@ static void remove_parts(const struct synth_set *set)
         closedir(dir);
 }
 
-/* Writes the manifest of a shard whose items are all there, and that of all
- * once all are; the shards' are gone then. Sets IS_WHOLE to whether they are.
- * Returns an exit code. */
+/* Writes the manifest of a shard if all of its items exist. If all items of
+ * the set exist, writes the set's manifest and removes those of the shards.
+ * Sets *IS_WHOLE to whether all exist. Returns an exit code. */
 static int end_set(const struct tool *tool, const struct synth_set *set,
                    bool *is_whole)
 {
     char name[64];
     bool is_done = true;
-    int code = check_count(tool, set); /* another process may have more */
+    /* another process may have drawn more items */
+    int code = check_count(tool, set);
 
     *is_whole = false;
     snprintf(name, sizeof name, "manifest-%d-of-%d.jsonl", set->shard,
@@ -479,19 +485,20 @@ struct synth {
     struct synth_set set;
     struct synth_ranges ranges;
     struct synth_backgrounds backgrounds;
-    char (*keys)[20]; /* [backgrounds.n]; empty: not read yet */
+    /* [backgrounds.n], hashes of the backgrounds; empty: not read yet */
+    char (*keys)[20];
     struct synth_lenses lenses;
     int n_lenses;
     char lens[SYNTH_MAX_LENSES][64];
-    struct synth_item all; /* what every item has */
+    struct synth_item all; /* values common to all items */
     struct synth_drawing drawing;
     const char *line;
 };
 
 /* ------------------------------------------------------------------ options */
 
-/* Parses TEXT, "I/N". */
-static bool take_shard(struct synth_set *set, const char *text)
+/* Parses the shard TEXT, "I/N". */
+static bool parse_shard(struct synth_set *set, const char *text)
 {
     char first[16];
     const size_t n = strcspn(text, "/");
@@ -514,8 +521,8 @@ static bool add_lens(void *ctx, const char *name)
     return true;
 }
 
-/* Parses TEXT, names separated by commas, or "all". */
-static bool take_lenses(struct synth *s, const char *text)
+/* Parses TEXT, lens names separated by commas, or "all". */
+static bool parse_lenses(struct synth *s, const char *text)
 {
     char name[64];
 
@@ -537,7 +544,7 @@ static bool take_lenses(struct synth *s, const char *text)
     }
 }
 
-static bool take_size(struct synth_item *item, const char *text)
+static bool parse_size(struct synth_item *item, const char *text)
 {
     int width, height;
 
@@ -549,7 +556,7 @@ static bool take_size(struct synth_item *item, const char *text)
     return true;
 }
 
-static bool take_quality(struct synth_item *item, const char *text)
+static bool parse_quality(struct synth_item *item, const char *text)
 {
     struct glint_options probe;
     struct glint_error error;
@@ -562,8 +569,8 @@ static bool take_quality(struct synth_item *item, const char *text)
     return true;
 }
 
-static int take_coating(const struct tool *tool, struct synth *s,
-                        const char *text)
+static int parse_coating(const struct tool *tool, struct synth *s,
+                         const char *text)
 {
     struct coating probe = {.given = false};
     const int code = coating_take(tool, &probe, text);
@@ -574,8 +581,8 @@ static int take_coating(const struct tool *tool, struct synth *s,
     return code;
 }
 
-static int take_range(const struct tool *tool, struct synth *s,
-                      const char *text)
+static int parse_range(const struct tool *tool, struct synth *s,
+                       const char *text)
 {
     struct glint_error why = {""};
 
@@ -588,7 +595,7 @@ static int take_range(const struct tool *tool, struct synth *s,
                : tool_usage(tool, "--range: %s", why.text);
 }
 
-static int take(struct tool *tool, void *ctx, int c, const char *value)
+static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
 {
     struct synth *const s = ctx;
     bool good = true;
@@ -601,20 +608,20 @@ static int take(struct tool *tool, void *ctx, int c, const char *value)
         good = tool_integer(value, 0, MAX_COUNT, &s->set.count);
         break;
     case OPT_SHARD:
-        good = take_shard(&s->set, value);
+        good = parse_shard(&s->set, value);
         break;
     case OPT_SIZE:
-        good = take_size(&s->all, value);
+        good = parse_size(&s->all, value);
         break;
     case OPT_LENSES:
-        good = take_lenses(s, value);
+        good = parse_lenses(s, value);
         break;
     case OPT_COATING_OF:
-        return take_coating(tool, s, value);
+        return parse_coating(tool, s, value);
     case OPT_RANGE:
-        return take_range(tool, s, value);
+        return parse_range(tool, s, value);
     case OPT_LAYOUT:
-        s->set.layout = layout_named(value);
+        s->set.layout = find_layout(value);
         good = s->set.layout != NULL;
         break;
     case OPT_TYPE:
@@ -624,7 +631,7 @@ static int take(struct tool *tool, void *ctx, int c, const char *value)
         s->line = value;
         break;
     case OPT_QUALITY_OF:
-        good = take_quality(&s->all, value);
+        good = parse_quality(&s->all, value);
         break;
     default:
         return tool_option(tool, c, value);
@@ -632,9 +639,9 @@ static int take(struct tool *tool, void *ctx, int c, const char *value)
     return good ? -1 : -2;
 }
 
-/* Takes the layout's type if none was requested, and checks whether pictures of
- * the type can be written. */
-static int take_type(const struct tool *tool, struct synth *s)
+/* Sets the layout's file type if none was requested, and checks that images
+ * of the type can be written. */
+static int set_type(const struct tool *tool, struct synth *s)
 {
     const bool is_asked = s->set.type != NULL;
     struct glint_error error = {""};
@@ -655,8 +662,8 @@ static int take_type(const struct tool *tool, struct synth *s)
 
 static int parse(struct tool *tool, int argc, char **argv, struct synth *s)
 {
-    int code =
-        tool_take(tool, argc, argv, "o:" TOOL_COMMON_SHORT, options, take, s);
+    int code = tool_take(tool, argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                         parse_option, s);
 
     if (code >= 0)
         return code;
@@ -665,14 +672,15 @@ static int parse(struct tool *tool, int argc, char **argv, struct synth *s)
             tool, "needs backgrounds: pictures, or folders of pictures");
     if (!s->set.folder || !*s->set.folder)
         return tool_usage(tool, "needs -o FOLDER");
-    code = take_type(tool, s);
+    code = set_type(tool, s);
     return code == EXIT_OK ? -1 : code;
 }
 
 /* -------------------------------------------------------------------- items */
 
-/* Returns a line of what all items are drawn with, malloc'ed, or NULL. */
-static char *settings_of(const struct synth *s, int seed)
+/* Returns the settings of all items as a line of JSON, which the caller
+ * frees, or NULL if there is no memory. */
+static char *make_settings(const struct synth *s, int seed)
 {
     char *text = NULL;
     size_t bytes = 0;
@@ -699,9 +707,9 @@ static char *settings_of(const struct synth *s, int seed)
     return NULL;
 }
 
-/* Sets ITEM to item NUMBER. */
-static int choose(const struct tool *tool, struct synth *s, int number,
-                  struct synth_item *item)
+/* Sets ITEM to the random choices of item NUMBER. */
+static int choose_item(const struct tool *tool, struct synth *s, int number,
+                       struct synth_item *item)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -721,15 +729,16 @@ static int choose(const struct tool *tool, struct synth *s, int number,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-static int make(const struct tool *tool, struct synth *s,
-                const struct synth_item *item)
+static int make_item(const struct tool *tool, struct synth *s,
+                     const struct synth_item *item)
 {
     struct synth_result result;
     const int code = synth_draw(tool, &s->lenses, &s->backgrounds, item,
                                 &s->drawing, &result);
 
-    return code == EXIT_OK ? put_item(tool, &s->set, item, &result, &s->drawing)
-                           : code;
+    return code == EXIT_OK
+               ? write_item(tool, &s->set, item, &result, &s->drawing)
+               : code;
 }
 
 static int start_drawing(const struct tool *tool, struct synth *s,
@@ -741,7 +750,7 @@ static int start_drawing(const struct tool *tool, struct synth *s,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
-/* Draws the item of --item. */
+/* Draws the single item described by --item. */
 static int run_line(const struct tool *tool, struct synth *s)
 {
     struct glint_error error = {""};
@@ -762,11 +771,11 @@ static int run_line(const struct tool *tool, struct synth *s)
         code = make_folders(tool, &s->set);
     if (code == EXIT_OK)
         code = start_drawing(tool, s, &item);
-    return code == EXIT_OK ? make(tool, s, &item) : code;
+    return code == EXIT_OK ? make_item(tool, s, &item) : code;
 }
 
-/* Opens every lens, so that lenses are baked before the first item, and names
- * that are not lenses are reported. */
+/* Opens every lens, so that all are baked before the first item is drawn,
+ * and wrong names are reported. */
 static int open_lenses(const struct tool *tool, struct synth *s)
 {
     int code = EXIT_OK;
@@ -796,9 +805,9 @@ static int run_items(const struct tool *tool, struct synth *s)
          i += set->shards) {
         if (has_item(set, i))
             continue;
-        code = choose(tool, s, i, &item);
+        code = choose_item(tool, s, i, &item);
         if (code == EXIT_OK)
-            code = make(tool, s, &item);
+            code = make_item(tool, s, &item);
         tool_progress_show(&progress, (double)++done / left);
     }
     tool_progress_end(&progress);
@@ -811,14 +820,14 @@ static int run_set(const struct tool *tool, struct synth *s)
     char *settings;
     int code;
 
-    settings = settings_of(s, tool->seed);
+    settings = make_settings(s, tool->seed);
     if (!settings)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     code = begin_set(tool, &s->set, settings);
     if (code == EXIT_OK)
         code = open_lenses(tool, s);
     if (code == EXIT_OK)
-        code = keep_settings(tool, &s->set, settings);
+        code = write_settings(tool, &s->set, settings);
     free(settings);
     if (code == EXIT_OK)
         code = start_drawing(tool, s, &s->all);
@@ -850,14 +859,14 @@ int cmd_synth(int argc, char **argv)
     if (!s)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     s->set = (struct synth_set){
-        .layout = layout_named("plain"), .count = 100, .shards = 1};
+        .layout = find_layout("plain"), .count = 100, .shards = 1};
     s->all = (struct synth_item){.width = 512,
                                  .height = 512,
                                  .quality = 0.5,
                                  .glint = GLINT_VERSION,
                                  .coating = "mixed"};
     synth_ranges_defaults(&s->ranges);
-    take_lenses(s, default_lenses);
+    parse_lenses(s, default_lenses);
     code = parse(&tool, argc, argv, s);
     if (code < 0) {
         code = synth_backgrounds_open(&tool, &s->backgrounds, argv + optind,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint trace: prints rays as a table, exact or by a model.
+ * glint trace: prints rays as a table, traced exactly or computed by a model.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -45,7 +45,7 @@ struct options {
     struct coating coating;
     struct zoom_option zoom;
     int ghost, grid;
-    bool pupil; /* the grid spans the pupil alone */
+    bool pupil; /* the grid spans only the entrance pupil */
     double angle_deg, wavelength_nm;
 };
 
@@ -107,9 +107,9 @@ struct tracer {
     enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
                                    double py_mm, struct glint_ray *ray);
     double angle_deg;
-    struct glint_path path; /* surfaces that an exact ray passes, in order */
-    /* The parts of the pupil for which the model has polynomials of the ghost
-     * at this angle; owned. */
+    struct glint_path path; /* surfaces that the exact ray passes, in order */
+    /* The parts of the ghost's pupil for which the model has polynomials at
+     * this angle; owned. */
     struct glint_transfer *part;
     int n_parts;
     double stop_radius_mm;
@@ -126,27 +126,28 @@ static enum glint_ray_status trace_path(const struct tracer *t, double px_mm,
 
 /* -------------------------------------------------------------- by a model */
 
-static double output(const struct glint_transfer *t,
-                     const struct glint_outputs *out, int kind)
+static double evaluate_output(const struct glint_transfer *t,
+                              const struct glint_outputs *out, int kind)
 {
     return ldexp(out->at[kind], t->exponent[kind]);
 }
 
-static double rel_radius(const struct glint_transfer *t,
-                         const struct glint_outputs *out)
+static double relative_radius(const struct glint_transfer *t,
+                              const struct glint_outputs *out)
 {
-    double most = output(t, out, GLINT_OUT_RADIUS);
+    double most = evaluate_output(t, out, GLINT_OUT_RADIUS);
 
     for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++)
         if (t->outputs >> kind & 1)
-            most = fmax(most, sqrt(fmax(0, 2 * output(t, out, kind) - 1)));
+            most = fmax(most,
+                        sqrt(fmax(0, 2 * evaluate_output(t, out, kind) - 1)));
     return most;
 }
 
-/* Sets U and V to the place of a ray in the box of the part T. Returns whether
- * the ray is one of that part. */
-static bool is_in(const struct glint_transfer *t, double px_mm, double py_mm,
-                  double *u, double *v)
+/* Sets (U, V) to the normalised coordinates of a ray in the bounding box of
+ * part T. Returns whether the ray belongs to that part. */
+static bool is_in_part(const struct glint_transfer *t, double px_mm,
+                       double py_mm, double *u, double *v)
 {
     const double unit = ldexp(1, t->box_exponent);
 
@@ -156,11 +157,11 @@ static bool is_in(const struct glint_transfer *t, double px_mm, double py_mm,
            fabs(*v) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
-/* Sets SIDE to the signs that x and y of a ray have in the part T: of a round
- * lens, the model knows angles and y from 0 on only; of others only those
- * lights to one side of a plane of symmetry. */
-static void sides_of(const struct glint_transfer *t, double angle_deg,
-                     double py_mm, double side[2])
+/* Sets SIDE to the signs of x and y in which part T stores the ray: models
+ * of round lenses store only angles and y >= 0; those of other lenses only
+ * lights on one side of a symmetry plane. */
+static void find_sides(const struct glint_transfer *t, double angle_deg,
+                       double py_mm, double side[2])
 {
     side[0] = t->whole ? t->sign : angle_deg < 0 ? -1 : 1;
     side[1] = t->whole ? t->side ? -t->sign : t->sign : py_mm < 0 ? -1 : 1;
@@ -176,8 +177,8 @@ static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
     double u = 0, v = 0, side[2] = {1, 1};
 
     for (; p < t->part + t->n_parts; p++) {
-        sides_of(p, t->angle_deg, py_mm, side);
-        if (is_in(p, side[0] * px_mm, side[1] * py_mm, &u, &v))
+        find_sides(p, t->angle_deg, py_mm, side);
+        if (is_in_part(p, side[0] * px_mm, side[1] * py_mm, &u, &v))
             break;
     }
     if (p == t->part + t->n_parts)
@@ -185,18 +186,20 @@ static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
     glint_transfer_ray(p, (int32_t)lrint(ldexp(u, 30)),
                        (int32_t)lrint(ldexp(v, 30)), &out);
     *ray = (struct glint_ray){
-        .stop_x_mm = side[0] * stop * output(p, &out, GLINT_OUT_STOP_X),
-        .stop_y_mm = side[1] * stop * output(p, &out, GLINT_OUT_STOP_Y),
-        .sensor_x_mm = side[0] * output(p, &out, GLINT_OUT_SENSOR_X),
-        .sensor_y_mm = side[1] * output(p, &out, GLINT_OUT_SENSOR_Y),
-        .energy = output(p, &out, GLINT_OUT_ENERGY),
-        .rel_radius = rel_radius(p, &out)};
+        .stop_x_mm =
+            side[0] * stop * evaluate_output(p, &out, GLINT_OUT_STOP_X),
+        .stop_y_mm =
+            side[1] * stop * evaluate_output(p, &out, GLINT_OUT_STOP_Y),
+        .sensor_x_mm = side[0] * evaluate_output(p, &out, GLINT_OUT_SENSOR_X),
+        .sensor_y_mm = side[1] * evaluate_output(p, &out, GLINT_OUT_SENSOR_Y),
+        .energy = evaluate_output(p, &out, GLINT_OUT_ENERGY),
+        .rel_radius = relative_radius(p, &out)};
     return GLINT_RAY_OK;
 }
 
-/* Returns whether A, a 31-bit number of a model, equals B with a relative error
- * of at most 1e-8. */
-static bool agrees(struct glint_real a, double b)
+/* Returns whether A, a model's number with a 31-bit mantissa, equals B
+ * within a relative error of 1e-8. */
+static bool is_close(struct glint_real a, double b)
 {
     return fabs(model_real_of(a) - b) <= 1e-8 * fabs(b);
 }
@@ -208,8 +211,8 @@ static bool is_part(const struct glint_lens *model, uint32_t entry,
            model->ghost[entry].j == model->ghost[ghost].j;
 }
 
-/* Sets tracer->part to the parts of GHOST that the model has at this angle and
- * wavelength. GLINT_E_MEMORY. */
+/* Sets tracer->part to the parts of GHOST that the model has at this angle
+ * and wavelength. Returns GLINT_E_MEMORY if there is no memory. */
 static enum glint_status prepare_parts(const struct glint_lens *model,
                                        uint32_t ghost, int32_t sine_q30,
                                        int32_t wave_q24, struct tracer *tracer)
@@ -243,7 +246,7 @@ static int prepare_model(const struct tool *tool, const struct options *o,
     struct glint_optics optics;
 
     glint_optics_of(lens, &optics);
-    if (!agrees(h->focal_mm, optics.scale_mm) ||
+    if (!is_close(h->focal_mm, optics.scale_mm) ||
         h->n_ghosts - h->n_parts != (uint32_t)n_ghosts)
         return tool_fail(tool, GLINT_E_LENS,
                          "the model was baked from another lens");
@@ -264,11 +267,11 @@ static int prepare_model(const struct tool *tool, const struct options *o,
 
 /* --------------------------------------------------------------------- both */
 
-/* Sets AREA to the part of the front's vertex plane that the grid spans.
- * Returns an exit code. */
-static int area_of(const struct tool *tool, const struct options *o,
-                   const struct glint_prescription *lens,
-                   const struct tracer *tracer, struct glint_pupil *area)
+/* Sets AREA to the rectangle on the front element's vertex plane that the
+ * grid spans. Returns an exit code. */
+static int find_area(const struct tool *tool, const struct options *o,
+                     const struct glint_prescription *lens,
+                     const struct tracer *tracer, struct glint_pupil *area)
 {
     const double semi = lens->surface[0].semi_mm;
     struct glint_optics optics;
@@ -288,7 +291,7 @@ static int area_of(const struct tool *tool, const struct options *o,
     return EXIT_OK;
 }
 
-static double place(double from, double to, int k, int last)
+static double grid_position(double from, double to, int k, int last)
 {
     return last ? from + (to - from) * k / last : 0.5 * (from + to);
 }
@@ -302,8 +305,10 @@ static void print_rays(const struct tool *tool, const struct options *o,
 
     printf("px,py,status,stop_x,stop_y,sensor_x,sensor_y,energy,rel_radius\n");
     for (int k = 0; k < o->grid * o->grid && !ferror(stdout); k++) {
-        const double x = place(area->x0_mm, area->x1_mm, k % o->grid, last);
-        const double y = place(area->y0_mm, area->y1_mm, k / o->grid, last);
+        const double x =
+            grid_position(area->x0_mm, area->x1_mm, k % o->grid, last);
+        const double y =
+            grid_position(area->y0_mm, area->y1_mm, k / o->grid, last);
         struct glint_ray ray;
         const enum glint_ray_status status = tracer->trace(tracer, x, y, &ray);
 
@@ -343,7 +348,7 @@ static int trace(const struct tool *tool, const struct options *o,
     if (o->model && code == EXIT_OK)
         code = prepare_model(tool, o, lens, n, &model.lens, &tracer);
     if (code == EXIT_OK)
-        code = area_of(tool, o, lens, &tracer, &area);
+        code = find_area(tool, o, lens, &tracer, &area);
     if (code == EXIT_OK)
         print_rays(tool, o, &area, &tracer);
     free(tracer.part);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint - the command: finds the subcommand and runs it.
+ * The glint command: runs the subcommand that is named on the command line.
  */
 #include <stdio.h>
 #include <string.h>
@@ -62,8 +62,8 @@ static const struct command commands[] = {
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
-/* Runs COMMAND with "glint COMMAND" as ARGV[0], which getopt prints in its
- * errors. */
+/* Runs COMMAND with "glint COMMAND" as ARGV[0], which getopt_long() prints
+ * in its error messages. */
 static int run_command(const struct command *command, int argc, char **argv)
 {
     char name[32];
@@ -74,7 +74,7 @@ static int run_command(const struct command *command, int argc, char **argv)
     return command->run(argc, argv);
 }
 
-static const struct command *find(const char *name)
+static const struct command *find_command(const char *name)
 {
     for (int i = 0; i < N_COMMANDS; i++)
         if (strcmp(name, commands[i].name) == 0)
@@ -82,7 +82,7 @@ static const struct command *find(const char *name)
     return NULL;
 }
 
-static int no_command(const char *name)
+static int report_no_command(const char *name)
 {
     struct suggest s;
 
@@ -97,7 +97,7 @@ static int no_command(const char *name)
 }
 
 /* Prints the help of the command NAME, or that of glint if NAME is NULL. */
-static int help_of(const char *name)
+static int print_help(const char *name)
 {
     char argument[] = "--help", *argv[] = {NULL, argument, NULL};
     const struct command *command;
@@ -106,22 +106,22 @@ static int help_of(const char *name)
         fputs(help, stdout);
         return EXIT_OK;
     }
-    command = find(name);
-    return command ? run_command(command, 2, argv) : no_command(name);
+    command = find_command(name);
+    return command ? run_command(command, 2, argv) : report_no_command(name);
 }
 
 static int run(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
-    const struct command *command = find(name);
+    const struct command *command = find_command(name);
 
     if (command)
         return run_command(command, argc - 1, argv + 1);
     if (strcmp(name, "help") == 0)
-        return help_of(argc > 2 ? argv[2] : NULL);
+        return print_help(argc > 2 ? argv[2] : NULL);
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0)
-        return help_of(NULL);
-    if (strcmp(name, "--commands") == 0) { /* for shells */
+        return print_help(NULL);
+    if (strcmp(name, "--commands") == 0) { /* for shell completion */
         for (int i = 0; i < N_COMMANDS; i++)
             puts(commands[i].name);
         return EXIT_OK;
@@ -134,7 +134,7 @@ static int run(int argc, char **argv)
         return tool_option(&tool, 'V', NULL);
     }
     if (*name)
-        return no_command(name);
+        return report_no_command(name);
     fputs(help, stderr);
     return EXIT_USAGE;
 }
@@ -151,8 +151,8 @@ static int run_words(void *ctx)
     return run(words->argc, words->argv);
 }
 
-/* Runs the command on a large stack, as baking takes more than some systems
- * give. */
+/* Runs the command on a large stack, as baking needs more stack than some
+ * systems provide. */
 int main(int argc, char **argv)
 {
     struct words words = {argc, argv};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint-live - glint live as a program of its own, for boards: a tenth of the
- * size, as it takes baked models only (models_only.c).
+ * glint-live: glint live as a separate program for embedded boards. It has a
+ * tenth of glint's size because it reads only baked models (models_only.c).
  */
 #include "posix/process.h"
 #include "options/command_line.h"

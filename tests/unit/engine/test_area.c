@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Points that stand for a lamp of some extent: their power, centroid and RMS
- * extent must be the lamp's, nothing may jump as the lamp grows, and there are
- * never too many.
+ * Tests the points that represent a lamp of visible extent: their total power,
+ * centroid and RMS extent equal the lamp's, they change continuously as the
+ * lamp grows, and their number is limited.
  */
 #include <math.h>
 
@@ -13,7 +13,7 @@ static const double degree = 3.14159265358979323846 / 180;
 
 enum { MOST = 61, PIXELS = 1000 };
 
-static struct glint_lamp lamp_of(double major_px, double minor_px)
+static struct glint_lamp make_lamp(double major_px, double minor_px)
 {
     return (struct glint_lamp){.theta_deg = 9,
                                .phi_deg = 200,
@@ -23,23 +23,24 @@ static struct glint_lamp lamp_of(double major_px, double minor_px)
                                .turn_deg = 30};
 }
 
-static void place_of(const struct glint_lamp *lamp, double *u, double *v)
+static void find_position(const struct glint_lamp *lamp, double *u, double *v)
 {
     *u = PIXELS * tan(lamp->theta_deg * degree) * cos(lamp->phi_deg * degree);
     *v = PIXELS * tan(lamp->theta_deg * degree) * sin(lamp->phi_deg * degree);
 }
 
-/* Sets SUM to sums over the points of LAMP: power, place about the lamp (2),
- * squares along its axes (2). Returns how many points there are. */
-static int sums_of(const struct glint_lamp *lamp, double thinning,
-                   double sum[5])
+/* Sets SUM to sums over the points of LAMP: power; power times offset from
+ * the lamp, pixels, in u and v; power times squared offset along the lamp's
+ * major and minor axis. Returns the number of points. */
+static int compute_sums(const struct glint_lamp *lamp, double thinning,
+                        double sum[5])
 {
     struct glint_area area;
     const struct glint_area_rule rule = {PIXELS, MOST, lamp->power, thinning};
     const int n = glint_area_plan(&area, lamp, &rule);
     double u0, v0, u, v;
 
-    place_of(lamp, &u0, &v0);
+    find_position(lamp, &u0, &v0);
     for (int i = 0; i < 5; i++)
         sum[i] = 0;
     for (int i = 0; i < n; i++) {
@@ -47,7 +48,7 @@ static int sums_of(const struct glint_lamp *lamp, double thinning,
         const double c = cos(lamp->turn_deg * degree);
         const double s = sin(lamp->turn_deg * degree);
 
-        place_of(&p, &u, &v);
+        find_position(&p, &u, &v);
         u -= u0;
         v -= v0;
         assert_true(p.axis[0] == 0 && p.axis[1] == 0);
@@ -60,9 +61,9 @@ static int sums_of(const struct glint_lamp *lamp, double thinning,
     return n;
 }
 
-TEST(a_point_stays_one)
+TEST(small_lamp_is_one_point)
 {
-    const struct glint_lamp lamp = lamp_of(0, 0);
+    const struct glint_lamp lamp = make_lamp(0, 0);
     struct glint_area area;
     struct glint_lamp point;
     int total;
@@ -71,18 +72,18 @@ TEST(a_point_stays_one)
 
     assert_int_equal(glint_area_plan(&area, &lamp, &rule), 1);
     point = glint_area_point(&area, 0);
-    /* A single point must be the lamp itself, to the bit. */
+    /* A single point equals the lamp bit by bit. */
     assert_true(point.theta_deg == lamp.theta_deg);
     assert_true(point.phi_deg == lamp.phi_deg);
     assert_true(point.power == lamp.power);
 }
 
-TEST(sums_are_the_lamps)
+TEST(sums_equal_the_lamp)
 {
-    const struct glint_lamp lamp = lamp_of(30, 10);
+    const struct glint_lamp lamp = make_lamp(30, 10);
     double sum[5];
 
-    assert_int_equal(sums_of(&lamp, 1, sum), MOST);
+    assert_int_equal(compute_sums(&lamp, 1, sum), MOST);
     assert_true(fabs(sum[0] - 5) < 1e-9);
     assert_true(fabs(sum[1] - 0) < 1e-6);
     assert_true(fabs(sum[2] - 0) < 1e-6);
@@ -90,15 +91,15 @@ TEST(sums_are_the_lamps)
     assert_true(fabs(sqrt(sum[4] / 5) - 10) < 10 * 0.05);
 }
 
-/* Points of a lamp must stay where they are when its turn goes over 90 degrees,
- * which is half a turn of its axes, and those of a round one whatever its axes
- * do. */
+/* Checks that the points do not move when the lamp's rotation passes 90
+ * degrees (a half turn of its axes), and that those of a round lamp do not
+ * depend on the rotation. */
 TEST(axes_have_no_sign)
 {
     const struct glint_area_rule rule = {PIXELS, MOST, 5, 1};
 
     for (int k = 0; k < 3; k++) {
-        struct glint_lamp lamp = lamp_of(12, k == 0 ? 4 : 12);
+        struct glint_lamp lamp = make_lamp(12, k == 0 ? 4 : 12);
         struct glint_area a, b;
         double most = 0;
         int n;
@@ -112,25 +113,25 @@ TEST(axes_have_no_sign)
             const struct glint_lamp q = glint_area_point(&b, i);
             double u[2], v[2];
 
-            place_of(&p, &u[0], &v[0]);
-            place_of(&q, &u[1], &v[1]);
+            find_position(&p, &u[0], &v[0]);
+            find_position(&q, &u[1], &v[1]);
             most = fmax(most, hypot(u[0] - u[1], v[0] - v[1]));
         }
         assert_true(most < 1e-9);
     }
 }
 
-/* While a lamp grows by 0.005 px a step, its centroid must stay and the squares
- * of its spread must change little at each step. */
-TEST(it_grows_without_jumps)
+/* Checks, while a lamp grows by 0.005 px per step, that the centroid stays
+ * and that the second moments change little per step. */
+TEST(grows_continuously)
 {
     double last[5], sum[5];
 
-    sums_of(&(struct glint_lamp){.power = 0}, 1, last);
+    compute_sums(&(struct glint_lamp){.power = 0}, 1, last);
     for (int step = 0; step <= 4000; step++) {
-        const struct glint_lamp lamp = lamp_of(step * 0.005, step * 0.005);
+        const struct glint_lamp lamp = make_lamp(step * 0.005, step * 0.005);
 
-        sums_of(&lamp, 1, sum);
+        compute_sums(&lamp, 1, sum);
         assert_true(fabs(sum[1] - 0) < 1e-6);
         assert_true(fabs(sum[2] - 0) < 1e-6);
         if (step > 0)
@@ -142,13 +143,13 @@ TEST(it_grows_without_jumps)
     }
 }
 
-TEST(all_have_room)
+TEST(point_count_is_limited)
 {
     struct glint_lamp lamps[10];
     int total;
 
     for (int i = 0; i < 10; i++)
-        lamps[i] = lamp_of(3 * i, 2 * i);
+        lamps[i] = make_lamp(3 * i, 2 * i);
     for (int room = 1; room < 700; room++) {
         const struct glint_area_rule rule =
             glint_area_rule_of(lamps, 10, PIXELS, MOST, room, &total);
@@ -167,11 +168,11 @@ TEST(all_have_room)
     assert_int_equal(total, 1);
 }
 
-/* A lamp of a sixteenth of the power must get a quarter of the points, as steps
- * between faint points show less. */
+/* Checks that a lamp of 1/16 of the power gets 1/4 of the points, as steps
+ * between faint points are less visible. */
 TEST(faint_lamps_get_fewer)
 {
-    struct glint_lamp lamps[2] = {lamp_of(30, 30), lamp_of(30, 30)};
+    struct glint_lamp lamps[2] = {make_lamp(30, 30), make_lamp(30, 30)};
     struct glint_area area;
     struct glint_area_rule rule;
     int total;
@@ -184,18 +185,19 @@ TEST(faint_lamps_get_fewer)
     assert_true(total >= MOST + 1 + (MOST - 1) / 4);
 }
 
-/* The points of a disc must be as far apart as if each had an equal square of
- * it, and the distance must not jump as the disc grows and one point becomes
- * many. An ellipse a hundredth as wide must have a fifth of that distance. */
-TEST(how_far_they_are_apart)
+/* Checks that the distance of the points of a disc is that of points on a
+ * square grid with equal area per point, and changes continuously as the
+ * disc grows from one point to many. An ellipse 1/100 as wide has a fifth of
+ * that distance. */
+TEST(distance_of_points)
 {
     struct glint_area area;
     double last = 0;
     int total;
 
     for (int step = 0; step <= 4000; step++) {
-        const double radius = step * 0.01; /* pixels, RMS of each axis */
-        const struct glint_lamp lamp = lamp_of(radius, radius);
+        const double radius = step * 0.01; /* RMS radius, pixels */
+        const struct glint_lamp lamp = make_lamp(radius, radius);
         const struct glint_area_rule rule =
             glint_area_rule_of(&lamp, 1, PIXELS, MOST, 1000, &total);
         double apart;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * --budget on simulated machines: tool_seconds() returns the time that a
- * formula gives.
+ * Tests --budget on simulated machines: tool_seconds() is replaced by a formula
+ * for the time of a frame.
  */
 #include <stdint.h>
 
@@ -19,8 +19,8 @@ static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {7, 200, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {4, 80, 3e5, {1, 1, 1}, {0, 0}, 0}};
 
-/* A simulated machine: the time of a frame, in ms, is a function of its dials.
- * The clock is read at the ends of three intervals a frame. */
+/* A simulated machine: the time of a frame, ms, is a function of its quality
+ * parameters. The clock is read at the ends of three intervals per frame. */
 static struct machine {
     const struct glint_frame *frame;
     double base_ms, cells_ms, power, steps_ms;
@@ -48,9 +48,10 @@ double __wrap_tool_seconds(void)
     return machine.now_s;
 }
 
-/* Draws N frames under a budget and returns the report of the last. */
-static struct glint_engine_report run(struct glint_frame *frame,
-                                      double budget_ms, int n)
+/* Draws N frames with a budget of BUDGET_MS and returns the report of the
+ * last. */
+static struct glint_engine_report draw_frames(struct glint_frame *frame,
+                                              double budget_ms, int n)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
@@ -63,20 +64,20 @@ static struct glint_engine_report run(struct glint_frame *frame,
     return report;
 }
 
-static void make(struct glint_frame *frame)
+static void make_frame(struct glint_frame *frame)
 {
     assert_ok(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame));
 }
 
 static const struct machine machines[] = {
-    {NULL, 1, 3, 1.3, 0.5, 0, 0}, /* much as the cost model expects */
+    {NULL, 1, 3, 1.3, 0.5, 0, 0}, /* costs close to those of the cost model */
     {NULL, 0.2, 8, 2, 0, 0, 0},   /* costly rays */
     {NULL, 2, 1, 1, 1.5, 0, 0},   /* costly edges */
     {NULL, 1, 3, 1.3, 0.5, 0, 7}, /* +-6 percent of noise */
 };
 
-/* On each machine a frame must take 0.8 to 1.1 of its budget, and a larger
- * budget must not give less quality. */
+/* Checks that on each machine a frame takes 0.8 to 1.1 of its budget, and
+ * that a larger budget does not reduce the quality. */
 TEST(keeps_to_it)
 {
     static const double budget_ms[] = {4.2, 5, 7, 10};
@@ -90,9 +91,9 @@ TEST(keeps_to_it)
             double took;
 
             machine = machines[m];
-            make(&frame);
+            make_frame(&frame);
             machine.frame = &frame;
-            report = run(&frame, budget_ms[i], SETTLED);
+            report = draw_frames(&frame, budget_ms[i], SETTLED);
             took = frame_ms(&machine);
             machine.frame = NULL;
             assert_true(report.quality >= last - 0.05);
@@ -105,12 +106,13 @@ TEST(keeps_to_it)
     }
 }
 
-/* Draws SETTLED frames under 2.2 ms; then N frames under MS, with levels from
- * FROM on believed to take OCTAVES, factors of two, more than the cost model
- * says. The cheapest level at full resolution takes 4.2 ms. Returns how many of
- * the N frames have full resolution, and sets *LAST to whether the last one
- * has. */
-static int draw_whole(double ms, int from, double octaves, int n, bool *last)
+/* Draws SETTLED frames with a budget of 2.2 ms. Then sets the budget to MS
+ * and the predicted time of levels from FROM on to 2^OCTAVES times that of
+ * the cost model, and draws N frames. The cheapest level at full resolution
+ * takes 4.2 ms. Returns how many of the N frames have full resolution;
+ * *LAST: whether the last one has. */
+static int count_full_resolution(double ms, int from, double octaves, int n,
+                                 bool *last)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
@@ -119,9 +121,9 @@ static int draw_whole(double ms, int from, double octaves, int n, bool *last)
     int n_whole = 0;
 
     machine = (struct machine){NULL, 4, 1, 1.3, 0.5, 0, 0};
-    make(&frame);
+    make_frame(&frame);
     machine.frame = &frame;
-    run(&frame, 2.2, SETTLED);
+    draw_frames(&frame, 2.2, SETTLED);
     frame.budget.ms = ms;
     for (int i = from; i < GLINT_QUALITY_LEVELS; i++)
         frame.budget.octaves[i] = frame.budget.octaves[0] + octaves;
@@ -135,30 +137,30 @@ static int draw_whole(double ms, int from, double octaves, int n, bool *last)
     return n_whole;
 }
 
-/* Wrong predictions of slow levels must not keep these out for good where they
- * fit. */
+/* Checks that levels whose times are overestimated are used in the end if
+ * they fit. */
 TEST(tries_again)
 {
     bool last;
 
-    assert_in_range(draw_whole(4.6, 1, 1.5, 300, &last), 1, 299);
+    assert_in_range(count_full_resolution(4.6, 1, 1.5, 300, &last), 1, 299);
     assert_true(last);
 }
 
-/* A level that is wrongly predicted to miss the budget by a tenth must be tried
- * within some frames where the levels that are predicted to fit take far less.
- * A level that does not fit must not be tried again and again (14 of these 100
- * frames; 52 if there were no limit). */
+/* Checks that a level predicted to exceed the budget by a tenth is tried
+ * within some frames if the levels predicted to fit take far less, and that
+ * a level which does not fit is not retried too often (14 of these 100
+ * frames; 52 without the limit). */
 TEST(tries_next)
 {
     bool last;
 
-    assert_in_range(draw_whole(4.6, 2, 0.95, 20, &last), 1, 20);
+    assert_in_range(count_full_resolution(4.6, 2, 0.95, 20, &last), 1, 20);
     assert_true(last);
-    /* A level that is predicted to miss by half must not be tried. */
-    assert_int_equal(draw_whole(4.6, 2, 1.3, 20, &last), 0);
-    assert_in_range(draw_whole(4.1, GLINT_QUALITY_LEVELS, 0, 100, &last), 1,
-                    25);
+    /* A level predicted to exceed the budget by half is not tried. */
+    assert_int_equal(count_full_resolution(4.6, 2, 1.3, 20, &last), 0);
+    assert_in_range(
+        count_full_resolution(4.1, GLINT_QUALITY_LEVELS, 0, 100, &last), 1, 25);
     assert_false(last);
 }
 
@@ -167,34 +169,34 @@ TEST(ends)
     struct glint_frame frame;
 
     machine = machines[0];
-    make(&frame);
+    make_frame(&frame);
     machine.frame = &frame;
-    assert_true(run(&frame, 0.1, 10).quality == 0);
-    assert_true(run(&frame, 1e4, 10).quality == 1);
-    /* The quality falls at once, not only after many late frames. */
-    assert_true(run(&frame, 0.1, 2).quality == 0);
+    assert_true(draw_frames(&frame, 0.1, 10).quality == 0);
+    assert_true(draw_frames(&frame, 1e4, 10).quality == 1);
+    /* The quality drops at once, not after many late frames. */
+    assert_true(draw_frames(&frame, 0.1, 2).quality == 0);
     machine.frame = NULL;
     glint_frame_finish(&frame);
 }
 
-/* A veil must be left out where there is no time for anything, and come back
- * where there is. */
+/* Checks that the veil is dropped if the budget is too small for anything,
+ * and returns with a larger budget. */
 TEST(veil)
 {
     struct glint_frame frame;
 
     machine = machines[0];
-    make(&frame);
+    make_frame(&frame);
     frame.veil.glare = 0.02;
     machine.frame = &frame;
-    assert_true(run(&frame, 0.1, 4).unveiled);
-    assert_false(run(&frame, 1e4, 10).unveiled);
+    assert_true(draw_frames(&frame, 0.1, 4).unveiled);
+    assert_false(draw_frames(&frame, 1e4, 10).unveiled);
     machine.frame = NULL;
     glint_frame_finish(&frame);
 }
 
-/* The plan counts lights, so that the first frame with more of them must keep
- * to the budget, too. */
+/* Checks that the first frame with more lights keeps to the budget, as the
+ * plan counts lights. */
 TEST(new_lights)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
@@ -203,9 +205,9 @@ TEST(new_lights)
     struct glint_frame frame;
 
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
-    make(&frame);
+    make_frame(&frame);
     glint_budget_init(&frame.budget, 3);
-    /* The clock stands still, so this rate is not corrected. */
+    /* The simulated clock stands still, so this rate is not corrected. */
     frame.budget.ms_per_minsn = 0.1;
     frame.dials = glint_budget_dials(&frame.budget, &frame.dials);
     for (int i = 0; i < 4; i++)
@@ -216,8 +218,8 @@ TEST(new_lights)
     glint_frame_finish(&frame);
 }
 
-/* Counts of a plan must be those of the frame, and must scale with the dials as
- * the counts of another plan do. */
+/* Checks that the counts of a plan equal those of the drawn frame, and scale
+ * with the quality parameters as those of another plan. */
 TEST(counts)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
@@ -229,7 +231,7 @@ TEST(counts)
     struct glint_cost_plan plan;
 
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
-    make(&frame);
+    make_frame(&frame);
     frame.star.share = 1;
     frame.veil.glare = 0.02;
     frame.dials.fineness = 64;
@@ -239,7 +241,7 @@ TEST(counts)
     then = plan.dials;
     then.fineness = 128;
     predicted = glint_cost_of(&plan, &then);
-    /* The last bundles may turn out to have no edges. */
+    /* Some planned bundles may have no edges. */
     assert_true(coarse.count[GLINT_COST_BUNDLES] >= report.stats.bundles);
     assert_true(coarse.count[GLINT_COST_BUNDLES] <=
                 opened.lens.setup.n_ghosts * opened.lens.setup.n_wavelengths);
@@ -253,10 +255,10 @@ TEST(counts)
     plan = glint_frame_plan(&frame);
     fine = glint_cost_of(&plan, &plan.dials);
     for (int k = 0; k < GLINT_COST_KINDS; k++)
-        if (k != GLINT_COST_PARTS) /* the stop is clean */
+        if (k != GLINT_COST_PARTS) /* The stop has no dust. */
             assert_true(fabs(predicted.count[k] / fine.count[k] - 1) < 0.25);
     assert_true(glint_cost_minsn(&fine) > glint_cost_minsn(&coarse));
-    /* Counts must scale to half as many pixels each way, too. */
+    /* Counts also scale to half resolution. */
     then = plan.dials;
     then.flags |= GLINT_DIAL_HALF;
     predicted = glint_cost_of(&plan, &then);

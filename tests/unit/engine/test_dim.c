@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Dim ghosts, drawn by the rays of one wave: the sum of light must stay,
- * nothing may pop up, and a picture may depend neither on frames before nor on
- * workers.
+ * Tests dim ghosts, which are drawn with the rays of one wavelength: total
+ * light is preserved, no ghost pops up, and an image depends neither on earlier
+ * frames nor on the number of workers.
  */
 #include <math.h>
 #include <stdint.h>
@@ -18,8 +18,8 @@ static struct stage stage;
 static struct glint_lamp lamps[LIGHTS];
 static uint8_t plain[BYTES], dim[BYTES], last[2][BYTES];
 
-/* Sets a bright lamp and ever fainter ones, over seven octaves, moved by
- * TIME. */
+/* Sets a bright lamp and fainter ones, over a range of seven octaves, at
+ * positions that depend on TIME. */
 static void set_lamps(double time)
 {
     for (int i = 0; i < LIGHTS; i++)
@@ -27,7 +27,7 @@ static void set_lamps(double time)
                               3e5 * exp2(-0.45 * i));
 }
 
-static void draw(double codes, uint8_t *picture)
+static void draw_image(double codes, uint8_t *picture)
 {
     stage.frame.dials = glint_dials_at(1 << 13);
     stage.frame.dials.dim_codes = codes;
@@ -45,7 +45,7 @@ TEST_CLOSE
     stage_close(&stage);
 }
 
-static double sum_of(const uint8_t *picture)
+static double sum_codes(const uint8_t *picture)
 {
     double sum = 0;
 
@@ -63,21 +63,21 @@ static double psnr(const uint8_t *a, const uint8_t *b)
     return 10 * log10(255. * 255 * BYTES / fmax(sum, 1));
 }
 
-/* Each larger dim_codes must give fewer bundles and a picture no nearer to that
- * of dim_codes 0, in which each ghost has its own three waves; still above
- * 40 dB, and with the same sum of codes within 1 %. */
+/* Checks that each larger dim_codes gives fewer bundles and an image no
+ * closer to that of dim_codes 0 (where each ghost has three wavelengths of
+ * its own), above 40 dB and with the same sum of codes within 1 %. */
 TEST(light_stays)
 {
     int bundles;
     double before = 99;
 
     set_lamps(0);
-    draw(0, plain);
+    draw_image(0, plain);
     bundles = stage.drawn.stats.bundles;
     for (double codes = 0.5; codes <= 8; codes *= 4) {
-        draw(codes, dim);
+        draw_image(codes, dim);
         assert_true(stage.drawn.stats.bundles < bundles);
-        assert_true(fabs(sum_of(dim) / sum_of(plain) - 1) < 0.01);
+        assert_true(fabs(sum_codes(dim) / sum_codes(plain) - 1) < 0.01);
         assert_true(psnr(plain, dim) > 40);
         assert_true(psnr(plain, dim) <= before);
         bundles = stage.drawn.stats.bundles;
@@ -85,8 +85,8 @@ TEST(light_stays)
     }
 }
 
-/* While lights move for 300 frames, the largest jump of a mean of 8 x 8 pixels
- * with dim ghosts must be less than half a code above that without them. */
+/* Checks, while lights move for 300 frames, that dim ghosts increase the
+ * largest jump of the mean of 8 x 8 pixels by less than half a code. */
 TEST(no_pops)
 {
     double worst[2] = {0, 0};
@@ -96,7 +96,7 @@ TEST(no_pops)
         for (int k = 0; k < 2; k++) {
             uint8_t *now = k ? dim : plain;
 
-            draw(k ? 4 : 0, now);
+            draw_image(k ? 4 : 0, now);
             if (frame) {
                 const double jump = stage_block_jump(&stage, last[k], now);
 
@@ -110,8 +110,8 @@ TEST(no_pops)
     assert_true(worst[1] < worst[0] + 0.5);
 }
 
-/* Sets four groups of four lamps, each within a degree, that move by TIME and
- * whose powers waver by 3 %. */
+/* Sets four groups of four lamps, each group within a degree, at positions
+ * that depend on TIME, with 3 % of noise in their powers. */
 static void set_groups(double time, uint64_t *noise)
 {
     for (int i = 0; i < LIGHTS; i++)
@@ -121,9 +121,9 @@ static void set_groups(double time, uint64_t *noise)
                        5e3 * exp2(-(i % 4)) * stage_uniform(noise, 0.97, 1.03));
 }
 
-/* Returns the sum of the light of a linear picture that is planned as one in
- * codes, with nothing left out. */
-static double light_of(double codes)
+/* Returns the total light of a linear image that is planned as for codes,
+ * without dropping anything. */
+static double sum_light(double codes)
 {
     static int32_t light_q20[3 * W * H];
     struct glint_image image =
@@ -142,10 +142,10 @@ static double light_of(double codes)
     return sum;
 }
 
-/* Of lights near each other, dim ghosts must be drawn as one: with less than
- * half of the bundles, their light within 6 %, and no larger jumps of a mean of
- * 8 x 8 pixels by half a code than when each is drawn by itself. The account
- * must agree. */
+/* Checks that dim ghosts of neighbouring lights are merged: less than half
+ * the bundles, the same light within 6 %, and jumps of the mean of 8 x 8
+ * pixels at most half a code larger than with separate ghosts. The frame
+ * statistics agree. */
 TEST(shared_rays)
 {
     struct glint_account account;
@@ -158,7 +158,7 @@ TEST(shared_rays)
         for (int k = 0; k < 2; k++) {
             uint8_t *now = k ? dim : plain;
 
-            draw(k ? 4 : 0, now);
+            draw_image(k ? 4 : 0, now);
             bundles[k] = stage.drawn.stats.bundles;
             if (frame) {
                 const double jump = stage_block_jump(&stage, last[k], now);
@@ -170,7 +170,7 @@ TEST(shared_rays)
         assert_true(2 * bundles[1] < bundles[0]);
         assert_true(psnr(plain, dim) > 50);
         if (frame % 100 == 0)
-            assert_true(fabs(light_of(4) / light_of(0) - 1) < 0.06);
+            assert_true(fabs(sum_light(4) / sum_light(0) - 1) < 0.06);
     }
     print_message("of groups: %.2f codes, with dim ghosts %.2f\n", worst[0],
                   worst[1]);
@@ -187,24 +187,24 @@ TEST(shared_rays)
     assert_true(of[GLINT_OUTCOME_SHARED] > bundles[1] / 4);
 }
 
-/* A picture must have the same bits with 1, 3 or 5 workers, and after another
- * frame. */
+/* Checks that an image is the same bit by bit with 1, 3 or 5 workers, and
+ * after another frame. */
 TEST(same_bits)
 {
     struct shuffle shuffle;
 
     set_lamps(1.5);
-    draw(4, plain);
+    draw_image(4, plain);
     for (int n = 1; n <= 5; n += 2) {
         stage_view(&stage, W, H, 0);
         shuffle_init(&shuffle, n, 7);
         stage.frame.cfg.workers = &shuffle.workers;
         if (n > 1) {
             set_lamps(0.7);
-            draw(4, dim);
+            draw_image(4, dim);
         }
         set_lamps(1.5);
-        draw(4, dim);
+        draw_image(4, dim);
         assert_memory_equal(plain, dim, BYTES);
         stage.frame.cfg.workers = NULL;
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The engine as programs embed it: what it refuses, what it reports, and that
- * its own memory and the caller's give the same pictures; the table of options.
+ * Tests the engine's public API: rejected arguments, reports, equal images in
+ * its own and the caller's memory, and the table of options.
  */
 #include <stdint.h>
 
@@ -15,8 +15,8 @@
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
-/* Draws two white lamps on grey into PX and returns that as a picture. */
-static struct glint_image picture(uint8_t *px)
+/* Draws two white lamps on grey into PX and returns the image. */
+static struct glint_image make_picture(uint8_t *px)
 {
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
 
@@ -28,7 +28,7 @@ static struct glint_image picture(uint8_t *px)
     return image;
 }
 
-static struct glint_engine *make(void *arena, size_t bytes)
+static struct glint_engine *make_engine(void *arena, size_t bytes)
 {
     struct glint_engine_config cfg;
     struct glint_engine *engine;
@@ -42,13 +42,13 @@ static struct glint_engine *make(void *arena, size_t bytes)
     return engine;
 }
 
-/* Draws the picture into PX, US after the last one, with the flare of the lamps
- * found; returns how many lamps there are. */
-static int run(struct glint_engine *engine, int32_t us, uint8_t *px,
-               struct glint_engine_report *report)
+/* Draws the image into PX, US microseconds after the previous one, with the
+ * flare of the lamps found. Returns the number of lamps. */
+static int draw_found(struct glint_engine *engine, int32_t us, uint8_t *px,
+                      struct glint_engine_report *report)
 {
     struct glint_engine_lamp lamps[8];
-    const struct glint_image image = picture(px);
+    const struct glint_image image = make_picture(px);
     const int n = glint_engine_find(engine, &image, us, lamps, 8);
 
     assert_ok(glint_engine_draw(engine, lamps, n, &image, report));
@@ -58,11 +58,11 @@ static int run(struct glint_engine *engine, int32_t us, uint8_t *px,
 TEST(draws)
 {
     static uint8_t px[BYTES], plain[BYTES];
-    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine *engine = make_engine(NULL, 0);
     struct glint_engine_report report;
 
-    picture(plain);
-    assert_int_equal(run(engine, 0, px, &report), 2);
+    make_picture(plain);
+    assert_int_equal(draw_found(engine, 0, px, &report), 2);
     assert_int_equal(report.lights, 2);
     assert_true(report.ghosts > 0 && report.stats.bundles > 0 &&
                 report.scale > 0);
@@ -73,60 +73,60 @@ TEST(draws)
     glint_engine_destroy(engine);
 }
 
-/* Memory of the engine and of the caller must give the same picture. Where it
- * is too little, the report must still say how much would do. */
+/* Checks that the engine's memory and the caller's give the same image. If
+ * the caller's is too small, the report states how much is enough. */
 TEST(arena)
 {
     static uint8_t want[BYTES], got[BYTES];
-    struct glint_engine *engine = make(NULL, 16 << 20);
+    struct glint_engine *engine = make_engine(NULL, 16 << 20);
     struct glint_engine_report full, little, report;
     void *mem;
 
-    run(engine, 0, want, &full);
+    draw_found(engine, 0, want, &full);
     glint_engine_destroy(engine);
     assert_int_equal(posix_memalign(&mem, 64, 16 << 20), 0);
-    engine = make(mem, 16 << 20);
-    run(engine, 0, got, &report);
+    engine = make_engine(mem, 16 << 20);
+    draw_found(engine, 0, got, &report);
     glint_engine_destroy(engine);
     assert_memory_equal(got, want, BYTES);
     assert_int_equal(report.stats.dropped_bundles, 0);
-    engine = make(mem, 1100 << 10);
-    run(engine, 0, got, &little);
+    engine = make_engine(mem, 1100 << 10);
+    draw_found(engine, 0, got, &little);
     glint_engine_destroy(engine);
     assert_true(little.stats.dropped_bundles > 0);
     assert_int_equal(little.need_bytes, full.need_bytes);
     free(mem);
 }
 
-/* Lamps that are followed must be there after 30 frames; with the dials turned
- * down, fewer bundles must be drawn. */
+/* Checks that tracked lamps are present after 30 frames, and that reduced
+ * quality parameters draw fewer bundles. */
 TEST(follows)
 {
     static uint8_t px[BYTES];
-    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine *engine = make_engine(NULL, 0);
     struct glint_engine_report report;
     int n = 0, bundles;
 
     for (int i = 0; i < 30; i++)
-        n = run(engine, 40000, px, &report);
+        n = draw_found(engine, 40000, px, &report);
     assert_int_equal(n, 2);
     bundles = report.stats.bundles;
     glint_engine_set_dials(
         engine,
         glint_dials_coarser(glint_dials_at(1 << 14), glint_dials_at(1 << 12)));
-    run(engine, 40000, px, &report);
+    draw_found(engine, 40000, px, &report);
     assert_in_range(report.stats.bundles, 1, bundles - 1);
     glint_engine_destroy(engine);
 }
 
-/* Draws LAMP alone on grey into PX, US after the last picture; below 0: without
- * saying. */
-static double given(struct glint_engine *engine, const struct glint_lamp *lamp,
-                    int32_t us, uint8_t *px)
+/* Draws the given LAMP alone on grey into PX, US microseconds after the
+ * previous image; US < 0: time unknown. Returns the exposure. */
+static double draw_given(struct glint_engine *engine,
+                         const struct glint_lamp *lamp, int32_t us, uint8_t *px)
 {
     struct glint_engine_lamp one = glint_engine_lamp_of(lamp, 1);
     struct glint_engine_report report;
-    const struct glint_image image = picture(px);
+    const struct glint_image image = make_picture(px);
 
     memset(px, 40, BYTES);
     if (us >= 0)
@@ -135,16 +135,16 @@ static double given(struct glint_engine *engine, const struct glint_lamp *lamp,
     return report.scale;
 }
 
-/* A given lamp must be exposed as a found one: of a still picture by its
- * flare drawn small, whatever was drawn before; of a video from picture to
- * picture, in small steps. */
-TEST(given)
+/* Checks that a given lamp is exposed like a found one: in a still image by
+ * a small rendering of its flare, whatever was drawn before; in a video by
+ * small steps from frame to frame. */
+TEST(draw_given)
 {
     static uint8_t px[BYTES], found[BYTES], again[BYTES];
-    const struct glint_image image = picture(px);
+    const struct glint_image image = make_picture(px);
     const struct glint_lamp dim = {12, 0, 20, {1, 1, 1}, {0, 0}, 0};
     const struct glint_lamp lit = {12, 0, 2e6, {1, 1, 1}, {0, 0}, 0};
-    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine *engine = make_engine(NULL, 0);
     struct glint_engine_report report;
     struct glint_engine_lamp lamps[8];
     double alone, scale;
@@ -153,18 +153,19 @@ TEST(given)
     memcpy(found, px, BYTES);
     n = glint_engine_find(engine, &image, 0, lamps, 8);
     for (int i = 0; i < n; i++)
-        lamps[i] = glint_engine_lamp_of(&lamps[i].lamp, 1); /* not found */
+        /* given, not found */
+        lamps[i] = glint_engine_lamp_of(&lamps[i].lamp, 1);
     assert_ok(glint_engine_draw(engine, lamps, n, &image, &report));
     scale = report.scale;
-    run(engine, 0, found, &report);
+    draw_found(engine, 0, found, &report);
     assert_true(fabs(report.scale / scale - 1) < 1e-6);
-    alone = given(engine, &dim, -1, px);
-    given(engine, &lit, -1, again);
-    assert_true(given(engine, &dim, -1, again) == alone);
+    alone = draw_given(engine, &dim, -1, px);
+    draw_given(engine, &lit, -1, again);
+    assert_true(draw_given(engine, &dim, -1, again) == alone);
     assert_memory_equal(px, again, BYTES);
-    scale = given(engine, &lit, 0, px);
+    scale = draw_given(engine, &lit, 0, px);
     for (int i = 0; i < 8; i++) {
-        const double next = given(engine, &dim, 40000, px);
+        const double next = draw_given(engine, &dim, 40000, px);
 
         assert_true(next >= scale && next <= 1.1 * scale);
         scale = next;
@@ -173,48 +174,48 @@ TEST(given)
     glint_engine_destroy(engine);
 }
 
-/* A stop that is set later must give the picture of an engine that is made with
- * it. A wider stop than the model's must be refused. */
+/* Checks that a stop set later gives the image of an engine created with it,
+ * and that a stop wider than the model's is rejected. */
 TEST(stop)
 {
     static uint8_t open[BYTES], set[BYTES], made[BYTES];
     const double f = glint_real_value(opened.lens.model.lens.header->f_number);
-    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine *engine = make_engine(NULL, 0);
     struct glint_engine_report report;
     struct glint_engine_config cfg;
     struct glint_error error;
 
-    run(engine, 0, open, &report);
+    draw_found(engine, 0, open, &report);
     assert_int_equal(glint_engine_stop(engine, f / 2, &error),
                      GLINT_E_ARGUMENT);
-    run(engine, 0, set, &report);
+    draw_found(engine, 0, set, &report);
     assert_memory_equal(set, open, BYTES);
     assert_ok(glint_engine_stop(engine, 3 * f, &error));
-    run(engine, 0, set, &report);
+    draw_found(engine, 0, set, &report);
     glint_engine_destroy(engine);
     assert_memory_not_equal(set, open, BYTES);
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &opened.lens.model.lens;
     cfg.camera.f_number = 3 * f;
     assert_ok(glint_engine_create(&engine, &cfg, &error));
-    run(engine, 0, made, &report);
+    draw_found(engine, 0, made, &report);
     assert_memory_equal(set, made, BYTES);
     assert_ok(glint_engine_stop(engine, f, &error));
-    run(engine, 0, set, &report);
+    draw_found(engine, 0, set, &report);
     assert_memory_equal(set, open, BYTES);
     glint_engine_destroy(engine);
 }
 
-/* A picture of another size, or more lamps than there is room for, must be
- * refused at each stage, also of a picture that is exposed. */
+/* Checks that an image of another size, or too many lamps, are rejected at
+ * each stage, including automatic exposure. */
 TEST(refuses_pictures)
 {
     static uint8_t px[BYTES];
     static float rgb[BYTES];
-    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine *engine = make_engine(NULL, 0);
     struct glint_engine_report report;
     struct glint_engine_lamp lamps[8];
-    struct glint_image image = picture(px);
+    struct glint_image image = make_picture(px);
     const int n = glint_engine_find(engine, &image, 0, lamps, 8);
     const int many = GLINT_ENGINE_MAX_LAMPS + 1;
 
@@ -233,15 +234,15 @@ TEST(refuses_pictures)
     glint_engine_destroy(engine);
 }
 
-/* Layers must add up to all parts drawn together; a lamp that is given, none
- * being looked for, must give a render its light, twice as much at twice the
- * gain; and light set by hand must count from the next picture on. */
+/* Checks that layers add up to all parts drawn together, that a given lamp
+ * lights a render without detection (twice as much at twice the gain), and
+ * that a manual exposure applies from the next image on. */
 TEST(layers)
 {
     static uint8_t px[BYTES];
     static float part[BYTES], all[BYTES], sum[BYTES];
     const struct glint_lamp lamp = {12, 30, 1e5, {1, 1, 1}, {0, 0}, 0};
-    const struct glint_image image = picture(px);
+    const struct glint_image image = make_picture(px);
     struct glint_engine_lamp known = glint_engine_lamp_of(&lamp, 1);
     struct glint_engine_report report;
     struct glint_engine_config cfg;
@@ -283,12 +284,12 @@ TEST(layers)
 TEST(refuses)
 {
     static uint8_t px[BYTES];
-    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine *engine = make_engine(NULL, 0);
     struct glint_engine_config cfg;
     struct glint_engine_report report;
     const struct glint_lamp place = {5, 0, 1, {1, 1, 1}, {0, 0}, 0};
     struct glint_engine_lamp lamp = glint_engine_lamp_of(&place, 1);
-    struct glint_image image = picture(px);
+    struct glint_image image = make_picture(px);
     struct glint_error error;
 
     image.height--;
@@ -323,8 +324,9 @@ TEST(refuses)
     }
 }
 
-/* A program of an older library, whose configuration ends earlier, must have
- * the defaults of what follows, whatever lies there. */
+/* Checks that a program compiled for an older library, whose configuration
+ * struct is shorter, gets the defaults for the missing members, whatever the
+ * memory after the struct contains. */
 TEST(older_program)
 {
     struct glint_engine *engine = NULL;
@@ -340,9 +342,9 @@ TEST(older_program)
     glint_engine_destroy(engine);
 }
 
-/* The struct of an older program, without the last option, must not be written
- * behind its end, must accept and configure all others, and the option that it
- * lacks is unknown and has its default. */
+/* Checks the options struct of an older program, which lacks the last
+ * option: nothing is written behind its end, all other options can be set
+ * and used, and the missing option is unknown and has its default. */
 TEST(older_options)
 {
     const size_t bytes = offsetof(struct glint_options, dither);
@@ -369,15 +371,16 @@ TEST(older_options)
     free(older);
 }
 
-/* Options set by name must draw what the same configuration draws, and those
- * that are fixed, unknown or out of range must change nothing. */
+/* Checks that options set by name draw the same image as the same
+ * configuration, and that fixed, unknown or out-of-range options change
+ * nothing. */
 TEST(set_by_name)
 {
     static uint8_t set[BYTES], made[BYTES];
     const char *const bad[] = {"veil", "strengt", "gain"};
     struct glint_engine_config cfg;
     struct glint_engine_report report;
-    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine *engine = make_engine(NULL, 0);
     struct glint_error error;
 
     assert_ok(glint_engine_set(engine, "exposure", 3, &error));
@@ -387,7 +390,7 @@ TEST(set_by_name)
                          GLINT_E_ARGUMENT);
         assert_true(error.text[0] != '\0');
     }
-    run(engine, 0, set, &report);
+    draw_found(engine, 0, set, &report);
     glint_engine_destroy(engine);
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &opened.lens.model.lens;
@@ -395,7 +398,7 @@ TEST(set_by_name)
     cfg.light.exposure_ev = 3;
     cfg.light.gain = 2;
     assert_ok(glint_engine_create(&engine, &cfg, &error));
-    run(engine, 0, made, &report);
+    draw_found(engine, 0, made, &report);
     glint_engine_destroy(engine);
     assert_memory_equal(set, made, BYTES);
 }
@@ -410,9 +413,9 @@ static bool accepts(struct glint_options *o, const char *name, const char *text)
     return is_set;
 }
 
-/* Stop, dust and colours of options must be those of a setup made step by step,
- * front-dust must be the engine's own dirt, and setting stop by name must be
- * glint_engine_iris(). */
+/* Checks that stop, dust and colours set by options equal those of a setup
+ * made step by step, that front-dust becomes the engine's dirt, and that
+ * setting stop by name equals glint_engine_iris(). */
 TEST(configured_camera)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -441,7 +444,7 @@ TEST(configured_camera)
     cfg.camera.front = on_front;
     cfg.arena_has_all = 1;
     assert_ok(glint_engine_create(&engine, &cfg, &error));
-    run(engine, 0, want, &report);
+    draw_found(engine, 0, want, &report);
     glint_engine_destroy(engine);
 
     glint_options_defaults(&o);
@@ -454,16 +457,16 @@ TEST(configured_camera)
     glint_engine_configure(&cfg, &o);
     cfg.model = lens;
     assert_ok(glint_engine_create(&engine, &cfg, &error));
-    run(engine, 0, got, &report);
+    draw_found(engine, 0, got, &report);
     assert_memory_equal(got, want, BYTES);
 
     iris.roundness = iris.softness = 0;
     assert_ok(glint_engine_iris(engine, 5, 0, &iris, &error));
-    run(engine, 0, want, &report);
+    draw_found(engine, 0, want, &report);
     assert_memory_not_equal(got, want, BYTES);
     assert_ok(glint_engine_iris(engine, 0, 0, &iris, &error));
     assert_ok(glint_engine_set_text(engine, "stop", "polygon:5", &error));
-    run(engine, 0, got, &report);
+    draw_found(engine, 0, got, &report);
     assert_memory_equal(got, want, BYTES);
     glint_engine_destroy(engine);
     glint_front_free(on_front);
@@ -471,48 +474,26 @@ TEST(configured_camera)
     free(setup);
 }
 
-/* Dust behind straight blades, and nothing else of an iris, must be drawn. */
+/* Checks that dust is drawn behind a stop with straight blades and no other
+ * option of the iris. */
 TEST(dust_alone)
 {
     static uint8_t dusty[BYTES], clean[BYTES];
     const struct glint_iris iris = {.dust = 0.02, .dust_seed = 7};
     struct glint_engine_report report;
-    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine *engine = make_engine(NULL, 0);
     struct glint_error error;
 
-    run(engine, 0, clean, &report);
+    draw_found(engine, 0, clean, &report);
     assert_ok(glint_engine_iris(engine, 8, 0, &iris, &error));
-    run(engine, 0, dusty, &report);
+    draw_found(engine, 0, dusty, &report);
     assert_memory_not_equal(dusty, clean, BYTES);
     glint_engine_destroy(engine);
 }
 
-/* A configuration without STOPS accepts clean, straight blades only. */
-TEST(no_stops)
-{
-    struct glint_engine_config cfg;
-    struct glint_engine *engine;
-    struct glint_error error;
-
-    for (int k = 0; k < 3; k++) {
-        glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-        cfg.model = &opened.lens.model.lens;
-        cfg.camera.iris.roundness = k == 1 ? 0.2 : 0;
-        cfg.camera.front_dirt.dust = k == 2 ? 0.02 : 0;
-        *error.text = '\0';
-        assert_int_equal(glint_engine_create(&engine, &cfg, &error),
-                         k ? GLINT_E_ARGUMENT : GLINT_OK);
-        assert_true(!k == !strstr(error.text, "camera.stops"));
-        glint_engine_destroy(engine);
-        cfg.camera.stops = &glint_engine_all_stops;
-        assert_ok(glint_engine_create(&engine, &cfg, &error));
-        glint_engine_destroy(engine);
-    }
-}
-
-/* Each number of the table accepts its limits alone, and counts as given only
- * once it was set. Of strength and exposure, and of quality and error, the one
- * that was set last counts. */
+/* Checks that each numeric option accepts its limits and rejects values
+ * beyond them, and counts as given only after it was set. Of strength and
+ * exposure, and of quality and error, the one set last is used. */
 TEST(options)
 {
     struct glint_options o;
@@ -545,8 +526,9 @@ TEST(options)
     assert_false(GLINT_OPTION_GIVEN(&o, quality));
 }
 
-/* Every default can be set again; numbers are finite; an empty text restores
- * the default; a flag knows yes from no; blanks may stand before numbers. */
+/* Checks that every default can be set again, that numbers must be finite,
+ * that an empty text restores the default, that flags accept yes and no, and
+ * that blanks may precede numbers. */
 TEST(option_values)
 {
     struct glint_options o, initial;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reports on a frame must be true: counts are those of the drawn frame, parts
- * add up to it, each reason occurs where it must, and the picture shows the
- * touched tiles.
+ * Tests the reports of glint explain: counts equal those of the drawn frame,
+ * their parts add up to it, each reason occurs where expected, and the image
+ * shades the touched tiles.
  */
 #include <math.h>
 #include <stdint.h>
@@ -29,20 +29,20 @@ static const struct glint_lamp lamps[] = {{12, 20, 3e6, {1, 1, 1}, {0, 0}, 0},
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
-static void make(struct glint_frame *frame)
+static void make_frame(struct glint_frame *frame)
 {
     assert_ok(settings_frame(&tool, &opened, WIDTH, HEIGHT, frame));
     frame->cfg.tile_log2 = 4;
 }
 
-static void draw(struct glint_frame *frame, const struct glint_lamp *lamp,
-                 int n, struct glint_engine_report *report)
+static void draw_frame(struct glint_frame *frame, const struct glint_lamp *lamp,
+                       int n, struct glint_engine_report *report)
 {
     memset(rgb, 0, sizeof rgb);
     assert_ok(glint_frame_draw(frame, lamp, n, 1, &image, report));
 }
 
-static double sum(const struct glint_explain_part *part, int n, int cost)
+static double sum_parts(const struct glint_explain_part *part, int n, int cost)
 {
     double s = 0;
 
@@ -51,7 +51,7 @@ static double sum(const struct glint_explain_part *part, int n, int cost)
     return s;
 }
 
-static int ghosts_drawn(const struct glint_explain *e)
+static int count_drawn_ghosts(const struct glint_explain *e)
 {
     int n = 0;
 
@@ -60,8 +60,8 @@ static int ghosts_drawn(const struct glint_explain *e)
     return n;
 }
 
-/* Checks what must be true of any frame: E agrees with REPORT, and its parts by
- * ghost, light and wavelength each add up to the whole. */
+/* Checks the invariants of every frame: E agrees with REPORT, and its parts
+ * per ghost, per light and per wavelength each add up to the frame. */
 static void assert_agrees(const struct glint_explain *e,
                           const struct glint_engine_report *report)
 {
@@ -75,13 +75,13 @@ static void assert_agrees(const struct glint_explain *e,
     assert_int_equal(e->all.of[GLINT_OUTCOME_NO_ROOM],
                      report->stats.dropped_bundles);
     assert_int_equal(e->all.tiles, report->tiles);
-    assert_int_equal(ghosts_drawn(e), report->ghosts);
+    assert_int_equal(count_drawn_ghosts(e), report->ghosts);
     for (int by = 0; by < 3; by++) {
         long long edges = 0, vertices = 0;
         int bundles = 0;
 
-        assert_true(fabs(sum(parts[by], n[by], 0) - 1) < 0.002);
-        assert_true(fabs(sum(parts[by], n[by], 1) + pixels - 1) < 1e-9);
+        assert_true(fabs(sum_parts(parts[by], n[by], 0) - 1) < 0.002);
+        assert_true(fabs(sum_parts(parts[by], n[by], 1) + pixels - 1) < 1e-9);
         for (int i = 0; i < n[by]; i++) {
             edges += parts[by][i].edges;
             vertices += parts[by][i].vertices;
@@ -97,24 +97,24 @@ static void assert_agrees(const struct glint_explain *e,
 
 /* ------------------------------------------------------------------- tests */
 
-/* Of three lights one is beyond the model and two are drawn, each of them
- * without some ghosts. */
+/* Three lights: one outside the model's angles, two drawn, each without some
+ * ghosts. */
 TEST(frame)
 {
     struct glint_engine_report report;
     struct glint_frame frame;
     struct glint_explain e;
 
-    make(&frame);
-    draw(&frame, lamps, N_LAMPS, &report);
+    make_frame(&frame);
+    draw_frame(&frame, lamps, N_LAMPS, &report);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     assert_agrees(&e, &report);
     assert_int_equal(e.n_lights, 2);
     assert_int_equal(glint_explain_bundles(&e.all), 2 * 13 * 3);
     for (int i = 0; i < N_LAMPS; i++)
         assert_int_equal(glint_frame_is_beyond(&frame, &lamps[i]), i == 2);
-    /* At 12 degrees ghosts 5 and 7 let nothing through. At 8 degrees they do,
-     * but ghost 5 falls off-screen. */
+    /* At 12 degrees ghosts 5 and 7 pass no light. At 8 degrees they do, but
+     * ghost 5 falls off-screen. */
     assert_int_equal(e.light[0].of[GLINT_OUTCOME_CLOSED], 2 * 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_CLOSED], 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_OUTSIDE], 3);
@@ -123,8 +123,8 @@ TEST(frame)
     glint_frame_finish(&frame);
 }
 
-/* The brightest light must be in the range that the codes mean, and light must
- * be linear in UNIT. */
+/* Checks that the peak is within the range of codes, and that light is
+ * linear in UNIT. */
 TEST(light)
 {
     struct glint_engine_report report;
@@ -132,10 +132,11 @@ TEST(light)
     struct glint_frame frame;
     int most = 0;
 
-    make(&frame);
+    make_frame(&frame);
     frame.only_ghost = 11;
-    draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
-         &report);
+    draw_frame(&frame,
+               (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
+               &report);
     for (int i = 0; i < BYTES; i += 3)
         most = rgb[i] + rgb[i + 1] + rgb[i + 2] > most
                    ? rgb[i] + rgb[i + 1] + rgb[i + 2]
@@ -153,8 +154,8 @@ TEST(light)
     glint_frame_finish(&frame);
 }
 
-/* Each of these outcomes must occur in a frame of its own. A frame whose only
- * lamp lies beyond the model must have no bundles. */
+/* Checks that each of these outcomes occurs in a frame made for it, and that
+ * a frame whose only lamp is outside the model's angles has no bundles. */
 TEST(reasons)
 {
     static const struct {
@@ -174,9 +175,9 @@ TEST(reasons)
     struct glint_explain e;
 
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        make(&frame);
+        make_frame(&frame);
         frame.only_ghost = cases[i].only_ghost;
-        draw(&frame, &cases[i].lamp, 1, &report);
+        draw_frame(&frame, &cases[i].lamp, 1, &report);
         assert_ok(glint_explain_frame(&e, &frame, 1));
         assert_true(e.all.of[cases[i].outcome] > 0);
         if (e.all.edges)
@@ -184,8 +185,8 @@ TEST(reasons)
         glint_explain_close(&e);
         glint_frame_finish(&frame);
     }
-    make(&frame);
-    draw(&frame, &lamps[2], 1, &report);
+    make_frame(&frame);
+    draw_frame(&frame, &lamps[2], 1, &report);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     assert_int_equal(glint_explain_bundles(&e.all), 0);
     assert_true(e.all.flux == 0);
@@ -200,14 +201,14 @@ TEST(room)
     struct glint_explain e;
     size_t need;
 
-    make(&frame);
-    draw(&frame, lamps, N_LAMPS, &report);
+    make_frame(&frame);
+    draw_frame(&frame, lamps, N_LAMPS, &report);
     need = report.peak_bytes;
     glint_frame_finish(&frame);
-    make(&frame);
+    make_frame(&frame);
     assert_ok(
         glint_frame_reserve(&frame, NULL, need * 9 / 10, N_LAMPS, N_LAMPS));
-    draw(&frame, lamps, N_LAMPS, &report);
+    draw_frame(&frame, lamps, N_LAMPS, &report);
     assert_true(report.stats.dropped_bundles > 0);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     assert_agrees(&e, &report);
@@ -222,8 +223,8 @@ TEST(order)
     struct glint_frame frame;
     struct glint_explain e;
 
-    make(&frame);
-    draw(&frame, lamps, N_LAMPS, &report);
+    make_frame(&frame);
+    draw_frame(&frame, lamps, N_LAMPS, &report);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     glint_explain_sort(&e, at);
     for (int i = 1; i < e.n_ghosts; i++)
@@ -232,8 +233,8 @@ TEST(order)
     glint_frame_finish(&frame);
 }
 
-/* Returns whether most of the tile at (X0, Y0) has the shade of a touched tile
- * of a black picture. */
+/* Returns whether most of the tile at (X0, Y0) has the colour of a touched
+ * tile in a black image. */
 static int is_shaded(const struct glint_image *marked, int x0, int y0)
 {
     static const uint8_t shade[3] = {6, 12, 34};
@@ -246,7 +247,7 @@ static int is_shaded(const struct glint_image *marked, int x0, int y0)
     return 2 * n > all;
 }
 
-/* The picture must shade the tiles that one ghost touches and no others. */
+/* Checks that the image shades exactly the tiles that one ghost touches. */
 TEST(picture)
 {
     struct explain_title title = {.lens = "heliar", .top = 20};
@@ -256,10 +257,11 @@ TEST(picture)
     struct glint_explain e;
     int n = 0, outlined = 0;
 
-    make(&frame);
+    make_frame(&frame);
     frame.only_ghost = 4;
-    draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
-         &report);
+    draw_frame(&frame,
+               (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
+               &report);
     assert_true(report.tiles > 10 && report.tiles < 200);
     assert_ok(glint_explain_frame(&e, &frame, 1));
     memset(rgb, 0, sizeof rgb);
@@ -269,7 +271,7 @@ TEST(picture)
     for (int y = 0; y < HEIGHT; y += SIDE)
         for (int x = 0; x < WIDTH; x += SIDE)
             n += is_shaded(&marked, x, y);
-    /* A tile that label and outline mostly cover is not counted. */
+    /* A tile that label and outline mostly cover does not count as shaded. */
     assert_true(n <= report.tiles && n >= report.tiles - 2);
     title.top = 0;
     assert_ok(explain_mark(&e, &title, &image, &unmarked));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame in reserved memory: where that is enough, its picture must be that of
- * a frame that takes memory as it needs it; else something is left out and
- * counted. It must never request memory.
+ * Tests frames in reserved memory: if it is large enough, the image equals that
+ * of a frame that allocates on demand; else parts are dropped and counted. Such
+ * a frame never allocates.
  */
 #include <stdint.h>
 
@@ -21,38 +21,39 @@ enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
 static struct opened opened, exact_scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
-static int n_asked; /* requests for memory since this was set to 0 */
-static int fail_at; /* number of the request that is refused, from 1; 0: none */
+static int n_allocations; /* number of allocations since this was set to 0 */
+/* number of the allocation that fails, counted from 1; 0: none */
+static int fail_at;
 
-static bool is_refused(void)
+static bool fail_allocation(void)
 {
-    return ++n_asked == fail_at;
+    return ++n_allocations == fail_at;
 }
 
 void *__wrap_malloc(size_t bytes)
 {
-    if (is_refused())
+    if (fail_allocation())
         return NULL;
     return __real_malloc(bytes);
 }
 
 void *__wrap_calloc(size_t n, size_t bytes)
 {
-    if (is_refused())
+    if (fail_allocation())
         return NULL;
     return __real_calloc(n, bytes);
 }
 
 void *__wrap_realloc(void *old, size_t bytes)
 {
-    if (is_refused())
+    if (fail_allocation())
         return NULL;
     return __real_realloc(old, bytes);
 }
 
 int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
 {
-    if (is_refused())
+    if (fail_allocation())
         return ENOMEM;
     return __real_posix_memalign(mem, align, bytes);
 }
@@ -67,26 +68,26 @@ static const struct glint_lamp lamps[] = {
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
-static void make_of(const struct opened *of, struct glint_frame *frame)
+static void make_frame_of(const struct opened *of, struct glint_frame *frame)
 {
     assert_ok(settings_frame(&tool, of, WIDTH, HEIGHT, frame));
     frame->dials.fineness = 16;
 }
 
-static void make(struct glint_frame *frame)
+static void make_frame(struct glint_frame *frame)
 {
-    make_of(&opened, frame);
+    make_frame_of(&opened, frame);
 }
 
 static void make_even(struct glint_frame *frame, int fineness)
 {
-    make(frame);
+    make_frame(frame);
     frame->picture.uniform = true;
     frame->dials.fineness = fineness;
 }
 
-static void draw(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
-                 struct glint_engine_report *report)
+static void draw_frame(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
+                       struct glint_engine_report *report)
 {
     struct glint_image image =
         glint_image_over(rgb, GLINT_RGB24, WIDTH, HEIGHT);
@@ -95,7 +96,7 @@ static void draw(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
     assert_ok(glint_frame_draw(frame, lamps, n, 1, &image, report));
 }
 
-static int n_different(const uint8_t *a, const uint8_t *b)
+static int count_different(const uint8_t *a, const uint8_t *b)
 {
     int n = 0;
 
@@ -104,7 +105,7 @@ static int n_different(const uint8_t *a, const uint8_t *b)
     return n;
 }
 
-static int n_brighter(const uint8_t *a, const uint8_t *b)
+static int count_brighter(const uint8_t *a, const uint8_t *b)
 {
     int n = 0;
 
@@ -113,7 +114,8 @@ static int n_brighter(const uint8_t *a, const uint8_t *b)
     return n;
 }
 
-/* Frames of more lamps and of fewer must be as a new frame draws them. */
+/* Checks that a frame drawn after frames of more and of fewer lamps equals
+ * that of a new frame. */
 TEST(same_as_grown)
 {
     static const int n_of[] = {1, 5, 0, 2, 5, 3};
@@ -121,19 +123,19 @@ TEST(same_as_grown)
     struct glint_frame reserved, grown;
     struct glint_engine_report report, other;
 
-    make(&reserved);
+    make_frame(&reserved);
     assert_ok(glint_frame_reserve(&reserved, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     assert_true(reserved.memory.bytes <= 8 << 20);
     for (size_t i = 0; i < sizeof n_of / sizeof *n_of; i++) {
-        n_asked = 0;
-        draw(&reserved, n_of[i], got, &report);
-        assert_int_equal(n_asked, 0);
-        make(&grown);
-        draw(&grown, n_of[i], want, &other);
-        /* A frame of its own must request memory, else the count sees
-         * nothing. */
-        assert_true(n_of[i] == 0 || n_asked > 0);
-        assert_int_equal(n_different(want, got), 0);
+        n_allocations = 0;
+        draw_frame(&reserved, n_of[i], got, &report);
+        assert_int_equal(n_allocations, 0);
+        make_frame(&grown);
+        draw_frame(&grown, n_of[i], want, &other);
+        /* A frame without reserved memory must allocate, or the count would
+         * prove nothing. */
+        assert_true(n_of[i] == 0 || n_allocations > 0);
+        assert_int_equal(count_different(want, got), 0);
         assert_int_equal(report.stats.dropped_bundles, 0);
         assert_int_equal(report.stats.dropped_cells, 0);
         assert_int_equal(report.ghosts, other.ghosts);
@@ -141,14 +143,13 @@ TEST(same_as_grown)
             assert_true(report.peak_bytes <= reserved.memory.bytes);
         glint_frame_finish(&grown);
     }
-    draw(&reserved, 0, want, &report);
-    assert_true(n_different(want, got) > 0);
+    draw_frame(&reserved, 0, want, &report);
+    assert_true(count_different(want, got) > 0);
     glint_frame_finish(&reserved);
 }
 
-/* Where grids are coarsest, ever less must be drawn with ever less memory, and
- * all that is left out be counted. It may make the picture darker, never
- * brighter. */
+/* Checks, at the coarsest grids, that less memory draws less, that
+ * everything dropped is counted, and that the image never becomes brighter. */
 TEST(too_little)
 {
     static uint8_t full[BYTES], got[BYTES];
@@ -157,7 +158,7 @@ TEST(too_little)
     int n_lost = 0, n_darker = 0;
 
     make_even(&frame, 8);
-    draw(&frame, N_LAMPS, full, &report);
+    draw_frame(&frame, N_LAMPS, full, &report);
     glint_frame_finish(&frame);
     for (size_t bytes = report.peak_bytes; bytes > 5e4; bytes -= bytes / 32) {
         int lost;
@@ -169,60 +170,60 @@ TEST(too_little)
             break;
         }
         assert_true(frame.memory.bytes <= bytes);
-        n_asked = 0;
-        draw(&frame, N_LAMPS, got, &report);
-        assert_int_equal(n_asked, 0);
+        n_allocations = 0;
+        draw_frame(&frame, N_LAMPS, got, &report);
+        assert_int_equal(n_allocations, 0);
         lost = report.stats.dropped_bundles + report.stats.dropped_cells;
-        assert_true(n_different(full, got) == 0 || lost > 0);
-        assert_int_equal(n_brighter(full, got), 0);
-        n_darker += n_different(full, got) > 0;
+        assert_true(count_different(full, got) == 0 || lost > 0);
+        assert_int_equal(count_brighter(full, got), 0);
+        n_darker += count_different(full, got) > 0;
         n_lost += lost > 0;
         glint_frame_finish(&frame);
     }
     assert_true(n_lost >= 5 && n_darker >= 5);
-    make(&frame);
+    make_frame(&frame);
     assert_int_equal(glint_frame_reserve(&frame, NULL, 1000, N_LAMPS, N_LAMPS),
                      GLINT_E_MEMORY);
     glint_frame_finish(&frame);
 }
 
-/* Limits of work and of memory must make a frame coarser or leave objects out
- * of it, and say so; without them the next frame must be as before. */
+/* Checks that limits of work and of memory make a frame coarser or drop
+ * objects, and are reported; without limits the next frame equals the first. */
 TEST(bounds)
 {
     static uint8_t want[BYTES], got[BYTES];
     struct glint_frame frame;
     struct glint_engine_report full, held;
 
-    make(&frame);
-    draw(&frame, N_LAMPS, want, &full);
+    make_frame(&frame);
+    draw_frame(&frame, N_LAMPS, want, &full);
     assert_false(full.coarsened);
     frame.limits.most_minsn = 1;
-    draw(&frame, N_LAMPS, got, &held);
+    draw_frame(&frame, N_LAMPS, got, &held);
     assert_true(held.coarsened);
     assert_int_equal(held.drawn_lights, 1);
     assert_true(held.stats.primitives < full.stats.primitives);
     frame.limits.most_minsn = 0;
-    draw(&frame, N_LAMPS, got, &held);
+    draw_frame(&frame, N_LAMPS, got, &held);
     assert_false(held.coarsened);
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
-    make(&frame);
+    make_frame(&frame);
     frame.limits.most_bytes =
-        full.need_bytes * 3 / 4; /* the arena is 1.25 of it */
-    draw(&frame, N_LAMPS, got, &held);
+        full.need_bytes * 3 / 4; /* the arena gets 1.25 times the limit */
+    draw_frame(&frame, N_LAMPS, got, &held);
     assert_true(held.arena_bytes <= frame.limits.most_bytes * 5 / 4);
     assert_true(held.stats.dropped_bundles > 0 && held.stats.bundles > 0);
     assert_int_equal(held.need_bytes, full.need_bytes);
     frame.limits.most_bytes = 0;
-    draw(&frame, N_LAMPS, got, &held);
+    draw_frame(&frame, N_LAMPS, got, &held);
     assert_int_equal(held.stats.dropped_bundles, 0);
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
 }
 
-/* A frame that needs too much memory must be drawn completely with coarser
- * grids, report it, and be the same again in the same memory. */
+/* Checks that a frame that needs too much memory is drawn completely with
+ * coarser grids, reports this, and is the same again in the same memory. */
 TEST(tight)
 {
     static uint8_t want[BYTES], got[BYTES], coarse[BYTES];
@@ -230,30 +231,31 @@ TEST(tight)
     struct glint_engine_report full, held;
 
     make_even(&frame, 64);
-    draw(&frame, N_LAMPS, want, &full);
+    draw_frame(&frame, N_LAMPS, want, &full);
     assert_false(full.tight);
     glint_frame_finish(&frame);
     make_even(&frame, 64);
     frame.limits.most_bytes = full.need_bytes * 3 / 4;
-    draw(&frame, N_LAMPS, coarse, &held);
+    draw_frame(&frame, N_LAMPS, coarse, &held);
     assert_true(held.coarsened && held.tight);
     assert_true(held.arena_bytes <= frame.limits.most_bytes * 5 / 4);
     assert_int_equal(held.stats.dropped_bundles, 0);
     assert_int_equal(held.ghosts, full.ghosts);
     assert_true(held.stats.primitives < full.stats.primitives);
     assert_int_equal(frame.dials.fineness, 64);
-    n_asked = 0;
-    draw(&frame, N_LAMPS, got, &held);
-    assert_int_equal(n_asked, 0);
+    n_allocations = 0;
+    draw_frame(&frame, N_LAMPS, got, &held);
+    assert_int_equal(n_allocations, 0);
     assert_memory_equal(got, coarse, BYTES);
     frame.limits.most_bytes = 0;
-    draw(&frame, N_LAMPS, got, &held);
+    draw_frame(&frame, N_LAMPS, got, &held);
     assert_false(held.coarsened || held.tight);
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
 }
 
-/* Draws a frame whose memory is limited to BYTES with N workers. */
+/* Draws a frame in BYTES of memory with N workers. Returns whether grids
+ * were made coarser. */
 static bool is_tight(int n, size_t bytes, uint8_t rgb[BYTES],
                      struct glint_engine_report *report)
 {
@@ -264,14 +266,14 @@ static bool is_tight(int n, size_t bytes, uint8_t rgb[BYTES],
     make_even(&frame, 192);
     frame.cfg.workers = &shuffle.workers;
     frame.limits.most_bytes = bytes;
-    draw(&frame, N_LAMPS, rgb, report);
+    draw_frame(&frame, N_LAMPS, rgb, report);
     glint_frame_finish(&frame);
     return report->tight;
 }
 
-/* The limit below which grids get coarser must be the same with all numbers of
- * workers, not less than is needed nor more than uneven shares take, and grids
- * not coarser than has to be. */
+/* Checks that the memory limit below which grids become coarser does not
+ * depend on the number of workers, lies between the memory needed and that
+ * of uneven shares per worker, and that grids are no coarser than necessary. */
 TEST(tight_edge)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -289,17 +291,19 @@ TEST(tight_edge)
             high = middle;
     }
     assert_true(high >= full.need_bytes);
-    /* Where there is just room, shares may be too uneven, which is counted. */
+    /* At the limit, uneven shares per worker may drop bundles, which is
+     * counted. */
     assert_false(is_tight(5, high, got, &held));
     assert_true(held.stats.dropped_bundles + held.stats.dropped_cells > 0 ||
-                n_different(got, want) == 0);
+                count_different(got, want) == 0);
     assert_true(is_tight(1, low, want, &held));
     assert_true(held.stats.primitives > full.stats.primitives / 2);
     assert_true(is_tight(5, low, got, &held));
     assert_memory_equal(got, want, BYTES);
 }
 
-/* So must what reserved memory has no room for, with all numbers of workers. */
+/* Checks that what reserved memory drops does not depend on the number of
+ * workers either. */
 TEST(tight_reserved)
 {
     static uint8_t got[2][BYTES];
@@ -313,35 +317,34 @@ TEST(tight_reserved)
         make_even(&frame, 192);
         frame.cfg.workers = &shuffle.workers;
         assert_ok(glint_frame_reserve(&frame, NULL, 4 << 20, N_LAMPS, N_LAMPS));
-        draw(&frame, n, got[n > 1], &report);
-        draw(&frame, N_LAMPS, got[n > 1], &report);
+        draw_frame(&frame, n, got[n > 1], &report);
+        draw_frame(&frame, N_LAMPS, got[n > 1], &report);
         assert_true(report.tight && report.stats.dropped_bundles == 0);
         assert_memory_equal(got[n > 1], got[0], BYTES);
         glint_frame_finish(&frame);
     }
 }
 
-/* More lamps than the dial allows must be merged as ever, without a request
- * for memory. */
+/* Checks that more lamps than max_lights are merged without an allocation. */
 TEST(more_lamps)
 {
     static uint8_t got[BYTES];
     struct glint_frame frame;
     struct glint_engine_report report;
 
-    make(&frame);
+    make_frame(&frame);
     frame.dials.max_lights = 2;
     assert_ok(glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
-    n_asked = 0;
-    draw(&frame, N_LAMPS, got, &report);
-    assert_int_equal(n_asked, 0);
+    n_allocations = 0;
+    draw_frame(&frame, N_LAMPS, got, &report);
+    assert_int_equal(n_allocations, 0);
     assert_int_equal(report.drawn_lights, 2);
     assert_int_equal(report.stats.dropped_bundles, 0);
     glint_frame_finish(&frame);
 }
 
-/* Settings that change between frames must give the picture of a frame that has
- * them from the start. */
+/* Checks that settings changed between frames give the image of a frame
+ * created with them. */
 TEST(retune)
 {
     static const struct {
@@ -357,35 +360,35 @@ TEST(retune)
     struct glint_frame frame, fresh;
     int n_changed = 0;
 
-    make(&frame);
+    make_frame(&frame);
     assert_ok(glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS));
     for (size_t i = 0; i < sizeof setting / sizeof *setting; i++) {
         struct glint_frame *const both[2] = {&frame, &fresh};
 
-        make(&fresh);
+        make_frame(&fresh);
         for (int k = 0; k < 2; k++) {
             both[k]->dials.fineness = setting[i].cells;
             both[k]->dials.irradiance_steps = setting[i].steps;
             both[k]->dials.max_lights = setting[i].lights;
             both[k]->dials.cull_codes = setting[i].codes;
         }
-        n_asked = 0;
-        /* Keeps the picture of the settings before. */
+        n_allocations = 0;
+        /* The image of the previous settings. */
         memcpy(want, got, BYTES);
-        draw(&frame, N_LAMPS, got, &report);
-        assert_int_equal(n_asked, 0);
-        n_changed += i > 0 && n_different(want, got) > 0;
-        draw(&fresh, N_LAMPS, want, &report);
-        assert_int_equal(n_different(want, got), 0);
+        draw_frame(&frame, N_LAMPS, got, &report);
+        assert_int_equal(n_allocations, 0);
+        n_changed += i > 0 && count_different(want, got) > 0;
+        draw_frame(&fresh, N_LAMPS, want, &report);
+        assert_int_equal(count_different(want, got), 0);
         glint_frame_finish(&fresh);
     }
     assert_int_equal(n_changed, 4);
     glint_frame_finish(&frame);
 }
 
-/* Whichever request for memory fails, a flare alone must be drawn whole or
- * refused, never drawn as if there were no light: by a model and by exact
- * rays. */
+/* Checks, for each allocation that may fail, that a flare is drawn
+ * completely or an error is returned, never an image without light; by a
+ * model and by exact rays. */
 TEST(no_memory)
 {
     static float want[BYTES], got[BYTES];
@@ -397,10 +400,10 @@ TEST(no_memory)
         for (int nth = 0; nth < 100; nth++) {
             enum glint_status status;
 
-            make_of(exact ? &exact_scene : &opened, &frame);
+            make_frame_of(exact ? &exact_scene : &opened, &frame);
             frame.only_ghost = 0;
-            frame.dials.max_lights = 2; /* Some of three lamps must merge. */
-            n_asked = 0;
+            frame.dials.max_lights = 2; /* forces a merge of the three lamps */
+            n_allocations = 0;
             fail_at = nth;
             status = glint_frame_draw_alone(&frame, lamps, 3, 1,
                                             nth ? got : want, &report);
@@ -410,51 +413,15 @@ TEST(no_memory)
             assert_true(status == GLINT_OK || status == GLINT_E_MEMORY);
             if (status == GLINT_OK)
                 assert_memory_equal(want, nth ? got : want, sizeof want);
-            if (n_asked < nth) /* there is no nth request */
+            if (n_allocations < nth) /* fewer than NTH allocations */
                 break;
         }
         assert_true(n_refused >= 5);
     }
 }
 
-/* An engine whose new stop fails for want of memory must draw with the old
- * one. */
-TEST(no_memory_for_stop)
-{
-    static uint8_t want[BYTES], got[BYTES];
-    const struct glint_image image =
-        glint_image_over(got, GLINT_RGB24, WIDTH, HEIGHT);
-    struct glint_engine_lamp lamp = glint_engine_lamp_of(&lamps[0], 1);
-    struct glint_engine_config cfg;
-    struct glint_engine_report report;
-    struct glint_engine *engine;
-    struct glint_error error;
-    int n_failed = 0;
-
-    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = &opened.lens.model.lens;
-    cfg.search.max_found = 0;
-    cfg.search.more_lamps = 1;
-    assert_ok(glint_engine_create(&engine, &cfg, &error));
-    for (int k = 0;; k++) {
-        memset(got, 20, BYTES);
-        assert_ok(glint_engine_draw(engine, &lamp, 1, &image, &report));
-        if (k == 0)
-            memcpy(want, got, BYTES);
-        assert_memory_equal(want, got, BYTES);
-        n_asked = 0;
-        fail_at = k + 1;
-        n_failed += glint_engine_stop(engine, 22, &error) == GLINT_E_MEMORY;
-        fail_at = 0;
-        if (n_failed == k)
-            break;
-    }
-    assert_true(n_failed > 0);
-    glint_engine_destroy(engine);
-}
-
-/* Lamps, ghosts and wavelengths whose product does not fit an int must be
- * refused before any of them is written. */
+/* Checks that numbers of lamps, ghosts and wavelengths whose product
+ * overflows an int are rejected before any bundle is written. */
 TEST(too_many_feeds)
 {
     enum { N = 66577 };
@@ -468,7 +435,7 @@ TEST(too_many_feeds)
     for (int i = 0; i < N; i++)
         many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1,
                                       {1, 1, 1},    {0, 0},       0};
-    make_of(&exact_scene, &frame);
+    make_frame_of(&exact_scene, &frame);
     crowd = exact_scene.lens.setup; /* 66577 x 2016 x 32 is 2^32 + 48128 */
     crowd.n_ghosts = 2016;
     crowd.n_wavelengths = 32;
@@ -481,9 +448,9 @@ TEST(too_many_feeds)
     free(many);
 }
 
-/* The points of wide lamps may be point_room lights where the lamps fit
- * max_lights, but no more than max_lights in reserved memory or with more
- * lamps. */
+/* Checks that the points of wide lamps may use point_room lights if the
+ * lamps fit into max_lights, but only max_lights in reserved memory or with
+ * more lamps. */
 TEST(room_for_points)
 {
     static const struct {
@@ -504,7 +471,7 @@ TEST(room_for_points)
     for (size_t k = 0; k < sizeof setting / sizeof *setting; k++) {
         struct glint_frame frame;
 
-        make(&frame);
+        make_frame(&frame);
         frame.dials.max_lights = setting[k].max_lights;
         frame.dials.area_points = 61;
         frame.picture.point_room = setting[k].point_room;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The starburst of a frame: power and extent that its lamps are taken to have,
- * how many are drawn, and limits of memory and time.
+ * Tests the starbursts of a frame: power and extent estimated for each lamp,
+ * the number drawn, and the limits of memory and time.
  */
 #include <stdint.h>
 
@@ -14,7 +14,7 @@
 #include "support/night.h"
 #include "support/test.h"
 
-enum { WIDTH = 160, HEIGHT = 120 }; /* 200 pixels of diagonal */
+enum { WIDTH = 160, HEIGHT = 120 }; /* diagonal 200 pixels */
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static struct opened opened;
@@ -41,10 +41,10 @@ TEST_CLOSE
     opened_lens_close(&opened.lens);
 }
 
-/* Returns the power, in the brightest channel, of the star of a lamp of POWER
- * at LEVEL. SEEN_PX is the RMS radius with which the picture shows the lamp
- * clipped; 0: it is not clipped. */
-static double power_of(double power, double seen_px, double level)
+/* Returns the power, in the brightest channel, of the star of a lamp of
+ * power POWER at LEVEL (0 .. 1 while it fades). SEEN_PX: RMS radius of the
+ * lamp's clipped core in the image, pixels; 0: not clipped. */
+static double star_power(double power, double seen_px, double level)
 {
     const struct glint_lamp lamp = {5, 30, power, {1, .5, 0}, {0, 0}, 0};
 
@@ -63,10 +63,10 @@ static bool is_near(double a, double b)
     return fabs(a / b - 1) < 1e-3;
 }
 
-/* Returns half of the power at which the star of a point is white as far out as
- * SEEN_PX says: a power W is white out to cbrt(W a) / pi pixels, where a is
- * wavelength times f-number in pixels. */
-static double white_of(double seen_px)
+/* Returns half of the power at which the star of a point lamp is white out
+ * to the radius of a core of RMS radius SEEN_PX: power W is white out to
+ * cbrt(W a) / pi pixels, where a is wavelength times f-number in pixels. */
+static double white_power(double seen_px)
 {
     const double airy_px = 0.55e-3 * 22 / hypot(36, 24) * 200;
 
@@ -75,68 +75,68 @@ static double white_of(double seen_px)
 
 TEST(power)
 {
-    /* The power of a lamp that does not clip must stay. */
-    assert_true(is_near(power_of(1000, 0, 1), 1000));
-    /* A lamp that clips must get more power, 32 times at most, and no more than
-     * makes its star as wide as is seen. */
-    assert_true(is_near(power_of(1000, 50, 1), 32000));
-    assert_true(is_near(power_of(1000, 2, 1), white_of(2)));
-    assert_true(is_near(power_of(1000, 0.5, 1), 1000));
-    /* The star of a lamp that fades must fade, too. */
-    assert_true(is_near(power_of(500, 2, 0.5), 0.5 * white_of(2)));
+    /* A lamp that is not clipped keeps its power. */
+    assert_true(is_near(star_power(1000, 0, 1), 1000));
+    /* A clipped lamp gets more power, at most 32 times, and at most so much
+     * that its star is white out to the visible core. */
+    assert_true(is_near(star_power(1000, 50, 1), 32000));
+    assert_true(is_near(star_power(1000, 2, 1), white_power(2)));
+    assert_true(is_near(star_power(1000, 0.5, 1), 1000));
+    /* The star fades with the lamp. */
+    assert_true(is_near(star_power(500, 2, 0.5), 0.5 * white_power(2)));
 }
 
-static double radius_of(double power, double seen_px)
+static double star_radius(double power, double seen_px)
 {
-    power_of(power, seen_px, 1);
+    star_power(power, seen_px, 1);
     return frame.star.light[0].radius_q8 / 256.0;
 }
 
-/* Radius of the widest lamp that a rim of SEEN_PX may hide, as stills have it.
- */
-static double hidden_of(double seen_px)
+/* Returns the radius of the widest lamp that a rim of SEEN_PX can hide, as
+ * for still images. */
+static double hidden_radius(double seen_px)
 {
     return floor(256 * seen_px / 6) * 2 / 256;
 }
 
-/* A lamp that the picture shows no wider than its own star must be as wide as
- * its rim may hide, like that of a still; one that fills what is seen must be a
- * disc. */
+/* Checks that a lamp whose core is no wider than its own star gets the
+ * largest radius that its rim can hide, as in a still image, and that a lamp
+ * which fills its core is a disc. */
 TEST(extent)
 {
-    assert_true(radius_of(100, 0) == 0);
-    assert_true(radius_of(1e7, 2) == hidden_of(2));
-    assert_true(radius_of(1e9, 6) < 0.6 * sqrt(2) * 6);
-    assert_true(radius_of(10, 6) > 0.8 * sqrt(2) * 6);
-    /* Of a spot without glare the part that its star would make white must not
-     * count. */
-    assert_true(radius_of(GLINT_PI * 2 * 6 * 6, 6) < 0.95 * sqrt(2) * 6);
+    assert_true(star_radius(100, 0) == 0);
+    assert_true(star_radius(1e7, 2) == hidden_radius(2));
+    assert_true(star_radius(1e9, 6) < 0.6 * sqrt(2) * 6);
+    assert_true(star_radius(10, 6) > 0.8 * sqrt(2) * 6);
+    /* The core of a lamp without glare excludes the part that its own star
+     * makes white. */
+    assert_true(star_radius(GLINT_PI * 2 * 6 * 6, 6) < 0.95 * sqrt(2) * 6);
 }
 
-/* A spot that is wide by the glare of a lamp far over white must throw spikes
- * as a small lamp does, one that is hardly over white those of a disc, and all
- * between must have no step. A fading lamp must keep its extent. */
+/* Checks that a spot widened by the glare of a lamp far above white has the
+ * spikes of a small lamp, that one barely above white has those of a disc,
+ * and that the transition is continuous. A fading lamp keeps its extent. */
 TEST(glare)
 {
     const double white = GLINT_PI * 2 * 50 * 50;
     double before = 1e9;
 
-    assert_true(radius_of(0.9 * white, 50) > 0.6 * sqrt(2) * 50);
-    assert_true(radius_of(6 * white, 50) == hidden_of(50));
+    assert_true(star_radius(0.9 * white, 50) > 0.6 * sqrt(2) * 50);
+    assert_true(star_radius(6 * white, 50) == hidden_radius(50));
     for (double over = 0.5; over < 6; over += 0.1) {
-        const double radius = radius_of(over * white, 50);
+        const double radius = star_radius(over * white, 50);
 
         assert_true(radius <= before);
         assert_true(over == 0.5 || before - radius < 4);
         before = radius;
     }
-    before = radius_of(3 * white, 50);
-    power_of(1.5 * white, 50, 0.5);
+    before = star_radius(3 * white, 50);
+    star_power(1.5 * white, 50, 0.5);
     assert_true(fabs(frame.star.light[0].radius_q8 / 256.0 - before) < 0.01);
 }
 
-/* Of too many lamps the brightest must be drawn, the brightest first, whatever
- * order they have. */
+/* Checks that of too many lamps the brightest are drawn, in falling order,
+ * whatever the order of the input. */
 TEST(most)
 {
     enum { N = GLINT_STAR_MAX_LIGHTS + 100 };
@@ -152,7 +152,8 @@ TEST(most)
         101));
 }
 
-/* After room was taken for many lamps, a frame must take no more memory. */
+/* Checks that a frame allocates nothing after memory was reserved for many
+ * lamps. */
 TEST(hold)
 {
     const struct glint_star *star;
@@ -163,43 +164,42 @@ TEST(hold)
     star = frame.star.star;
     tables = frame.star.tables;
     bytes = glint_frame_star_bytes(&frame);
-    power_of(1000, 0, 1);
+    star_power(1000, 0, 1);
     assert_ptr_equal(star, frame.star.star);
     assert_int_equal(bytes, glint_frame_star_bytes(&frame));
-    /* Tables and lamps, the latter twice: as they are given and as they are
-     * drawn. */
+    /* tables, and the lamps twice: as given and as drawn */
     assert_true(bytes > 40000 + GLINT_STAR_MAX_LIGHTS * 160);
     assert_true(bytes < (1 << 20) + GLINT_STAR_MAX_LIGHTS * 400);
     assert_ptr_equal(tables, frame.star.tables);
 }
 
-/* With a budget stars must keep to a quarter of it, however many and bright
- * they are. */
+/* Checks that stars take at most a quarter of the budget, whatever their
+ * number and brightness. */
 TEST(budget)
 {
     const struct glint_budget none = frame.budget;
     double pixels;
 
-    power_of(1e7, 0, 1);
+    star_power(1e7, 0, 1);
     pixels = frame.star.pixels;
     frame.budget.ms_per_minsn = 0.1;
     frame.budget.ms = 1;
-    power_of(1e7, 0, 1);
+    star_power(1e7, 0, 1);
     print_message("%.0f pixels, %.0f within 1 ms\n", pixels, frame.star.pixels);
     assert_true(frame.star.pixels > 1000);
     assert_true(frame.star.pixels < 0.5 * pixels);
     assert_true(frame.star.pixels * 0.32e-3 * 0.1 <= 0.25);
     frame.budget.ms = 1e-6;
-    power_of(1e7, 0, 1);
+    star_power(1e7, 0, 1);
     assert_true(frame.star.pixels == 0);
     frame.budget = none;
 }
 
-/* Noise of the camera must not show as flicker of stars: of lamps of three
- * sizes, in noise of 2 and 4 codes, the star may change by 2 % from frame to
- * frame once the lamp is there, and by 7 % in four seconds. In noise of 8
- * codes, which hides the rim of the smallest, that is 6 % and 25 %: a star's
- * power goes with the cube of the extent. */
+/* Checks that camera noise does not make stars flicker: for lamps of three
+ * sizes and noise of 2 and 4 codes a star changes by at most 2 % per frame
+ * after it has risen, and 7 % in four seconds. Noise of 8 codes hides the
+ * rim of the smallest lamp; then 6 % and 25 %, as a star's power goes with
+ * the cube of the extent. */
 TEST(noise)
 {
     enum { FRAMES = 100, SETTLED = 25 };
@@ -221,8 +221,8 @@ TEST(noise)
             if (i < SETTLED)
                 continue;
             assert_int_equal(night.n_tracks, 1);
-            power = power_of((double)t->power_q16 / 65536, t->size_q8 / 256.0,
-                             t->level_q15 / 32768.0);
+            power = star_power((double)t->power_q16 / 65536, t->size_q8 / 256.0,
+                               t->level_q15 / 32768.0);
             step = last > 0 ? fmax(step, fabs(log(power / last))) : step;
             least = fmin(least, power);
             most = fmax(most, power);
@@ -238,7 +238,7 @@ TEST(noise)
     }
 }
 
-/* The more is left out of stars, the fewer pixels they must take. */
+/* Checks that a higher star_cull covers fewer pixels. */
 TEST(cull)
 {
     const double cull = frame.dials.star_cull;
@@ -246,7 +246,7 @@ TEST(cull)
 
     for (frame.dials.star_cull = 0.5; frame.dials.star_cull < 300;
          frame.dials.star_cull *= 8) {
-        power_of(1e4, 0, 1);
+        star_power(1e4, 0, 1);
         print_message("%g times: %.0f pixels\n", frame.dials.star_cull,
                       frame.star.pixels);
         assert_true(frame.star.pixels > 0 && frame.star.pixels < 0.9 * last);

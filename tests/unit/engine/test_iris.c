@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The outline of a stop: corners lie on the circle of the f-number and nowhere
- * else, outlines are convex, round blades are arcs that lie between the
- * straight side and the circle, areas are those that counting finds, and the
- * integers that ghosts are cut by say the same as the doubles.
+ * Tests the outline of the stop: corners lie exactly on the circle of the
+ * f-number, outlines are convex, rounded blades are arcs between the straight
+ * side and the circle, areas equal those by counting, and the integer test that
+ * clips ghosts agrees with the one in double precision.
  */
 #include "engine/setup/iris.h"
 
@@ -25,7 +25,7 @@ enum {
     PHI = 1440
 };
 
-static struct glint_setup setup_of(int n, double rotation_deg, double round)
+static struct glint_setup make_setup(int n, double rotation_deg, double round)
 {
     static struct glint_setup s;
 
@@ -38,8 +38,9 @@ static struct glint_setup setup_of(int n, double rotation_deg, double round)
     return s;
 }
 
-/* Returns the radius of the outline at the angle PHI. */
-static double radius_at(const struct glint_iris_sides *s, double phi)
+/* Returns the radius of the outline at the azimuth PHI, radians, by
+ * bisection. */
+static double find_radius(const struct glint_iris_sides *s, double phi)
 {
     double in = 0, out = 1.5;
 
@@ -54,13 +55,14 @@ static double radius_at(const struct glint_iris_sides *s, double phi)
     return in;
 }
 
-/* Calls TEST for each number of blades and roundness, turned by 17 degrees. */
-static void each(void (*test)(const struct glint_setup *s,
-                              const struct glint_iris_sides *sides))
+/* Calls TEST for each number of blades and each roundness, rotated by 17
+ * degrees. */
+static void for_each_iris(void (*test)(const struct glint_setup *s,
+                                       const struct glint_iris_sides *sides))
 {
     for (int i = 0; i < N_BLADES * N_ROUND; i++) {
         const struct glint_setup s =
-            setup_of(blades[i / N_ROUND], 17, roundness[i % N_ROUND]);
+            make_setup(blades[i / N_ROUND], 17, roundness[i % N_ROUND]);
         struct glint_iris_sides sides;
 
         glint_iris_sides(&sides, &s);
@@ -69,8 +71,9 @@ static void each(void (*test)(const struct glint_setup *s,
     }
 }
 
-/* In the middle of a side the outline must lie where a circle of radius 1 / R
- * through both corners does. */
+/* Checks that the corners lie on the circle of the f-number, and that the
+ * outline's middle between two corners lies on the circle of radius 1 / R
+ * through both. */
 static void check_corners(const struct glint_setup *s,
                           const struct glint_iris_sides *sides)
 {
@@ -82,15 +85,15 @@ static void check_corners(const struct glint_setup *s,
         const double at = (17 + i * 360.0 / s->n_blades) * GLINT_PI / 180;
         const double middle = at + GLINT_PI / s->n_blades;
 
-        assert_true(fabs(radius_at(sides, at) - 1) < 1e-9);
-        assert_true(fabs(radius_at(sides, middle) -
+        assert_true(fabs(find_radius(sides, at) - 1) < 1e-9);
+        assert_true(fabs(find_radius(sides, middle) -
                          (cos(GLINT_PI / s->n_blades) + sag)) < 1e-9);
     }
 }
 
 TEST(corners)
 {
-    each(check_corners);
+    for_each_iris(check_corners);
 }
 
 static void check_convex(const struct glint_setup *s,
@@ -100,7 +103,7 @@ static void check_convex(const struct glint_setup *s,
 
     for (int i = 0; i < PHI; i++) {
         const double phi = 2 * GLINT_PI * i / PHI;
-        const double r = radius_at(sides, phi);
+        const double r = find_radius(sides, phi);
 
         assert_true(r > 0.49 && r < 1 + 1e-9);
         x[i] = r * cos(phi);
@@ -119,11 +122,11 @@ static void check_convex(const struct glint_setup *s,
 
 TEST(convex_and_area)
 {
-    each(check_convex);
+    for_each_iris(check_convex);
 }
 
-/* Places that the integers tell apart from the outline must lie on the same
- * side of it as for doubles, and near it as far from it. */
+/* Checks that points which the integer test classifies lie on the same side
+ * of the outline in double precision, at the same distance near the outline. */
 static void check_integers(const struct glint_setup *s,
                            const struct glint_iris_sides *sides)
 {
@@ -152,17 +155,17 @@ static void check_integers(const struct glint_setup *s,
 
 TEST(integers)
 {
-    each(check_integers);
+    for_each_iris(check_integers);
 }
 
-/* A rounder stop must let more light through, up to the circle's. */
+/* Checks that a rounder stop passes more light, up to that of a circle. */
 TEST(area_grows)
 {
     for (int i = 0; i < N_BLADES; i++) {
         double last = 0;
 
         for (int k = 0; k < N_ROUND; k++) {
-            const struct glint_setup s = setup_of(blades[i], 0, roundness[k]);
+            const struct glint_setup s = make_setup(blades[i], 0, roundness[k]);
 
             assert_true(glint_iris_share(&s) > last);
             last = glint_iris_share(&s);
@@ -171,10 +174,11 @@ TEST(area_grows)
     }
 }
 
-/* A setup must refuse what is out of range, and measure its light again. */
+/* Checks that a setup rejects values out of range and recomputes the light
+ * of the stop. */
 TEST(setup)
 {
-    struct glint_setup s = setup_of(6, 0, 0);
+    struct glint_setup s = make_setup(6, 0, 0);
     struct glint_iris iris = {.roundness = 1.5};
     struct glint_dirt *dirt;
     struct glint_error error;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * From lamps in a picture or a list to lights at infinity: direction and
- * power.
+ * Tests the conversion of lamps in an image or a list to lights at infinity:
+ * direction and power.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,8 +15,8 @@
 
 enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };
 
-/* A white square of 10 x 10 pixels on black: its middle is at (225, 45), its
- * flux 100, and each pixel stands for 2^3 times white. */
+/* Uses a white square of 10 x 10 pixels on black: centre (225, 45), flux
+ * 100; a clipped pixel counts as 2^3 times white. */
 TEST(found_lamp)
 {
     static uint8_t rgb[3 * WIDTH * HEIGHT];
@@ -39,7 +39,8 @@ TEST(found_lamp)
     assert_near(x, 225, 0.02);
     assert_near(y, 45, 0.02);
     assert_near(lamp[0].power, 800, 1);
-    /* 65 pixels right of the middle and 55 above it, where 320 are 36 mm */
+    /* 65 pixels right of and 55 above the image centre, at 320 pixels per 36
+     * mm */
     assert_near(lamp[0].phi_deg, 40.236, 0.01);
     assert_near(lamp[0].theta_deg, 10.845, 0.01);
 }
@@ -52,9 +53,9 @@ static void draw_square(struct glint_image *image, int x0, int y0, int side)
         memset(image->plane[0] + y * W + x0, 255, (size_t)side);
 }
 
-/* In a video, a lamp that stands still must be as in a still picture, to
- * the last bit; a new lamp must rise; after a restart a lamp must have its full
- * power at once. */
+/* Checks tracking in a video: a stationary lamp equals that of a still image
+ * bit by bit, a new lamp fades in, and after a restart a lamp has full power
+ * at once. */
 TEST(tracked_lamps)
 {
     static uint8_t grey[W * H];
@@ -80,7 +81,8 @@ TEST(tracked_lamps)
     assert_int_equal(
         glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp), 2);
     assert_int_equal(finder.n_tracks, 2);
-    assert_near(lamp[1].power, still[0].power / 5, 10); /* after 40 of 200 ms */
+    /* 40 ms of the 200 ms fade */
+    assert_near(lamp[1].power, still[0].power / 5, 10);
     assert_int_equal(finder.track[1].state, GLINT_LAMP_RISING);
 
     glint_lamp_detector_restart(&finder);
@@ -90,8 +92,8 @@ TEST(tracked_lamps)
     glint_lamp_detector_close(&finder);
 }
 
-/* A lamp in a glare whose clipped core falls off over as much as its radius: in
- * a video it may be a point, but in a still picture its axes must be a
+/* Checks a lamp in glare whose clipped core has a rim as wide as its radius:
+ * in a video it may be a point, in a still image its axes are at least a
  * sixth of its size. */
 TEST(lamp_in_glare)
 {
@@ -124,7 +126,8 @@ TEST(lamp_in_glare)
     glint_lamp_detector_close(&finder);
 }
 
-/* Of twelve lamps the four largest must be given, tracked or not. */
+/* Checks that the four largest of twelve lamps are returned, with and
+ * without tracking. */
 TEST(most_lamps)
 {
     static uint8_t grey[W * H];
@@ -161,8 +164,8 @@ static void read_text(struct lamp_list *list, const char *text)
     remove(path);
 }
 
-/* CSV and JSON lines must read the same; a row belongs to its frame, or to all
- * frames. */
+/* Checks that CSV and JSON lines give the same lamps; a row belongs to one
+ * frame, or to all frames. */
 TEST(lists)
 {
     static const char *const texts[2] = {
@@ -195,8 +198,9 @@ TEST(lists)
     }
 }
 
-/* A text that is not a list must be refused, with the line of its mistake. In
- * the third text power times colour is too large for a picture. */
+/* Checks that text which is not a list of lamps is rejected with the number
+ * of the wrong line. In the third text power times colour is too large for
+ * an image. */
 TEST(refused_lists)
 {
     static const char *const text_and_error[][2] = {

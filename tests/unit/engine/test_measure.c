@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The metrics by which pictures are judged, on pictures whose answer is
- * known.
+ * Tests the image metrics (PSNR and others) on images with known results.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +14,7 @@ static float a[N], b[N];
 static const struct glint_float_image image_a = {SIDE, SIDE, a};
 static const struct glint_float_image image_b = {SIDE, SIDE, b};
 
-static void fill(float value)
+static void fill_images(float value)
 {
     for (int i = 0; i < N; i++)
         a[i] = b[i] = value;
@@ -32,12 +31,12 @@ TEST(equal)
     assert_true(fabs(m.ssim - 1) < 1e-12);
 }
 
-/* White against linear 0.5, which is sRGB code 188: 67 codes apart. */
+/* White and linear 0.5 (sRGB code 188) differ by 67 codes. */
 TEST(known_difference)
 {
     struct glint_measure m;
 
-    fill(2);
+    fill_images(2);
     for (int i = 0; i < N; i++)
         b[i] = 1;
     assert_true(glint_measure_compare(&image_a, &image_b, false, &m));
@@ -48,31 +47,31 @@ TEST(known_difference)
     assert_true(m.psnr_db == 999 && fabs(m.factor - 2) < 1e-6);
 }
 
-/* A difference that rounding to codes hides must still be measured. */
+/* Checks that a difference smaller than a code is measured. */
 TEST(less_than_a_code)
 {
     struct glint_measure m;
 
-    fill(0.5f);
+    fill_images(0.5f);
     b[0] = 0.50001f;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(m.same_codes && m.psnr_db > 100 && m.psnr_db < 999);
     b[0] = 0.6f;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(!m.same_codes && m.psnr_db < 100);
-    fill(1.5f); /* beyond white no difference shows */
+    fill_images(1.5f); /* differences above white do not count */
     b[0] = 2;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(m.same_codes && m.psnr_db == 999);
 }
 
-/* The brightest thousandth of all pixels must not set the exposure. */
+/* Checks that the brightest 0.1 % of the pixels do not affect the exposure. */
 TEST(exposure_is_a_percentile)
 {
-    fill(0.25f);
+    fill_images(0.25f);
     for (int i = 0; i < 3 * 4; i++) /* 4 of 4096 pixels */
         a[i] = 1000;
     assert_true(fabs(glint_measure_exposure(&image_a) - 4) < 1e-6);
-    fill(0);
+    fill_images(0);
     assert_true(glint_measure_exposure(&image_a) == 1);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Projections of lenses: polynomials against chief rays traced again, there and
- * back again, and what is known of each lens.
+ * Tests projections of lenses: polynomials against traced chief rays,
+ * inversion, and known properties of lenses.
  */
 #include <math.h>
 #include <string.h>
@@ -10,8 +10,9 @@
 #include "glint/bake.h"
 #include "support/lens_check.h"
 
-static struct glint_projection projection_of(struct glint_prescription *lens,
-                                             const char *name, double *miss_deg)
+static struct glint_projection
+compute_projection(struct glint_prescription *lens, const char *name,
+                   double *miss_deg)
 {
     struct glint_projection p;
     struct glint_error error = {""};
@@ -22,7 +23,7 @@ static struct glint_projection projection_of(struct glint_prescription *lens,
     return p;
 }
 
-/* A view without a projection is that of a pinhole, to the bit. */
+/* A view without a projection equals a pinhole bit by bit. */
 TEST(zeros_are_tangents)
 {
     const struct glint_projection none = {.reach = 0};
@@ -36,7 +37,8 @@ TEST(zeros_are_tangents)
     }
 }
 
-/* Angles to places and back, within and beyond what was traced. */
+/* Angles convert to image positions and back, inside and outside the traced
+ * range. */
 TEST(there_and_back)
 {
     static const char *const names[] = {"heliar-tronnier", "phone/phone-six",
@@ -47,7 +49,7 @@ TEST(there_and_back)
 
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         const struct glint_projection p =
-            projection_of(&lens, names[k], &miss_deg);
+            compute_projection(&lens, names[k], &miss_deg);
         double before = -1;
 
         for (int i = 0; i <= 200; i++) {
@@ -62,7 +64,7 @@ TEST(there_and_back)
     }
 }
 
-/* Lights at a pixel go back to it. */
+/* The direction of a pixel is imaged to the same pixel. */
 TEST(pixels_go_back)
 {
     struct glint_prescription lens;
@@ -70,7 +72,8 @@ TEST(pixels_go_back)
     double miss_deg;
 
     view = glint_view_fit(1920, 1080, 18.58, 13.93);
-    view.projection = projection_of(&lens, "wide/fisheye-nikkor-6", &miss_deg);
+    view.projection =
+        compute_projection(&lens, "wide/fisheye-nikkor-6", &miss_deg);
     for (int k = 0; k < 50; k++) {
         const double at[2] = {700 + 10.3 * k, 100 + 17.1 * k};
         struct glint_lamp lamp;
@@ -83,28 +86,30 @@ TEST(pixels_go_back)
     }
 }
 
-/* What polynomials miss, and what kind of lens each is. */
+/* Checks the error of the polynomials, and the known type of each
+ * projection. */
 TEST(lenses_are_as_known)
 {
     struct glint_prescription lens;
     struct glint_projection p;
     double miss_deg;
 
-    /* Equidistant to a tenth, as fisheyes of 220 degrees are. */
-    p = projection_of(&lens, "wide/fisheye-nikkor-6", &miss_deg);
+    /* Equidistant within 0.1, as is usual for fisheyes of 220 degrees. */
+    p = compute_projection(&lens, "wide/fisheye-nikkor-6", &miss_deg);
     assert_true(miss_deg < 0.1);
     for (int deg = 10; deg <= 80; deg += 10)
         assert_near(glint_projection_rho(&p, deg) / (deg * GLINT_PI / 180), 1,
                     0.1);
-    /* A camera lens has a percent of distortion or so. */
-    p = projection_of(&lens, "normal/double-gauss-nikkor-50", &miss_deg);
+    /* A camera lens has about 1 % of distortion. */
+    p = compute_projection(&lens, "normal/double-gauss-nikkor-50", &miss_deg);
     assert_true(miss_deg < 0.005);
     assert_near(glint_projection_rho(&p, 20) / tan(20 * GLINT_PI / 180), 1,
                 0.03);
     assert_true(glint_projection_rho(&p, 20) != tan(20 * GLINT_PI / 180));
 }
 
-/* Chief rays between the whole degrees that were fitted. */
+/* Checks chief rays between the whole degrees to which the polynomials were
+ * fitted. */
 TEST(between_degrees)
 {
     const double degrees[] = {3.5, 11.5, 19.5};
@@ -113,7 +118,7 @@ TEST(between_degrees)
     struct glint_path path;
     double miss_deg;
     const struct glint_projection p =
-        projection_of(&lens, "heliar-tronnier", &miss_deg);
+        compute_projection(&lens, "heliar-tronnier", &miss_deg);
 
     glint_optics_of(&lens, &optics);
     glint_path_init(&path, &lens, NULL, 588);
@@ -123,7 +128,7 @@ TEST(between_degrees)
         double x = 0, before = 0, stop = 0;
         struct glint_ray ray;
 
-        /* The secant method, from the middle of the front. */
+        /* The secant method, started at the centre of the front element. */
         for (int i = 0; i < 20; i++) {
             const double now = x;
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Frames that reuse what the last one binned: each must be the picture that is
- * drawn again, bit for bit, whatever moved, stopped or changed before it, for
- * all workers; and a frame of which nothing changed must be reused. Lights that
- * stand still within a tolerance must be drawn by the rays of before, with the
- * light that they have, and never farther off than that.
+ * Tests frames that reuse the previous frame's binned edges: each equals, bit
+ * by bit, the image drawn without reuse, whatever changed before it and for any
+ * number of workers; and an unchanged frame is reused. Lights that move less
+ * than a tolerance are drawn with their old rays and present light, never
+ * further off than the tolerance.
  */
 #include <math.h>
 #include <stdint.h>
@@ -49,8 +49,8 @@ static void close_frames(void)
     glint_frame_finish(&fresh);
 }
 
-static void draw_one(struct glint_frame *frame, int n, double scale,
-                     uint8_t *codes, struct glint_engine_report *report)
+static void draw_frame(struct glint_frame *frame, int n, double scale,
+                       uint8_t *codes, struct glint_engine_report *report)
 {
     struct glint_image image = glint_image_over(codes, GLINT_RGB24, W, H);
 
@@ -58,17 +58,18 @@ static void draw_one(struct glint_frame *frame, int n, double scale,
     assert_ok(glint_frame_draw(frame, lamps, n, scale, &image, report));
 }
 
-/* Draws both ways. Returns whether the frame was reused. */
-static bool draw(int n)
+/* Draws N lamps with and without reuse and compares. Returns whether the
+ * frame was reused. */
+static bool draw_both(int n)
 {
-    draw_one(&reusing, n, 1, got, &of_reusing);
-    draw_one(&fresh, n, 1, want, &of_fresh);
+    draw_frame(&reusing, n, 1, got, &of_reusing);
+    draw_frame(&fresh, n, 1, want, &of_fresh);
     assert_int_equal(of_fresh.stats.reused, 0);
     assert_memory_equal(got, want, BYTES);
     return of_reusing.stats.reused;
 }
 
-static void stop_down(double opening)
+static void set_stop(double opening)
 {
     struct glint_frame *const all[] = {&reusing, &fresh};
 
@@ -80,12 +81,12 @@ static void stop_down(double opening)
 
 /* -------------------------------------------------------------------- same */
 
-/* Turns one object of both frames and of the lamps, or nothing: then the frame
- * must be reused. */
-static bool step(int time, int *n)
+/* Changes one object of both frames or of the lamps, and returns true; or
+ * changes nothing and returns false: then the frame must be reused. */
+static bool change_video(int time, int *n)
 {
     switch (time % 12) {
-    case 1: /* one lamp moves by less than can be seen */
+    case 1: /* one lamp moves by an invisible amount */
         lamps[time / 12].theta_deg += 1e-6 * (time + 1);
         return true;
     case 3:
@@ -95,7 +96,7 @@ static bool step(int time, int *n)
         *n = *n == LIGHTS ? LIGHTS - 1 : LIGHTS;
         return true;
     case 7:
-        stop_down(time % 24 == 7 ? 0.7 : 1);
+        set_stop(time % 24 == 7 ? 0.7 : 1);
         return true;
     case 9:
         reusing.dials = glint_dials_at((1 << 11) + 500 * time);
@@ -110,19 +111,20 @@ static bool step(int time, int *n)
     }
 }
 
-static void same_video(void)
+static void check_video(void)
 {
     int n = LIGHTS, n_reused = 0;
 
     open_frames(0);
-    draw(n);
+    draw_both(n);
     for (int time = 0; time < FRAMES; time++) {
-        const bool turned = step(time, &n);
-        const bool reused = draw(n);
+        const bool turned = change_video(time, &n);
+        const bool reused = draw_both(n);
 
         n_reused += reused;
         assert_int_equal(reused, !turned);
-        /* rays are looked at and bundles planned once only */
+        /* the ray prepass and planning happen only in frames that are not
+         * reused */
         assert_true(reused == (of_reusing.looked == 0));
         assert_int_equal(of_reusing.stats.primitives,
                          of_fresh.stats.primitives);
@@ -136,20 +138,19 @@ TEST(same_as_fresh)
 {
     struct shuffle shuffle;
 
-    same_video();
+    check_video();
     for (int n = 2; n <= 5; n += 3) {
         shuffle_init(&shuffle, n, (uint32_t)n);
         stage.frame.cfg.workers = &shuffle.workers;
-        same_video();
+        check_video();
     }
     stage.frame.cfg.workers = NULL;
 }
 
 static struct glint_tint tints[GLINT_MAX_GHOSTS];
 
-/* Turns thing K of what a frame is planned from; returns false if there are not
- * so many. */
-static bool turn(int k)
+/* Changes input K of a frame's plan. Returns false if there is no input K. */
+static bool change_input(int k)
 {
     struct glint_lamp *const l = lamps;
 
@@ -201,8 +202,8 @@ static bool turn(int k)
     }
 }
 
-/* Whatever a frame is planned from makes another one of it. */
-TEST(everything_counts)
+/* Checks that a change of any input of the plan prevents reuse. */
+TEST(any_change_prevents_reuse)
 {
     const int things = 14;
 
@@ -211,31 +212,33 @@ TEST(everything_counts)
         tints[i] =
             (struct glint_tint){{1 << 14, 1 << 14, 1 << 14}, {1 << 30, -30}};
     reusing.tints = fresh.tints = tints;
-    draw(3);
+    draw_both(3);
     for (int k = 0; k < things; k++) {
-        assert_true(draw(3));
-        assert_true(turn(k));
-        assert_false(draw(3));
+        assert_true(draw_both(3));
+        assert_true(change_input(k));
+        assert_false(draw_both(3));
     }
-    assert_false(turn(things));
-    assert_true(draw(3));
+    assert_false(change_input(things));
+    assert_true(draw_both(3));
     close_frames();
 }
 
-/* What restricts a frame to some of its bundles is gone in the next one. */
+/* Checks that a frame restricted to some of its bundles does not restrict
+ * the next frame. */
 TEST(restricted)
 {
     open_frames(0);
-    draw(3);
-    assert_true(draw(3));
+    draw_both(3);
+    assert_true(draw_both(3));
     glint_flare_keep(reusing.memory.flare, -1, 1, -1);
-    assert_false(draw(3));
-    assert_true(draw(3));
+    assert_false(draw_both(3));
+    assert_true(draw_both(3));
     close_frames();
 }
 
-/* In reserved memory more lights than it remembers are drawn again, and a
- * linear picture after one in codes is another frame. */
+/* Checks that in reserved memory a frame with more lights than can be
+ * remembered is drawn again, and that a linear image after one in codes is
+ * not reused. */
 TEST(memory)
 {
     static int32_t linear[2][3 * W * H];
@@ -245,14 +248,14 @@ TEST(memory)
     open_frames(0);
     reusing.cfg.reuse_lights = 2;
     assert_ok(glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS));
-    draw(4);
-    assert_true(draw(4));
+    draw_both(4);
+    assert_true(draw_both(4));
     reusing.cfg.reuse_lights = 3;
     glint_frame_retune(&reusing);
-    draw(4);
-    assert_false(draw(4));
-    draw(3);
-    assert_true(draw(3));
+    draw_both(4);
+    assert_false(draw_both(4));
+    draw_both(3);
+    assert_true(draw_both(3));
     for (int i = 0; i < 2; i++) {
         glint_image_place(&image, linear[i]);
         assert_ok(glint_frame_draw(i ? &fresh : &reusing, lamps, 3, 1, &image,
@@ -260,13 +263,13 @@ TEST(memory)
         assert_int_equal(of_reusing.stats.reused, 0);
     }
     assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
-    assert_false(draw(3));
+    assert_false(draw_both(3));
     close_frames();
 }
 
 /* ------------------------------------------------------------------- still */
 
-static double sum_of(const uint8_t *codes)
+static double sum_codes(const uint8_t *codes)
 {
     double sum = 0;
 
@@ -275,30 +278,30 @@ static double sum_of(const uint8_t *codes)
     return sum;
 }
 
-/* Draws lamps that stand still with the edges that there are, and with edges
- * rebuilt for the same lights and factors. Returns whether the first was
+/* Draws stationary lamps with the existing edges, and with edges rebuilt for
+ * the same lights and factors, and compares. Returns whether the first was
  * reused. */
-static bool draw_still(int n, double scale)
+static bool draw_stationary(int n, double scale)
 {
-    draw_one(&reusing, n, scale, got, &of_reusing);
+    draw_frame(&reusing, n, scale, got, &of_reusing);
     glint_frame_retune(&fresh);
-    draw_one(&fresh, n, scale, want, &of_fresh);
+    draw_frame(&fresh, n, scale, want, &of_fresh);
     assert_int_equal(of_fresh.stats.reused, 0);
     assert_memory_equal(got, want, BYTES);
     return of_reusing.stats.reused;
 }
 
-/* Noise of place, power and colour of lamps in any order traces no ray, and
- * power and colour are drawn as they are. */
+/* Checks that noise in position, power, colour and order of lamps traces no
+ * ray, and that changed power and colour are applied. */
 TEST(noise)
 {
-    const double degree = 0.02; /* 0.1 pixel */
+    const double degree = 0.02; /* 0.02 degrees are 0.1 pixel */
     uint64_t noise = 1;
 
     open_frames(0.5);
     fresh.cfg.reuse = &glint_reuse;
     fresh.dials = reusing.dials;
-    draw_still(LIGHTS, 1);
+    draw_stationary(LIGHTS, 1);
     for (int i = 0; i < 24; i++) {
         const struct glint_lamp first = lamps[0];
         struct glint_lamp was[LIGHTS];
@@ -312,23 +315,23 @@ TEST(noise)
             lamps[k].power *= stage_uniform(&noise, i % 8 ? 0.8 : 0, 1.2);
             lamps[k].rgb[i % 3] *= stage_uniform(&noise, 0.9, 1.1);
         }
-        assert_true(draw_still(LIGHTS, i % 2 ? 0.9 : 1.1));
+        assert_true(draw_stationary(LIGHTS, i % 2 ? 0.9 : 1.1));
         memcpy(lamps, was, sizeof was);
     }
     fresh.dials.still_px = 0;
     for (double scale = 0.25; scale < 1.65; scale += 0.1) {
-        draw_one(&reusing, LIGHTS, scale, got, &of_reusing);
-        draw_one(&fresh, LIGHTS, scale, want, &of_fresh);
+        draw_frame(&reusing, LIGHTS, scale, got, &of_reusing);
+        draw_frame(&fresh, LIGHTS, scale, want, &of_fresh);
         assert_int_equal(of_reusing.stats.reused, scale < 1.5);
-        assert_true(fabs(sum_of(got) / sum_of(want) - 1) < 0.005);
+        assert_true(fabs(sum_codes(got) / sum_codes(want) - 1) < 0.005);
         assert_true(stage_block_jump(&stage, got, want) < 1.5);
     }
     close_frames();
 }
 
-/* Returns how far the lamp LAMP is from the nearest light that stands, pixels.
- */
-static double apart(const struct glint_lamp *lamp)
+/* Returns the distance of LAMP to the nearest light whose rays are reused,
+ * pixels. */
+static double distance_px(const struct glint_lamp *lamp)
 {
     const double degree = GLINT_PI / 180;
     const double pixels =
@@ -349,8 +352,9 @@ static double apart(const struct glint_lamp *lamp)
     return least;
 }
 
-/* A lamp that continues, ever so slowly, is traced again before it is farther
- * off than the tolerance; so is a new one, but not where one goes out. */
+/* Checks that a slowly moving lamp is traced again before it is further off
+ * than the tolerance, that a new lamp is traced, and that the end of a lamp
+ * traces nothing. */
 TEST(moves)
 {
     int n_reused = 0;
@@ -358,40 +362,41 @@ TEST(moves)
     open_frames(0.5);
     fresh.cfg.reuse = &glint_reuse;
     fresh.dials = reusing.dials;
-    draw_still(LIGHTS - 1, 1);
+    draw_stationary(LIGHTS - 1, 1);
     for (int i = 0; i < 60; i++) {
         lamps[2].theta_deg += 0.005;
-        n_reused += draw_still(LIGHTS - 1, 1);
-        assert_true(apart(&lamps[2]) <= 0.5);
+        n_reused += draw_stationary(LIGHTS - 1, 1);
+        assert_true(distance_px(&lamps[2]) <= 0.5);
     }
     assert_true(n_reused > 48 && n_reused < 59);
-    assert_false(draw_still(LIGHTS, 1));
-    assert_true(draw_still(LIGHTS - 2, 1));
-    assert_true(draw_still(LIGHTS, 1));
-    /* fewer lights than stand */
+    assert_false(draw_stationary(LIGHTS, 1));
+    assert_true(draw_stationary(LIGHTS - 2, 1));
+    assert_true(draw_stationary(LIGHTS, 1));
+    /* fewer lights than are being reused */
     reusing.dials.max_lights = fresh.dials.max_lights = 2;
-    assert_false(draw_still(2, 1));
+    assert_false(draw_stationary(2, 1));
     assert_int_equal(reusing.lights.n, 2);
     close_frames();
 }
 
-/* Memory that is reserved has room for lights that stand, or they do not. */
+/* Checks that with reserved memory lights are reused only if there is memory
+ * for them. */
 TEST(reserved)
 {
     for (int i = 0; i < 2; i++) {
         open_frames(i ? 0.5 : 0);
         assert_ok(glint_frame_reserve(&reusing, NULL, 8 << 20, LIGHTS, LIGHTS));
         reusing.dials.still_px = 0.5;
-        draw_one(&reusing, LIGHTS, 1, got, &of_reusing);
+        draw_frame(&reusing, LIGHTS, 1, got, &of_reusing);
         assert_int_equal(reusing.still.n, i ? LIGHTS : 0);
-        draw_one(&reusing, LIGHTS, 1.1, got, &of_reusing);
+        draw_frame(&reusing, LIGHTS, 1.1, got, &of_reusing);
         assert_int_equal(of_reusing.stats.reused, i);
         close_frames();
     }
 }
 
-static struct glint_light light_at(double theta_deg, double power,
-                                   const double rgb[3])
+static struct glint_light make_light(double theta_deg, double power,
+                                     const double rgb[3])
 {
     const double degree = GLINT_PI / 180;
     struct glint_light b = {
@@ -405,7 +410,8 @@ static struct glint_light light_at(double theta_deg, double power,
     return b;
 }
 
-/* Factors by hand. Chords: a degree is 0.01745. */
+/* Checks reuse factors that were computed by hand. Distances are chords: 1
+ * degree is 0.01745. */
 TEST(factors)
 {
     static const double red[3] = {1, 0.5, 0}, other[3] = {1, 0.25, 0.01},
@@ -416,13 +422,13 @@ TEST(factors)
     int64_t sum_q20[2][3];
     struct glint_still s = {2, 0, at, gain_q14, sum_q20};
 
-    light[0] = light_at(5, 1000, red);
-    light[1] = light_at(8, 3, red);
+    light[0] = make_light(5, 1000, red);
+    light[1] = make_light(8, 3, red);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
     assert_int_equal(gain_q14[1][0], 1 << 14);
-    /* the second is out, and the first two halves of one */
-    light[0] = light_at(5.09, 600, dark);
-    light[1] = light_at(4.91, 600, dark);
+    /* The second light is off, and the first is split into two halves. */
+    light[0] = make_light(5.09, 600, dark);
+    light[1] = make_light(4.91, 600, dark);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
     assert_in_range(gain_q14[0][0], 9830, 9831);
     assert_in_range(gain_q14[0][1], 9830, 9831);
@@ -430,34 +436,34 @@ TEST(factors)
     assert_int_equal(gain_q14[1][0] | gain_q14[1][1], 0);
     assert_int_equal(at[0].power.mantissa, glint_real_of(1000).mantissa);
     /* another colour, brighter */
-    light[0] = light_at(5, 1400, other);
+    light[0] = make_light(5, 1400, other);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 2);
     assert_in_range(gain_q14[0][0], 22937, 22938);
     assert_in_range(gain_q14[0][1], 11468, 11469);
-    /* blue where none was planned, too bright, too far: each stands again */
-    light[0] = light_at(5, 1000, blue);
+    /* blue added, too bright, too far: each is traced again */
+    light[0] = make_light(5, 1000, blue);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
-    light[0] = light_at(5, 1530, blue);
-    light[1] = light_at(9, 1, blue);
+    light[0] = make_light(5, 1530, blue);
+    light[1] = make_light(9, 1, blue);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
     assert_int_equal(gain_q14[0][0], 1 << 14);
-    light[0] = light_at(5.11, 1530, blue);
+    light[0] = make_light(5.11, 1530, blue);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
     assert_int_equal(at[0].sine_q30, light[0].sine_q30);
     light[0].apart_q30 = 2 * near_q30;
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
     assert_int_equal(at[0].apart_q30, 2 * near_q30);
-    /* of two within the tolerance the nearer */
-    light[0] = light_at(5, 10, red);
-    light[1] = light_at(5.05, 10, red);
+    /* the nearer of two lights within the tolerance */
+    light[0] = make_light(5, 10, red);
+    light[1] = make_light(5.05, 10, red);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
-    light[0] = light_at(5.01, 5, red);
-    light[1] = light_at(5.04, 8, red);
+    light[0] = make_light(5.01, 5, red);
+    light[1] = make_light(5.04, 8, red);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
     assert_in_range(gain_q14[0][0], 8191, 8193);
     assert_in_range(gain_q14[1][0], 13106, 13108);
-    /* more than there is room for, and none */
-    light[2] = light_at(1, 1, red);
+    /* more lights than the limit; no light */
+    light[2] = make_light(1, 1, red);
     assert_int_equal(glint_lights_still(&s, light, 3, near_q30), 0);
     assert_int_equal(glint_lights_still(&s, light, 0, near_q30), 0);
 }

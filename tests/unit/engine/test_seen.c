@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Visibility of a flare on the picture under it, and the exposure that follows.
+ * Tests the visibility of a flare on the image below it, and the exposure that
+ * depends on it.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -20,7 +21,8 @@ static void set_ground(int code)
     memset(&ground, code, sizeof ground);
 }
 
-/* Sets the flare to light OF in the green of its first ROWS rows. */
+/* Sets the flare to light OF (1 = white) in the green channel of its first
+ * ROWS rows. */
 static void set_flare(int rows, double of)
 {
     memset(light, 0, sizeof light);
@@ -29,7 +31,7 @@ static void set_flare(int rows, double of)
             light[y][x][1] = (float)of;
 }
 
-static struct glint_seen look(void)
+static struct glint_seen measure_visibility(void)
 {
     struct glint_seen seen;
 
@@ -37,8 +39,8 @@ static struct glint_seen look(void)
     return seen;
 }
 
-/* A light that takes 32 codes on black must count as 1 there, as a ninth on
- * code 120, and not at all on code 240. */
+/* Checks that a light that adds 32 codes on black has visibility 1 there,
+ * 1/9 on code 120, and 0 on code 240. */
 TEST(ground)
 {
     struct glint_seen dark, lit;
@@ -46,51 +48,54 @@ TEST(ground)
 
     set_ground(0);
     set_flare(4, each);
-    dark = look();
+    dark = measure_visibility();
     assert_true(fabs(log2(dark.few)) <= 0.126);
     assert_true(dark.many == 0);
     set_ground(120);
-    lit = look();
+    lit = measure_visibility();
     assert_true(fabs(log2(lit.few * (canvas_linear(152) - canvas_linear(120)) /
                           each)) <= 0.126);
     set_ground(240);
-    assert_true(look().few == 0); /* Nothing shows on white. */
+    assert_true(measure_visibility().few ==
+                0); /* nothing is visible on white */
 }
 
 TEST(area)
 {
     set_ground(0);
     set_flare(0, 1);
-    assert_true(look().few == 0 && look().many == 0);
+    assert_true(measure_visibility().few == 0 &&
+                measure_visibility().many == 0);
     set_flare(HEIGHT / 3, 4 * canvas_linear(32));
-    assert_true(look().few == look().many);
-    assert_true(fabs(log2(look().many) - 2) <= 0.126);
-    light[0][0][0] = 1; /* A speck must not count. */
-    assert_true(fabs(log2(look().few) - 2) <= 0.126);
+    assert_true(measure_visibility().few == measure_visibility().many);
+    assert_true(fabs(log2(measure_visibility().many) - 2) <= 0.126);
+    light[0][0][0] = 1; /* A single bright pixel does not count. */
+    assert_true(fabs(log2(measure_visibility().few) - 2) <= 0.126);
 }
 
-/* Light that makes code 200 white must count as 1 in a small ghost, where all
- * channels get it; on dark ground, and on code 250, where it has no edge, not
- * at all. */
+/* Checks the light that makes code 200 white: it counts as 1 in a small
+ * ghost with all channels, and as 0 on dark ground and on code 250, where
+ * the ghost has no visible edge. */
 TEST(white)
 {
     const float room = (float)(1 - canvas_linear(200));
 
     set_ground(200);
     set_flare(1, 1);
-    assert_true(look().white == 0); /* green alone is not white */
+    assert_true(measure_visibility().white ==
+                0); /* Green alone is not white. */
     for (int x = 0; x < WIDTH; x++)
         for (int c = 0; c < 3; c++)
             light[0][x][c] = x < 4 ? room : 0;
-    assert_true(fabs(log2(look().white)) <= 0.126);
+    assert_true(fabs(log2(measure_visibility().white)) <= 0.126);
     set_ground(250);
-    assert_true(look().white == 0);
+    assert_true(measure_visibility().white == 0);
     set_ground(159);
-    assert_true(look().white == 0);
+    assert_true(measure_visibility().white == 0);
 }
 
-/* The ground of a picture whose left half is white must be white in its left
- * half. */
+/* Checks that an image whose left half is white gives a ground with a white
+ * left half. */
 TEST(taken)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 50);
@@ -104,10 +109,10 @@ TEST(taken)
 
 /* ----------------------------------------------------------------- exposure */
 
-/* Returns the peak that the exposure at strength ASKED gives a flare with PEAK
- * and MEAN of which SEEN is seen. */
-static double exposed(double asked, double peak, double mean,
-                      struct glint_seen seen)
+/* Returns the peak that the exposure of strength ASKED gives to a flare with
+ * peak PEAK, mean MEAN and visibility SEEN. */
+static double exposed_peak(double asked, double peak, double mean,
+                           struct glint_seen seen)
 {
     const struct glint_response_light drawn = {{peak, 0, 0}, {mean, 0, 0}};
     struct glint_strength s;
@@ -125,17 +130,17 @@ TEST(lifted)
     const struct glint_seen plain = {1, 0, 0}, hidden = {0, 0, 0},
                             half = {0.0625, 0, 0};
 
-    /* A flare that is seen keeps a quarter of white. */
-    assert_true(fabs(exposed(0.5, peak, mean, plain) - 0.25) < 0.001);
-    /* A flare that is not must be lifted until it is, to 0.6 of white at
-     * most. */
-    assert_true(fabs(exposed(0.5, peak, mean, half) - 0.5) < 0.001);
-    assert_true(fabs(exposed(0.5, peak, mean, hidden) - 0.6) < 0.001);
-    /* Strengths must keep their steps of two stops. */
-    assert_true(fabs(exposed(0.25, peak, mean, half) - 0.125) < 0.001);
-    assert_true(fabs(exposed(0.25, peak, mean, plain) - 0.0625) < 0.001);
-    /* The mean must not exceed 0.04. */
-    assert_true(fabs(exposed(0.5, peak, peak / 10, hidden) - 0.4) < 0.001);
+    /* A visible flare has a peak of a quarter of white. */
+    assert_true(fabs(exposed_peak(0.5, peak, mean, plain) - 0.25) < 0.001);
+    /* An invisible flare is brightened until it is visible, at most to 0.6
+     * of white. */
+    assert_true(fabs(exposed_peak(0.5, peak, mean, half) - 0.5) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, mean, hidden) - 0.6) < 0.001);
+    /* Strengths keep their steps of two stops. */
+    assert_true(fabs(exposed_peak(0.25, peak, mean, half) - 0.125) < 0.001);
+    assert_true(fabs(exposed_peak(0.25, peak, mean, plain) - 0.0625) < 0.001);
+    /* The mean is limited to 0.04. */
+    assert_true(fabs(exposed_peak(0.5, peak, peak / 10, hidden) - 0.4) < 0.001);
 }
 
 TEST(lowered)
@@ -145,11 +150,11 @@ TEST(lowered)
                             thin = {1, 0.05, 0}, sky = {0, 0, peak / 0.4},
                             haze = {0, 0, peak / 0.05};
 
-    assert_true(fabs(exposed(0.5, peak, mean, veil) - 0.125) < 0.001);
-    assert_true(fabs(exposed(0.5, peak, mean, thick) - 0.1) < 0.001);
-    assert_true(exposed(0.5, peak, mean, thin) > 0.24);
-    /* Ghosts on a sky that light of 0.4 makes white must take two fifths of
-     * that, and at least 0.1. */
-    assert_true(fabs(exposed(0.5, peak, peak / 300, sky) - 0.16) < 0.001);
-    assert_true(fabs(exposed(0.5, peak, peak / 300, haze) - 0.1) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, mean, veil) - 0.125) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, mean, thick) - 0.1) < 0.001);
+    assert_true(exposed_peak(0.5, peak, mean, thin) > 0.24);
+    /* Ghosts on a sky that light of 0.4 makes white get two fifths of 0.4,
+     * and at least 0.1. */
+    assert_true(fabs(exposed_peak(0.5, peak, peak / 300, sky) - 0.16) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, peak / 300, haze) - 0.1) < 0.001);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The automatic exposure: how bright it makes the flare of one lamp and of
- * many, how it changes from frame to frame, and the response of a lens.
+ * Tests the automatic exposure: brightness of the flare of one lamp and of
+ * many, changes from frame to frame, and the response of a lens.
  */
 #include <stdint.h>
 
@@ -17,13 +17,13 @@ static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 enum { PIXELS = 1000000, FRAME_US = 40000 };
 
-/* Power of a lamp, white x pixels, whose flare the responses below bring to a
- * quarter of white by default. */
+/* Power of a lamp, white x pixels, whose flare has a peak of a quarter of
+ * white by default with the responses below. */
 static const double common = PIXELS / 8.0;
 
-/* Returns the response of a lens whose flare falls by SLOPE stops from the axis
- * to 20 degrees and has its mean MEAN stops below its peak. */
-static struct glint_response response_of(double slope, double mean)
+/* Returns the response of a lens whose flare falls by SLOPE stops from the
+ * axis to 20 degrees and whose mean is MEAN stops below its peak. */
+static struct glint_response make_response(double slope, double mean)
 {
     struct glint_response r = {.n = 3, .theta_deg = {0, 10, 20}};
 
@@ -35,18 +35,20 @@ static struct glint_response response_of(double slope, double mean)
     return r;
 }
 
-static struct glint_engine_lamp lamp_of(double theta_deg, double power)
+static struct glint_engine_lamp make_lamp(double theta_deg, double power)
 {
     const struct glint_lamp lamp = {theta_deg, 30, power, {1, 1, 1}, {0, 0}, 0};
 
     return glint_engine_lamp_of(&lamp, 1);
 }
 
-/* Returns the peak that the exposure gives the flare of N lamps, each at its
- * LEVEL, US after the last frame. */
-static double peak_of(struct glint_strength *s, const struct glint_response *r,
-                      struct glint_engine_lamp *lamps, const double *level,
-                      int n, int us)
+/* Returns the peak that the exposure gives to the flare of N lamps, lamp i
+ * at level[i] (0 .. 1 while fading), US microseconds after the previous
+ * frame. */
+static double exposed_peak(struct glint_strength *s,
+                           const struct glint_response *r,
+                           struct glint_engine_lamp *lamps, const double *level,
+                           int n, int us)
 {
     const struct glint_strength_lamps all = {lamps, n, PIXELS};
 
@@ -56,15 +58,15 @@ static double peak_of(struct glint_strength *s, const struct glint_response *r,
     return glint_largest_channel(s->light.peak);
 }
 
-static double still(double asked, const struct glint_response *r, double theta,
-                    double power)
+static double still_peak(double asked, const struct glint_response *r,
+                         double theta, double power)
 {
-    struct glint_engine_lamp lamp = lamp_of(theta, power);
+    struct glint_engine_lamp lamp = make_lamp(theta, power);
     struct glint_strength s;
 
     glint_strength_defaults(&s);
     s.asked = asked;
-    return peak_of(&s, r, &lamp, NULL, 1, 0);
+    return exposed_peak(&s, r, &lamp, NULL, 1, 0);
 }
 
 /* ------------------------------------------------------------------- stills */
@@ -78,36 +80,36 @@ TEST_BEFORE
 
 TEST(a_quarter_of_white_by_default)
 {
-    const struct glint_response r = response_of(0, 7);
+    const struct glint_response r = make_response(0, 7);
 
-    assert_true(fabs(still(0.5, &r, 5, common) - 0.25) < 1e-4);
-    assert_true(fabs(still(1, &r, 5, common) - 1) < 1e-3);
-    assert_true(fabs(still(0.25, &r, 5, common) - 0.0625) < 1e-4);
-    assert_true(still(0, &r, 5, common) == 0);
+    assert_true(fabs(still_peak(0.5, &r, 5, common) - 0.25) < 1e-4);
+    assert_true(fabs(still_peak(1, &r, 5, common) - 1) < 1e-3);
+    assert_true(fabs(still_peak(0.25, &r, 5, common) - 0.0625) < 1e-4);
+    assert_true(still_peak(0, &r, 5, common) == 0);
 }
 
 TEST(rises_with_strength)
 {
-    const struct glint_response r = response_of(3, 4);
+    const struct glint_response r = make_response(3, 4);
     double last = 0;
 
     for (double asked = 0.01; asked < 4; asked *= 1.1) {
-        const double peak = still(asked, &r, 12, 1e5);
+        const double peak = still_peak(asked, &r, 12, 1e5);
 
         assert_true(peak > last);
         last = peak;
     }
 }
 
-/* The flare of a lamp of any power must be within a stop of a quarter of white,
- * and grow with the power. */
+/* Checks that the flare of a lamp of any power is within a stop of a quarter
+ * of white, and grows with the power. */
 TEST(any_power_is_seen)
 {
-    const struct glint_response r = response_of(8, 7);
+    const struct glint_response r = make_response(8, 7);
     double last = 0;
 
     for (double stops = -4; stops <= 40; stops++) {
-        const double peak = still(0.5, &r, 12, exp2(stops));
+        const double peak = still_peak(0.5, &r, 12, exp2(stops));
 
         assert_true(peak >= 0.124 && peak <= 0.501);
         assert_true(peak > last);
@@ -117,8 +119,8 @@ TEST(any_power_is_seen)
 
 TEST(a_veil_is_held_by_its_mean)
 {
-    const struct glint_response r = response_of(0, 0.5);
-    struct glint_engine_lamp lamp = lamp_of(5, PIXELS);
+    const struct glint_response r = make_response(0, 0.5);
+    struct glint_engine_lamp lamp = make_lamp(5, PIXELS);
     const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
 
     glint_strength_expose(&strength, &r, &all, 0);
@@ -128,8 +130,8 @@ TEST(a_veil_is_held_by_its_mean)
 
 TEST(ratios_between_lamps_stay)
 {
-    const struct glint_response r = response_of(5, 7);
-    struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e6), lamp_of(9, 1e3)};
+    const struct glint_response r = make_response(5, 7);
+    struct glint_engine_lamp lamps[2] = {make_lamp(5, 1e6), make_lamp(9, 1e3)};
     const struct glint_strength_lamps all = {lamps, 2, PIXELS};
 
     glint_strength_expose(&strength, &r, &all, 0);
@@ -138,21 +140,22 @@ TEST(ratios_between_lamps_stay)
 
 TEST(many_equal_lamps_share)
 {
-    const struct glint_response r = response_of(0, 9);
+    const struct glint_response r = make_response(0, 9);
     struct glint_engine_lamp lamps[16];
     double one, each;
 
     for (int i = 0; i < 16; i++)
-        lamps[i] = lamp_of(i, 1e4);
-    one = still(0.5, &r, 1, 1e4);
-    each = peak_of(&strength, &r, lamps, NULL, 16, 0) / 2; /* 2 = 16^(1/4) */
+        lamps[i] = make_lamp(i, 1e4);
+    one = still_peak(0.5, &r, 1, 1e4);
+    each =
+        exposed_peak(&strength, &r, lamps, NULL, 16, 0) / 2; /* 2 = 16^(1/4) */
     assert_true(each > one / 2.2 && each < one);
 }
 
 TEST(by_hand)
 {
-    const struct glint_response r = response_of(0, 7);
-    struct glint_engine_lamp lamp = lamp_of(5, common);
+    const struct glint_response r = make_response(0, 7);
+    struct glint_engine_lamp lamp = make_lamp(5, common);
     const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
 
     strength.is_physical = true;
@@ -172,8 +175,8 @@ TEST(by_hand)
 
 TEST(lamps_without_light)
 {
-    const struct glint_response r = response_of(0, 7);
-    struct glint_engine_lamp lamp = lamp_of(5, 0);
+    const struct glint_response r = make_response(0, 7);
+    struct glint_engine_lamp lamp = make_lamp(5, 0);
     const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
     const struct glint_strength_lamps none = {NULL, 0, PIXELS};
 
@@ -184,18 +187,19 @@ TEST(lamps_without_light)
     assert_true(strength.scale == 0);
 }
 
-/* Returns the corrected peak of a single picture whose flare is drawn STOPS
- * brighter than its response, with the mean MEAN_STOPS below the peak. */
-static double corrected(double asked, double stops, double mean_stops)
+/* Returns the corrected peak of a still image whose flare is drawn STOPS
+ * brighter than the response predicts, with a mean MEAN_STOPS below the
+ * peak. */
+static double corrected_peak(double asked, double stops, double mean_stops)
 {
-    const struct glint_response r = response_of(0, 7);
+    const struct glint_response r = make_response(0, 7);
     struct glint_response_light drawn = {{0}, {0}};
     struct glint_strength s;
-    struct glint_engine_lamp lamp = lamp_of(5, common);
+    struct glint_engine_lamp lamp = make_lamp(5, common);
 
     glint_strength_defaults(&s);
     s.asked = asked;
-    peak_of(&s, &r, &lamp, NULL, 1, 0);
+    exposed_peak(&s, &r, &lamp, NULL, 1, 0);
     assert_false(s.is_drawn);
     drawn.peak[1] = exp2(stops - 5);
     drawn.mean[1] = exp2(stops - 5 - mean_stops);
@@ -207,28 +211,30 @@ static double corrected(double asked, double stops, double mean_stops)
     return s.light.peak[1];
 }
 
-TEST(as_it_was_drawn)
+TEST(corrects_to_drawn_flare)
 {
-    assert_true(fabs(corrected(0.5, 0, 7) - 0.25) < 1e-4);
+    assert_true(fabs(corrected_peak(0.5, 0, 7) - 0.25) < 1e-4);
     for (double stops = -12; stops <= 12; stops++) {
-        const double peak = corrected(0.5, stops, 7);
+        const double peak = corrected_peak(0.5, stops, 7);
 
         assert_true(peak > 0.124 && peak < 0.501);
-        assert_true(corrected(0.5, stops, 0.5) > 1 / 16.0); /* a veil, too */
+        /* also for a veil */
+        assert_true(corrected_peak(0.5, stops, 0.5) > 1 / 16.0);
     }
-    assert_true(corrected(0, 3, 7) == 0);
+    assert_true(corrected_peak(0, 3, 7) == 0);
 }
 
-/* A physical exposure, and a flare without light, must not be corrected. */
-TEST(not_as_it_was_drawn)
+/* Checks that a physical exposure, and a flare without light, are not
+ * corrected. */
+TEST(keeps_physical_exposure)
 {
     const struct glint_response_light bright = {{9, 9, 9}, {1, 1, 1}};
     const struct glint_response_light none = {{0}, {0}};
-    const struct glint_response r = response_of(0, 7);
-    struct glint_engine_lamp lamp = lamp_of(5, common);
+    const struct glint_response r = make_response(0, 7);
+    struct glint_engine_lamp lamp = make_lamp(5, common);
     double scale;
 
-    peak_of(&strength, &r, &lamp, NULL, 1, 0);
+    exposed_peak(&strength, &r, &lamp, NULL, 1, 0);
     scale = strength.scale;
     glint_strength_correct(&strength, &none, NULL);
     assert_true(strength.scale == scale && !strength.is_drawn);
@@ -239,16 +245,18 @@ TEST(not_as_it_was_drawn)
 
 /* ------------------------------------------------------------------- videos */
 
-/* A lamp crosses the picture in 200 frames: its flare may change by no more
- * than its own response and the largest step of the factor between frames. */
+/* Checks, while a lamp crosses the image in 200 frames, that its flare
+ * changes per frame by at most its response's change and the max step of the
+ * factor. */
 TEST(a_lamp_that_crosses)
 {
-    const struct glint_response r = response_of(7, 7);
+    const struct glint_response r = make_response(7, 7);
     double last = 0;
 
     for (int i = 0; i <= 200; i++) {
-        struct glint_engine_lamp lamp = lamp_of(fabs(20 - i * 0.2), 1e5);
-        const double peak = peak_of(&strength, &r, &lamp, NULL, 1, FRAME_US);
+        struct glint_engine_lamp lamp = make_lamp(fabs(20 - i * 0.2), 1e5);
+        const double peak =
+            exposed_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.5);
         if (i > 0)
@@ -257,46 +265,49 @@ TEST(a_lamp_that_crosses)
     }
 }
 
-/* A sun appears among lamps: the factor of all must fall gently, and the sun
- * must be limited until it has fallen. */
+/* Checks that a sun which appears among lamps lowers the common factor
+ * gradually, and that its light is limited until then. */
 TEST(a_lamp_that_rises)
 {
-    const struct glint_response r = response_of(0, 7);
+    const struct glint_response r = make_response(0, 7);
     double scale = 0;
 
     for (int i = 0; i < 250; i++) {
-        struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
+        struct glint_engine_lamp lamps[2] = {make_lamp(5, 1e3),
+                                             make_lamp(8, 1e6)};
         const double level[2] = {1, fmin(1, (i - 49) / 5.0)};
         const double peak =
-            peak_of(&strength, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
+            exposed_peak(&strength, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.8);
         if (i > 0)
             assert_true(fabs(log2(strength.scale / scale)) < 0.126);
         scale = strength.scale;
-        if (i == 50) /* The sun is limited to a hundredth of its power. */
+        if (i == 50) /* The sun is limited to 1/100 of its power. */
             assert_true(lamps[1].lamp.power < 1e6 / 100);
         if (i == 249)
             assert_true(lamps[1].lamp.power > 0.99e6);
     }
 }
 
-/* The sun leaves: the factor must rise again, slower than it fell. */
+/* Checks that the factor rises again after the sun leaves, more slowly than
+ * it fell. */
 TEST(a_lamp_that_leaves)
 {
-    const struct glint_response r = response_of(0, 7);
+    const struct glint_response r = make_response(0, 7);
     double scale, first;
 
     {
-        struct glint_engine_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
+        struct glint_engine_lamp lamps[2] = {make_lamp(5, 1e3),
+                                             make_lamp(8, 1e6)};
 
-        peak_of(&strength, &r, lamps, NULL, 2, 0);
+        exposed_peak(&strength, &r, lamps, NULL, 2, 0);
         first = scale = strength.scale;
     }
     for (int i = 0; i < 250; i++) {
-        struct glint_engine_lamp lamp = lamp_of(5, 1e3);
+        struct glint_engine_lamp lamp = make_lamp(5, 1e3);
 
-        peak_of(&strength, &r, &lamp, NULL, 1, FRAME_US);
+        exposed_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
         assert_true(strength.scale >= scale &&
                     strength.scale / scale < exp2(0.081));
         scale = strength.scale;
@@ -304,17 +315,18 @@ TEST(a_lamp_that_leaves)
     assert_true(scale > 300 * first);
 }
 
-/* The flare of a lamp that is alone must follow its level: no gain may make up
- * for it. */
+/* Checks that the flare of a single lamp follows its level: no gain
+ * compensates it. */
 TEST(rising_alone)
 {
-    const struct glint_response r = response_of(0, 7);
+    const struct glint_response r = make_response(0, 7);
     double last = 0;
 
     for (int i = 1; i <= 8; i++) {
         const double level = i / 8.0;
-        struct glint_engine_lamp lamp = lamp_of(5, level * common);
-        const double peak = peak_of(&strength, &r, &lamp, &level, 1, FRAME_US);
+        struct glint_engine_lamp lamp = make_lamp(5, level * common);
+        const double peak =
+            exposed_peak(&strength, &r, &lamp, &level, 1, FRAME_US);
 
         assert_true(fabs(peak - 0.25 * level) < 0.01);
         assert_true(peak > last);
@@ -322,61 +334,61 @@ TEST(rising_alone)
     }
 }
 
-/* After a cut, and after frames without a lamp, the exposure must fit at
- * once. */
+/* Checks that the exposure adapts at once after a cut and after frames
+ * without a lamp. */
 TEST(restarts_after_a_cut)
 {
-    const struct glint_response r = response_of(0, 7);
-    struct glint_engine_lamp faint = lamp_of(5, 10),
-                             bright = lamp_of(5, common);
+    const struct glint_response r = make_response(0, 7);
+    struct glint_engine_lamp faint = make_lamp(5, 10),
+                             bright = make_lamp(5, common);
 
-    peak_of(&strength, &r, &faint, NULL, 1, FRAME_US);
-    assert_true(peak_of(&strength, &r, &bright, NULL, 1, FRAME_US) > 0.3);
+    exposed_peak(&strength, &r, &faint, NULL, 1, FRAME_US);
+    assert_true(exposed_peak(&strength, &r, &bright, NULL, 1, FRAME_US) > 0.3);
     assert_true(bright.lamp.power < common);
-    bright = lamp_of(5, common);
-    assert_true(fabs(peak_of(&strength, &r, &bright, NULL, 1, 0) - 0.25) <
+    bright = make_lamp(5, common);
+    assert_true(fabs(exposed_peak(&strength, &r, &bright, NULL, 1, 0) - 0.25) <
                 1e-4);
-    peak_of(&strength, &r, &faint, NULL, 0, FRAME_US);
-    assert_true(peak_of(&strength, &r, &faint, NULL, 1, FRAME_US) > 0.1);
+    exposed_peak(&strength, &r, &faint, NULL, 0, FRAME_US);
+    assert_true(exposed_peak(&strength, &r, &faint, NULL, 1, FRAME_US) > 0.1);
 }
 
-/* A strength that key frames change must count in its frame, also after frames
- * of strength 0, in which the exposure must follow the lamp. */
+/* Checks that a strength set by key frames applies in its own frame, also
+ * after frames of strength 0, during which the exposure keeps adapting. */
 TEST(strength_by_frame)
 {
     static const double asked[] = {0.5, 1, 0.05, 0, 0, 2, 0.5};
-    const struct glint_response r = response_of(0, 7);
+    const struct glint_response r = make_response(0, 7);
     struct glint_strength s;
 
     glint_strength_defaults(&s);
     for (int i = 0; i < 7; i++) {
-        struct glint_engine_lamp lamp = lamp_of(5, common);
+        struct glint_engine_lamp lamp = make_lamp(5, common);
 
         s.asked = asked[i];
-        assert_true(fabs(peak_of(&s, &r, &lamp, NULL, 1, FRAME_US) -
+        assert_true(fabs(exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
                          asked[i] * asked[i]) < 1e-3);
     }
     s.asked = 0;
     for (int i = 0; i < 250; i++) {
-        struct glint_engine_lamp lamp = lamp_of(5, 64 * common);
+        struct glint_engine_lamp lamp = make_lamp(5, 64 * common);
 
-        peak_of(&s, &r, &lamp, NULL, 1, FRAME_US);
+        exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US);
         assert_true(s.scale == 0);
     }
     {
-        struct glint_engine_lamp lamp = lamp_of(5, 64 * common);
+        struct glint_engine_lamp lamp = make_lamp(5, 64 * common);
 
         s.asked = 0.5;
-        assert_true(fabs(peak_of(&s, &r, &lamp, NULL, 1, FRAME_US) -
-                         still(0.5, &r, 5, 64 * common)) < 1e-3);
+        assert_true(fabs(exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
+                         still_peak(0.5, &r, 5, 64 * common)) < 1e-3);
         assert_true(lamp.lamp.power > 63.9 * common);
     }
 }
 
 /* ------------------------------------------------------------------- lenses */
 
-/* Draws one lamp as the exposure says and checks its flare: the response of
- * LENS must hold for every angle and power. */
+/* Draws one lamp at several angles and powers with the automatic exposure,
+ * and checks its flare's peak: the response of LENS must predict it. */
 static void check_lens(const char *lens, double corner_deg)
 {
     struct opened opened = {.lens = {.tints = NULL}};
@@ -390,18 +402,18 @@ static void check_lens(const char *lens, double corner_deg)
     assert_true(r.n == GLINT_RESPONSE_ANGLES);
     for (int i = 0; i < 6; i++) {
         struct glint_engine_lamp lamp =
-            lamp_of(corner_deg * i / 6, exp2(5 * i - 4) * 100);
+            make_lamp(corner_deg * i / 6, exp2(5 * i - 4) * 100);
         const struct glint_strength_lamps all = {&lamp, 1, 640 * 360};
         struct glint_response_light drawn;
         struct glint_strength s;
 
-        lamp.lamp.phi_deg = 29 + 180 * (i % 2); /* stays within the picture */
+        lamp.lamp.phi_deg = 29 + 180 * (i % 2); /* stays inside the image */
         glint_strength_defaults(&s);
         glint_strength_expose(&s, &r, &all, 0);
         assert_ok(glint_response_draw(&frame, &lamp.lamp, 1,
                                       GLINT_RESPONSE_FINE, NULL, &drawn, NULL));
-        /* FINE takes the brightest ten-thousandth of all pixels, the response a
-         * thousandth, so that the bounds are wide. */
+        /* FINE measures the brightest 1e-4 of the pixels, the response 1e-3;
+         * hence the wide bounds. */
         assert_true(s.scale * glint_largest_channel(drawn.peak) > 1 / 16.0);
         assert_true(s.scale * glint_largest_channel(drawn.peak) < 2);
         assert_true(s.scale * glint_largest_channel(drawn.mean) < 0.1);
@@ -417,7 +429,8 @@ TEST(lenses)
     check_lens("lenses/nikon-zoom-mid.lens", 12.5);
 }
 
-/* The response must be the same within the limits of memory that live has. */
+/* Checks that the response is the same within the memory limits of glint
+ * live. */
 TEST(little_memory)
 {
     struct opened opened = {.lens = {.tints = NULL}};
@@ -439,7 +452,7 @@ TEST(little_memory)
 
 TEST(interpolates)
 {
-    const struct glint_response r = response_of(4, 6);
+    const struct glint_response r = make_response(4, 6);
     struct glint_response_light light;
 
     glint_response_at(&r, 10, &light);
@@ -461,7 +474,8 @@ TEST(looks)
         rgb[3 * i + 1] = i == 7 ? 8 : 0;
         rgb[3 * i + 2] = 2;
     }
-    glint_response_around(rgb, 4000, &light); /* brightest four of 4000 */
+    /* brightest four of 4000 pixels */
+    glint_response_around(rgb, 4000, &light);
     assert_true(light.peak[0] == 3997.5 && light.mean[0] == 1999.5);
     assert_true(light.peak[1] == 2 && light.mean[1] == 0.002);
     assert_true(light.peak[2] == 2 && light.mean[2] == 2);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Statistics of a frame's bundles: each outcome occurs for its own cause,
- * counts are those of the frame that is drawn, and pictures of parts add up to
- * the whole.
+ * Tests the frame statistics of ray bundles: each outcome has its own cause,
+ * counts equal those of the drawn frame, and images of parts add up to the
+ * whole image.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -58,7 +58,7 @@ static void open_fixture(struct fixture *f, int n_lights)
     f->cfg.max_refs = 120000;
 }
 
-static void bin(struct fixture *f)
+static void bin_edges(struct fixture *f)
 {
     const size_t bytes = glint_flare_bytes(&f->cfg);
 
@@ -75,8 +75,10 @@ static void close_fixture(struct fixture *f)
     free(f->m.data);
 }
 
-/* Returns the coefficient of term TERM of output KIND of system SYSTEM. */
-static int32_t *coefficient(struct fixture *f, int system, int kind, int term)
+/* Returns the address of the coefficient of term TERM of output KIND of
+ * system SYSTEM. */
+static int32_t *find_coefficient(struct fixture *f, int system, int kind,
+                                 int term)
 {
     const struct glint_model_system *s = &f->lens.system[system];
     const struct glint_model_output *o =
@@ -92,8 +94,8 @@ struct sums {
     double flux;
 };
 
-/* Returns sums over the accounts of all bundles, and checks each account. */
-static struct sums accounts(struct fixture *f)
+/* Checks the statistics of each bundle and returns their sums. */
+static struct sums sum_accounts(struct fixture *f)
 {
     struct sums sums = {.n = 0};
 
@@ -121,7 +123,7 @@ static struct sums accounts(struct fixture *f)
 
 static void assert_totals(struct fixture *f)
 {
-    const struct sums s = accounts(f);
+    const struct sums s = sum_accounts(f);
     struct glint_real brightest, flux;
 
     assert_int_equal(s.of[GLINT_OUTCOME_DRAWN] + s.of[GLINT_OUTCOME_EMPTY],
@@ -140,9 +142,9 @@ static void assert_outcome(struct fixture *f, enum glint_outcome outcome, int n)
 {
     struct sums s;
 
-    bin(f);
+    bin_edges(f);
     assert_totals(f);
-    s = accounts(f);
+    s = sum_accounts(f);
     assert_int_equal(s.of[outcome], n);
     assert_int_equal(
         s.of[outcome] + s.of[GLINT_OUTCOME_CLOSED] +
@@ -152,14 +154,14 @@ static void assert_outcome(struct fixture *f, enum glint_outcome outcome, int n)
 
 /* ------------------------------------------------------------------- tests */
 
-/* Ghost 1 must never be drawn, ghost 2 not at sines below 1/8. */
+/* Ghost 1 is never visible, ghost 2 not at sines below 1/8. */
 TEST(drawn_and_closed)
 {
     struct fixture f;
 
     open_fixture(&f, 3);
     assert_outcome(&f, GLINT_OUTCOME_DRAWN, 3 * 2 * WAVES);
-    assert_int_equal(accounts(&f).of[GLINT_OUTCOME_CLOSED], 3 * WAVES);
+    assert_int_equal(sum_accounts(&f).of[GLINT_OUTCOME_CLOSED], 3 * WAVES);
     f.light[1].sine_q30 = 1 << 26;
     assert_outcome(&f, GLINT_OUTCOME_DRAWN, (3 * 2 - 1) * WAVES);
     close_fixture(&f);
@@ -193,7 +195,7 @@ TEST(dark)
     struct fixture f;
 
     open_fixture(&f, 2);
-    f.light[1].rgb_q14[0] = 0; /* Without red the light lacks wave 0. */
+    f.light[1].rgb_q14[0] = 0; /* Wavelength 0 has no light without red. */
     assert_outcome(&f, GLINT_OUTCOME_DARK, 2);
     f.light[0].power = real_of(0, 0);
     assert_outcome(&f, GLINT_OUTCOME_DARK, 2 + 4);
@@ -205,32 +207,33 @@ TEST(blocked)
     struct fixture f;
 
     open_fixture(&f, 2);
-    *coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001; /* above 1: none
-                                                             * pass */
-    *coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
+    /* above 1: all rays are blocked by the barrel */
+    *find_coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001;
+    *find_coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
     assert_outcome(&f, GLINT_OUTCOME_BLOCKED, 2 * WAVES);
     close_fixture(&f);
 }
 
-/* Ghost 0 is moved to the right of the picture, which is 2.5 mm wide: far off
- * it must be outside, nearer it must be empty, then drawn. */
+/* Checks ghost 0 while it is moved to the right of the image, which is 2.5
+ * mm wide: far off it is OUTSIDE, closer it is EMPTY, then DRAWN. */
 TEST(outside)
 {
     struct fixture f;
 
     open_fixture(&f, 1);
     f.light[0].sine_q30 = 1 << 26;
-    *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 510027366; /* 1.9 mm */
+    *find_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 510027366; /* 1.9 mm */
     assert_outcome(&f, GLINT_OUTCOME_OUTSIDE, WAVES);
-    *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 469762048; /* 1.75 mm */
+    *find_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 469762048; /* 1.75 mm */
     assert_outcome(&f, GLINT_OUTCOME_EMPTY, WAVES);
-    *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 402653184; /* 1.5 mm */
+    *find_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 402653184; /* 1.5 mm */
     assert_outcome(&f, GLINT_OUTCOME_DRAWN, WAVES);
     close_fixture(&f);
 }
 
-/* Bundles fainter than FAINTEST must be counted as faint: those of one light,
- * which counts by itself, and those of several, which are counted together. */
+/* Checks that bundles fainter than FAINTEST are counted as faint: those of a
+ * single light, which are counted separately, and those of several lights,
+ * which are counted together. */
 TEST(faint)
 {
     struct fixture f;
@@ -249,29 +252,30 @@ TEST(no_room)
     struct fixture f;
 
     open_fixture(&f, 4);
-    bin(&f);
+    bin_edges(&f);
     all = f.stats;
     f.cfg.max_bundles = 8;
-    bin(&f);
+    bin_edges(&f);
     assert_totals(&f);
-    assert_int_equal(accounts(&f).of[GLINT_OUTCOME_NO_ROOM], 4 * 3 * WAVES - 8);
+    assert_int_equal(sum_accounts(&f).of[GLINT_OUTCOME_NO_ROOM],
+                     4 * 3 * WAVES - 8);
     f.cfg.max_bundles = 64;
     for (int part = 1; part < 4; part++) {
         f.cfg.max_primitives = all.primitives * part / 4;
         f.cfg.max_refs = all.refs;
-        bin(&f);
+        bin_edges(&f);
         assert_totals(&f);
-        assert_true(accounts(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
+        assert_true(sum_accounts(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
         f.cfg.max_primitives = all.primitives;
         f.cfg.max_refs = all.refs * part / 4;
-        bin(&f);
+        bin_edges(&f);
         assert_totals(&f);
-        assert_true(accounts(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
+        assert_true(sum_accounts(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
     }
     close_fixture(&f);
 }
 
-static void draw(struct fixture *f, int32_t *px_q20)
+static void draw_image(struct fixture *f, int32_t *px_q20)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
@@ -280,9 +284,9 @@ static void draw(struct fixture *f, int32_t *px_q20)
     glint_flare_draw(f->flare, &image);
 }
 
-/* Pictures of single ghosts, of single lights and of single wavelengths must
- * each add up to the whole, but for the rounding of each to 2^-20. Ghost 1,
- * which is closed, must be dark. */
+/* Checks that images of single ghosts, of single lights and of single
+ * wavelengths each add up to the whole image, within their rounding to
+ * 2^-20. Ghost 1, which is closed, is dark. */
 TEST(parts)
 {
     static int32_t whole[3 * N], part[3 * N];
@@ -291,8 +295,8 @@ TEST(parts)
     struct fixture f;
 
     open_fixture(&f, 2);
-    bin(&f);
-    draw(&f, whole);
+    bin_edges(&f);
+    draw_image(&f, whole);
     for (int by = 0; by < 3; by++) {
         memset(sum, 0, sizeof sum);
         for (int k = 0; k < parts[by]; k++) {
@@ -300,7 +304,7 @@ TEST(parts)
 
             glint_flare_keep(f.flare, by == 0 ? k : -1, by == 1 ? k : -1,
                              by == 2 ? k : -1);
-            draw(&f, part);
+            draw_image(&f, part);
             for (int i = 0; i < 3 * N; i++) {
                 sum[i] += part[i];
                 any |= part[i];
@@ -311,30 +315,30 @@ TEST(parts)
             assert_true(llabs(sum[i] - whole[i]) <= parts[by]);
     }
     glint_flare_keep(f.flare, -1, -1, -1);
-    draw(&f, part);
+    draw_image(&f, part);
     assert_memory_equal(part, whole, sizeof whole);
     close_fixture(&f);
 }
 
-/* Asking for accounts must not change the picture. */
-TEST(asking)
+/* Checks that collecting statistics does not change the image. */
+TEST(collecting_changes_nothing)
 {
     static int32_t before[3 * N], after[3 * N];
     struct fixture f;
 
     open_fixture(&f, 4);
-    bin(&f);
-    draw(&f, before);
-    bin(&f);
-    accounts(&f);
-    draw(&f, after);
+    bin_edges(&f);
+    draw_image(&f, before);
+    bin_edges(&f);
+    sum_accounts(&f);
+    draw_image(&f, after);
     assert_memory_equal(before, after, sizeof before);
     close_fixture(&f);
 }
 
-/* The account must have the terms of ghost 0: sensor x 2, and v^2 s except in
- * the middle of the range of angles; sensor y 2, stop x 1 and stop y 2, energy
- * 1 for a given wavelength, barrel 2. */
+/* Checks the number of terms of ghost 0: sensor x 2, and v^2 s except in the
+ * middle of the range of angles; sensor y 2, stop x 1 and stop y 2, energy 1
+ * for a given wavelength, barrel 2. */
 TEST(terms)
 {
     struct glint_account a;
@@ -343,7 +347,7 @@ TEST(terms)
     open_fixture(&f, 1);
     for (int off = 0; off < 2; off++) {
         f.light[0].sine_q30 = (1 << 27) - (off << 26);
-        bin(&f);
+        bin_edges(&f);
         glint_flare_account(f.flare, 0, 0, 0, &a);
         assert_int_equal(a.outcome, GLINT_OUTCOME_DRAWN);
         assert_int_equal(a.outputs, 6);
@@ -353,16 +357,16 @@ TEST(terms)
     close_fixture(&f);
 }
 
-/* Rows must be those of a count that looks at each row: does any part of it lie
- * between the ends of an edge? */
+/* Checks the count of rows against one that tests for each row whether any
+ * part of it lies between the ends of an edge. */
 TEST(rows)
 {
     struct fixture f;
     int64_t want = 0, got = 0;
 
     open_fixture(&f, 2);
-    f.rays.pixels_per_mm = real_of(200, 0); /* beyond the picture */
-    bin(&f);
+    f.rays.pixels_per_mm = real_of(200, 0); /* larger than the image */
+    bin_edges(&f);
     for (int i = 0; i < f.stats.primitives; i++)
         for (int y = 0; y < HEIGHT; y++)
             want += glint_by_edges_of(f.flare)->edge[i].y_q8 < 256 * (y + 1) &&
@@ -380,8 +384,7 @@ TEST(rows)
     close_fixture(&f);
 }
 
-/* Returns the light in the middle of a picture, over the size of a small
- * one. */
+/* Returns the light in the middle WIDTH x HEIGHT pixels of a larger image. */
 static int64_t light_in_middle(const int32_t *px_q20, int width, int height)
 {
     int64_t sum = 0;
@@ -392,8 +395,9 @@ static int64_t light_in_middle(const int32_t *px_q20, int width, int height)
     return sum;
 }
 
-/* Scales the stop's polynomials so that the ghost comes through a round stop as
- * a small spot of the pupil, with no ray of the probe near the spot's edge. */
+/* Scales the stop's polynomials so that the ghost passes a round stop
+ * through a small spot of its pupil, with no ray of the prepass near the
+ * spot's edge. */
 static void shrink_stop(struct fixture *f)
 {
     const struct glint_model_output *o =
@@ -402,14 +406,14 @@ static void shrink_stop(struct fixture *f)
     for (int k = 0; k < f->lens.system[0].n_outputs; k++, o++)
         for (int term = 0; term < o->n_terms; term++)
             if (o->kind == GLINT_OUT_STOP_X || o->kind == GLINT_OUT_STOP_Y)
-                *coefficient(f, 0, o->kind, term) =
-                    *coefficient(f, 0, o->kind, term) / 5 * 12;
+                *find_coefficient(f, 0, o->kind, term) =
+                    *find_coefficient(f, 0, o->kind, term) / 5 * 12;
     f->cfg.stop.n_blades = 0;
 }
 
-/* A ghost whose outcome is outside must have no light where the picture is, as
- * a larger picture about it shows. Tried at all azimuths and ever farther
- * out. */
+/* Checks that a ghost with outcome OUTSIDE adds no light to the image: a
+ * larger image around it shows where its light falls. Tries all azimuths at
+ * growing distances. */
 static void check_outside(int small_stop)
 {
     enum { WIDE = 4 * WIDTH, HIGH = 4 * HEIGHT };
@@ -433,10 +437,10 @@ static void check_outside(int small_stop)
                 (int32_t)lrint(cos(degrees / 57.29578) * 0x1p30);
             f.light[0].sin_q30 =
                 (int32_t)lrint(sin(degrees / 57.29578) * 0x1p30);
-            *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = x_q28;
+            *find_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = x_q28;
             f.cfg.width = WIDTH;
             f.cfg.height = HEIGHT;
-            bin(&f);
+            bin_edges(&f);
             glint_flare_account(f.flare, 0, 0, 0, &a);
             if (a.outcome != GLINT_OUTCOME_OUTSIDE) {
                 n_drawn++;
@@ -445,7 +449,7 @@ static void check_outside(int small_stop)
             n_outside++;
             f.cfg.width = WIDE;
             f.cfg.height = HIGH;
-            bin(&f);
+            bin_edges(&f);
             memset(px_q20, 0, sizeof px_q20);
             glint_flare_draw(f.flare, &image);
             assert_true(light_in_middle(px_q20, WIDE, HIGH) == 0);

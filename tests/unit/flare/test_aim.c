@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Frames made in integers: directions of pixels and weights of colours must be
- * those that the engine computes in doubles, within the bounds of flare.h.
+ * Tests frames set up in integers: pixel directions and colour weights equal
+ * those that the engine computes in double precision, within the bounds stated
+ * in flare.h.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -28,8 +29,8 @@ static void set_lens(double focal_mm, double width_mm, double height_mm)
     header.wave_hi_q24 = (int32_t)(0x1p24 / (0.4 * 0.4));
 }
 
-static struct glint_light by_doubles(int width, int height, double focal_mm,
-                                     double x, double y)
+static struct glint_light aim_in_double(int width, int height, double focal_mm,
+                                        double x, double y)
 {
     const struct glint_view view =
         glint_view_fit(width, height, glint_real_value(header.film_width_mm),
@@ -40,7 +41,8 @@ static struct glint_light by_doubles(int width, int height, double focal_mm,
     return glint_light_of(&lamp, 1);
 }
 
-static void same(const struct glint_light *a, const struct glint_light *b)
+static void assert_same_light(const struct glint_light *a,
+                              const struct glint_light *b)
 {
     assert_in_range(labs((long)a->sine_q30 - b->sine_q30), 0, NEAR_Q30);
     assert_in_range(labs((long)a->cosine_q30 - b->cosine_q30), 0, NEAR_Q30);
@@ -50,9 +52,9 @@ static void same(const struct glint_light *a, const struct glint_light *b)
     assert_memory_equal(a->rgb_q14, b->rgb_q14, sizeof a->rgb_q14);
 }
 
-/* Pixels of pictures of any shape, also far beside them, must have the right
- * direction through lenses from fisheyes to telescopes and through those that
- * mirror (negative focal lengths). */
+/* Checks the direction of pixels of images of any shape, also far
+ * off-screen, through lenses from fisheyes to telephotos and through
+ * mirroring lenses (negative focal length). */
 TEST(pixels)
 {
     uint32_t seed = 7;
@@ -75,15 +77,16 @@ TEST(pixels)
         set_lens(focal_mm, 36, 24);
         integers = glint_light_from_pixel(&lens, width, height, x_q8, y_q8);
         doubles =
-            by_doubles(width, height, focal_mm, x_q8 / 256.0, y_q8 / 256.0);
+            aim_in_double(width, height, focal_mm, x_q8 / 256.0, y_q8 / 256.0);
         if (x_q8 == width * 128 && y_q8 == height * 128)
-            doubles.cos_q30 = 1 << 30; /* any azimuth will do here */
-        same(&integers, &doubles);
+            doubles.cos_q30 = 1 << 30; /* at the centre any azimuth is right */
+        assert_same_light(&integers, &doubles);
     }
 }
 
-/* By hand: a pixel 45 degrees to the left. Pixels so far to the upper right
- * that their distance is clamped must all have one direction. */
+/* Checks a direction computed by hand: a pixel 45 degrees to the left.
+ * Pixels so far to the upper right that their distance is clamped all have
+ * the same direction. */
 TEST(by_hand)
 {
     const int32_t half_q30 = 759250125; /* sqrt(2) / 2 */
@@ -100,7 +103,7 @@ TEST(by_hand)
                                      25600 - (1 << 30));
     assert_in_range(labs((long)light.cos_q30 - half_q30), 0, 1);
     assert_in_range(labs((long)light.sin_q30 - half_q30), 0, 1);
-    same(&light, &farther);
+    assert_same_light(&light, &farther);
 }
 
 TEST(pixels_per_mm)
@@ -114,7 +117,7 @@ TEST(pixels_per_mm)
                 20);
 }
 
-static void waves_are(const double flux[6])
+static void check_waves(const double flux[6])
 {
     static const double nm[GLINT_FLARE_WAVES] = {650, 532, 450};
     static struct glint_setup setup;
@@ -139,23 +142,23 @@ static void waves_are(const double flux[6])
     }
 }
 
-/* Weights of wavelengths must be those in doubles: for a flux polynomial as
- * lenses have it, for a flat one, and for wavelengths beyond the band, which
- * count as its nearer end. */
+/* Checks wavelength weights against double precision: for the flux
+ * polynomial of a real lens, for a constant one, and for wavelengths outside
+ * the band, which use its nearer end. */
 TEST(waves)
 {
     static const double lens_flux[6] = {312.4, -41.2, -10.7, 2.9, -0.4, 0.01};
     static const double flat[6] = {1e-3};
 
     set_lens(50, 36, 24);
-    waves_are(lens_flux);
-    waves_are(flat);
+    check_waves(lens_flux);
+    check_waves(flat);
     header.wave_hi_q24 = (int32_t)(0x1p24 / (0.5 * 0.5));
     header.wave_lo_q24 = (int32_t)(0x1p24 / (0.6 * 0.6));
-    waves_are(lens_flux);
+    check_waves(lens_flux);
 }
 
-/* Where the model has no light, weights must be 0 and not undefined. */
+/* Checks that weights are 0, not undefined, if the model has no light. */
 TEST(no_light)
 {
     struct glint_wave wave[GLINT_FLARE_WAVES];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where the sides of a square stop cut edges and cells. Each place in the stop
- * lies at the same place of the screen, one pixel to a stop radius.
+ * Tests where the sides of a square stop cut edges and cells. Positions in the
+ * stop map to the same screen position, one pixel per stop radius.
  */
 #include "flare/edges/cuts.h"
 #include "support/test.h"
@@ -17,7 +17,7 @@ static const struct glint_stop square = {.n_blades = 4,
                                                         {0, -(1 << 30)}},
                                          .apothem_q16 = ONE_Q16};
 
-static struct glint_vertex at(int x_q16, int y_q16)
+static struct glint_vertex make_vertex(int x_q16, int y_q16)
 {
     return (struct glint_vertex){.x_q8 = x_q16 / 256,
                                  .y_q8 = y_q16 / 256,
@@ -25,9 +25,9 @@ static struct glint_vertex at(int x_q16, int y_q16)
                                  .stop_y_q16 = y_q16};
 }
 
-/* Returns the part of the edge from A to B that is visible. */
-static struct glint_edge_part part_of(const struct glint_vertex *a,
-                                      const struct glint_vertex *b)
+/* Returns the visible part of the edge from A to B. */
+static struct glint_edge_part find_visible_part(const struct glint_vertex *a,
+                                                const struct glint_vertex *b)
 {
     const struct glint_vertex *const end[2] = {a, b};
     struct glint_outside out[2];
@@ -39,15 +39,16 @@ static struct glint_edge_part part_of(const struct glint_vertex *a,
     return part;
 }
 
-/* An edge from inside to beyond the right side must be cut at x = 1, in both
- * directions. */
+/* Checks that an edge from inside to outside the right side is cut at x = 1,
+ * in both directions. */
 TEST(part)
 {
     for (int from = -ONE_Q16 + 64; from < ONE_Q16; from += 1777)
         for (int to = ONE_Q16; to < 40 * ONE_Q16; to += to / 3) {
-            const struct glint_vertex in = at(from, 0), out = at(to, 5 * 256);
-            const struct glint_edge_part there = part_of(&in, &out);
-            const struct glint_edge_part back = part_of(&out, &in);
+            const struct glint_vertex in = make_vertex(from, 0),
+                                      out = make_vertex(to, 5 * 256);
+            const struct glint_edge_part there = find_visible_part(&in, &out);
+            const struct glint_edge_part back = find_visible_part(&out, &in);
 
             assert_true(there.visible && back.visible);
             assert_int_equal(there.cut[0], GLINT_CUT_NOTHING);
@@ -60,16 +61,16 @@ TEST(part)
         }
 }
 
-/* An edge through the whole stop and one over a corner of it must be cut twice;
- * an edge past a corner must be invisible. */
+/* Checks that an edge across the whole stop and one across a corner are cut
+ * twice, and that an edge outside a corner is invisible. */
 TEST(part_of_two_cuts)
 {
-    const struct glint_vertex left = at(-2 * ONE_Q16, 0);
-    const struct glint_vertex right = at(3 * ONE_Q16 / 2, 0);
-    const struct glint_vertex high = at(0, 5 * ONE_Q16 / 4);
-    const struct glint_vertex past = at(ONE_Q16 / 2, 5 * ONE_Q16 / 2);
-    const struct glint_edge_part through = part_of(&left, &right);
-    const struct glint_edge_part over = part_of(&right, &high);
+    const struct glint_vertex left = make_vertex(-2 * ONE_Q16, 0);
+    const struct glint_vertex right = make_vertex(3 * ONE_Q16 / 2, 0);
+    const struct glint_vertex high = make_vertex(0, 5 * ONE_Q16 / 4);
+    const struct glint_vertex past = make_vertex(ONE_Q16 / 2, 5 * ONE_Q16 / 2);
+    const struct glint_edge_part through = find_visible_part(&left, &right);
+    const struct glint_edge_part over = find_visible_part(&right, &high);
 
     assert_true(through.visible && over.visible);
     assert_int_equal(through.cut[0], 2);
@@ -80,11 +81,11 @@ TEST(part_of_two_cuts)
     assert_int_equal(over.cut[1], 1);
     assert_true(abs(over.end_q8[0][0] - 256) <= 1);
     assert_true(abs(over.end_q8[1][1] - 256) <= 1);
-    assert_false(part_of(&right, &past).visible);
+    assert_false(find_visible_part(&right, &past).visible);
 }
 
-/* The corner of the right and the upper side must be found by cells whose
- * middle is within three quarters of a cell of it, and by no others. */
+/* Checks that exactly the cells whose middle is within three quarters of a
+ * cell of the upper right corner find that corner. */
 TEST(cross)
 {
     const int wide = ONE_Q16 / 4;
@@ -94,8 +95,10 @@ TEST(cross)
             const int x = ONE_Q16 - wide * u / 100,
                       y = ONE_Q16 - wide * v / 100;
             const struct glint_vertex corner[4] = {
-                at(x - wide / 2, y - wide / 2), at(x + wide / 2, y - wide / 2),
-                at(x + wide / 2, y + wide / 2), at(x - wide / 2, y + wide / 2)};
+                make_vertex(x - wide / 2, y - wide / 2),
+                make_vertex(x + wide / 2, y - wide / 2),
+                make_vertex(x + wide / 2, y + wide / 2),
+                make_vertex(x - wide / 2, y + wide / 2)};
             const struct glint_vertex *const of[4] = {&corner[0], &corner[1],
                                                       &corner[2], &corner[3]};
             int32_t at_q8[2] = {0, 0};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The area to the right of an edge, against values worked out by hand: rounded
- * to 1/256 pixel for pictures in codes, to 1/65536 for linear ones.
+ * Tests the area to the right of an edge against values computed by hand:
+ * rounded to 1/256 pixel for images in codes, to 1/65536 for linear images.
  */
 #include <stdint.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 
 enum { LOG2 = 3, SIDE = 1 << LOG2, STRIDE = GLINT_EDGE_STRIDE(LOG2) };
 
-static struct glint_edge_sums sums_of(int linear)
+static struct glint_edge_sums make_sums(int linear)
 {
     static uint64_t wide[3 * SIDE * STRIDE];
     static uint32_t narrow[3 * SIDE * STRIDE];
@@ -35,9 +35,9 @@ static struct glint_edge_sums sums_of(int linear)
                                     .touched = touched};
 }
 
-/* Adds an edge between two points, with red light to its right. */
-static void add(struct glint_edge_sums *s, int x0_q8, int y0_q8, int x1_q8,
-                int y1_q8, int64_t light_q20)
+/* Adds an edge from (X0, Y0) to (X1, Y1) with red light to its right. */
+static void add_edge(struct glint_edge_sums *s, int x0_q8, int y0_q8, int x1_q8,
+                     int y1_q8, int64_t light_q20)
 {
     static const struct glint_bundle red = {.rgb_q14 = {1 << 14, 0, 0}};
     const int32_t a[2] = {x0_q8, y0_q8}, b[2] = {x1_q8, y1_q8}, first = 0;
@@ -49,9 +49,9 @@ static void add(struct glint_edge_sums *s, int x0_q8, int y0_q8, int x1_q8,
     glint_edge_add(s, &edge, &red, &first, 1);
 }
 
-/* Returns the red light of pixel X in row Y of a picture in codes, _q16. Half
- * of white gives 128 for each 1/256 of the pixel's area. */
-static int code_light(struct glint_edge_sums *s, int x, int y)
+/* Returns the red light of pixel X in row Y of an image in codes, Q16. Half
+ * of white gives 128 per 1/256 of the pixel's area. */
+static int read_light(struct glint_edge_sums *s, int x, int y)
 {
     uint16_t light_q16[STRIDE];
 
@@ -59,23 +59,23 @@ static int code_light(struct glint_edge_sums *s, int x, int y)
     return light_q16[x];
 }
 
-/* An upright edge, FROM_Q8 from the pixel's left side and HEIGHT_Q8 high, must
- * light the area to its right. */
+/* Checks that a vertical edge, FROM_Q8 right of the pixel's left side and
+ * HEIGHT_Q8 high, lights the area to its right. */
 TEST(upright)
 {
     for (int from_q8 = 0; from_q8 < 256; from_q8 += 5)
         for (int height_q8 = 1; height_q8 <= 256; height_q8 += 3) {
             const int area_q16 = height_q8 * (256 - from_q8);
-            struct glint_edge_sums s = sums_of(0);
+            struct glint_edge_sums s = make_sums(0);
             int32_t linear_q20[STRIDE];
 
-            add(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8, 512 + height_q8,
-                1 << 19);
-            assert_int_equal(code_light(&s, 3, 2),
+            add_edge(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8,
+                     512 + height_q8, 1 << 19);
+            assert_int_equal(read_light(&s, 3, 2),
                              (area_q16 + 128) / 256 * 128);
-            s = sums_of(1);
-            add(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8, 512 + height_q8,
-                1 << 19);
+            s = make_sums(1);
+            add_edge(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8,
+                     512 + height_q8, 1 << 19);
             glint_edge_linear(&s, 0, 2, linear_q20);
             assert_int_equal(linear_q20[2], 0);
             assert_int_equal(linear_q20[3], 8 * area_q16);
@@ -83,14 +83,15 @@ TEST(upright)
         }
 }
 
-/* An edge from the upper right corner of pixel 3 to the lower left corner of
- * pixel 2 must light a quarter of pixel 2 and three quarters of pixel 3. */
+/* Checks that an edge from the upper right corner of pixel 3 to the lower
+ * left corner of pixel 2 lights a quarter of pixel 2 and three quarters of
+ * pixel 3. */
 TEST(slanted)
 {
-    struct glint_edge_sums s = sums_of(0);
+    struct glint_edge_sums s = make_sums(0);
     uint16_t light_q16[STRIDE];
 
-    add(&s, 4 * 256, 0, 2 * 256, 256, 1 << 19);
+    add_edge(&s, 4 * 256, 0, 2 * 256, 256, 1 << 19);
     glint_edge_light(&s, 0, 0, glint_kernels_of(0), light_q16);
     assert_int_equal(light_q16[1], 0);
     assert_int_equal(light_q16[2], 32768 / 4);
@@ -105,9 +106,9 @@ static int draw_below(int n)
     return (int)((uint64_t)rng_bits(&seed) * (uint32_t)n >> 32);
 }
 
-/* A random edge must give the same light, to the last bit, in a whole tile and
- * in both halves of it, through which it takes other ways: none to its left,
- * and that of its full height to its right. */
+/* Checks that a random edge gives the same light, bit by bit, in a whole
+ * tile and in its two halves, which use other code paths: no light left of
+ * the edge, and the light of its full height right of it. */
 TEST(parts_of_tiles)
 {
     enum { FROM = 4 };
@@ -119,9 +120,9 @@ TEST(parts_of_tiles)
         const int high = 1 + draw_below(i % 3 ? 256 * SIDE - y0 - 1 : 4);
         const int32_t left_q8 = x0 < x1 ? x0 : x1, right_q8 = x0 < x1 ? x1 : x0;
         int32_t all_q20[SIDE][STRIDE], part_q20[STRIDE];
-        struct glint_edge_sums s = sums_of(1);
+        struct glint_edge_sums s = make_sums(1);
 
-        add(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
+        add_edge(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
         for (int y = 0; y < SIDE; y++) {
             const int from = y0 > 256 * y ? y0 : 256 * y;
             const int end =
@@ -138,12 +139,12 @@ TEST(parts_of_tiles)
                     assert_int_equal(all_q20[y][x], most);
             }
         }
-        s = sums_of(1);
+        s = make_sums(1);
         for (int part = 0; part < 2;
-             part++) { /* The first carries to the second. */
+             part++) { /* The first half carries its sum to the second. */
             s.tile.x0 = part ? FROM : 0;
             s.tile.x1 = part ? SIDE : FROM;
-            add(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
+            add_edge(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
             for (int y = 0; y < SIDE; y++) {
                 glint_edge_linear(&s, 0, y, part_q20);
                 assert_memory_equal(part_q20, all_q20[y] + s.tile.x0,
@@ -153,16 +154,15 @@ TEST(parts_of_tiles)
     }
 }
 
-/* Packed light must be exact to 25 bits, up to 2^40. */
-/* Draws eight edges that each light what is to their right by LIGHT, and if
- * BRIGHT is 1 two more that take each other's light away again and together
- * need wide sums. */
+/* Checks that packed light is exact to 25 bits, up to 2^40. */
+/* Draws eight edges that each add LIGHT to their right, and if BRIGHT is 1
+ * two more that cancel each other and together need wide sums. */
 static void draw_many(int fine, int64_t light_q20, int bright,
                       uint16_t light_q16[SIDE][STRIDE])
 {
     static const struct glint_bundle red = {.rgb_q14 = {1 << 14, 0, 0}};
     const int64_t brightest_q20 = INT64_C(1000) << 20;
-    struct glint_edge_sums s = sums_of(0);
+    struct glint_edge_sums s = make_sums(0);
     struct glint_edge edge[10];
     int32_t ref[10];
 
@@ -183,8 +183,8 @@ static void draw_many(int fine, int64_t light_q20, int bright,
         glint_edge_light(&s, 0, y, glint_kernels_of(0), light_q16[y]);
 }
 
-/* Light must not depend on how wide the sums are, up to and beyond what narrow
- * ones hold. */
+/* Checks that light does not depend on the width of the sums, up to and
+ * above the range of narrow ones. */
 TEST(wide_or_narrow)
 {
     for (int fine = 0; fine < 2; fine++)

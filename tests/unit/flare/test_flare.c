@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integer rasteriser on grids made by hand: settings that must not matter,
- * and goldens.
+ * Tests the integer rasteriser on hand-made grids: settings that must not
+ * change the image, and golden hashes.
  */
 #include <stdbool.h>
 #include <stdio.h>
@@ -52,8 +52,8 @@ TEST(order_does_not_matter)
     }
 }
 
-/* A picture of any format, in memory of its own, on which some random ghosts
- * are drawn. */
+/* An image of any format in its own memory, on which random ghosts are
+ * drawn. */
 struct random_picture {
     struct glint_image image;
     uint8_t *mem;
@@ -94,13 +94,13 @@ static void draw_picture(const struct glint_flare_config *cfg,
     free(mem);
 }
 
-static unsigned random_sets(void)
+static unsigned choose_instruction_sets(void)
 {
     return (unsigned)draw_number(8) & glint_system_sets();
 }
 
-/* Light that grows from far below a code to far beyond 32-bit sums must never
- * make a pixel darker. */
+/* Checks that light growing from far below a code to far above the range of
+ * 32-bit sums never makes a pixel darker. */
 TEST(bright_stays_bright)
 {
     struct glint_flare_config c = base_config();
@@ -124,8 +124,8 @@ TEST(bright_stays_bright)
     }
 }
 
-/* The promise of the rasteriser: the same bytes for any tiles, kernels, workers
- * and order of jobs, over many random scenes. */
+/* Checks that many random scenes give the same bytes for all tile sizes,
+ * kernels, numbers of workers and job orders. */
 TEST(random_scenes)
 {
     for (int k = 0; k < 240; k++) {
@@ -140,9 +140,9 @@ TEST(random_scenes)
 
         for (int i = 0; i < n; i++) {
             list[i] = random_ghost();
-            if (draw_number(8) == 0) /* far beyond it */
+            if (draw_number(8) == 0) /* much larger than the image */
                 list[i].size <<= draw_number(14);
-            /* The light changes by factors of 2^-12 .. 2^7. */
+            /* scales the light by 2^-12 .. 2^7 */
             list[i].flux_exponent += draw_number(20) - 12;
         }
         c.stop.n_blades = k % 5 ? 8 : 0;
@@ -153,7 +153,7 @@ TEST(random_scenes)
         make_picture(&plain, format, seed);
         draw_picture(&c, list, n, 0, &plain);
         c.tile_log2 = 3 + draw_number(4);
-        c.sets = random_sets();
+        c.sets = choose_instruction_sets();
         shuffle_init(&shuffle, 1 + draw_number(8), seed);
         c.workers = &shuffle.workers;
         make_picture(&other, format, seed);
@@ -177,8 +177,8 @@ TEST(bundle_order_does_not_matter)
     assert_memory_equal(pixels, want, sizeof pixels);
 }
 
-/* Drawing in place on 8 bits must keep the bytes of pixels that no ghost
- * touches, and padding. */
+/* Checks that drawing in place on 8 bits does not change padding or pixels
+ * that no ghost touches. */
 TEST(untouched_stays)
 {
     enum { STRIDE = WIDTH * 3 + 13 };
@@ -213,8 +213,8 @@ TEST(untouched_stays)
     free(mem);
 }
 
-/* Drawing into NULL must do all but touch a picture, and must not change the
- * next frame. */
+/* Checks that drawing into NULL does all work but writing an image, and does
+ * not change the next frame. */
 TEST(into_nothing)
 {
     static uint8_t bytes[2][3 * WIDTH * HEIGHT];
@@ -244,7 +244,7 @@ TEST(into_nothing)
 
 /* ------------------------------------------------------------------ golden */
 
-static uint64_t hash(const void *data, size_t bytes)
+static uint64_t hash_bytes(const void *data, size_t bytes)
 {
     const uint8_t *p = data;
     uint64_t h = UINT64_C(14695981039346656037); /* FNV-1a */
@@ -254,14 +254,14 @@ static uint64_t hash(const void *data, size_t bytes)
     return h;
 }
 
-static void golden_case(FILE *file, bool update, const char *name,
-                        struct glint_flare_config c)
+static void check_golden(FILE *file, bool update, const char *name,
+                         struct glint_flare_config c)
 {
     char line[80], expected[80];
     uint64_t h;
 
     draw_scene(c, pixels);
-    h = hash(pixels, sizeof pixels);
+    h = hash_bytes(pixels, sizeof pixels);
     snprintf(expected, sizeof expected, "%s %08lx%08lx\n", name,
              (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffff));
     if (update) {
@@ -272,8 +272,8 @@ static void golden_case(FILE *file, bool update, const char *name,
     assert_string_equal(line, expected);
 }
 
-/* Hashes must be the same on every CPU; GLINT_GOLDEN_UPDATE=1 writes them
- * again. */
+/* Checks that hashes are the same on every CPU; GLINT_GOLDEN_UPDATE=1
+ * rewrites them. */
 TEST(golden)
 {
     const bool update = getenv("GLINT_GOLDEN_UPDATE") != NULL;
@@ -281,11 +281,11 @@ TEST(golden)
     struct glint_flare_config c = base_config();
 
     assert_non_null(file);
-    golden_case(file, update, "edges", c);
+    check_golden(file, update, "edges", c);
     c.irradiance_steps = 35;
-    golden_case(file, update, "edges-stepped", c);
+    check_golden(file, update, "edges-stepped", c);
     c = base_config();
     c.stop.n_blades = 0;
-    golden_case(file, update, "edges-circle", c);
+    check_golden(file, update, "edges-circle", c);
     fclose(file);
 }
