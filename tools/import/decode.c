@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds the format of a lens file and decodes its bytes to text.
+ * Detects the format of a lens file and decodes its bytes to text.
  */
 #include <string.h>
 #include <strings.h>
@@ -39,7 +39,7 @@ const struct import_format *import_format_of(const char *name)
 
 /* Converts the UTF-16 units of DATA from AT on to one byte each, '?' for
  * characters other than ASCII. HIGH: index of a unit's high byte, 0 or 1. */
-static void narrow(uint8_t *data, size_t *bytes, size_t at, int high)
+static void narrow_utf16(uint8_t *data, size_t *bytes, size_t at, int high)
 {
     size_t n = 0;
 
@@ -52,7 +52,7 @@ static void narrow(uint8_t *data, size_t *bytes, size_t at, int high)
 }
 
 /* Replaces '\r' by '\n' if the text has no '\n'. */
-static void end_lines(uint8_t *data, size_t bytes)
+static void convert_line_ends(uint8_t *data, size_t bytes)
 {
     if (bytes == 0 || memchr(data, '\n', bytes))
         return;
@@ -66,16 +66,16 @@ static void end_lines(uint8_t *data, size_t bytes)
 static void decode_text(uint8_t *data, size_t *bytes)
 {
     if (*bytes >= 2 && data[0] == 0xff && data[1] == 0xfe)
-        narrow(data, bytes, 2, 1);
+        narrow_utf16(data, bytes, 2, 1);
     else if (*bytes >= 2 && data[0] == 0xfe && data[1] == 0xff)
-        narrow(data, bytes, 2, 0);
+        narrow_utf16(data, bytes, 2, 0);
     else if (*bytes >= 4 && data[0] && !data[1] && data[2] && !data[3])
-        narrow(data, bytes, 0, 1);
+        narrow_utf16(data, bytes, 0, 1);
     else if (*bytes >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) {
         *bytes -= 3;
         memmove(data, data + 3, *bytes);
     }
-    end_lines(data, *bytes);
+    convert_line_ends(data, *bytes);
 }
 
 char *import_read(struct imported *lens, const struct import_format *format,

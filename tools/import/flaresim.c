@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * FlareSim's .lens files: "name:", "focal_length:", then "surfaces:" and rows
- * of radius or "stop", thickness, index, Abbe number, semi-diameter, coating,
- * and cyl_x or cyl_y for a cylinder whose axis is x or y.
+ * Reads FlareSim's .lens files: "name:", "focal_length:", then "surfaces:" and
+ * rows of radius or "stop", thickness, index, Abbe number, semi-diameter,
+ * coating, and cyl_x or cyl_y for a cylinder whose axis is x or y.
  */
 #include <math.h>
 #include <stdio.h>
@@ -10,8 +10,8 @@
 
 #include "import/lines.h"
 
-static bool take_kind(struct imported *lens, const struct lines *l,
-                      struct imported_surface *s)
+static bool parse_kind(struct imported *lens, const struct lines *l,
+                       struct imported_surface *s)
 {
     const char *kind = l->n > 6 ? l->word[6] : "";
 
@@ -26,7 +26,7 @@ static bool take_kind(struct imported *lens, const struct lines *l,
     return true;
 }
 
-static bool take_row(struct imported *lens, const struct lines *l)
+static bool parse_row(struct imported *lens, const struct lines *l)
 {
     struct imported_surface *s = imported_add(lens, l->number);
 
@@ -41,7 +41,7 @@ static bool take_row(struct imported *lens, const struct lines *l)
         return false;
     if (s->nd == 1)
         s->vd = 0;
-    return take_kind(lens, l, s);
+    return parse_kind(lens, l, s);
 }
 
 /* Returns whether the semi-diameter of surface K is larger than its sphere, or
@@ -56,9 +56,9 @@ static bool reaches_too_far(const struct imported *lens, int k)
            imported_gap(s, IMPORT_FREE * fmin(s[0].semi, s[1].semi)) < 0;
 }
 
-/* Halves all semi-diameters if they appear to be diameters, as in files that
- * were made from tables of diameters. */
-static bool settle_diameters(struct imported *lens)
+/* Halves all semi-diameters if they are apparently diameters: the surfaces
+ * fit only then. Some files were made from tables of diameters. */
+static bool halve_diameters(struct imported *lens)
 {
     int at = -1, whole = 0, halved = 0;
 
@@ -88,7 +88,7 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
     lines_begin(&lines, lens, text, bytes);
     while (good && lines_next(&lines, '#')) {
         if (rows)
-            good = take_row(lens, &lines);
+            good = parse_row(lens, &lines);
         else if (lines_is(&lines, "name:"))
             snprintf(lens->title, sizeof lens->title, "%.230s", lines.rest);
         else if (lines_is(&lines, "focal_length:"))
@@ -108,6 +108,6 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
         return false;
     if (lens->n < 2)
         return imported_empty(lens);
-    return settle_diameters(lens) &&
-           imported_note(lens, 0, "coatings are ignored");
+    return halve_diameters(lens) &&
+           imported_note(lens, 0, "coatings are not read");
 }

@@ -22,8 +22,8 @@ void imported_begin(struct imported *lens, const char *file, bool strict)
 }
 
 /* Sets the error, unless there is one already. */
-static void say(struct imported *lens, int line, const char *format,
-                va_list values)
+static void set_error(struct imported *lens, int line, const char *format,
+                      va_list values)
 {
     int n;
 
@@ -45,7 +45,7 @@ bool imported_fail(struct imported *lens, int line, const char *format, ...)
     va_list values;
 
     va_start(values, format);
-    say(lens, line, format, values);
+    set_error(lens, line, format, values);
     va_end(values);
     return false;
 }
@@ -81,7 +81,8 @@ bool imported_note(struct imported *lens, int line, const char *format, ...)
     return true;
 }
 
-/* Adds a note of what changes nothing, which STRICT accepts, too. */
+/* Adds a note about something without effect on the lens, which STRICT
+ * accepts. */
 static void add_remark(struct imported *lens, int line, const char *format, ...)
 {
     va_list values;
@@ -186,7 +187,7 @@ struct imported_surface *imported_add(struct imported *lens, int line)
 
 /* Sets NAME to the glass of S in capitals. If a maker known to the catalogue
  * follows the last '_', cuts it off and returns it; else returns "". */
-static const char *plain_name(const struct imported_surface *s, char name[32])
+static const char *strip_maker(const struct imported_surface *s, char name[32])
 {
     const struct glint_glass *glass;
     const char *maker = strrchr(s->glass, '_');
@@ -202,7 +203,7 @@ static const char *plain_name(const struct imported_surface *s, char name[32])
 }
 
 /* Returns whether A and B are equal if hyphens are ignored. */
-static bool same_letters(const char *a, const char *b)
+static bool equals_without_hyphens(const char *a, const char *b)
 {
     while (*a || *b) {
         a += *a == '-';
@@ -215,9 +216,9 @@ static bool same_letters(const char *a, const char *b)
     return true;
 }
 
-/* Returns the glass NAME of the catalogue, hyphens ignored; else the glass
- * N-NAME, its lead-free successor, with SUCCEEDS set; else NULL. Considers only
- * glasses of MAKER, unless that is "". */
+/* Returns the glass NAME of the catalogue, hyphens ignored. If there is
+ * none, returns the glass N-NAME, its lead-free successor, and sets
+ * *SUCCEEDS; else NULL. Considers only glasses of MAKER, unless that is "". */
 static const struct glint_glass *
 catalogue_glass(const char *name, const char *maker, bool *succeeds)
 {
@@ -228,17 +229,17 @@ catalogue_glass(const char *name, const char *maker, bool *succeeds)
         if (*maker &&
             strncasecmp(maker, glass->maker, strlen(glass->maker)) != 0)
             continue;
-        if (same_letters(glass->name, name))
+        if (equals_without_hyphens(glass->name, name))
             return glass;
         if (strncmp(glass->name, "N-", 2) == 0 &&
-            same_letters(glass->name + 2, name))
+            equals_without_hyphens(glass->name + 2, name))
             successor = glass;
     }
     *succeeds = successor != NULL;
     return successor;
 }
 
-static double index_at(const struct glint_glass *glass, double nm)
+static double compute_index(const struct glint_glass *glass, double nm)
 {
     struct glint_surface medium = {.nd = 1};
 
@@ -246,10 +247,10 @@ static double index_at(const struct glint_glass *glass, double nm)
     return glint_surface_index(&medium, nm);
 }
 
-static double abbe_of(const struct glint_glass *glass)
+static double compute_abbe(const struct glint_glass *glass)
 {
-    return (index_at(glass, LINE_D_NM) - 1) /
-           (index_at(glass, LINE_F_NM) - index_at(glass, LINE_C_NM));
+    return (compute_index(glass, LINE_D_NM) - 1) /
+           (compute_index(glass, LINE_F_NM) - compute_index(glass, LINE_C_NM));
 }
 
 /* Guesses the Abbe number of S from its index: from the glass of the catalogue
@@ -263,9 +264,9 @@ static double guess_abbe(struct imported *lens,
     double vd;
 
     for (int k = 0; is_fine && (glass = glint_glass_at(k)) != NULL; k++) {
-        if (fabs(index_at(glass, LINE_D_NM) - s->nd) > 6e-6)
+        if (fabs(compute_index(glass, LINE_D_NM) - s->nd) > 6e-6)
             continue;
-        vd = abbe_of(glass);
+        vd = compute_abbe(glass);
         imported_note(lens, s->line,
                       "no Abbe number for index %.9g: %.1f assumed, that of "
                       "%s, which has this index",
@@ -282,7 +283,8 @@ static double guess_abbe(struct imported *lens,
     return vd;
 }
 
-static bool by_numbers(struct imported *lens, struct imported_surface *s)
+static bool set_medium_by_numbers(struct imported *lens,
+                                  struct imported_surface *s)
 {
     double vd = s->vd;
 
@@ -305,8 +307,8 @@ static void check_numbers(struct imported *lens,
                           const struct imported_surface *s,
                           const struct glint_glass *glass)
 {
-    const double nd = index_at(glass, LINE_D_NM);
-    const double vd = abbe_of(glass);
+    const double nd = compute_index(glass, LINE_D_NM);
+    const double vd = compute_abbe(glass);
 
     if (!(fabs(s->nd - nd) < 2e-3 && fabs(s->vd / vd - 1) < 0.02))
         imported_note(lens, s->line,
@@ -315,7 +317,7 @@ static void check_numbers(struct imported *lens,
                       s->nd, s->vd, glass->name, nd, vd);
 }
 
-static bool settle_medium(struct imported *lens, struct imported_surface *s)
+static bool set_medium(struct imported *lens, struct imported_surface *s)
 {
     const bool has_numbers = s->nd > 1.01 && s->vd > 0;
     const struct glint_glass *glass;
@@ -326,11 +328,11 @@ static bool settle_medium(struct imported *lens, struct imported_surface *s)
     s->index = 1;
     snprintf(s->medium, sizeof s->medium, "air");
     if (!s->glass[0])
-        return s->nd == 1 || by_numbers(lens, s);
-    maker = plain_name(s, name);
+        return s->nd == 1 || set_medium_by_numbers(lens, s);
+    maker = strip_maker(s, name);
     glass = catalogue_glass(name, maker, &succeeds);
     if ((!glass || succeeds) && has_numbers)
-        return by_numbers(lens, s);
+        return set_medium_by_numbers(lens, s);
     if (!glass) {
         glass = glint_glass_near(name, strlen(name));
         return imported_fail(lens, s->line,
@@ -346,16 +348,16 @@ static bool settle_medium(struct imported *lens, struct imported_surface *s)
             s->glass, glass->name);
     if (has_numbers)
         check_numbers(lens, s, glass);
-    s->index = index_at(glass, LINE_D_NM);
+    s->index = compute_index(glass, LINE_D_NM);
     snprintf(s->medium, sizeof s->medium, "%s", glass->name);
     return true;
 }
 
 /* Sets medium and index behind each surface from glass names and numbers. */
-static bool settle_media(struct imported *lens)
+static bool set_media(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++)
-        if (!settle_medium(lens, &lens->surface[k]))
+        if (!set_medium(lens, &lens->surface[k]))
             return false;
     return true;
 }
@@ -367,8 +369,9 @@ static bool settle_media(struct imported *lens)
 
 /* A paraxial ray and its heights. */
 struct thin_ray {
-    double y, u;                    /* height and slope before the first
-                                       surface; after run(), behind the last */
+    /* height and slope before the first surface; after trace_thin_ray(),
+     * behind the last */
+    double y, u;
     double height[IMPORT_SURFACES]; /* height at each surface */
 };
 
@@ -377,15 +380,15 @@ static double curvature(const struct imported_surface *s)
     return s->radius == 0 ? 0 : 1 / s->radius;
 }
 
-/* Returns the curvature in the y-z plane, in which first-order values are
+/* Returns the curvature in the y-z plane, in which paraxial values are
  * computed. */
-static double power_of(const struct imported_surface *s)
+static double paraxial_curvature(const struct imported_surface *s)
 {
     return s->shape.bend == GLINT_BEND_X ? 0 : curvature(s);
 }
 
 /* Traces RAY through all surfaces. */
-static void run(const struct imported *lens, struct thin_ray *ray)
+static void trace_thin_ray(const struct imported *lens, struct thin_ray *ray)
 {
     double n = 1;
 
@@ -394,7 +397,8 @@ static void run(const struct imported *lens, struct thin_ray *ray)
 
         ray->height[k] = ray->y;
         ray->u =
-            (n * ray->u - ray->y * (s->index - n) * power_of(s)) / s->index;
+            (n * ray->u - ray->y * (s->index - n) * paraxial_curvature(s)) /
+            s->index;
         if (k + 1 < lens->n)
             ray->y += s->thickness * ray->u;
         n = s->index;
@@ -404,7 +408,7 @@ static void run(const struct imported *lens, struct thin_ray *ray)
 /* --------------------------------------------------------------- dummies */
 
 /* Returns whether the same medium is on both sides of surface K. */
-static bool does_nothing(const struct imported *lens, int k)
+static bool is_dummy(const struct imported *lens, int k)
 {
     const struct imported_surface *s = &lens->surface[k];
 
@@ -419,7 +423,7 @@ static bool drop_dummies(struct imported *lens)
     for (int k = 0; k < lens->n;) {
         struct imported_surface *s = &lens->surface[k];
 
-        if (s->stop || !does_nothing(lens, k)) {
+        if (s->stop || !is_dummy(lens, k)) {
             k++;
             continue;
         }
@@ -439,9 +443,9 @@ static bool drop_dummies(struct imported *lens)
 
 /* ------------------------------------------------------------------ stop */
 
-/* Returns the sag of S at the height H, in the file's unit; beyond the equator
- * the sphere's sag at the equator. */
-static double sag_at(const struct imported_surface *s, double h)
+/* Returns the sag of S at height H, in the file's unit. Beyond a sphere's
+ * equator returns the sag at the equator. */
+static double compute_sag(const struct imported_surface *s, double h)
 {
     const double c = curvature(s);
     const double root = 1 - (1 + s->shape.conic) * c * c * h * h;
@@ -462,14 +466,14 @@ static bool insert_stop(struct imported *lens, int k)
     return true;
 }
 
-/* Moves the stop from surface K of glass into the air next to it, to the axial
- * position of the surface's rim or vertex, whichever is farther from the
- * glass. */
-static bool stop_beside(struct imported *lens, int k)
+/* Moves the stop from surface K, a glass surface, into the adjacent air: to
+ * the axial position of the surface's rim or vertex, whichever is farther
+ * from the glass. */
+static bool move_stop_to_air(struct imported *lens, int k)
 {
     struct imported_surface *s = &lens->surface[k], stop = *s;
     const bool behind = strcmp(s->medium, "air") == 0;
-    const double rim = sag_at(s, s->semi);
+    const double rim = compute_sag(s, s->semi);
     double off = behind ? fmax(0, rim) : fmin(0, rim);
 
     if (behind && off > s->thickness)
@@ -492,7 +496,7 @@ static bool stop_beside(struct imported *lens, int k)
     if (!insert_stop(lens, behind ? k + 1 : k))
         return false;
     lens->surface[behind ? k + 1 : k] = stop;
-    /* If the stop was guessed, a note was added then. */
+    /* A guessed stop has a note already. */
     return lens->stop_guessed ||
            imported_note(lens, stop.line,
                          "the stop is a glass surface; it is moved %.3g %s it, "
@@ -501,7 +505,7 @@ static bool stop_beside(struct imported *lens, int k)
                          behind ? "mm behind" : "mm before");
 }
 
-static int stop_of(const struct imported *lens)
+static int find_stop(const struct imported *lens)
 {
     int k = 0;
 
@@ -510,17 +514,18 @@ static int stop_of(const struct imported *lens)
     return k;
 }
 
-/* Moves the stop into the air if it is a surface of glass. */
-static bool free_stop(struct imported *lens)
+/* Moves the stop into the air if it is on a glass surface. */
+static bool separate_stop(struct imported *lens)
 {
-    const int at = stop_of(lens);
+    const int at = find_stop(lens);
 
-    return does_nothing(lens, at) || stop_beside(lens, at);
+    return is_dummy(lens, at) || move_stop_to_air(lens, at);
 }
 
-/* Finds the stop and separates it from a surface of glass. If its semi-diameter
- * is not stated, that is deferred, as it needs the surface's rim. */
-static bool settle_stop(struct imported *lens)
+/* Finds the stop and separates it from a glass surface. If its semi-diameter
+ * is not stated, the separation is done later, as it needs the surface's
+ * rim. */
+static bool place_stop(struct imported *lens)
 {
     int at = -1;
 
@@ -538,22 +543,22 @@ static bool settle_stop(struct imported *lens)
         lens->surface[0].stop = lens->stop_guessed = true;
         at = 0;
     }
-    return !(lens->surface[at].semi > 0) || free_stop(lens);
+    return !(lens->surface[at].semi > 0) || separate_stop(lens);
 }
 
 /* ------------------------------------------------------------------ film */
 
-static double focal(const struct imported *lens)
+static double compute_focal_length(const struct imported *lens)
 {
     struct thin_ray ray = {.y = 1};
 
-    run(lens, &ray);
+    trace_thin_ray(lens, &ray);
     return ray.u != 0 ? -1 / ray.u : 0;
 }
 
 /* Sets the film to a 3 : 2 rectangle within the lens's image circle, unless the
  * file states it. */
-static void settle_film(struct imported *lens, double focal_units)
+static void set_film(struct imported *lens, double focal_units)
 {
     double half = lens->height;
 
@@ -579,14 +584,14 @@ static void settle_film(struct imported *lens, double focal_units)
 
 /* ------------------------------------------------------------- openings */
 
-/* Computes f-number and pupil diameter from each other, or from the stop's
- * semi-diameter if the file states neither. */
-static bool settle_pupil(struct imported *lens, double focal_units)
+/* Computes the f-number from the pupil diameter or vice versa; both from the
+ * stop's semi-diameter if the file states neither. */
+static bool set_pupil(struct imported *lens, double focal_units)
 {
-    const int stop = stop_of(lens);
+    const int stop = find_stop(lens);
     struct thin_ray ray = {.y = 1};
 
-    run(lens, &ray);
+    trace_thin_ray(lens, &ray);
     if (lens->f_number_given > 0)
         lens->f_number = lens->f_number_given;
     if (lens->f_number > 0)
@@ -610,26 +615,27 @@ static bool settle_pupil(struct imported *lens, double focal_units)
     return true;
 }
 
-/* Sets missing semi-diameters to the heights of paraxial rays from the pupil's
- * rim and from the edge of the field. */
-static void settle_semis(struct imported *lens)
+/* Sets missing semi-diameters to the heights of two paraxial rays: from the
+ * pupil's rim, and from the edge of the field. */
+static void set_semis(struct imported *lens)
 {
-    const int stop = stop_of(lens);
+    const int stop = find_stop(lens);
     struct thin_ray rim = {.y = lens->pupil / 2}, chief = {.u = 0.01};
     struct thin_ray slant = {.u = 0.01};
     double field, start;
     int n = 0;
 
-    run(lens, &rim);
-    run(lens, &slant);
-    /* The chief ray has the height 0 at the stop. */
+    trace_thin_ray(lens, &rim);
+    trace_thin_ray(lens, &slant);
+    /* The chief ray is the combination of both rays with height 0 at the
+     * stop. */
     start = rim.height[stop] != 0
                 ? -slant.height[stop] / rim.height[stop] * lens->pupil / 2
                 : 0;
     chief.y = start;
-    run(lens, &chief);
+    trace_thin_ray(lens, &chief);
     field = hypot(lens->film_mm[0], lens->film_mm[1]) / 2 / lens->unit_mm /
-            fabs(focal(lens)) / 0.01;
+            fabs(compute_focal_length(lens)) / 0.01;
     for (int k = 0; k < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
         const double least = k == stop ? fabs(rim.height[k]) * (1 + 1e-5) : 0;
@@ -654,7 +660,7 @@ static void settle_semis(struct imported *lens)
             n == 1 ? " has" : "s have");
 }
 
-/* Reduces semi-diameters that exceed the extent of a sphere or conic. */
+/* Reduces semi-diameters that are larger than the sphere or conic itself. */
 static void cut_semis(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++) {
@@ -675,12 +681,12 @@ static void cut_semis(struct imported *lens)
 
 double imported_gap(const struct imported_surface *s, double h)
 {
-    return s->thickness + sag_at(s + 1, h) - sag_at(s, h);
+    return s->thickness + compute_sag(s + 1, h) - compute_sag(s, h);
 }
 
-/* Reduces semi-diameters where neighbouring surfaces cross within them, as
- * surfaces of thin lenses do if semi-diameters are estimated. */
-static bool part_rims(struct imported *lens)
+/* Reduces semi-diameters where neighbouring surfaces cross, as those of thin
+ * lenses may do with estimated semi-diameters. */
+static bool separate_rims(struct imported *lens)
 {
     for (int k = 0; k + 1 < lens->n; k++) {
         struct imported_surface *s = &lens->surface[k];
@@ -713,13 +719,13 @@ static bool part_rims(struct imported *lens)
     return true;
 }
 
-static bool settle_focus(struct imported *lens)
+static bool set_focus(struct imported *lens)
 {
     struct thin_ray ray = {.y = 1};
     struct imported_surface *last = &lens->surface[lens->n - 1];
     double behind;
 
-    run(lens, &ray);
+    trace_thin_ray(lens, &ray);
     behind = ray.u != 0 ? -ray.y / ray.u : 0;
     if (last->thickness > 0)
         return true;
@@ -735,9 +741,9 @@ static bool settle_focus(struct imported *lens)
                          behind * lens->unit_mm);
 }
 
-/* Adds a note that light comes from infinity if the file has a near object, and
- * that the sensor is not refocused if the file has one. */
-static void tell_object(struct imported *lens)
+/* Adds a note that light comes from infinity if the file has a near object,
+ * and a note that the sensor is not refocused if the file has a defocus. */
+static void note_object(struct imported *lens)
 {
     if (lens->object_near)
         imported_note(
@@ -749,13 +755,13 @@ static void tell_object(struct imported *lens)
                 : "");
 }
 
-/* Refuses negative thicknesses, except behind a stop at the front, which may
- * lie behind the next vertex, as in phones. */
+/* Rejects negative thicknesses, except behind a stop at the front, which may
+ * lie behind the next vertex, as in phone lenses. */
 static bool check_thicknesses(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++)
         if (!(lens->surface[k].thickness >= 0) &&
-            !(k == 0 && lens->surface[0].stop && does_nothing(lens, 0) &&
+            !(k == 0 && lens->surface[0].stop && is_dummy(lens, 0) &&
               isfinite(lens->surface[0].thickness)))
             return imported_fail(lens, lens->surface[k].line,
                                  "thickness %g runs backwards",
@@ -773,9 +779,9 @@ static bool check_end(struct imported *lens)
                          "missing, as the sensor is in air");
 }
 
-/* Refuses an f-number of the user if its light does not fit through the front
- * surface. The file's f-number is not checked, as stops of published lenses
- * open a little wider than their fronts. */
+/* Rejects an f-number set by the user whose beam does not fit through the
+ * front surface. The file's f-number is not checked, as stops of published
+ * lenses are often slightly wider than their fronts. */
 static bool check_front(struct imported *lens, double focal_units)
 {
     const double slack = 1.01; /* semi-diameters are rounded */
@@ -794,18 +800,18 @@ static bool check_front(struct imported *lens, double focal_units)
         ceil(500 * focal_units / front->semi) / 1000);
 }
 
-/* Checks LENS and sets all values that the table needs. */
-static bool complete(struct imported *lens)
+/* Checks LENS and computes all values that the table needs. */
+static bool complete_lens(struct imported *lens)
 {
     double f;
 
-    if (!settle_media(lens) || !drop_dummies(lens) ||
-        !check_thicknesses(lens) || !check_end(lens))
+    if (!set_media(lens) || !drop_dummies(lens) || !check_thicknesses(lens) ||
+        !check_end(lens))
         return false;
-    tell_object(lens);
-    if (!settle_stop(lens))
+    note_object(lens);
+    if (!place_stop(lens))
         return false;
-    f = focal(lens);
+    f = compute_focal_length(lens);
     if (lens->nominal > 0 && fabs(f / lens->nominal - 1) > 0.02)
         imported_note(lens, 0,
                       "its focal length is %.6g mm, not the stated %.6g: "
@@ -816,22 +822,22 @@ static bool complete(struct imported *lens)
             lens, 0,
             "the system is afocal; glint needs a lens that forms an image");
     if (!(f > 0))
-        return imported_fail(
-            lens, 0,
-            "focal length is %.6g mm; glint needs a lens that forms an image",
-            f * lens->unit_mm);
-    settle_film(lens, f);
-    if (!settle_pupil(lens, f))
+        return imported_fail(lens, 0,
+                             "focal length is %.6g mm; glint takes lenses "
+                             "that form an image",
+                             f * lens->unit_mm);
+    set_film(lens, f);
+    if (!set_pupil(lens, f))
         return false;
-    settle_semis(lens);
+    set_semis(lens);
     cut_semis(lens);
-    if (!free_stop(lens) || !check_front(lens, f))
+    if (!separate_stop(lens) || !check_front(lens, f))
         return false;
-    return part_rims(lens) && settle_focus(lens);
+    return separate_rims(lens) && set_focus(lens);
 }
 
-/* Writes conic, aspheric terms and bend of SHAPE, four values to a line, as
- * lines of tables are short. */
+/* Writes conic, aspheric terms and bend of SHAPE, four values per line, as
+ * the lines of lens tables are short. */
 static void write_shape(FILE *file, const struct glint_shape *shape,
                         double unit_mm)
 {
@@ -877,8 +883,8 @@ static void write_surface(FILE *file, const struct imported_surface *s,
     write_shape(file, &s->shape, unit);
 }
 
-/* Writes at most MOST characters of TEXT for a comment, with '?' for characters
- * other than ASCII. */
+/* Writes at most MOST characters of TEXT as part of a comment, with '?' for
+ * characters other than ASCII. */
 static void write_words(FILE *file, const char *text, int most)
 {
     for (; *text && most > 0; text++, most--)
@@ -916,7 +922,7 @@ char *imported_finish(struct imported *lens, size_t *bytes)
     char *text = NULL;
     FILE *file;
 
-    if (!complete(lens))
+    if (!complete_lens(lens))
         return NULL;
     imported_sort_notes(lens);
     if (lens->strict && lens->n_guesses > 0) {

@@ -7,9 +7,9 @@
  *     text = import_read(&lens, import_format_of("x.zmx"), data, &bytes);
  *
  * Readers store the file's values in its own units; imported_finish() completes
- * them to a .lens table. A note with the line number reports everything that is
- * guessed or left out. STRICT rejects a lens with guesses, but only at the end,
- * so that one run reports all of them.
+ * them and writes a .lens table. Everything guessed or left out is reported by
+ * a note with its line number. STRICT rejects a lens with guesses, but only at
+ * the end, so that one run reports all of them.
  */
 #ifndef GLINT_TOOLS_IMPORT_IMPORTED_H
 #define GLINT_TOOLS_IMPORT_IMPORTED_H
@@ -25,12 +25,13 @@ struct imported_surface {
     double radius;    /* in the file's unit; 0: plane */
     double thickness; /* distance to the next surface */
     double semi;      /* semi-diameter; 0: not stated */
-    char glass[32];   /* name of the glass behind; "": see nd */
-    double nd, vd;    /* nd 1: air; vd 0: not stated */
+    /* name of the glass behind the surface; "": nd and vd define it */
+    char glass[32];
+    double nd, vd; /* nd 1: air; vd 0: not stated */
     bool stop;
     struct glint_shape shape; /* group is not used */
-    /* medium behind the surface, as lens tables write it; set when the lens is
-     * completed */
+    /* medium behind the surface in the syntax of lens tables; set when the
+     * lens is completed */
     char medium[48];
     double index; /* refractive index of medium */
 };
@@ -48,18 +49,23 @@ struct imported {
     double unit_mm;    /* unit of lengths, mm */
     bool unit_said;    /* the file states the unit */
     bool stop_guessed; /* the file has no stop */
-    bool object_near;  /* the object is not at infinity, where glint puts it */
+    /* the object is not at infinity; glint assumes infinity */
+    bool object_near;
     int object_line;
-    double object;          /* distance of the object */
+    double object;          /* distance of the object, in the file's unit */
     double f_number_given;  /* set by the user, overrides the file; or 0 */
     double f_number, pupil; /* diameter of the entrance pupil; 0: not stated */
-    double field_deg, height; /* half field, half image; 0: not stated */
-    double film_mm[2];        /* width, height; 0: not stated */
-    double nominal;           /* focal length in the product's name, or 0 */
-    int position;    /* zoom position, from 1, set by the user; 0: not set */
-    bool chosen;     /* the file has zoom positions */
-    const char *key; /* the user's choice in a file of many lenses, or NULL */
-    bool keyed;      /* the file has keys */
+    /* half field angle, degrees; half image height, in the file's unit; 0:
+     * not stated */
+    double field_deg, height;
+    double film_mm[2]; /* width, height; 0: not stated */
+    double nominal;    /* focal length in the product's name, mm, or 0 */
+    int position;      /* zoom position, from 1, set by the user; 0: not set */
+    bool chosen;       /* the file has zoom positions */
+    /* key of the lens that the user selects in a file of many lenses, or
+     * NULL */
+    const char *key;
+    bool keyed; /* the file has keys */
     int n;
     struct imported_surface surface[IMPORT_SURFACES];
     char error[IMPORT_TEXT + 64]; /* "FILE:LINE: cause" */
@@ -76,8 +82,8 @@ struct imported {
 typedef bool import_read_fn(struct imported *lens, const char *text,
                             size_t bytes);
 
-/* A format: its name for --format, the extension that identifies its files,
- * with the dot, or NULL, and its reader. */
+/* A file format: its name for --format, its file extension with the dot or
+ * NULL, and its reader. */
 struct import_format {
     const char *name, *end;
     import_read_fn *read;
@@ -89,13 +95,14 @@ void imported_begin(struct imported *lens, const char *file, bool strict);
  * error concerns the whole file. */
 bool imported_fail(struct imported *lens, int line, const char *format, ...);
 
-/* Refuses a file without surfaces, which may be of another format. */
+/* Rejects a file without surfaces, which may be of another format. */
 bool imported_empty(struct imported *lens);
 
-/* Adds a note about a guess. Returns true, so that callers continue. */
+/* Adds a note about a guess. Always returns true, so that callers can return
+ * its result. */
 bool imported_note(struct imported *lens, int line, const char *format, ...);
 
-/* Adds a note that WORD is not supported, the first time that it occurs. */
+/* Adds a note that WORD is not supported, unless there is one for WORD. */
 bool imported_unread(struct imported *lens, int line, const char *word);
 
 /* Sets the distance of the object. If it is neither infinite nor nearly so,
@@ -105,17 +112,18 @@ void imported_object(struct imported *lens, int line, double distance);
 /* Sets the unit of lengths to MM millimetres, as LINE states. */
 bool imported_unit(struct imported *lens, int line, double mm);
 
-/* Sets the image plane of LINE. If RADIUS is not 0, adds a note that the image
- * is curved. Moves the sensor by DEFOCUS, in the file's unit, and adds a note
- * of it. */
+/* Sets the image plane of line LINE. If RADIUS is not 0, adds a note that
+ * the image is curved. If DEFOCUS, in the file's unit, is not 0, moves the
+ * sensor by it and adds a note. */
 void imported_image(struct imported *lens, int line, double radius,
                     double defocus);
 
-/* Adds a note that lengths are assumed to be mm, unless WORD in the file has
- * set the unit. */
+/* Adds a note that lengths are assumed to be in mm, unless WORD in the file
+ * has set the unit. */
 bool imported_need_unit(struct imported *lens, const char *word);
 
-/* Sets AT to the requested one of N zoom positions, counted from 0. */
+/* Sets AT to the index, from 0, of the requested one of N zoom positions.
+ * Returns false, with the error set, if there is none. */
 bool imported_choose(struct imported *lens, int line, int n, int *at);
 
 /* Adds a plane with air behind it. Returns NULL, with the error set, if there
@@ -128,8 +136,8 @@ double imported_gap(const struct imported_surface *s, double h);
 /* Sorts notes by line; notes about the whole file come last. */
 void imported_sort_notes(struct imported *lens);
 
-/* Completes LENS and returns it as a malloc'ed lens table, or NULL with the
- * error set. */
+/* Completes LENS and returns it as a lens table, which the caller frees, or
+ * NULL with the error set. */
 char *imported_finish(struct imported *lens, size_t *bytes);
 
 /* ------------------------------------------------------------------ readers */
@@ -141,12 +149,13 @@ import_read_fn import_zmx, import_pbrt, import_flaresim, import_seq,
 /* Returns the Kth format, from 0, or NULL if there are no more. */
 const struct import_format *import_format_at(int k);
 
-/* Returns the format of the file NAME by its extension, or NULL. A .lens file
- * counts as FlareSim's, a .dat file as pbrt's. */
+/* Returns the format of the file NAME by its extension, or NULL. A .lens
+ * file is taken as FlareSim's, a .dat file as pbrt's. */
 const struct import_format *import_format_of(const char *name);
 
-/* Reads DATA as FORMAT, completes the lens and returns it as a malloc'ed lens
- * table, or NULL with the error set. Decodes DATA in place. */
+/* Reads DATA as FORMAT, decoding it in place, and completes the lens.
+ * Returns it as a lens table, which the caller frees, or NULL with the error
+ * set. */
 char *import_read(struct imported *lens, const struct import_format *format,
                   uint8_t *data, size_t *bytes);
 

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lenses in JSON, parsed by jansson.
+ * Reads lenses in JSON, parsed by jansson.
  *
- * realflare: "lens_elements" of "radius", "distance", "refractive_index",
- * "abbe_nr" and "height", "aperture_index" the stop among them, "fstop".
+ * realflare: "lens_elements" with "radius", "distance", "refractive_index",
+ * "abbe_nr" and "height"; "aperture_index", the index of the stop among them;
+ * "fstop".
  *
  * lentil's lenses.json: an object of lenses by their keys, each with
- * "optical-elements-patent" of "radius", "thickness", "ior", "abbe",
- * "housing-radius", "material", which may be "air" or "iris", and
- * "lens-geometry".
+ * "optical-elements-patent" that have "radius", "thickness", "ior", "abbe",
+ * "housing-radius", "material" (may be "air" or "iris"), and "lens-geometry".
  */
 #include <jansson.h>
 #include <math.h>
@@ -20,13 +20,14 @@
 
 struct json_lens {
     struct imported *lens;
-    const char *text, *end; /* the file from the last element found to its
-                               end */
-    int line;               /* line number of text */
+    /* the file's text from the last element found to its end */
+    const char *text, *end;
+    int line; /* line number of text */
 };
 
-/* Moves j->text past the next WORD. Returns false if there is no more. */
-static bool go_behind(struct json_lens *j, const char *word)
+/* Moves j->text past the next WORD. Returns false if WORD does not occur
+ * again. */
+static bool skip_past(struct json_lens *j, const char *word)
 {
     const size_t bytes = strlen(word);
 
@@ -40,15 +41,15 @@ static bool go_behind(struct json_lens *j, const char *word)
     return false;
 }
 
-/* Returns the line of the next element's radius, as jansson stores no line
- * numbers. */
+/* Returns the line of the next element's "radius", found in the text, as
+ * jansson does not store line numbers. */
 static int next_line(struct json_lens *j)
 {
-    return go_behind(j, "\"radius\"") ? j->line : 0;
+    return skip_past(j, "\"radius\"") ? j->line : 0;
 }
 
-static bool number(struct json_lens *j, const json_t *element, int line,
-                   const char *key, double *value)
+static bool read_number(struct json_lens *j, const json_t *element, int line,
+                        const char *key, double *value)
 {
     const json_t *found = json_object_get(element, key);
 
@@ -77,7 +78,7 @@ static void note_others(struct json_lens *j, json_t *element, int line,
     }
 }
 
-/* Parses TEXT as JSON and calls TAKE with its root, to fill LENS. */
+/* Parses TEXT as JSON and calls TAKE with the root object, which fills LENS. */
 static bool read_text(struct imported *lens, const char *text, size_t bytes,
                       bool (*take)(struct json_lens *j, json_t *root))
 {
@@ -94,7 +95,7 @@ static bool read_text(struct imported *lens, const char *text, size_t bytes,
 
 /* ---------------------------------------------------------------- realflare */
 
-static bool take_element(struct json_lens *j, json_t *element, bool stop)
+static bool parse_element(struct json_lens *j, json_t *element, bool stop)
 {
     const int line = next_line(j);
     struct imported_surface *s = imported_add(j->lens, line);
@@ -102,11 +103,11 @@ static bool take_element(struct json_lens *j, json_t *element, bool stop)
     if (!s)
         return false;
     s->stop = stop;
-    if (!number(j, element, line, "radius", &s->radius) ||
-        !number(j, element, line, "distance", &s->thickness) ||
-        !number(j, element, line, "refractive_index", &s->nd) ||
-        !number(j, element, line, "abbe_nr", &s->vd) ||
-        !number(j, element, line, "height", &s->semi))
+    if (!read_number(j, element, line, "radius", &s->radius) ||
+        !read_number(j, element, line, "distance", &s->thickness) ||
+        !read_number(j, element, line, "refractive_index", &s->nd) ||
+        !read_number(j, element, line, "abbe_nr", &s->vd) ||
+        !read_number(j, element, line, "height", &s->semi))
         return false;
     if (s->nd == 1)
         s->vd = 0;
@@ -115,7 +116,7 @@ static bool take_element(struct json_lens *j, json_t *element, bool stop)
     return true;
 }
 
-static bool take_realflare(struct json_lens *j, json_t *root)
+static bool parse_realflare(struct json_lens *j, json_t *root)
 {
     const json_t *elements = json_object_get(root, "lens_elements");
     const json_t *name = json_object_get(root, "name");
@@ -129,12 +130,12 @@ static bool take_realflare(struct json_lens *j, json_t *root)
         snprintf(j->lens->title, sizeof j->lens->title, "%.230s",
                  json_string_value(name));
     if (json_object_get(root, "fstop") &&
-        !number(j, root, 0, "fstop", &j->lens->f_number))
+        !read_number(j, root, 0, "fstop", &j->lens->f_number))
         return false;
     if (json_object_get(root, "focal_length") &&
-        !number(j, root, 0, "focal_length", &j->lens->nominal))
+        !read_number(j, root, 0, "focal_length", &j->lens->nominal))
         return false;
-    if (!number(j, root, 0, "aperture_index", &stop))
+    if (!read_number(j, root, 0, "aperture_index", &stop))
         return false;
     if (stop != floor(stop) || stop < 0 ||
         stop >= (double)json_array_size(elements))
@@ -143,23 +144,23 @@ static bool take_realflare(struct json_lens *j, json_t *root)
                              "\"lens_elements\", from 0",
                              stop, (int)json_array_size(elements));
     for (int k = 0; k < (int)json_array_size(elements); k++)
-        if (!take_element(j, json_array_get(elements, (size_t)k),
-                          k == (int)stop))
+        if (!parse_element(j, json_array_get(elements, (size_t)k),
+                           k == (int)stop))
             return false;
     return imported_note(j->lens, 0, "coatings are ignored");
 }
 
 bool import_realflare(struct imported *lens, const char *text, size_t bytes)
 {
-    return read_text(lens, text, bytes, take_realflare);
+    return read_text(lens, text, bytes, parse_realflare);
 }
 
 /* ------------------------------------------------------------------- lentil */
 
 /* Sets the shape of S by "lens-geometry"; "cyl-y" is a cylinder with its axis
  * along y. */
-static bool take_geometry(struct json_lens *j, const json_t *element,
-                          struct imported_surface *s)
+static bool parse_geometry(struct json_lens *j, const json_t *element,
+                           struct imported_surface *s)
 {
     const char *kind =
         json_string_value(json_object_get(element, "lens-geometry"));
@@ -175,7 +176,7 @@ static bool take_geometry(struct json_lens *j, const json_t *element,
     return true;
 }
 
-static bool take_lentil_element(struct json_lens *j, json_t *element)
+static bool parse_lentil_element(struct json_lens *j, json_t *element)
 {
     const char *medium =
         json_string_value(json_object_get(element, "material"));
@@ -195,15 +196,15 @@ static bool take_lentil_element(struct json_lens *j, json_t *element)
                 " radius thickness housing-radius ior abbe material "
                 "lens-geometry ");
     s->stop = strcasecmp(medium, "iris") == 0;
-    if (!number(j, element, line, "radius", &s->radius) ||
-        !number(j, element, line, "thickness", &s->thickness) ||
-        !number(j, element, line, "housing-radius", &s->semi))
+    if (!read_number(j, element, line, "radius", &s->radius) ||
+        !read_number(j, element, line, "thickness", &s->thickness) ||
+        !read_number(j, element, line, "housing-radius", &s->semi))
         return false;
     if (!s->stop && strcasecmp(medium, "air") != 0 &&
-        (!number(j, element, line, "ior", &s->nd) ||
-         !number(j, element, line, "abbe", &s->vd)))
+        (!read_number(j, element, line, "ior", &s->nd) ||
+         !read_number(j, element, line, "abbe", &s->vd)))
         return false;
-    return take_geometry(j, element, s);
+    return parse_geometry(j, element, s);
 }
 
 /* Returns the lens with the requested key, or the only lens; NULL with the
@@ -230,7 +231,7 @@ static const json_t *find_lens(struct imported *lens, json_t *root)
     return NULL;
 }
 
-static bool take_lentil(struct json_lens *j, json_t *root)
+static bool parse_lentil(struct json_lens *j, json_t *root)
 {
     static const char list[] = "optical-elements-patent";
     const json_t *found = find_lens(j->lens, root), *elements, *said;
@@ -250,16 +251,16 @@ static bool take_lentil(struct json_lens *j, json_t *root)
         j->lens->nominal = json_number_value(said);
     if (j->lens->key) {
         snprintf(key, sizeof key, "\"%.60s\"", j->lens->key);
-        go_behind(j, key);
+        skip_past(j, key);
     }
-    go_behind(j, list);
+    skip_past(j, list);
     for (size_t k = 0; k < json_array_size(elements); k++)
-        if (!take_lentil_element(j, json_array_get(elements, k)))
+        if (!parse_lentil_element(j, json_array_get(elements, k)))
             return false;
     return true;
 }
 
 bool import_lentil(struct imported *lens, const char *text, size_t bytes)
 {
-    return read_text(lens, text, bytes, take_lentil);
+    return read_text(lens, text, bytes, parse_lentil);
 }

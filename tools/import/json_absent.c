@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Replaces json.c in builds without jansson: its formats are refused.
+ * Replaces json.c in builds without jansson: its formats are rejected with a
+ * message.
  */
 #include "import/imported.h"
 
-static bool absent(struct imported *lens)
+static bool reject_json(struct imported *lens)
 {
     return imported_fail(lens, 0, "glint was built without JSON (jansson)");
 }
@@ -13,12 +14,12 @@ bool import_realflare(struct imported *lens, const char *text, size_t bytes)
 {
     (void)text;
     (void)bytes;
-    return absent(lens);
+    return reject_json(lens);
 }
 
 bool import_lentil(struct imported *lens, const char *text, size_t bytes)
 {
     (void)text;
     (void)bytes;
-    return absent(lens);
+    return reject_json(lens);
 }

@@ -12,9 +12,9 @@ void lines_begin(struct lines *l, struct imported *lens, const char *text,
     *l = (struct lines){.lens = lens, .at = text, .end = text + bytes};
 }
 
-/* Returns the quote that closes the quote at AT, or NULL if there is no quote
- * at AT or it is not closed on its line. */
-static const char *closing(const char *at, const char *end)
+/* Returns the quote that closes the one at AT, or NULL if AT is not a quote
+ * or the quote is not closed on its line. */
+static const char *find_closing_quote(const char *at, const char *end)
 {
     const char quote = *at;
 
@@ -26,11 +26,12 @@ static const char *closing(const char *at, const char *end)
     return NULL;
 }
 
-/* Copies a line to l->text, without its comment. Returns false if it is too
- * long. */
+/* Copies a line without its comment to l->text. Returns false if the line is
+ * too long. */
 static bool copy_line(struct lines *l, char comment)
 {
-    const char *quoted = NULL; /* closing quote; text before it is quoted */
+    /* position of the closing quote, while inside quotes */
+    const char *quoted = NULL;
     size_t n = 0;
     bool said = false, fits = true;
     char before = ' ';
@@ -40,7 +41,7 @@ static bool copy_line(struct lines *l, char comment)
         const char c = *l->at == '\r' || *l->at == '\0' ? ' ' : *l->at;
 
         if (!quoted && !said && !l->tabs && (before == ' ' || before == '\t'))
-            quoted = closing(l->at, l->end);
+            quoted = find_closing_quote(l->at, l->end);
         if (!quoted && !said && l->divider && c == l->divider)
             break;
         said |= !quoted && comment && c == comment;
@@ -60,8 +61,8 @@ static bool copy_line(struct lines *l, char comment)
     return fits;
 }
 
-/* Splits the line at each tab. Words may be empty, but not all of them. */
-static void divide_at_tabs(struct lines *l)
+/* Splits the line at each tab. Single words may be empty, but not all. */
+static void split_at_tabs(struct lines *l)
 {
     const bool said = *l->text != '\0';
     char *at = l->text;
@@ -83,7 +84,7 @@ static void divide_at_tabs(struct lines *l)
     }
 }
 
-static void divide(struct lines *l)
+static void split_line(struct lines *l)
 {
     char *at = l->text;
 
@@ -97,7 +98,7 @@ static void divide(struct lines *l)
             return;
         if (l->n == 1)
             memcpy(l->rest, at, strlen(at) + 1);
-        quote = closing(at, l->text + sizeof l->text);
+        quote = find_closing_quote(at, l->text + sizeof l->text);
         at += quote != NULL;
         l->word[l->n++] = at;
         at += quote ? (size_t)(quote - at) : strcspn(at, " \t");
@@ -114,9 +115,9 @@ bool lines_next(struct lines *l, char comment)
                                  "the line is longer than %d bytes",
                                  LINE_CHARS - 1);
         if (l->tabs)
-            divide_at_tabs(l);
+            split_at_tabs(l);
         else
-            divide(l);
+            split_line(l);
         if (l->n > 0)
             return true;
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * lines.h - splits text into lines of words, the form of most lens files.
+ * lines.h - splits a text into lines and words, for the lens files of most
+ * programs.
  */
 #ifndef GLINT_TOOLS_IMPORT_LINES_H
 #define GLINT_TOOLS_IMPORT_LINES_H
@@ -13,11 +14,11 @@ enum { LINE_CHARS = 2048, LINE_WORDS = LINE_CHARS / 2 };
 struct lines {
     struct imported *lens; /* receives errors */
     const char *at, *end;
-    int number;            /* line number, from 1 */
-    bool tabs;             /* words are separated by tabs only */
-    char divider;          /* character that also ends a line, or '\0' */
-    bool within;           /* the divider ended the last line, so number
-                              stays */
+    int number;   /* line number, from 1 */
+    bool tabs;    /* words are separated by tabs only */
+    char divider; /* character that also ends a line, or '\0' */
+    /* the divider ended the last line, so the line number does not advance */
+    bool within;
     char text[LINE_CHARS]; /* the line, split into its words */
     char rest[LINE_CHARS]; /* the line without its first word */
     int n;
@@ -27,11 +28,11 @@ struct lines {
 void lines_begin(struct lines *lines, struct imported *lens, const char *text,
                  size_t bytes);
 
-/* Reads the next line that has words, separated by blanks and tabs. Quoted
- * words count as one; a quote must begin a word and be closed on its line, so
- * that apostrophes and inches are not quotes. Text after the character COMMENT
- * is dropped; '\0': no comments. Returns false at the end, or with the error
- * set if the line is too long. */
+/* Reads the next line that is not blank, and splits it at blanks and tabs.
+ * Quoted words count as one; a quote must begin a word and be closed on its
+ * line, so that apostrophes and inches are not quotes. Text after the
+ * character COMMENT is dropped; '\0': no comments. Returns false at the end
+ * of the text, or with the error set if the line is too long. */
 bool lines_next(struct lines *lines, char comment);
 
 /* Sets VALUE to word K. If there is no such word or it is not a number, sets an

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * XML files of OpenLensFlare and LensFlareFramework: an <opticalSystem> of
- * <element>s, parsed by expat.
+ * Reads XML files of OpenLensFlare and LensFlareFramework: an <opticalSystem>
+ * of <element>s, parsed by expat.
  *
  * A <height> is a semi-diameter, multiplied by <heightMultiplier> if the file
- * has one; the stop's <height> is a diameter, whatever the multiplier.
+ * has one; the stop's <height> is a diameter, not multiplied.
  */
 #include <expat.h>
 #include <math.h>
@@ -26,7 +26,7 @@ struct reader {
     struct imported *lens;
     XML_Parser parser;
     int depth;          /* number of open XML elements */
-    bool in_element;    /* within <element> */
+    bool in_element;    /* inside <element> */
     bool coated, ended; /* a coating, or the sensor, has been read */
     int line;           /* line number of <element> */
     char kind[24], text[IMPORT_TEXT];
@@ -35,36 +35,37 @@ struct reader {
     bool has[ELEMENT_VALUES], system_has[SYSTEM_VALUES];
 };
 
-static int line_of(const struct reader *r)
+static int current_line(const struct reader *r)
 {
     return (int)XML_GetCurrentLineNumber(r->parser);
 }
 
 /* Stops the parser if GOOD is false. */
-static void go_on(struct reader *r, bool good)
+static void stop_on_error(struct reader *r, bool good)
 {
     if (!good)
         XML_StopParser(r->parser, XML_FALSE);
 }
 
-static void XMLCALL take_start(void *data, const char *name, const char **pairs)
+static void XMLCALL handle_start(void *data, const char *name,
+                                 const char **pairs)
 {
     struct reader *r = data;
 
     (void)pairs;
     r->bytes = 0;
     if (r->depth++ == 0 && strcmp(name, "opticalSystem") != 0)
-        go_on(r, imported_fail(r->lens, line_of(r),
-                               "<%.40s> is not an <opticalSystem>", name));
+        stop_on_error(r, imported_fail(r->lens, current_line(r),
+                                       "<%.40s> is no <opticalSystem>", name));
     if (strcmp(name, "element") == 0) {
         r->in_element = true;
-        r->line = line_of(r);
+        r->line = current_line(r);
         r->kind[0] = '\0';
         memset(r->has, 0, sizeof r->has);
     }
 }
 
-static void XMLCALL take_text(void *data, const char *text, int n)
+static void XMLCALL handle_text(void *data, const char *text, int n)
 {
     struct reader *r = data;
 
@@ -72,7 +73,7 @@ static void XMLCALL take_text(void *data, const char *text, int n)
         r->text[r->bytes++] = text[i] == '\n' ? ' ' : text[i];
 }
 
-static void XMLCALL refuse_doctype(void *data, const char *name,
+static void XMLCALL reject_doctype(void *data, const char *name,
                                    const char *system, const char *public_id,
                                    int has_internal)
 {
@@ -82,12 +83,13 @@ static void XMLCALL refuse_doctype(void *data, const char *name,
     (void)system;
     (void)public_id;
     (void)has_internal;
-    go_on(r, imported_fail(r->lens, line_of(r),
-                           "<!DOCTYPE> is not allowed in lens files"));
+    stop_on_error(r, imported_fail(r->lens, current_line(r),
+                                   "a <!DOCTYPE>: lens files have none"));
 }
 
-/* Stores the <element> that ends: a surface, the stop or the sensor. */
-static bool take_element(struct reader *r)
+/* Stores the <element> that was just closed: a surface, the stop or the
+ * sensor. */
+static bool store_element(struct reader *r)
 {
     const bool stop = strcmp(r->kind, "apertureStop") == 0;
     struct imported_surface *s;
@@ -117,11 +119,11 @@ static bool take_element(struct reader *r)
     return true;
 }
 
-/* Sets the value whose name in WORDS[N] is NAME to the number in r->text. Sets
- * DONE to whether NAME is in WORDS. */
-static bool take_value(struct reader *r, const char *name, int n,
-                       const char *const *words, double *values, bool *has,
-                       bool *done)
+/* If NAME is in WORDS[N], stores the number in r->text in the value of the
+ * same index. Sets *DONE to whether NAME is in WORDS. */
+static bool parse_value(struct reader *r, const char *name, int n,
+                        const char *const *words, double *values, bool *has,
+                        bool *done)
 {
     *done = false;
     for (int i = 0; i < n && !*done; i++) {
@@ -129,13 +131,13 @@ static bool take_value(struct reader *r, const char *name, int n,
             continue;
         *done = has[i] = true;
         if (!tool_number(r->text, &values[i]))
-            return imported_fail(r->lens, line_of(r),
+            return imported_fail(r->lens, current_line(r),
                                  "<%s> '%.40s' is not a number", name, r->text);
     }
     return true;
 }
 
-static bool take_end_of(struct reader *r, const char *name)
+static bool parse_end(struct reader *r, const char *name)
 {
     static const char *const ignored[] = {"opticalSystem", "elements", "mask",
                                           "maskFT", "fieldOfView"};
@@ -143,12 +145,12 @@ static bool take_end_of(struct reader *r, const char *name)
 
     if (strcmp(name, "element") == 0) {
         r->in_element = false;
-        return take_element(r);
+        return store_element(r);
     }
-    if (!(r->in_element ? take_value(r, name, ELEMENT_VALUES, element_words,
-                                     r->value, r->has, &done)
-                        : take_value(r, name, SYSTEM_VALUES, system_words,
-                                     r->system, r->system_has, &done)))
+    if (!(r->in_element ? parse_value(r, name, ELEMENT_VALUES, element_words,
+                                      r->value, r->has, &done)
+                        : parse_value(r, name, SYSTEM_VALUES, system_words,
+                                      r->system, r->system_has, &done)))
         return false;
     if (done)
         return true;
@@ -165,10 +167,10 @@ static bool take_end_of(struct reader *r, const char *name)
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
         if (strcmp(ignored[i], name) == 0)
             return true;
-    return imported_unread(r->lens, line_of(r), name);
+    return imported_unread(r->lens, current_line(r), name);
 }
 
-static void XMLCALL take_end(void *data, const char *name)
+static void XMLCALL handle_end(void *data, const char *name)
 {
     struct reader *r = data;
 
@@ -178,11 +180,11 @@ static void XMLCALL take_end(void *data, const char *name)
     r->text[r->bytes] = '\0';
     memmove(r->text, r->text + strspn(r->text, " \t\r"),
             strlen(r->text + strspn(r->text, " \t\r")) + 1);
-    go_on(r, take_end_of(r, name));
+    stop_on_error(r, parse_end(r, name));
     r->bytes = 0;
 }
 
-static bool settle(struct reader *r)
+static bool finish_lens(struct reader *r)
 {
     struct imported *lens = r->lens;
 
@@ -214,13 +216,13 @@ bool import_openlensflare(struct imported *lens, const char *text, size_t bytes)
     if (!r.parser)
         return imported_fail(lens, 0, "out of memory");
     XML_SetUserData(r.parser, &r);
-    XML_SetElementHandler(r.parser, take_start, take_end);
-    XML_SetCharacterDataHandler(r.parser, take_text);
-    XML_SetStartDoctypeDeclHandler(r.parser, refuse_doctype);
+    XML_SetElementHandler(r.parser, handle_start, handle_end);
+    XML_SetCharacterDataHandler(r.parser, handle_text);
+    XML_SetStartDoctypeDeclHandler(r.parser, reject_doctype);
     status = XML_Parse(r.parser, text, (int)bytes, XML_TRUE);
     if (status != XML_STATUS_OK && !lens->error[0])
-        imported_fail(lens, line_of(&r), "%.150s",
+        imported_fail(lens, current_line(&r), "%.150s",
                       XML_ErrorString(XML_GetErrorCode(r.parser)));
     XML_ParserFree(r.parser);
-    return status == XML_STATUS_OK && !lens->error[0] && settle(&r);
+    return status == XML_STATUS_OK && !lens->error[0] && finish_lens(&r);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Replaces openlensflare.c in builds without expat: its format is refused.
+ * Replaces openlensflare.c in builds without expat: its format is rejected with
+ * a message.
  */
 #include "import/imported.h"
 

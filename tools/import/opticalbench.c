@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tables of PhotonsToPhotos' Optical Bench: sections of tab-separated values.
+ * Reads tables of PhotonsToPhotos' Optical Bench: sections of tab-separated
+ * values.
  *
  * A row of [lens data] is a number, radius, thickness, index, diameter and Abbe
  * number; radius "AS" is the stop, "CG" a cover glass, "FS" another diaphragm.
@@ -8,7 +9,7 @@
  * column per zoom position. The angle of view is the full angle, the image
  * height a diameter. [aspherical data] has number, radius, conic and the terms
  * from h^4 on. Index and Abbe number define a glass; names of similar glasses
- * are skipped.
+ * are ignored.
  */
 #include <math.h>
 #include <string.h>
@@ -39,7 +40,7 @@ struct optical_bench {
                        h^2 */
 };
 
-static const char *word(const struct optical_bench *b, int k)
+static const char *word_at(const struct optical_bench *b, int k)
 {
     return k < b->lines.n ? b->lines.word[k] : "";
 }
@@ -60,24 +61,24 @@ static bool start_section(struct optical_bench *b)
                  {"[report data]", OTHER}};
 
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (strcasecmp(word(b, 0), names[i].name) == 0) {
+        if (strcasecmp(word_at(b, 0), names[i].name) == 0) {
             b->section = names[i].section;
             return true;
         }
     b->section = OTHER;
-    return imported_unread(b->lens, b->lines.number, word(b, 0));
+    return imported_unread(b->lens, b->lines.number, word_at(b, 0));
 }
 
-static bool take_variable(struct optical_bench *b)
+static bool parse_variable(struct optical_bench *b)
 {
     struct variable *v = &b->variable[b->n_variables];
 
     if (b->n_variables == VARIABLES)
         return imported_fail(b->lens, b->lines.number,
                              "more than %d variable distances", VARIABLES);
-    snprintf(v->name, sizeof v->name, "%.23s", word(b, 0));
+    snprintf(v->name, sizeof v->name, "%.23s", word_at(b, 0));
     for (v->n = 0; v->n < POSITIONS && v->n + 1 < b->lines.n; v->n++) {
-        const char *text = word(b, v->n + 1);
+        const char *text = word_at(b, v->n + 1);
 
         if (strcasecmp(text, "Infinity") == 0)
             v->value[v->n] = (double)INFINITY;
@@ -88,9 +89,9 @@ static bool take_variable(struct optical_bench *b)
     return true;
 }
 
-/* Returns the variable NAME at the selected zoom position, NAN if it is not
- * stated. */
-static double variable(const struct optical_bench *b, const char *name)
+/* Returns the variable NAME at the selected zoom position, or NAN if it is
+ * not stated. */
+static double variable_value(const struct optical_bench *b, const char *name)
 {
     for (int i = 0; i < b->n_variables; i++)
         if (strcasecmp(b->variable[i].name, name) == 0)
@@ -100,7 +101,7 @@ static double variable(const struct optical_bench *b, const char *name)
 }
 
 /* Selects the zoom position; the file has one position per focal length. */
-static bool settle_position(struct optical_bench *b)
+static bool set_position(struct optical_bench *b)
 {
     int n = 0;
 
@@ -115,9 +116,9 @@ static bool settle_position(struct optical_bench *b)
 }
 
 /* Sets VALUE to half of the diameter in word K, or to 0 if it is not stated. */
-static bool take_diameter(struct optical_bench *b, int k, double *value)
+static bool parse_diameter(struct optical_bench *b, int k, double *value)
 {
-    const char *text = word(b, k);
+    const char *text = word_at(b, k);
 
     *value = 0;
     if (!*text || strcasecmp(text, "Infinity") == 0 ||
@@ -129,15 +130,15 @@ static bool take_diameter(struct optical_bench *b, int k, double *value)
     return true;
 }
 
-static bool take_thickness(struct optical_bench *b, struct imported_surface *s)
+static bool parse_thickness(struct optical_bench *b, struct imported_surface *s)
 {
-    const char *text = word(b, 2);
+    const char *text = word_at(b, 2);
 
     if (!*text)
         return imported_fail(b->lens, b->lines.number, "thickness is missing");
     if (tool_number(text, &s->thickness))
         return true;
-    s->thickness = variable(b, text);
+    s->thickness = variable_value(b, text);
     return isfinite(s->thickness) ||
            imported_fail(b->lens, b->lines.number,
                          "thickness '%.23s' is neither a number nor among the "
@@ -145,47 +146,48 @@ static bool take_thickness(struct optical_bench *b, struct imported_surface *s)
                          text);
 }
 
-static bool take_row(struct optical_bench *b)
+static bool parse_row(struct optical_bench *b)
 {
-    const char *radius = word(b, 1);
+    const char *radius = word_at(b, 1);
     struct imported_surface *s;
 
-    if (!settle_position(b) || !(s = imported_add(b->lens, b->lines.number)))
+    if (!set_position(b) || !(s = imported_add(b->lens, b->lines.number)))
         return false;
-    snprintf(b->id[b->lens->n - 1], ID_BYTES, "%.7s", word(b, 0));
+    snprintf(b->id[b->lens->n - 1], ID_BYTES, "%.7s", word_at(b, 0));
     s->stop = strcasecmp(radius, "AS") == 0;
     if (!s->stop && strcasecmp(radius, "CG") != 0 &&
         strcasecmp(radius, "FS") != 0 && strcasecmp(radius, "Infinity") != 0 &&
         !lines_number(&b->lines, 1, "radius", &s->radius))
         return false;
-    if (!take_thickness(b, s) || !take_diameter(b, 4, &s->semi))
+    if (!parse_thickness(b, s) || !parse_diameter(b, 4, &s->semi))
         return false;
-    if (*word(b, 3)) {
+    if (*word_at(b, 3)) {
         if (!lines_number(&b->lines, 3, "index", &s->nd) ||
-            (*word(b, 5) && !lines_number(&b->lines, 5, "Abbe number", &s->vd)))
+            (*word_at(b, 5) &&
+             !lines_number(&b->lines, 5, "Abbe number", &s->vd)))
             return false;
-    } else if (*word(b, 6))
-        snprintf(s->glass, sizeof s->glass, "%.31s", word(b, 6));
+    } else if (*word_at(b, 6))
+        snprintf(s->glass, sizeof s->glass, "%.31s", word_at(b, 6));
     s->vd = s->nd == 1 ? 0 : s->vd;
     return true;
 }
 
-static bool take_constant(struct optical_bench *b)
+static bool parse_constant(struct optical_bench *b)
 {
-    if (strcasecmp(word(b, 0), "AsphericalOddCount") == 0)
+    if (strcasecmp(word_at(b, 0), "AsphericalOddCount") == 0)
         return lines_number(&b->lines, 1, "number of odd terms", &b->odd);
-    if (strcasecmp(word(b, 0), "AsphericalA2") == 0)
+    if (strcasecmp(word_at(b, 0), "AsphericalA2") == 0)
         b->a2 = 1;
     return true;
 }
 
-/* Sets aspheric term I of S, 0 being h^4, from word K. */
-static bool take_term(struct optical_bench *b, struct imported_surface *s,
-                      int k, int i)
+/* Sets aspheric term I of S (I = 0 is h^4) from word K. */
+static bool parse_term(struct optical_bench *b, struct imported_surface *s,
+                       int k, int i)
 {
     double value;
 
-    if (!*word(b, k))
+    if (!*word_at(b, k))
         return true;
     if (!lines_number(&b->lines, k, "aspheric term", &value))
         return false;
@@ -199,24 +201,23 @@ static bool take_term(struct optical_bench *b, struct imported_surface *s,
     return true;
 }
 
-static bool take_asphere(struct optical_bench *b)
+static bool parse_asphere(struct optical_bench *b)
 {
     const int first = b->odd > 0 || b->a2 > 0 ? -1 : 0;
     struct imported_surface *s = NULL;
     double radius;
 
     for (int k = 0; k < b->lens->n && !s; k++)
-        if (strncmp(b->id[k], word(b, 0), ID_BYTES - 1) == 0)
+        if (strncmp(b->id[k], word_at(b, 0), ID_BYTES - 1) == 0)
             s = &b->lens->surface[k];
     if (!s)
         return imported_fail(b->lens, b->lines.number,
                              "surface '%.20s' is not in [lens data]",
-                             word(b, 0));
+                             word_at(b, 0));
     if (b->odd > 1)
         return imported_fail(b->lens, b->lines.number,
-                             "%g odd terms: only even ones are supported",
-                             b->odd);
-    if (strcasecmp(word(b, 1), "Infinity") == 0)
+                             "%g odd terms: only even ones are read", b->odd);
+    if (strcasecmp(word_at(b, 1), "Infinity") == 0)
         radius = 0;
     else if (!lines_number(&b->lines, 1, "radius", &radius))
         return false;
@@ -224,48 +225,49 @@ static bool take_asphere(struct optical_bench *b)
         imported_note(b->lens, b->lines.number,
                       "radius %g contradicts %g in [lens data], which is used",
                       radius, s->radius);
-    if (*word(b, 2) && !lines_number(&b->lines, 2, "conic", &s->shape.conic))
+    if (*word_at(b, 2) && !lines_number(&b->lines, 2, "conic", &s->shape.conic))
         return false;
     for (int k = 3; k < b->lines.n; k++)
-        if (!take_term(b, s, k, k - 3 + first))
+        if (!parse_term(b, s, k, k - 3 + first))
             return false;
     return true;
 }
 
-static bool take(struct optical_bench *b)
+static bool parse_line(struct optical_bench *b)
 {
-    if (*word(b, 0) == '[')
+    if (*word_at(b, 0) == '[')
         return start_section(b);
     switch (b->section) {
     case NO_SECTION:
         return imported_fail(b->lens, b->lines.number,
-                             "'%.40s' is not a [section] of Optical Bench (for "
-                             "tables of polyflare use --format polyflare)",
-                             word(b, 0));
+                             "'%.40s' is no [section] of Optical Bench's "
+                             "(polyflare's tables: --format polyflare)",
+                             word_at(b, 0));
     case TITLE:
-        if (strcasecmp(word(b, 0), "title") == 0)
+        if (strcasecmp(word_at(b, 0), "title") == 0)
             snprintf(b->lens->title, sizeof b->lens->title, "%.230s",
-                     word(b, 1));
+                     word_at(b, 1));
         return true;
     case CONSTANTS:
-        return take_constant(b);
+        return parse_constant(b);
     case DISTANCES:
-        return take_variable(b);
+        return parse_variable(b);
     case ROWS:
-        return take_row(b);
+        return parse_row(b);
     case ASPHERES:
-        return take_asphere(b);
+        return parse_asphere(b);
     case OTHER:
         break;
     }
     return true;
 }
 
-/* Sets VALUE to SHARE times the variable NAME, if the file states it. */
-static void settle(const struct optical_bench *b, const char *name,
-                   double share, double *value)
+/* Sets VALUE to SHARE times the variable NAME; leaves it unchanged if NAME
+ * is not stated. */
+static void set_from_variable(const struct optical_bench *b, const char *name,
+                              double share, double *value)
 {
-    const double said = variable(b, name);
+    const double said = variable_value(b, name);
 
     if (isfinite(said))
         *value = share * said;
@@ -280,15 +282,15 @@ bool import_opticalbench(struct imported *lens, const char *text, size_t bytes)
     lines_begin(&b.lines, lens, text, bytes);
     b.lines.tabs = true;
     while (lines_next(&b.lines, '#'))
-        if (!take(&b))
+        if (!parse_line(&b))
             return false;
     if (lens->n < 2)
         return imported_empty(lens);
-    settle(&b, "Focal Length", 1, &lens->nominal);
-    settle(&b, "F-Number", 1, &lens->f_number);
-    settle(&b, "Angle of View", 0.5, &lens->field_deg);
-    settle(&b, "Image Height", 0.5, &lens->height);
-    settle(&b, "d0", 1, &object);
+    set_from_variable(&b, "Focal Length", 1, &lens->nominal);
+    set_from_variable(&b, "F-Number", 1, &lens->f_number);
+    set_from_variable(&b, "Angle of View", 0.5, &lens->field_deg);
+    set_from_variable(&b, "Image Height", 0.5, &lens->height);
+    set_from_variable(&b, "d0", 1, &object);
     imported_object(lens, 0, object);
     return true;
 }

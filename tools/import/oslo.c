@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * OSLO .len files: spheres, conics and even aspheres.
+ * Reads OSLO .len files: spheres, conics and even aspheres.
  *
  * "LEN NEW" begins a lens, at the object surface; "NXT" begins the next
  * surface, and "RD", "TH", "AP", "GLA", "AST", "CC" and "AD" to "AH" set its
@@ -19,7 +19,7 @@ struct oslo {
     bool ended;
 };
 
-static bool take_glass(struct oslo *o)
+static bool parse_glass(struct oslo *o)
 {
     const struct lines *l = &o->lines;
 
@@ -42,9 +42,9 @@ static bool take_glass(struct oslo *o)
     return true;
 }
 
-/* Handles an unsupported keyword: rejects those that change the lens, notes all
- * others. */
-static bool take_other(struct oslo *o)
+/* Handles an unsupported keyword: rejects those that change the lens, adds a
+ * note about others. */
+static bool handle_unsupported(struct oslo *o)
 {
     static const char *const shaping[] = {"TLA", "TLB", "TLC", "DCX", "DCY",
                                           "DCZ", "CVX", "PK",  "DT",  "ASP",
@@ -63,7 +63,7 @@ static bool take_other(struct oslo *o)
     return imported_unread(o->lens, l->number, l->word[0]);
 }
 
-static bool take_surface(struct oslo *o)
+static bool parse_surface(struct oslo *o)
 {
     const struct lines *l = &o->lines;
     struct glint_shape *shape = &o->s->shape;
@@ -77,7 +77,7 @@ static bool take_surface(struct oslo *o)
     if (lines_is(l, "AP"))
         return lines_number(l, l->n > 2 ? 2 : 1, "semi-diameter", &o->s->semi);
     if (lines_is(l, "GLA"))
-        return take_glass(o);
+        return parse_glass(o);
     if (lines_is(l, "AIR"))
         return true;
     if (lines_is(l, "AST"))
@@ -88,10 +88,10 @@ static bool take_surface(struct oslo *o)
         l->word[0][1] >= 'D' && l->word[0][1] <= 'H')
         return lines_number(l, 1, "aspheric term",
                             &shape->term[l->word[0][1] - 'D']);
-    return take_other(o);
+    return handle_unsupported(o);
 }
 
-static bool take_head(struct oslo *o)
+static bool parse_head(struct oslo *o)
 {
     const struct lines *l = &o->lines;
     double value;
@@ -112,7 +112,7 @@ static bool take_head(struct oslo *o)
     return true;
 }
 
-static bool take(struct oslo *o)
+static bool parse_line(struct oslo *o)
 {
     const struct lines *l = &o->lines;
 
@@ -122,7 +122,7 @@ static bool take(struct oslo *o)
     }
     if (lines_is(l, "EBR") || lines_is(l, "ANG") || lines_is(l, "UNI") ||
         lines_is(l, "LEN"))
-        return take_head(o);
+        return parse_head(o);
     if (!o->s && lines_is(l, "TH")) {
         double object;
 
@@ -131,7 +131,7 @@ static bool take(struct oslo *o)
         imported_object(o->lens, l->number, object);
         return true;
     }
-    return !o->s || take_surface(o);
+    return !o->s || parse_surface(o);
 }
 
 bool import_oslo(struct imported *lens, const char *text, size_t bytes)
@@ -145,7 +145,7 @@ bool import_oslo(struct imported *lens, const char *text, size_t bytes)
             o.s = NULL;
             o.ended = true;
         }
-        if (!take(&o))
+        if (!parse_line(&o))
             return false;
     }
     if (lens->n < 2)

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lens tables of pbrt: radius, distance, index and diameter of each surface, in
- * millimetres. A surface with radius 0 and index 0 is the stop. Distances lead
- * to the next surface; in the older tables, of 100 mm lenses, they lead to the
- * previous surface, so that the first is 0 and the last is not.
+ * Reads lens tables of pbrt: radius, distance, index and diameter of each
+ * surface, in mm. A surface with radius 0 and index 0 is the stop.
+ *
+ * Distances lead to the next surface. In the older tables, of 100 mm lenses,
+ * they lead to the previous surface, so that the first distance is 0 and the
+ * last is not.
  */
 #include "import/lines.h"
 
-static bool take(struct imported *lens, const struct lines *l)
+static bool parse_line(struct imported *lens, const struct lines *l)
 {
     struct imported_surface *s = imported_add(lens, l->number);
     double index, diameter;
@@ -36,7 +38,7 @@ bool import_pbrt(struct imported *lens, const char *text, size_t bytes)
 
     lines_begin(&lines, lens, text, bytes);
     while (lines_next(&lines, '#'))
-        if (!take(lens, &lines))
+        if (!parse_line(lens, &lines))
             return false;
     if (lens->n < 2)
         return imported_empty(lens);

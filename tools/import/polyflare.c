@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tables of polyflare and of polynomial optics, .fx: radius, thickness, medium,
- * for a glass its index and Abbe number, then the semi-diameter.
+ * Reads .fx tables of polyflare and of polynomial optics: radius, thickness,
+ * medium, for a glass its index and Abbe number, then the semi-diameter.
  *
  * The medium is "air", "iris" or a glass, which its numbers define; the prefix
  * "cx_" makes a cylinder that is curved in x. A thickness "a/b/c" has a value
@@ -27,7 +27,7 @@ struct polyflare {
     struct imported *lens;
     struct lines lines;
     int at;        /* selected zoom position */
-    int positions; /* max values of a thickness; 0: none read yet */
+    int positions; /* max number of values of a thickness; 0: none read yet */
     int line;      /* line of the first thickness with several values */
     double focal[POSITIONS], field[POSITIONS];
 };
@@ -46,7 +46,7 @@ static void cut_comment(struct lines *l)
     }
 }
 
-static bool too_many(struct polyflare *p)
+static bool report_too_many(struct polyflare *p)
 {
     return imported_fail(p->lens, p->lines.number,
                          "more than %d zoom positions are not supported",
@@ -55,14 +55,14 @@ static bool too_many(struct polyflare *p)
 
 /* Parses "#EFL" and similar lines; other lines that begin with '#' are
  * comments. */
-static bool take_head(struct polyflare *p)
+static bool parse_head(struct polyflare *p)
 {
     const struct lines *l = &p->lines;
     const bool focal = lines_is(l, "#EFL");
 
     if (focal || lines_is(l, "#FOV")) {
         if (l->n > 1 + POSITIONS)
-            return too_many(p);
+            return report_too_many(p);
         for (int k = 1; k < l->n; k++)
             if (!lines_number(l, k, l->word[0] + 1,
                               focal ? &p->focal[k - 1] : &p->field[k - 1]))
@@ -78,7 +78,7 @@ static bool take_head(struct polyflare *p)
                           p->lens->unit_mm));
 }
 
-static bool take_thickness(struct polyflare *p, struct imported_surface *s)
+static bool parse_thickness(struct polyflare *p, struct imported_surface *s)
 {
     const struct lines *l = &p->lines;
     double value[POSITIONS];
@@ -86,14 +86,14 @@ static bool take_thickness(struct polyflare *p, struct imported_surface *s)
     const char *at = l->n > 1 ? l->word[1] : "";
     int n = 0;
 
-    if (strcmp(at, "BFL") == 0) /* the back focal distance, computed like a
-                                   missing one */
+    /* back focal distance, which is computed as if it were missing */
+    if (strcmp(at, "BFL") == 0)
         return true;
     for (bool more = true; more; n++) {
         const size_t bytes = strcspn(at, "/");
 
         if (n == POSITIONS)
-            return too_many(p);
+            return report_too_many(p);
         if (bytes >= sizeof word)
             return imported_fail(p->lens, l->number,
                                  "thickness '%.40s' is not a number", at);
@@ -119,8 +119,8 @@ static bool take_thickness(struct polyflare *p, struct imported_surface *s)
     return true;
 }
 
-/* Parses word K, such as "#!aspheric=0,1e-5,0,0,0". */
-static bool take_terms(struct polyflare *p, int k, struct imported_surface *s)
+/* Parses word K, such as "#!aspheric=0,1e-5,0,0,0", into the shape of S. */
+static bool parse_terms(struct polyflare *p, int k, struct imported_surface *s)
 {
     const char *at = p->lines.word[k] + strlen("#!aspheric=");
     double value[5];
@@ -140,7 +140,7 @@ static bool take_terms(struct polyflare *p, int k, struct imported_surface *s)
 }
 
 /* Parses the medium, word 2, and the words after it. */
-static bool take_medium(struct polyflare *p, struct imported_surface *s)
+static bool parse_medium(struct polyflare *p, struct imported_surface *s)
 {
     const struct lines *l = &p->lines;
     const struct imported_surface *before = p->lens->n > 1 ? s - 1 : NULL;
@@ -170,19 +170,19 @@ static bool take_medium(struct polyflare *p, struct imported_surface *s)
         return false;
     for (; k < l->n; k++)
         if (strncmp(l->word[k], "#!aspheric=", 11) == 0)
-            return take_terms(p, k, s);
+            return parse_terms(p, k, s);
     return true;
 }
 
-static bool take_row(struct polyflare *p)
+static bool parse_row(struct polyflare *p)
 {
     struct imported_surface *s = imported_add(p->lens, p->lines.number);
 
     return s && lines_number(&p->lines, 0, "radius", &s->radius) &&
-           take_thickness(p, s) && take_medium(p, s);
+           parse_thickness(p, s) && parse_medium(p, s);
 }
 
-/* If the file has no iris, uses a plane in the air as the stop. */
+/* Uses a plane in the air as the stop if the file has no iris. */
 static bool find_stop(struct imported *lens)
 {
     int at = -1;
@@ -211,7 +211,7 @@ bool import_polyflare(struct imported *lens, const char *text, size_t bytes)
     while (lines_next(&p.lines, '\0')) {
         cut_comment(&p.lines);
         if (p.lines.n > 0 &&
-            !(*p.lines.word[0] == '#' ? take_head(&p) : take_row(&p)))
+            !(*p.lines.word[0] == '#' ? parse_head(&p) : parse_row(&p)))
             return false;
     }
     if (lens->n < 2)

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * CODE V .seq files: spheres, conics and even aspheres.
+ * Reads CODE V .seq files: spheres, conics and even aspheres.
  *
  * Commands are separated by ';' or line ends. "S r t glass", "SO" and "SI"
  * begin the next surface, the object and the image; later commands apply to
  * that surface, or to surface K if their second word is "SK". Case is ignored.
- * Radii are given as curvatures unless "RDM" precedes. A glass of six digits or
- * nnn.vvv states (nd - 1) and Vd.
+ * Radii are curvatures unless "RDM" precedes. A glass of six digits or nnn.vvv
+ * states (nd - 1) and Vd.
  */
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +27,7 @@ struct seq {
 
 /* Sets nd and Vd of S if WORD is a glass code, such as "517642", "517.642" or
  * "516800.641672" (nd 1.5168, Vd 64.1672). Returns whether it is. */
-static bool numbered_glass(struct imported_surface *s, const char *word)
+static bool parse_glass_code(struct imported_surface *s, const char *word)
 {
     static const char digits[] = "0123456789";
     const size_t all = strlen(word), before = strspn(word, digits);
@@ -46,7 +46,7 @@ static bool numbered_glass(struct imported_surface *s, const char *word)
     return n <= 6;
 }
 
-static bool take_glass(struct seq *q, const char *word)
+static bool parse_glass(struct seq *q, const char *word)
 {
     q->s->glass[0] = '\0';
     q->s->nd = 1;
@@ -55,20 +55,20 @@ static bool take_glass(struct seq *q, const char *word)
         return true;
     if (strncasecmp(word, "REFL", 4) == 0)
         return lines_mirror(&q->lines);
-    if (!numbered_glass(q->s, word))
+    if (!parse_glass_code(q->s, word))
         snprintf(q->s->glass, sizeof q->s->glass, "%s", word);
     return true;
 }
 
 /* Sets the surface's radius from word K, which is a curvature if CURVATURE. */
-static bool take_radius(struct seq *q, int k, bool curvature)
+static bool parse_radius(struct seq *q, int k, bool curvature)
 {
     return curvature ? lines_curvature(&q->lines, k, &q->s->radius)
                      : lines_number(&q->lines, k, "radius", &q->s->radius);
 }
 
 /* Stores the image surface; its thickness is the defocus. */
-static bool take_image(struct seq *q)
+static bool parse_image(struct seq *q)
 {
     const struct lines *l = &q->lines;
     double bend = 0, defocus = 0;
@@ -91,7 +91,7 @@ static bool start_surface(struct seq *q)
     if (lines_is(l, "SI") || lines_is(l, "SO")) {
         q->s = NULL;
         if (lines_is(l, "SI"))
-            return take_image(q);
+            return parse_image(q);
         if (l->n < 3)
             return true;
         if (!lines_number(l, 2, "distance of the object", &object))
@@ -100,12 +100,12 @@ static bool start_surface(struct seq *q)
         return true;
     }
     q->s = imported_add(q->lens, l->number);
-    return q->s && take_radius(q, 1, q->curvatures) &&
+    return q->s && parse_radius(q, 1, q->curvatures) &&
            lines_number(l, 2, "thickness", &q->s->thickness) &&
-           (l->n < 4 || take_glass(q, l->word[3]));
+           (l->n < 4 || parse_glass(q, l->word[3]));
 }
 
-static bool take_aperture(struct seq *q)
+static bool parse_aperture(struct seq *q)
 {
     const struct lines *l = &q->lines;
     const int k = l->n - 1;
@@ -125,9 +125,9 @@ static bool take_aperture(struct seq *q)
     return true;
 }
 
-/* Handles a command that sets a single number or the glass of the surface. Sets
- * DONE to whether the command is known. */
-static bool take_number(struct seq *q, bool *done)
+/* Handles a command that sets a single number or the glass of the surface.
+ * Sets *DONE to whether the command is known. */
+static bool parse_number(struct seq *q, bool *done)
 {
     static const char terms[] = "ABCDEFGHJ"; /* terms of h^4 to h^20 */
     const struct lines *l = &q->lines;
@@ -135,12 +135,12 @@ static bool take_number(struct seq *q, bool *done)
 
     *done = true;
     if (strcmp(word, "CUY") == 0 || strcmp(word, "RDY") == 0)
-        return take_radius(q, 1, *word == 'C');
+        return parse_radius(q, 1, *word == 'C');
     if (strcmp(word, "THI") == 0)
         return lines_number(l, 1, "thickness", &q->s->thickness);
     if (strcmp(word, "GLA") == 0)
         return l->n > 1
-                   ? take_glass(q, l->word[1])
+                   ? parse_glass(q, l->word[1])
                    : imported_fail(q->lens, l->number, "the glass has no name");
     if (strcmp(word, "K") == 0)
         return lines_number(l, 1, "conic", &q->s->shape.conic);
@@ -153,7 +153,7 @@ static bool take_number(struct seq *q, bool *done)
 
 /* Handles a command about the surface, including its shape: "K" for the conic
  * and "A" to "J" for h^4 to h^20. */
-static bool take_surface(struct seq *q)
+static bool parse_surface(struct seq *q)
 {
     static const char *const ignored[] = {
         "CCY", "THC", "GLC", "KC",  "AC",  "BC",  "CC",  "DC",
@@ -164,14 +164,14 @@ static bool take_surface(struct seq *q)
     const struct lines *l = &q->lines;
     bool done;
 
-    if (!take_number(q, &done))
+    if (!parse_number(q, &done))
         return false;
     if (done)
         return true;
     if (lines_is(l, "STO"))
         return q->s->stop = true;
     if (lines_is(l, "CIR"))
-        return take_aperture(q);
+        return parse_aperture(q);
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
         if (lines_is(l, ignored[i]))
             return true;
@@ -185,7 +185,7 @@ static bool take_surface(struct seq *q)
     return imported_unread(q->lens, l->number, l->word[0]);
 }
 
-static bool take_dimension(struct seq *q)
+static bool parse_dimension(struct seq *q)
 {
     const char *word = q->lines.n > 1 ? q->lines.word[1] : "";
     const char unit = (char)(*word & ~0x20); /* in upper case */
@@ -199,7 +199,7 @@ static bool take_dimension(struct seq *q)
                                        : 1);
 }
 
-static bool take_head(struct seq *q)
+static bool parse_head(struct seq *q)
 {
     const struct lines *l = &q->lines;
 
@@ -213,7 +213,7 @@ static bool take_head(struct seq *q)
         return true;
     }
     if (lines_is(l, "DIM"))
-        return take_dimension(q);
+        return parse_dimension(q);
     if (lines_is(l, "EPD"))
         return lines_number(l, 1, "entrance pupil", &q->lens->pupil);
     if (lines_is(l, "FNO"))
@@ -239,9 +239,9 @@ static void capitalise(struct lines *l)
             *c = (char)(*c - 'a' + 'A');
 }
 
-/* If the second word is a surface, such as "S3", goes to that surface and
- * removes the word. */
-static bool go_to_surface(struct seq *q)
+/* If the second word is a surface, such as "S3", makes it the current
+ * surface and removes the word. */
+static bool select_surface(struct seq *q)
 {
     struct lines *l = &q->lines;
     const char *word = l->n > 1 ? l->word[1] : "";
@@ -263,7 +263,7 @@ static bool go_to_surface(struct seq *q)
     return true;
 }
 
-static bool take(struct seq *q)
+static bool parse_command(struct seq *q)
 {
     const struct lines *l = &q->lines;
     struct imported_surface *const current = q->s;
@@ -272,9 +272,9 @@ static bool take(struct seq *q)
     capitalise(&q->lines);
     if (lines_is(l, "S") || lines_is(l, "SO") || lines_is(l, "SI"))
         return start_surface(q);
-    if (!go_to_surface(q))
+    if (!select_surface(q))
         return false;
-    good = q->s && !lines_is(l, "DIM") ? take_surface(q) : take_head(q);
+    good = q->s && !lines_is(l, "DIM") ? parse_surface(q) : parse_head(q);
     q->s = current;
     return good;
 }
@@ -286,7 +286,7 @@ bool import_seq(struct imported *lens, const char *text, size_t bytes)
     lines_begin(&q.lines, lens, text, bytes);
     q.lines.divider = ';';
     while (lines_next(&q.lines, '!'))
-        if (!take(&q))
+        if (!parse_command(&q))
             return false;
     if (lens->n == 0)
         return imported_empty(lens);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Zemax .zmx files, sequential: STANDARD and EVENASPH surfaces.
+ * Reads sequential Zemax .zmx files: STANDARD and EVENASPH surfaces.
  *
- * A line is a word and values. Lines after "SURF n" describe that surface; the
- * first surface is the object, the last the image. PARM 1 .. 8 of an EVENASPH
- * are the terms of h^2 .. h^16.
+ * A line is a word and its values. Lines after "SURF n" describe that surface;
+ * the first surface is the object, the last the image. PARM 1 .. 8 of an
+ * EVENASPH are the terms of h^2 .. h^16.
  */
 #include <math.h>
 #include <stdio.h>
@@ -17,14 +17,14 @@ struct zmx {
     struct lines lines;
     struct imported_surface *s; /* current surface; NULL: before the first */
     bool even;                  /* PARM lines of s are aspheric terms */
-    bool indented;              /* lines about a surface are indented */
+    bool indented;              /* lines that describe a surface are indented */
     int field_type;
     double field, object;
     double number;   /* number of surface s in the file */
     int object_line; /* 0: object not read yet */
 };
 
-static bool take_type(struct zmx *z)
+static bool parse_type(struct zmx *z)
 {
     const char *type = z->lines.n > 1 ? z->lines.word[1] : "";
 
@@ -36,7 +36,7 @@ static bool take_type(struct zmx *z)
                          type);
 }
 
-static bool take_glass(struct zmx *z)
+static bool parse_glass(struct zmx *z)
 {
     const struct lines *l = &z->lines;
     double nd = 0, vd = 0;
@@ -59,7 +59,7 @@ static bool take_glass(struct zmx *z)
     return true;
 }
 
-static bool take_parameter(struct zmx *z)
+static bool parse_parameter(struct zmx *z)
 {
     double k, value;
 
@@ -78,15 +78,15 @@ static bool take_parameter(struct zmx *z)
     return true;
 }
 
-static bool take_surface(struct zmx *z)
+static bool parse_surface(struct zmx *z)
 {
-    /* how the surface is drawn, manufactured and optimised */
+    /* data for drawing, manufacturing and optimisation */
     static const char *const ignored[] = {"HIDE", "MIRR", "SLAB", "POPS",
                                           "FIMP", "MEMA", "FLAP", "COMM"};
     const struct lines *l = &z->lines;
 
     if (lines_is(l, "TYPE"))
-        return take_type(z);
+        return parse_type(z);
     if (lines_is(l, "STOP"))
         return z->s->stop = true;
     if (lines_is(l, "CURV"))
@@ -99,20 +99,20 @@ static bool take_surface(struct zmx *z)
         return lines_number(l, 1, "thickness", &z->s->thickness);
     }
     if (lines_is(l, "GLAS"))
-        return take_glass(z);
+        return parse_glass(z);
     if (lines_is(l, "DIAM"))
         return lines_number(l, 1, "semi-diameter", &z->s->semi);
     if (lines_is(l, "CONI"))
         return lines_number(l, 1, "conic", &z->s->shape.conic);
     if (lines_is(l, "PARM"))
-        return take_parameter(z);
+        return parse_parameter(z);
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
         if (lines_is(l, ignored[i]))
             return true;
     return imported_unread(z->lens, l->number, l->word[0]);
 }
 
-static bool take_unit(struct zmx *z)
+static bool parse_unit(struct zmx *z)
 {
     static const struct {
         const char *word;
@@ -129,7 +129,7 @@ static bool take_unit(struct zmx *z)
                          word);
 }
 
-static bool take_head(struct zmx *z)
+static bool parse_head(struct zmx *z)
 {
     const struct lines *l = &z->lines;
     double value;
@@ -143,7 +143,7 @@ static bool take_head(struct zmx *z)
         return true;
     }
     if (lines_is(l, "UNIT"))
-        return take_unit(z);
+        return parse_unit(z);
     if (lines_is(l, "ENPD"))
         return lines_number(l, 1, "entrance pupil", &z->lens->pupil);
     if (lines_is(l, "FNUM"))
@@ -158,9 +158,9 @@ static bool take_head(struct zmx *z)
            lines_fields(l, &z->field);
 }
 
-/* Begins a surface; the first, the object, is not added to the lens. Refuses
- * numbers that do not count up, as the file is then damaged: a surface is
- * missing or duplicate. */
+/* Begins a surface; the first, the object, is not added to the lens. Rejects
+ * numbers that are not consecutive, as a surface is then missing or
+ * duplicate. */
 static bool start_surface(struct zmx *z)
 {
     double number;
@@ -185,9 +185,9 @@ static bool start_surface(struct zmx *z)
     return z->s != NULL;
 }
 
-/* Removes the last surface, the image. Refuses an image with glass behind it,
- * as the file is then cut off. */
-static bool take_image(struct imported *lens)
+/* Removes the last surface, the image. Rejects an image with glass behind
+ * it, as the file is then truncated. */
+static bool remove_image(struct imported *lens)
 {
     const struct imported_surface *image = &lens->surface[--lens->n];
 
@@ -221,14 +221,14 @@ static bool check_distances(struct imported *lens)
     return true;
 }
 
-static bool close_file(struct zmx *z)
+static bool finish_lens(struct zmx *z)
 {
     struct imported *lens = z->lens;
     const struct imported_surface *image;
 
     if (lens->n < 2)
         return imported_empty(lens);
-    if (!take_image(lens))
+    if (!remove_image(lens))
         return false;
     image = &lens->surface[lens->n];
     if (z->field_type == 0)
@@ -266,14 +266,14 @@ bool import_zmx(struct imported *lens, const char *text, size_t bytes)
         } else if (lines_is(l, "TOL") || lines_is(l, "DMFS"))
             tail = true;
         else if (!z.s)
-            more = take_head(&z);
+            more = parse_head(&z);
         else if (!tail) {
             const bool indented = l->word[0] > l->text;
 
             tail = z.indented && !indented;
             z.indented |= indented;
-            more = tail || take_surface(&z);
+            more = tail || parse_surface(&z);
         }
     }
-    return more && close_file(&z);
+    return more && finish_lens(&z);
 }

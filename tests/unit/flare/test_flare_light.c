@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integer rasteriser on grids made by hand: where light falls and how much
- * of it, also of ghosts that are clipped or folded.
+ * Tests the integer rasteriser on hand-made grids: where light falls and how
+ * much, also for clipped and folded ghosts.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -14,9 +14,9 @@
 
 /* ------------------------------------------------------------------- light */
 
-/* The ghost must have the light of an octagonal stop of radius 1 in a grid of
- * 2.5 x 2.5 radii: area 2 sqrt 2 of 6.25, flux 16 x 16 cells x 1.5e9 / 2^31 x
- * 50000 / 65536, as the slope of the energy cancels. */
+/* Checks the total light of a ghost: an octagonal stop of radius 1 in a grid
+ * of 2.5 x 2.5 radii. Its area is 2 sqrt 2 of 6.25; the flux is 16 x 16
+ * cells x 1.5e9 / 2^31 x 50000 / 65536, as the slope of the energy cancels. */
 TEST(energy)
 {
     const struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
@@ -24,8 +24,8 @@ TEST(energy)
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
     struct glint_flare_config c = base_config();
 
-    /* The stop's corners lie on the rim of the barrel, so the stop alone
-     * cuts. */
+    /* The stop's corners lie on the rim of the barrel, so only the stop
+     * clips. */
     c.stop.apothem_q16 = 60547;
     draw_list(c, &g, 1, pixels);
     assert_true(total(pixels, 0) > 0.999 * flux);
@@ -33,8 +33,8 @@ TEST(energy)
     assert_true(total(pixels, 1) == 0 && total(pixels, 2) == 0);
 }
 
-/* A ghost only two pixels wide, at several places and bent or not, must keep
- * its light. */
+/* Checks that a ghost only two pixels wide keeps its light at several
+ * positions, bent or not. */
 TEST(focused_light_arrives)
 {
     struct glint_flare_config c = base_config();
@@ -51,13 +51,13 @@ TEST(focused_light_arrives)
     }
 }
 
-static int32_t at(const int32_t *p, int x, int y)
+static int32_t pixel_at(const int32_t *p, int x, int y)
 {
     return p[3 * (y * WIDTH + x)];
 }
 
-/* A flat ghost must have an even irradiance away from its rim, that of each
- * cell: flux over the cell's area in pixels. */
+/* Checks that a flat ghost has, away from its rim, an even irradiance: the
+ * flux of a cell divided by its area in pixels. */
 TEST(flat_inside)
 {
     struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
@@ -73,15 +73,15 @@ TEST(flat_inside)
                 (50000 + (x + 0.5 - 100) / 40 * 65536 / 8) / 65536;
             const double q20 = irradiance * energy * 1048576;
 
-            assert_true(at(pixels, x, y) > 0.985 * q20 - 2 &&
-                        at(pixels, x, y) < 1.015 * q20 + 2);
+            assert_true(pixel_at(pixels, x, y) > 0.985 * q20 - 2 &&
+                        pixel_at(pixels, x, y) < 1.015 * q20 + 2);
         }
     }
-    assert_int_equal(at(pixels, 100, 2), 0);
+    assert_int_equal(pixel_at(pixels, 100, 2), 0);
 }
 
-/* If an outline did not close to the last bit, it would leave a streak to the
- * right end of its rows. */
+/* Checks that outlines close bit by bit; else a streak would extend to the
+ * right end of their rows. */
 TEST(outlines_close)
 {
     for (int k = 0; k < 400; k++) {
@@ -99,8 +99,9 @@ TEST(outlines_close)
     }
 }
 
-/* A cell has a corner so far outside the stop that the visible parts of the
- * sides to it are shorter than 1/256 pixel: its outline must still close. */
+/* Checks that the outline of a cell closes even if a corner is so far
+ * outside the stop that the visible parts of its two sides are shorter than
+ * 1/256 pixel. */
 TEST(far_corner_closes)
 {
     static const int32_t far_q16[] = {70000, 1 << 20, 700000000, 1000000000,
@@ -137,14 +138,14 @@ TEST(far_corner_closes)
         glint_flare_bin(f, &stats);
         glint_flare_draw(f, &image);
         free(mem);
-        assert_true(at(pixels, 12, 12) > 0);
+        assert_true(pixel_at(pixels, 12, 12) > 0);
         for (int y = 0; y < HEIGHT; y++)
-            assert_int_equal(at(pixels, 60, y), 0);
+            assert_int_equal(pixel_at(pixels, 60, y), 0);
     }
 }
 
-/* Steps of irradiance must change the light of a cell by at most half a
- * step. */
+/* Checks that quantising the irradiance changes the light of a cell by at
+ * most half a step. */
 TEST(steps)
 {
     static int32_t stepped[3 * WIDTH * HEIGHT];
@@ -162,10 +163,10 @@ TEST(steps)
 
 /* --------------------------------------------------------------------- rays */
 
-/* Returns whether the ray between the corners of a cell with WEIGHT passes
- * STOP and the barrel. */
-static bool passes(const struct glint_stop *stop, const struct glint_vertex *v,
-                   const double *weight)
+/* Returns whether the ray at the position WEIGHT (bilinear weights of the
+ * corners V) in a cell passes STOP and the barrel. */
+static bool is_passed(const struct glint_stop *stop,
+                      const struct glint_vertex *v, const double *weight)
 {
     double x = 0, y = 0, barrel = 0;
 
@@ -181,8 +182,9 @@ static bool passes(const struct glint_stop *stop, const struct glint_vertex *v,
     return barrel <= 65536;
 }
 
-/* Draws the red ghost G into WANT as RAYS rays in each cell, which are
- * interpolated between its corners and light the pixel that they hit. */
+/* Draws the red ghost G into WANT by RAYS rays per cell. Rays are
+ * interpolated between the cell's corners; each lights the pixel that it
+ * hits. */
 static void draw_rays(const struct ghost *g)
 {
     enum { RAYS = 4096 };
@@ -210,7 +212,7 @@ static void draw_rays(const struct ghost *g)
                 energy += weight[k] * v[k].energy_q16;
             }
             if (x >= 0 && x < WIDTH && y >= 0 && y < HEIGHT &&
-                passes(&c.stop, v, weight))
+                is_passed(&c.stop, v, weight))
                 sum[(int)y * WIDTH + (int)x] += flux_q20 * energy;
         }
     }
@@ -218,8 +220,8 @@ static void draw_rays(const struct ghost *g)
         want[3 * i] = (int32_t)sum[i];
 }
 
-/* The picture of G must be that of its rays but for OFF of the light, and have
- * their light but for 0.2 %. */
+/* Checks that the image of G equals that of its rays except for a fraction
+ * OFF of the light, and that the total light differs by at most 0.2 %. */
 static void check_rays(const struct ghost *g, double off)
 {
     double sum = 0, all;
@@ -233,8 +235,8 @@ static void check_rays(const struct ghost *g, double off)
     assert_true(fabs(total(pixels, 0) - all) < 0.002 * all);
 }
 
-/* Ghosts that are bent, folded, and cut by stop and barrel, of cells of 4.7 and
- * of two pixels. */
+/* Checks ghosts that are bent, folded, and clipped by stop and barrel, with
+ * cells of 4.7 and of 2 pixels. */
 TEST(agrees_with_rays)
 {
     const struct ghost large = {32, 100, 75, 60, 100, 1, 300, 6, {16384, 0, 0}};
@@ -250,17 +252,17 @@ TEST(agrees_with_rays)
 
 /* ------------------------------------------------------- polygons by hand */
 
-/* One cell of flux 64 and energy 1. Its corners are in order round it, in 1/256
- * px. */
+/* One cell of flux 64 and energy 1. Its corners are listed in circular
+ * order, in 1/256 px. */
 struct quad {
     int32_t at[4][2];
     int32_t barrel_q16[4];
-    int lost; /* bit k: corner k was lost */
+    int lost; /* bit k: the ray of corner k is invalid */
 };
 
 static struct glint_flare_stats draw_quad(const struct quad *q)
 {
-    static const int corner[4] = {0, 1, 3, 2}; /* corners by rows */
+    static const int corner[4] = {0, 1, 3, 2}; /* corners in row order */
     struct glint_flare_config c = base_config();
     const struct glint_image image = linear_image(pixels);
     const struct glint_bundle b = {.n_cells = 1,
@@ -289,7 +291,7 @@ static struct glint_flare_stats draw_quad(const struct quad *q)
 
 static void assert_light(int x, int y, double light)
 {
-    const double got = at(pixels, x, y) / 1048576.0;
+    const double got = pixel_at(pixels, x, y) / 1048576.0;
 
     if (got < light - 1e-4 || got > light + 1e-4)
         print_message("pixel %d,%d: %f, not %f\n", x, y, got, light);
@@ -302,8 +304,8 @@ static void assert_flux(double flux)
     assert_true(total(pixels, 0) < 1.001 * flux);
 }
 
-/* A rectangle from (10.25, 10.5) to (14.25, 12.5) must spread its flux of 64
- * over eight pixels of area. */
+/* Checks that the rectangle from (10.25, 10.5) to (14.25, 12.5) spreads its
+ * flux of 64 over eight pixels of area. */
 TEST(rectangle_by_hand)
 {
     struct quad q = {{{2624, 2688}, {3648, 2688}, {3648, 3200}, {2624, 3200}},
@@ -320,8 +322,8 @@ TEST(rectangle_by_hand)
     assert_light(13, 11, 8);
     assert_light(14, 12, 1);
     assert_light(12, 13, 0);
-    /* A barrel of 0.5 on the left to 1.5 on the right must leave the left
-     * half. */
+    /* A barrel radius from 0.5 on the left to 1.5 on the right passes only
+     * the left half. */
     q.barrel_q16[0] = q.barrel_q16[3] = 32768;
     q.barrel_q16[1] = q.barrel_q16[2] = 98304;
     draw_quad(&q);
@@ -331,8 +333,8 @@ TEST(rectangle_by_hand)
     assert_light(13, 11, 0);
 }
 
-/* With one corner lost a cell becomes a triangle with legs of 8 pixels: area 32
- * and half of the flux, so that each pixel must have light 1. */
+/* Checks that a cell with one invalid corner becomes a triangle with legs of
+ * 8 pixels: area 32 and half of the flux, so each pixel has light 1. */
 TEST(triangle_by_hand)
 {
     const struct quad q = {
@@ -348,19 +350,20 @@ TEST(triangle_by_hand)
     assert_flux(32);
 }
 
-/* Slivers, folds, lines and points must keep their light wherever they lie. */
+/* Checks that slivers, folds, lines and points keep their light at any
+ * position. */
 TEST(thin_light_arrives)
 {
     static const struct quad quads[] = {
-        /* 1/256 px wide and 80 px long: upright, lying, aslant */
+        /* 1/256 px wide and 80 px long: vertical, horizontal, diagonal */
         {{{5000, 5000}, {5001, 5000}, {5001, 25480}, {5000, 25480}}, {0}, 0},
         {{{5000, 5000}, {25480, 5000}, {25480, 5001}, {5000, 5001}}, {0}, 0},
         {{{5000, 5000}, {5001, 5000}, {19001, 25480}, {19000, 25480}}, {0}, 0},
-        /* no area: a line, a line there and back, a point */
+        /* zero area: a line, a line forth and back, a point */
         {{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}}, {0}, 0},
         {{{5000, 5000}, {9000, 5000}, {5000, 5000}, {9000, 5000}}, {0}, 0},
         {{{5120, 5120}, {5120, 5120}, {5120, 5120}, {5120, 5120}}, {0}, 0},
-        /* turned over: a bow tie, a cell with a dent */
+        /* self-intersecting or concave: a bow tie, a cell with a dent */
         {{{5000, 5000}, {9000, 5000}, {5000, 9000}, {9000, 9000}}, {0}, 0},
         {{{5000, 5000}, {9000, 5000}, {6000, 6000}, {5000, 9000}}, {0}, 0},
         /* tiny: 2/256 px wide and high */
@@ -371,7 +374,7 @@ TEST(thin_light_arrives)
         assert_int_equal(draw_quad(&quads[i]).dropped_cells, 0);
         assert_flux(64);
     }
-    /* A barrel cuts a line in half. */
+    /* The barrel passes half of a line. */
     draw_quad(
         &(struct quad){{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}},
                        {32768, 98304, 98304, 32768},
@@ -379,8 +382,8 @@ TEST(thin_light_arrives)
     assert_flux(32);
 }
 
-/* Light must be linear: eight times the flux is eight times the picture, within
- * rounding. */
+/* Checks that light is linear: eight times the flux gives eight times the
+ * image, within rounding. */
 TEST(linear_in_light)
 {
     struct ghost g = ghosts[1];
@@ -393,8 +396,8 @@ TEST(linear_in_light)
         assert_true(abs(pixels[i] - 8 * want[i]) <= 24);
 }
 
-/* Cells without area, invalid ray, and light beyond all bounds must do no
- * harm. */
+/* Checks that cells without area, invalid rays and light out of range cause
+ * no error. */
 TEST(hostile_bundles)
 {
     struct glint_flare_config c = base_config();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integer rasteriser on grids made by hand: capacities, settings that are
- * refused, and counts that reach the largest int.
+ * Tests the limits of the integer rasteriser: capacities, rejected settings,
+ * and counts that saturate at INT_MAX.
  */
 #include <stdbool.h>
 #include <stdio.h>
@@ -14,8 +14,8 @@
 
 /* ---------------------------------------------------------------- capacity */
 
-/* The capacities that glint_flare_bin() requested must do exactly; one byte of
- * memory less must be refused. */
+/* Checks that the capacities which glint_flare_bin() requests are
+ * sufficient, and that one byte of memory less is rejected. */
 TEST(exact_capacity)
 {
     struct glint_flare_config c = base_config();
@@ -37,8 +37,8 @@ TEST(exact_capacity)
     free(mem);
 }
 
-/* With any capacity one less, one whole bundle must be left out and counted,
- * and all others drawn right. */
+/* Checks that if any capacity is too small by one, one bundle is dropped and
+ * counted, and all others are drawn correctly. */
 TEST(too_little_capacity)
 {
     struct glint_flare_config full = base_config();
@@ -65,8 +65,7 @@ TEST(too_little_capacity)
     less = draw_scene(full, pixels);
     assert_int_equal(less.bundles, 0);
     assert_int_equal(less.need_primitives, s.need_primitives);
-    /* Bundles without room must be counted, too, however little room there
-     * is. */
+    /* Dropped bundles are counted however little memory there is. */
     for (int k = 0; k < 8; k++) {
         full.max_primitives = (int)((int64_t)s.need_primitives * k / 8);
         full.max_refs = k % 2 ? s.need_refs / 3 : s.need_refs;
@@ -92,7 +91,8 @@ TEST(config_is_checked)
     assert_int_equal(glint_flare_bytes(&c), 0);
 }
 
-/* true: glint_edges_bin() counts 10^9 cells for each bundle instead. */
+/* true: the wrapped glint_edges_bin() only adds 1e9 cells per bundle to the
+ * counts */
 static bool counts_many;
 
 void __real_glint_edges_bin(struct glint_flare *f);
@@ -108,7 +108,7 @@ void __wrap_glint_edges_bin(struct glint_flare *f)
         f->slot[i].n_dropped = f->slot[i].n_held = 1000000000;
 }
 
-/* Counts of a frame must stop at the largest int instead of wrapping. */
+/* Checks that the counts of a frame saturate at INT_MAX instead of wrapping. */
 TEST(counts_are_held)
 {
     struct glint_flare_config c = base_config();

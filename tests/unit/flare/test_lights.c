@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Many lights merged into few: the same for every order, no light lost, bright
- * lights where they were, and at most as many as requested.
+ * Tests merging many lights into few: the result does not depend on their
+ * order, light is preserved, bright lights do not move, and the result has at
+ * most the requested number.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -14,15 +15,16 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* This is about 1/8 pixel where a tangent of 1 is 2000 pixels. */
+/* NEAR_Q30: merge distance, about 1/8 pixel if a tangent of 1 is 2000
+ * pixels. */
 enum { MANY = 3000, NEAR_Q30 = 60000 };
 
-static double value(struct glint_real x)
+static double to_double(struct glint_real x)
 {
     return ldexp(x.mantissa, x.exponent);
 }
 
-static struct glint_real real(double x)
+static struct glint_real to_real(double x)
 {
     int exponent;
     const double fraction = frexp(x, &exponent);
@@ -30,41 +32,41 @@ static struct glint_real real(double x)
     return real_of((int64_t)(fraction * 0x1p40), exponent - 40);
 }
 
-static int32_t q30(double x)
+static int32_t to_q30(double x)
 {
     return (int32_t)lrint(x * 0x1p30);
 }
 
-/* Returns a light of POWER from the direction with the sines X, Y. */
-static struct glint_light beam_at(double x, double y, double power)
+/* Returns a light of power POWER whose direction has the sines X and Y. */
+static struct glint_light make_light(double x, double y, double power)
 {
     const double sine = hypot(x, y);
 
     return (struct glint_light){
-        .sine_q30 = q30(sine),
-        .cosine_q30 = q30(sqrt(1 - sine * sine)),
-        .cos_q30 = sine > 0 ? q30(x / sine) : 1 << 30,
-        .sin_q30 = sine > 0 ? q30(y / sine) : 0,
-        .power = real(power),
+        .sine_q30 = to_q30(sine),
+        .cosine_q30 = to_q30(sqrt(1 - sine * sine)),
+        .cos_q30 = sine > 0 ? to_q30(x / sine) : 1 << 30,
+        .sin_q30 = sine > 0 ? to_q30(y / sine) : 0,
+        .power = to_real(power),
         .rgb_q14 = {16384, 16384, 16384},
     };
 }
 
-static double uniform(uint32_t *state)
+static double random_unit(uint32_t *state)
 {
     return rng_xorshift(state) * 0x1p-32;
 }
 
-/* Fills B with lights of powers 1e-6 to 1e9, most of them small; some lights
- * coincide, some lie on the axis with any azimuth. */
-static void scatter(struct glint_light *b, int n, uint32_t seed)
+/* Fills B with lights of powers 1e-6 to 1e9, most of them small. Some lights
+ * coincide; some are on the axis with random azimuths. */
+static void fill_random(struct glint_light *b, int n, uint32_t seed)
 {
     for (int i = 0; i < n; i++) {
-        const double x = 0.6 * (uniform(&seed) - 0.5);
-        const double y = 0.4 * (uniform(&seed) - 0.5);
-        const double power = pow(10, -6 + 15 * pow(uniform(&seed), 4));
+        const double x = 0.6 * (random_unit(&seed) - 0.5);
+        const double y = 0.4 * (random_unit(&seed) - 0.5);
+        const double power = pow(10, -6 + 15 * pow(random_unit(&seed), 4));
 
-        b[i] = beam_at(x, y, power);
+        b[i] = make_light(x, y, power);
         for (int c = 0; c < 3; c++)
             b[i].rgb_q14[c] = (int32_t)(rng_xorshift(&seed) % 16385);
         b[i].rgb_q14[rng_xorshift(&seed) % 3] = 16384;
@@ -77,7 +79,7 @@ static void scatter(struct glint_light *b, int n, uint32_t seed)
     }
 }
 
-static void mix(struct glint_light *b, int n, uint32_t seed)
+static void shuffle_lights(struct glint_light *b, int n, uint32_t seed)
 {
     for (int i = n - 1; i > 0; i--) {
         const int j = (int)(rng_xorshift(&seed) % (uint32_t)(i + 1));
@@ -88,17 +90,17 @@ static void mix(struct glint_light *b, int n, uint32_t seed)
     }
 }
 
-static void flux_of(const struct glint_light *b, int n, double flux[3])
+static void sum_flux(const struct glint_light *b, int n, double flux[3])
 {
     flux[0] = flux[1] = flux[2] = 0;
     for (int i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
-            flux[c] += value(b[i].power) * b[i].rgb_q14[c] / 16384;
+            flux[c] += to_double(b[i].power) * b[i].rgb_q14[c] / 16384;
 }
 
-/* Checks what a light promises to those who draw it: unit vectors, a normal
- * power, a largest colour of 1. */
-static void assert_sound(const struct glint_light *b)
+/* Checks the invariants of a light that drawing relies on: unit vectors, a
+ * normalised power, a largest colour component of 1. */
+static void assert_valid(const struct glint_light *b)
 {
     const double off = hypot(b->sine_q30, b->cosine_q30) * 0x1p-30;
     const double round = hypot(b->cos_q30, b->sin_q30) * 0x1p-30;
@@ -116,7 +118,7 @@ static void assert_sound(const struct glint_light *b)
 
 TEST(none_and_one)
 {
-    struct glint_light b = beam_at(0.1, -0.2, 3), was = b;
+    struct glint_light b = make_light(0.1, -0.2, 3), was = b;
     int apart = 7;
 
     b.rgb_q14[1] = 12345;
@@ -133,12 +135,13 @@ TEST(none_and_one)
     assert_int_equal(glint_lights_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
 }
 
-/* A merged light must be as far from its neighbours as the wider of the two,
- * in any order. */
-TEST(how_far_they_are_apart)
+/* Checks that the merge distance of two lights is the larger of theirs, in
+ * any order. */
+TEST(merge_distance)
 {
     for (int order = 0; order < 2; order++) {
-        struct glint_light b[2] = {beam_at(0.1, 0, 3), beam_at(0.1, 0, 3)};
+        struct glint_light b[2] = {make_light(0.1, 0, 3),
+                                   make_light(0.1, 0, 3)};
         int apart;
 
         b[order].apart_q30 = 77;
@@ -147,14 +150,15 @@ TEST(how_far_they_are_apart)
     }
 }
 
-/* Lights that are too few and too far apart to merge must keep every bit. */
+/* Checks that lights too few and too far apart to be merged are unchanged
+ * bit by bit. */
 TEST(untouched)
 {
     static struct glint_light b[200], was[200];
     int apart, found = 0;
 
     for (int i = 0; i < 200; i++) {
-        b[i] = beam_at(0.001 * (i % 20), 0.003 * (i / 20) - 0.01, 1 + i);
+        b[i] = make_light(0.001 * (i % 20), 0.003 * (i / 20) - 0.01, 1 + i);
         b[i].rgb_q14[i % 3] = i;
     }
     memcpy(was, b, sizeof b);
@@ -171,20 +175,20 @@ TEST(untouched)
 TEST(identical)
 {
     static struct glint_light b[MANY];
-    const struct glint_light one = beam_at(-0.11, 0.23, 0.5);
+    const struct glint_light one = make_light(-0.11, 0.23, 0.5);
     int apart;
 
     for (int i = 0; i < MANY; i++)
         b[i] = one;
     assert_int_equal(glint_lights_merge(b, MANY, 0, MANY, &apart), 1);
     assert_int_equal(apart, 1);
-    assert_sound(b);
+    assert_valid(b);
     assert_true(abs(b->sine_q30 - one.sine_q30) < 64 &&
                 abs(b->cos_q30 - one.cos_q30) < 256);
-    assert_true(fabs(value(b->power) - 0.5 * MANY) < 1e-5 * MANY);
+    assert_true(fabs(to_double(b->power) - 0.5 * MANY) < 1e-5 * MANY);
 }
 
-/* Returns the chord between the directions with sines X, Y and P, Q. */
+/* Returns the chord between the directions with sines (X, Y) and (P, Q). */
 static double chord(double x, double y, double p, double q)
 {
     const double z = sqrt(1 - x * x - y * y) - sqrt(1 - p * p - q * q);
@@ -192,8 +196,8 @@ static double chord(double x, double y, double p, double q)
     return sqrt((x - p) * (x - p) + (y - q) * (y - q) + z * z);
 }
 
-/* Two lights nearer than NEAR must become one that lies in between by their
- * powers; two that are farther apart must not. */
+/* Checks that two lights closer than NEAR become one at their centroid by
+ * power, and that lights further apart do not. */
 TEST(near)
 {
     const double near = NEAR_Q30 * 0x1p-30;
@@ -201,12 +205,12 @@ TEST(near)
     int apart, n_merged = 0;
 
     for (int k = 0; k < 2000; k++) {
-        const double x = uniform(&seed) - 0.5, y = uniform(&seed) - 0.5;
-        const double dx = 2 * near * (uniform(&seed) - 0.5);
-        const double dy = 2 * near * (uniform(&seed) - 0.5);
+        const double x = random_unit(&seed) - 0.5, y = random_unit(&seed) - 0.5;
+        const double dx = 2 * near * (random_unit(&seed) - 0.5);
+        const double dy = 2 * near * (random_unit(&seed) - 0.5);
         const double d = chord(x, y, x + dx, y + dy);
-        struct glint_light b[2] = {beam_at(x, y, 1),
-                                   beam_at(x + dx, y + dy, 3)};
+        struct glint_light b[2] = {make_light(x, y, 1),
+                                   make_light(x + dx, y + dy, 3)};
         const int left = glint_lights_merge(b, 2, NEAR_Q30, 2, &apart);
 
         if (fabs(d - near) > 0.001 * near)
@@ -215,8 +219,8 @@ TEST(near)
         if (left == 2)
             continue;
         n_merged++;
-        assert_sound(b);
-        assert_true(fabs(value(b->power) - 4) < 1e-8);
+        assert_valid(b);
+        assert_true(fabs(to_double(b->power) - 4) < 1e-8);
         assert_true(fabs(b->sine_q30 * 0x1p-60 * b->cos_q30 - x - 0.75 * dx) <
                     1e-8);
         assert_true(fabs(b->sine_q30 * 0x1p-60 * b->sin_q30 - y - 0.75 * dy) <
@@ -227,42 +231,43 @@ TEST(near)
 
 TEST(axis)
 {
-    struct glint_light b[4] = {beam_at(0, 0, 1), beam_at(0, 0, 1),
-                               beam_at(2e-9, 0, 1), beam_at(-2e-9, 0, 1)};
-    struct glint_light far[2] = {beam_at(0.1, 0, 1), beam_at(-0.1, 0, 1)};
-    struct glint_light aside[2] = {beam_at(2e-9, 0, 1), beam_at(0, 2e-9, 1)};
+    struct glint_light b[4] = {make_light(0, 0, 1), make_light(0, 0, 1),
+                               make_light(2e-9, 0, 1), make_light(-2e-9, 0, 1)};
+    struct glint_light far[2] = {make_light(0.1, 0, 1), make_light(-0.1, 0, 1)};
+    struct glint_light aside[2] = {make_light(2e-9, 0, 1),
+                                   make_light(0, 2e-9, 1)};
     int apart;
 
     b[1].cos_q30 = -(1 << 29);
     b[1].sin_q30 = 929887697; /* azimuth of 120 degrees */
     assert_int_equal(glint_lights_merge(b, 4, NEAR_Q30, 4, &apart), 1);
-    assert_sound(b);
+    assert_valid(b);
     assert_true(b->sine_q30 <= 2);
-    assert_true(fabs(value(b->power) - 4) < 1e-8);
+    assert_true(fabs(to_double(b->power) - 4) < 1e-8);
     assert_int_equal(glint_lights_merge(far, 2, NEAR_Q30, 1, &apart), 1);
     assert_int_equal(apart, 2);
-    assert_sound(far);
+    assert_valid(far);
     assert_true(far->sine_q30 <= 2);
     assert_int_equal(glint_lights_merge(aside, 2, NEAR_Q30, 1, &apart), 1);
-    assert_sound(aside);
+    assert_valid(aside);
 }
 
 TEST(horizon)
 {
-    struct glint_light b[3] = {beam_at(1, 0, 1), beam_at(-1, 0, 1),
-                               beam_at(0, 1, 1)};
+    struct glint_light b[3] = {make_light(1, 0, 1), make_light(-1, 0, 1),
+                               make_light(0, 1, 1)};
     int apart;
 
     assert_int_equal(glint_lights_merge(b, 2, 1 << 30, 1, &apart), 1);
-    assert_sound(b);
-    b[0] = beam_at(1, 0, 1);
-    b[1] = beam_at(-1, 0, 1);
+    assert_valid(b);
+    b[0] = make_light(1, 0, 1);
+    b[1] = make_light(-1, 0, 1);
     assert_int_equal(glint_lights_merge(b, 3, NEAR_Q30, 1, &apart), 1);
-    assert_sound(b);
+    assert_valid(b);
 }
 
-/* The result must not depend on the order, bit for bit, for any number of
- * lights requested. */
+/* Checks that the result does not depend on the order, bit by bit, for any
+ * requested number of lights. */
 TEST(order)
 {
     static struct glint_light want[MANY], got[MANY];
@@ -271,9 +276,9 @@ TEST(order)
         const int n = k < 12 ? MANY : 400, most = 1 + (int)(k * k) % n;
         int apart, apart_again, left;
 
-        scatter(want, n, 77 + k / 3);
+        fill_random(want, n, 77 + k / 3);
         memcpy(got, want, sizeof got);
-        mix(got, n, 1000 + k);
+        shuffle_lights(got, n, 1000 + k);
         left = glint_lights_merge(want, n, NEAR_Q30, most, &apart);
         assert_int_equal(
             glint_lights_merge(got, n, NEAR_Q30, most, &apart_again), left);
@@ -290,21 +295,21 @@ TEST(cap_and_flux)
         double before[3], after[3];
         int apart, left;
 
-        scatter(b, MANY, 9);
-        flux_of(b, MANY, before);
+        fill_random(b, MANY, 9);
+        sum_flux(b, MANY, before);
         left = glint_lights_merge(b, MANY, NEAR_Q30, most, &apart);
         assert_true(apart <= MANY - MANY / 100 && apart > MANY * 9 / 10);
         assert_int_equal(left, most < apart ? most : apart);
-        flux_of(b, left, after);
+        sum_flux(b, left, after);
         for (int c = 0; c < 3; c++)
             assert_true(fabs(after[c] - before[c]) < 1e-4 * before[c]);
         for (int i = 0; i < left; i++)
-            assert_sound(&b[i]);
+            assert_valid(&b[i]);
     }
 }
 
-/* The colour of many faint lights must not be lost in the rounding of a bright
- * light's. */
+/* Checks that the colour of many faint lights is not lost in the rounding of
+ * a bright light's. */
 TEST(faint_colour)
 {
     static struct glint_light b[MANY];
@@ -312,47 +317,47 @@ TEST(faint_colour)
     int apart;
 
     for (int i = 0; i < MANY; i++) {
-        b[i] = beam_at(0.1, 0.1, 1e-5);
+        b[i] = make_light(0.1, 0.1, 1e-5);
         b[i].rgb_q14[1] = b[i].rgb_q14[2] = 0;
     }
-    b[0] = beam_at(0.1, 0.1, 1);
+    b[0] = make_light(0.1, 0.1, 1);
     assert_int_equal(glint_lights_merge(b, MANY, NEAR_Q30, 1, &apart), 1);
-    flux_of(b, 1, flux);
+    sum_flux(b, 1, flux);
     assert_true(fabs(flux[0] - 1 - 1e-5 * (MANY - 1)) < 1e-5);
     assert_true(fabs(flux[1] - 1) < 1e-4 && fabs(flux[2] - 1) < 1e-4);
 }
 
-/* Powers at the ends of their range, far beyond it, and both together must add
- * up. */
+/* Checks the sums of powers at the ends of their range, far outside it, and
+ * of both together. */
 TEST(powers)
 {
     static const double powers[] = {1e-6, 1e9, 1e-55, 1e55};
 
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) {
-            struct glint_light b[3] = {beam_at(0.1, 0.1, powers[i]),
-                                       beam_at(0.2, 0.1, powers[j]),
-                                       beam_at(0.1, 0.3, powers[i])};
+            struct glint_light b[3] = {make_light(0.1, 0.1, powers[i]),
+                                       make_light(0.2, 0.1, powers[j]),
+                                       make_light(0.1, 0.3, powers[i])};
             const double sum = 2 * powers[i] + powers[j];
             int apart;
 
             assert_int_equal(glint_lights_merge(b, 3, NEAR_Q30, 1, &apart), 1);
-            assert_sound(b);
-            assert_true(fabs(value(b->power) - sum) < 1e-8 * sum);
+            assert_valid(b);
+            assert_true(fabs(to_double(b->power) - sum) < 1e-8 * sum);
         }
 }
 
-/* A few bright lights among many faint ones must stay where they are. */
+/* Checks that a few bright lights among many faint ones do not move. */
 TEST(bright_ones_stay)
 {
     static struct glint_light b[MANY];
     int apart;
 
-    scatter(b, MANY, 4);
+    fill_random(b, MANY, 4);
     for (int i = 0; i < MANY; i++)
-        b[i].power = real(0.01);
+        b[i].power = to_real(0.01);
     for (int i = 0; i < 20; i++)
-        b[150 * i] = beam_at(0.02 * i - 0.2, 0.15 - 0.01 * i, 100);
+        b[150 * i] = make_light(0.02 * i - 0.2, 0.15 - 0.01 * i, 100);
     assert_int_equal(glint_lights_merge(b, MANY, NEAR_Q30, 128, &apart), 128);
     for (int i = 0; i < 20; i++) {
         double nearest = 1;

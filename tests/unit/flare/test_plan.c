@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Plans: visible ghosts must be planned and no others, and rows of rays that
- * are computed one by one must give the picture of a stored grid.
+ * Tests plans: exactly the visible ghosts are planned, and rows of rays
+ * computed one at a time give the image of a stored grid.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -22,14 +22,14 @@ enum { WIDTH = 160, HEIGHT = 120 };
 
 /* ----------------------------------------------------------------- numbers */
 
-static double value(struct glint_real x)
+static double to_double(struct glint_real x)
 {
     return ldexp(x.mantissa, x.exponent);
 }
 
 static void assert_near(struct glint_real got, double want)
 {
-    assert_true(fabs(value(got) - want) <= fabs(want) * 0x1p-28);
+    assert_true(fabs(to_double(got) - want) <= fabs(want) * 0x1p-28);
     assert_true(got.mantissa == 0 || llabs(got.mantissa) >= 1 << 30);
 }
 
@@ -57,7 +57,7 @@ TEST(reals)
             assert_near(real_times(x, y), -p * q);
             assert_near(real_over(x, y), -p / q);
             assert_near(real_plus(x, z), p + q);
-            assert_true(fabs(value(x) - value(z)) < 0x1p-28 * p ||
+            assert_true(fabs(to_double(x) - to_double(z)) < 0x1p-28 * p ||
                         real_less(x, z) == (p < q));
             assert_true(fabs((double)real_integer(x, 4, INT64_C(1) << 40) -
                              fmin(16 * p, 0x1p40)) <=
@@ -96,7 +96,7 @@ static void open_fixture(struct fixture *f)
     f->cfg.max_refs = 40000;
 }
 
-static void start(struct fixture *f)
+static void init_flare(struct fixture *f)
 {
     const size_t bytes = glint_flare_bytes(&f->cfg);
 
@@ -122,11 +122,11 @@ TEST_AFTER
     close_fixture(&fx);
 }
 
-static struct glint_flare_stats planned(struct fixture *f, int n_lights)
+static struct glint_flare_stats plan_lights(struct fixture *f, int n_lights)
 {
     struct glint_flare_stats s;
 
-    start(f);
+    init_flare(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, n_lights);
     glint_flare_bin(f->flare, &s);
     free(f->mem);
@@ -138,21 +138,22 @@ TEST(what_is_seen)
 {
     int all;
 
-    all = planned(&fx, 1).bundles;
+    all = plan_lights(&fx, 1).bundles;
     assert_true(all >= 1);
-    assert_int_equal(planned(&fx, 0).bundles, 0);
+    assert_int_equal(plan_lights(&fx, 0).bundles, 0);
     fx.light.power = real_of(0, 0);
-    assert_int_equal(planned(&fx, 1).bundles, 0);
+    assert_int_equal(plan_lights(&fx, 1).bundles, 0);
     fx.light.power = real_of(1000, 0);
-    fx.rays.faintest = real_of(1, 60); /* No ghost is that bright. */
-    assert_int_equal(planned(&fx, 1).bundles, 0);
+    fx.rays.faintest = real_of(1, 60); /* No ghost is this bright. */
+    assert_int_equal(plan_lights(&fx, 1).bundles, 0);
     fx.rays.faintest = real_of(1, -60);
-    assert_int_equal(planned(&fx, 1).bundles, all);
+    assert_int_equal(plan_lights(&fx, 1).bundles, all);
     fx.light.rgb_q14[0] = 0; /* no red light */
-    assert_true(planned(&fx, 1).bundles < all);
+    assert_true(plan_lights(&fx, 1).bundles < all);
 }
 
-/* An annular box has no rays in its middle; these must not is invalid. */
+/* Checks that an annular pupil, which has no rays in its middle, has no
+ * invalid rays there. */
 TEST(a_hole_loses_no_cells)
 {
     struct glint_model_system *system;
@@ -163,13 +164,13 @@ TEST(a_hole_loses_no_cells)
                                               model_header(&fx.m)->system_at);
     for (uint32_t i = 0; i < model_header(&fx.m)->n_systems; i++)
         system[i].annulus = 1;
-    s = planned(&fx, 1);
+    s = plan_lights(&fx, 1);
     assert_true(s.bundles >= 1 && s.primitives > 0);
     assert_int_equal(s.dropped_cells, 0);
 }
 
-/* Returns the most that the flare adds to a pixel, 1 = display white. */
-static double peak(struct fixture *f)
+/* Returns the max light that the flare adds to a pixel, 1 = display white. */
+static double find_peak(struct fixture *f)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
     struct glint_image image =
@@ -178,7 +179,7 @@ static double peak(struct fixture *f)
     int32_t most = 0;
 
     memset(px_q20, 0, sizeof px_q20);
-    start(f);
+    init_flare(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, &s);
     glint_flare_draw(f->flare, &image);
@@ -189,8 +190,8 @@ static double peak(struct fixture *f)
     return most * 0x1p-20;
 }
 
-/* A ghost that is left out must be fainter than FAINTEST in every pixel; one
- * that is drawn must have at least an eighth of it somewhere. */
+/* Checks that a dropped ghost is fainter than FAINTEST in every pixel, and
+ * that a drawn ghost reaches at least an eighth of FAINTEST in some pixel. */
 TEST(faint)
 {
     int n_left_out = 0, n_kept = 0;
@@ -202,9 +203,9 @@ TEST(faint)
 
         fx.light.power = real_of(1, e);
         fx.rays.faintest = real_of(0, 0);
-        light = peak(&fx);
+        light = find_peak(&fx);
         fx.rays.faintest = real_of(1, -10);
-        bundles = planned(&fx, 1).bundles;
+        bundles = plan_lights(&fx, 1).bundles;
         n_left_out += bundles == 0 && light > 0x1p-18;
         n_kept += bundles > 0;
         assert_true(bundles > 0 || light <= 0x1p-10);
@@ -213,21 +214,21 @@ TEST(faint)
     assert_true(n_left_out > 3 && n_kept > 3);
 }
 
-static double code_of(int32_t light_q20)
+static double to_code(int32_t light_q20)
 {
     const double x = fmin(1, fmax(0, light_q20 * 0x1p-20));
 
     return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
 }
 
-static void draw(struct fixture *f, int32_t *px_q20,
-                 struct glint_flare_stats *s)
+static void draw_image(struct fixture *f, int32_t *px_q20,
+                       struct glint_flare_stats *s)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
 
     memset(px_q20, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
-    start(f);
+    init_flare(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, s);
     glint_flare_draw(f->flare, &image);
@@ -235,8 +236,9 @@ static void draw(struct fixture *f, int32_t *px_q20,
     f->mem = NULL;
 }
 
-/* For codes, faint light must be drawn with fewer edges and nearly the same
- * codes, 50 dB. In linear light it must have as many edges as bright light. */
+/* Checks that the plan for codes draws faint light with fewer edges and
+ * nearly the same codes (50 dB), and that the plan for linear light uses as
+ * many edges as for bright light. */
 TEST(steps_follow_codes)
 {
     static int32_t linear[3 * WIDTH * HEIGHT], coded[3 * WIDTH * HEIGHT];
@@ -249,15 +251,15 @@ TEST(steps_follow_codes)
 
         fx.light.power = real_of(1, e);
         fx.rays.faintest = real_of(0, 0);
-        draw(&fx, linear, &all);
+        draw_image(&fx, linear, &all);
         fx.rays.faintest = real_of(1, -20);
-        draw(&fx, coded, &fewer);
+        draw_image(&fx, coded, &fewer);
         assert_true(fewer.primitives <= all.primitives);
         assert_true(e < 0 || all.primitives > 2100);
 
         n_fewer += 2 * fewer.primitives < all.primitives;
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-            const double off = code_of(coded[i]) - code_of(linear[i]);
+            const double off = to_code(coded[i]) - to_code(linear[i]);
 
             sum += off * off;
         }
@@ -266,13 +268,13 @@ TEST(steps_follow_codes)
     assert_true(n_fewer > 15);
 }
 
-/* Sums over a picture: light, where it is and its mean square distance from
- * there, pixels. */
+/* Sums over an image: total light, its centroid, and its mean square
+ * distance from the centroid, pixels. */
 struct extent {
     double light, x, y, square;
 };
 
-static struct extent extent_of(const int32_t *px_q20)
+static struct extent compute_extent(const int32_t *px_q20)
 {
     struct extent e = {0, 0, 0, 0};
 
@@ -291,8 +293,8 @@ static struct extent extent_of(const int32_t *px_q20)
     return e;
 }
 
-/* Points of a lamp that are far apart must have wider ghosts, at the same place
- * and with the same light; points near each other must have the ghost of a
+/* Checks that distant points of a lamp give wider ghosts at the same
+ * position with the same light, and that close points give the ghost of a
  * single light. */
 TEST(points_of_a_lamp)
 {
@@ -305,22 +307,22 @@ TEST(points_of_a_lamp)
     fx.light.cosine_q30 = (int32_t)(sqrt(63 / 64.0) * (1 << 30));
     fx.light.cos_q30 = (int32_t)(0.6 * (1 << 30));
     fx.light.sin_q30 = (int32_t)(0.8 * (1 << 30));
-    draw(&fx, px_q20, &s);
-    alone = extent_of(px_q20);
+    draw_image(&fx, px_q20, &s);
+    alone = compute_extent(px_q20);
     fx.light.apart_q30 = 1 << 10;
-    draw(&fx, px_q20, &s);
-    near = extent_of(px_q20);
+    draw_image(&fx, px_q20, &s);
+    near = compute_extent(px_q20);
     fx.light.apart_q30 = 1 << 28;
-    draw(&fx, px_q20, &s);
-    far = extent_of(px_q20);
+    draw_image(&fx, px_q20, &s);
+    far = compute_extent(px_q20);
     assert_true(near.square == alone.square);
     assert_true(far.square > 1.15 * alone.square);
     assert_true(fabs(far.light / alone.light - 1) < 1e-3);
     assert_true(hypot(far.x - alone.x, far.y - alone.y) < 0.3);
 }
 
-/* Edges on whole pixels must keep all light, and codes must be nearly the
- * same. */
+/* Checks that pixel-snapped edges preserve the total light and nearly all
+ * codes. */
 TEST(whole_edges)
 {
     static int32_t smooth[3 * WIDTH * HEIGHT], whole[3 * WIDTH * HEIGHT];
@@ -334,11 +336,11 @@ TEST(whole_edges)
 
         fx.light.power = real_of(1, e);
         fx.rays.snap_codes_q8 = 0;
-        draw(&fx, smooth, &s);
+        draw_image(&fx, smooth, &s);
         fx.rays.snap_codes_q8 = 4 << 8;
-        draw(&fx, whole, &s);
+        draw_image(&fx, whole, &s);
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-            const double off = code_of(whole[i]) - code_of(smooth[i]);
+            const double off = to_code(whole[i]) - to_code(smooth[i]);
 
             n_changed += whole[i] != smooth[i];
             flux[0] += smooth[i];
@@ -347,14 +349,13 @@ TEST(whole_edges)
             assert_true(fabs(off) < 5);
         }
         assert_true(sum / (3 * WIDTH * HEIGHT) < 0.05); /* at least 61 dB */
-        /* Sides of an upright outline may be half a pixel off. */
+        /* Sides of an upright outline may move by half a pixel. */
         assert_true(fabs(flux[1] - flux[0]) < (e > 2 ? 1e-3 : 1e-2) * flux[0]);
     }
     assert_true(n_changed > 10000);
 }
 
-/* Draws a frame of F into IMAGE, with HALF as many pixels each way or with
- * all. */
+/* Draws a frame of F into IMAGE, at half resolution if HALF. */
 static void draw_half(struct fixture *f, int half, struct glint_image *image,
                       void *mem)
 {
@@ -367,7 +368,7 @@ static void draw_half(struct fixture *f, int half, struct glint_image *image,
     f->rays.faintest = real_of(163, -22);
     f->rays.half = half ? &glint_half : NULL;
     glint_image_place(image, mem);
-    start(f);
+    init_flare(f);
     glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, &s);
     glint_flare_draw(f->flare, image);
@@ -375,7 +376,7 @@ static void draw_half(struct fixture *f, int half, struct glint_image *image,
     f->mem = NULL;
 }
 
-/* With half as many pixels each way, nearly all light must be where it was. */
+/* Checks that at half resolution nearly all light stays in its place. */
 TEST(half)
 {
     static uint8_t codes[2][3 * WIDTH * HEIGHT];
@@ -396,12 +397,12 @@ TEST(half)
         flux[1] += pow(codes[1][i], 2.2);
     }
     assert_true(fabs(flux[1] - flux[0]) < 0.02 * flux[0]);
-    /* The two pictures must differ, yet agree to 32 dB. */
+    /* The images differ, but by less than 32 dB of noise. */
     assert_true(sum > 0.01 * n && sum < 40 * n);
 }
 
-/* With half as many pixels each way, every 2 x 2 pixels must have one light, up
- * to the last row and column. */
+/* Checks that at half resolution each 2 x 2 pixels have the same light,
+ * including the last row and column. */
 TEST(half_of_linear)
 {
     static int32_t light_q20[2][3 * WIDTH * HEIGHT];
@@ -426,8 +427,8 @@ TEST(half_of_linear)
     assert_true(sum[0] > 0 && fabs(sum[1] / sum[0] - 1) < 0.02);
 }
 
-/* On an uneven picture, light that four pixels share must be near the light of
- * each pixel. */
+/* Checks, on a textured image, that the light shared by four pixels is close
+ * to the light of each. */
 TEST(half_of_yuyv)
 {
     static uint8_t px[2][2 * WIDTH * HEIGHT];
@@ -451,8 +452,8 @@ TEST(half_of_yuyv)
     assert_true(sum < 30. * WIDTH * HEIGHT);
 }
 
-/* With every setting of the plan a picture must have the same bits whatever the
- * tiles, the workers, the order of jobs and the kernels. */
+/* Checks, for every setting of the plan, that an image is the same bit by
+ * bit for all tile sizes, workers, job orders and kernels. */
 TEST(same_bits)
 {
     static const int whole_q8[] = {0, 64, 1024, 1 << 15};
@@ -482,7 +483,7 @@ TEST(same_bits)
         fx.cfg.sets = first ? 0 : rng_xorshift(&seed) & glint_sets_here();
         memset(px[!first], 0, sizeof px[0]);
         glint_image_place(&image, px[!first]);
-        start(&fx);
+        init_flare(&fx);
         glint_flare_plan(fx.flare, &fx.rays, &fx.light, 1);
         glint_flare_bin(fx.flare, &s);
         assert_true(s.bundles > 0 && s.dropped_bundles == 0);
@@ -494,9 +495,10 @@ TEST(same_bits)
     }
 }
 
-/* Draws N faint lights with F, linear and in codes; returns the mean square of
- * the difference, codes. The brightest code must be between 4 and 40. */
-static double faint_lights(struct fixture *f, int n)
+/* Draws N faint lights with F in linear light and in codes. Returns the mean
+ * square difference, codes squared. Checks that the brightest code is
+ * between 4 and 40. */
+static double compare_faint_lights(struct fixture *f, int n)
 {
     enum { MANY = 1024 };
     static struct glint_light light[MANY];
@@ -521,7 +523,7 @@ static double faint_lights(struct fixture *f, int n)
     glint_image_place(&layer, linear);
     memset(linear, 0, sizeof linear);
     memset(codes, 0, sizeof codes);
-    start(f);
+    init_flare(f);
     for (int turn = 0; turn < 2; turn++) {
         f->rays.faintest = real_of(turn ? 163 : 0, -22); /* 1/8 of a code */
         glint_flare_plan(f->flare, &f->rays, light, n);
@@ -531,7 +533,7 @@ static double faint_lights(struct fixture *f, int n)
         glint_flare_draw(f->flare, turn ? &image : &layer);
     }
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-        const double want = code_of(linear[i]);
+        const double want = to_code(linear[i]);
 
         most = fmax(most, want);
         sum += (codes[i] - want) * (codes[i] - want);
@@ -540,32 +542,33 @@ static double faint_lights(struct fixture *f, int n)
     return sum / (3 * WIDTH * HEIGHT);
 }
 
-/* Lights that are too faint to be seen alone must be seen together, in codes,
- * too, and fewer of them whose soft edges draw them as many outlines. */
+/* Checks that lights too faint to be visible singly are visible together,
+ * also in codes, and that the same holds for fewer lights whose soft edges
+ * draw each as several outlines. */
 TEST(many_faint_lights)
 {
     const struct glint_shade soft = {.method = &glint_shade_method,
                                      .soft_q16 = 6554};
 
-    assert_true(faint_lights(&fx, 1024) < 0.1);
+    assert_true(compare_faint_lights(&fx, 1024) < 0.1);
     free(fx.mem);
     fx.cfg.stop.shade = &soft;
-    assert_true(faint_lights(&fx, 128) < 0.2);
+    assert_true(compare_faint_lights(&fx, 128) < 0.2);
 }
 
 TEST(room)
 {
     struct glint_flare_stats all, less;
 
-    all = planned(&fx, 1);
+    all = plan_lights(&fx, 1);
     fx.cfg.max_bundles = 1;
-    less = planned(&fx, 1);
+    less = plan_lights(&fx, 1);
     assert_int_equal(less.need_bundles, all.need_bundles);
     assert_true(less.bundles <= 1);
     assert_true(less.dropped_bundles > 0);
 }
 
-static void picture(struct fixture *f, int32_t *px_q20)
+static void draw_bright(struct fixture *f, int32_t *px_q20)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
@@ -577,8 +580,8 @@ static void picture(struct fixture *f, int32_t *px_q20)
     glint_flare_draw(f->flare, &image);
 }
 
-/* Edges from rows of rays, which are dropped on the way, must be those of a
- * stored grid. */
+/* Checks that edges from rows of rays, which are discarded along the way,
+ * equal those of a stored grid. */
 static void check_rows_and_grids(int32_t opening_q30)
 {
     static int32_t rows[3 * WIDTH * HEIGHT], grid[3 * WIDTH * HEIGHT];
@@ -589,9 +592,9 @@ static void check_rows_and_grids(int32_t opening_q30)
 
     open_fixture(&f);
     f.cfg.stop.opening_q30 = opening_q30;
-    start(&f);
+    init_flare(&f);
     glint_flare_plan(f.flare, &f.rays, &f.light, 1);
-    picture(&f, rows);
+    draw_bright(&f, rows);
     plan = (struct glint_plan){.frame = &f.rays,
                                .light = &f.light,
                                .n_lights = 1,
@@ -616,7 +619,7 @@ static void check_rows_and_grids(int32_t opening_q30)
             glint_plan_transfer(&plan, &planned, &scratch.transfer);
             glint_transfer_grid(&scratch.transfer, &place, bundle.n_cells, v);
         }
-    picture(&f, grid);
+    draw_bright(&f, grid);
     assert_memory_equal(rows, grid, sizeof rows);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         light += rows[i];
@@ -630,9 +633,9 @@ TEST(rows_and_grids)
     check_rows_and_grids(1 << 28);
 }
 
-/* A hole of 0.4 of the model's stop is 0.8 of a stop half as wide: both must
- * have the same light but for the corners of cells, and a stop that is closed
- * further must have less of it. */
+/* Checks that a hole of radius 0.4 in the model's stop gives the same light
+ * as a hole of 0.8 in a stop half as wide, except for the corners of cells,
+ * and that closing the stop further reduces the light. */
 TEST(opening)
 {
     static int32_t whole[3 * WIDTH * HEIGHT], half[3 * WIDTH * HEIGHT];
@@ -641,12 +644,12 @@ TEST(opening)
     struct glint_flare_stats s;
 
     fx.light.power = real_of(1000, 4); /* many steps of 2^-20 */
-    draw(&fx, whole, &s);
+    draw_image(&fx, whole, &s);
     fx.cfg.stop.apothem_q16 *= 2;
     fx.cfg.stop.opening_q30 = 1 << 29;
-    draw(&fx, half, &s);
+    draw_image(&fx, half, &s);
     fx.cfg.stop.opening_q30 = 1 << 28;
-    draw(&fx, less, &s);
+    draw_image(&fx, less, &s);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
         light += whole[i];
         off += llabs((int64_t)whole[i] - half[i]);
@@ -662,8 +665,8 @@ TEST(opening)
                 0.003);
 }
 
-/* A stop that is set between frames must give the picture of a flare that has
- * it from the start; openings out of range must be refused. */
+/* Checks that a stop changed between frames gives the image of a flare
+ * created with it, and that openings out of range are rejected. */
 TEST(set_stop)
 {
     static const int32_t bad[] = {-1, 1, (1 << 20) - 1, (1 << 30) + 1};
@@ -671,7 +674,7 @@ TEST(set_stop)
     struct glint_flare_stats s;
     struct glint_stop stop;
 
-    start(&fx);
+    init_flare(&fx);
     stop = fx.cfg.stop;
     for (int k = 0; k < 4; k++) {
         stop.opening_q30 = bad[k];
@@ -681,17 +684,17 @@ TEST(set_stop)
     stop.opening_q30 = 1 << 28;
     assert_ok(glint_flare_set_stop(fx.flare, &stop));
     glint_flare_plan(fx.flare, &fx.rays, &fx.light, 1);
-    picture(&fx, set);
+    draw_bright(&fx, set);
     free(fx.mem);
     fx.cfg.stop.opening_q30 = 1 << 28;
-    draw(&fx, first, &s);
+    draw_image(&fx, first, &s);
     assert_memory_equal(set, first, sizeof set);
     fx.cfg.stop.opening_q30 = 1;
     assert_int_equal(glint_flare_bytes(&fx.cfg), 0);
 }
 
-/* The finest grid must have as many cells as a row has room for, however much a
- * ghost bends. */
+/* Checks that the finest grid has exactly the max number of cells per row,
+ * however strongly a ghost is bent. */
 TEST(finest_grid)
 {
     static struct glint_plan_scratch scratch;
@@ -716,8 +719,9 @@ TEST(finest_grid)
     assert_int_equal(most, GLINT_MAX_CELLS);
 }
 
-/* The barrel's 0.5 + u^2 / 2 bends by 4 over the box, across only, so straight
- * lines between rays must lie 4 / 12 / n^2 above it in the mean. */
+/* Checks the deviation of rays from linear interpolation: the barrel's 0.5 +
+ * u^2 / 2 has second derivative 4 over the box, in u only, so straight lines
+ * between rays lie 4 / 12 / n^2 above it in the mean. */
 TEST(sag)
 {
     static struct glint_plan_scratch scratch;
@@ -739,25 +743,25 @@ TEST(sag)
     assert_int_equal(planned.sag_q16[1], 0);
 }
 
-/* No light beyond the angles of the lens model may be drawn, whatever the
- * polynomials say; it must request no room unless another light follows. */
+/* Checks that lights beyond the model's angles are not drawn, whatever the
+ * polynomials give there, and need no memory unless another light follows. */
 TEST(beyond)
 {
     const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;
     int alone;
 
     fx.light.sine_q30 = inside_q30;
-    alone = planned(&fx, 1).bundles;
+    alone = plan_lights(&fx, 1).bundles;
     fx.light.sine_q30 = outside_q30;
-    assert_true(planned(&fx, 1).bundles > 0);
+    assert_true(plan_lights(&fx, 1).bundles > 0);
     ((struct glint_model_header *)fx.m.data)->sine_hi_q30 = inside_q30;
-    assert_int_equal(planned(&fx, 1).need_bundles, 0);
+    assert_int_equal(plan_lights(&fx, 1).need_bundles, 0);
     for (int last = 0; last < 2; last++) {
         struct glint_light light[2] = {fx.light, fx.light};
         struct glint_flare_stats s;
 
         light[last].sine_q30 = inside_q30;
-        start(&fx);
+        init_flare(&fx);
         glint_flare_plan(fx.flare, &fx.rays, light, 2);
         glint_flare_bin(fx.flare, &s);
         assert_int_equal(s.need_bundles, last ? 12 : 6);
@@ -767,8 +771,8 @@ TEST(beyond)
     }
 }
 
-/* A frame without light must leave the picture alone, also after a frame with
- * light. */
+/* Checks that a frame without light does not change the image, also after a
+ * frame with light. */
 TEST(dark_frame)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
@@ -776,9 +780,9 @@ TEST(dark_frame)
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
     struct glint_flare_stats s;
 
-    start(&fx);
+    init_flare(&fx);
     glint_flare_plan(fx.flare, &fx.rays, &fx.light, 1);
-    picture(&fx, px_q20);
+    draw_bright(&fx, px_q20);
     assert_true(glint_flare_tiles(fx.flare) > 0);
     memset(px_q20, 0, sizeof px_q20);
     glint_flare_plan(fx.flare, &fx.rays, &fx.light, 0);

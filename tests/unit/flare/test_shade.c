@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * What lies in a stop, drawn by edges: each pixel of a flat ghost has the light
- * that the stop lets through where its rays cross, whether the grid is coarse
- * or fine; nothing at all adds up to the clear ghost, and black to nothing; a
- * soft edge has the light of its profile; workers and tiles change no bit.
+ * Tests dust and masks in the stop, which are drawn by edges: each pixel of a
+ * flat ghost has the light that the stop passes at its rays, on coarse and fine
+ * grids; a white mask gives the clear ghost and a black one nothing; a soft
+ * edge has the light of its profile; workers and tiles do not change the image.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -15,9 +15,9 @@
 
 static const struct ghost plain = {16, 100, 75, 60, 0, 1, 0, 0, {16384, 0, 0}};
 
-/* Gives SETUP an iris; returns what lies in its stop. */
-static struct glint_dirt *give(struct glint_setup *setup, int n_blades,
-                               const struct glint_iris *iris)
+/* Sets up SETUP with IRIS; returns the dirt in its stop. */
+static struct glint_dirt *make_dirt(struct glint_setup *setup, int n_blades,
+                                    const struct glint_iris *iris)
 {
     struct glint_dirt *dirt;
     struct glint_error error;
@@ -31,16 +31,17 @@ static struct glint_dirt *give(struct glint_setup *setup, int n_blades,
     return dirt;
 }
 
-/* Draws G into OUT through an octagon with IRIS, and with 0 in CLEAR without.
- */
-static struct glint_flare_stats draw(const struct ghost *g,
-                                     const struct glint_iris *iris,
-                                     int n_blades, int tile_log2, int32_t *out)
+/* Draws G into OUT through an octagonal stop with IRIS, and into CLEAR
+ * without it. */
+static struct glint_flare_stats draw_ghost(const struct ghost *g,
+                                           const struct glint_iris *iris,
+                                           int n_blades, int tile_log2,
+                                           int32_t *out)
 {
     struct glint_flare_config c = base_config();
     struct glint_flare_stats stats;
     struct glint_setup setup;
-    struct glint_dirt *const dirt = give(&setup, n_blades, iris);
+    struct glint_dirt *const dirt = make_dirt(&setup, n_blades, iris);
 
     glint_setup_stop(&setup, &c.stop);
     c.stop.opening_q30 = 0;
@@ -52,23 +53,24 @@ static struct glint_flare_stats draw(const struct ghost *g,
     return stats;
 }
 
-/* Checks each pixel inside the stop against the clear ghost times the light
- * of IRIS; returns the root of the mean square of the difference, over the
- * clear ghost's light. */
-static double difference(const struct ghost *g, const struct glint_iris *iris)
+/* Compares each pixel inside the stop with the clear ghost times the
+ * transmission of IRIS. Returns the root mean square difference, divided by
+ * the clear ghost's light. */
+static double compare_with_clear(const struct ghost *g,
+                                 const struct glint_iris *iris)
 {
     const struct glint_iris clear = {0};
     struct glint_setup setup;
-    struct glint_dirt *const dirt = give(&setup, 8, iris);
+    struct glint_dirt *const dirt = make_dirt(&setup, 8, iris);
     double sum = 0, all = 0;
     int n = 0;
 
-    draw(g, &clear, 8, 5, want);
-    draw(g, iris, 8, 5, pixels);
+    draw_ghost(g, &clear, 8, 5, want);
+    draw_ghost(g, iris, 8, 5, pixels);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             const double u = (x + 0.5 - g->cx) / g->size;
-            /* the ghost leans */
+            /* the ghost is sheared */
             const double v = (g->cy - y - 0.5) / g->size - u / 5;
             const int at = 3 * (y * WIDTH + x);
             double light = 0, off;
@@ -88,7 +90,7 @@ static double difference(const struct ghost *g, const struct glint_iris *iris)
     return sqrt(sum / n) / (all / n);
 }
 
-/* Dust must be seen where it is, and as dark as it is, whatever the grid. */
+/* Checks position and darkness of dust, on every grid. */
 TEST(dust)
 {
     for (int seed = 1; seed < 5; seed++)
@@ -97,13 +99,14 @@ TEST(dust)
             struct ghost g = plain;
 
             g.n = n;
-            /* The smallest specks are less than a pixel. */
-            assert_true(difference(&g, &iris) < (n == 8 ? 0.085 : 0.045));
+            /* The smallest specks are smaller than a pixel. */
+            assert_true(compare_with_clear(&g, &iris) <
+                        (n == 8 ? 0.085 : 0.045));
         }
 }
 
-/* A mask must be seen upright: the top row of its picture at the highest y of
- * the stop. */
+/* Checks that a mask is upright: the top row of its image is at the highest
+ * y of the stop. */
 TEST(mask)
 {
     uint8_t mask[32 * 32];
@@ -112,10 +115,10 @@ TEST(mask)
 
     for (int i = 0; i < 32 * 32; i++)
         mask[i] = (uint8_t)(64 + 5 * (i / 32) + (i % 32 > 20 ? 20 : 0));
-    assert_true(difference(&plain, &iris) < 0.005);
+    assert_true(compare_with_clear(&plain, &iris) < 0.005);
 }
 
-/* What lies in the stop must turn with the blades, from x towards y. */
+/* Checks that the dirt rotates with the blades, from x towards y. */
 TEST(turn)
 {
     const uint8_t mask[4] = {0, 255, 0, 255};
@@ -142,38 +145,38 @@ TEST(turn)
     }
 }
 
-/* A white mask must change next to nothing, a black one leave nothing. */
+/* Checks that a white mask changes almost nothing and that a black one
+ * leaves no light. */
 TEST(white_and_black)
 {
     uint8_t mask[4] = {255, 255, 255, 255};
     struct glint_iris iris = {.mask = mask, .mask_width = 2, .mask_height = 2};
     const struct glint_iris clear = {0};
 
-    draw(&plain, &clear, 8, 5, want);
-    draw(&plain, &iris, 8, 5, pixels);
+    draw_ghost(&plain, &clear, 8, 5, want);
+    draw_ghost(&plain, &iris, 8, 5, pixels);
     assert_memory_equal(pixels, want, sizeof pixels);
     memset(mask, 0, sizeof mask);
-    assert_int_equal(draw(&plain, &iris, 8, 5, pixels).primitives, 0);
+    assert_int_equal(draw_ghost(&plain, &iris, 8, 5, pixels).primitives, 0);
     assert_true(total(pixels, 0) == 0);
 }
 
-/* Dust must take few places: a patch for each cell at most, whatever lies in
- * it. */
+/* Checks that dust adds few edges: at most one patch per cell. */
 TEST(few)
 {
     const struct glint_iris iris = {.dust = 0.3, .dust_seed = 5};
     const struct glint_iris clear = {0};
     int plain_edges, dusty;
 
-    plain_edges = draw(&plain, &clear, 8, 5, want).primitives;
-    dusty = draw(&plain, &iris, 8, 5, pixels).primitives;
+    plain_edges = draw_ghost(&plain, &clear, 8, 5, want).primitives;
+    dusty = draw_ghost(&plain, &iris, 8, 5, pixels).primitives;
     /* cells that are cut are two triangles, of up to five corners */
     assert_true(dusty > plain_edges);
     assert_true(dusty < plain_edges + 16 * 16 * 10);
 }
 
-/* A mask that is black but for one half must leave all of that, and nothing of
- * the other, sharply. */
+/* Checks a mask whose one half is white: all light of that half remains,
+ * none of the other half, with a sharp boundary. */
 TEST(half)
 {
     uint8_t mask[64 * 64];
@@ -184,8 +187,8 @@ TEST(half)
 
     for (int i = 0; i < 64 * 64; i++)
         mask[i] = i / 64 < 32 ? 255 : 0;
-    draw(&plain, &clear, 8, 5, want);
-    draw(&plain, &iris, 8, 5, pixels);
+    draw_ghost(&plain, &clear, 8, 5, want);
+    draw_ghost(&plain, &iris, 8, 5, pixels);
     kept = total(pixels, 0);
     all = total(want, 0);
     assert_true(fabs(kept / all - 0.5) < 0.005);
@@ -193,8 +196,8 @@ TEST(half)
         assert_true(pixels[k] > -want[3 * (75 * WIDTH + 100)] / 100);
 }
 
-/* A soft edge must have as much light as its profile says, for sides, arcs and
- * circles. */
+/* Checks that a soft edge has the light of its profile, for straight sides,
+ * arcs and circles. */
 TEST(soft_edge)
 {
     for (int k = 0; k < 12; k++) {
@@ -206,31 +209,31 @@ TEST(soft_edge)
         double mean, share;
 
         iris.softness = 0.03 * (1 << k / 3);
-        dirt = give(&setup, n, &iris);
+        dirt = make_dirt(&setup, n, &iris);
         mean = dirt->mean;
         glint_dirt_free(dirt);
-        draw(&plain, &clear, n, 5, want);
-        draw(&plain, &iris, n, 5, pixels);
+        draw_ghost(&plain, &clear, n, 5, want);
+        draw_ghost(&plain, &iris, n, 5, pixels);
         share = total(pixels, 0) / total(want, 0);
         assert_true(fabs(share / mean - 1) < 0.01);
     }
 }
 
-/* Tiles must change no bit. */
+/* Checks that tiles do not change the image, bit by bit. */
 TEST(same_bits)
 {
     const struct glint_iris iris = {
         .roundness = 0.4, .softness = 0.1, .dust = 0.1, .dust_seed = 9};
 
-    draw(&ghosts[1], &iris, 7, 5, want);
+    draw_ghost(&ghosts[1], &iris, 7, 5, want);
     assert_true(total(want, 0) + total(want, 1) + total(want, 2) > 0);
     for (int log2 = 3; log2 <= 6; log2++) {
-        draw(&ghosts[1], &iris, 7, log2, pixels);
+        draw_ghost(&ghosts[1], &iris, 7, log2, pixels);
         assert_memory_equal(pixels, want, sizeof pixels);
     }
 }
 
-/* What is out of range must be refused. */
+/* Checks that values out of range are rejected. */
 TEST(refused)
 {
     struct glint_flare_config c = base_config();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Ghosts with tints: light must follow gain and tint, muted ghosts must cost
- * nothing, and tints of one must change no bit.
+ * Tests tints of ghosts: light follows gain and tint, muted ghosts cost
+ * nothing, and tints of 1 change no bit.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ struct fixture {
     struct glint_tint tint[GHOSTS];
     struct glint_flare_stats stats;
     int32_t px_q20[SAMPLES];
-    double sum[3]; /* light of the picture, display white times pixels */
+    double sum[3]; /* light of the image, display white x pixels */
 };
 
 static struct fixture *open_fixture(void)
@@ -55,7 +55,7 @@ static void close_fixture(struct fixture *f)
     free(f);
 }
 
-static void draw(struct fixture *f)
+static void draw_fixture(struct fixture *f)
 {
     struct glint_image image = {
         .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
@@ -76,7 +76,7 @@ static void draw(struct fixture *f)
         f->sum[i % 3] += f->px_q20[i] * 0x1p-20;
 }
 
-static void assert_share(double got, double want)
+static void assert_ratio(double got, double want)
 {
     assert_true(fabs(got - want) <= 1e-3 * fabs(want));
 }
@@ -86,11 +86,11 @@ TEST(ones_change_no_bit)
     static int32_t plain[SAMPLES];
     struct fixture *f = open_fixture();
 
-    draw(f);
+    draw_fixture(f);
     assert_true(f->sum[0] > 1);
     memcpy(plain, f->px_q20, sizeof plain);
     f->rays.tints = f->tint;
-    draw(f);
+    draw_fixture(f);
     assert_memory_equal(plain, f->px_q20, sizeof plain);
     close_fixture(f);
 }
@@ -100,20 +100,20 @@ TEST(gain_and_tint)
     struct fixture *f = open_fixture();
     double plain[3];
 
-    draw(f);
+    draw_fixture(f);
     memcpy(plain, f->sum, sizeof plain);
     f->rays.tints = f->tint;
     for (int i = 0; i < GHOSTS; i++)
         f->tint[i] = (struct glint_tint){{8192, 32768, 0}, real_of(3, 0)};
-    draw(f);
-    assert_share(f->sum[0], 1.5 * plain[0]);
-    assert_share(f->sum[1], 6 * plain[1]);
+    draw_fixture(f);
+    assert_ratio(f->sum[0], 1.5 * plain[0]);
+    assert_ratio(f->sum[1], 6 * plain[1]);
     assert_true(f->sum[2] == 0);
     close_fixture(f);
 }
 
-/* Ghosts that are muted one after the other must leave the sum of the others,
- * and all of them nothing to plan. */
+/* Checks, while ghosts are muted one after the other, that the light of the
+ * others remains, and that nothing is planned when all are muted. */
 TEST(mute)
 {
     struct fixture *f = open_fixture();
@@ -121,39 +121,39 @@ TEST(mute)
     double all, left = 0;
     int bundles;
 
-    draw(f);
+    draw_fixture(f);
     all = f->sum[0];
     bundles = f->stats.bundles;
     f->rays.tints = f->tint;
     for (int ghost = 0; ghost < n; ghost++) {
         for (int i = 0; i < n; i++)
             f->tint[i].gain = real_of(i == ghost, 0);
-        draw(f);
+        draw_fixture(f);
         left += f->sum[0];
         assert_true(f->stats.bundles <= bundles);
     }
-    assert_share(left, all);
+    assert_ratio(left, all);
     for (int i = 0; i < n; i++)
         f->tint[i].gain = real_of(0, 0);
-    draw(f);
+    draw_fixture(f);
     assert_int_equal(f->stats.bundles, 0);
     assert_true(f->sum[0] == 0);
     close_fixture(f);
 }
 
-/* A gain must lift a ghost that no code would show. */
+/* Checks that a gain makes a ghost visible that would be below one code. */
 TEST(faint)
 {
     struct fixture *f = open_fixture();
 
     f->light.power = real_of(1, -30);
     f->rays.faintest = real_of(1, -10);
-    draw(f);
+    draw_fixture(f);
     assert_int_equal(f->stats.bundles, 0);
     f->rays.tints = f->tint;
     for (int i = 0; i < GHOSTS; i++)
         f->tint[i].gain = real_of(1, 40);
-    draw(f);
+    draw_fixture(f);
     assert_true(f->stats.bundles > 0);
     close_fixture(f);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which wavelengths ghosts are drawn with: as many as their dispersion and
- * their light need, without steps that 31 wavelengths do not have; and lists of
- * wavelengths as they are given.
+ * Tests the choice of wavelengths: ghosts get as many as their dispersion and
+ * light need, without colour steps that 31 wavelengths do not have; explicit
+ * lists of wavelengths are drawn as given.
  */
 #include <math.h>
 #include <stdint.h>
@@ -20,9 +20,10 @@ static struct opened chosen, three, all;
 static const struct glint_lamp lamp = {
     .theta_deg = 12, .phi_deg = 33, .power = 3e6, .rgb = {1, 1, 1}};
 
-static struct glint_engine_report drawn(struct glint_frame *frame,
-                                        const struct opened *opened, int width,
-                                        double power, uint8_t *rgb)
+static struct glint_engine_report draw_frame(struct glint_frame *frame,
+                                             const struct opened *opened,
+                                             int width, double power,
+                                             uint8_t *rgb)
 {
     struct glint_lamp light = lamp;
     struct glint_image image =
@@ -36,9 +37,9 @@ static struct glint_engine_report drawn(struct glint_frame *frame,
     return report;
 }
 
-/* Returns how many wavelengths GHOST takes in FRAME, and sets *N_DRAWN to how
- * many of these are drawn. */
-static int waves_of(struct glint_frame *frame, int ghost, int *n_drawn)
+/* Returns the number of wavelengths planned for GHOST in FRAME; sets
+ * *N_DRAWN to the number drawn. */
+static int count_waves(struct glint_frame *frame, int ghost, int *n_drawn)
 {
     int n = 0;
 
@@ -54,15 +55,15 @@ static int waves_of(struct glint_frame *frame, int ghost, int *n_drawn)
     return n;
 }
 
-/* Counts drawn ghosts by how many wavelengths each takes, and bundles drawn. */
-static void count(struct glint_frame *frame,
-                  int ghosts[GLINT_MAX_WAVELENGTHS + 1], int *bundles)
+/* Counts drawn ghosts by their number of wavelengths, and the bundles drawn. */
+static void count_ghosts(struct glint_frame *frame,
+                         int ghosts[GLINT_MAX_WAVELENGTHS + 1], int *bundles)
 {
     memset(ghosts, 0, (GLINT_MAX_WAVELENGTHS + 1) * sizeof *ghosts);
     *bundles = 0;
     for (int ghost = 0; ghost < frame->setup->n_ghosts; ghost++) {
         int n_drawn;
-        const int n = waves_of(frame, ghost, &n_drawn);
+        const int n = count_waves(frame, ghost, &n_drawn);
 
         assert_true(n == 4 || n == 6 || n == 10 || n == 17 || n == 28);
         assert_true(n_drawn <= n);
@@ -81,9 +82,9 @@ TEST(small_picture)
     struct glint_frame frame;
     struct glint_engine_report report;
 
-    /* 32 pixels are too few for an outline to move by a pixel. */
-    report = drawn(&frame, &chosen, 32, 1, picture);
-    count(&frame, ghosts, &bundles);
+    /* In a width of 32 pixels dispersion moves no outline by a pixel. */
+    report = draw_frame(&frame, &chosen, 32, 1, picture);
+    count_ghosts(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
     assert_int_equal(ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28], 0);
     assert_int_equal(bundles, report.stats.bundles);
@@ -96,17 +97,17 @@ TEST(large_picture)
     struct glint_frame frame;
     struct glint_engine_report report;
 
-    report = drawn(&frame, &chosen, WIDTH, 100, picture);
-    count(&frame, ghosts, &bundles);
+    report = draw_frame(&frame, &chosen, WIDTH, 100, picture);
+    count_ghosts(&frame, ghosts, &bundles);
     more = ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28];
-    /* Ghosts differ in how many they take. */
+    /* Ghosts get different numbers of wavelengths. */
     assert_true(ghosts[4] > 0 && more > 0);
     assert_int_equal(bundles, report.stats.bundles);
     assert_int_equal(report.stats.dropped_bundles, 0);
     glint_frame_finish(&frame);
-    /* Faint ghosts need no more than four wavelengths. */
-    drawn(&frame, &chosen, WIDTH, 0.01, other);
-    count(&frame, ghosts, &bundles);
+    /* Faint ghosts get at most four wavelengths. */
+    draw_frame(&frame, &chosen, WIDTH, 0.01, other);
+    count_ghosts(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
     assert_int_equal(ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28], 0);
     glint_frame_finish(&frame);
@@ -121,8 +122,8 @@ TEST(dial)
     set.lens.setup.lens = &chosen.lens.table;
     for (double px = 8; px > 0.1; px /= 2) {
         set.settings.dials.dispersion_q8 = (int)(px * 256);
-        drawn(&frame, &set, WIDTH, 100, picture);
-        count(&frame, ghosts, &bundles);
+        draw_frame(&frame, &set, WIDTH, 100, picture);
+        count_ghosts(&frame, ghosts, &bundles);
         assert_true(bundles >= before);
         least = before ? least : bundles;
         before = bundles;
@@ -131,21 +132,22 @@ TEST(dial)
     assert_true(before > 2 * least);
 }
 
-/* A dispersion of 0 must give the three default wavelengths, bit for bit. */
+/* Checks that a dispersion of 0 gives the three default wavelengths, bit by
+ * bit. */
 TEST(off)
 {
     struct opened set = chosen;
     struct glint_frame frame;
 
     set.settings.dials.dispersion_q8 = 0;
-    drawn(&frame, &set, WIDTH, 1, picture);
+    draw_frame(&frame, &set, WIDTH, 1, picture);
     glint_frame_finish(&frame);
-    drawn(&frame, &three, WIDTH, 1, other);
+    draw_frame(&frame, &three, WIDTH, 1, other);
     glint_frame_finish(&frame);
     assert_memory_equal(picture, other, SAMPLES);
 }
 
-/* A single set must give the picture of the list of its wavelengths. */
+/* Checks that a single set of wavelengths gives the image of the same list. */
 TEST(one_set)
 {
     struct opened set = chosen, list = three;
@@ -162,15 +164,15 @@ TEST(one_set)
                sizeof list.lens.setup.rgb[i]);
         list.lens.setup.unit_flux[i] = set.lens.setup.set_wave[i].unit_flux;
     }
-    drawn(&frame, &set, WIDTH, 10, picture);
+    draw_frame(&frame, &set, WIDTH, 10, picture);
     glint_frame_finish(&frame);
-    drawn(&frame, &list, WIDTH, 10, other);
+    draw_frame(&frame, &list, WIDTH, 10, other);
     glint_frame_finish(&frame);
     assert_memory_equal(picture, other, SAMPLES);
 }
 
-/* Ghosts without room for a larger set must take the first set, and nothing may
- * be dropped. */
+/* Checks that ghosts without memory for a larger set use the first set, and
+ * that nothing is dropped. */
 TEST(little_room)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, most = 0;
@@ -181,10 +183,10 @@ TEST(little_room)
     void *mem;
 
     set.settings.dials.dispersion_q8 = 64;
-    drawn(&frame, &set, WIDTH, 100, picture);
+    draw_frame(&frame, &set, WIDTH, 100, picture);
     most = frame.cfg.max_bundles;
     frame.cfg.max_bundles = 4 * frame.setup->n_ghosts;
-    /* Drawing had raised the limit above 4 bundles a ghost. */
+    /* Drawing had raised the limit above 4 bundles per ghost. */
     assert_true(most > frame.cfg.max_bundles);
     bytes = glint_flare_bytes(&frame.cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
@@ -198,14 +200,14 @@ TEST(little_room)
     assert_int_equal(stats.need_bundles, most);
     assert_int_equal(stats.dropped_bundles, 0);
     assert_true(stats.bundles <= 4 * frame.setup->n_ghosts);
-    count(&frame, ghosts, &bundles);
+    count_ghosts(&frame, ghosts, &bundles);
     assert_int_equal(bundles, stats.bundles);
     assert_true(ghosts[4] > 0);
     glint_frame_finish(&frame);
 }
 
-/* Pictures must have the same bits whether one worker plans them or several,
- * with three lamps. */
+/* Checks that three lamps give the same image bit by bit, whether one worker
+ * plans them or several. */
 TEST(same_bits)
 {
     const struct glint_lamp lamps[3] = {
@@ -233,14 +235,14 @@ TEST(same_bits)
 
 /* ------------------------------------------------------------- the picture */
 
-static int compare(const void *a, const void *b)
+static int compare_ints(const void *a, const void *b)
 {
     return *(const int *)b - *(const int *)a;
 }
 
-/* Returns the step in hue, in codes, that only a thousandth of all pairs of
- * neighbouring pixels exceed: by how much more or less than in truth R - G or B
- * - G changes from one pixel to the other. */
+/* Returns the hue step, codes, that is exceeded by only 0.1 % of all pairs
+ * of neighbouring pixels: the error of the change of R - G or B - G from one
+ * pixel to the next. */
 static int hue_step(const uint8_t *rgb)
 {
     static int step[WIDTH * HEIGHT];
@@ -261,7 +263,7 @@ static int hue_step(const uint8_t *rgb)
         }
         step[n++] = most;
     }
-    qsort(step, (size_t)n, sizeof *step, compare);
+    qsort(step, (size_t)n, sizeof *step, compare_ints);
     return step[n / 1000];
 }
 
@@ -284,11 +286,11 @@ TEST(outlines)
     double db[2];
     int step[2];
 
-    drawn(&frame, &all, WIDTH, 20, truth);
+    draw_frame(&frame, &all, WIDTH, 20, truth);
     glint_frame_finish(&frame);
-    drawn(&frame, &three, WIDTH, 20, few);
+    draw_frame(&frame, &three, WIDTH, 20, few);
     glint_frame_finish(&frame);
-    drawn(&frame, &chosen, WIDTH, 20, picture);
+    draw_frame(&frame, &chosen, WIDTH, 20, picture);
     glint_frame_finish(&frame);
     db[0] = psnr(few), db[1] = psnr(picture);
     step[0] = hue_step(few), step[1] = hue_step(picture);
@@ -325,11 +327,13 @@ TEST(words)
     assert_false(settings_set(&s, "wavelengths", "650,532,1101"));
     assert_false(settings_set(&s, "wavelengths", "9,17"));
     s.camera.waves.kind = GLINT_WAVES_AUTO;
-    s.options.rays = GLINT_RAYS_EXACT; /* ghosts choose, as of a model */
+    /* ghosts choose their wavelengths, as with a model */
+    s.options.rays = GLINT_RAYS_EXACT;
     assert_true(s.camera.waves.kind == GLINT_WAVES_AUTO);
 }
 
-/* All ghosts of a white lamp must be white together behind an uncoated lens. */
+/* Checks that behind an uncoated lens the sum of all ghosts of a white lamp
+ * is white. */
 TEST(white)
 {
     static float rgb[SAMPLES];

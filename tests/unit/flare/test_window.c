@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * A window must hold every ray that a narrower stop lets through, and little
- * else, wherever in the box these rays are, and must move without jumps as the
- * stop closes.
+ * Tests the window: the rectangle in a ghost's pupil that contains every ray
+ * passing a narrower stop. It must contain all of them, be only a little
+ * larger, and move continuously while the stop closes.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -14,13 +14,16 @@
 
 enum { ONE = 1 << 30, ACROSS = 240, DOWN = 120 };
 
-/* Polynomials of the stop's position, at most 2 in size, and of a barrel. */
+/* Polynomials of the position in the stop, |x|, |y| <= 2, and of the barrel. */
 struct shape {
     const char *name;
     uint16_t x_power[3], y_power[3];
     double x[3], y[3];
-    double barrel[2]; /* (1 + r^2) / 2 = [0] + [1] u; [0] 0: no barrel */
-    double slack;     /* largest ratio of the window's size to that seen */
+    /* polynomial of the barrel, (1 + r^2) / 2 = [0] + [1] u; [0] is 0: no
+     * barrel */
+    double barrel[2];
+    /* max ratio of the window's size to the extent of passing rays */
+    double slack;
 };
 
 #define P(u, v) MODEL_POWER(u, v, 0, 0)
@@ -59,10 +62,10 @@ static const struct shape shape[] = {
     {"half behind a barrel", {P(1, 0)}, {P(0, 1)}, {1}, {1}, {1, 2}, 1.5},
 };
 
-/* Those of lenses that are not round, whose boxes have two halves of their own,
- * and as many rows of rays over both as others have over one. Through the first
- * light comes at all heights of a narrow strip, so that windows stay 2^31 high.
- */
+/* Shapes for lenses without rotational symmetry: their boxes have two
+ * separate halves in y, with as many rows of rays in total as others have in
+ * one. Through the first shape light passes at all heights of a narrow
+ * strip, so its windows remain 2^31 high. */
 static const struct shape whole_shape[] = {
     {"a strip", {P(1, 0)}, {P(0, 1)}, {2}, {0.01}, {0}, 1.45},
     {"a strip aside",
@@ -83,8 +86,8 @@ static const struct shape whole_shape[] = {
     {"at the top", {P(1, 0)}, {P(0, 0), P(0, 1)}, {1}, {-0.9, 1}, {0}, 1.45},
 };
 
-static struct glint_model_system begin(struct model_image *m,
-                                       enum glint_basis basis)
+static struct glint_model_system begin_model(struct model_image *m,
+                                             enum glint_basis basis)
 {
     static const int32_t box[GLINT_LENS_SIDES] = {0, 1 << 22, 1 << 22, 0};
     static const int32_t across_q30[2] = {0, ONE / 2};
@@ -116,7 +119,7 @@ open_shape(const struct shape *s, enum glint_basis basis, struct model_image *m)
         {GLINT_OUT_STOP_Y, 0, exponent, {0}, {0}},
         {GLINT_OUT_ENERGY, 1, -30, {P(0, 0)}, {1 << 28}},
         {GLINT_OUT_BARREL_0, 2, exponent, {P(0, 0), P(1, 0)}, {0}}};
-    struct glint_model_system system = begin(m, basis);
+    struct glint_model_system system = begin_model(m, basis);
     struct glint_lens lens;
     const char *reason = "";
 
@@ -137,7 +140,8 @@ open_shape(const struct shape *s, enum glint_basis basis, struct model_image *m)
     return lens;
 }
 
-static bool is_seen(const struct glint_transfer *t, double radius, int i, int j)
+static bool is_passed(const struct glint_transfer *t, double radius, int i,
+                      int j)
 {
     struct glint_outputs out;
     double x, y;
@@ -152,20 +156,20 @@ static bool is_seen(const struct glint_transfer *t, double radius, int i, int j)
                   t->exponent[GLINT_OUT_BARREL_0]) <= 1);
 }
 
-/* Where rays get through, found one by one: left and right, -1 .. 1, and the
- * height, 0 .. 1 or, in a whole box, from LOW on, in the box. */
+/* Extent of passing rays in the box, found ray by ray: left and right -1 ..
+ * 1; height 0 .. 1, in a box with both halves LOW .. HIGH. */
 struct seen {
     double left, right, low, high;
     int n;
 };
 
-static struct seen look(const struct glint_transfer *t, double radius)
+static struct seen find_passing(const struct glint_transfer *t, double radius)
 {
     struct seen s = {1, -1, t->whole ? 1 : 0, t->whole ? -1 : 0, 0};
 
     for (int j = t->whole ? -DOWN : 0; j <= DOWN; j++)
         for (int i = 0; i <= ACROSS; i++)
-            if (is_seen(t, radius, i, j)) {
+            if (is_passed(t, radius, i, j)) {
                 s.left = fmin(s.left, 2.0 * i / ACROSS - 1);
                 s.right = fmax(s.right, 2.0 * i / ACROSS - 1);
                 s.low = fmin(s.low, (double)j / DOWN);
@@ -175,7 +179,7 @@ static struct seen look(const struct glint_transfer *t, double radius)
     return s;
 }
 
-static struct seen window_of(const struct glint_transfer *t)
+static struct seen find_window(const struct glint_transfer *t)
 {
     const struct glint_box_window *w = &t->window;
 
@@ -185,21 +189,21 @@ static struct seen window_of(const struct glint_transfer *t)
                          0};
 }
 
-static void check(const struct shape *s, const struct glint_lens *lens,
-                  double opening)
+static void check_window(const struct shape *s, const struct glint_lens *lens,
+                         double opening)
 {
     static struct glint_window_nodes nodes;
     static struct glint_transfer t;
     struct seen want, got;
 
     assert_int_equal(glint_transfer_init(&t, lens, 0, 0, MODEL_WAVE_LO_Q24), 1);
-    want = look(&t, opening);
+    want = find_passing(&t, opening);
     if (!glint_window_find(&nodes, &t, (int32_t)(opening * ONE))) {
         if (want.n)
             fail_msg("%s at %g: %d rays are invalid", s->name, opening, want.n);
         return;
     }
-    got = window_of(&t);
+    got = find_window(&t);
     assert_true(got.left >= -1 && got.right <= 1 && got.left < got.right);
     assert_true(got.low >= -1 && got.high > got.low && got.high <= 1);
     assert_true(t.whole || t.window.v_from_q30 == 0);
@@ -210,7 +214,7 @@ static void check(const struct shape *s, const struct glint_lens *lens,
         fail_msg("%s at %g: %g .. %g, %g .. %g instead of %g .. %g, %g .. %g",
                  s->name, opening, got.left, got.right, got.low, got.high,
                  want.left, want.right, want.low, want.high);
-    /* The search for rays does not see less than its own step. */
+    /* The extent found is accurate to one step of the search. */
     if (got.right - got.left >
             s->slack * (want.right - want.left + 4.0 / ACROSS) ||
         got.high - got.low > s->slack * (want.high - want.low + 2.0 / DOWN))
@@ -219,7 +223,7 @@ static void check(const struct shape *s, const struct glint_lens *lens,
                  want.right, want.low, want.high);
 }
 
-TEST(holds_what_is_seen)
+TEST(contains_all_passing_rays)
 {
     for (size_t k = 0; k < sizeof shape / sizeof *shape; k++) {
         struct model_image m;
@@ -227,12 +231,12 @@ TEST(holds_what_is_seen)
             open_shape(&shape[k], GLINT_BASIS_AUTO, &m);
 
         for (double opening = 1; opening > 0.01; opening *= 0.93)
-            check(&shape[k], &lens, opening);
+            check_window(&shape[k], &lens, opening);
         free(m.data);
     }
 }
 
-/* The height of a whole box, 2^31, is more than 32 bits hold. */
+/* Checks a box with both halves, whose height of 2^31 overflows 32 bits. */
 TEST(whole_box)
 {
     for (size_t k = 0; k < sizeof whole_shape / sizeof *whole_shape; k++) {
@@ -242,13 +246,13 @@ TEST(whole_box)
             GLINT_BASIS_LENS + GLINT_MIRRORS_X + GLINT_MIRRORS_Y, &m);
 
         for (double opening = 1; opening > 0.01; opening *= 0.8)
-            check(&whole_shape[k], &lens, opening);
+            check_window(&whole_shape[k], &lens, opening);
         free(m.data);
     }
 }
 
-/* While the stop closes by 0.002 of itself, sides must move by less than a
- * hundredth of it. */
+/* Checks, while the stop closes by 0.2 %, that each side moves by less than
+ * a hundredth of the window. */
 TEST(moves_smoothly)
 {
     static struct glint_window_nodes nodes;
@@ -264,7 +268,7 @@ TEST(moves_smoothly)
         glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
         assert_int_equal(
             glint_window_find(&nodes, &t, (int32_t)(opening * ONE)), 1);
-        now = window_of(&t);
+        now = find_window(&t);
         if (opening < 0.89)
             worst = fmax(worst, fmax(fabs(now.right - last.right),
                                      fabs(now.high - last.high)) /
@@ -276,7 +280,7 @@ TEST(moves_smoothly)
     free(m.data);
 }
 
-/* Where nothing gets through, there must be no window. */
+/* Checks that there is no window if no ray passes. */
 TEST(closed)
 {
     static const struct shape beside = {
@@ -295,7 +299,7 @@ TEST(closed)
     free(m.data);
 }
 
-/* In an annular box the window must have a lower and an upper end. */
+/* Checks that in an annular box the window has a lower and an upper end. */
 TEST(annulus)
 {
     static struct glint_window_nodes nodes;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a scene reports to have drawn: fates of objects, what hides what, and
- * counts that are known beforehand.
+ * Tests the statistics of a scene: the fate of each object, which object covers
+ * it, and counts with known values.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static struct scene_file file;
 static struct glint_scene_part object[MOST], all;
 static int16_t seen[WIDTH * HEIGHT];
 
-static struct glint_scene *account(int edge_samples, int half)
+static struct glint_scene *draw_scene(int edge_samples, int half)
 {
     struct glint_scene_config cfg;
     struct glint_scene *s;
@@ -44,7 +44,7 @@ TEST(fates)
     scene_sphere(&file, "dot", m, 2 * UNIT, UNIT / 2, 400 * UNIT, UNIT / 512);
     scene_sphere(&file, "off", m, 0, 0, 3 * UNIT, UNIT);
     file.object[5].hidden = 1;
-    account(4, 0);
+    draw_scene(4, 0);
     assert_int_equal(object[0].fate, GLINT_SCENE_DRAWN);
     assert_int_equal(object[1].fate, GLINT_SCENE_COVERED);
     assert_int_equal(object[1].by, 0);
@@ -58,8 +58,9 @@ TEST(fates)
     assert_int_equal(seen[0], -1);
 }
 
-/* A ball at 4 of radius 1 has tan = 1 / sqrt 15 about it: with 100 pixels a
- * unit of tangent 2095 of them, under a lamp and a sun that see half of it. */
+/* A ball of radius 1 at distance 4 covers a circle of tangent 1 / sqrt 15:
+ * 2095 pixels at 100 pixels per unit of tangent. A lamp lights all of it, a
+ * sun half. */
 TEST(counts)
 {
     static const int32_t toward_q30[3] = {1 << 30, 0, 0};
@@ -75,27 +76,27 @@ TEST(counts)
     scene_lamp(&file, at, UNIT);
     file.header.shadow = 1;
     file.light[0].radius = 1 << 20;
-    account(4, 0);
+    draw_scene(4, 0);
     memcpy(full, object[0].count, sizeof full);
     assert_true(fabs((double)full[GLINT_SCENE_SAMPLED] / 4 / area - 1) < 0.01);
     assert_int_equal(full[GLINT_SCENE_SHADED], full[GLINT_SCENE_COVERING]);
     assert_int_equal(full[GLINT_SCENE_COVERING],
                      all.count[GLINT_SCENE_COVERING]);
-    /* the lamp sees all of it, the sun half, by four points */
+    /* the lamp lights all of it, the sun half, by four points */
     assert_true(fabs((double)full[GLINT_SCENE_SHADOWS] /
                          (3 * (double)full[GLINT_SCENE_SHADED]) -
                      1) < 0.03);
-    account(1, 0);
+    draw_scene(1, 0);
     assert_true(fabs((double)object[0].count[GLINT_SCENE_SAMPLED] / area - 1) <
                 0.02);
-    account(4, 1);
+    draw_scene(4, 1);
     assert_true(object[0].count[GLINT_SCENE_SHADED] <
                 full[GLINT_SCENE_SHADED] * 2 / 5);
     assert_int_equal(object[0].count[GLINT_SCENE_COVERING],
                      full[GLINT_SCENE_COVERING]);
-    /* what mirrors is shaded at each sample */
+    /* reflecting surfaces are shaded at each sample */
     file.material[0].reflect_q15 = 1 << 14;
-    account(4, 0);
+    draw_scene(4, 0);
     assert_int_equal(object[0].count[GLINT_SCENE_BOUNCED],
                      full[GLINT_SCENE_SAMPLED]);
 }
@@ -111,7 +112,7 @@ TEST(hider)
     scene_sphere(&file, "aside", m, 2 * UNIT, 0, 4 * UNIT, UNIT);
     scene_sphere(&file, "before", m, 0, 0, 4 * UNIT, UNIT);
     scene_sun(&file, toward_q30);
-    s = account(1, 0);
+    s = draw_scene(1, 0);
     assert_int_equal(glint_scene_hider(s, 0), 1);
     glint_scene_show(s, 1, 0);
     assert_int_equal(glint_scene_hider(s, 0), -1);

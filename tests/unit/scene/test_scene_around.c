@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The camera's picture all around: what mirrors and glass show of it, against
- * doubles, of every format; and that nothing pays for it who has none.
+ * Tests reflections and refractions of the camera's own image used as a
+ * 360-degree environment: values against double precision, every pixel format,
+ * and no cost for scenes that do not show it.
  */
 #include <math.h>
 #include <stdio.h>
@@ -20,32 +21,32 @@ static struct scene_file file;
 static size_t bytes;
 static int32_t light_q20[BYTES], drawn_q20[BYTES];
 
-/* The picture: straight between its corners, so that cells lose nothing. X and
- * Y are -1 .. 1. */
-static double slope(int channel, double x, double y)
+/* The test image at (X, Y), each -1 .. 1: linear, so that cells interpolate
+ * it exactly. */
+static double test_image(int channel, double x, double y)
 {
     static const double across[3] = {.4, -.3, 0}, down[3] = {0, .2, -.4};
 
     return .5 + across[channel] * x + down[channel] * y;
 }
 
-static struct glint_image linear_of(int32_t *q20)
+static struct glint_image make_linear(int32_t *q20)
 {
     return glint_image_over(q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
 }
 
-static void fill(void)
+static void fill_image(void)
 {
     for (int i = 0; i < BYTES; i++) {
         const int x = i / 3 % WIDTH, y = i / 3 / WIDTH; /* NOLINT: rows */
 
         light_q20[i] =
-            (int32_t)lrint(0x1p20 * slope(i % 3, 2 * (x + .5) / WIDTH - 1,
-                                          2 * (y + .5) / HEIGHT - 1));
+            (int32_t)lrint(0x1p20 * test_image(i % 3, 2 * (x + .5) / WIDTH - 1,
+                                               2 * (y + .5) / HEIGHT - 1));
     }
 }
 
-static struct glint_scene *start(struct glint_workers *workers)
+static struct glint_scene *start_scene(struct glint_workers *workers)
 {
     const struct glint_scene_model model = scene_open(&file);
     struct glint_scene_config cfg;
@@ -57,17 +58,18 @@ static struct glint_scene *start(struct glint_workers *workers)
     return scene_start(&file, &cfg, NULL);
 }
 
-static void draw(struct glint_scene *s)
+static void draw_scene(struct glint_scene *s)
 {
-    struct glint_image image = linear_of(drawn_q20);
+    struct glint_image image = make_linear(drawn_q20);
 
     memcpy(drawn_q20, light_q20, sizeof drawn_q20);
     glint_scene_look_around(s, &image);
     glint_scene_draw(s, &image);
 }
 
-/* A ball ahead, at z = 4, of radius 1.5, that mirrors or lets through. */
-static void put_ball(double reflect, double pass, double index)
+/* Adds a ball of radius 1.5 at z = 4 that reflects REFLECT, transmits PASS
+ * and has the refractive index INDEX. */
+static void add_ball(double reflect, double pass, double index)
 {
     uint32_t m;
 
@@ -80,9 +82,9 @@ static void put_ball(double reflect, double pass, double index)
     scene_sphere(&file, "ball", m, 0, 0, 4 * UNIT, 3 * UNIT / 2);
 }
 
-/* The ray of a pixel's middle in a picture 90 degrees wide; returns the
- * distance at which it meets the ball, or 0. */
-static double meet(int i, int k, double d[3])
+/* Sets D to the ray through the centre of pixel (I, K) in an image 90
+ * degrees wide. Returns its distance to the ball, or 0 if it misses. */
+static double intersect_ball(int i, int k, double d[3])
 {
     double length, along, off2;
 
@@ -94,12 +96,12 @@ static double meet(int i, int k, double d[3])
         d[c] /= length;
     along = 4 * d[2];
     off2 = 16 - along * along;
-    return off2 < 2.1 ? along - sqrt(2.25 - off2) : 0; /* not at the rim */
+    return off2 < 2.1 ? along - sqrt(2.25 - off2) : 0; /* excludes the rim */
 }
 
-/* Where direction D is in the picture, x to the right and y down, -1 .. 1: as
- * it is seen, or mirrored at the picture's edge. */
-static void place(const double d[3], double at[2])
+/* Sets AT to the position of direction D in the image, x right, y down, -1
+ * .. 1. Directions off-screen are mirrored at the image's edge. */
+static void find_position(const double d[3], double at[2])
 {
     const double x = d[0], y = -d[1] * WIDTH / HEIGHT;
     const double edge = fmax(fabs(x), fabs(y));
@@ -114,12 +116,13 @@ TEST(mirror)
     int n = 0, behind = 0;
     double worst = 0;
 
-    put_ball(1, 0, 1);
-    fill();
-    draw(start(NULL));
+    add_ball(1, 0, 1);
+    fill_image();
+    draw_scene(start_scene(NULL));
     for (int i = 0; i < BYTES; i++) {
         double d[3], normal[3], at[2], dot = 0;
-        const double t = meet(i / 3 % WIDTH, i / 3 / WIDTH, d); /* NOLINT */
+        const double t =
+            intersect_ball(i / 3 % WIDTH, i / 3 / WIDTH, d); /* NOLINT */
 
         if (t == 0)
             continue;
@@ -129,30 +132,32 @@ TEST(mirror)
         }
         for (int c = 0; c < 3; c++)
             d[c] -= 2 * dot * normal[c];
-        place(d, at);
-        worst = fmax(worst,
-                     fabs(drawn_q20[i] * 0x1p-20 - slope(i % 3, at[0], at[1])));
+        find_position(d, at);
+        worst = fmax(worst, fabs(drawn_q20[i] * 0x1p-20 -
+                                 test_image(i % 3, at[0], at[1])));
         behind += d[2] < 0;
         n++;
     }
     assert_true(n > 1000 && behind > 100 && behind < n);
-    /* Cells end half a cell inside the picture; samples are not its middle. */
+    /* Cells end half a cell inside the image, and samples are off the
+     * pixel's centre. */
     assert_true(worst < .02);
 }
 
-/* Glass that hardly bends shows what is behind it. */
+/* Checks that glass with an index near 1 shows what is behind it. */
 TEST(glass)
 {
     double worst = 0;
     int n = 0;
 
-    put_ball(0, 1, 1.0001);
-    fill();
-    draw(start(NULL));
+    add_ball(0, 1, 1.0001);
+    fill_image();
+    draw_scene(start_scene(NULL));
     for (int i = 0; i < BYTES; i++) {
         double d[3];
 
-        if (meet(i / 3 % WIDTH, i / 3 / WIDTH, d) == 0) /* NOLINT: rows */
+        if (intersect_ball(i / 3 % WIDTH, i / 3 / WIDTH, d) ==
+            0) /* NOLINT: rows */
             continue;
         worst = fmax(worst, fabs(drawn_q20[i] - (double)light_q20[i]));
         n++;
@@ -166,36 +171,37 @@ TEST(same_bits)
     static int32_t serial_q20[BYTES];
     struct shuffle shuffle;
 
-    put_ball(.7, .3, 1.5);
-    fill();
-    draw(start(NULL));
+    add_ball(.7, .3, 1.5);
+    fill_image();
+    draw_scene(start_scene(NULL));
     memcpy(serial_q20, drawn_q20, sizeof serial_q20);
     for (uint32_t order = 1; order < 4; order++) {
         shuffle_init(&shuffle, 3, order);
-        draw(start(&shuffle.workers));
+        draw_scene(start_scene(&shuffle.workers));
         assert_memory_equal(serial_q20, drawn_q20, sizeof serial_q20);
     }
 }
 
-/* Only those pay that show it; without it they show black. */
+/* Checks that only scenes that show the image pay for it, and that without
+ * it they show black. */
 TEST(pay_for_use)
 {
-    struct glint_image image = linear_of(drawn_q20);
+    struct glint_image image = make_linear(drawn_q20);
     struct glint_scene *s;
     size_t without;
 
-    put_ball(0, .5, 1);
-    s = start(NULL);
+    add_ball(0, .5, 1);
+    s = start_scene(NULL);
     without = bytes;
     assert_null(s->around.light_q15);
-    put_ball(1, 0, 1);
-    s = start(NULL);
+    add_ball(1, 0, 1);
+    s = start_scene(NULL);
     assert_true(bytes >= without + WIDTH / 2 * (HEIGHT / 2) * 6);
-    fill();
+    fill_image();
     memcpy(drawn_q20, light_q20, sizeof drawn_q20);
     glint_scene_draw(s, &image);
     assert_int_equal(drawn_q20[3 * (HEIGHT / 2 * WIDTH + WIDTH / 2)], 0);
-    draw(s);
+    draw_scene(s);
     assert_int_not_equal(drawn_q20[3 * (HEIGHT / 2 * WIDTH + WIDTH / 2)], 0);
     glint_scene_look_around(s, NULL);
     memcpy(drawn_q20, light_q20, sizeof drawn_q20);
@@ -203,7 +209,8 @@ TEST(pay_for_use)
     assert_int_equal(drawn_q20[3 * (HEIGHT / 2 * WIDTH + WIDTH / 2)], 0);
 }
 
-/* A grey picture of each format gives that grey everywhere, of any size. */
+/* Checks that a grey image of each format and any size gives the same grey
+ * everywhere. */
 TEST(formats)
 {
     static const int side[][2] = {{2, 2}, {8, 4}, {66, 34}, {700, 6}, {2, 642}};
@@ -218,7 +225,7 @@ TEST(formats)
             struct glint_around around;
             int32_t rgb_q15[3];
 
-            /* Bytes of 128 are not grey there. */
+            /* Bytes of 128 are not grey in these formats. */
             if (format == GLINT_RGB565 || format == GLINT_LINEAR_Q20)
                 continue;
             memset(picture, 128, sizeof picture);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Scenes on pictures: that they are the same however they are drawn, in every
- * format; that meshes do not leak; the lights that the lens gets.
+ * Tests drawing scenes: the same image however it is drawn, in every format;
+ * closed meshes without gaps; the lights passed to the lens.
  */
 #include <math.h>
 #include <stdio.h>
@@ -35,7 +35,7 @@ static struct glint_scene_config defaults(void)
     return cfg;
 }
 
-/* A closed mesh about the origin: a bumpy ball. */
+/* Adds a closed mesh around the origin: a bumpy ball. */
 static uint32_t add_ball_mesh(double size)
 {
     enum { SIDES = 16, RINGS = 9, N = SIDES * RINGS + 2 };
@@ -59,8 +59,9 @@ static uint32_t add_ball_mesh(double size)
                       (const uint32_t(*)[3])t, n);
 }
 
-/* Balls, a mesh and a floor, which mirror, let through and have a texture. */
-static void make(void)
+/* Makes a scene of balls, a mesh and a floor, with reflection, transmission
+ * and a texture. */
+static void make_scene(void)
 {
     static const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
     static const int32_t lamp[3] = {-3 * UNIT, 5 * UNIT, 2 * UNIT};
@@ -92,7 +93,7 @@ static void make(void)
     scene_lamp(&file, lamp, 4 * UNIT);
 }
 
-static void fill(uint8_t *px, size_t n)
+static void fill_image(uint8_t *px, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         px[i] = (uint8_t)(40 + i * 7 / 2 % 90);
@@ -100,14 +101,15 @@ static void fill(uint8_t *px, size_t n)
 
 /* -------------------------------------------------------------- invariance */
 
-static void draw(struct glint_scene_config cfg, enum glint_pixel_format format,
-                 int workers, uint32_t order, uint8_t *px)
+static void draw_scene(struct glint_scene_config cfg,
+                       enum glint_pixel_format format, int workers,
+                       uint32_t order, uint8_t *px)
 {
     struct glint_image image = glint_image_over(px, format, WIDTH, HEIGHT);
     struct glint_scene_stats stats;
     struct shuffle shuffle;
 
-    fill(px, BYTES);
+    fill_image(px, BYTES);
     shuffle_init(&shuffle, workers, order);
     cfg.workers = &shuffle.workers;
     glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
@@ -119,7 +121,7 @@ TEST(any_order)
 {
     static uint8_t px[2][BYTES];
 
-    make();
+    make_scene();
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         static const int samples[4] = {4, 16, 8, 1};
         struct glint_scene_config cfg = defaults();
@@ -131,8 +133,8 @@ TEST(any_order)
         cfg.edge_samples = samples[format % 4];
         cfg.half_shading = format & 1;
 
-        draw(cfg, (enum glint_pixel_format)format, 1, 1, px[0]);
-        fill(px[1], BYTES);
+        draw_scene(cfg, (enum glint_pixel_format)format, 1, 1, px[0]);
+        fill_image(px[1], BYTES);
         for (size_t i = 0; i < bytes; i++)
             changed += px[0][i] != px[1][i];
         assert_true(changed > (int)bytes / 6);
@@ -140,8 +142,8 @@ TEST(any_order)
         assert_memory_equal(px[0] + bytes, px[1] + bytes, BYTES - bytes);
         for (int log2 = 3; log2 <= 6; log2++) {
             cfg.tile_log2 = log2;
-            draw(cfg, (enum glint_pixel_format)format, 1 + log2,
-                 77U * (uint32_t)log2, px[1]);
+            draw_scene(cfg, (enum glint_pixel_format)format, 1 + log2,
+                       77U * (uint32_t)log2, px[1]);
             assert_memory_equal(px[0], px[1], BYTES);
         }
     }
@@ -156,37 +158,38 @@ TEST(nothing)
     const struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
 
-    fill(px, BYTES);
-    fill(before, BYTES);
-    make();
+    fill_image(px, BYTES);
+    fill_image(before, BYTES);
+    make_scene();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = 1;
     glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
     assert_int_equal(stats.objects, 0);
-    make();
-    file.header.camera.axis_q30[0][0] = -ONE_Q30; /* all but the floor behind */
+    make_scene();
+    /* all objects but the floor are behind the camera */
+    file.header.camera.axis_q30[0][0] = -ONE_Q30;
     file.header.camera.axis_q30[2][2] = -ONE_Q30;
     file.object[2].hidden = 1;
     glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
-    /* A plane that only takes shadows, where there are none. */
-    make();
+    /* A plane that only receives shadows, in a scene without shadows. */
+    make_scene();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = i != 2;
     file.object[2].catcher_q15 = 20000;
     glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
-    /* One object in a shadow there darkens it. */
-    make();
+    /* One object that casts a shadow on it darkens the image. */
+    make_scene();
     file.object[2].catcher_q15 = 32768;
     file.object[0].hidden = file.object[1].hidden = 1;
     glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
     assert_memory_not_equal(px, before, BYTES);
 }
 
-/* A scene of a ball alone takes no part: as many pixels are covered as the ball
- * has, and the memory of the picture hardly counts. */
+/* Checks that a scene of one ball covers as many pixels as its disc, and
+ * that the image size hardly affects the memory. */
 TEST(ball_alone)
 {
     static uint8_t px[BYTES];
@@ -211,8 +214,8 @@ TEST(ball_alone)
              1) < 2e-3);
 }
 
-/* Bounds of memory at 320x240 with two workers: balls of Phong and planes alone
- * take 120 KiB at most, a sun that throws shadows 60 more. */
+/* Checks the memory limits at 320x240 with two workers: only Phong-shaded
+ * balls and planes need at most 120 KiB, a sun with shadows 60 KiB more. */
 TEST(memory)
 {
     static const int32_t toward_q30[3] = {0, 0, -(1 << 30)};
@@ -240,8 +243,8 @@ TEST(memory)
                     bytes + (60 << 10));
 }
 
-/* From inside a closed mesh, wherever, no sample sees past it, although some
- * vertices are behind the camera. */
+/* Checks that from any position inside a closed mesh all samples hit it,
+ * although some vertices are behind the camera. */
 TEST(no_leaks)
 {
     static uint8_t px[BYTES];
@@ -272,7 +275,7 @@ TEST(no_leaks)
     }
 }
 
-/* What a sample sees is what its ray meets first. */
+/* Checks that a sample shows the first object that its ray hits. */
 TEST(samples)
 {
     const struct glint_scene_config cfg = defaults();
@@ -280,7 +283,7 @@ TEST(samples)
     const struct glint_scene *s;
     int n = 0, other = 0;
 
-    make();
+    make_scene();
     s = scene_start(&file, &cfg, &stats);
     for (int y = 0; y < HEIGHT; y += 32)
         for (int x = 0; x < WIDTH; x += 32) {
@@ -313,8 +316,8 @@ TEST(samples)
     assert_true(n == WIDTH * HEIGHT && other <= 5);
 }
 
-/* Draws what make() makes in linear light. */
-static void draw_dials(int edge_samples, int half, int32_t *px_q20)
+/* Draws the scene of make() in linear light. */
+static void draw_linear(int edge_samples, int half, int32_t *px_q20)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
@@ -327,7 +330,7 @@ static void draw_dials(int edge_samples, int half, int32_t *px_q20)
     glint_scene_draw(scene_start(&file, &cfg, &stats), &image);
 }
 
-/* Returns the root of the mean square difference, display white. */
+/* Returns the root mean square difference, 1 = display white. */
 static double rms(const int32_t *a_q20, const int32_t *b_q20)
 {
     double sum = 0;
@@ -337,26 +340,27 @@ static double rms(const int32_t *a_q20, const int32_t *b_q20)
     return sqrt(sum / (3 * WIDTH * HEIGHT));
 }
 
-/* More samples of a pixel come nearer to 16 of them; of pixels that are shaded
- * two by two those alone change whose neighbours see the same thing. */
+/* Checks that more samples per pixel come closer to 16 samples, and that
+ * with 2 x 2 shading only pixels whose neighbours show the same object
+ * change. */
 TEST(dials)
 {
     static int32_t all[3 * WIDTH * HEIGHT], some[3 * WIDTH * HEIGHT];
     double last = 1;
     int changed = 0;
 
-    make();
-    draw_dials(16, 0, all);
+    make_scene();
+    draw_linear(16, 0, all);
     for (int n = 1; n <= 8; n *= n == 1 ? 4 : 2) {
         double off;
 
-        draw_dials(n, 0, some);
+        draw_linear(n, 0, some);
         off = rms(some, all);
         print_message("%d samples: %.1f dB\n", n, -20 * log10(off));
         assert_true(off > 0 && off < .8 * last);
         last = off;
     }
-    draw_dials(16, 1, some);
+    draw_linear(16, 1, some);
     print_message("two by two: %.1f dB\n", -20 * log10(rms(some, all)));
     assert_true(rms(some, all) < .1);
     for (int y = 0; y < HEIGHT - 1; y += 2)
@@ -380,7 +384,7 @@ TEST(capacity)
 {
     struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
-    const struct glint_scene_model model = (make(), scene_open(&file));
+    const struct glint_scene_model model = (make_scene(), scene_open(&file));
 
     scene_start(&file, &cfg, &stats);
     assert_true(stats.need_refs == stats.refs && stats.refs > 0);
@@ -415,13 +419,13 @@ TEST(poses)
     struct glint_scene *s;
     int32_t x[3] = {1 << 20, 0, 0}, to[3];
 
-    make();
+    make_scene();
     s = scene_start(&file, &cfg, &stats);
     assert_ok(glint_scene_set_pose(s, 0, at, turn));
     assert_int_equal(glint_scene_set_pose(s, 0, far, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 4, at, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 0, at, at), GLINT_E_ARGUMENT);
-    /* About y by 2 atan(4/3): x goes to (-.28, 0, -.96). */
+    /* Rotation about y by 2 atan(4/3): x becomes (-.28, 0, -.96). */
     v3_turn(&s->placed[0].turn, x, to);
     assert_true(abs(to[0] + 293601) <= 1 && to[1] == 0 &&
                 abs(to[2] + 1006633) <= 1);
@@ -435,7 +439,8 @@ TEST(poses)
 
 /* ----------------------------------------------------------------- shadows */
 
-/* A place beside the objects of make(), on the floor's side of objects. */
+/* Sets SURFACE to a random point near the objects of make(), on their side
+ * of the floor. */
 static void random_place(uint32_t *seed, struct glint_met_surface *surface)
 {
     static const int32_t at[3] = {0, 0, 6 * UNIT};
@@ -447,8 +452,9 @@ static void random_place(uint32_t *seed, struct glint_met_surface *surface)
     }
 }
 
-/* The grid of a sun's shadows states what rays say that ask all there is: also
- * far below objects, beside the grid, and from points that lean. */
+/* Checks that the shadow grid of a sun gives the same results as rays tested
+ * against all objects: also far below objects, outside the grid, and from
+ * oblique surfaces. */
 TEST(shadows)
 {
     uint32_t seed = 1;
@@ -460,7 +466,7 @@ TEST(shadows)
         struct glint_scene *s;
 
         cfg.shadow_points = points;
-        make();
+        make_scene();
         file.object[2].catcher_q15 = points == 4 ? 20000 : 0;
         s = scene_start(&file, &cfg, &stats);
         assert_true(s->lit[0].shadow && s->lit[0].shadow->is_ready);
@@ -488,8 +494,9 @@ TEST(shadows)
     assert_true(dark > 500 && partly > 200 && other <= 3);
 }
 
-/* Catchers are looked at where shadows may be, and balls by one depth: pictures
- * are those of all pixels and of exact depths. */
+/* Checks two shortcuts: shadow catchers are shaded only where shadows may
+ * fall, and small balls use a single depth. Images equal those that shade
+ * all pixels with exact depths. */
 TEST(confined)
 {
     static uint8_t px[2][BYTES];
@@ -504,7 +511,7 @@ TEST(confined)
         struct glint_scene_stats stats;
         struct glint_scene *s;
 
-        make();
+        make_scene();
         file.object[2].catcher_q15 = 30000;
         file.object[2].hidden = file.object[3].hidden = i % 3 == 0;
         file.header.n_lights = 1;
@@ -513,7 +520,7 @@ TEST(confined)
                 file.object[k].at[j] += rng_below(&seed, UNIT) - UNIT / 3;
         s = scene_start(&file, &cfg, &stats);
         for (int k = 0; k < 2; k++) {
-            fill(px[k], BYTES);
+            fill_image(px[k], BYTES);
             glint_image_place(&image, px[k]);
             glint_scene_draw(s, &image);
             less += k == 0 && s->placed[2].box.x1 - s->placed[2].box.x0 < WIDTH;
@@ -531,8 +538,8 @@ TEST(confined)
 
 /* ------------------------------------------------------------------ lights */
 
-/* A sun above the camera's axis, by its tangent. */
-static void sun_at(double x, double y)
+/* Sets a sun above the camera's axis to the direction with tangents X and Y. */
+static void set_sun(double x, double y)
 {
     const double length = sqrt(x * x + y * y + 1);
     const double to[3] = {x / length, y / length, 1 / length};
@@ -541,13 +548,13 @@ static void sun_at(double x, double y)
         file.light[0].toward_q30[k] = (int32_t)lround(ldexp(to[k], 30));
 }
 
-static double value(struct glint_real x)
+static double to_double(struct glint_real x)
 {
     return glint_real_value(x);
 }
 
-/* Places and light of the lights that the lens gets, and both again through the
- * same pinhole, in doubles. */
+/* Checks position and light of the lights passed to the lens, and both again
+ * through the same pinhole in double precision. */
 TEST(lights)
 {
     const struct glint_scene_config cfg = defaults();
@@ -560,10 +567,10 @@ TEST(lights)
         const double f = WIDTH / 2., cosine = 1 / sqrt(1 + x * x + y * y);
         double power;
 
-        make();
+        make_scene();
         for (int k = 0; k < 4; k++)
             file.object[k].hidden = 1;
-        sun_at(x, y);
+        set_sun(x, y);
         file.light[1].at[0] = (int32_t)(x * 8 * UNIT);
         file.light[1].at[1] = (int32_t)(y * 8 * UNIT);
         file.light[1].at[2] = 8 * UNIT;
@@ -575,20 +582,20 @@ TEST(lights)
             assert_true(fabs(lamp[k].x_q8 / 256. - WIDTH / 2. - f * x) < .02);
             assert_true(fabs(lamp[k].y_q8 / 256. - HEIGHT / 2. + f * y) < .02);
         }
-        assert_true(fabs(value(lamp[0].rgb[1]) / power - 1) < 1e-6);
+        assert_true(fabs(to_double(lamp[0].rgb[1]) / power - 1) < 1e-6);
         power *= 16 * cosine * cosine / 64; /* 1 at distance 4 */
-        assert_true(fabs(value(lamp[1].rgb[1]) / power - 1) < 1e-4);
+        assert_true(fabs(to_double(lamp[1].rgb[1]) / power - 1) < 1e-4);
         assert_true(abs(lamp[0].radius_q8 - (int)(256 * f * .05 / cosine)) <=
                     1);
     }
-    make();
+    make_scene();
     file.header.flare = 0;
     assert_int_equal(glint_scene_lights(scene_start(&file, &cfg, &stats), lamp),
                      0);
 }
 
-/* Scene and lens agree on where a light is: the flare's own pinhole, from the
- * pixel that the scene gives, has the direction that the scene has. */
+/* Checks that scene and lens agree on a light's direction: the flare's
+ * pinhole converts the pixel from the scene to the direction in the scene. */
 TEST(lens_agrees)
 {
     struct model_image image = model_auto();
@@ -607,13 +614,13 @@ TEST(lens_agrees)
         struct glint_light light;
         double tangent;
 
-        make();
+        make_scene();
         file.header.camera.kind = GLINT_CAMERA_LENS;
         file.header.camera.tan_x_q24 = 0;
         file.header.n_lights = 1;
         for (int k = 0; k < 4; k++)
             file.object[k].hidden = 1;
-        sun_at(x, y);
+        set_sun(x, y);
         assert_int_equal(
             glint_scene_lights(scene_start(&file, &cfg, &stats), lamp), 1);
         light = glint_light_from_pixel(&lens, WIDTH, HEIGHT, lamp[0].x_q8,
@@ -625,7 +632,8 @@ TEST(lens_agrees)
     free(image.data);
 }
 
-/* Behind a ball a sun's share falls to nothing, and comes back. */
+/* Checks that the visible fraction of a sun falls to 0 behind a ball and
+ * returns. */
 TEST(hidden_light)
 {
     const struct glint_scene_config cfg = defaults();
@@ -633,14 +641,14 @@ TEST(hidden_light)
     struct glint_scene_stats stats;
     int last = 16, levels = 0;
 
-    make();
+    make_scene();
     file.header.n_lights = 1;
     for (int k = 1; k < 4; k++)
         file.object[k].hidden = 1;
     for (int i = 0; i <= 60; i++) {
         int share;
 
-        sun_at(-2 / 7. + .3 - i * .005, 0);
+        set_sun(-2 / 7. + .3 - i * .005, 0);
         assert_int_equal(
             glint_scene_lights(scene_start(&file, &cfg, &stats), lamp), 1);
         share = lamp[0].share;
@@ -651,7 +659,7 @@ TEST(hidden_light)
     assert_true(last == 0 && levels >= 6);
 }
 
-/* Lamps of the picture go by what covers them. */
+/* Checks that lamps in the image are dimmed by the coverage of objects. */
 TEST(cover)
 {
     static uint8_t px[BYTES];
@@ -660,11 +668,11 @@ TEST(cover)
     struct glint_scene_stats stats;
     struct glint_scene *s;
 
-    make();
+    make_scene();
     file.object[2].hidden = 1;
     s = scene_start(&file, &cfg, &stats);
     glint_scene_draw(s, &image);
-    /* the mesh's middle, and a corner */
+    /* the middle of the mesh, and a corner of the image */
     assert_int_equal(glint_scene_cover(s, 128 * WIDTH, 128 * HEIGHT, 256), 256);
     assert_int_equal(glint_scene_cover(s, 256, 256, 2000), 0);
     assert_int_equal(glint_scene_cover(s, -99999, 256, 2000), 0);
@@ -672,7 +680,7 @@ TEST(cover)
                     20, 90);
 }
 
-static int64_t drawn_cover(const struct glint_image *image)
+static int64_t sum_cover(const struct glint_image *image)
 {
     const struct glint_scene_config cfg = defaults();
     struct glint_scene_stats stats;
@@ -686,7 +694,7 @@ static int64_t drawn_cover(const struct glint_image *image)
     return sum;
 }
 
-/* A shadow on a catcher darkens the picture, but hides no lamp in it. */
+/* Checks that a shadow on a catcher darkens the image but hides no lamp. */
 TEST(shadow_hides_nothing)
 {
     static uint8_t px[BYTES], alone[BYTES];
@@ -694,16 +702,16 @@ TEST(shadow_hides_nothing)
     int64_t cover;
     int n_dark = 0;
 
-    make();
+    make_scene();
     file.header.n_lights = 1;
-    sun_at(0, 20);
+    set_sun(0, 20);
     file.object[1].hidden = file.object[2].hidden = file.object[3].hidden = 1;
     file.object[2].catcher_q15 = 32768;
-    cover = drawn_cover(&image);
+    cover = sum_cover(&image);
     memcpy(alone, px, sizeof alone);
     file.object[2].hidden = 0;
     assert_true(cover > 0);
-    assert_int_equal(drawn_cover(&image), cover);
+    assert_int_equal(sum_cover(&image), cover);
     for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
         n_dark += px[i] < alone[i];
     assert_true(n_dark > 100);

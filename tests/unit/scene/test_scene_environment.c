@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Environments and brushed metal in scenes: integers against the reference in
- * double precision, their lines in a scene text, and the light of a highlight.
- * */
+ * Tests environment maps and brushed metal in scenes: against the reference
+ * renderer in double precision, their lines in a scene text, and the brightness
+ * of a highlight.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -26,9 +27,9 @@ enum {
     PIXELS = WIDTH * HEIGHT
 };
 
-/* A sky over ground, softly patterned, with a lamp by the window and a sun; at
- * dusk two more lamps. */
-static void paint(float sky[SKY_HEIGHT][SKY_WIDTH][3], bool is_dusk)
+/* Paints a smooth sky over ground, with a lamp by the window and a sun; two
+ * more lamps if IS_DUSK. */
+static void paint_sky(float sky[SKY_HEIGHT][SKY_WIDTH][3], bool is_dusk)
 {
     for (int y = 0; y < SKY_HEIGHT; y++)
         for (int x = 0; x < SKY_WIDTH; x++) {
@@ -45,7 +46,7 @@ static void paint(float sky[SKY_HEIGHT][SKY_WIDTH][3], bool is_dusk)
         }
 }
 
-/* NAME is "9e5" or "dusk". */
+/* Bakes the sky NAME, "9e5" or "dusk". */
 static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
                                   size_t *bytes, struct glint_error *error)
 {
@@ -56,7 +57,7 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
     struct glint_environment_report report;
 
     (void)ctx;
-    paint(sky, strstr(name, "dusk") != NULL);
+    paint_sky(sky, strstr(name, "dusk") != NULL);
     glint_environment_defaults(&options);
     options.side_log2 = 6;
     return glint_environment_bake(&picture, &options, "sky", 1, data, bytes,
@@ -101,7 +102,7 @@ static void open_text(struct drawn *d, const char *text,
     "sphere c at 1.2 .5 0 radius .5 material old\n"                 \
     "plane p at 0 0 0 normal .1 1 0 material "
 
-TEST(twin)
+TEST(equals_reference)
 {
     static const struct {
         const char *what, *text;
@@ -130,8 +131,8 @@ TEST(twin)
 
 /* ------------------------------------------------------------------- texts */
 
-/* Row B7: a ratio over 10 is clamped to 10, with a warning. */
-TEST(held)
+/* Row B7: an anisotropy ratio above 10 is clamped to 10, with a warning. */
+TEST(clamped_ratio)
 {
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
@@ -150,9 +151,9 @@ TEST(held)
     free(s);
 }
 
-/* A model opens only where the part that it needs is named, and its environment
- * is whole. */
-TEST(part)
+/* Checks that a model opens only if the program names the module it needs
+ * and the model's environment is intact. */
+TEST(needs_module)
 {
     static const struct scene_dials dials = {
         .width = 16, .height = 9, .edge_samples = 1, .shadow_points = 1};
@@ -183,8 +184,8 @@ TEST(part)
     drawn_close(&d);
 }
 
-/* Row B2: colours and alphas change from one frame to the next: the picture is
- * that of a scene that was baked so. */
+/* Row B2: colours and alphas change between frames; the image equals that of
+ * a scene baked with the new values. */
 TEST(b2_looks)
 {
     static const char *const text[2] = {
@@ -232,8 +233,8 @@ TEST(b2_looks)
           "material white\nsphere a at 0 .5 0 radius " radius      \
           " material " material "\n"
 
-/* Material, radius and environment change from one frame to the next: the
- * picture is that of a scene that was baked so. */
+/* Material, radius and environment change between frames; the image equals
+ * that of a scene baked with the new values. */
 TEST(b8_steered)
 {
     static const struct scene_dials dials = {
@@ -279,8 +280,8 @@ TEST(b8_steered)
 #define UNDER(environments) \
     STAGE environments "shadow on\nbackground environment\n" BALLS "white\n"
 
-/* Other environments are shown, and as bright as wanted, from one frame to the
- * next: the picture is that of a scene that has that one alone. */
+/* The visible environment and its brightness change between frames; the
+ * image equals that of a scene which has only that environment. */
 TEST(b8_environments)
 {
     static const struct scene_dials dials = {
@@ -325,8 +326,8 @@ TEST(b8_environments)
     drawn_close(&d);
 }
 
-/* Opens D's file again, which was changed; returns what is wrong. */
-static const char *refused(struct drawn *d)
+/* Opens D's modified file again. Returns the error, or NULL. */
+static const char *reopen_error(struct drawn *d)
 {
     struct glint_scene_model model;
     const char *reason = "";
@@ -337,13 +338,13 @@ static const char *refused(struct drawn *d)
     return reason;
 }
 
-/* Sets FIELD to VALUE, expects REASON, and sets it back. */
-#define REFUSES(field, value, reason)             \
-    do {                                          \
-        const int32_t was = (int32_t)(field);     \
-        (field) = (value);                        \
-        assert_string_equal(refused(&d), reason); \
-        memcpy(&(field), &was, sizeof(field));    \
+/* Sets FIELD to VALUE, expects the error REASON, and restores it. */
+#define REFUSES(field, value, reason)                  \
+    do {                                               \
+        const int32_t was = (int32_t)(field);          \
+        (field) = (value);                             \
+        assert_string_equal(reopen_error(&d), reason); \
+        memcpy(&(field), &was, sizeof(field));         \
     } while (0)
 
 TEST(environment_tables)
@@ -372,7 +373,8 @@ TEST(environment_tables)
     drawn_close(&d);
 }
 
-/* Environments that cannot be distinguished, and too many. */
+/* Checks environments that cannot be distinguished by name, and too many
+ * environments. */
 TEST(environment_names)
 {
     char text[32 * 17 + 1] = "";
@@ -392,9 +394,9 @@ TEST(environment_names)
 
 /* -------------------------------------------------------------- highlights */
 
-/* Returns the light of a whole picture of a ball 40 pixels wide, of almost a
- * mirror's metal under a sun, moved by DX and DY pixels. */
-static double shine_of(struct drawn *d, double dx, double dy)
+/* Returns the total light of an image of a ball 40 pixels wide, of almost
+ * mirror-like metal under a sun, moved by (DX, DY) pixels. */
+static double sum_light(struct drawn *d, double dx, double dy)
 {
     enum { SIDE = 64 };
     static int32_t light_q20[3 * SIDE * SIDE];
@@ -412,8 +414,8 @@ static double shine_of(struct drawn *d, double dx, double dy)
     return sum;
 }
 
-/* The highlight of the sun is smaller than a pixel and moves by parts of one:
- * its light stays within 5 %. */
+/* Checks that a sun's highlight smaller than a pixel keeps its light within
+ * 5 % while it moves by fractions of a pixel. */
 TEST(highlight_steady)
 {
     static const struct scene_dials dials = {
@@ -428,7 +430,7 @@ TEST(highlight_steady)
               "sphere s at 0 0 0 radius .44 material m\n",
               &dials);
     for (int k = 0; k < 49; k++) {
-        const double sum = shine_of(&d, k % 7 / 7., k / 7 / 7.);
+        const double sum = sum_light(&d, k % 7 / 7., k / 7 / 7.);
 
         least = fmin(least, sum);
         most = fmax(most, sum);
@@ -438,7 +440,7 @@ TEST(highlight_steady)
     assert_true(least > 0 && most < 1.05 * least);
 }
 
-/* What the account of a frame reports of metal: lookups of each place. */
+/* Checks the statistics of metal: environment lookups per object. */
 TEST(account)
 {
     static const struct scene_dials dials = {.width = 32,
@@ -453,12 +455,13 @@ TEST(account)
     open_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
     drawn_draw(&d, 32, 32, light_q20);
     assert_ok(scene_account_make(&account, &d.frame));
-    for (int i = 0; i < 4; i++) { /* steel, brushed, old, white */
+    /* objects 0 .. 3: steel, brushed, old, white */
+    for (int i = 0; i < 4; i++) {
         const int64_t *n = account.objects[i].count;
 
         assert_true(n[GLINT_SCENE_SHADED] > 0);
         assert_int_equal(n[GLINT_SCENE_LOOKUPS] % 9, 0);
-        /* A ray to the middle of a pixel at the rim may miss. */
+        /* The ray through the centre of a pixel at the rim may miss. */
         assert_true(i == 3 ? n[GLINT_SCENE_LOOKUPS] == 0
                            : 20 * n[GLINT_SCENE_LOOKUPS] >
                                  9 * 19 * n[GLINT_SCENE_SHADED]);

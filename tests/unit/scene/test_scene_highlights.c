@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Highlights: against the reference in double precision, over parts of a pixel,
- * tiles and workers; what is none; what is one; extremes. */
+ * Tests highlights, the bright reflections that get flares: against the
+ * reference renderer in double precision; at subpixel positions; for tiles and
+ * workers; what does not count; which are merged; extreme values.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -56,8 +58,8 @@ static void close_text(void)
     glint_description_free(&description);
 }
 
-/* Draws the scene onto black and finds its highlights. */
-static void draw(void)
+/* Draws the scene on black and finds its highlights. */
+static void draw_scene(void)
 {
     static int32_t light_q20[3 * PIXELS];
     struct glint_image image =
@@ -69,7 +71,7 @@ static void draw(void)
     n = glint_scene_find_highlights(frame.scene, found);
 }
 
-static double power(int i)
+static double power_of_spot(int i)
 {
     return (double)found[i].spot.power_q16 * 0x1p-16;
 }
@@ -78,17 +80,17 @@ static double power(int i)
     "camera fov 20 at 0 0 4 toward 0 0 0\nflare lights highlights 8\n"
 #define STEEL(alpha) "material m ward specular .9 .8 .7 alpha " alpha "\n"
 #define SUN          "light sun direction .5 .6 1 colour 2e4 2e4 1e4\n"
-/* Of small balls, whose highlights would hardly be over white. */
+/* for small balls, whose highlights would otherwise barely exceed white */
 #define BRIGHT "light sun direction .5 .6 1 colour 2e6 2e6 1e6\n"
 #define BALL   "sphere s at 0 0 0 radius .44 material m\n"
 
 /* --------------------------------------------------------------- reference */
 
-TEST(twin)
+TEST(equals_reference)
 {
     static const struct {
         const char *what, *text;
-        double off; /* fraction of the power */
+        double off; /* max error of the power, as a fraction */
     } row[] = {{"a point", CAMERA STEEL(".002 .002") SUN BALL, .02},
                {"brushed", CAMERA STEEL(".03 .2") SUN BALL, .02},
                {"a lamp",
@@ -111,7 +113,7 @@ TEST(twin)
         int all;
 
         open_text(row[i].text, &dials);
-        draw();
+        draw_scene();
         assert_ok(twin_open(&twin, &description));
         all = twin_highlights(&twin, &view, exact);
         twin_close(&twin);
@@ -122,10 +124,11 @@ TEST(twin)
                 (pow(s->axis_q8[0], 2) + pow(s->axis_q8[1], 2)) / 65536;
 
             print_message("%s: power %.2f, exact %.2f; off %.3f %.3f px\n",
-                          row[i].what, power(k), exact[k].power,
+                          row[i].what, power_of_spot(k), exact[k].power,
                           s->x_q8 / 256. - exact[k].x,
                           s->y_q8 / 256. - exact[k].y);
-            assert_true(fabs(power(k) / exact[k].power - 1) < row[i].off);
+            assert_true(fabs(power_of_spot(k) / exact[k].power - 1) <
+                        row[i].off);
             assert_true(fabs(s->x_q8 / 256. - exact[k].x) < .05);
             assert_true(fabs(s->y_q8 / 256. - exact[k].y) < .05);
             assert_true(fabs(variance - fmax(exact[k].variance, .5)) <
@@ -140,8 +143,8 @@ TEST(twin)
 
 /* ------------------------------------------------------------------- moves */
 
-/* Moves the ball by DX and DY pixels from where it was. */
-static void move(double dx, double dy)
+/* Moves the ball by (DX, DY) pixels from its original position. */
+static void move_ball(double dx, double dy)
 {
     const double pixel = 2 * tan(10 * GLINT_PI / 180) * 4 / SIDE;
     const struct glint_scene_object *o = &model.object[0];
@@ -152,10 +155,10 @@ static void move(double dx, double dy)
     assert_ok(glint_scene_set_pose(frame.scene, 0, at, o->turn_q30));
 }
 
-/* Over parts of a pixel the power stays within 5 %, and the place follows. What
- * is hardly over white, the last, in part counts more or less: it is too faint
- * for any lens. */
-TEST(steady)
+/* Checks, at subpixel steps, that the power varies by at most 5 % and the
+ * position follows. The last text's highlight is barely above white: its
+ * power may vary, as it is too faint for any flare. */
+TEST(steady_in_motion)
 {
     enum { TEXTS = 5 };
     static const char *const text[TEXTS] = {
@@ -176,11 +179,11 @@ TEST(steady)
             for (int k = 0; k < 81; k++) {
                 const double x = k % 9 / 8., y = k / 9 / 8.;
 
-                move(x, y);
-                draw();
+                move_ball(x, y);
+                draw_scene();
                 assert_int_equal(n, 1);
-                least = fmin(least, power(0));
-                most = fmax(most, power(0));
+                least = fmin(least, power_of_spot(0));
+                most = fmax(most, power_of_spot(0));
                 if (k == 0) {
                     from[0] = found[0].spot.x_q8 / 256.;
                     from[1] = found[0].spot.y_q8 / 256.;
@@ -196,14 +199,15 @@ TEST(steady)
         }
 }
 
-/* The same bits, whatever draws them. */
-TEST(same)
+/* Checks that highlights are the same bit by bit, for any tiles and workers. */
+TEST(same_bits)
 {
     static const char text[] = CAMERA STEEL(".03 .2") SUN BALL
         "light sun direction -1 -.3 1 colour 1e4 1e4 1e4\n"
         "sphere t at .3 .3 .4 radius .12 material m\n";
     struct glint_scene_highlight first[MOST];
-    double full = 0; /* power of the brightest, each pixel shaded */
+    /* power of the brightest highlight with every pixel shaded */
+    double full = 0;
     int n_first = 0;
 
     for (int half = 0; half < 2; half++)
@@ -215,17 +219,17 @@ TEST(same)
                 with.half_shading = half;
                 assert_ok(glint_pool_create(&tool.workers, threads));
                 open_text(text, &with);
-                draw();
+                draw_scene();
                 if (tile == 3 && threads == 1) {
                     memcpy(first, found, sizeof first);
                     n_first = n;
                     assert_true(n >= 3);
-                    full = half ? full : power(0);
-                    assert_true(fabs(power(0) / full - 1) < .1);
+                    full = half ? full : power_of_spot(0);
+                    assert_true(fabs(power_of_spot(0) / full - 1) < .1);
                 }
                 assert_int_equal(n, n_first);
                 assert_memory_equal(found, first, sizeof first);
-                draw(); /* a second time the same */
+                draw_scene(); /* drawing again gives the same */
                 assert_memory_equal(found, first, sizeof first);
                 close_text();
                 glint_pool_destroy(tool.workers);
@@ -236,40 +240,45 @@ TEST(same)
 /* ------------------------------------------------------------------- what is
  */
 
-static int count(const char *text)
+static int count_highlights(const char *text)
 {
     open_text(text, &dials);
-    draw();
+    draw_scene();
     close_text();
     return n;
 }
 
-/* Discs of lights, backgrounds, catchers and pixels up to white are none; a
- * scene that requests none has none. */
-TEST(none)
+/* Checks that discs of lights, backgrounds, shadow catchers and pixels below
+ * white are not highlights, and that none are found if none are requested. */
+TEST(no_highlights)
 {
-    assert_int_equal(count(CAMERA STEEL(".05 .05") SUN BALL), 1);
+    assert_int_equal(count_highlights(CAMERA STEEL(".05 .05") SUN BALL), 1);
     assert_int_equal(
-        count("camera fov 20 at 0 0 4 toward 0 0 0\nflare lights\n" STEEL(
-            ".05 .05") SUN BALL),
+        count_highlights(
+            "camera fov 20 at 0 0 4 toward 0 0 0\nflare lights\n" STEEL(
+                ".05 .05") SUN BALL),
         0);
-    assert_int_equal(count("camera fov 20 at 0 0 4 toward 0 0 0\n" STEEL(
-                         ".05 .05") SUN BALL),
+    assert_int_equal(
+        count_highlights(
+            "camera fov 20 at 0 0 4 toward 0 0 0\n" STEEL(".05 .05") SUN BALL),
+        0);
+    assert_int_equal(
+        count_highlights(CAMERA STEEL(".05 .05") BALL
+                         "light sun direction .1 .1 -1 colour 1e5 1e5 1e5\n"),
+        0);
+    assert_int_equal(
+        count_highlights(CAMERA "background colour 9 9 9\n" STEEL(".3 .3") BALL
+                         "plane p at 0 0 -1 normal 0 0 1 catcher .5\n"
+                         "light lamp at 0 4 1 colour 1 1 1\nshadow on\n"),
+        0);
+    assert_int_equal(count_highlights(CAMERA "material m phong 1 0 0\n" BALL),
                      0);
-    assert_int_equal(count(CAMERA STEEL(".05 .05") BALL
-                           "light sun direction .1 .1 -1 colour 1e5 1e5 1e5\n"),
-                     0);
-    assert_int_equal(count(CAMERA "background colour 9 9 9\n" STEEL(".3 .3")
-                               BALL
-                           "plane p at 0 0 -1 normal 0 0 1 catcher .5\n"
-                           "light lamp at 0 4 1 colour 1 1 1\nshadow on\n"),
-                     0);
-    assert_int_equal(count(CAMERA "material m phong 1 0 0\n" BALL), 0);
 }
 
-/* Squares that touch and middles within 12 pixels are one; more than are
- * requested are the brightest. Two that are one stand by the light of both. */
-TEST(one)
+/* Checks that touching squares and centres within 12 pixels are merged, that
+ * only the brightest are kept if there are too many, and that merged
+ * highlights lie at their centroid by light. */
+TEST(merged_highlights)
 {
     static const char two[] = CAMERA STEEL(".01 .01") BRIGHT
         "sphere a at -.01 0 0 radius .012 material m\n"
@@ -278,10 +287,10 @@ TEST(one)
     double before = HUGE_VAL;
 
     snprintf(text, sizeof text, two, ".1");
-    assert_int_equal(count(text), 1);
+    assert_int_equal(count_highlights(text), 1);
     assert_int_equal(found[0].object, 0);
     snprintf(text, sizeof text, two, ".4");
-    assert_int_equal(count(text), 2);
+    assert_int_equal(count_highlights(text), 2);
     assert_int_equal(found[0].object + found[1].object, 1);
     for (int i = 0; i < 40; i++) {
         snprintf(text, sizeof text,
@@ -290,27 +299,27 @@ TEST(one)
                  "sphere b at %g 0 0 radius .012 material m\n"
                  "sphere c at -.5 0 0 radius .0145 material m\n",
                  .1 + .002 * i, .2 + .002 * i);
-        assert_in_range(count(text), 2, 3);
-        assert_true(power(0) > power(1));
+        assert_in_range(count_highlights(text), 2, 3);
+        assert_true(power_of_spot(0) > power_of_spot(1));
     }
     strcpy(text, CAMERA STEEL(".01 .01") BRIGHT);
     for (int i = 0; i < 16; i++)
         snprintf(text + strlen(text), 100,
                  "sphere b%d at %g %g 0 radius %g material m\n", i,
                  .32 * (i % 4) - .48, .32 * (i / 4) - .48, .02 + .001 * i);
-    assert_int_equal(count(text), 8);
+    assert_int_equal(count_highlights(text), 8);
     for (int i = 0; i < n; i++) {
         assert_int_equal(found[i].object, 15 - i);
-        assert_true(power(i) < before);
-        before = power(i);
+        assert_true(power_of_spot(i) < before);
+        before = power_of_spot(i);
     }
 }
 
 /* ---------------------------------------------------------------- extremes */
 
-/* The power of a highlight goes with its light up to where that saturates, and
- * a ball of a pixel, or one whose highlight is at the picture's border, has
- * what is there. */
+/* Checks that the power is proportional to the light up to its saturation,
+ * and that a ball of one pixel, or with its highlight at the image's border,
+ * has the power of the visible part. */
 TEST(extremes)
 {
     static char text[400];
@@ -322,47 +331,50 @@ TEST(extremes)
                  "light lamp at 1 1 2 colour 1e%d 1e%d 1e%d\n",
                  e, e, e);
         open_text(text, &dials);
-        draw();
+        draw_scene();
         assert_true(n <= 1 && (n == 1) == (e >= 0));
         if (n == 1) {
-            print_message("colour 1e%d: power %.4g\n", e, power(0));
-            assert_true(power(0) >= last && power(0) <= 0x1p26);
+            print_message("colour 1e%d: power %.4g\n", e, power_of_spot(0));
+            assert_true(power_of_spot(0) >= last && power_of_spot(0) <= 0x1p26);
             assert_true(found[0].spot.axis_q8[1] >= 128);
-            if (last > 500 && power(0) < 1e5)
-                assert_true(power(0) / last > 9 && power(0) / last < 25);
-            last = power(0);
+            if (last > 500 && power_of_spot(0) < 1e5)
+                assert_true(power_of_spot(0) / last > 9 &&
+                            power_of_spot(0) / last < 25);
+            last = power_of_spot(0);
         }
         close_text();
     }
     assert_true(last > 1e6);
-    count(CAMERA STEEL(".05 .05") SUN BALL);
+    count_highlights(CAMERA STEEL(".05 .05") SUN BALL);
     last = found[0].spot.x_q8 / 256.;
-    for (int e = -20; e <= 20; e++) { /* over the left border */
+    for (int e = -20; e <= 20; e++) { /* across the left border */
         open_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
-        move(e / 2. - last, 0);
-        draw();
+        move_ball(e / 2. - last, 0);
+        draw_scene();
         for (int i = 0; i < n; i++)
             assert_true(found[i].spot.x_q8 >= 0 && found[i].spot.y_q8 >= 0 &&
-                        found[i].spot.x_q8 < 256 * SIDE && power(i) > 0);
+                        found[i].spot.x_q8 < 256 * SIDE &&
+                        power_of_spot(i) > 0);
         assert_int_equal(n, e > 4 ? 1 : e < -18 ? 0 : n);
         close_text();
     }
     assert_int_equal(
-        count(CAMERA STEEL(
+        count_highlights(CAMERA STEEL(
             ".05 .05") "light sun direction .5 .6 1 colour 2e8 2e8 1e8\n"
                        "sphere s at 0 0 0 radius .0073 material m\n"),
         1);
-    print_message("a ball of a pixel: power %.3f\n", power(0));
+    print_message("a ball of a pixel: power %.3f\n", power_of_spot(0));
     assert_true(fabs(found[0].spot.x_q8 / 256. - SIDE / 2) < 1);
 }
 
-/* As bright as the sums of a square have room for: its colour is white. */
+/* Checks the brightest light that the sums of a square can hold: its colour
+ * is white. */
 TEST(brightest)
 {
     static const int32_t max_q15[3] = {1 << 30, 1 << 30, 1 << 30};
 
     open_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
-    draw();
+    draw_scene();
     glint_scene_highlights.begin(frame.scene->bright);
     for (int i = 0; i < 2; i++)
         glint_scene_highlights.note(frame.scene->bright, 0, 0, 0, max_q15,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The checks of a baked scene, rule by rule.
+ * Tests the checks of a baked scene file, one by one.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +12,8 @@
 
 static struct scene_file file;
 
-/* A scene with one of everything. */
-static struct scene_file *make(void)
+/* Makes a scene with an object of every type. */
+static struct scene_file *make_scene(void)
 {
     static const int32_t at[4][3] = {
         {0, 0, 0}, {4000, 0, 0}, {0, 4000, 0}, {0, 0, 4000}};
@@ -37,8 +37,8 @@ static struct scene_file *make(void)
     return &file;
 }
 
-/* Returns why the scene is refused as it is; NULL: it is accepted. */
-static const char *reason_of(const struct scene_file *s)
+/* Opens scene S. Returns the error, or NULL if it is valid. */
+static const char *open_error(const struct scene_file *s)
 {
     struct glint_scene_model model = {0};
     const char *reason = NULL;
@@ -46,23 +46,23 @@ static const char *reason_of(const struct scene_file *s)
     if (glint_scene_open(&model, s->data, s->bytes, &reason) == GLINT_OK)
         return NULL;
     assert_non_null(reason);
-    assert_null(model.header); /* left alone */
+    assert_null(model.header); /* unchanged after an error */
     return reason;
 }
 
-static void refuses(struct scene_file *s, const char *expected)
+static void expect_error(struct scene_file *s, const char *expected)
 {
     const char *reason;
 
     scene_seal(s);
-    reason = reason_of(s);
+    reason = open_error(s);
     assert_non_null(reason);
     assert_string_equal(reason, expected);
 }
 
 TEST(accepted)
 {
-    struct glint_scene_model m = scene_open(make());
+    struct glint_scene_model m = scene_open(make_scene());
 
     assert_ptr_equal(m.header, file.data);
     assert_string_equal(m.object[2].name, "cup");
@@ -77,7 +77,7 @@ TEST(truncated)
     struct glint_scene_model model;
     const char *reason;
 
-    scene_seal(make());
+    scene_seal(make_scene());
     for (size_t bytes = 8; bytes < file.bytes; bytes++) {
         void *copy = malloc(bytes);
 
@@ -88,13 +88,13 @@ TEST(truncated)
         free(copy);
     }
     file.data[20] ^= 1;
-    assert_string_equal(reason_of(&file),
+    assert_string_equal(open_error(&file),
                         "the checksum is wrong: the scene is damaged");
 }
 
-/* Sets MEMBER of a whole scene to VALUE and expects REASON. */
+/* Sets MEMBER of an intact scene to VALUE and expects the error REASON. */
 #define REFUSES(member, value, reason) \
-    (make(), file.member = (value), refuses(&file, (reason)))
+    (make_scene(), file.member = (value), expect_error(&file, (reason)))
 
 TEST(header)
 {
@@ -155,27 +155,28 @@ TEST(materials)
     REFUSES(texture[0].height_log2, 12, "a table lies outside the file");
 }
 
-/* A list of a grid that lacks a triangle, or has one twice, is refused. */
+/* Checks that a grid list which lacks a triangle, or contains one twice, is
+ * rejected. */
 TEST(grid_lists)
 {
     const struct glint_scene_mesh *m = &file.mesh[0];
     uint32_t *start, *ref, cells, end;
 
-    make();
+    make_scene();
     cells = m->cells[0] * m->cells[1] * m->cells[2];
     start = file.data + m->start_at / 4;
     end = start[cells];
     for (uint32_t i = 0; i <= cells; i++)
         start[i] -= start[i] == end;
-    refuses(&file, "a grid's list lacks a triangle");
-    make();
+    expect_error(&file, "a grid's list lacks a triangle");
+    make_scene();
     ref = file.data + m->ref_at / 4;
     assert_true(start[1] > 1);
     ref[0] = ref[1];
-    refuses(&file, "a grid's list does not rise");
-    make();
+    expect_error(&file, "a grid's list does not rise");
+    make_scene();
     scene_seal(&file);
-    assert_null(reason_of(&file));
+    assert_null(open_error(&file));
 }
 
 TEST(meshes)
@@ -195,11 +196,11 @@ TEST(meshes)
     REFUSES(mesh[0].uv_at, file.mesh[0].normal_at,
             "a vertex's u or v is out of range");
     REFUSES(mesh[0].normal_at, file.mesh[0].vertex_at,
-            "a vertex's normal is not a unit vector");
-    make();
+            "a vertex's normal is no unit vector");
+    make_scene();
     for (int i = 0; i < 63; i++)
         file.mesh[file.header.n_meshes++] = file.mesh[0];
-    refuses(&file, "tables share bytes");
+    expect_error(&file, "tables share bytes");
 }
 
 TEST(objects)
@@ -215,19 +216,19 @@ TEST(objects)
     REFUSES(object[0].turn_q30[1], 1 << 24, "an object's pose is out of range");
     REFUSES(object[0].at[0], GLINT_SCENE_SPAN - 1000,
             "an object is too far out");
-    make();
+    make_scene();
     file.object[0].at[0] = GLINT_SCENE_SPAN - 1001;
     scene_open(&file);
 }
 
-/* Whatever one word of a sealed file becomes, opening reads nothing outside
- * it (asan) and ends. */
+/* Checks that, whatever the value of one word in a file with a valid
+ * checksum, opening reads nothing outside the file (ASan) and terminates. */
 TEST(any_word)
 {
     static const uint32_t value[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff};
     uint32_t seed = 1;
 
-    scene_seal(make());
+    scene_seal(make_scene());
     for (size_t i = 4; i < file.bytes / 4; i++)
         for (int k = 0; k < 6; k++) {
             uint32_t *copy = malloc(file.bytes);

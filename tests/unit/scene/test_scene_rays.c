@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rays against spheres, planes and triangles: the rows of the tutorial by
- * hand, and against exact arithmetic. Two baselines, the area test and plain
- * Q16.16, fail where they are known to.
+ * Tests rays against spheres, planes and triangles: rows of the tutorial
+ * computed by hand, and exact arithmetic. Two baseline methods, the area test
+ * and plain Q16.16, fail where expected.
  */
 #include <math.h>
 #include <stdint.h>
@@ -16,30 +16,31 @@
 
 enum { ONE = 1 << 16, ONE_Q30 = 1 << 30 };
 
-static void near(int64_t x, int64_t expected, int64_t off)
+static void assert_near_int(int64_t x, int64_t expected, int64_t off)
 {
     if (x < expected - off || x > expected + off)
         fail_msg("%lld is not %lld +- %lld", (long long)x, (long long)expected,
                  (long long)off);
 }
 
-static void is_near(const int32_t v[3], double x, double y, double z, int off)
+static void assert_near_vector(const int32_t v[3], double x, double y, double z,
+                               int off)
 {
     const double expected[3] = {x, y, z};
 
     for (int k = 0; k < 3; k++)
-        near(v[k], llround(ldexp(expected[k], 30)), off);
+        assert_near_int(v[k], llround(ldexp(expected[k], 30)), off);
 }
 
-/* Corners in units. */
-static void triangle(int32_t v[3][3], const double at[9], double size)
+/* Sets V to the corners AT, in units, times SIZE. */
+static void set_triangle(int32_t v[3][3], const double at[9], double size)
 {
     for (int i = 0; i < 9; i++)
         v[i / 3][i % 3] = (int32_t)llround(at[i] * size * ONE);
 }
 
-static int meets(const struct glint_scene_ray *ray, int32_t v[3][3],
-                 struct glint_spot_on *spot)
+static int hits_triangle(const struct glint_scene_ray *ray, int32_t v[3][3],
+                         struct glint_spot_on *spot)
 {
     const int32_t *const vertex[3] = {v[0], v[1], v[2]};
     struct glint_sheared sheared;
@@ -52,7 +53,7 @@ static const struct glint_scene_ray ahead = {{0}, {0, 0, ONE_Q30}};
 
 static const double first[9] = {0, 40, 120, 30, -40, 60, -30, -40, 60};
 
-static struct glint_scene_ray ray_to(const double from[3], const double to[3])
+static struct glint_scene_ray make_ray(const double from[3], const double to[3])
 {
     struct glint_scene_ray ray;
     const double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
@@ -75,7 +76,7 @@ TEST(a1_unit)
 
     assert_int_equal(glint_root(100), 10);
     assert_true(glint_unit(v, unit_q30));
-    is_near(unit_q30, 0, .6, .8, 1);
+    assert_near_vector(unit_q30, 0, .6, .8, 1);
     assert_false(glint_unit(zero, unit_q30));
     for (int i = 0; i < 200000; i++) {
         const int shift = rng_below(&seed, 60);
@@ -150,9 +151,9 @@ TEST(a2_normal)
     v3_cross(a, b, n);
     assert_true(n[0] == 0 && n[1] == 3600 && n[2] == -4800);
     assert_true(glint_triangle_normal(clockwise, normal_q30));
-    is_near(normal_q30, 0, .6, -.8, 1); /* towards the viewer */
+    assert_near_vector(normal_q30, 0, .6, -.8, 1); /* towards the viewer */
     assert_true(glint_triangle_normal(back, normal_q30));
-    is_near(normal_q30, 0, -.6, .8, 1);
+    assert_near_vector(normal_q30, 0, -.6, .8, 1);
 }
 
 TEST(a3_plane)
@@ -161,21 +162,23 @@ TEST(a3_plane)
     int32_t v[3][3], normal_q30[3], hit[3];
     struct glint_spot_on spot;
 
-    triangle(v, first, 1);
+    set_triangle(v, first, 1);
     for (int k = 0; k < 3; k++)
         vertex[k] = v[k];
     glint_triangle_normal(vertex, normal_q30);
-    near(v3_dot(normal_q30, v[0]), -72 * (INT64_C(1) << 46), 1 << 27);
+    assert_near_int(v3_dot(normal_q30, v[0]), -72 * (INT64_C(1) << 46),
+                    1 << 27);
     assert_int_equal(glint_ray_plane(&ahead, v[0], normal_q30), 90 * ONE);
     assert_true(glint_ray_go(&ahead, 90 * ONE, hit));
     assert_true(hit[0] == 0 && hit[1] == 0 && hit[2] == 90 * ONE);
-    assert_true(meets(&ahead, v, &spot));
+    assert_true(hits_triangle(&ahead, v, &spot));
     assert_int_equal(spot.t, 90 * ONE);
 }
 
 /* ------------------------------------------------------------- A4 and A5 */
 
-static double area2(const double a[3], const double b[3], const double c[3])
+static double double_area(const double a[3], const double b[3],
+                          const double c[3])
 {
     const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const double w[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
@@ -185,19 +188,20 @@ static double area2(const double a[3], const double b[3], const double c[3])
                 pow(u[0] * w[1] - u[1] * w[0], 2));
 }
 
-/* The baseline: a point of the plane is inside if three areas sum to the
- * triangle's, to .005. */
-static int by_areas(const double v[9], const double p[3])
+/* Baseline: a point of the plane is inside the triangle if the areas of the
+ * three triangles that it forms with the sides sum to the triangle's area
+ * within .005. */
+static int is_inside_by_areas(const double v[9], const double p[3])
 {
-    const double s = area2(v, v + 3, v + 6);
+    const double s = double_area(v, v + 3, v + 6);
 
-    return fabs(s - area2(v, v + 3, p) - area2(v + 3, v + 6, p) -
-                area2(v + 6, v, p)) < .005;
+    return fabs(s - double_area(v, v + 3, p) - double_area(v + 3, v + 6, p) -
+                double_area(v + 6, v, p)) < .005;
 }
 
-/* Returns the fraction of rays that the baseline takes for the other thing, of
- * those through a box of which the triangle, its height SIZE, is a fifth; ours
- * may differ within two steps of an edge. */
+/* Aims random rays at a box five times the area of a triangle of height
+ * SIZE. Returns the fraction that the area test classifies wrongly. Checks
+ * that glint's test is right except near the edges. */
 static double area_errors(double size)
 {
     double v[9], from[3] = {0};
@@ -208,9 +212,9 @@ static double area_errors(double size)
 
     for (int i = 0; i < 9; i++)
         v[i] = first[i] * size / 80;
-    triangle(steps, v, 1);
+    set_triangle(steps, v, 1);
     for (; n < 4000; n++) {
-        /* down from the top and across: of the triangle 0 .. 1 and -1 .. 1 */
+        /* position in the triangle: down from its top 0 .. 1, across -1 .. 1 */
         const double down = .5 + 1.58 * (rng_unit(&seed) - .5);
         const double across = 1.58 * (2 * rng_unit(&seed) - 1);
         const double u = (down + across) / 2, w = (down - across) / 2;
@@ -222,11 +226,11 @@ static double area_errors(double size)
             p[k] = v[k] + u * (v[3 + k] - v[k]) + w * (v[6 + k] - v[k]);
             at[k] = p[k] * ONE;
         }
-        wrong += by_areas(v, p) != is_in;
-        ray = ray_to(from, at);
+        wrong += is_inside_by_areas(v, p) != is_in;
+        ray = make_ray(from, at);
         if (fabs(u) * size > .01 * size && fabs(w) > .01 &&
             fabs(u + w - 1) > .01)
-            ours += meets(&ray, steps, &spot) != is_in;
+            ours += hits_triangle(&ray, steps, &spot) != is_in;
     }
     assert_int_equal(ours, 0);
     return (double)wrong / n;
@@ -236,10 +240,14 @@ TEST(a4_areas)
 {
     const double p[3] = {0, 0, 90};
 
-    near(llround(area2(first, first + 3, first + 6) * 16), 6000 * 16, 0);
-    near(llround(area2(first, first + 3, p) * 16), 1500 * 16, 0);
-    near(llround(area2(first + 6, first, p) * 16), 1500 * 16, 0);
-    near(llround(area2(first + 3, first + 6, p) * 16), 3000 * 16, 0);
+    assert_near_int(llround(double_area(first, first + 3, first + 6) * 16),
+                    6000 * 16, 0);
+    assert_near_int(llround(double_area(first, first + 3, p) * 16), 1500 * 16,
+                    0);
+    assert_near_int(llround(double_area(first + 6, first, p) * 16), 1500 * 16,
+                    0);
+    assert_near_int(llround(double_area(first + 3, first + 6, p) * 16),
+                    3000 * 16, 0);
     assert_true(area_errors(80) == 0);
     for (double size = .1; size > .005; size /= 10) {
         const double share = area_errors(size);
@@ -261,14 +269,14 @@ TEST(a5_nearest)
     int32_t v[3][3];
 
     for (int i = 0; i < 3; i++) {
-        triangle(v, each[i], 1);
-        assert_true(meets(&ahead, v, &spot));
-        near(spot.t, expected[i] * ONE, 1);
+        set_triangle(v, each[i], 1);
+        assert_true(hits_triangle(&ahead, v, &spot));
+        assert_near_int(spot.t, expected[i] * ONE, 1);
     }
 }
 
-/* Edges and vertices belong to a triangle, whichever of them the ray goes
- * through, seen from either side. */
+/* Checks that rays through edges and vertices hit the triangle, from either
+ * side. */
 TEST(on_edges)
 {
     static const double on_edge[9] = {0, -9, 50, 0, 9, 40, 9, 0, 30},
@@ -280,12 +288,12 @@ TEST(on_edges)
     for (int i = 0; i < 12; i++) {
         int32_t v[3][3], turned[3][3];
 
-        triangle(v, each[i % 2], 1);
+        set_triangle(v, each[i % 2], 1);
         for (int k = 0; k < 9; k++)
             turned[k / 3][k % 3] =
                 v[(i / 6 ? 8 - k / 3 + i / 2 : k / 3 + i / 2) % 3][k % 3];
-        assert_true(meets(&ahead, turned, &spot));
-        near(spot.t, expected[i % 2] * ONE, 1);
+        assert_true(hits_triangle(&ahead, turned, &spot));
+        assert_near_int(spot.t, expected[i % 2] * ONE, 1);
     }
 }
 
@@ -309,7 +317,7 @@ TEST(a9_mirror)
         glint_mirror(d, n, r);
         glint_mirror(r, n, back);
         for (int k = 0; k < 3; k++) {
-            near(back[k], d[k], 8);
+            assert_near_int(back[k], d[k], 8);
             length += ldexp(r[k], -30) * ldexp(r[k], -30);
         }
         assert_true(fabs(sqrt(length) - 1) < 0x1p-28);
@@ -337,10 +345,10 @@ TEST(a12_bend)
             continue;
         }
         assert_true(sine < 1);
-        near(to[0], llround(ldexp(sine, 30)), 64);
+        assert_near_int(to[0], llround(ldexp(sine, 30)), 64);
         assert_int_equal(to[1], 0);
-        near((int64_t)to[0] * to[0] + (int64_t)to[2] * to[2], INT64_C(1) << 60,
-             INT64_C(1) << 33);
+        assert_near_int((int64_t)to[0] * to[0] + (int64_t)to[2] * to[2],
+                        INT64_C(1) << 60, INT64_C(1) << 33);
     }
 }
 
@@ -358,19 +366,20 @@ TEST(a14_misses)
 
     assert_int_equal(glint_ray_plane(&ahead, ground, up), 0); /* parallel */
     assert_int_equal(glint_ray_plane(&falling, ground, up), GLINT_PLANE_END);
-    assert_int_equal(glint_ray_plane(&ahead, ahead.at, up), 0); /* within */
+    /* in the plane */
+    assert_int_equal(glint_ray_plane(&ahead, ahead.at, up), 0);
     for (int i = 0; i < 4; i++) {
         const int32_t *const vertex[3] = {v[0], v[1], v[2]};
         struct glint_sheared sheared;
 
-        triangle(v, each[i], 1);
+        set_triangle(v, each[i], 1);
         glint_shear(&ahead, &sheared);
         assert_false(glint_ray_triangle(&sheared, vertex, &spot));
         assert_false(glint_ray_hold(&sheared, vertex, &spot));
         assert_int_equal(glint_triangle_normal(vertex, n), i == 0);
     }
-    triangle(v, first, -1); /* behind */
-    assert_false(meets(&ahead, v, &spot));
+    set_triangle(v, first, -1); /* behind the ray's origin */
+    assert_false(hits_triangle(&ahead, v, &spot));
 }
 
 /* --------------------------------------------------------------------- A15 */
@@ -387,14 +396,14 @@ TEST(a15_sphere)
     assert_true(c.t[0] == 8 * ONE && c.t[1] == 12 * ONE);
     glint_chord_end(&c, &ahead, centre, 0, place, n);
     assert_true(place[0] == 0 && place[1] == 0 && place[2] == 8 * ONE);
-    is_near(n, 0, 0, -1, 0);
+    assert_near_vector(n, 0, 0, -1, 0);
     glint_chord_end(&c, &ahead, centre, 1, place, n);
     assert_true(place[2] == 12 * ONE && n[2] == ONE_Q30);
-    /* grazing, and a step off */
+    /* grazing, and one step outside */
     assert_true(glint_ray_sphere(&ahead, aside, 3 * ONE, &c));
     assert_true(c.t[0] == 10 * ONE && c.t[1] == 10 * ONE);
     assert_false(glint_ray_sphere(&ahead, aside, 3 * ONE - 1, &c));
-    /* from inside, and behind */
+    /* from inside, and behind the origin */
     assert_true(glint_ray_sphere(&ahead, me, 2 * ONE, &c));
     assert_true(c.t[0] == -ONE && c.t[1] == 3 * ONE);
     assert_true(glint_ray_sphere(&ahead, far, 2 * ONE, &c));
@@ -403,8 +412,8 @@ TEST(a15_sphere)
     assert_true(c.t[0] == 10 * ONE - 1 && c.t[1] == 10 * ONE + 1);
 }
 
-/* Of rays that pass a ball of radius 1/2 within a hundredth of its rim, the
- * fraction that hit or miss wrongly, DISTANCE away. */
+/* Returns the fraction of rays that hit or miss wrongly, among rays that
+ * pass a ball of radius 1/2 at DISTANCE within a hundredth of its rim. */
 static double rim_errors(double distance)
 {
     const double unit = exp2(floor(log2(GLINT_FAR / 4.0 / distance)));
@@ -480,14 +489,14 @@ static void make_ball(double at[BALL][3], uint32_t t[TRIANGLES][3], double size)
     assert_int_equal(scene_ball(RINGS, SIDES, t), TRIANGLES);
 }
 
-/* The baseline: [Moller97] in numbers of 16 fraction bits. */
+/* Baseline: the intersection of [Moller97] in Q16.16. */
 static int32_t mul_q16(int32_t a, int32_t b)
 {
     return (int32_t)(((int64_t)a * b) >> 16);
 }
 
-/* A sum that wraps. */
-static int32_t plus(int32_t a, uint32_t b)
+/* Returns A + B with wraparound. */
+static int32_t add_wrapping(int32_t a, uint32_t b)
 {
     return (int32_t)((uint32_t)a + b);
 }
@@ -495,17 +504,20 @@ static int32_t plus(int32_t a, uint32_t b)
 static void cross_q16(const int32_t a[3], const int32_t b[3], int32_t to[3])
 {
     for (int k = 0; k < 3; k++)
-        to[k] = plus(mul_q16(a[(k + 1) % 3], b[(k + 2) % 3]),
-                     -(uint32_t)mul_q16(a[(k + 2) % 3], b[(k + 1) % 3]));
+        to[k] =
+            add_wrapping(mul_q16(a[(k + 1) % 3], b[(k + 2) % 3]),
+                         -(uint32_t)mul_q16(a[(k + 2) % 3], b[(k + 1) % 3]));
 }
 
 static int32_t dot_q16(const int32_t a[3], const int32_t b[3])
 {
-    return plus(plus(mul_q16(a[0], b[0]), (uint32_t)mul_q16(a[1], b[1])),
-                (uint32_t)mul_q16(a[2], b[2]));
+    return add_wrapping(
+        add_wrapping(mul_q16(a[0], b[0]), (uint32_t)mul_q16(a[1], b[1])),
+        (uint32_t)mul_q16(a[2], b[2]));
 }
 
-static int naive_meets(const struct glint_scene_ray *ray, int32_t v[3][3])
+static int naive_hits_triangle(const struct glint_scene_ray *ray,
+                               int32_t v[3][3])
 {
     int32_t d[3], e1[3], e2[3], s[3], p[3], q[3], det, u, w, sign;
 
@@ -522,18 +534,18 @@ static int naive_meets(const struct glint_scene_ray *ray, int32_t v[3][3])
     w = dot_q16(d, q);
     sign = det;
     if (det < 0) {
-        det = plus(0, -(uint32_t)det);
-        u = plus(0, -(uint32_t)u);
-        w = plus(0, -(uint32_t)w);
+        det = add_wrapping(0, -(uint32_t)det);
+        u = add_wrapping(0, -(uint32_t)u);
+        w = add_wrapping(0, -(uint32_t)w);
     }
     return det != 0 && u >= 0 && w >= 0 && (int64_t)u + w <= det &&
            (dot_q16(e2, q) ^ sign) >= 0;
 }
 
-/* Aims RAYS from inside a closed mesh, a third each at vertices, edges and
- * well inside triangles, and counts those that meet no triangle, or, of the
- * last, not exactly one. */
-static int misses(double size, int is_naive)
+/* Aims RAYS from inside a closed mesh at vertices, edges and the inside of
+ * triangles, a third each. Returns the number of rays that hit no triangle,
+ * or, for the last third, not exactly one. */
+static int count_misses(double size, int is_naive)
 {
     enum { RAYS = 1500 };
     double at[BALL][3];
@@ -558,14 +570,15 @@ static int misses(double size, int is_naive)
                 to[k] += w[j] * round(at[aim[j]][k]) / (w[0] + w[1] + w[2]);
             from[k] = round(from[k]);
         }
-        ray = ray_to(from, to);
+        ray = make_ray(from, to);
         for (int j = 0; j < TRIANGLES; j++) {
             struct glint_spot_on spot;
             int32_t v[3][3];
 
             for (int k = 0; k < 9; k++)
                 v[k / 3][k % 3] = (int32_t)llround(at[t[j][k / 3]][k % 3]);
-            met += is_naive ? naive_meets(&ray, v) : meets(&ray, v, &spot);
+            met += is_naive ? naive_hits_triangle(&ray, v)
+                            : hits_triangle(&ray, v, &spot);
         }
         n += i % 3 == 2 ? met != 1 : met == 0;
     }
@@ -575,18 +588,18 @@ static int misses(double size, int is_naive)
 TEST(no_leaks)
 {
     for (double size = .01; size < 3000; size *= 7)
-        assert_int_equal(misses(size, 0), 0);
-    assert_true(misses(.01, 1) > 400);
-    assert_true(misses(200, 1) > 400);
+        assert_int_equal(count_misses(size, 0), 0);
+    assert_true(count_misses(.01, 1) > 400);
+    assert_true(count_misses(200, 1) > 400);
 }
 
-/* Plain Q16.16 wraps where the tutorial's first triangle is. */
+/* Plain Q16.16 overflows at the tutorial's first triangle. */
 TEST(naive_wraps)
 {
     int32_t v[3][3], a[3], b[3], n[3];
     int64_t d = 0;
 
-    triangle(v, first, 1);
+    set_triangle(v, first, 1);
     v3_minus(v[1], v[0], a);
     v3_minus(v[2], v[0], b);
     cross_q16(a, b, n);
@@ -595,7 +608,7 @@ TEST(naive_wraps)
     assert_true(d == -432000 * (int64_t)ONE && d != (int32_t)d);
 }
 
-/* Weights of a hit place it where it is. */
+/* Checks that the barycentric weights of a hit reproduce its position. */
 TEST(weights)
 {
     uint32_t seed = 9;
@@ -614,9 +627,9 @@ TEST(weights)
             v[k / 3][k % 3] = (k % 3 == 2) * 40000 + rng_below(&seed, 30000);
             to[k % 3] += w[k / 3] / sum * v[k / 3][k % 3];
         }
-        ray = ray_to(from, to);
-        if (!meets(&ray, v, &spot))
-            continue; /* rounding of a sliver's ray */
+        ray = make_ray(from, to);
+        if (!hits_triangle(&ray, v, &spot))
+            continue; /* rounding: a sliver's ray */
         assert_true(glint_ray_go(&ray, spot.t, hit));
         assert_int_equal(spot.part_q30[0] + spot.part_q30[1] + spot.part_q30[2],
                          ONE_Q30);
@@ -625,7 +638,7 @@ TEST(weights)
 
             for (int j = 0; j < 3; j++)
                 at += (int64_t)spot.part_q30[j] * v[j][k];
-            near(q_shift(at, 30), hit[k], 2);
+            assert_near_int(q_shift(at, 30), hit[k], 2);
         }
     }
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What surfaces send back: rows A6 to A13 of the tutorial, by hand or against
- * doubles.
+ * Tests the shading of surfaces: rows A6 to A13 of the tutorial, by hand or
+ * against double precision.
  */
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +17,7 @@ enum { UNIT = 1 << 16, ONE_Q30 = 1 << 30, SIDE = 64 };
 
 static struct scene_file file;
 
-static struct glint_scene *start(int shadow_points)
+static struct glint_scene *start_scene(int shadow_points)
 {
     struct glint_scene_config cfg;
 
@@ -27,8 +27,8 @@ static struct glint_scene *start(int shadow_points)
     return scene_start(&file, &cfg, NULL);
 }
 
-static struct glint_scene_ray ray_of(double x, double y, double z, double dx,
-                                     double dy, double dz)
+static struct glint_scene_ray make_ray(double x, double y, double z, double dx,
+                                       double dy, double dz)
 {
     const double at[3] = {x, y, z}, d[3] = {dx, dy, dz};
     const double length = sqrt(dx * dx + dy * dy + dz * dz);
@@ -41,8 +41,9 @@ static struct glint_scene_ray ray_of(double x, double y, double z, double dx,
     return ray;
 }
 
-static int shade(const struct glint_scene *s, const struct glint_scene_ray *ray,
-                 struct glint_met_shade *to)
+static int shade_ray(const struct glint_scene *s,
+                     const struct glint_scene_ray *ray,
+                     struct glint_met_shade *to)
 {
     struct glint_met_surface surface;
     struct glint_met met;
@@ -54,27 +55,29 @@ static int shade(const struct glint_scene *s, const struct glint_scene_ray *ray,
     return 1;
 }
 
-static int32_t red_of(const struct glint_scene *s, struct glint_scene_ray ray)
+static int32_t red_light(const struct glint_scene *s,
+                         struct glint_scene_ray ray)
 {
     struct glint_met_shade to;
 
-    assert_true(shade(s, &ray, &to));
+    assert_true(shade_ray(s, &ray, &to));
     return to.rgb_q15[0];
 }
 
 /* -------------------------------------------------------------------- A5 */
 
-/* Of three triangles behind each other the nearest is seen, whatever their
- * order; and one that is missed, whose distance is none, is not near. */
+/* Checks that of three triangles behind each other the nearest is visible,
+ * in any order, and that a triangle which the ray misses never counts as the
+ * nearest. */
 TEST(a5_seen)
 {
     static const int at[4][9] = {
         {0, 30, 40, 40, -30, 120, -40, -30, 120},
         {-50, 30, 124, 50, 30, 124, 0, -30, 44},
         {-30, 0, 37, 30, 40, 117, 30, -40, 117}, /* the tutorial's blue one */
-        {10, 10, 20, 20, 10, 20, 10, 20, 20}};   /* beside the ray */
+        {10, 10, 20, 20, 10, 20, 10, 20, 20}};   /* off the ray */
     static const uint32_t t[1][3] = {{0, 1, 2}};
-    const struct glint_scene_ray ahead = ray_of(0, 0, 0, 0, 0, 1);
+    const struct glint_scene_ray ahead = make_ray(0, 0, 0, 0, 0, 1);
 
     for (int first = 0; first < 4; first++) {
         struct glint_scene *s;
@@ -91,7 +94,7 @@ TEST(a5_seen)
                 &file, (const char[2]){(char)('a' + i), 0}, 0,
                 scene_mesh(&file, (const int32_t(*)[3])v, NULL, NULL, 3, t, 1));
         }
-        s = start(1);
+        s = start_scene(1);
         assert_true(glint_scene_meet(s, &ahead, GLINT_NOTHING, 0, &met));
         assert_int_equal(met.object, (6 - first) % 4);
         assert_in_range(met.t, 77 * UNIT - 1, 77 * UNIT + 1);
@@ -124,7 +127,7 @@ TEST(a6_corners)
         }
 }
 
-/* Places go to the pixel whose ray goes to them. */
+/* Checks that a point is projected to the pixel whose ray passes through it. */
 TEST(view_and_back)
 {
     uint32_t seed = 3;
@@ -161,14 +164,14 @@ TEST(a7_lamp)
     const int32_t lamp[3] = {0, 40 * UNIT, 0};
     struct glint_scene *s;
     struct glint_met_shade to;
-    const struct glint_scene_ray down = ray_of(0, 10, 30, 0, -1, 0);
+    const struct glint_scene_ray down = make_ray(0, 10, 30, 0, -1, 0);
 
     scene_begin(&file);
     scene_plane(&file, "floor", scene_material(&file, "red"), 0);
     file.material[0].rgb_q15[1] = file.material[0].rgb_q15[2] = 0;
-    scene_lamp(&file, lamp, 50 * UNIT); /* 1 at 50 */
-    s = start(1);
-    assert_true(shade(s, &down, &to));
+    scene_lamp(&file, lamp, 50 * UNIT); /* irradiance 1 at a distance of 50 */
+    s = start_scene(1);
+    assert_true(shade_ray(s, &down, &to));
     assert_int_equal(to.cover_q8, 256);
     assert_in_range(to.rgb_q15[0], 26212, 26216); /* 204 of 255 */
     assert_true(to.rgb_q15[1] == 0 && to.rgb_q15[2] == 0);
@@ -194,7 +197,8 @@ TEST(power)
     assert_int_equal(glint_power_q15(-5, 256), 0);
 }
 
-/* A ball under a sun, anywhere on it, against the formula in doubles. */
+/* Checks a ball under a sun at many points against Phong's formula in double
+ * precision. */
 TEST(a8_phong)
 {
     const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
@@ -209,30 +213,32 @@ TEST(a8_phong)
     file.material[0].specular_q15 = 9830;
     file.material[0].rgb_q15[0] = 16384;
     scene_sun(&file, sun);
-    s = start(1);
+    s = start_scene(1);
     for (int i = 0; i < 20000; i++) {
         const double a = 6.2831853 * rng_unit(&seed);
         const double r = 1.99 * sqrt(rng_unit(&seed));
         const double n[3] = {r * cos(a) / 2, r * sin(a) / 2,
                              -sqrt(1 - r * r / 4)};
         const double cosine = .6 * n[0] + .8 * n[1];
-        /* the eye looks along z */
+        /* the camera looks along z */
         const double gloss = fmax(0, 0 - (2 * cosine * n[2]));
         double expected = .1 * .5;
 
         if (cosine > 0)
             expected += .6 * .5 * cosine + .3 * pow(gloss, 32);
         assert_true(
-            fabs(red_of(s, ray_of(2 * n[0], 2 * n[1], 0, 0, 0, 1)) / 32768. -
+            fabs(red_light(s, make_ray(2 * n[0], 2 * n[1], 0, 0, 0, 1)) /
+                     32768. -
                  expected) < 2e-3);
     }
 }
 
 /* --------------------------------------------------------------------- A10 */
 
-/* A floor under a lamp 4 above it, and a ball of radius 1 between them, its
- * middle at height H; returns the light straight below the lamp. */
-static int32_t under_ball(double h, int hidden)
+/* Draws a floor, a lamp 4 above it, and a ball of radius 1 centred at height
+ * H between them. Returns the light on the floor below the lamp. HIDDEN: the
+ * ball is hidden. */
+static int32_t light_under_ball(double h, int hidden)
 {
     const int32_t lamp[3] = {0, 4 * UNIT, 10 * UNIT};
 
@@ -243,22 +249,23 @@ static int32_t under_ball(double h, int hidden)
     scene_sphere(&file, "ball", 0, 0, (int32_t)(h * UNIT), 10 * UNIT, UNIT);
     file.object[1].hidden = (uint32_t)hidden;
     scene_lamp(&file, lamp, 4 * UNIT);
-    return red_of(start(1), ray_of(2, .5, 10, -2, -.5, 0));
+    return red_light(start_scene(1), make_ray(2, .5, 10, -2, -.5, 0));
 }
 
 TEST(a10_shadow)
 {
-    const int32_t lit = under_ball(2, 1);
+    const int32_t lit = light_under_ball(2, 1);
 
     assert_in_range(lit, 32760, 32768);
-    assert_int_equal(under_ball(2, 0), 0);      /* before the lamp */
-    assert_int_equal(under_ball(5.01, 0), lit); /* beyond it */
-    assert_int_equal(under_ball(4.99, 0), 0);   /* just reaching it */
-    assert_int_equal(under_ball(6, 0), lit);
-    assert_int_equal(under_ball(-1.01, 0), lit); /* behind the floor */
+    assert_int_equal(light_under_ball(2, 0), 0); /* between lamp and floor */
+    assert_int_equal(light_under_ball(5.01, 0), lit); /* above the lamp */
+    assert_int_equal(light_under_ball(4.99, 0), 0); /* just touching the lamp */
+    assert_int_equal(light_under_ball(6, 0), lit);
+    assert_int_equal(light_under_ball(-1.01, 0), lit); /* below the floor */
 }
 
-/* Surfaces that nothing hides are lit, to the last bit, as without shadows. */
+/* Checks that surfaces without an occluder have the same light, bit by bit,
+ * as without shadows. */
 TEST(a10_no_acne)
 {
     static const int32_t at[4][3] = {{-90000, -70000, 600000},
@@ -289,25 +296,25 @@ TEST(a10_no_acne)
                     scene_object(&file, "a", 0,
                                  scene_mesh(&file, at, NULL, NULL, 4, t, 4));
                 file.header.shadow = 1;
-                s = start(1);
+                s = start_scene(1);
             }
-            ray = ray_of(0, 0, 0, rng_unit(&seed) * .3 - .15,
-                         rng_unit(&seed) * .3 - .15 - .25 * (kind == 1), 1);
+            ray = make_ray(0, 0, 0, rng_unit(&seed) * .3 - .15,
+                           rng_unit(&seed) * .3 - .15 - .25 * (kind == 1), 1);
             file.header.shadow = 0;
             memcpy(file.data, &file.header, sizeof file.header);
-            if (!shade(s, &ray, &to[0]))
+            if (!shade_ray(s, &ray, &to[0]))
                 continue;
             file.header.shadow = 1;
             memcpy(file.data, &file.header, sizeof file.header);
-            shade(s, &ray, &to[1]);
+            shade_ray(s, &ray, &to[1]);
             assert_memory_equal(&to[0], &to[1], sizeof *to);
             n += to[0].rgb_q15[0] > 0;
         }
     assert_true(n > 3000);
 }
 
-/* Across the edge of the shadow of a wide light comes all of it, then less and
- * less, then none. */
+/* Checks that across the penumbra of a wide light the light falls
+ * monotonically from full to none. */
 TEST(a10_soft)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
@@ -321,9 +328,9 @@ TEST(a10_soft)
     scene_sphere(&file, "ball", 0, 0, 5 * UNIT, 10 * UNIT, UNIT);
     scene_sun(&file, up);
     file.light[0].radius = ONE_Q30 / 10;
-    s = start(16);
+    s = start_scene(16);
     for (int i = 0; i <= 40; i++) {
-        const int32_t light = red_of(s, ray_of(i * .05, .2, 10, 0, -1, 0));
+        const int32_t light = red_light(s, make_ray(i * .05, .2, 10, 0, -1, 0));
 
         assert_true(light >= last);
         levels += light > last;
@@ -331,19 +338,19 @@ TEST(a10_soft)
     }
     assert_true(levels > 8);
     assert_in_range(last, 32767, 32768);
-    assert_int_equal(red_of(s, ray_of(.1, .2, 10, 0, -1, 0)), 0);
+    assert_int_equal(red_light(s, make_ray(.1, .2, 10, 0, -1, 0)), 0);
 }
 
 /* ---------------------------------------------------------------- A11, A12 */
 
-static void clear(struct glint_scene_material *m)
+static void make_transparent(struct glint_scene_material *m)
 {
     m->diffuse_q15 = 0;
     m->pass_q15 = 32768;
 }
 
-/* A ball that lets all light through hides nothing: of a ball behind it, and of
- * the picture. */
+/* Checks that a fully transparent ball occludes neither a ball behind it nor
+ * the image. */
 TEST(a11_pass)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
@@ -353,15 +360,15 @@ TEST(a11_pass)
 
     scene_begin(&file);
     scene_material(&file, "m");
-    clear(&file.material[scene_material(&file, "clear")]);
+    make_transparent(&file.material[scene_material(&file, "clear")]);
     scene_sphere(&file, "far", 0, UNIT / 2, UNIT / 3, 20 * UNIT, 3 * UNIT);
     scene_sphere(&file, "near", 1, 0, 0, 10 * UNIT, 2 * UNIT);
     scene_sun(&file, up);
-    s = start(1);
+    s = start_scene(1);
     for (int i = 0; i < 20000; i++) {
         struct glint_scene_ray ray =
-            ray_of(0, 0, i % 2 ? 9 : 0, rng_unit(&seed) * .4 - .2,
-                   rng_unit(&seed) * .4 - .2, 1);
+            make_ray(0, 0, i % 2 ? 9 : 0, rng_unit(&seed) * .4 - .2,
+                     rng_unit(&seed) * .4 - .2, 1);
         struct glint_met_shade with, without;
         struct glint_chord chord;
         int is;
@@ -369,9 +376,9 @@ TEST(a11_pass)
         if (!glint_ray_sphere(&ray, s->placed[1].at, 2 * UNIT, &chord))
             continue;
         within++;
-        assert_true(shade(s, &ray, &with));
+        assert_true(shade_ray(s, &ray, &with));
         glint_scene_show(s, 1, 0);
-        is = shade(s, &ray, &without);
+        is = shade_ray(s, &ray, &without);
         glint_scene_show(s, 1, 1);
         behind += is;
         if ((with.cover_q8 != 0) != is) {
@@ -383,13 +390,14 @@ TEST(a11_pass)
             assert_int_equal(with.rgb_q15[1], 0);
         }
     }
-    assert_true(rim <= 2); /* where the ray leaves is rounded to a step */
+    assert_true(rim <= 2); /* the ray's exit point is rounded to a step */
     assert_true(behind > 3000 && within > behind + 3000);
 }
 
-/* The baselines of a second hit: whether a ray that continues from where it met
- * a ball of RADIUS stands outside it, by its distance from the middle, MORE
- * than the radius squared, in floats. It does not, as it has entered. */
+/* Baselines for the second hit: returns whether a ray's entry point into a
+ * ball of RADIUS is computed, in floats, to be outside it: its squared
+ * distance from the centre exceeds the squared radius plus MORE. Correct is
+ * false. */
 static int is_outside(const double middle[3], double radius, const double d[3],
                       double more)
 {
@@ -408,8 +416,8 @@ static int is_outside(const double middle[3], double radius, const double d[3],
     return l2 > (float)(radius * radius + more);
 }
 
-/* A ball that half of the light goes through, by itself: it is entered and left
- * once by each ray, where the baselines meet it again. */
+/* Checks that each ray through a ball of half transmission enters and leaves
+ * it exactly once; the baselines hit the ball again. */
 TEST(a11_left_once)
 {
     enum { RAYS = 100000 };
@@ -430,16 +438,16 @@ TEST(a11_left_once)
         scene_sphere(&file, "ball", 0, (int32_t)(middle[0] * UNIT),
                      (int32_t)(middle[1] * UNIT), (int32_t)(middle[2] * UNIT),
                      (int32_t)(radius * UNIT));
-        s = start(1);
+        s = start_scene(1);
         for (int i = 0; i < 1000; i++) {
             const double x = middle[0] / middle[2] + .4 * rng_unit(&seed) - .2;
             const double y = middle[1] / middle[2] + .4 * rng_unit(&seed) - .2;
             const double length = sqrt(x * x + y * y + 1);
             const double d[3] = {x / length, y / length, 1 / length};
-            const struct glint_scene_ray ray = ray_of(0, 0, 0, x, y, 1);
+            const struct glint_scene_ray ray = make_ray(0, 0, 0, x, y, 1);
             struct glint_met_shade to;
 
-            if (!shade(s, &ray, &to))
+            if (!shade_ray(s, &ray, &to))
                 continue;
             assert_int_equal(to.cover_q8, 128);
             outside += is_outside(middle, radius, d, 0);
@@ -453,8 +461,8 @@ TEST(a11_left_once)
     assert_true(farther > 0);
 }
 
-/* A glass ball bends rays as doubles say: what is seen in a texture behind it
- * lies there. */
+/* Checks that a glass ball refracts rays as computed in double precision:
+ * the texture coordinate seen behind it is right. */
 TEST(a12_ball)
 {
     uint8_t rgb[3 * 256];
@@ -465,24 +473,25 @@ TEST(a12_ball)
     for (int i = 0; i < 256; i++)
         rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = (uint8_t)i;
     scene_begin(&file);
-    file.header.camera.tan_x_q24 = 1 << 12; /* pixels below texels */
+    file.header.camera.tan_x_q24 = 1 << 12; /* pixels smaller than texels */
     scene_material(&file, "m");
     file.material[0].ambient_q15 = 32768;
     file.material[0].diffuse_q15 = 0;
     file.material[0].texture = scene_texture(&file, rgb, 8, 0);
-    clear(&file.material[scene_material(&file, "glass")]);
+    make_transparent(&file.material[scene_material(&file, "glass")]);
     file.material[1].index_q16 = 3 << 15;
-    /* a wall behind: the floor turned by 90 degrees about x, a repeat a unit */
+    /* a wall behind the ball: the floor rotated by 90 degrees about x, one
+     * texture repeat per unit */
     scene_plane(&file, "wall", 0, 0);
     file.object[0].at[2] = 30 * UNIT;
     file.object[0].turn_q30[0] = 759250125;
     file.object[0].turn_q30[1] = -759250125;
     scene_sphere(&file, "ball", 1, 0, 0, 10 * UNIT, 2 * UNIT);
-    s = start(1);
+    s = start_scene(1);
     for (int i = 0; i < 3000; i++) {
         const double dx = rng_unit(&seed) * .2 - .1;
         const double cosine0 = cos(atan(dx));
-        /* in the plane of x and z: in, across, out */
+        /* in the x-z plane: entry, path inside, exit */
         const double b = 10 * cosine0, q = 10 * sin(atan(dx));
         const double t = b - sqrt(4 - q * q);
         const double px = t * sin(atan(dx)), pz = t * cosine0 - 10;
@@ -493,13 +502,13 @@ TEST(a12_ball)
         const double x = 2 * sin(phi_out), z = 10 - 2 * cos(phi_out);
         const double heading = atan(dx) - turn;
         const double at = x + (30 - z) * tan(heading);
-        struct glint_scene_ray ray = ray_of(0, 0, 0, dx, 0, 1);
+        struct glint_scene_ray ray = make_ray(0, 0, 0, dx, 0, 1);
         struct glint_met_shade to;
         double u = at - floor(at), code;
 
         if (u < .02 || u > .98)
             continue;
-        assert_true(shade(s, &ray, &to));
+        assert_true(shade_ray(s, &ray, &to));
         code = to.rgb_q15[0] / 32768.;
         code = 255 * (code < .0031308 ? 12.92 * code
                                       : 1.055 * pow(code, 1 / 2.4) - .055);
@@ -509,8 +518,8 @@ TEST(a12_ball)
     assert_true(n > 2500);
 }
 
-/* From within a ball of index 1.5, on rays that meet it beyond the critical
- * angle of 41.8 degrees: such light never leaves it, and nothing is seen. */
+/* Checks rays inside a ball of index 1.5 that hit its surface beyond the
+ * critical angle of 41.8 degrees: total reflection, so nothing is visible. */
 TEST(a12_within)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
@@ -520,14 +529,14 @@ TEST(a12_within)
     scene_begin(&file);
     file.header.background = GLINT_BACKGROUND_COLOUR;
     file.header.background_q15[0] = 8192;
-    clear(&file.material[scene_material(&file, "glass")]);
+    make_transparent(&file.material[scene_material(&file, "glass")]);
     file.material[0].index_q16 = 3 << 15;
     scene_sphere(&file, "ball", 0, 0, 0, 0, 2 * UNIT);
     scene_sun(&file, up);
-    s = start(1);
+    s = start_scene(1);
     for (int i = 0; i <= 100; i++) {
         const double x = 2 * i / 101.; /* sine of the angle: x / 2 */
-        const int32_t red = red_of(s, ray_of(x, 0, 0, 0, 0, 1));
+        const int32_t red = red_light(s, make_ray(x, 0, 0, 0, 0, 1));
 
         if (fabs(x / 2 - 1 / 1.5) > .001)
             assert_int_equal(red, x / 2 < 1 / 1.5 ? 8192 : 0);
@@ -556,7 +565,7 @@ TEST(a13_texture)
     file.material[0].diffuse_q15 = 0;
     file.material[0].texture = scene_texture(&file, rgb, 1, 1);
     scene_object(&file, "a", 0, scene_mesh(&file, at, uv_q16, NULL, 3, t, 1));
-    s = start(1);
+    s = start_scene(1);
     for (int i = 0; i < 20000; i++) {
         double w[3] = {1, 0, 0}, place[3] = {0}, uv[2] = {0};
         struct glint_met_surface surface;
@@ -577,10 +586,11 @@ TEST(a13_texture)
                 if (k < 2)
                     uv[k] += w[j] * uv_q16[j][k];
             }
-        ray = ray_of(0, 0, 0, place[0], place[1], place[2]);
+        ray = make_ray(0, 0, 0, place[0], place[1], place[2]);
         assert_true(glint_scene_meet_id(s, &ray, ray.toward_q30, 0, &met) &&
                     glint_scene_surface(s, &ray, &met, &surface));
-        for (int k = 0; k < 2; k++) /* a texel is half; 1/256 of it 128 */
+        /* half a texel; 1/256 texel is 128 in Q15 */
+        for (int k = 0; k < 2; k++)
             assert_true(fabs(surface.uv_q16[k] - uv[k]) < (i < 3 ? 8 : 16));
         glint_scene_shade(s, &ray, &surface, &to);
         for (int c = 0; c < 3; c++) {
@@ -598,7 +608,7 @@ TEST(a13_texture)
     }
 }
 
-/* Far away a texture is its mean. */
+/* Checks that a distant texture has its mean colour. */
 TEST(a13_levels)
 {
     uint8_t rgb[3 * 64 * 64];
@@ -615,22 +625,23 @@ TEST(a13_levels)
     file.material[0].diffuse_q15 = 0;
     file.material[0].texture = scene_texture(&file, rgb, 6, 6);
     scene_plane(&file, "floor", 0, -UNIT);
-    s = start(1);
+    s = start_scene(1);
     for (int i = 0; i < 2000; i++) {
         const double x = rng_unit(&seed) - .5;
-        const int32_t near = red_of(s, ray_of(x / 9, -.99, 0, x, -1, .1));
-        const int32_t far = red_of(s, ray_of(x, 0, 0, x, -.02, 1));
+        const int32_t near = red_light(s, make_ray(x / 9, -.99, 0, x, -1, .1));
+        const int32_t far = red_light(s, make_ray(x, 0, 0, x, -.02, 1));
 
         assert_true(near >= 0 && near <= 32768);
-        assert_in_range(far, 6900, 7200); /* of code 127.5 */
+        assert_in_range(far, 6900, 7200); /* linear light of code 127.5 */
     }
-    /* Straight below, pixels of 1/32 the height are two texels at height 1, and
-     * half a texel at 1/4. */
+    /* Vertically below, a pixel of 1/32 of the height covers two texels at
+     * height 1, and half a texel at height 1/4. */
     for (int i = 0; i < 500; i++) {
         const double x = rng_unit(&seed), z = rng_unit(&seed);
-        const int32_t close = red_of(s, ray_of(x, -.75, z, 0, -1, 0));
+        const int32_t close = red_light(s, make_ray(x, -.75, z, 0, -1, 0));
 
-        assert_in_range(red_of(s, ray_of(x, .001, z, 0, -1, 0)), 6900, 7200);
+        assert_in_range(red_light(s, make_ray(x, .001, z, 0, -1, 0)), 6900,
+                        7200);
         lowest = close < lowest ? close : lowest;
         highest = close > highest ? close : highest;
     }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Translucent objects in scenes: integers against the reference in double
- * precision, the same bits for all workers and tiles, updates of maps,
- * extremes, and errors. */
+ * Tests translucent objects in scenes: against the reference renderer in double
+ * precision, the same bits for all workers and tiles, incremental updates of
+ * light maps, extreme values, and errors.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -20,12 +21,13 @@
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
-/* What read_stone() builds, and the mesh that read_mesh() reads. */
+/* Parameters of the model that read_stone() builds, and the mesh that
+ * read_mesh() returns. */
 static int side = 64, kernel = 15;
 static double albedo = .9;
 static const char *mesh_text;
 
-/* A cube whose faces have a chart each, with gutters between. */
+/* A cube with one texture chart per face, separated by gutters. */
 static const char cube_text[] =
     "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
     "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
@@ -55,7 +57,7 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
     return GLINT_OK;
 }
 
-/* NAME is that of the model. */
+/* Builds the model; NAME is its file name. */
 static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
                                     size_t *bytes, struct glint_error *error)
 {
@@ -75,7 +77,7 @@ static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
     return GLINT_OK;
 }
 
-/* A sky that is brighter above. */
+/* Bakes a sky that is brighter above. */
 static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
                                   size_t *bytes, struct glint_error *error)
 {
@@ -115,7 +117,7 @@ static void open_text(struct drawn *d, const char *text,
     drawn_open(d, text, &files, dials, tool);
 }
 
-static void draw(struct drawn *d, int32_t *light_q20)
+static void draw_scene(struct drawn *d, int32_t *light_q20)
 {
     drawn_draw(d, WIDTH, HEIGHT, light_q20);
 }
@@ -130,7 +132,7 @@ static const struct scene_dials one_sample = {
     "material a translucent a.glint fresnel off colour 1 .8 .6\n"             \
     "material grey phong .05 .6 .35\n"
 
-/* The camera stands on the other side. */
+/* The camera is on the other side. */
 #define STAGE_LEFT                                \
     "camera fov 40 at 0 1.4 -4.5 toward 0 .4 0\n" \
     "light sun direction .5 .7 -.6 colour 4e4 3.6e4 3e4\n" LOOKS
@@ -148,13 +150,13 @@ static const struct scene_dials one_sample = {
 
 /* --------------------------------------------------------------- reference */
 
-/* A coat that would mirror more than all towards the rim. */
+/* A coat whose reflectance would exceed 1 at grazing angles. */
 #define BRIGHT(specular)                                                 \
     STAGE "material b translucent f.glint coat ward specular " #specular \
           " " #specular " " #specular " alpha .1 .1\nenvironment sky\n"
 #define BRIGHT_BALL "sphere a at 0 .6 0 radius .8 material b\n"
 
-TEST(twin)
+TEST(equals_reference)
 {
     static const struct {
         const char *what, *text, *mesh;
@@ -192,8 +194,8 @@ TEST(twin)
 
 /* -------------------------------------------------------------------- maps */
 
-/* PSNR of A to B. */
-static double near_to(const int32_t *a, const int32_t *b)
+/* Returns the PSNR between A and B, dB. */
+static double compute_psnr(const int32_t *a, const int32_t *b)
 {
     double square = 0;
 
@@ -202,9 +204,9 @@ static double near_to(const int32_t *a, const int32_t *b)
     return -10 * log10(square / (3 * PIXELS) + 1e-12);
 }
 
-/* The pattern comes again twice round a ball, and after half of that, so that
- * where it is turned by quarters the same is seen, across a seam or inside
- * the square. */
+/* The texture repeats twice around a ball and is symmetric after half of
+ * that; so a ball rotated by quarter turns must look the same, whether the
+ * seam or the inside of the map is visible. */
 TEST(seams)
 {
     static int32_t first[3 * PIXELS], light[3 * PIXELS];
@@ -220,15 +222,15 @@ TEST(seams)
                        "%c\n",
                  90 * (k % 4), model[k / 4]);
         open_text(&d, text, &one_sample, &tool);
-        draw(&d, k % 4 ? light : first);
+        draw_scene(&d, k % 4 ? light : first);
         drawn_close(&d);
         if (k % 4)
-            assert_true(near_to(light, first) > 75);
+            assert_true(compute_psnr(light, first) > 75);
     }
 }
 
-/* Charts that are stretched, sheared or mirrored on the map are lit and shown
- * by where their texels are. */
+/* Checks that stretched, sheared or mirrored texture charts are lit and
+ * shown at the positions of their texels. */
 TEST(stretch)
 {
     static const char *const places[] = {
@@ -254,8 +256,8 @@ TEST(stretch)
     }
 }
 
-/* A kernel of 63 texels on a map of 32 reaches beyond every edge, and twice
- * round a ball's pole. */
+/* Checks a kernel of 63 texels on a map of 32, which extends past every edge
+ * and twice around a ball's pole. */
 TEST(kernel_beyond_map)
 {
     side = 32;
@@ -283,7 +285,8 @@ TEST(kernel_beyond_map)
     STAGE "environment sky\n" BALLS \
           "mesh m cube.obj scale .2 at .5 .2 .9 turn 0 1 0 30 material c\n"
 
-/* No thread, tile, kernel or order of updates changes a bit. */
+/* Checks that threads, tiles, kernels and the order of updates do not change
+ * the image, bit by bit. */
 TEST(same_bits)
 {
     static int32_t want[3 * PIXELS], got[3 * PIXELS];
@@ -294,7 +297,7 @@ TEST(same_bits)
     shuffle_init(&shuffle, 3, 7);
     mesh_text = cube_text;
     open_text(&d, MIXED, &one_sample, &tool);
-    draw(&d, want);
+    draw_scene(&d, want);
     drawn_close(&d);
     for (int k = 0; k < 3; k++) {
         struct scene_dials dials = one_sample;
@@ -303,7 +306,7 @@ TEST(same_bits)
         tool.workers = k ? &shuffle.workers : NULL;
         dials.tile_log2 = 4 + k;
         open_text(&d, MIXED, &dials, &tool);
-        draw(&d, got);
+        draw_scene(&d, got);
         drawn_close(&d);
         assert_memory_equal(got, want, sizeof want);
     }
@@ -312,8 +315,8 @@ TEST(same_bits)
 /* ------------------------------------------------------------------- updates
  */
 
-/* Turns the camera about the origin by ANGLE and draws. */
-static void look_from(struct drawn *d, double angle, int32_t *light_q20)
+/* Rotates the camera about the origin by ANGLE, radians, and draws. */
+static void draw_rotated(struct drawn *d, double angle, int32_t *light_q20)
 {
     const double unit = ldexp(1, d->model.header->unit_log2);
     const int32_t s = (int32_t)lrint(0x1p30 * sin(angle));
@@ -324,11 +327,12 @@ static void look_from(struct drawn *d, double angle, int32_t *light_q20)
                            (int32_t)(-4 * unit * cos(angle))};
 
     assert_ok(glint_scene_set_camera(d->frame.scene, at, axis_q30));
-    draw(d, light_q20);
+    draw_scene(d, light_q20);
 }
 
-/* Texels are computed when they become visible, once, and all pictures equal
- * those of newly opened scenes; no work is wasted. */
+/* Checks that texels are computed once, when they become visible, that all
+ * images equal those of newly opened scenes, and that no texel is computed
+ * without need. */
 TEST(updates)
 {
     static int32_t turned[3 * PIXELS], fresh[3 * PIXELS];
@@ -339,50 +343,51 @@ TEST(updates)
     mesh_text = cube_text;
     side = 128;
     open_text(&d, MIXED, &one_sample, &tool);
-    look_from(&d, 0, turned);
+    draw_rotated(&d, 0, turned);
     first = d.frame.map_texels;
     for (int k = 1; k <= 12; k++) {
-        look_from(&d, k * .5, turned);
+        draw_rotated(&d, k * .5, turned);
         sum += d.frame.map_texels;
         open_text(&other, MIXED, &one_sample, &tool);
-        look_from(&other, k * .5, fresh);
+        draw_rotated(&other, k * .5, fresh);
         assert_memory_equal(turned, fresh, sizeof fresh);
         assert_true(other.frame.map_texels >= d.frame.map_texels);
         drawn_close(&other);
     }
     print_message("texels: %d at first, %d in a turn\n", first, sum);
-    /* three balls of 256 x 128 and a cube of 128 x 128 */
+    /* three balls of 256 x 128 texels and a cube of 128 x 128 */
     assert_true(first < 75000 && sum > 20000 && first + sum <= 7 << 14);
-    draw(&d, turned);
+    draw_scene(&d, turned);
     assert_int_equal(d.frame.map_texels, 0);
     drawn_close(&d);
     side = 64;
 }
 
-/* A coat that becomes another is drawn as if it had been that from the first.
- */
+/* Checks that a coat which is replaced gives the image of a scene that had
+ * the new coat from the start. */
 TEST(coat_changes)
 {
     static int32_t changed[3 * PIXELS], fresh[3 * PIXELS];
-    enum { MATERIAL = 4 }; /* behind those of LOOKS */
+    enum { MATERIAL = 4 }; /* index after the materials of LOOKS */
     struct tool tool = {.name = "test"};
     struct glint_scene_look look;
     struct drawn d;
 
     open_text(&d, BRIGHT(.75) BRIGHT_BALL, &one_sample, &tool);
-    draw(&d, fresh);
+    draw_scene(&d, fresh);
     assert_ok(glint_scene_get_look(d.frame.scene, MATERIAL, &look));
     drawn_close(&d);
     open_text(&d, BRIGHT(.25) BRIGHT_BALL, &one_sample, &tool);
-    draw(&d, changed);
+    draw_scene(&d, changed);
     assert_true(memcmp(changed, fresh, sizeof fresh) != 0);
     assert_ok(glint_scene_set_look(d.frame.scene, MATERIAL, &look));
-    draw(&d, changed);
+    draw_scene(&d, changed);
     assert_memory_equal(changed, fresh, sizeof fresh);
     drawn_close(&d);
 }
 
-/* What maps take is counted where they were worked out, and not again. */
+/* Checks that the cost of light maps is counted in the frame that computes
+ * them, and not again. */
 TEST(account)
 {
     static int32_t light[3 * PIXELS];
@@ -397,13 +402,13 @@ TEST(account)
               ".2\nsphere s at 0 0 0 radius .5 material m\n"
               "sphere t at .8 0 0 radius .2 material g\n",
               &one_sample, &tool);
-    look_from(&d, 0, light);
+    draw_rotated(&d, 0, light);
     glint_scene_account(d.frame.scene, object, &all, seen);
     assert_int_equal(object[0].count[GLINT_SCENE_TEXELS],
                      4 * object[0].count[GLINT_SCENE_SHADED]);
     assert_int_equal(object[0].count[GLINT_SCENE_SHADOWS], 0);
     assert_true(d.frame.map_texels > 0);
-    draw(&d, light);
+    draw_scene(&d, light);
     assert_int_equal(d.frame.map_texels, 0);
     drawn_close(&d);
 }
@@ -411,7 +416,7 @@ TEST(account)
 /* ------------------------------------------------------------------ extremes
  */
 
-static double brightest(const int32_t *light_q20)
+static double max_light(const int32_t *light_q20)
 {
     double most = 0;
 
@@ -420,8 +425,8 @@ static double brightest(const int32_t *light_q20)
     return most;
 }
 
-/* A medium that absorbs everything is black; one that absorbs nothing returns
- * at most the light it receives, at any strength. */
+/* Checks that a fully absorbing medium is black, and that one without
+ * absorption returns at most the light it receives, at any strength. */
 TEST(albedo_0_and_1)
 {
     static int32_t light[3 * PIXELS];
@@ -444,15 +449,15 @@ TEST(albedo_0_and_1)
                  fmin(1600 * power, 1e9), fmin(1600 * power, 1e9),
                  fmin(1600 * power, 1e9), model[k / 8]);
         open_text(&d, text, &one_sample, &tool);
-        draw(&d, light);
+        draw_scene(&d, light);
         if (albedo == 0) {
-            assert_true(brightest(light) == 0);
+            assert_true(max_light(light) == 0);
         } else {
-            /* Near the poles, where texels are narrow, more comes together. */
-            assert_true(brightest(light) <=
+            /* Near the poles, where texels are narrow, light accumulates. */
+            assert_true(max_light(light) <=
                         fmin(1.3 * 1.06 * fmin(power, 6.2e5), 32768) + 1e-4);
             if (power > 1e-2)
-                assert_true(brightest(light) > .3 * fmin(power, 1000));
+                assert_true(max_light(light) > .3 * fmin(power, 1000));
         }
         drawn_close(&d);
     }
@@ -521,8 +526,8 @@ TEST(refused)
                    "stretched up to 1.58");
 }
 
-/* Programs without the part say which one a scene needs. */
-TEST(lacks)
+/* Checks that a program without the module names the one that a scene needs. */
+TEST(missing_module)
 {
     struct tool tool = {.name = "test"};
     struct glint_scene_config cfg;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Ward's lobe over an environment: rows B1, B2, B4 and B6 to B8, a white
- * furnace, and
- * the same lookups in double. */
+ * Tests Ward's reflection lobe over an environment map: rows B1, B2, B4 and B6
+ * to B8, a white furnace, and the same lookups in double precision.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -23,7 +23,7 @@ struct map {
     struct glint_environment e;
 };
 
-static void paint(int is_even)
+static void paint_map(int is_even)
 {
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
@@ -53,7 +53,7 @@ static void open_map(struct map *m, int levels)
     assert_ok(glint_environment_open(&m->e, m->data, bytes, &reason));
 }
 
-static struct glint_ward_material material_of(double x, double y)
+static struct glint_ward_material make_material(double x, double y)
 {
     return (struct glint_ward_material){
         {32768, 32768, 32768},
@@ -65,9 +65,9 @@ static const struct glint_ward_options eight = {8, GLINT_WARD_CONSTANT, 0, 0};
 
 /* ----------------------------------------------------------------- furnace */
 
-/* In even light of 1 each norm reflects what its albedo is, by an integral in
- * double. */
-static double albedo(int norm, double no, double alpha)
+/* Returns the albedo of the norm NORM of the lobe under uniform light of 1,
+ * by an integral in double precision. NO: cosine of the view direction. */
+static double integrate_albedo(int norm, double no, double alpha)
 {
     const double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double view[3] = {sqrt(1 - no * no), 0, no};
@@ -89,14 +89,14 @@ static double albedo(int norm, double no, double alpha)
 TEST(furnace)
 {
     static const double cosine[4] = {1, .7, .3, .1};
-    /* Of the bounded norm, whose lobe is below 1 at grazing angles. */
+    /* for the bounded norm, whose albedo is below 1 at grazing angles */
     static const double stated[4] = {.998, .996, .984, .889};
     const int32_t frame_q14[3][3] = {
         {16384, 0, 0}, {0, 16384, 0}, {0, 0, 16384}};
     struct glint_ward_options o = {32, GLINT_WARD_PUBLISHED, 0, 0};
     struct map m;
 
-    paint(1);
+    paint_map(1);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int norm = 0; norm < 2; norm++)
         for (int k = 0; k < 4; k++) {
@@ -104,10 +104,10 @@ TEST(furnace)
             const int32_t view_q14[3] = {
                 (int32_t)lrint(0x1p14 * sqrt(1 - no * no)), 0,
                 (int32_t)lrint(0x1p14 * no)};
-            struct glint_ward_material material = material_of(.05, .05);
+            struct glint_ward_material material = make_material(.05, .05);
             struct glint_ward_lobe lobe;
             int32_t rgb_q15[3];
-            double want = albedo(norm, no, .05), got;
+            double want = integrate_albedo(norm, no, .05), got;
 
             material.norm = (enum glint_ward_norm)norm;
             glint_ward_prepare(&lobe, &m.e, &material, &o);
@@ -124,7 +124,7 @@ TEST(furnace)
 
 /* --------------------------------------------------------------- reference */
 
-static double texel_of(const struct glint_environment *e, int k, size_t i,
+static double texel_at(const struct glint_environment *e, int k, size_t i,
                        int c)
 {
     const uint32_t word = ((const uint32_t *)e->texel[k])[i];
@@ -133,8 +133,8 @@ static double texel_of(const struct glint_environment *e, int k, size_t i,
                  (int)(word >> 27) - 12 + e->header->unit_log2);
 }
 
-static double look_level(const struct glint_environment *e, int k,
-                         const double toward[3], int c)
+static double lookup_level(const struct glint_environment *e, int k,
+                           const double toward[3], int c)
 {
     const int side = 1 << e->level[k].side_log2;
     double u, v, x, y, sum = 0;
@@ -146,27 +146,28 @@ static double look_level(const struct glint_environment *e, int k,
         const int i = (int)floor(x) + (j & 1), l = (int)floor(y) + (j >> 1);
 
         sum += (1 - fabs(x - i)) * (1 - fabs(y - l)) *
-               texel_of(e, k, glint_sphere_index(side, i, l), c);
+               texel_at(e, k, glint_sphere_index(side, i, l), c);
     }
     return sum;
 }
 
-static double look(const struct glint_environment *e, const double toward[3],
-                   double level, int c)
+static double lookup(const struct glint_environment *e, const double toward[3],
+                     double level, int c)
 {
     const double last = e->header->n_levels - 1;
     const int k = (int)(level = fmin(fmax(level, 0), last));
 
     return level <= k
-               ? look_level(e, k, toward, c)
-               : (4 - pow(4, level - k)) / 3 * look_level(e, k, toward, c) +
+               ? lookup_level(e, k, toward, c)
+               : (4 - pow(4, level - k)) / 3 * lookup_level(e, k, toward, c) +
                      (pow(4, level - k) - 1) / 3 *
-                         look_level(e, k + 1, toward, c);
+                         lookup_level(e, k + 1, toward, c);
 }
 
-/* Slopes of alpha 1 with constant footprints; returns b. */
-static double draw(int n, const double alpha[2],
-                   double slope[GLINT_WARD_SAMPLES][2])
+/* Draws N half-vector slopes for alpha 1 with constant footprints. Returns
+ * b. */
+static double draw_slopes(int n, const double alpha[2],
+                          double slope[GLINT_WARD_SAMPLES][2])
 {
     const double f = (n == 1 ? 1 : n == 4 ? 1.4 : n == 32 ? 3 : 2) / n;
     const double least = fmin(alpha[0], alpha[1]);
@@ -197,11 +198,12 @@ static double draw(int n, const double alpha[2],
     return b;
 }
 
-static void twin_pixel(const struct glint_environment *e, const double alpha[2],
-                       int n, const double frame[3][3], double rgb[3])
+static void reference_pixel(const struct glint_environment *e,
+                            const double alpha[2], int n,
+                            const double frame[3][3], double rgb[3])
 {
     double slope[GLINT_WARD_SAMPLES][2];
-    const double blur = 2 * draw(n, alpha, slope);
+    const double blur = 2 * draw_slopes(n, alpha, slope);
     const double texel = sqrt(4 * GLINT_PI) / (1 << SIDE_LOG2);
 
     for (int k = 0; k < n; k++) {
@@ -221,23 +223,23 @@ static void twin_pixel(const struct glint_environment *e, const double alpha[2],
             continue;
         for (int c = 0; c < 3; c++)
             rgb[c] += fmin(ni / (ho / length), 8) / n *
-                      look(e, toward, log2(2 * sqrt(blur * ho) / texel), c);
+                      lookup(e, toward, log2(2 * sqrt(blur * ho) / texel), c);
     }
 }
 
-TEST(twin)
+TEST(equals_reference)
 {
     static const int samples[5] = {1, 4, 8, 16, 32};
     static ward_picture want, got;
     double least = 200;
     struct map m;
 
-    paint(0);
+    paint_map(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int k = 0; k < 10; k++) {
         const double alpha[2] = {.05, k / 5 ? .05 : .3};
         const struct glint_ward_material material =
-            material_of(alpha[0], alpha[1]);
+            make_material(alpha[0], alpha[1]);
         struct glint_ward_options o = eight;
 
         o.samples = samples[k % 5];
@@ -246,8 +248,8 @@ TEST(twin)
             double frame[3][3];
 
             if (ward_frame(i, frame))
-                twin_pixel(&m.e, alpha, o.samples, (const double(*)[3])frame,
-                           want[i]);
+                reference_pixel(&m.e, alpha, o.samples,
+                                (const double(*)[3])frame, want[i]);
         }
         ward_look(&m.e, &material, &o, got);
         least = fmin(least, ward_psnr(want, got));
@@ -259,10 +261,10 @@ TEST(twin)
 
 /* -------------------------------------------------------------------- rows */
 
-/* Sets TO to what directions of the whole hemisphere show, N of them, each
- * looked up in the level of its fraction. */
-static void uniform(const struct glint_environment *e, const double alpha[2],
-                    int n, ward_picture to)
+/* Sets TO to the average of N uniform directions of the hemisphere, each
+ * looked up in the map level of its solid angle. */
+static void render_uniform(const struct glint_environment *e,
+                           const double alpha[2], int n, ward_picture to)
 {
     const double view[3] = {0, 0, -1};
     const double level =
@@ -284,7 +286,7 @@ static void uniform(const struct glint_environment *e, const double alpha[2],
                           GLINT_WARD_BOUNDED, toward) *
                 2 * GLINT_PI / n;
             for (int c = 0; c < 3; c++)
-                to[i][c] += w * look(e, toward, level, c);
+                to[i][c] += w * lookup(e, toward, level, c);
         }
     }
 }
@@ -294,7 +296,7 @@ struct reference {
     ward_picture want;
 };
 
-static void sum_of(const double alpha[2], struct reference *r)
+static void sum_texels(const double alpha[2], struct reference *r)
 {
     struct glint_environment_options o;
     struct glint_environment_report report = {0};
@@ -306,9 +308,9 @@ static void sum_of(const double alpha[2], struct reference *r)
     glint_sphere_close(&r->sphere);
 }
 
-/* Row B1: half vectors of the lobe's density, as published, beat directions of
- * the whole hemisphere at every number of samples, up to alphas of .2. Row B4:
- * Gaussian levels beat mips with 8 samples. */
+/* Row B1: half vectors drawn by the published density of the lobe have less
+ * error than uniform directions at every number of samples, up to alphas of
+ * .2. Row B4: Gaussian levels have less error than mipmaps with 8 samples. */
 TEST(b1_b4)
 {
     static const double alphas[3][2] = {{.05, .05}, {.2, .2}, {.05, .2}};
@@ -317,15 +319,15 @@ TEST(b1_b4)
     static ward_picture got;
     struct map gauss, mip;
 
-    paint(0);
+    paint_map(0);
     open_map(&gauss, GLINT_ENVIRONMENT_GAUSS);
     open_map(&mip, GLINT_ENVIRONMENT_MIP);
     for (int a = 0; a < 3; a++) {
         const struct glint_ward_material material =
-            material_of(alphas[a][0], alphas[a][1]);
+            make_material(alphas[a][0], alphas[a][1]);
         double by_gauss, by_mip;
 
-        sum_of(alphas[a], &r);
+        sum_texels(alphas[a], &r);
         for (int k = 0; k < 4; k++) {
             const struct glint_ward_options o = {samples[k],
                                                  GLINT_WARD_PUBLISHED, 0, 0};
@@ -333,7 +335,7 @@ TEST(b1_b4)
 
             ward_look(&mip.e, &material, &o, got);
             ward = ward_psnr(r.want, got);
-            uniform(&mip.e, alphas[a], samples[k], got);
+            render_uniform(&mip.e, alphas[a], samples[k], got);
             whole = ward_psnr(r.want, got);
             print_message("B1, alpha %g, %g, N %d: %.1f dB, hemisphere %.1f\n",
                           alphas[a][0], alphas[a][1], samples[k], ward, whole);
@@ -351,22 +353,22 @@ TEST(b1_b4)
     free(mip.data);
 }
 
-/* Row B2: colours and alphas change over one baked environment: each lobe is
- * that of its material, and colours are factors. */
+/* Row B2: while colours and alphas change over one baked environment, each
+ * lobe is that of its material, and colours are factors. */
 TEST(b2_changes)
 {
     static ward_picture red, white, wide;
-    struct glint_ward_material material = material_of(.05, .1);
+    struct glint_ward_material material = make_material(.05, .1);
     struct map m;
     double differ = 0;
 
-    paint(0);
+    paint_map(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     ward_look(&m.e, &material, &eight, white);
     material.specular_q15[0] = 1 << 14;
     material.specular_q15[1] = 0;
     ward_look(&m.e, &material, &eight, red);
-    material = material_of(.3, .1);
+    material = make_material(.3, .1);
     ward_look(&m.e, &material, &eight, wide);
     for (int i = 0; i < WARD_PIXELS; i++) {
         assert_true(fabs(red[i][0] - white[i][0] / 2) <= 0x1p-15);
@@ -377,8 +379,8 @@ TEST(b2_changes)
     free(m.data);
 }
 
-/* Row B8: 8 samples are acceptable, 30 dB and more of what a display is sent,
- * on a map of spots and waves. */
+/* Row B8: 8 samples are sufficient: at least 30 dB in display codes, on a
+ * map of spots and waves. */
 TEST(b8_eight)
 {
     static const double alphas[3][2] = {{.05, .05}, {.1, .1}, {.05, .2}};
@@ -386,14 +388,14 @@ TEST(b8_eight)
     static ward_picture got;
     struct map m;
 
-    paint(0);
+    paint_map(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     for (int a = 0; a < 3; a++) {
         const struct glint_ward_material material =
-            material_of(alphas[a][0], alphas[a][1]);
+            make_material(alphas[a][0], alphas[a][1]);
         double db;
 
-        sum_of(alphas[a], &r);
+        sum_texels(alphas[a], &r);
         ward_look(&m.e, &material, &eight, got);
         db = ward_psnr_codes(r.want, got);
         print_message("B8, alpha %g, %g: %.1f dB\n", alphas[a][0], alphas[a][1],
@@ -403,20 +405,20 @@ TEST(b8_eight)
     free(m.data);
 }
 
-/* Row B6: more samples are nearer to the sum over all texels. */
+/* Row B6: more samples come closer to the sum over all texels. */
 TEST(b6_samples)
 {
     static const int samples[3] = {1, 8, 32};
     static const double alpha[2] = {.1, .1};
-    const struct glint_ward_material material = material_of(.1, .1);
+    const struct glint_ward_material material = make_material(.1, .1);
     static struct reference r;
     static ward_picture got;
     struct map m;
     double last = 0;
 
-    paint(0);
+    paint_map(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
-    sum_of(alpha, &r);
+    sum_texels(alpha, &r);
     for (int k = 0; k < 3; k++) {
         struct glint_ward_options o = eight;
         double db;
@@ -431,12 +433,12 @@ TEST(b6_samples)
     free(m.data);
 }
 
-/* No light is black, one texel of 1e9 or a scale of 1e-6 .. 1e9 is light times
- * that: a ball's picture is the same but for its scale. */
+/* Checks extreme environments (black, one texel of 1e9, scales of 1e-6 ..
+ * 1e9): the image of a ball changes only by its scale. */
 TEST(extreme_lights)
 {
     static ward_picture one, got;
-    const struct glint_ward_material material = material_of(.1, .1);
+    const struct glint_ward_material material = make_material(.1, .1);
     struct map m;
 
     memset(pixels, 0, sizeof pixels);
@@ -445,12 +447,12 @@ TEST(extreme_lights)
     for (int i = 0; i < WARD_PIXELS; i++)
         assert_true(got[i][0] == 0 && got[i][1] == 0 && got[i][2] == 0);
     free(m.data);
-    paint(0);
+    paint_map(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     ward_look(&m.e, &material, &eight, one);
     free(m.data);
     for (int power = -12; power <= 12; power += 6) {
-        paint(0);
+        paint_map(0);
         for (int i = 0; i < HEIGHT * WIDTH * 3; i++)
             ((float *)pixels)[i] *= ldexpf(1, power);
         open_map(&m, GLINT_ENVIRONMENT_GAUSS);
@@ -470,14 +472,15 @@ TEST(extreme_lights)
     free(m.data);
 }
 
-/* Row B7: a ratio of 200 becomes one of 10, and the call reports it. */
-TEST(b7_held)
+/* Row B7: an anisotropy ratio of 200 is clamped to 10, and the call reports
+ * it. */
+TEST(b7_clamped)
 {
     struct glint_ward_lobe held, plain;
-    struct glint_ward_material material = material_of(.001, .2);
+    struct glint_ward_material material = make_material(.001, .2);
     struct map m;
 
-    paint(0);
+    paint_map(0);
     open_map(&m, GLINT_ENVIRONMENT_GAUSS);
     memset(&held, 0, sizeof held);
     memset(&plain, 0, sizeof plain);
@@ -485,24 +488,24 @@ TEST(b7_held)
     material.alpha_q24[0] = (material.alpha_q24[1] + 9) / 10;
     assert_int_equal(glint_ward_prepare(&plain, &m.e, &material, &eight), 0);
     assert_memory_equal(&held, &plain, sizeof held);
-    material = material_of(.2, .001);
+    material = make_material(.2, .001);
     assert_int_equal(glint_ward_prepare(&held, &m.e, &material, &eight), 1);
     free(m.data);
 }
 
-/* Any material, view and file that is allowed: light within its range. */
+/* Checks that any valid material, view and file gives light within range. */
 TEST(extremes)
 {
     static const double alpha[4] = {.001, .01, .5, 1};
     struct map m;
     int32_t most = 0;
 
-    paint(0);
+    paint_map(0);
     pixels[9][9][0] = 1e9f;
     open_map(&m, GLINT_ENVIRONMENT_MIP);
     for (int k = 0; k < 16 * GLINT_WARD_SAMPLES; k++) {
         struct glint_ward_material material =
-            material_of(alpha[k & 3], alpha[k >> 2 & 3]);
+            make_material(alpha[k & 3], alpha[k >> 2 & 3]);
         const struct glint_ward_options o = {
             1 + k / 16, (enum glint_ward_rule)(k & 1), k % 7 * 200 - 600, 0};
         const int32_t frame_q14[3][3] = {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A baked translucent medium: its integers beside the fit in doubles, and files
- * that are refused.
+ * Tests a baked translucent medium: its integers against the fit in double
+ * precision, and invalid files.
  */
 #include <math.h>
 #include <stdint.h>
@@ -21,9 +21,9 @@
 static const enum glint_scatter_model models[] = {
     GLINT_SCATTER_CLUSTERED, GLINT_SCATTER_FACTORED, GLINT_SCATTER_ALBEDO};
 
-/* Returns how close the integers of B come to its fit, under lamps and shadows.
- */
-static double close_by(const struct built_stone *b)
+/* Returns the PSNR, dB, between the integers of B and its fit, under lamps
+ * and shadows. */
+static double compute_psnr(const struct built_stone *b)
 {
     const size_t n = 3 * (size_t)(b->fit.side * b->fit.side);
     double *light = calloc(3 * n, sizeof *light);
@@ -47,7 +47,7 @@ TEST(close_to_fit)
         double db;
 
         build_stone(&b, models[m], 128, 29, .9);
-        db = close_by(&b);
+        db = compute_psnr(&b);
         print_message("model %d: %.1f dB, taps of %d bits, ranks lose %.4f\n",
                       m, db, b.report.tap_bits, b.report.kernel_loss);
         assert_true(db > 45);
@@ -55,8 +55,8 @@ TEST(close_to_fit)
     }
 }
 
-/* Bakes B again, of RANK; returns how close it comes then. */
-static double close_of_rank(struct built_stone *b, int rank)
+/* Bakes B again with RANK and returns the PSNR. */
+static double psnr_of_rank(struct built_stone *b, int rank)
 {
     struct glint_error error;
     const char *reason;
@@ -67,11 +67,11 @@ static double close_of_rank(struct built_stone *b, int rank)
     assert_ok(glint_stone_bake(&b->fit, &b->text, "test", 7, &b->data,
                                &b->bytes, &b->report, &error));
     assert_ok(glint_translucent_open(&b->stone, b->data, b->bytes, &reason));
-    return close_by(b);
+    return compute_psnr(b);
 }
 
-/* Two products are as good as four where light changes slowly: the largest
- * singular values of entries alone have 51 dB, and 37 by one. */
+/* Two products approximate as well as four where light varies slowly: the
+ * largest singular values alone reach 51 dB, and one product 37 dB. */
 TEST(ranks)
 {
     for (int m = 0; m < 3; m += 2) {
@@ -79,8 +79,8 @@ TEST(ranks)
         double db[2];
 
         build_stone(&b, models[m], 128, 29, .9);
-        db[0] = close_of_rank(&b, 2);
-        db[1] = close_of_rank(&b, 1);
+        db[0] = psnr_of_rank(&b, 2);
+        db[1] = psnr_of_rank(&b, 1);
         print_message("model %d: rank 2 %.1f dB, rank 1 %.1f\n", m, db[0],
                       db[1]);
         assert_true(db[0] > 60 && db[1] > 45 && db[1] < db[0]);
@@ -90,30 +90,29 @@ TEST(ranks)
 
 /* ---------------------------------------------------------------- refusals */
 
-/* What is done to the words of a whole translucent medium, before its checksum
- * is set. */
+/* Damages an intact translucent medium; its checksum is set afterwards. */
 typedef void damage_fn(struct glint_translucent_header *h, unsigned char *data);
 
-static int16_t *taps_of(const struct glint_translucent_header *h,
-                        unsigned char *data)
+static int16_t *find_taps(const struct glint_translucent_header *h,
+                          unsigned char *data)
 {
     return (int16_t *)(void *)(data + h->tap_at);
 }
 
-/* Each tap has the bits that it may have; the sum is too large. */
+/* Each tap is within its range, but the sum is too large. */
 static void widen_column(struct glint_translucent_header *h,
                          unsigned char *data)
 {
     for (uint32_t k = 0; k < h->kernel * h->rank * h->n_planes; k++)
-        taps_of(h,
-                data)[(2 * (k / h->kernel) + 1) * h->kernel + k % h->kernel] =
+        find_taps(h,
+                  data)[(2 * (k / h->kernel) + 1) * h->kernel + k % h->kernel] =
             k % 2 ? 2047 : -2047;
 }
 
 static void widen_row(struct glint_translucent_header *h, unsigned char *data)
 {
     for (uint32_t k = 0; k < h->kernel; k++)
-        taps_of(h, data)[k] = k % 2 ? 2047 : -2047;
+        find_taps(h, data)[k] = k % 2 ? 2047 : -2047;
 }
 
 static void lose_shift(struct glint_translucent_header *h, unsigned char *data)
@@ -132,7 +131,7 @@ static void raise_shift(struct glint_translucent_header *h, unsigned char *data)
 
 static void raise_tap(struct glint_translucent_header *h, unsigned char *data)
 {
-    taps_of(h, data)[0] = -32768;
+    find_taps(h, data)[0] = -32768;
 }
 
 static void raise_cluster(struct glint_translucent_header *h,
@@ -174,7 +173,7 @@ static void move_taps(struct glint_translucent_header *h, unsigned char *data)
     h->tap_at = h->bytes - 4;
 }
 
-/* Every sum that the loops rely on is looked at, as are their places. */
+/* Checks that every sum and offset that the loops rely on is validated. */
 TEST(refused)
 {
     static const struct {
