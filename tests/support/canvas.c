@@ -15,8 +15,9 @@ struct glint_image canvas_new(enum glint_pixel_format format, int width,
 {
     void *mem = calloc(1, glint_image_bytes(format, width, height));
 
-    if (!mem) /* Programs that are not tests draw, too, so cmocka cannot report
-               * this. */
+    /* Programs other than tests use this too, so cmocka cannot report the
+     * failure. */
+    if (!mem)
         abort();
     return glint_image_over(mem, format, width, height);
 }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The list of extremes: each case prints the worst figure that it saw and the
- * bound of this figure, in a line from which "make extremes" makes its
- * table.
+ * Worst-case tests: each prints its worst value and the bound in one line,
+ * which "make extremes" collects into a table.
  */
 #ifndef GLINT_TESTS_EXTREME_H
 #define GLINT_TESTS_EXTREME_H
@@ -12,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Returns whether GLINT_LONG requests long cases: it is set and is not 0. */
+/* Returns whether long tests are requested: GLINT_LONG is set and not 0. */
 static inline bool extreme_long(void)
 {
     const char *text = getenv("GLINT_LONG");
@@ -20,8 +19,8 @@ static inline bool extreme_long(void)
     return text && *text && *text != '0';
 }
 
-/* Prints WORST, the worst figure of case NAME, and returns whether it is at
- * most BOUND. */
+/* Prints the worst value WORST of case NAME. Returns whether it is at most
+ * BOUND. */
 static inline bool extreme_at_most(const char *name, double worst, double bound,
                                    const char *unit)
 {
@@ -30,8 +29,8 @@ static inline bool extreme_at_most(const char *name, double worst, double bound,
     return worst <= bound;
 }
 
-/* Prints WORST, the worst figure of case NAME, and returns whether it is at
- * least BOUND. */
+/* Prints the worst value WORST of case NAME. Returns whether it is at least
+ * BOUND. */
 static inline bool extreme_at_least(const char *name, double worst,
                                     double bound, const char *unit)
 {

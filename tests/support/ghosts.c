@@ -7,9 +7,8 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* Normals of an octagon's sides, _q30: cos and sin of 22.5 + 45 k degrees,
- * rounded by hand. As constants they are the same with every libm, and so are
- * goldens. */
+/* Normals of an octagon's sides, Q30: cos and sin of 22.5 + 45 k degrees.
+ * They are constants so that golden hashes do not depend on libm. */
 static const int32_t octagon[8][2] = {
     {992008094, 410903207},  {410903207, 992008094},   {-410903207, 992008094},
     {-992008094, 410903207}, {-992008094, -410903207}, {-410903207, -992008094},
@@ -33,7 +32,8 @@ struct glint_flare_config base_config(void)
 
 struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j)
 {
-    /* sx and sy are -1.25 .. 1.25 stop radii, _q16, in integers only. */
+    /* sx and sy are -1.25 .. 1.25 stop radii, Q16, computed in integers
+     * only. */
     const int64_t sx = (int64_t)163840 * i / g->n - 81920;
     const int64_t sy = (int64_t)163840 * j / g->n - 81920;
     const int64_t bent = (sx * sx / 65536 + sx * sy / 131072) * g->bend / 1000;
@@ -82,7 +82,8 @@ struct glint_flare *open_flare(struct glint_flare_config *c, void **mem)
 
     assert_int_not_equal(bytes, 0);
     assert_int_equal(posix_memalign(mem, 64, bytes), 0);
-    memset(*mem, 0xa5, bytes); /* Dirty memory shows what init leaves unset. */
+    /* Dirty memory reveals members that init() leaves unset. */
+    memset(*mem, 0xa5, bytes);
     assert_ok(glint_flare_init(&f, c, *mem, bytes));
     return f;
 }
@@ -151,7 +152,7 @@ struct ghost random_ghost(void)
         draw_number(WIDTH - 60) - 20,
         draw_number(HEIGHT),
         size,
-        draw_number(1500) - 750, /* beyond +-320 the ghost is folded */
+        draw_number(1500) - 750, /* above +-320 the ghost is folded */
         draw_number(2) ? 1 : -1,
         draw_number(2000) - 1000,
         draw_number(4),

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Synthetic ghosts, drawn by the integer rasteriser.
+ * Synthetic ghosts for tests of the integer rasteriser.
  */
 #ifndef TESTS_SUPPORT_GHOSTS_H
 #define TESTS_SUPPORT_GHOSTS_H
@@ -13,49 +13,51 @@ enum { WIDTH = 203, HEIGHT = 151, N_GHOSTS = 6 };
  * sheared and bent. */
 struct ghost {
     int n;
-    int cx, cy;       /* pixels */
-    int size;         /* pixels per stop radius */
-    int bend;         /* quadratic term, per mille of size */
-    int mirror;       /* -1: turned over */
-    int barrel_shift; /* per mille of the radius: barrel against stop */
+    int cx, cy; /* centre, pixels */
+    int size;   /* pixels per stop radius */
+    int bend;   /* quadratic term, 1/1000 of size */
+    int mirror; /* -1: mirrored */
+    /* offset of the barrel from the stop, 1/1000 of the radius */
+    int barrel_shift;
     int32_t flux_exponent;
     int32_t rgb_q14[3];
 };
 
 extern const struct ghost ghosts[N_GHOSTS];
 
-/* Returns settings with an octagonal stop and room for all ghosts. */
+/* Returns a configuration with an octagonal stop and memory for all ghosts. */
 struct glint_flare_config base_config(void);
 
-/* Returns a flare of settings C. Its memory is *MEM, which the caller frees. */
+/* Returns a flare with configuration C. Sets *MEM to its memory, which the
+ * caller frees. */
 struct glint_flare *open_flare(struct glint_flare_config *c, void **mem);
 
-/* Returns the vertex in column I and row J of the grid of G. */
+/* Returns the vertex in column I and row J of G's grid. */
 struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j);
 
 void add_ghost(struct glint_flare *f, const struct ghost *g);
 
-/* Clears PIXELS [HEIGHT][WIDTH][3] and returns an image over them. */
+/* Clears PX[HEIGHT][WIDTH][3] and returns a linear image over it. */
 struct glint_image linear_image(int32_t *px);
 
-/* draw_list() draws the N ghosts of LIST into OUT [HEIGHT][WIDTH][3], linear
- * light _q20; draw_scene() draws all of `ghosts`. */
+/* draw_list() draws the N ghosts of LIST into OUT[HEIGHT][WIDTH][3], linear
+ * light Q20; draw_scene() draws the list `ghosts`. */
 struct glint_flare_stats draw_list(struct glint_flare_config c,
                                    const struct ghost *list, int n,
                                    int32_t *out);
 struct glint_flare_stats draw_scene(struct glint_flare_config c, int32_t *out);
 
-/* Draws all ghosts into PIXELS, which must be WANT. */
+/* Draws all ghosts into PIXELS and checks that they equal WANT. */
 extern int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 void same_as_want(struct glint_flare_config c);
 
-/* Returns the sum of CHANNEL over all pixels, 1 being white. */
+/* Returns the sum of CHANNEL over all pixels, 1 = white. */
 double total(const int32_t *p, int channel);
 
 /* Returns the next random number, 0 .. N - 1. */
 int draw_number(int n);
 
-/* Returns a random ghost in or near the picture, folded or not. */
+/* Returns a random ghost in or near the image, folded or not. */
 struct ghost random_ghost(void);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lenses, and a check of doubles, for tests. Run from the root of the tree.
+ * Loads lenses, and compares doubles, for tests. Run from the root of the tree.
  */
 #ifndef GLINT_TESTS_LENS_CHECK_H
 #define GLINT_TESTS_LENS_CHECK_H
@@ -11,8 +11,8 @@
 #include "glint/bake.h"
 #include "support/test.h"
 
-/* Checks that |GOT - EXPECTED| <= TOLERANCE in double; cmocka compares floats
- * only. */
+/* Checks that |GOT - EXPECTED| <= TOLERANCE in double precision; cmocka
+ * compares floats only. */
 #define assert_near(got, expected, tolerance) \
     check_near(got, expected, tolerance, #got, __FILE__, __LINE__)
 
@@ -26,7 +26,7 @@ static inline void check_near(double got, double expected, double tolerance,
     _fail(file, line);
 }
 
-/* Reads the file PATH, up to SIZE bytes, into TEXT; returns how many. */
+/* Reads at most SIZE bytes of the file PATH into TEXT. Returns their number. */
 static inline size_t read_file(const char *path, char *text, size_t size)
 {
     FILE *file = fopen(path, "rb");

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Small models in memory, whose polynomials can be worked out by hand.
+ * Builds small models in memory, whose polynomials can be evaluated by hand.
  *
  *     struct model_image m = model_auto();
  *     glint_lens_open(&lens, m.data, m.bytes, &reason);
  *     free(m.data);
  *
- * Tables are written one after the other, and none is shared. After a change
- * model_seal() sets size and checksum again.
+ * Tables are written one after the other, and none is shared. After a change,
+ * model_seal() updates size and checksum.
  */
 #ifndef GLINT_TESTS_MODEL_BUILDER_H
 #define GLINT_TESTS_MODEL_BUILDER_H
@@ -23,7 +23,7 @@ enum {
 };
 
 struct model_image {
-    unsigned char *data; /* malloc'ed */
+    unsigned char *data; /* freed by the caller */
     uint32_t bytes;
 };
 
@@ -38,20 +38,20 @@ struct model_polynomial {
     int32_t coef[MODEL_TERMS];
 };
 
-/* Appends BYTES bytes, padded to whole words; returns where they are. */
+/* Appends ITEMS[BYTES], padded to 32-bit words. Returns their offset. */
 uint32_t model_put(struct model_image *m, const void *items, size_t bytes);
 
 struct glint_model_header *model_header(const struct model_image *m);
 
 void model_seal(struct model_image *m);
 
-/* Returns the model of M, whose data it points to; aborts where it is refused.
- */
+/* Opens the model in M and returns it; it points into m->data. Aborts if the
+ * model is invalid. */
 struct glint_lens model_open(const struct model_image *m);
 
 struct glint_real model_real(double x);
 
-/* Wavelengths of 800 and 400 nm as 1 / wavelength^2, um^-2 _q24; 1 as _q30. */
+/* Wavelengths of 800 and 400 nm as 1 / wavelength^2, um^-2, Q24; 1 in Q30. */
 enum {
     MODEL_WAVE_LO_Q24 = 26214400,
     MODEL_WAVE_HI_Q24 = 104857600,
@@ -61,13 +61,13 @@ enum {
 void model_begin(struct model_image *m, enum glint_basis basis,
                  const char *name);
 
-/* Writes the tables of the N polynomials P into M and S, with coefficients that
- * are halved HALVED times. */
+/* Writes the tables of the N polynomials P into M and S; coefficients are
+ * divided by 2^HALVED. */
 void model_outputs(struct model_image *m, struct glint_model_system *s,
                    const struct model_polynomial *p, uint32_t n, int halved);
 
-/* Returns a system of the auto basis. Its box lies at 1 + s / 2 mm and has half
- * sides of 4 - s and 3 mm. */
+/* Returns a polynomial system of the auto basis. Its box is centred at 1 + s
+ * / 2 mm; its half sides are 4 - s and 3 mm. */
 struct glint_model_system model_auto_system(struct model_image *m,
                                             int32_t sine_lo_q30,
                                             int32_t sine_hi_q30,
@@ -78,9 +78,9 @@ void model_end(struct model_image *m, const struct glint_model_ghost *ghosts,
                uint32_t n_ghosts, const struct glint_model_system *systems,
                uint32_t n_systems);
 
-/* Returns a model of three ghosts: ghost 0 has two ranges of angles, sines 0 ..
- * 1/4 .. 1/2, the second with halved coefficients; ghost 1 is never seen; ghost
- * 2 has two bands of wavelengths. */
+/* Returns a model of three ghosts: ghost 0 has two ranges of angles, sines 0
+ * .. 1/4 .. 1/2, the second with halved coefficients; ghost 1 is never
+ * visible; ghost 2 has two bands of wavelengths. */
 struct model_image model_auto(void);
 
 #endif

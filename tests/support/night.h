@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Drawn night scenes: lamps with a blurred rim in camera noise, as an 8-bit
- * grey picture shows them, and the spots and tracks that are found in it.
+ * Synthetic night scenes: lamps with a blurred rim in camera noise, as an 8-bit
+ * grey image, and the spots and tracks found in them.
  */
 #ifndef GLINT_TESTS_NIGHT_H
 #define GLINT_TESTS_NIGHT_H
@@ -16,15 +16,15 @@ enum { NIGHT_MAX = 1024, NIGHT_NOISE = 1 << 16 };
 
 struct night_lamp {
     double x, y, radius;
-    double light; /* 1 = white; falls by e for every 1.5 pixels beyond the
-                   * radius */
+    /* 1 = white; outside the radius falls by a factor e per 1.5 pixels */
+    double light;
 };
 
 struct night {
     struct glint_image image;
-    double sigma;            /* codes: standard deviation of the noise */
-    double pole_x0, pole_x1; /* pixels: columns between which a pole hides
-                              * lamps */
+    double sigma; /* standard deviation of the noise, codes */
+    /* columns between which a pole hides lamps, pixels */
+    double pole_x0, pole_x1;
     struct glint_lamp_finder *finder;
     struct glint_lamp_finder_config lights;
     struct glint_lamp_tracker *tracks;
@@ -39,21 +39,22 @@ struct night {
     int row_noise[GLINT_MAX_SIDE]; /* index in noise of a row's first pixel */
 };
 
-/* Sets NIGHT to a size, defaults and a table of noise: sums of twelve uniform
- * numbers, which are nearly normal. */
+/* Sets NIGHT to a size, default parameters and a table of noise: sums of
+ * twelve uniform numbers, nearly Gaussian. */
 void night_init(struct night *night, int width, int height);
 
-/* Makes finder, profile and tracker once they are configured. Returns whether
- * that went well. */
+/* Opens finder, profile and tracker after they were configured. Returns
+ * whether this succeeded. */
 int night_open(struct night *n);
 
 void night_close(struct night *night);
 
-/* Draws the N lamps of LAMP with noise of sigma about them, over a dark picture
- * with noise of one code. */
+/* Draws the N lamps of LAMP with noise of sigma around them, on a dark
+ * background with noise of one code. */
 void night_draw(struct night *night, const struct night_lamp *lamp, int n);
 
-/* Finds and tracks the lamps of the picture, ELAPSED_US after the last one. */
+/* Finds and tracks the lamps of the image, ELAPSED_US microseconds after the
+ * previous one. */
 void night_track(struct night *n, int32_t elapsed_us);
 
 void night_step(struct night *n, const struct night_lamp *lamp, int n_lamps,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The Heliar as a command opens it by default, with its model and settings. Run
- * from the root of the tree.
+ * The Heliar lens, opened with default settings as a command does, with its
+ * model. Run from the root of the tree.
  *
  *     TEST_GROUP(opened_heliar, opened_close);
  */

@@ -8,7 +8,7 @@
 
 enum { FINE = 5, SOURCES = 40, KERNEL = 1 << 18 };
 
-static double bell(uint32_t *seed)
+static double gaussian_noise(uint32_t *seed)
 {
     double sum = -6;
 
@@ -17,7 +17,7 @@ static double bell(uint32_t *seed)
     return sum;
 }
 
-static int is_in(const struct power_lamp *l, double x, double y)
+static int is_in_shape(const struct power_lamp *l, double x, double y)
 {
     const double c = cos(l->angle), s = sin(l->angle);
     const double u = fabs(c * (x - l->x) + s * (y - l->y));
@@ -33,10 +33,10 @@ static int is_in(const struct power_lamp *l, double x, double y)
     }
 }
 
-/* Sets LIGHT to the part of each pixel that the shape covers, divided by the
- * sum of all these parts. */
-static void cover(double *light, int width, int height,
-                  const struct power_lamp *l)
+/* Sets LIGHT to the fraction of each pixel that the shape covers, normalised
+ * to a sum of 1. */
+static void draw_shape(double *light, int width, int height,
+                       const struct power_lamp *l)
 {
     double sum = 0;
     const int reach = (int)(l->radius * 1.5) + 2;
@@ -50,8 +50,8 @@ static void cover(double *light, int width, int height,
             if (x < 0 || y < 0 || x >= width || y >= height)
                 continue;
             for (int i = 0; i < fine * fine; i++)
-                n += is_in(l, x + (i % fine + 0.5) / fine,
-                           y + (i / fine + 0.5) / fine);
+                n += is_in_shape(l, x + (i % fine + 0.5) / fine,
+                                 y + (i / fine + 0.5) / fine);
             light[y * width + x] = (double)n / (fine * fine);
             sum += light[y * width + x];
         }
@@ -74,7 +74,7 @@ static void blur_line(double *at, int n, int step, const double *kernel,
         at[i * step] = tmp[i];
 }
 
-static void blur(double *light, int width, int height, double sigma)
+static void blur_image(double *light, int width, int height, double sigma)
 {
     double kernel[64], sum = 0;
     const int reach = (int)ceil(4.5 * sigma + 1);
@@ -94,8 +94,8 @@ static void blur(double *light, int width, int height, double sigma)
     free(tmp);
 }
 
-/* Adds to LIGHT the glare of the lit pixels of SHAPE, from up to SOURCES of
- * them: where there are more, every k-th pixel stands for all. */
+/* Adds to LIGHT the glare of the lit pixels of SHAPE. Of more than SOURCES
+ * pixels every k-th represents the others. */
 static void add_glare(double *light, const double *shape, int width, int height,
                       const struct power_lamp *l)
 {
@@ -106,7 +106,8 @@ static void add_glare(double *light, const double *shape, int width, int height,
 
     for (int r2 = 0; r2 < width * width + height * height && r2 < KERNEL; r2++)
         kernel[r2] = pow(1 + r2 / (l->reach * l->reach), -l->fall / 2);
-    /* TOTAL is the glare of one pixel within a radius of 2000 pixels. */
+    /* TOTAL is the glare of one pixel, integrated to a radius of 2000
+     * pixels. */
     for (double r = 0.25; r < 2000; r += 0.5)
         total +=
             3.14159265 * r * pow(1 + r * r / l->reach / l->reach, -l->fall / 2);
@@ -142,7 +143,7 @@ void power_see(double *light, int width, int height,
 
     for (int i = 0; i < n; i++)
         shape[i] = light[i] > over ? light[i] : 0;
-    blur(light, width, height, lens->sigma);
+    blur_image(light, width, height, lens->sigma);
     add_glare(light, shape, width, height, lens);
     free(shape);
 }
@@ -153,9 +154,9 @@ void power_draw(double *light, int width, int height,
     const size_t bytes = sizeof *light * (size_t)(width * height);
     double *shape = malloc(bytes);
 
-    cover(light, width, height, lamp);
+    draw_shape(light, width, height, lamp);
     memcpy(shape, light, bytes);
-    blur(light, width, height, lamp->sigma);
+    blur_image(light, width, height, lamp->sigma);
     for (int i = 0; i < width * height; i++)
         light[i] *= 1 - lamp->glare;
     if (lamp->glare > 0)
@@ -179,7 +180,7 @@ static void make_tables(void)
                                       : 1.055 * pow(light, 1 / 2.4) - 0.055);
     }
     for (int i = 0; i < NOISE; i++)
-        noise[i] = bell(&seed);
+        noise[i] = gaussian_noise(&seed);
 }
 
 void power_expose(uint8_t *rgb, const struct power_picture *scene, double gain,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps as a camera takes them, of known power: a shape, blurred by a bell
- * curve and by the glare of a lens, over a background, with noise.
+ * Simulated photographs of lamps with known power: a shape, blurred by a
+ * Gaussian and by the glare of a lens, over a background, with noise.
  */
 #ifndef GLINT_TESTS_POWER_PICTURE_H
 #define GLINT_TESTS_POWER_PICTURE_H
@@ -15,33 +15,34 @@ enum power_shape { POWER_DISC, POWER_SQUARE, POWER_TUBE, POWER_SHAPES };
 
 struct power_lamp {
     enum power_shape shape;
-    double x, y;   /* pixels */
-    double radius; /* pixels; of squares half a side, of tubes half a length */
-    double angle;  /* radians */
-    double sigma;  /* pixels: standard deviation of the bell curve */
-    double glare;  /* fraction of the light that becomes glare, 0 .. 1 */
-    double reach;  /* pixels: glare falls by (1 + (r / reach)^2)^(-fall / 2) */
+    double x, y; /* centre, pixels */
+    /* pixels; half the side of a square, half the length of a tube */
+    double radius;
+    double angle; /* radians */
+    double sigma; /* standard deviation of the Gaussian, pixels */
+    double glare; /* fraction of the light that becomes glare, 0 .. 1 */
+    double reach; /* pixels; glare falls as (1 + (r / reach)^2)^(-fall / 2) */
     double fall;
-    double rgb[3]; /* The luminance is 1. */
+    double rgb[3]; /* its luminance is 1 */
 };
 
-/* A picture of linear light, three numbers a pixel. */
+/* An image of linear light, three values per pixel. */
 struct power_picture {
     int width, height;
     double *rgb;
 };
 
-/* Sets LIGHT, one number a pixel, to what LAMP gives at power 1. */
+/* Sets LIGHT, one value per pixel, to the image of LAMP with power 1. */
 void power_draw(double *light, int width, int height,
                 const struct power_lamp *lamp);
 
-/* Changes LIGHT into what a camera with LENS sees: blurred, and with the glare
- * of all pixels above OVER. */
+/* Applies LENS to LIGHT: blurs it and adds the glare of all pixels above
+ * OVER. */
 void power_see(double *light, int width, int height,
                const struct power_lamp *lens, double over);
 
-/* Writes RGB, 8-bit codes of sRGB, from GAIN times the light SCENE with
- * noise of SIGMA codes. */
+/* Sets RGB to the 8-bit sRGB codes of GAIN times the light SCENE, plus noise
+ * of SIGMA codes. */
 void power_expose(uint8_t *rgb, const struct power_picture *scene, double gain,
                   double sigma, uint32_t *seed);
 

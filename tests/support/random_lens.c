@@ -29,29 +29,29 @@ static double log_uniform(uint64_t *r, double low, double high)
     return exp(stage_uniform(r, log(low), log(high)));
 }
 
-static bool chance(uint64_t *r, double p)
+static bool random_chance(uint64_t *r, double p)
 {
     return stage_uniform(r, 0, 1) < p;
 }
 
-static int below(uint64_t *r, int n)
+static int random_below(uint64_t *r, int n)
 {
     return (int)(stage_random(r) % (uint64_t)n);
 }
 
 static void set_glass(uint64_t *r, struct glint_surface *s)
 {
-    const struct glass *g = &catalogue[below(r, N_CATALOGUE)];
+    const struct glass *g = &catalogue[random_below(r, N_CATALOGUE)];
 
     s->nd = g->nd;
     s->vd = g->vd;
-    if (chance(r, 0.5)) {
+    if (random_chance(r, 0.5)) {
         s->nd = stage_uniform(r, 1.4, 2.1);
         s->vd = stage_uniform(r, 18, 95);
     }
 }
 
-static double sag(double radius, double height)
+static double compute_sag(double radius, double height)
 {
     return radius == 0
                ? 0
@@ -59,13 +59,13 @@ static double sag(double radius, double height)
                      copysign(sqrt(radius * radius - height * height), radius);
 }
 
-/* Chooses glasses, semi-diameters from 0.1 .. 0.5 on, and radii that are the
- * larger the more surfaces there are. */
+/* Chooses glasses, semi-diameters from 0.1 .. 0.5 on, and radii that grow
+ * with the number of surfaces. */
 static void set_shapes(uint64_t *r, struct glint_prescription *l)
 {
     const double weak = sqrt(l->n_surfaces / 4.0);
     double semi = stage_uniform(r, 0.1, 0.5);
-    int left = 0; /* surfaces still to come in this cemented group */
+    int left = 0; /* remaining surfaces of this cemented group */
 
     for (int k = 0; k < l->n_surfaces; k++) {
         struct glint_surface *s = &l->surface[k];
@@ -73,23 +73,24 @@ static void set_shapes(uint64_t *r, struct glint_prescription *l)
 
         *s = (struct glint_surface){.nd = 1};
         if (left == 0) /* groups of 2 to 4 surfaces; the last may have 1 */
-            left = rest <= 3 ? rest : rest == 4 ? 2 : 2 + below(r, 3);
+            left = rest <= 3 ? rest : rest == 4 ? 2 : 2 + random_below(r, 3);
         left--;
         if (left > 0)
             set_glass(r, s);
         semi *= stage_uniform(r, 0.9, 1.1);
         s->semi_mm = semi;
-        if (!chance(r, 0.12))
-            s->radius_mm = (chance(r, 0.5) ? 1 : -1) *
+        if (!random_chance(r, 0.12))
+            s->radius_mm = (random_chance(r, 0.5) ? 1 : -1) *
                            fmax(1.05 * semi, weak * log_uniform(r, 0.4, 8));
     }
 }
 
-/* Places the surfaces so that rims do not cross, and a little farther apart.
- * The stop is a plane of its own before, between or after them. */
+/* Chooses thicknesses slightly larger than needed to keep rims from
+ * crossing. The stop is a separate plane before, between or after the
+ * surfaces. */
 static void set_places(uint64_t *r, struct glint_prescription *l)
 {
-    l->stop_after = below(r, l->n_surfaces + 1);
+    l->stop_after = random_below(r, l->n_surfaces + 1);
     l->stop_semi_mm =
         l->surface[l->stop_after == 0 ? 0 : l->stop_after - 1].semi_mm *
         stage_uniform(r, 0.5, 1);
@@ -99,8 +100,8 @@ static void set_places(uint64_t *r, struct glint_prescription *l)
         const bool to_stop = l->stop_after == k + 1;
         const double height =
             last ? s->semi_mm : fmin(s->semi_mm, s[1].semi_mm);
-        const double out = sag(s->radius_mm, fmin(height, s->semi_mm));
-        const double in = last ? 0 : sag(s[1].radius_mm, height);
+        const double out = compute_sag(s->radius_mm, fmin(height, s->semi_mm));
+        const double in = last ? 0 : compute_sag(s[1].radius_mm, height);
         const double more = log_uniform(r, 0.003, 0.15);
 
         if (to_stop) {
@@ -110,9 +111,9 @@ static void set_places(uint64_t *r, struct glint_prescription *l)
             s->thickness_mm = fmax(0, out - in) + more;
     }
     if (l->stop_after == 0)
-        l->stop_thickness_mm =
-            fmax(0, -sag(l->surface[0].radius_mm, l->surface[0].semi_mm)) +
-            log_uniform(r, 0.003, 0.15);
+        l->stop_thickness_mm = fmax(0, -compute_sag(l->surface[0].radius_mm,
+                                                    l->surface[0].semi_mm)) +
+                               log_uniform(r, 0.003, 0.15);
 }
 
 static void set_coatings(uint64_t *r, struct glint_prescription *l)
@@ -123,11 +124,11 @@ static void set_coatings(uint64_t *r, struct glint_prescription *l)
     for (int k = 0; k < l->n_surfaces; k++) {
         struct glint_surface *s = &l->surface[k];
 
-        if ((before > 0) != (s->vd > 0) && chance(r, coated)) {
+        if ((before > 0) != (s->vd > 0) && random_chance(r, coated)) {
             s->coating.nm = stage_uniform(r, 350, 800);
             s->coating.n_films = 1;
             s->coating.film[0].index =
-                chance(r, 0.5) ? 1.38 : stage_uniform(r, 1.2, 2.3);
+                random_chance(r, 0.5) ? 1.38 : stage_uniform(r, 1.2, 2.3);
             s->coating.film[0].quarters = 1;
         }
         before = s->vd;
@@ -135,7 +136,7 @@ static void set_coatings(uint64_t *r, struct glint_prescription *l)
 }
 
 /* Multiplies all lengths of the lens by FACTOR. */
-static void scale(struct glint_prescription *l, double factor)
+static void scale_lens(struct glint_prescription *l, double factor)
 {
     for (int k = 0; k < l->n_surfaces; k++) {
         l->surface[k].radius_mm *= factor;
@@ -146,7 +147,7 @@ static void scale(struct glint_prescription *l, double factor)
     l->stop_semi_mm *= factor;
 }
 
-static double *last_gap(struct glint_prescription *l)
+static double *find_last_gap(struct glint_prescription *l)
 {
     return l->stop_after == l->n_surfaces
                ? &l->stop_thickness_mm
@@ -154,7 +155,7 @@ static double *last_gap(struct glint_prescription *l)
 }
 
 /* Sets f-number, film and its distance. Returns false if the lens forms no
- * image, or forms it inside itself. */
+ * image, or an image inside itself. */
 static bool set_focus(uint64_t *r, struct glint_prescription *l)
 {
     struct glint_optics o;
@@ -164,12 +165,12 @@ static bool set_focus(uint64_t *r, struct glint_prescription *l)
     glint_optics_of(l, &o);
     if (!(o.focal_mm > 1e-3 && o.focal_mm < 1e3 && o.stop_radius_mm > 1e-6))
         return false;
-    scale(l, log_uniform(r, 1, 1e4) / o.focal_mm);
+    scale_lens(l, log_uniform(r, 1, 1e4) / o.focal_mm);
     glint_optics_of(l, &o);
     behind = o.back_focal_mm;
     if (l->stop_after == l->n_surfaces)
         behind -= l->surface[l->n_surfaces - 1].thickness_mm;
-    *last_gap(l) = behind * stage_uniform(r, 0.98, 1.02);
+    *find_last_gap(l) = behind * stage_uniform(r, 0.98, 1.02);
     l->f_number = fmin(1000, fmax(0.5, o.stop_radius_mm / l->stop_semi_mm *
                                            log_uniform(r, 1.001, 30)));
     l->film_width_mm =
@@ -178,64 +179,64 @@ static bool set_focus(uint64_t *r, struct glint_prescription *l)
     return behind > 0;
 }
 
-static int print(char *text, int at, const char *format, double a, double b,
-                 double c)
+static int append_text(char *text, int at, const char *format, double a,
+                       double b, double c)
 {
     return at + snprintf(text + at, (size_t)(RANDOM_LENS_TEXT - at), format, a,
                          b, c);
 }
 
-static int print_stop(const struct glint_prescription *l, char *text, int at)
+static int append_stop(const struct glint_prescription *l, char *text, int at)
 {
-    return print(text, at, "stop %.9g %.9g\n", l->stop_thickness_mm,
-                 l->stop_semi_mm, 0);
+    return append_text(text, at, "stop %.9g %.9g\n", l->stop_thickness_mm,
+                       l->stop_semi_mm, 0);
 }
 
-static int print_surface(const struct glint_surface *s, bool cemented,
-                         char *text, int at)
+static int append_surface(const struct glint_surface *s, bool cemented,
+                          char *text, int at)
 {
     if (s->radius_mm == 0)
-        at = print(text, at, "surface flat %.9g %.9g ", s->thickness_mm,
-                   s->semi_mm, 0);
+        at = append_text(text, at, "surface flat %.9g %.9g ", s->thickness_mm,
+                         s->semi_mm, 0);
     else
-        at = print(text, at, "surface %.9g %.9g %.9g ", s->radius_mm,
-                   s->thickness_mm, s->semi_mm);
-    at = s->vd > 0 ? print(text, at, "%.6g %.6g", s->nd, s->vd, 0)
-                   : print(text, at, "air", 0, 0, 0);
+        at = append_text(text, at, "surface %.9g %.9g %.9g ", s->radius_mm,
+                         s->thickness_mm, s->semi_mm);
+    at = s->vd > 0 ? append_text(text, at, "%.6g %.6g", s->nd, s->vd, 0)
+                   : append_text(text, at, "air", 0, 0, 0);
     if (cemented)
-        return print(text, at, "\n", 0, 0, 0);
+        return append_text(text, at, "\n", 0, 0, 0);
     return s->coating.n_films
-               ? print(text, at, " coating %.6g %.6g\n", s->coating.nm,
-                       s->coating.film[0].index, 0)
-               : print(text, at, " coating none\n", 0, 0, 0);
+               ? append_text(text, at, " coating %.6g %.6g\n", s->coating.nm,
+                             s->coating.film[0].index, 0)
+               : append_text(text, at, " coating none\n", 0, 0, 0);
 }
 
 static void write_table(const struct glint_prescription *l, int number,
                         char *text)
 {
-    int at = print(text, 0, "name random-%.0f\nf-number %.9g\n", number,
-                   l->f_number, 0);
+    int at = append_text(text, 0, "name random-%.0f\nf-number %.9g\n", number,
+                         l->f_number, 0);
 
-    at = print(text, at, "film %.9g %.9g\n", l->film_width_mm,
-               l->film_height_mm, 0);
+    at = append_text(text, at, "film %.9g %.9g\n", l->film_width_mm,
+                     l->film_height_mm, 0);
     for (int k = 0; k < l->n_surfaces; k++) {
         if (l->stop_after == k)
-            at = print_stop(l, text, at);
-        at = print_surface(&l->surface[k],
-                           k > 0 && l->surface[k].vd > 0 &&
-                               l->surface[k - 1].vd > 0,
-                           text, at);
+            at = append_stop(l, text, at);
+        at = append_surface(&l->surface[k],
+                            k > 0 && l->surface[k].vd > 0 &&
+                                l->surface[k - 1].vd > 0,
+                            text, at);
     }
     if (l->stop_after == l->n_surfaces)
-        print_stop(l, text, at);
+        append_stop(l, text, at);
 }
 
-static bool try_one(uint64_t *r, struct glint_prescription *l, int number,
-                    char *text)
+static bool make_lens(uint64_t *r, struct glint_prescription *l, int number,
+                      char *text)
 {
     struct glint_error error;
-    /* Most lenses get few surfaces: ghosts grow with the square of their
-     * number. */
+    /* Most lenses get few surfaces, as the number of ghosts grows with its
+     * square. */
     const double u = stage_uniform(r, 0, 1);
     const int n = (int)floor(2 * pow(32.5, u * u));
 
@@ -257,7 +258,7 @@ int random_lens(struct glint_prescription *lens, uint64_t seed, int number,
     uint64_t r = seed * UINT64_C(0x9e3779b97f4a7c15) + (uint64_t)number;
 
     for (int tries = 0; tries < MOST_TRIES; tries++)
-        if (try_one(&r, lens, number, text))
+        if (make_lens(&r, lens, number, text))
             return tries;
     return -1;
 }

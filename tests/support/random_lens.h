@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Random lenses that nobody would build, but that are valid: the checker
- * accepts them, and they form an image.
+ * Random valid lenses: nobody would build them, but the checker accepts them
+ * and they form an image.
  */
 #ifndef GLINT_TESTS_RANDOM_LENS_H
 #define GLINT_TESTS_RANDOM_LENS_H
@@ -11,11 +11,11 @@
 enum { RANDOM_LENS_TEXT = 16384 };
 
 /* Makes lens NUMBER of SEED, as a table in TEXT and parsed in LENS: 2 to 64
- * surfaces (a single one would have air on both sides), radii of both signs and
- * planes, cemented or not, glasses of the catalogue or of any n and V, coatings
- * or none, the stop anywhere, focal lengths of 1 mm to 10 m, films of 1 to 100
- * mm as far as these allow. Returns how many lenses were refused before this
- * one; -1 if all were. */
+ * surfaces (a single one would have air on both sides), radii of both signs
+ * and planes, cemented or not, catalogue glasses or any n and V, with or
+ * without coatings, the stop anywhere, focal lengths of 1 mm to 10 m, films
+ * of 1 to 100 mm if possible. Returns the number of invalid candidates
+ * before it, or -1 if all were invalid. */
 int random_lens(struct glint_prescription *lens, uint64_t seed, int number,
                 char text[RANDOM_LENS_TEXT]);
 

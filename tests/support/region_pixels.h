@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Regions pixel by pixel, as sums over rows have to be. */
+ * Adds regions pixel by pixel: the reference for sums over whole rows.
+ */
 #ifndef GLINT_TESTS_SUPPORT_REGION_PIXELS_H
 #define GLINT_TESTS_SUPPORT_REGION_PIXELS_H
 
 #include "lamps/regions.h"
 
-/* Adds pixels X0 .. X1 - 1 of row Y, all of the same light, to the moments and
- * the colour. */
+/* Adds pixels X0 .. X1 - 1 of row Y, all with the same light, to moments and
+ * colour of SUM. */
 static inline void region_add_pixels(struct glint_region *sum,
                                      const struct glint_region_light *light,
                                      int x0, int x1, int y)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Pseudo-random numbers for tests, the same on every machine, by a linear
- * congruential generator: its high bits are the good ones.
+ * congruential generator, whose high bits are the best.
  *
  *     uint32_t seed = 1;
  *     x = rng_below(&seed, 256);
@@ -17,20 +17,19 @@ static inline uint32_t rng_bits(uint32_t *seed)
     return *seed = *seed * UINT32_C(1664525) + UINT32_C(1013904223);
 }
 
-/* Returns 0 .. N - 1; N is 1 .. 2^24. */
+/* Returns an integer of 0 .. N - 1; N is 1 .. 2^24. */
 static inline int rng_below(uint32_t *seed, int n)
 {
     return (int)((uint64_t)(rng_bits(seed) >> 8) * (uint32_t)n >> 24);
 }
 
-/* Returns a number from 0 to less than 1. */
+/* Returns a number in [0, 1). */
 static inline double rng_unit(uint32_t *seed)
 {
     return (rng_bits(seed) >> 8) * 0x1p-24;
 }
 
-/* Returns 32 bits of another generator, xorshift [Marsaglia03]; *SEED is never
- * 0. */
+/* Returns 32 bits of xorshift [Marsaglia03]; *SEED must not be 0. */
 static inline uint32_t rng_xorshift(uint32_t *seed)
 {
     *seed ^= *seed << 13;
@@ -38,7 +37,7 @@ static inline uint32_t rng_xorshift(uint32_t *seed)
     return *seed ^= *seed << 5;
 }
 
-/* Returns a number from -1 to less than 1, by rng_xorshift(). */
+/* Returns a number in [-1, 1), by rng_xorshift(). */
 static inline double rng_signed(uint32_t *seed)
 {
     return rng_xorshift(seed) * 0x1p-31 - 1;

@@ -23,7 +23,7 @@ void scratch_open_file(void)
 
 void scratch_close_file(void)
 {
-    unlink(scratch_file); /* a test may have done so */
+    unlink(scratch_file); /* does nothing if a test has removed it */
 }
 
 void scratch_open_dir(void)
@@ -64,5 +64,5 @@ int scratch_count(const char *dir)
     while (readdir(d))
         n++;
     closedir(d);
-    return n - 2; /* not . and .. */
+    return n - 2; /* . and .. do not count */
 }

@@ -12,27 +12,27 @@
 
 #include <stddef.h>
 
-/* Expands to two arguments: TEXT, and its bytes without the 0 at its end. */
+/* Expands to two arguments: TEXT, and its length without the terminating 0. */
 #define BYTES(text) text, sizeof text - 1
 
-/* Path of the one file, which exists and is empty before the first test. */
+/* path of the single file, which exists and is empty before the first test */
 extern char scratch_file[];
 void scratch_open_file(void);
 void scratch_close_file(void);
 
-/* Path of the folder; closing it fails if a test has left a file in it. */
+/* path of the folder; closing it fails if a test has left a file in it */
 extern char scratch_dir[];
 void scratch_open_dir(void);
 void scratch_close_dir(void);
 
-/* Returns the path of NAME in the folder. The text stays as it is during one
- * more call. */
+/* Returns the path of NAME in the folder, valid until the call after the
+ * next. */
 const char *scratch_path(const char *name);
 
-/* Writes DATA to the file NAME in the folder; the test fails if it cannot. */
+/* Writes DATA to the file NAME in the folder; fails the test on an error. */
 void scratch_put(const char *name, const char *data, size_t bytes);
 
-/* Returns how many entries the folder DIR has, hidden ones included. */
+/* Returns the number of entries of the folder DIR, including hidden ones. */
 int scratch_count(const char *dir);
 
 #endif

@@ -33,7 +33,7 @@ int settings_frame(const struct tool *tool, const struct opened *opened,
     frame->dials = settings->dials;
     frame->only_ghost = settings_only_ghost(settings);
     frame->tints = lens->tints;
-    /* A limit of work would make the grid coarser than was requested. */
+    /* A limit of work would make the grid coarser than requested. */
     frame->limits.most_minsn =
         settings_has_grid(settings) && !GLINT_OPTION_GIVEN(o, work)
             ? 0

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A single frame, set up like that of a command, for tests of the parts of an
+ * Sets up a single frame as the commands do, for tests of modules below the
  * engine.
  */
 #ifndef GLINT_TESTS_SUPPORT_SETTINGS_FRAME_H
@@ -15,7 +15,8 @@ struct opened {
     struct opened_lens lens;
 };
 
-/* Makes FRAME of WIDTH x HEIGHT as the options say. Returns an exit code. */
+/* Makes FRAME of WIDTH x HEIGHT with the options of OPENED. Returns an exit
+ * code. */
 int settings_frame(const struct tool *tool, const struct opened *opened,
                    int width, int height, struct glint_frame *frame);
 

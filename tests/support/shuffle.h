@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A scheduler that runs jobs one by one in shuffled order, each as a random
- * worker, so that a result which depends on order or worker shows.
+ * A scheduler that runs jobs one at a time in random order, each as a random
+ * worker. It reveals results that depend on order or worker.
  */
 #ifndef GLINT_TESTS_SHUFFLE_H
 #define GLINT_TESTS_SHUFFLE_H

@@ -10,7 +10,7 @@
 #include "model/model_cache.h"
 #include "options/tool.h"
 
-static bool refuse(const char *why)
+static bool fail_with(const char *why)
 {
     fprintf(stderr, "stage: %s\n", why);
     return false;
@@ -25,7 +25,7 @@ bool stage_load(struct stage *stage, const char *name)
     snprintf(path, sizeof path, "lenses/%s.lens", name);
     file = fopen(path, "rb");
     if (!file)
-        return refuse(path);
+        return fail_with(path);
     bytes = fread(text, 1, sizeof text - 1, file);
     fclose(file);
     text[bytes] = 0;
@@ -38,10 +38,10 @@ bool stage_parse(struct stage *stage, const char *text)
 
     return glint_prescription_parse(&stage->lens, text, strlen(text), "stage",
                                     &error) == GLINT_OK ||
-           refuse(error.text);
+           fail_with(error.text);
 }
 
-/* Red, green and blue. */
+/* Wavelengths of red, green and blue. */
 static const double nm[3] = {650, 532, 450};
 
 bool stage_prepare(struct stage *stage, int n_blades)
@@ -50,12 +50,11 @@ bool stage_prepare(struct stage *stage, int n_blades)
 
     return glint_setup_init(&stage->setup, &stage->lens, n_blades, 0, nm, 3,
                             &error) == GLINT_OK ||
-           refuse(error.text);
+           fail_with(error.text);
 }
 
-/* Fills of_model, by which frames are drawn, with what the model says of its
- * lens. */
-static bool take_model(struct stage *stage)
+/* Sets of_model, the lens data that frames are drawn with, from the model. */
+static bool set_of_model(struct stage *stage)
 {
     const struct glint_setup *s = &stage->setup;
     struct glint_error error;
@@ -64,11 +63,11 @@ static bool take_model(struct stage *stage)
                                   s->n_blades, s->blade_rotation_deg,
                                   s->wavelength_nm, s->n_wavelengths,
                                   &error) == GLINT_OK ||
-           refuse(error.text);
+           fail_with(error.text);
 }
 
-static struct glint_bake_options options_of(struct stage *stage,
-                                            double tolerance, double max_deg)
+static struct glint_bake_options make_options(struct stage *stage,
+                                              double tolerance, double max_deg)
 {
     struct glint_bake_options options;
 
@@ -83,19 +82,19 @@ static struct glint_bake_options options_of(struct stage *stage,
 bool stage_bake(struct stage *stage, double tolerance, double max_deg)
 {
     const struct glint_bake_options options =
-        options_of(stage, tolerance, max_deg);
+        make_options(stage, tolerance, max_deg);
     struct glint_error error = {"no memory"};
     const char *reason = "";
     unsigned char *data;
 
     if (glint_bake(&stage->lens, &options, &data, &stage->file.bytes,
                    &stage->report, &error) != GLINT_OK)
-        return refuse(error.text);
+        return fail_with(error.text);
     stage->file.data = data;
     if (glint_lens_open(&stage->file.lens, data, stage->file.bytes, &reason) !=
         GLINT_OK)
-        return refuse(reason);
-    return take_model(stage);
+        return fail_with(reason);
+    return set_of_model(stage);
 }
 
 bool stage_model(struct stage *stage, double tolerance, double max_deg)
@@ -106,9 +105,9 @@ bool stage_model(struct stage *stage, double tolerance, double max_deg)
                               .workers = stage->workers};
 
     return model_cached(&tool, &stage->lens,
-                        options_of(stage, tolerance, max_deg),
+                        make_options(stage, tolerance, max_deg),
                         &stage->file) == EXIT_OK &&
-           take_model(stage);
+           set_of_model(stage);
 }
 
 void stage_view(struct stage *stage, int width, int height, double sensor_mm)
@@ -138,10 +137,10 @@ bool stage_stop(struct stage *stage, double f_number)
 
     if (glint_prescription_set_f_number(&stage->lens, f_number, &error) !=
             GLINT_OK ||
-        !stage_prepare(stage, stage->setup.n_blades) || !take_model(stage) ||
+        !stage_prepare(stage, stage->setup.n_blades) || !set_of_model(stage) ||
         glint_setup_stop_down(&stage->of_model, &stage->file.lens, f_number,
                               &error) != GLINT_OK)
-        return refuse(error.text);
+        return fail_with(error.text);
     stage_view(stage, view.width, view.height, view.sensor_width_mm);
     return true;
 }
@@ -166,7 +165,7 @@ bool stage_read(struct stage *stage, const char *path, int width, int height)
     header = stage->file.lens.header;
     if (glint_setup_from_model(&stage->of_model, &stage->file.lens, 8, 0, nm, 3,
                                &error) != GLINT_OK)
-        return refuse(error.text);
+        return fail_with(error.text);
     stage->lens.film_width_mm = glint_real_value(header->film_width_mm);
     stage->lens.film_height_mm = glint_real_value(header->film_height_mm);
     stage_view(stage, width, height, 0);
@@ -178,7 +177,7 @@ bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,
 {
     return glint_frame_draw_alone(&stage->frame, lamps, n, 1, rgb,
                                   &stage->drawn) == GLINT_OK ||
-           refuse("no picture in linear light");
+           fail_with("no picture in linear light");
 }
 
 bool stage_exact(struct stage *stage, const struct glint_lamp *lamps, int n,
@@ -200,7 +199,7 @@ bool stage_exact(struct stage *stage, const struct glint_lamp *lamps, int n,
     for (size_t i = 0; ok && i < count; i++)
         rgb[i] = (float)exact[i];
     free(exact);
-    return ok || refuse("no exact picture");
+    return ok || fail_with("no exact picture");
 }
 
 bool stage_codes(struct stage *stage, const struct glint_lamp *lamps, int n,
@@ -211,7 +210,7 @@ bool stage_codes(struct stage *stage, const struct glint_lamp *lamps, int n,
 
     return glint_frame_draw(&stage->frame, lamps, n, 1, &image,
                             &stage->drawn) == GLINT_OK ||
-           refuse("no picture in codes");
+           fail_with("no picture in codes");
 }
 
 struct glint_measure stage_compare(const struct stage *stage,
@@ -229,7 +228,7 @@ struct glint_measure stage_compare(const struct stage *stage,
     if (!glint_measure_compare(&(struct glint_float_image){w, h, copies},
                                &(struct glint_float_image){w, h, copies + n},
                                false, &m))
-        refuse("no memory to compare");
+        fail_with("no memory to compare");
     free(copies);
     return m;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A lens for tests: its table, its model, and pictures of both.
+ * A lens for tests: its table, its model, and images by both.
  *
  *     stage_load(&s, "heliar-tronnier");          or stage_parse, or s.lens
  *     stage_prepare(&s, 8);                       stop and colours
@@ -10,7 +10,7 @@
  *     stage_exact(&s, &lamp, 1, 192, exact);      the reference
  *     stage_close(&s);
  *
- * Functions that fail print the reason on stderr and return false.
+ * On failure functions print the reason to stderr and return false.
  */
 #ifndef GLINT_TESTS_STAGE_H
 #define GLINT_TESTS_STAGE_H
@@ -30,42 +30,42 @@ struct stage {
     struct glint_view view;
     struct glint_frame frame;
     bool framed;
-    struct glint_engine_report drawn; /* filled by the last picture */
+    struct glint_engine_report drawn; /* report of the last image */
 };
 
-/* Reads lenses/NAME.lens; the program must run from the root of the tree. */
+/* Reads lenses/NAME.lens. The program must run in the root of the tree. */
 bool stage_load(struct stage *stage, const char *name);
 bool stage_parse(struct stage *stage, const char *text);
 
 /* Sets the lens up with a stop of N_BLADES (0: a circle) and wavelengths of
- * 650, 532 and 450 nm. From now on the stage must not move in memory. */
+ * 650, 532 and 450 nm. The stage must not be moved in memory afterwards. */
 bool stage_prepare(struct stage *stage, int n_blades);
 
-/* Make the model for lights up to MAX_DEG degrees: stage_bake() again,
- * stage_model() from the cache if another test baked it
- * (tools/glint/model/model_cache.h). */
+/* Make the model for lights up to MAX_DEG degrees. stage_bake() always
+ * bakes; stage_model() uses the cache (tools/glint/model/model_cache.h). */
 bool stage_bake(struct stage *stage, double tolerance, double max_deg);
 bool stage_model(struct stage *stage, double tolerance, double max_deg);
 
-/* Stops the lens down to F_NUMBER but keeps its model, which was baked for a
- * wider stop. The view stays as it was. */
+/* Stops the lens down to F_NUMBER; the model, baked for a wider stop, and
+ * the view do not change. */
 bool stage_stop(struct stage *stage, double f_number);
 
-/* Sets the size of pictures, WIDTH x HEIGHT, which show SENSOR_MM across (0: as
- * the film fits), and the default dials: irradiance in steps of a percent,
- * fineness 64, all instruction sets. May be repeated. */
+/* Sets the image size, WIDTH x HEIGHT, its width on the sensor, SENSOR_MM
+ * (0: the film's), and the default quality parameters: irradiance in steps
+ * of 1 %, fineness 64, all instruction sets. May be called again. */
 void stage_view(struct stage *stage, int width, int height, double sensor_mm);
 
-/* Loads the lens NAME and sets up all else: a stop of eight blades, its model
- * for lights up to 60 degrees, and pictures of WIDTH x HEIGHT of its film. */
+/* Loads the lens NAME and sets up everything: a stop of eight blades, its
+ * model for lights up to 60 degrees, and images of WIDTH x HEIGHT of its
+ * film. */
 bool stage_open(struct stage *stage, const char *name, int width, int height);
 
-/* Sets up all else for the model in the file PATH: a stop of eight blades and
- * pictures of WIDTH x HEIGHT of its film. */
+/* Opens the model file PATH and sets up everything: a stop of eight blades
+ * and images of WIDTH x HEIGHT of its film. */
 bool stage_read(struct stage *stage, const char *path, int width, int height);
 
-/* Draw the flare of N lamps into RGB [height][width][3], linear light:
- * stage_linear() as the run time does, stage_exact() by exact rays. */
+/* Draw the flare of N lamps into RGB[height][width][3], linear light:
+ * stage_linear() by the run time, stage_exact() by exact rays. */
 bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,
                   float *rgb);
 bool stage_exact(struct stage *stage, const struct glint_lamp *lamps, int n,
@@ -75,16 +75,16 @@ bool stage_exact(struct stage *stage, const struct glint_lamp *lamps, int n,
 bool stage_codes(struct stage *stage, const struct glint_lamp *lamps, int n,
                  uint8_t *codes);
 
-/* Compares TEST with REFERENCE, as measure.h says. */
+/* Compares TEST with REFERENCE by glint_measure (measure.h). */
 struct glint_measure stage_compare(const struct stage *stage,
                                    const float *reference, const float *test);
 
-/* Returns the power at which the flare of LAMP is well exposed, as measure.h
- * says. */
+/* Returns the power of LAMP at which the brightest part of its flare is
+ * white (glint_measure_exposure(), measure.h). */
 double stage_power(struct stage *stage, const struct glint_lamp *lamp);
 
-/* Returns the largest difference, in codes, between means of 8 x 8 blocks of A
- * and of B, which are pictures of stage_codes(). */
+/* Returns the largest difference between the means of 8 x 8 blocks of A and
+ * B, codes; A and B are images by stage_codes(). */
 double stage_block_jump(const struct stage *stage, const uint8_t *a,
                         const uint8_t *b);
 
@@ -93,10 +93,10 @@ double stage_flux(const struct stage *stage, const float *rgb);
 
 void stage_close(struct stage *stage);
 
-/* Returns a white point lamp of POWER in a direction. */
+/* Returns a white point lamp. */
 struct glint_lamp stage_lamp(double theta_deg, double phi_deg, double power);
 
-/* Returns 64 bits of splitmix64: the same numbers on every machine. */
+/* Returns 64 bits of splitmix64, the same sequence on every machine. */
 uint64_t stage_random(uint64_t *state);
 double stage_uniform(uint64_t *state, double low, double high);
 

@@ -45,7 +45,7 @@ int main(int argc, char **argv)
     const char *const name = argc ? strrchr(*argv, '/') : NULL;
 
     if (n_tests > sizeof tests / sizeof *tests)
-        return 99; /* too many for the table */
+        return 99; /* more tests than the table can hold */
     return _cmocka_run_group_tests(name ? name + 1 : "tests", tests, n_tests,
                                    open_group, close_group);
 }

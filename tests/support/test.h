@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Unit tests of cmocka that register themselves:
+ * Unit tests for cmocka that register themselves:
  *
  *   TEST(rejects_a_truncated_header)
  *   {
  *       assert_int_equal(read(bytes, 3), GLINT_E_FORMAT);
  *   }
  *
- * main(), in test.c, runs those of a program in the order of the source. */
+ * main(), in test.c, runs a program's tests in the order of the source.
+ */
 #ifndef GLINT_TESTS_SUPPORT_TEST_H
 #define GLINT_TESTS_SUPPORT_TEST_H
 
@@ -31,7 +32,7 @@
     }                                                         \
     static void test_##name(void)
 
-/* Bodies of what runs before a program's tests, and after them. */
+/* Functions that run before the first test and after the last. */
 #define TEST_OPEN  TEST_FIXTURE(open_tests, test_opens)
 #define TEST_CLOSE TEST_FIXTURE(close_tests, test_closes)
 #define TEST_FIXTURE(name, of)                                \
@@ -42,11 +43,11 @@
     }                                                         \
     static void name(void)
 
-/* The same for each test. */
+/* Functions that run before and after each test. */
 #define TEST_BEFORE TEST_FIXTURE(before_test, test_before)
 #define TEST_AFTER  TEST_FIXTURE(after_test, test_after)
 
-/* Opens and closes all tests by functions that there are. */
+/* Uses existing functions as TEST_OPEN and TEST_CLOSE. */
 #define TEST_GROUP(open, close)                                \
     __attribute__((constructor)) static void group_tests(void) \
     {                                                          \
@@ -55,7 +56,7 @@
     }                                                          \
     struct test_group
 
-/* GLINT_OK and EXIT_OK. */
+/* Checks for GLINT_OK or EXIT_OK. */
 #define assert_ok(status) assert_int_equal(status, 0)
 
 void test_add(const char *name, CMUnitTestFunction run);

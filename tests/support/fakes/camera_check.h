@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_check.h - steps that the tests of the V4L2 source share. Each test
- * ends with must_close(), which checks that nothing stays open, mapped or
+ * camera_check.h - steps shared by the tests of the V4L2 source. Each test ends
+ * with must_close(), which checks that nothing remains open, mapped or
  * allocated.
  */
 #ifndef GLINT_SUPPORT_CAMERA_CHECK_H
@@ -44,7 +44,8 @@ static inline void must_open(const struct glint_v4l2_config *wish)
         fail_msg("%s", said.text);
 }
 
-/* Checks that the camera is closed, unmapped and freed, without a breach. */
+/* Checks that the camera is closed, unmapped and freed, and that the
+ * driver's rules were kept. */
 static inline void must_be_closed(void)
 {
     assert_int_equal(v4l2.source.fd, -1);
@@ -62,7 +63,7 @@ static inline void must_close(void)
     must_be_closed();
 }
 
-/* Checks that opening fails with STATUS and for a reason that contains TEXT. */
+/* Checks that opening fails with STATUS and that the message contains TEXT. */
 static inline void must_refuse(const struct glint_v4l2_config *wish,
                                enum glint_status status, const char *text)
 {
@@ -83,7 +84,7 @@ static inline void done(void)
     v4l2.source.done(&v4l2.source, &frame);
 }
 
-/* Takes a frame, checks that its first byte is CODE, and gives it back. */
+/* Gets a frame, checks that its first byte is CODE, and releases it. */
 static inline void must_get(int code)
 {
     assert_ok(next());
@@ -99,8 +100,8 @@ static inline void must_get_nothing(void)
     done();
 }
 
-/* Takes a frame every 10 ms for MS milliseconds of the fake clock. Returns the
- * first status that is not GLINT_OK, or GLINT_OK at the end, and sets
+/* Gets a frame every 10 ms for MS milliseconds of the fake clock. Returns
+ * the first status other than GLINT_OK, or GLINT_OK at the end. Sets
  * *FAILED_MS to the time of the last attempt. */
 static inline enum glint_status follow(int ms, int *failed_ms)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * A library for LD_PRELOAD: one request for memory of a program fails, the
- * $FAIL_AT-th; with $FAIL_ON all from there on. If $FAIL_COUNT names a file,
- * the number of requests is written to it at exit. With $FAIL_SIGNAL, a number,
- * the request succeeds, and that signal comes first. Made for glibc, whose own
- * allocations it counts, too.
+ * A library for LD_PRELOAD that makes one allocation of a program fail, number
+ * $FAIL_AT; with $FAIL_ON all from there on. If $FAIL_COUNT names a file, the
+ * number of allocations is written to it at exit. With $FAIL_SIGNAL, a number,
+ * the allocation succeeds, and the signal is raised before it. For glibc, whose
+ * own allocations are counted as well.
  */
 #define _GNU_SOURCE
 #include <errno.h>
@@ -24,7 +24,7 @@ static long n, fail_at;
 static bool fails_on;
 static int fail_signal; /* 0: none */
 
-__attribute__((constructor)) static void begin(void)
+__attribute__((constructor)) static void read_environment(void)
 {
     const char *at = getenv("FAIL_AT");
 
@@ -47,7 +47,7 @@ __attribute__((destructor)) static void end(void)
     }
 }
 
-static bool fails(void)
+static bool must_fail(void)
 {
     const long k = __atomic_add_fetch(&n, 1, __ATOMIC_SEQ_CST);
 
@@ -63,22 +63,22 @@ static bool fails(void)
 
 void *malloc(size_t bytes)
 {
-    return fails() ? NULL : __libc_malloc(bytes);
+    return must_fail() ? NULL : __libc_malloc(bytes);
 }
 
 void *calloc(size_t count, size_t bytes)
 {
-    return fails() ? NULL : __libc_calloc(count, bytes);
+    return must_fail() ? NULL : __libc_calloc(count, bytes);
 }
 
 void *realloc(void *old, size_t bytes)
 {
-    return fails() ? NULL : __libc_realloc(old, bytes);
+    return must_fail() ? NULL : __libc_realloc(old, bytes);
 }
 
 int posix_memalign(void **mem, size_t align, size_t bytes)
 {
-    void *const got = fails() ? NULL : __libc_memalign(align, bytes);
+    void *const got = must_fail() ? NULL : __libc_memalign(align, bytes);
 
     if (!got)
         return ENOMEM;

@@ -32,13 +32,13 @@ static struct {
 
 /* ------------------------------------------------------------ what may fail */
 
-static int refuse(int number)
+static int fail_with(int number)
 {
     errno = number;
     return -1;
 }
 
-static bool fails(void)
+static bool must_fail(void)
 {
     const int n = ++calls.n;
 
@@ -71,7 +71,8 @@ static bool is_refused(unsigned long request, const void *arg)
     const struct v4l2_requestbuffers *r = arg;
 
     if (refusal.request != request || refusal.times == 0 ||
-        (request == VIDIOC_REQBUFS && r->count == 0)) /* frees buffers */
+        /* a request that frees buffers */
+        (request == VIDIOC_REQBUFS && r->count == 0))
         return false;
     if (refusal.times > 0)
         refusal.times--;
@@ -133,15 +134,15 @@ int fake_camera_asked(void)
 
 /* ------------------------------------------------------------------- format */
 
-static int blocks_of(uint32_t fourcc)
+static int count_blocks(uint32_t fourcc)
 {
     return fourcc == V4L2_PIX_FMT_NV12M || fourcc == V4L2_PIX_FMT_NV21M ? 2
            : fourcc == V4L2_PIX_FMT_YUV420M                             ? 3
                                                                         : 1;
 }
 
-/* Returns the bytes of a row in block BLOCK; 0 for compressed formats. */
-static uint32_t stride_of(const struct fake_mode *m, int block)
+/* Returns the bytes per row in block BLOCK, 0 for compressed formats. */
+static uint32_t find_stride(const struct fake_mode *m, int block)
 {
     switch (m->fourcc) {
     case V4L2_PIX_FMT_YUYV:
@@ -161,9 +162,9 @@ static uint32_t stride_of(const struct fake_mode *m, int block)
     return m->width + camera.stride_more;
 }
 
-static uint32_t size_of(const struct fake_mode *m, int block)
+static uint32_t find_size(const struct fake_mode *m, int block)
 {
-    const uint32_t luma = stride_of(m, block) * m->height;
+    const uint32_t luma = find_stride(m, block) * m->height;
 
     if (camera.sizeimage)
         return camera.sizeimage;
@@ -184,7 +185,7 @@ static uint32_t size_of(const struct fake_mode *m, int block)
     return luma;
 }
 
-static int tell_format(struct v4l2_format *f)
+static int get_format(struct v4l2_format *f)
 {
     const struct fake_mode *m = &camera.now;
     struct v4l2_pix_format_mplane *mp = &f->fmt.pix_mp;
@@ -195,8 +196,8 @@ static int tell_format(struct v4l2_format *f)
             .width = m->width,
             .height = m->height,
             .pixelformat = m->fourcc,
-            .bytesperline = camera.says_no_stride ? 0 : stride_of(m, 0),
-            .sizeimage = size_of(m, 0),
+            .bytesperline = camera.says_no_stride ? 0 : find_stride(m, 0),
+            .sizeimage = find_size(m, 0),
             .colorspace = camera.colorspace,
             .quantization = camera.quantization,
             .ycbcr_enc = camera.ycbcr_enc};
@@ -207,11 +208,11 @@ static int tell_format(struct v4l2_format *f)
     mp->pixelformat = m->fourcc;
     mp->colorspace = camera.colorspace;
     mp->quantization = (uint8_t)camera.quantization;
-    mp->num_planes = (uint8_t)blocks_of(m->fourcc);
+    mp->num_planes = (uint8_t)count_blocks(m->fourcc);
     for (int i = 0; i < mp->num_planes; i++) {
         mp->plane_fmt[i].bytesperline =
-            camera.says_no_stride ? 0 : stride_of(m, i);
-        mp->plane_fmt[i].sizeimage = size_of(m, i);
+            camera.says_no_stride ? 0 : find_stride(m, i);
+        mp->plane_fmt[i].sizeimage = find_size(m, i);
     }
     return 0;
 }
@@ -231,7 +232,7 @@ static int set_format(struct v4l2_format *f)
         camera.multiplanar ? f->fmt.pix_mp.pixelformat : f->fmt.pix.pixelformat;
 
     if (camera.n_buffers)
-        return refuse(EBUSY);
+        return fail_with(EBUSY);
     m->width = camera.multiplanar ? f->fmt.pix_mp.width : f->fmt.pix.width;
     m->height = camera.multiplanar ? f->fmt.pix_mp.height : f->fmt.pix.height;
     m->fourcc = has_fourcc(fourcc) && !camera.ignores_fourcc
@@ -247,16 +248,16 @@ static int set_format(struct v4l2_format *f)
             m->fps_num = camera.mode[i].fps_num;
             m->fps_den = camera.mode[i].fps_den;
         }
-    return tell_format(f);
+    return get_format(f);
 }
 
-/* Returns mode INDEX among those that WITHIN accepts for KEY, where modes that
- * are LIKE an earlier one are not counted; NULL beyond the last. */
+/* Returns mode number INDEX among the modes that WITHIN accepts for KEY,
+ * ignoring modes that LIKE an earlier one; NULL if there are fewer. */
 static const struct fake_mode *
-nth_mode(uint32_t index,
-         bool (*like)(const struct fake_mode *a, const struct fake_mode *b),
-         const struct fake_mode *key,
-         bool (*within)(const struct fake_mode *a, const struct fake_mode *b))
+find_mode(uint32_t index,
+          bool (*like)(const struct fake_mode *a, const struct fake_mode *b),
+          const struct fake_mode *key,
+          bool (*within)(const struct fake_mode *a, const struct fake_mode *b))
 {
     for (int i = 0; i < FAKE_MODES && camera.mode[i].fourcc; i++) {
         const struct fake_mode *m = &camera.mode[i];
@@ -270,7 +271,7 @@ nth_mode(uint32_t index,
     return NULL;
 }
 
-static bool any(const struct fake_mode *a, const struct fake_mode *b)
+static bool accept_all(const struct fake_mode *a, const struct fake_mode *b)
 {
     return a && b;
 }
@@ -294,10 +295,11 @@ static bool same_mode(const struct fake_mode *a, const struct fake_mode *b)
 static int enum_format(struct v4l2_fmtdesc *f)
 {
     const struct fake_mode key = {.fourcc = 0};
-    const struct fake_mode *m = nth_mode(f->index, same_fourcc, &key, any);
+    const struct fake_mode *m =
+        find_mode(f->index, same_fourcc, &key, accept_all);
 
     if (!m)
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     f->pixelformat = m->fourcc;
     memcpy(f->description, "of the fake", 12);
     return 0;
@@ -307,12 +309,12 @@ static int enum_size(struct v4l2_frmsizeenum *s)
 {
     const struct fake_mode key = {.fourcc = s->pixel_format};
     const struct fake_mode *m =
-        nth_mode(s->index, same_size, &key, same_fourcc);
+        find_mode(s->index, same_size, &key, same_fourcc);
 
     if (camera.has_no_sizes)
-        return refuse(ENOTTY);
+        return fail_with(ENOTTY);
     if (!m || (camera.is_stepwise && s->index))
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     s->type = V4L2_FRMSIZE_TYPE_DISCRETE;
     s->discrete.width = m->width;
     s->discrete.height = m->height;
@@ -328,12 +330,12 @@ static int enum_interval(struct v4l2_frmivalenum *i)
 {
     const struct fake_mode key = {
         .fourcc = i->pixel_format, .width = i->width, .height = i->height};
-    const struct fake_mode *m = nth_mode(i->index, same_mode, &key, same_size);
+    const struct fake_mode *m = find_mode(i->index, same_mode, &key, same_size);
 
     if (camera.has_no_sizes)
-        return refuse(ENOTTY);
+        return fail_with(ENOTTY);
     if (!m || (camera.is_stepwise && i->index))
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     i->type = V4L2_FRMIVAL_TYPE_DISCRETE;
     i->discrete = (struct v4l2_fract){m->fps_den, m->fps_num};
     if (camera.is_stepwise) {
@@ -365,10 +367,10 @@ static int set_parm(struct v4l2_streamparm *p, bool set)
 
 /* -------------------------------------------------------------------- input */
 
-static int tell_input(struct v4l2_input *input)
+static int get_input(struct v4l2_input *input)
 {
     if (input->index >= camera.n_inputs)
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     memcpy(input->name, "HDMI", 5);
     input->capabilities = camera.has_dv ? V4L2_IN_CAP_DV_TIMINGS : 0;
     return 0;
@@ -377,7 +379,7 @@ static int tell_input(struct v4l2_input *input)
 static int set_input(int index)
 {
     if (index < 0 || (uint32_t)index >= camera.n_inputs)
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     camera.input = (uint32_t)index;
     return 0;
 }
@@ -386,7 +388,7 @@ static int query_timings(struct v4l2_dv_timings *t)
 {
     memset(t, 0, sizeof *t);
     if (!camera.has_signal)
-        return refuse(ENOLINK);
+        return fail_with(ENOLINK);
     t->bt = camera.received;
     return 0;
 }
@@ -398,7 +400,7 @@ static int set_timings(const struct v4l2_dv_timings *t)
 
     camera.n_s_dv_timings++;
     if (camera.n_buffers && !same)
-        return refuse(EBUSY);
+        return fail_with(EBUSY);
     camera.timings = t->bt;
     camera.now.width = t->bt.width;
     camera.now.height = t->bt.height;
@@ -408,7 +410,7 @@ static int set_timings(const struct v4l2_dv_timings *t)
 static int take_event(struct v4l2_event *e)
 {
     if (camera.n_events == 0)
-        return refuse(ENOENT);
+        return fail_with(ENOENT);
     camera.n_events--;
     memset(e, 0, sizeof *e);
     e->type = V4L2_EVENT_SOURCE_CHANGE;
@@ -431,18 +433,18 @@ static int request_buffers(struct v4l2_requestbuffers *r)
 {
     camera.n_reqbufs++;
     if (camera.lacks_mmap && r->memory == V4L2_MEMORY_MMAP)
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     if (camera.streams || is_mapped())
-        return refuse(EBUSY);
+        return fail_with(EBUSY);
     memset(camera.buffer, 0, sizeof camera.buffer);
     camera.n_queued = 0;
     if (r->count > camera.max_buffers)
         r->count = camera.max_buffers;
     camera.n_buffers = r->count;
     for (uint32_t i = 0; i < r->count; i++)
-        for (int k = 0; k < blocks_of(camera.now.fourcc); k++)
+        for (int k = 0; k < count_blocks(camera.now.fourcc); k++)
             camera.buffer[i].bytes[k] =
-                size_of(&camera.now, k) - camera.length_less;
+                find_size(&camera.now, k) - camera.length_less;
     return 0;
 }
 
@@ -451,13 +453,13 @@ static int query_buffer(struct v4l2_buffer *b)
     const struct fake_buffer *own = &camera.buffer[b->index];
 
     if (b->index >= camera.n_buffers)
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     if (!camera.multiplanar) {
         b->length = own->bytes[0];
         b->m.offset = 16 * 4096 * b->index;
         return 0;
     }
-    b->length = (uint32_t)blocks_of(camera.now.fourcc);
+    b->length = (uint32_t)count_blocks(camera.now.fourcc);
     for (uint32_t k = 0; k < b->length; k++) {
         b->m.planes[k].length = own->bytes[k];
         b->m.planes[k].m.mem_offset = 16 * 4096 * b->index + 4096 * k;
@@ -465,22 +467,22 @@ static int query_buffer(struct v4l2_buffer *b)
     return 0;
 }
 
-static int queue(const struct v4l2_buffer *b)
+static int queue_buffer(const struct v4l2_buffer *b)
 {
     struct fake_buffer *own = &camera.buffer[b->index];
 
     if (b->index >= camera.n_buffers || own->queued ||
         (camera.multiplanar &&
-         b->length < (uint32_t)blocks_of(camera.now.fourcc))) {
+         b->length < (uint32_t)count_blocks(camera.now.fourcc))) {
         camera.breaches++;
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     }
     own->queued = true;
     if (b->memory == V4L2_MEMORY_USERPTR) {
         own->own[0] = b->m.userptr;
         own->bytes[0] = b->length;
-        for (int k = 0; camera.multiplanar && k < blocks_of(camera.now.fourcc);
-             k++) {
+        for (int k = 0;
+             camera.multiplanar && k < count_blocks(camera.now.fourcc); k++) {
             own->own[k] = b->m.planes[k].m.userptr;
             own->bytes[k] = b->m.planes[k].length;
         }
@@ -498,8 +500,8 @@ static struct fake_frame take_frame(void)
     return f;
 }
 
-static void fill(const struct fake_frame *f, const struct fake_buffer *b,
-                 int block)
+static void fill_buffer(const struct fake_frame *f, const struct fake_buffer *b,
+                        int block)
 {
     uint8_t *mem = b->own[block] ? (uint8_t *)b->own[block] : b->map[block];
 
@@ -513,14 +515,14 @@ static void fill(const struct fake_frame *f, const struct fake_buffer *b,
         memcpy(mem + f->data_offset[block], f->data, f->bytesused[0]);
 }
 
-static uint32_t used(const struct fake_frame *f, int block)
+static uint32_t bytes_used(const struct fake_frame *f, int block)
 {
     return f->bytesused[block] || f->is_odd
                ? f->bytesused[block]
-               : size_of(&camera.now, block) + f->data_offset[block];
+               : find_size(&camera.now, block) + f->data_offset[block];
 }
 
-static int dequeue(struct v4l2_buffer *b)
+static int dequeue_buffer(struct v4l2_buffer *b)
 {
     struct fake_frame f;
     struct fake_buffer *own;
@@ -528,13 +530,13 @@ static int dequeue(struct v4l2_buffer *b)
     if (camera.on_dequeue)
         camera.on_dequeue();
     if (camera.is_broken)
-        return refuse(EIO);
+        return fail_with(EIO);
     if (!camera.streams)
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     if (camera.n_frames && camera.frame[0].error)
-        return refuse(take_frame().error);
+        return fail_with(take_frame().error);
     if (camera.n_frames == 0 || camera.n_queued == 0)
-        return refuse(EAGAIN);
+        return fail_with(EAGAIN);
     f = take_frame();
     b->index = camera.order[0];
     own = &camera.buffer[b->index];
@@ -549,21 +551,21 @@ static int dequeue(struct v4l2_buffer *b)
                                           : V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC);
     b->timestamp.tv_sec = f.time_us / 1000000;
     b->timestamp.tv_usec = f.time_us % 1000000;
-    for (int k = 0; k < blocks_of(camera.now.fourcc); k++) {
-        fill(&f, own, k);
+    for (int k = 0; k < count_blocks(camera.now.fourcc); k++) {
+        fill_buffer(&f, own, k);
         if (camera.multiplanar) {
-            b->m.planes[k].bytesused = used(&f, k);
+            b->m.planes[k].bytesused = bytes_used(&f, k);
             b->m.planes[k].data_offset = f.data_offset[k];
         } else
-            b->bytesused = used(&f, k);
+            b->bytesused = bytes_used(&f, k);
     }
     return 0;
 }
 
-static int stream(bool on)
+static int set_streaming(bool on)
 {
     if (on && camera.n_buffers == 0)
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     if (on && camera.on_stream)
         camera.on_stream();
     camera.n_streamons += on;
@@ -577,7 +579,7 @@ static int stream(bool on)
     return 0;
 }
 
-static int export(struct v4l2_exportbuffer *e)
+static int export_buffer(struct v4l2_exportbuffer *e)
 {
     e->fd = __real_open64("/dev/null", O_RDWR);
     camera.n_exports++;
@@ -586,7 +588,7 @@ static int export(struct v4l2_exportbuffer *e)
 
 /* ------------------------------------------------------- the kernel's calls */
 
-static int answer(unsigned long request, void *arg)
+static int answer_request(unsigned long request, void *arg)
 {
     struct v4l2_capability *cap = arg;
 
@@ -604,7 +606,7 @@ static int answer(unsigned long request, void *arg)
     case VIDIOC_ENUM_FRAMEINTERVALS:
         return enum_interval(arg);
     case VIDIOC_G_FMT:
-        return tell_format(arg);
+        return get_format(arg);
     case VIDIOC_S_FMT:
         return set_format(arg);
     case VIDIOC_G_PARM:
@@ -616,7 +618,7 @@ static int answer(unsigned long request, void *arg)
     case VIDIOC_S_INPUT:
         return set_input(*(const int *)arg);
     case VIDIOC_ENUMINPUT:
-        return tell_input(arg);
+        return get_input(arg);
     case VIDIOC_QUERY_DV_TIMINGS:
         return query_timings(arg);
     case VIDIOC_G_DV_TIMINGS:
@@ -633,16 +635,16 @@ static int answer(unsigned long request, void *arg)
     case VIDIOC_QUERYBUF:
         return query_buffer(arg);
     case VIDIOC_QBUF:
-        return queue(arg);
+        return queue_buffer(arg);
     case VIDIOC_DQBUF:
-        return dequeue(arg);
+        return dequeue_buffer(arg);
     case VIDIOC_STREAMON:
     case VIDIOC_STREAMOFF:
-        return stream(request == VIDIOC_STREAMON);
+        return set_streaming(request == VIDIOC_STREAMON);
     case VIDIOC_EXPBUF:
-        return export(arg);
+        return export_buffer(arg);
     }
-    return refuse(ENOTTY);
+    return fail_with(ENOTTY);
 }
 
 int __wrap_ioctl(int fd, unsigned long request, ...)
@@ -656,10 +658,10 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     if (fd != camera.fd || fd < 0)
         return __real_ioctl(fd, request, arg);
     if (request == VIDIOC_STREAMOFF || camera.is_gone)
-        camera.streams = false; /* even if the call fails below */
-    if (fails() || is_refused(request, arg))
+        camera.streams = false; /* also if the call fails below */
+    if (must_fail() || is_refused(request, arg))
         return -1;
-    return camera.is_gone ? refuse(ENODEV) : answer(request, arg);
+    return camera.is_gone ? fail_with(ENODEV) : answer_request(request, arg);
 }
 
 int __wrap_open64(const char *path, int flags, ...)
@@ -672,10 +674,10 @@ int __wrap_open64(const char *path, int flags, ...)
     va_end(args);
     if (strcmp(path, FAKE_PATH) != 0)
         return __real_open64(path, flags, mode);
-    if (fails())
+    if (must_fail())
         return -1;
     if (camera.is_gone)
-        return refuse(ENODEV);
+        return fail_with(ENODEV);
     if (camera.fd >= 0)
         camera.breaches++;
     return camera.fd = __real_open64("/dev/null", flags);
@@ -687,10 +689,11 @@ int __wrap_stat64(const char *path, struct stat *st)
 {
     if (strcmp(path, FAKE_PATH) != 0)
         return __real_stat64(path, st);
-    return camera.is_gone ? refuse(ENOENT) : __real_stat64("/dev/null", st);
+    return camera.is_gone ? fail_with(ENOENT) : __real_stat64("/dev/null", st);
 }
 
-/* Closes as the kernel does: the stream stops, buffers that are mapped stay. */
+/* Closes the camera as the kernel does: the stream stops, mapped buffers
+ * stay mapped. */
 int __wrap_close(int fd)
 {
     if (fd == camera.fd && fd >= 0) {
@@ -712,16 +715,16 @@ ssize_t __wrap_read(int fd, void *dst, size_t bytes)
 
     if (fd != camera.fd || fd < 0)
         return __real_read(fd, dst, bytes);
-    if (fails())
+    if (must_fail())
         return -1;
     if (camera.is_gone || camera.read_errno)
-        return refuse(camera.is_gone ? ENODEV : camera.read_errno);
+        return fail_with(camera.is_gone ? ENODEV : camera.read_errno);
     camera.streams = true; /* read() streams until the device is closed. */
     camera.n_buffers = 1;
     if (camera.n_frames == 0)
-        return refuse(EAGAIN);
+        return fail_with(EAGAIN);
     f = take_frame();
-    n = used(&f, 0) < bytes ? used(&f, 0) : bytes;
+    n = bytes_used(&f, 0) < bytes ? bytes_used(&f, 0) : bytes;
     memset(dst, f.code, n);
     if (f.data)
         memcpy(dst, f.data, n);
@@ -740,15 +743,15 @@ void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
 
     if (fd != camera.fd || fd < 0)
         return __real_mmap64(at, bytes, how, flags, fd, offset);
-    if (fails())
+    if (must_fail())
         return MAP_FAILED;
     if (page % 16 > 2 || (uint32_t)(page / 16) >= camera.n_buffers ||
         bytes != b->bytes[page % 16] || bytes == 0) {
         errno = EINVAL;
         return MAP_FAILED;
     }
-    /* From the heap, so that sanitizers see reads beyond it or after
-     * munmap(). */
+    /* allocated by malloc(), so that sanitizers detect reads outside it or
+     * after munmap() */
     b->map[page % 16] = __real_malloc(bytes);
     memset(b->map[page % 16], 0, bytes);
     camera.n_maps++;
@@ -772,7 +775,7 @@ int __wrap_munmap(void *at, size_t bytes)
 
 void *__wrap_malloc(size_t bytes)
 {
-    void *const mem = fails() ? NULL : __real_malloc(bytes);
+    void *const mem = must_fail() ? NULL : __real_malloc(bytes);
 
     n_asked++;
     n_blocks += mem != NULL;
@@ -781,7 +784,7 @@ void *__wrap_malloc(size_t bytes)
 
 void *__wrap_calloc(size_t n, size_t bytes)
 {
-    void *const mem = fails() ? NULL : __real_calloc(n, bytes);
+    void *const mem = must_fail() ? NULL : __real_calloc(n, bytes);
 
     n_asked++;
     n_blocks += mem != NULL;
@@ -790,7 +793,7 @@ void *__wrap_calloc(size_t n, size_t bytes)
 
 void *__wrap_realloc(void *old, size_t bytes)
 {
-    void *const mem = fails() ? NULL : __real_realloc(old, bytes);
+    void *const mem = must_fail() ? NULL : __real_realloc(old, bytes);
 
     n_asked++;
     n_blocks += mem != NULL && old == NULL;
@@ -799,7 +802,8 @@ void *__wrap_realloc(void *old, size_t bytes)
 
 int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
 {
-    const int number = fails() ? 12 : __real_posix_memalign(mem, align, bytes);
+    const int number =
+        must_fail() ? 12 : __real_posix_memalign(mem, align, bytes);
 
     n_asked++;
     n_blocks += number == 0;
@@ -810,7 +814,7 @@ char *__real_strdup(const char *text);
 char *__wrap_strdup(const char *text);
 char *__wrap_strdup(const char *text)
 {
-    char *const mem = fails() ? NULL : __real_strdup(text);
+    char *const mem = must_fail() ? NULL : __real_strdup(text);
 
     n_asked++;
     n_blocks += mem != NULL;
@@ -821,7 +825,7 @@ char *__real_realpath(const char *path, char *into);
 char *__wrap_realpath(const char *path, char *into);
 char *__wrap_realpath(const char *path, char *into)
 {
-    char *const mem = fails() ? NULL : __real_realpath(path, into);
+    char *const mem = must_fail() ? NULL : __real_realpath(path, into);
 
     n_asked++;
     n_blocks += mem != NULL && !into;
@@ -832,7 +836,7 @@ void __wrap_free(void *mem);
 void __wrap_free(void *mem)
 {
     n_blocks -= mem != NULL;
-    if (mem) /* so that a read of freed memory shows */
+    if (mem) /* makes reads of freed memory visible */
         memset(mem, 0xdd, malloc_usable_size(mem));
     __real_free(mem);
 }

@@ -21,14 +21,14 @@ char fake_tty_path[] = "/tmp/glint-test-tty-XXXXXX";
 struct fake_fb *fake_fb;
 int fake_fb_calls, fake_fb_fail_at, fake_fb_maps;
 
-static bool fails(void)
+static bool must_fail(void)
 {
     return ++fake_fb_calls == fake_fb_fail_at;
 }
 
 /* -------------------------------------------------------- what is called */
 
-static int refuse(int number)
+static int fail_with(int number)
 {
     errno = number;
     return -1;
@@ -40,14 +40,14 @@ int __wrap_open64(const char *path, int flags, ...)
 
     if (strcmp(path, fake_fb_path) != 0 && !is_tty)
         return __real_open64(path, flags);
-    if (fails())
-        return refuse(EMFILE);
+    if (must_fail())
+        return fail_with(EMFILE);
     if (!strcmp(path, "/dev/tty"))
-        return refuse(ENXIO); /* as for a daemon, which has no terminal */
+        return fail_with(ENXIO); /* as for a daemon, which has no terminal */
     if (is_tty)
-        return fake_fb->tty_errno ? refuse(fake_fb->tty_errno)
+        return fake_fb->tty_errno ? fail_with(fake_fb->tty_errno)
                                   : __real_open64(fake_tty_path, flags);
-    return fake_fb->open_errno ? refuse(fake_fb->open_errno)
+    return fake_fb->open_errno ? fail_with(fake_fb->open_errno)
                                : __real_open64(path, flags);
 }
 
@@ -57,7 +57,7 @@ static int answer_pan(const struct fb_var_screeninfo *to)
 
     fake_fb->n_pan++;
     if (!fake_fb->can_pan || to->yoffset > v->yres_virtual - v->yres)
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     fake_fb->var.yoffset = to->yoffset;
     return 0;
 }
@@ -65,7 +65,7 @@ static int answer_pan(const struct fb_var_screeninfo *to)
 static int answer_fb(unsigned long request, void *arg)
 {
     if (fake_fb->gone)
-        return refuse(ENODEV);
+        return fail_with(ENODEV);
     switch (request) {
     case FBIOGET_FSCREENINFO:
         memcpy(arg, &fake_fb->fix, sizeof fake_fb->fix);
@@ -76,12 +76,12 @@ static int answer_fb(unsigned long request, void *arg)
     case FBIOPAN_DISPLAY:
         return answer_pan(arg);
     case FBIOBLANK:
-        return refuse(EINVAL);
+        return fail_with(EINVAL);
     case FBIO_WAITFORVSYNC:
         fake_fb->n_vsync++;
-        return fake_fb->vsync_errno ? refuse(fake_fb->vsync_errno) : 0;
+        return fake_fb->vsync_errno ? fail_with(fake_fb->vsync_errno) : 0;
     }
-    fail_msg("ioctl %lx", request); /* The mode must never be set. */
+    fail_msg("ioctl %lx", request); /* glint must never set the mode */
     return -1;
 }
 
@@ -101,7 +101,7 @@ static int answer_tty(unsigned long request, void *arg, int mode)
             (struct vt_mode){.mode = (char)fake_fb->tty_switching};
         return 0;
     }
-    return refuse(ENOTTY);
+    return fail_with(ENOTTY);
 }
 
 int __wrap_ioctl(int fd, unsigned long request, ...)
@@ -116,8 +116,8 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     va_end(args);
     if (!is_fb && !is_tty)
         return __real_ioctl(fd, request, arg);
-    if (!(request == KDSETMODE && arg == KD_TEXT) && fails())
-        return refuse(EIO);
+    if (!(request == KDSETMODE && arg == KD_TEXT) && must_fail())
+        return fail_with(EIO);
     return is_fb ? answer_fb(request, (void *)arg) /* NOLINT */
                  : answer_tty(request, (void *)arg, (int)arg);
 }
@@ -129,7 +129,7 @@ void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
 
     if (fd < 0 || !wrapped_is(fd, fake_fb_path))
         return __real_mmap64(at, bytes, how, flags, fd, offset);
-    if (fails())
+    if (must_fail())
         errno = ENOMEM;
     else
         got = __real_mmap64(at, bytes, how, flags, fd, offset);
@@ -145,5 +145,5 @@ int __wrap_munmap(void *at, size_t bytes)
 
 void *__wrap_malloc(size_t bytes)
 {
-    return fails() ? NULL : __real_malloc(bytes);
+    return must_fail() ? NULL : __real_malloc(bytes);
 }

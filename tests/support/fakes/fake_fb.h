@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * fake_fb.h - a framebuffer and a console that are files, and an ioctl() that
+ * fake_fb.h - a fake framebuffer and console: files, and an ioctl() that
  * answers for them. Tests link it with
  * --wrap=open64,ioctl,mmap64,munmap,malloc.
  */
@@ -14,7 +14,7 @@
 
 enum { FB_BYTES = 65536 };
 
-extern char fake_fb_path[], fake_tty_path[]; /* templates of mkstemp */
+extern char fake_fb_path[], fake_tty_path[]; /* templates for mkstemp() */
 
 struct fake_fb {
     struct fb_fix_screeninfo fix;
@@ -22,13 +22,16 @@ struct fake_fb {
     bool gone, can_pan;
     int open_errno, vsync_errno, n_vsync, n_pan;
     int tty_errno, tty_mode, tty_switching;
-    uint32_t yoffset_at_text; /* var.yoffset, lines, when text mode came back */
+    /* var.yoffset, rows, when text mode was restored */
+    uint32_t yoffset_at_text;
 };
-extern struct fake_fb *fake_fb; /* set by the test, shared with forks */
+/* set by the test; shared with forked processes */
+extern struct fake_fb *fake_fb;
 
-extern int fake_fb_calls;   /* calls so far of those that
-                               fake_fb_fail_at can make fail */
-extern int fake_fb_fail_at; /* number of the call that fails, from 1; 0: none */
+/* number of calls so far that fake_fb_fail_at can make fail */
+extern int fake_fb_calls;
+/* number of the call that fails, counted from 1; 0: none */
+extern int fake_fb_fail_at;
 extern int fake_fb_maps;
 
 #endif

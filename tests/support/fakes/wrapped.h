@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Calls that several tests answer themselves or let fail: the linker sends them
- * to __wrap_NAME(), and __real_NAME() is the library's (--wrap, in
+ * Functions that tests replace or make fail: the linker redirects calls of
+ * NAME() to __wrap_NAME(), and __real_NAME() is the original (--wrap, in
  * tools/make/check.mk).
  */
 #ifndef GLINT_SUPPORT_WRAPPED_H
@@ -35,7 +35,7 @@ void *__wrap_realloc(void *old, size_t bytes);
 int __real_posix_memalign(void **mem, size_t align, size_t bytes);
 int __wrap_posix_memalign(void **mem, size_t align, size_t bytes);
 
-/* Returns whether FD is the file at PATH. */
+/* Returns whether FD is open on the file PATH. */
 static inline bool wrapped_is(int fd, const char *path)
 {
     struct stat a, b;

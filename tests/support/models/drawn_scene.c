@@ -48,7 +48,8 @@ void drawn_draw(struct drawn *d, int width, int height, int32_t *light_q20)
     assert_ok(scene_frame_draw(&d->frame, &image));
 }
 
-/* Returns whether pixel I of the reference is like those about it. */
+/* Returns whether pixel I of the reference shows the same object as its
+ * neighbours. */
 static int is_inside(const struct twin_pixel *p, int i)
 {
     const int x = i % WIDTH, y = i / WIDTH;

@@ -23,8 +23,9 @@ void scene_begin(struct scene_file *s)
     s->tables = sizeof s->header;
 }
 
-/* Appends BYTES to the sections. */
-static uint32_t put(struct scene_file *s, const void *from, size_t bytes)
+/* Appends FROM[BYTES] to the data before the tables. Returns its offset. */
+static uint32_t append_data(struct scene_file *s, const void *from,
+                            size_t bytes)
 {
     const size_t at = s->tables;
 
@@ -49,9 +50,10 @@ uint32_t scene_material(struct scene_file *s, const char *name)
     return s->header.n_materials++;
 }
 
-static struct glint_scene_object *add(struct scene_file *s, const char *name,
-                                      enum glint_scene_object_kind kind,
-                                      uint32_t material)
+static struct glint_scene_object *add_object(struct scene_file *s,
+                                             const char *name,
+                                             enum glint_scene_object_kind kind,
+                                             uint32_t material)
 {
     struct glint_scene_object *o = &s->object[s->header.n_objects++];
 
@@ -64,7 +66,8 @@ static struct glint_scene_object *add(struct scene_file *s, const char *name,
 uint32_t scene_sphere(struct scene_file *s, const char *name, uint32_t material,
                       int32_t x, int32_t y, int32_t z, int32_t radius)
 {
-    struct glint_scene_object *o = add(s, name, GLINT_OBJECT_SPHERE, material);
+    struct glint_scene_object *o =
+        add_object(s, name, GLINT_OBJECT_SPHERE, material);
 
     o->at[0] = x;
     o->at[1] = y;
@@ -76,14 +79,14 @@ uint32_t scene_sphere(struct scene_file *s, const char *name, uint32_t material,
 uint32_t scene_plane(struct scene_file *s, const char *name, uint32_t material,
                      int32_t y)
 {
-    add(s, name, GLINT_OBJECT_PLANE, material)->at[1] = y;
+    add_object(s, name, GLINT_OBJECT_PLANE, material)->at[1] = y;
     return s->header.n_objects - 1;
 }
 
 uint32_t scene_object(struct scene_file *s, const char *name, uint32_t material,
                       uint32_t mesh)
 {
-    add(s, name, GLINT_OBJECT_MESH, material)->mesh = mesh;
+    add_object(s, name, GLINT_OBJECT_MESH, material)->mesh = mesh;
     return s->header.n_objects - 1;
 }
 
@@ -117,9 +120,10 @@ uint32_t scene_lamp(struct scene_file *s, const int32_t at[3], int32_t distance)
 
 /* ------------------------------------------------------------------ meshes */
 
-/* The box of triangle T, or of all vertices if it is NULL. */
-static void box_of(const int32_t (*at)[3], int n, const uint32_t *t,
-                   int32_t lo[3], int32_t hi[3])
+/* Sets LO and HI to the bounding box of triangle T, or of all vertices if T
+ * is NULL. */
+static void find_box(const int32_t (*at)[3], int n, const uint32_t *t,
+                     int32_t lo[3], int32_t hi[3])
 {
     for (int k = 0; k < 3; k++) {
         lo[k] = hi[k] = at[t ? t[0] : 0][k];
@@ -132,13 +136,13 @@ static void box_of(const int32_t (*at)[3], int n, const uint32_t *t,
     }
 }
 
-static int is_in(const struct glint_scene_mesh *m, const int32_t (*at)[3],
-                 const uint32_t *t, const int cell[3])
+static int is_in_cell(const struct glint_scene_mesh *m, const int32_t (*at)[3],
+                      const uint32_t *t, const int cell[3])
 {
     int32_t lo[3], hi[3];
     int is = 1;
 
-    box_of(at, 3, t, lo, hi);
+    find_box(at, 3, t, lo, hi);
     for (int k = 0; k < 3; k++) {
         const int64_t from = m->origin[k] + ((int64_t)cell[k] << m->cell_log2);
 
@@ -148,8 +152,8 @@ static int is_in(const struct glint_scene_mesh *m, const int32_t (*at)[3],
     return is;
 }
 
-static void put_grid(struct scene_file *s, struct glint_scene_mesh *m,
-                     const int32_t (*at)[3], const uint32_t (*triangle)[3])
+static void write_grid(struct scene_file *s, struct glint_scene_mesh *m,
+                       const int32_t (*at)[3], const uint32_t (*triangle)[3])
 {
     const uint32_t cells = m->cells[0] * m->cells[1] * m->cells[2];
     uint32_t *start = malloc((cells + 1) * sizeof *start), n = 0;
@@ -163,20 +167,20 @@ static void put_grid(struct scene_file *s, struct glint_scene_mesh *m,
 
         start[c] = n;
         for (uint32_t t = 0; t < m->n_triangles; t++)
-            if (is_in(m, at, triangle[t], cell))
+            if (is_in_cell(m, at, triangle[t], cell))
                 ref[n++] = t;
         assert_true(n < SCENE_BYTES / 4);
     }
     start[cells] = n;
-    m->start_at = put(s, start, (cells + 1) * sizeof *start);
-    m->ref_at = put(s, ref, n * sizeof *ref);
+    m->start_at = append_data(s, start, (cells + 1) * sizeof *start);
+    m->ref_at = append_data(s, ref, n * sizeof *ref);
     free(start);
     free(ref);
 }
 
-/* Cells of a size that gives about a cell for every triangle. */
-static void lay_grid(struct glint_scene_mesh *m, const int32_t lo[3],
-                     const int32_t hi[3])
+/* Chooses a cell size that gives about one cell per triangle. */
+static void size_grid(struct glint_scene_mesh *m, const int32_t lo[3],
+                      const int32_t hi[3])
 {
     double volume = 1;
 
@@ -204,19 +208,19 @@ uint32_t scene_mesh(struct scene_file *s, const int32_t (*at)[3],
     assert_non_null(t);
     *m = (struct glint_scene_mesh){.n_vertices = (uint32_t)n_vertices,
                                    .n_triangles = (uint32_t)n_triangles};
-    m->vertex_at = put(s, at, (size_t)n_vertices * sizeof *at);
+    m->vertex_at = append_data(s, at, (size_t)n_vertices * sizeof *at);
     if (uv_q16)
-        m->uv_at = put(s, uv_q16, (size_t)n_vertices * sizeof *uv_q16);
+        m->uv_at = append_data(s, uv_q16, (size_t)n_vertices * sizeof *uv_q16);
     if (normal_q30)
         m->normal_at =
-            put(s, normal_q30, (size_t)n_vertices * sizeof *normal_q30);
+            append_data(s, normal_q30, (size_t)n_vertices * sizeof *normal_q30);
     for (int i = 0; i < n_triangles; i++) {
         memcpy(t[i].vertex, triangle[i], sizeof t[i].vertex);
         t[i].material = GLINT_SCENE_NONE;
     }
-    m->triangle_at = put(s, t, (size_t)n_triangles * sizeof *t);
+    m->triangle_at = append_data(s, t, (size_t)n_triangles * sizeof *t);
     free(t);
-    box_of(at, n_vertices, NULL, lo, hi);
+    find_box(at, n_vertices, NULL, lo, hi);
     for (int k = 0; k < 3; k++)
         m->centre[k] = (int32_t)(((int64_t)lo[k] + hi[k]) / 2);
     for (int i = 0; i < n_vertices; i++)
@@ -225,8 +229,8 @@ uint32_t scene_mesh(struct scene_file *s, const int32_t (*at)[3],
                  hypot(hypot(at[i][0] - m->centre[0], at[i][1] - m->centre[1]),
                        at[i][2] - m->centre[2]));
     m->radius = (int32_t)ceil(radius);
-    lay_grid(m, lo, hi);
-    put_grid(s, m, at, triangle);
+    size_grid(m, lo, hi);
+    write_grid(s, m, at, triangle);
     return s->header.n_meshes++;
 }
 
@@ -258,15 +262,16 @@ uint32_t scene_texture(struct scene_file *s, const uint8_t *rgb,
         w = w2;
         h = h2;
     }
-    *t = (struct glint_scene_texture){w_log2, h_log2, put(s, all, at + 3)};
+    *t = (struct glint_scene_texture){w_log2, h_log2,
+                                      append_data(s, all, at + 3)};
     free(all);
     return s->header.n_textures++;
 }
 
 /* ----------------------------------------------------------------- sealing */
 
-static void place(struct scene_file *s, uint32_t *at, const void *table,
-                  size_t bytes)
+static void append_table(struct scene_file *s, uint32_t *at, const void *table,
+                         size_t bytes)
 {
     *at = (uint32_t)s->bytes;
     memcpy((char *)s->data + s->bytes, table, bytes);
@@ -278,16 +283,18 @@ void scene_seal(struct scene_file *s)
     struct glint_scene_header *h = &s->header;
 
     s->bytes = s->tables;
-    place(s, &h->light_at, s->light, h->n_lights * sizeof *s->light);
-    place(s, &h->texture_at, s->texture, h->n_textures * sizeof *s->texture);
-    place(s, &h->material_at, s->material,
-          h->n_materials * sizeof *s->material);
-    place(s, &h->mesh_at, s->mesh, h->n_meshes * sizeof *s->mesh);
-    place(s, &h->object_at, s->object, h->n_objects * sizeof *s->object);
-    place(s, &h->ward_at, s->ward, h->n_wards * sizeof *s->ward);
-    place(s, &h->stone_at, s->stone, h->n_stones * sizeof *s->stone);
-    place(s, &h->skin_at, s->skin, h->n_skins * sizeof *s->skin);
-    h->environment_at = (uint32_t)s->bytes; /* none, at the end */
+    append_table(s, &h->light_at, s->light, h->n_lights * sizeof *s->light);
+    append_table(s, &h->texture_at, s->texture,
+                 h->n_textures * sizeof *s->texture);
+    append_table(s, &h->material_at, s->material,
+                 h->n_materials * sizeof *s->material);
+    append_table(s, &h->mesh_at, s->mesh, h->n_meshes * sizeof *s->mesh);
+    append_table(s, &h->object_at, s->object, h->n_objects * sizeof *s->object);
+    append_table(s, &h->ward_at, s->ward, h->n_wards * sizeof *s->ward);
+    append_table(s, &h->stone_at, s->stone, h->n_stones * sizeof *s->stone);
+    append_table(s, &h->skin_at, s->skin, h->n_skins * sizeof *s->skin);
+    /* no environment; the offset is the end of the file */
+    h->environment_at = (uint32_t)s->bytes;
     memcpy(s->data, h, sizeof *h);
     glint_blob_seal(s->data, s->bytes);
 }
@@ -347,7 +354,7 @@ struct glint_scene *scene_start(struct scene_file *file,
     assert_int_equal(glint_scene_init(&s, cfg, &model, mem, bytes - 1),
                      GLINT_E_MEMORY);
     assert_null(s);
-    memset(mem, 0xa5, bytes); /* dirty memory shows what is left unset */
+    memset(mem, 0xa5, bytes); /* dirty memory reveals what is left unset */
     assert_ok(glint_scene_init(&s, cfg, &model, mem, bytes));
     glint_scene_begin(s, stats ? stats : &unread);
     return s;

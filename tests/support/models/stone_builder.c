@@ -7,8 +7,8 @@
 
 #include "support/test.h"
 
-/* Sets H to a bell of WIDTH texels that sums to 1. */
-static void set_bell(double *h, int kernel, double width)
+/* Sets H to a Gaussian of width WIDTH texels with sum 1. */
+static void set_gaussian(double *h, int kernel, double width)
 {
     const int r = kernel / 2;
     double sum = 0;
@@ -29,7 +29,7 @@ static int is_dark(int side, int x)
     return (x % side * 8 / side + x / side * 8 / side) % 2;
 }
 
-static void *room(size_t n, size_t bytes)
+static void *allocate(size_t n, size_t bytes)
 {
     void *mem = calloc(n ? n : 1, bytes);
 
@@ -37,21 +37,22 @@ static void *room(size_t n, size_t bytes)
     return mem;
 }
 
-/* Two bells, or one that is f times (1 + a part that changes its sign). */
+/* Sets F to two Gaussians, or one that is f times (1 + a term that changes
+ * its sign). */
 static void set_fit(struct glint_scatter_fit *f, double albedo)
 {
     const size_t k2 = (size_t)(f->kernel * f->kernel);
     const size_t texels = (size_t)(f->side * f->side);
 
-    f->h = room((size_t)f->kernels * 3 * k2, sizeof *f->h);
+    f->h = allocate((size_t)f->kernels * 3 * k2, sizeof *f->h);
     for (int j = 0; j < f->kernels; j++)
         for (int c = 0; c < 3; c++)
-            set_bell(f->h + (size_t)(3 * j + c) * k2, f->kernel,
-                     (j ? 2.5 : 5.) - .7 * c);
-    f->in = room(3 * texels, sizeof *f->in);
-    f->f = room((size_t)f->kernels * 3 * texels, sizeof *f->f);
-    f->cluster = room(texels, 1);
-    f->out = room(3 * texels, sizeof *f->out);
+            set_gaussian(f->h + (size_t)(3 * j + c) * k2, f->kernel,
+                         (j ? 2.5 : 5.) - .7 * c);
+    f->in = allocate(3 * texels, sizeof *f->in);
+    f->f = allocate((size_t)f->kernels * 3 * texels, sizeof *f->f);
+    f->cluster = allocate(texels, 1);
+    f->out = allocate(3 * texels, sizeof *f->out);
     for (size_t x = 0; x < texels; x++) {
         const int dark = is_dark(f->side, (int)x);
 

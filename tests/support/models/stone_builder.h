@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A fit of a translucent medium that is known in closed form, and the baked
- * translucent medium. */
+ * Builds a translucent medium whose fit is known in closed form, and bakes it.
+ */
 #ifndef GLINT_TESTS_STONE_BUILDER_H
 #define GLINT_TESTS_STONE_BUILDER_H
 
@@ -16,9 +16,10 @@ struct built_stone {
     struct glint_translucent stone;
 };
 
-/* Builds a translucent medium of SIDE texels and KERNEL: bells, wider in red
- * than in blue, that scatter ALBEDO of the light; fields of a chess board of 8
- * x 8 differ. Factored ones have a second term that is negative in places. */
+/* Builds a translucent medium of SIDE x SIDE texels with a kernel of KERNEL
+ * texels: Gaussians, wider in red than in blue, that scatter the fraction
+ * ALBEDO of the light; the albedo varies on a chessboard of 8 x 8 fields.
+ * Factored models have a second term that is negative in places. */
 void build_stone(struct built_stone *b, enum glint_scatter_model model,
                  int side, int kernel, double albedo);
 void free_stone(struct built_stone *b);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The lights of a night street, for programs that measure many lights. */
+ * The lights of a night street, for benchmarks with many lights.
+ */
 #ifndef GLINT_TESTS_STREET_H
 #define GLINT_TESTS_STREET_H
 
@@ -8,8 +9,9 @@
 
 #include "support/stage.h"
 
-/* Places as fractions of the picture, powers and colours: what glint finds in
- * bridge_night, lights_water, esplanade_lamps and night_town of the corpus. */
+/* Positions as fractions of the image, powers and colours: the lamps that
+ * glint finds in bridge_night, lights_water, esplanade_lamps and night_town
+ * of the test photographs. */
 static const struct street_light {
     double x, y, power, rgb[3];
 } street[] = {
@@ -80,8 +82,8 @@ static const struct street_light {
 
 enum { STREET = sizeof street / sizeof *street };
 
-/* Sets LAMPS to N lights in pictures of STAGE's view: what was found, then the
- * same mirrored across, and then down. */
+/* Sets LAMPS to N lights in STAGE's view: those above, then the same
+ * mirrored horizontally, then vertically. */
 static inline void street_lamps(const struct stage *stage,
                                 struct glint_lamp *lamps, int n)
 {

@@ -110,24 +110,25 @@ void ward_look(const struct glint_environment *e,
     }
 }
 
-static int rises(const void *a, const void *b)
+static int compare_doubles(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
 
     return (x > y) - (x < y);
 }
 
-static double linear(double x)
+static double clamp_linear(double x)
 {
     return x;
 }
 
-static double code(double x)
+static double to_code(double x)
 {
     return x <= .0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - .055;
 }
 
-static double psnr(ward_picture want, ward_picture got, double (*of)(double))
+static double compute_psnr(ward_picture want, ward_picture got,
+                           double (*of)(double))
 {
     double sorted[WARD_PIXELS], exposure, sum = 0, frame[3][3];
     int n = 0;
@@ -135,7 +136,7 @@ static double psnr(ward_picture want, ward_picture got, double (*of)(double))
     for (int i = 0; i < WARD_PIXELS; i++)
         if (ward_frame(i, frame))
             sorted[n++] = glint_luminance(want[i]);
-    qsort(sorted, (size_t)n, sizeof *sorted, rises);
+    qsort(sorted, (size_t)n, sizeof *sorted, compare_doubles);
     exposure = .25 / sorted[n / 2];
     for (int i = 0; i < WARD_PIXELS; i++)
         for (int c = 0; c < 3; c++) {
@@ -149,10 +150,10 @@ static double psnr(ward_picture want, ward_picture got, double (*of)(double))
 
 double ward_psnr(ward_picture want, ward_picture got)
 {
-    return psnr(want, got, linear);
+    return compute_psnr(want, got, clamp_linear);
 }
 
 double ward_psnr_codes(ward_picture want, ward_picture got)
 {
-    return psnr(want, got, code);
+    return compute_psnr(want, got, to_code);
 }

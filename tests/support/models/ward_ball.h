@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * A brushed ball under an environment, 32 pixels wide, seen along z, brushed
- * about y: by sums over all texels, and by the run time's lookups. */
+ * A brushed metal ball under an environment map, 32 pixels wide, viewed along
+ * z, brushed about y; drawn by exact sums over all texels, and by the lookups
+ * of the run time.
+ */
 #ifndef GLINT_TESTS_WARD_BALL_H
 #define GLINT_TESTS_WARD_BALL_H
 
@@ -12,30 +14,29 @@ enum { WARD_BALL = 32, WARD_PIXELS = WARD_BALL * WARD_BALL };
 
 typedef double ward_picture[WARD_PIXELS][3];
 
-/* Sets FRAME to tangent, bitangent and normal at pixel I; returns 0 off the
- * ball, and at its rim, where the normal is within 6 degrees of being at right
- * angles to the view. */
+/* Sets FRAME to tangent, bitangent and normal at pixel I. Returns 0 off the
+ * ball and at its rim, where the normal is within 6 degrees of perpendicular
+ * to the view. */
 int ward_frame(int i, double frame[3][3]);
 
-/* Returns Ward's lobe towards IN as seen from VIEW, in the norm that is bounded
- * or that of 1992, times n.in; as the run time it counts no more than 8 times
- * its density. */
+/* Returns Ward's lobe towards IN as seen from VIEW, times n . in. NORM: the
+ * bounded norm or that of 1992. As in the run time, the lobe is limited to 8
+ * times its density. */
 double ward_lobe(const double frame[3][3], const double view[3],
                  const double alpha[2], int norm, const double in[3]);
 
-/* Sets TO to what S shows, by sums over all texels; bounded. */
+/* Sets TO to the image of the ball under S by sums over all texels, with the
+ * bounded norm. */
 void ward_sum(const struct glint_sphere *s, const double alpha[2],
               ward_picture to);
 
-/* Sets TO to what lookups in E show. */
+/* Sets TO to the image of the ball by lookups in E. */
 void ward_look(const struct glint_environment *e,
                const struct glint_ward_material *material,
                const struct glint_ward_options *options, ward_picture to);
 
-/* Returns the PSNR of GOT, dB, with the median of WANT at 1/4 of white and all
- * clamped to white: of linear light, or of what a display is sent, codes of
- * sRGB.
- */
+/* Return the PSNR of GOT, dB, exposed so that the median of WANT is 1/4 of
+ * white, clamped to white: in linear light, or in sRGB codes. */
 double ward_psnr(ward_picture want, ward_picture got);
 double ward_psnr_codes(ward_picture want, ward_picture got);
 

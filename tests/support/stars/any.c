@@ -7,7 +7,7 @@
 #include "base/real.h"
 #include "support/rng.h"
 
-/* Cosine and sine, _q30, of half a turn over 1 .. STAR_ANY_LINES. */
+/* Cosine and sine, Q30, of 180 degrees / n, n = 1 .. STAR_ANY_LINES. */
 /* clang-format off */
 static const int32_t step_q30[STAR_ANY_LINES][2] = {
     {-1073741824, 0}, {0, 1073741824}, {536870912, 929887697},
@@ -15,20 +15,21 @@ static const int32_t step_q30[STAR_ANY_LINES][2] = {
     {967407956, 465879117}, {992008094, 410903207}, {1008987269, 367241333}};
 /* clang-format on */
 
-static int32_t held(int64_t x)
+static int32_t clamp_weight(int64_t x)
 {
     const int64_t most = 1 << 28;
 
     return (int32_t)(x > most ? most : x < -most ? -most : x);
 }
 
-/* Sets the direction of LINE, and, of N lines, its border half a step on.
- * Returns whether that is half a turn or more. */
+/* Sets the direction of LINE, and its border, half a step further if there
+ * are N lines. Returns whether the border is at 180 degrees or more. */
 static int set_direction(struct glint_star_line *line, int32_t c_q30,
                          int32_t s_q30, int n)
 {
     const int64_t sine = s_q30 > 1 << 18 ? s_q30 : 1 << 18;
-    /* Twice the cosine and sine of half a step point along 1 + the step. */
+    /* The direction of half a step is that of 1 + the step (as complex
+     * numbers). */
     const int64_t hc = ((int64_t)1 << 30) + step_q30[n - 1][0];
     const int64_t hs = step_q30[n - 1][1];
     const int64_t c = n > 1 ? (hc * c_q30 - hs * s_q30) >> 31 : -s_q30 / 2;
@@ -37,10 +38,10 @@ static int set_direction(struct glint_star_line *line, int32_t c_q30,
 
     line->cos_q30 = c_q30;
     line->sin_q30 = s_q30;
-    line->cot_q16 = held(c_q30 * INT64_C(65536) / sine);
-    line->across_q16 = held((INT64_C(1) << 46) / sine);
-    line->border_q16 =
-        held((s < 0 ? -c : c) * 65536 / (size > 1 << 10 ? size : 1 << 10));
+    line->cot_q16 = clamp_weight(c_q30 * INT64_C(65536) / sine);
+    line->across_q16 = clamp_weight((INT64_C(1) << 46) / sine);
+    line->border_q16 = clamp_weight((s < 0 ? -c : c) * 65536 /
+                                    (size > 1 << 10 ? size : 1 << 10));
     return s <= 0;
 }
 
@@ -121,9 +122,9 @@ void star_any(struct star_any *to, uint32_t *seed)
     set_core(t, seed);
 }
 
-/* Returns a place within 0 .. SIDE, on a pixel's corner or on the border as
- * often as not, or up to 1000 pixels beyond, _q8. */
-static int32_t place_q8(int side, uint32_t *seed)
+/* Returns a coordinate, Q8: inside 0 .. SIDE, half of the time at a pixel's
+ * corner or on the border, or up to 1000 pixels outside. */
+static int32_t random_coordinate_q8(int side, uint32_t *seed)
 {
     switch (rng_below(seed, 6)) {
     case 0:
@@ -143,8 +144,8 @@ struct glint_star_light star_any_light(int width, int height, uint32_t *seed)
 {
     struct glint_star_light l = {.radius_q8 = -1};
 
-    l.x_q8 = place_q8(width, seed);
-    l.y_q8 = place_q8(height, seed);
+    l.x_q8 = random_coordinate_q8(width, seed);
+    l.y_q8 = random_coordinate_q8(height, seed);
     if (rng_below(seed, 2))
         l.radius_q8 = rng_below(seed, 20000);
     l.power = real_of(1 + rng_below(seed, 1 << 24), -44);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tables of a star by integers alone, the same on every machine: as those that
- * are made of a stop, but of no stop in particular. */
+ * Random tables of a starburst, made with integers only so that they are the
+ * same on every machine: valid, but not of a real stop.
+ */
 #ifndef GLINT_TESTS_STARS_ANY_H
 #define GLINT_TESTS_STARS_ANY_H
 
@@ -14,11 +15,11 @@ struct star_any {
     struct glint_star_line line[STAR_ANY_LINES];
 };
 
-/* Sets TO, by SEED, to tables of 1 to STAR_ANY_LINES lines. */
+/* Sets TO to random tables of 1 to STAR_ANY_LINES lines. */
 void star_any(struct star_any *to, uint32_t *seed);
 
-/* Returns a light in a picture of WIDTH x HEIGHT pixels or up to 1000 pixels
- * beside it, of a power of 2^-20 to 2^30, by SEED. */
+/* Returns a random light of power 2^-20 to 2^30, inside an image of WIDTH x
+ * HEIGHT or up to 1000 pixels off-screen. */
 struct glint_star_light star_any_light(int width, int height, uint32_t *seed);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A star that draws into a picture, with its memory and workers. */
+ * Draws starbursts into an image, with its own memory and workers.
+ */
 #ifndef GLINT_TESTS_STARS_CANVAS_H
 #define GLINT_TESTS_STARS_CANVAS_H
 
@@ -9,44 +10,42 @@
 #include "star/starburst.h"
 #include "support/stars/bare_flare.h"
 
-enum { STAR_CANVAS_LIGHTS = 16 }; /* most lights */
+enum { STAR_CANVAS_LIGHTS = 16 }; /* max number of lights */
 
 struct star_canvas {
     int width, height;
     struct bare_flare bare;
     struct glint_star *star;
-    void *mem; /* of the star */
+    void *mem; /* memory of the star */
 };
 
-/* Makes a canvas of WIDTH x HEIGHT pixels in tiles of 2^TILE_LOG2, and
- * N_WORKERS workers whose jobs come in an order by ORDER. Checks on the way
- * that memory one byte short is refused. */
+/* Makes a canvas of WIDTH x HEIGHT pixels in tiles of 2^TILE_LOG2 pixels,
+ * with N_WORKERS workers; ORDER seeds the order of jobs. Checks that one
+ * byte of memory less is rejected. */
 void star_canvas_open(struct star_canvas *canvas, int width, int height,
                       int tile_log2, int n_workers, uint32_t order);
 void star_canvas_close(struct star_canvas *canvas);
 
-/* Draws the stars of N lights, down to light FAINTEST, onto black: MEM is a
- * picture of FORMAT. Returns the number of pixels that were reported to get
- * light.
- */
+/* Draws the stars of N lights, down to a light of FAINTEST, onto black into
+ * MEM, an image of FORMAT. Returns the reported number of lit pixels. */
 int64_t star_canvas_draw(struct star_canvas *canvas,
                          const struct glint_star_tables *tables,
                          const struct glint_star_light *lights, int n,
                          struct glint_real faintest,
                          enum glint_pixel_format format, void *mem);
 
-/* Returns the tables of a stop whose wavelength times f-number is AIRY_PX
+/* Returns the star tables of a stop; AIRY_PX is wavelength times f-number in
  * pixels. */
 struct glint_star_tables *star_canvas_tables(int n_blades, double rotation_deg,
                                              double airy_px);
 
-/* Returns a white light of 2^POWER_LOG2 at (X, Y), pixels, whose core is
- * drawn. */
+/* Returns a white light of power 2^POWER_LOG2 at (X, Y), pixels, including
+ * its core. */
 struct glint_star_light star_canvas_light(double x, double y,
                                           double power_log2);
 
-/* Returns the green light of LINEAR_Q20, pictures WIDTH pixels wide, at (X, Y),
- * interpolated between pixels. */
+/* Returns the green light of LINEAR_Q20, an image WIDTH pixels wide, at (X,
+ * Y), interpolated between pixels. */
 static inline double star_canvas_green(const int32_t *linear_q20, int width,
                                        double x, double y)
 {

@@ -10,15 +10,16 @@
 #include "support/test.h"
 #include "support/tracks/tracks.h"
 
-/* What is baked as the motion of a text: a track, or foods that stand still. */
+/* The motion that a scene text uses: a recorded track, or food positions at
+ * rest. */
 static struct {
     struct track_options track;
-    double (*food)[3]; /* [n_foods], or NULL: the track */
+    double (*food)[3]; /* [n_foods], or NULL: the track is used */
     int n_foods;
     double angle_deg;
 } recorded;
 
-/* Sensors look along both ways of each axis. */
+/* Sensors look in both directions of each axis. */
 const struct glint_motion_body moving_body = {
     .size = .5,
     .n_sensors = MOVING_SENSORS,

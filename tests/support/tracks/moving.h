@@ -15,10 +15,10 @@ enum {
     MOVING_WIDTH = 96,
     MOVING_HEIGHT = 64,
     MOVING_FOODS = 5,
-    MOVING_SENSORS = 6 /* they look along both ways of each axis */
+    MOVING_SENSORS = 6 /* in both directions of each axis */
 };
 
-/* The body that is recorded, but for its angle of view. */
+/* The recorded body, except its angle of view. */
 extern const struct glint_motion_body moving_body;
 
 struct moving {
@@ -29,13 +29,14 @@ struct moving {
     int32_t light_q20[3 * MOVING_WIDTH * MOVING_HEIGHT];
 };
 
-/* Choose what "motion run" of a text is: a track of that kind (tracks.h), or N
- * foods that stand still; sensors see within ANGLE_DEG. */
+/* Choose the motion of "motion run" in a text: a track of type MOTION
+ * (tracks.h), or N food positions at rest; sensors see food within
+ * ANGLE_DEG. */
 void moving_of_track(int motion, int n_frames, double angle_deg);
 void moving_of_foods(double (*food)[3], int n, double angle_deg);
 double moving_angle_deg(void);
 
-/* Fail the test if TEXT cannot be drawn. */
+/* Functions fail the test if TEXT cannot be drawn. */
 struct moving *moving_open(const char *text, int tile_log2, int samples);
 void moving_draw(struct moving *d);
 void moving_close(struct moving *d);

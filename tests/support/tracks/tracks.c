@@ -12,7 +12,8 @@
 
 /* ------------------------------------------------------------- quaternions */
 
-static void times(const double a[4], const double b[4], double to[4])
+static void multiply_quaternions(const double a[4], const double b[4],
+                                 double to[4])
 {
     const double q[4] = {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
                          a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
@@ -25,7 +26,8 @@ static void times(const double a[4], const double b[4], double to[4])
         to[k] = q[k] / length;
 }
 
-static void about(double x, double y, double z, double angle, double q[4])
+static void set_rotation(double x, double y, double z, double angle,
+                         double q[4])
 {
     const double s = sin(angle / 2);
 
@@ -35,8 +37,9 @@ static void about(double x, double y, double z, double angle, double q[4])
     q[3] = s * z;
 }
 
-/* Sets TO to V turned back by Q, or by Q if FORTH. */
-static void turn(const double q[4], const double v[3], bool forth, double to[3])
+/* Sets TO to V rotated by the inverse of Q, or by Q if FORTH. */
+static void rotate(const double q[4], const double v[3], bool forth,
+                   double to[3])
 {
     const double s = forth ? 1 : -1;
     const double p[4] = {q[0], s * q[1], s * q[2], s * q[3]};
@@ -50,13 +53,13 @@ static void turn(const double q[4], const double v[3], bool forth, double to[3])
 
 /* ------------------------------------------------------------------ motions */
 
-static double signed_of(struct track *t)
+static double random_signed(struct track *t)
 {
     return 2 * rng_unit(&t->rng) - 1;
 }
 
-/* A step ahead, and back from the walls. */
-static void advance(struct track *t, double step)
+/* Moves the body one step ahead; it turns back at the walls. */
+static void move_ahead(struct track *t, double step)
 {
     for (int k = 0; k < 3; k++) {
         t->at[k] += step * t->heading[k];
@@ -67,12 +70,12 @@ static void advance(struct track *t, double step)
     }
 }
 
-static void new_heading(struct track *t)
+static void choose_heading(struct track *t)
 {
     double length = 0;
 
     for (int k = 0; k < 3; k++) {
-        t->heading[k] = signed_of(t) + 1e-3;
+        t->heading[k] = random_signed(t) + 1e-3;
         length += t->heading[k] * t->heading[k];
     }
     for (int k = 0; k < 3; k++)
@@ -84,11 +87,11 @@ static void move_straight(struct track *t)
     double q[4];
 
     if (t->frame % 150 == 0) {
-        new_heading(t);
-        about(0, 0, 1, .5 * signed_of(t), q);
-        times(t->turn, q, t->turn);
+        choose_heading(t);
+        set_rotation(0, 0, 1, .5 * random_signed(t), q);
+        multiply_quaternions(t->turn, q, t->turn);
     }
-    advance(t, .01);
+    move_ahead(t, .01);
 }
 
 static void move_spiral(struct track *t)
@@ -100,8 +103,8 @@ static void move_spiral(struct track *t)
     t->at[0] = 1 + (SIDE - 2) * (along < 1 ? along : 2 - along);
     t->at[1] = SIDE / 2 + 5 * cos(angle);
     t->at[2] = SIDE / 2 + 5 * sin(angle);
-    about(1, 0, 0, .01, q);
-    times(t->turn, q, t->turn);
+    set_rotation(1, 0, 0, .01, q);
+    multiply_quaternions(t->turn, q, t->turn);
 }
 
 static void move_turning(struct track *t)
@@ -109,26 +112,27 @@ static void move_turning(struct track *t)
     double q[4];
 
     move_straight(t);
-    about(1, 0, 0, .05 * signed_of(t), q);
-    times(t->turn, q, t->turn);
-    about(0, 1, 0, .05 * signed_of(t), q);
-    times(t->turn, q, t->turn);
+    set_rotation(1, 0, 0, .05 * random_signed(t), q);
+    multiply_quaternions(t->turn, q, t->turn);
+    set_rotation(0, 1, 0, .05 * random_signed(t), q);
+    multiply_quaternions(t->turn, q, t->turn);
 }
 
 static void move_random(struct track *t)
 {
     double q[4];
 
-    new_heading(t);
-    advance(t, .1 * rng_unit(&t->rng));
-    about(t->heading[1], t->heading[2], t->heading[0], .3 * signed_of(t), q);
-    times(t->turn, q, t->turn);
+    choose_heading(t);
+    move_ahead(t, .1 * rng_unit(&t->rng));
+    set_rotation(t->heading[1], t->heading[2], t->heading[0],
+                 .3 * random_signed(t), q);
+    multiply_quaternions(t->turn, q, t->turn);
 }
 
 /* --------------------------------------------------------------------- foods
  */
 
-static void new_food(struct track *t, int slot)
+static void place_food(struct track *t, int slot)
 {
     for (int k = 0; k < 3; k++)
         t->food[slot][k] = SIDE * rng_unit(&t->rng);
@@ -144,7 +148,7 @@ static double round_to(double x, int digits)
     return strtod(text, NULL);
 }
 
-static void see(struct track *t, struct track_frame *f)
+static void observe_foods(struct track *t, struct track_frame *f)
 {
     f->food_distance = 0;
     for (int i = 0; i < t->options.n_foods; i++) {
@@ -155,7 +159,7 @@ static void see(struct track *t, struct track_frame *f)
             square += off[k] * off[k];
         }
         f->food_distance += sqrt(square) / t->options.n_foods;
-        turn(t->turn, off, false, f->seen[i]);
+        rotate(t->turn, off, false, f->seen[i]);
         for (int k = 0; k < 3; k++)
             f->seen[i][k] = round_to(f->seen[i][k], t->options.digits);
     }
@@ -178,14 +182,14 @@ void track_begin(struct track *track, const struct track_options *options)
     for (int i = 0; i < 8; i++)
         rng_bits(&t->rng);
     for (int i = 0; i < options->n_foods; i++)
-        new_food(t, i);
-    new_heading(t);
+        place_food(t, i);
+    choose_heading(t);
     move[options->motion](t);
     memcpy(t->first_at, t->at, sizeof t->at);
     memcpy(t->first_turn, t->turn, sizeof t->turn);
 }
 
-/* The true pose, in the axes of frame 0. */
+/* Sets POSE to the true pose, in the axes of frame 0. */
 static void set_truth(const struct track *t, struct glint_rigid *pose)
 {
     const double back[4] = {t->first_turn[0], -t->first_turn[1],
@@ -194,14 +198,14 @@ static void set_truth(const struct track *t, struct glint_rigid *pose)
 
     for (int k = 0; k < 3; k++)
         off[k] = t->at[k] - t->first_at[k];
-    turn(t->first_turn, off, false, pose->at);
-    times(back, t->turn, q);
+    rotate(t->first_turn, off, false, pose->at);
+    multiply_quaternions(back, t->turn, q);
     for (int k = 0; k < 4; k++)
         pose->turn[k] = q[0] < 0 ? -q[k] : q[k];
     for (int i = 0; i < 3; i++) {
         const double unit[3] = {i == 0, i == 1, i == 2};
 
-        turn(q, unit, true, axis);
+        rotate(q, unit, true, axis);
         for (int k = 0; k < 3; k++)
             pose->row[k][i] = axis[k];
     }
@@ -219,10 +223,10 @@ void track_next(struct track *track, struct track_frame *frame)
         move[t->options.motion](t);
     for (int k = 0; k < 3; k++)
         off[k] = t->at[k] - before_at[k];
-    turn(before_turn, off, false, frame->step);
+    rotate(before_turn, off, false, frame->step);
     for (int k = 1; k < 4; k++)
         before_turn[k] = -before_turn[k];
-    times(before_turn, t->turn, spin);
+    multiply_quaternions(before_turn, t->turn, spin);
     sine = sqrt(spin[1] * spin[1] + spin[2] * spin[2] + spin[3] * spin[3]);
     for (int k = 0; k < 3; k++)
         frame->spin[k] =
@@ -230,11 +234,11 @@ void track_next(struct track *track, struct track_frame *frame)
     if (t->options.reset_every && t->frame > 0 &&
         t->frame % t->options.reset_every == 0) {
         frame->is_new[t->next_slot] = true;
-        new_food(t, t->next_slot);
+        place_food(t, t->next_slot);
         t->next_slot = (t->next_slot + 1) % t->options.n_foods;
     }
     set_truth(t, &frame->pose);
-    see(t, frame);
+    observe_foods(t, frame);
     t->frame++;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Options from files: which entries are taken, in which order, and that every
- * mistake is named with its line. A file that does not parse must set nothing.
+ * Tests options in files: which entries are applied, in which order, and that
+ * every error is reported with its line. A file with an error sets nothing.
  */
 #include <stdint.h>
 
@@ -26,15 +26,16 @@ static const struct option options[] = {
     {"config", required_argument, NULL, 'C'},
     TOOL_COMMON_OPTIONS};
 
-/* A command that logs its options, with a message of its own for a bad grid. */
+/* A command that logs its options and rejects some grids with its own
+ * message. */
 struct command {
     struct tool tool;
-    char log[1024]; /* "name=value;" for each, in order */
+    char log[1024]; /* "name=value;" for each option, in order */
     const char *lens;
     int grid;
 };
 
-static int take(void *ctx, const struct option *option, const char *value)
+static int log_option(void *ctx, const struct option *option, const char *value)
 {
     struct command *const c = ctx;
     const size_t used = strlen(c->log);
@@ -54,10 +55,10 @@ static int take(void *ctx, const struct option *option, const char *value)
 static struct command command;
 static struct glint_error error;
 
-static struct config start(void)
+static struct config make_config(void)
 {
     command = (struct command){.tool = {.name = "live"}};
-    return (struct config){&command.tool, options, take, &command, NULL};
+    return (struct config){&command.tool, options, log_option, &command, NULL};
 }
 
 /* ------------------------------------------------------- what was printed */
@@ -65,7 +66,7 @@ static struct config start(void)
 static FILE *said;
 static int kept_stderr;
 
-static void listen_to_stderr(void)
+static void capture_stderr(void)
 {
     fflush(stderr);
     said = tmpfile();
@@ -74,7 +75,7 @@ static void listen_to_stderr(void)
                 dup2(fileno(said), STDERR_FILENO) >= 0);
 }
 
-static void expect_said(const char *want)
+static void expect_message(const char *want)
 {
     char text[1024];
     size_t n;
@@ -91,16 +92,16 @@ static void expect_said(const char *want)
 
 /* ----------------------------------------------------------------- taking */
 
-static void expect_taken(const char *text, size_t bytes, const char *log)
+static void expect_options(const char *text, size_t bytes, const char *log)
 {
-    struct config config = start();
+    struct config config = make_config();
     char *const exact = malloc(bytes + 1);
 
     assert_non_null(exact);
     memcpy(exact, text, bytes);
-    listen_to_stderr();
+    capture_stderr();
     assert_ok(config_parse(&config, "x.ini", exact, bytes, &error));
-    expect_said("");
+    expect_message("");
     assert_string_equal(command.log, log);
     assert_string_equal(error.text, "");
     assert_null(command.tool.where);
@@ -111,51 +112,50 @@ static void expect_taken(const char *text, size_t bytes, const char *log)
 
 TEST(entries)
 {
-    expect_taken(BYTES(""), "");
-    expect_taken(BYTES("\n\n"), "");
-    expect_taken(BYTES("grid=64"), "grid=64;");
-    expect_taken(BYTES("[lens]\nlens = heliar tronnier \n[light]\n"
-                       "light = 1,2\nlight = 3,4\nlens=other\n"
-                       "[flare]\ndither = yes\nbalance = no\ngrid: 8\n"),
-                 "lens=heliar tronnier;light=1,2;light=3,4;lens=other;"
-                 "dither=(none);grid=8;");
-    expect_taken(BYTES("[camera]\n[output]\nthreads=2\nquiet=yes\n"),
-                 "threads=2;quiet=(none);");
-    expect_taken(BYTES("tint=\ntint=warm\n"), "tint=;tint=warm;");
-    expect_taken(BYTES("lens = stop = polygon:6\nlens: a:b\n"),
-                 "lens=stop = polygon:6;lens=a:b;");
+    expect_options(BYTES(""), "");
+    expect_options(BYTES("\n\n"), "");
+    expect_options(BYTES("grid=64"), "grid=64;");
+    expect_options(BYTES("[lens]\nlens = heliar tronnier \n[light]\n"
+                         "light = 1,2\nlight = 3,4\nlens=other\n"
+                         "[flare]\ndither = yes\nbalance = no\ngrid: 8\n"),
+                   "lens=heliar tronnier;light=1,2;light=3,4;lens=other;"
+                   "dither=(none);grid=8;");
+    expect_options(BYTES("[camera]\n[output]\nthreads=2\nquiet=yes\n"),
+                   "threads=2;quiet=(none);");
+    expect_options(BYTES("tint=\ntint=warm\n"), "tint=;tint=warm;");
+    expect_options(BYTES("lens = stop = polygon:6\nlens: a:b\n"),
+                   "lens=stop = polygon:6;lens=a:b;");
 }
 
 TEST(layout)
 {
-    expect_taken(BYTES("\xef\xbb\xbfgrid=64\r\n  \t \r\nlens = a b\r\n"),
-                 "grid=64;lens=a b;");
-    expect_taken(BYTES("\xef\xbb\xbf; note\n# lens=x\n ; x\n\t# y\ngrid=5"),
-                 "grid=5;");
-    expect_taken(BYTES("grid = 7 ; cells\nlens = a;b\nlens = c # d\n"),
-                 "grid=7;lens=a;b;lens=c # d;");
-    /* An indented line is a line of its own and does not continue the one
-     * before. */
-    expect_taken(BYTES("[lens]\n  lens = a\n  grid = 9\n\tlight=1,2\n"),
-                 "lens=a;grid=9;light=1,2;");
-    expect_taken(BYTES("lens=\xc3\xa4\xc3\xb6.lens\nlens=\"q\"\n"),
-                 "lens=\xc3\xa4\xc3\xb6.lens;lens=\"q\";");
+    expect_options(BYTES("\xef\xbb\xbfgrid=64\r\n  \t \r\nlens = a b\r\n"),
+                   "grid=64;lens=a b;");
+    expect_options(BYTES("\xef\xbb\xbf; note\n# lens=x\n ; x\n\t# y\ngrid=5"),
+                   "grid=5;");
+    expect_options(BYTES("grid = 7 ; cells\nlens = a;b\nlens = c # d\n"),
+                   "grid=7;lens=a;b;lens=c # d;");
+    /* An indented line does not continue the previous one. */
+    expect_options(BYTES("[lens]\n  lens = a\n  grid = 9\n\tlight=1,2\n"),
+                   "lens=a;grid=9;light=1,2;");
+    expect_options(BYTES("lens=\xc3\xa4\xc3\xb6.lens\nlens=\"q\"\n"),
+                   "lens=\xc3\xa4\xc3\xb6.lens;lens=\"q\";");
 }
 
-/* The longest line must be taken; a longer one must be refused unless it is a
- * comment. */
+/* Checks that a line of the max length is accepted, and that a longer one is
+ * rejected unless it is a comment. */
 TEST(long_lines)
 {
     char text[1000], log[1000];
 
     for (int n = CONFIG_LINE - 2; n <= CONFIG_LINE + 300; n++) {
-        struct config config = start();
+        struct config config = make_config();
         const int used =
             snprintf(text, sizeof text, "grid=4\nlens=%0*d\n", n - 5, 1);
 
         if (n <= CONFIG_LINE) {
             snprintf(log, sizeof log, "grid=4;lens=%0*d;", n - 5, 1);
-            expect_taken(text, (size_t)used, log);
+            expect_options(text, (size_t)used, log);
             continue;
         }
         assert_int_equal(
@@ -164,14 +164,14 @@ TEST(long_lines)
         assert_string_equal(error.text, "x.ini:2: has a line that is too long");
         assert_string_equal(command.log, "");
         text[7] = ';';
-        expect_taken(text, (size_t)used, "grid=4;");
+        expect_options(text, (size_t)used, "grid=4;");
     }
 }
 
-/* Values must outlive the text, until config_free(). */
+/* Checks that values outlive the text until config_free(). */
 TEST(values_stay)
 {
-    struct config config = start();
+    struct config config = make_config();
     char text[] = "lens=first\ngrid=16\ndither=yes\nlens=second";
 
     assert_ok(config_parse(&config, "x.ini", text, sizeof text - 1, &error));
@@ -185,7 +185,7 @@ TEST(values_stay)
 
 static void expect_mistake(const char *text, size_t bytes, const char *want)
 {
-    struct config config = start();
+    struct config config = make_config();
 
     assert_int_equal(config_parse(&config, "x.ini", text, bytes, &error),
                      EXIT_INPUT);
@@ -232,22 +232,23 @@ TEST(mistakes)
                    "x.ini:1: holds a control character");
 }
 
-/* A refusal by the command must come in its own words, with the line; entries
- * before it are taken, those after it are not. */
+/* Checks that an error reported by the command keeps its message and gets
+ * the line number; earlier entries are applied, later ones are not. */
 TEST(bad_value)
 {
-    struct config config = start();
+    struct config config = make_config();
 
-    listen_to_stderr();
+    capture_stderr();
     assert_int_equal(config_parse(&config, "x.ini",
                                   BYTES("lens=a\ngrid=3\nlens=b\n"), &error),
                      EXIT_INPUT);
-    expect_said("glint live: x.ini:2: --grid: '3' is not valid\n");
+    expect_message(
+        "glint live: x.ini:2: --grid: '3' is not something it takes\n");
     assert_string_equal(error.text, "");
     assert_string_equal(command.log, "lens=a;grid=3;");
     assert_null(command.tool.where);
     config_free(&config);
-    config = start();
+    config = make_config();
     assert_int_equal(config_parse(&config, "x.ini",
                                   BYTES("list-devices=yes\nlens=b\n"), &error),
                      EXIT_INPUT);
@@ -260,7 +261,7 @@ TEST(bad_value)
 TEST(long_name)
 {
     char name[300];
-    struct config config = start();
+    struct config config = make_config();
 
     memset(name, 'n', sizeof name);
     strcpy(name + sizeof name - 7, "/x.ini");
@@ -274,19 +275,20 @@ TEST(unknown_section)
 {
     static const char text[] = "[lens]\nlens=a\n\n[camra]\n\ngrid=5\n"
                                "light=1,2\n[output]\nlens=b\n[]\nlens=c\n";
-    struct config config = start();
+    struct config config = make_config();
 
-    listen_to_stderr();
+    capture_stderr();
     assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
-    expect_said("glint live: x.ini:4: the section [camra] is unknown; its "
-                "lines are used all the same\n");
+    expect_message(
+        "glint live: x.ini:4: no section is called [camra]; its lines "
+        "count all the same\n");
     assert_string_equal(command.log, "lens=a;grid=5;light=1,2;lens=b;lens=c;");
     config_free(&config);
-    config = start();
+    config = make_config();
     command.tool.quiet = true;
-    listen_to_stderr();
+    capture_stderr();
     assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
-    expect_said("");
+    expect_message("");
     config_free(&config);
 }
 
@@ -301,13 +303,13 @@ static void write_file(const char *text)
     assert_int_equal(fclose(file), 0);
 }
 
-/* Options must go in the order of a command: first those of its file, then
- * those of its line, which win. */
+/* Checks that options of the file are applied before those of the command
+ * line, which override them. */
 TEST(line_wins)
 {
     char *line[] = {"live",     "--grid", "32",         "in", "--conf",
                     "/nowhere", "--con",  scratch_file, "-q", NULL};
-    struct config config = start();
+    struct config config = make_config();
     const char *found;
     int c, index;
 
@@ -318,7 +320,7 @@ TEST(line_wins)
     assert_int_equal(command.grid, 16);
     while ((c = getopt_long(9, line, TOOL_COMMON_SHORT, options, &index)) >= 0)
         if (c != 'C' && c != 'q')
-            assert_int_equal(take(&command, &options[index], optarg), -1);
+            assert_int_equal(log_option(&command, &options[index], optarg), -1);
     assert_int_equal(command.grid, 32);
     assert_string_equal(command.log, "lens=a;grid=16;grid=32;");
     assert_string_equal(line[optind], "in");
@@ -326,10 +328,11 @@ TEST(line_wins)
     config_free(&config);
 }
 
-/* While a new file is bad, as on SIGHUP, what was read before must stay. */
+/* Checks that the old values remain valid if a new file, as on SIGHUP, has
+ * an error. */
 TEST(reload)
 {
-    struct config first = start(), second;
+    struct config first = make_config(), second;
     const char *lens;
     char want[200];
 
@@ -337,13 +340,13 @@ TEST(reload)
     assert_ok(config_read(&first, scratch_file));
     lens = command.lens;
     write_file("lens=b\ngrid=x\n");
-    second = start();
-    listen_to_stderr();
+    second = make_config();
+    capture_stderr();
     assert_int_equal(config_read(&second, scratch_file), EXIT_INPUT);
     snprintf(want, sizeof want,
              "glint live: %s:2: --grid: 'x' is not valid\n",
              scratch_file);
-    expect_said(want);
+    expect_message(want);
     assert_null(second.values);
     assert_string_equal(lens, "a");
     config_free(&first);
@@ -351,22 +354,22 @@ TEST(reload)
 
 TEST(files)
 {
-    struct config config = start();
+    struct config config = make_config();
     char want[200];
 
     write_file("grid=64\nfoo=1\n");
-    listen_to_stderr();
+    capture_stderr();
     assert_int_equal(config_read(&config, scratch_file), EXIT_INPUT);
     snprintf(want, sizeof want,
              "glint live: %s:2: foo is not an option of configuration files\n",
              scratch_file);
-    expect_said(want);
-    listen_to_stderr();
+    expect_message(want);
+    capture_stderr();
     assert_int_equal(config_read(&config, "/nowhere/x.ini"), EXIT_INPUT);
-    expect_said("glint live: /nowhere/x.ini: No such file or directory\n");
-    listen_to_stderr();
+    expect_message("glint live: /nowhere/x.ini: No such file or directory\n");
+    capture_stderr();
     assert_int_equal(config_read(&config, "/dev/zero"), EXIT_INPUT);
-    expect_said("glint live: /dev/zero: is a device, not a file\n");
+    expect_message("glint live: /dev/zero: is a device, not a file\n");
     assert_null(config.values);
 }
 

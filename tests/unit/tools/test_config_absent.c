@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Without inih a configuration must be refused with a message, whatever is in
- * it.
+ * Checks that any configuration file is rejected with a message in a build
+ * without inih.
  */
 #include <stdint.h>
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Control lines: values, errors and their places; keys; frames of a playback;
- * files and pipes. */
-#define _GNU_SOURCE /* mkstemp, posix_openpt */
+ * Tests control lines: values, errors and their positions; keys; playback
+ * position; files and pipes.
+ */
+#define _GNU_SOURCE /* for mkstemp() and posix_openpt() */
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
@@ -23,7 +24,8 @@ static struct control_line line;
 static struct glint_error error;
 static struct controls input;
 
-static void says(const char *text, enum control_verb verb, int frame, int n)
+static void expect_line(const char *text, enum control_verb verb, int frame,
+                        int n)
 {
     assert_ok(control_parse(text, "f:1", &line, &error));
     assert_int_equal(line.verb, verb);
@@ -34,90 +36,91 @@ static void says(const char *text, enum control_verb verb, int frame, int n)
 
 TEST(lines)
 {
-    says("orbit 30 -10", CONTROL_ORBIT, -1, 2);
+    expect_line("orbit 30 -10", CONTROL_ORBIT, -1, 2);
     assert_true(line.v[0] == 30 && line.v[1] == -10);
-    says("  25\tdistance 2.5  # near\r\n", CONTROL_DISTANCE, 25, 1);
+    expect_line("  25\tdistance 2.5  # near\r\n", CONTROL_DISTANCE, 25, 1);
     assert_true(line.v[0] == 2.5);
-    says("set steel alpha .05 .2", CONTROL_ALPHA, -1, 2);
+    expect_line("set steel alpha .05 .2", CONTROL_ALPHA, -1, 2);
     assert_string_equal(line.name[0], "steel");
     assert_int_equal(line.name_column[0], 5);
     assert_int_equal(line.column, 17);
-    says("set steel alpha .05", CONTROL_ALPHA, -1, 1);
-    says("set red colour 1 0 0", CONTROL_COLOUR, -1, 3);
-    says("set steel diffuse 0 0 .1", CONTROL_DIFFUSE, -1, 3);
-    says("material ball steel", CONTROL_MATERIAL, -1, 0);
+    expect_line("set steel alpha .05", CONTROL_ALPHA, -1, 1);
+    expect_line("set red colour 1 0 0", CONTROL_COLOUR, -1, 3);
+    expect_line("set steel diffuse 0 0 .1", CONTROL_DIFFUSE, -1, 3);
+    expect_line("material ball steel", CONTROL_MATERIAL, -1, 0);
     assert_string_equal(line.name[1], "steel");
-    says("show ball", CONTROL_SHOW, -1, 0);
-    says("0 hide ball", CONTROL_HIDE, 0, 0);
-    says("size ball .25", CONTROL_SIZE, -1, 1);
-    says("environment turn -90", CONTROL_TURN, -1, 1);
-    says("environment scale .5", CONTROL_SCALE, -1, 1);
-    says("3 environment map forest # at dusk", CONTROL_MAP, 3, 0);
+    expect_line("show ball", CONTROL_SHOW, -1, 0);
+    expect_line("0 hide ball", CONTROL_HIDE, 0, 0);
+    expect_line("size ball .25", CONTROL_SIZE, -1, 1);
+    expect_line("environment turn -90", CONTROL_TURN, -1, 1);
+    expect_line("environment scale .5", CONTROL_SCALE, -1, 1);
+    expect_line("3 environment map forest # at dusk", CONTROL_MAP, 3, 0);
     assert_string_equal(line.name[0], "forest");
     assert_int_equal(line.name_column[0], 19);
-    says("environment next", CONTROL_NEXT_MAP, -1, 0);
-    says("step", CONTROL_STEP, -1, 0);
-    says("step -3", CONTROL_STEP, -1, 1);
-    says("jump 12", CONTROL_JUMP, -1, 1);
-    says("play", CONTROL_PLAY, -1, 0);
-    says("play 12.5", CONTROL_PLAY, -1, 1);
-    says("pause", CONTROL_PAUSE, -1, 0);
-    says("stop", CONTROL_STOP, -1, 0);
-    says("", CONTROL_NONE, -1, 0);
-    says(" # all a comment", CONTROL_NONE, -1, 0);
+    expect_line("environment next", CONTROL_NEXT_MAP, -1, 0);
+    expect_line("step", CONTROL_STEP, -1, 0);
+    expect_line("step -3", CONTROL_STEP, -1, 1);
+    expect_line("jump 12", CONTROL_JUMP, -1, 1);
+    expect_line("play", CONTROL_PLAY, -1, 0);
+    expect_line("play 12.5", CONTROL_PLAY, -1, 1);
+    expect_line("pause", CONTROL_PAUSE, -1, 0);
+    expect_line("stop", CONTROL_STOP, -1, 0);
+    expect_line("", CONTROL_NONE, -1, 0);
+    expect_line(" # all a comment", CONTROL_NONE, -1, 0);
 }
 
-static void refuses(const char *text, const char *cause)
+static void expect_error(const char *text, const char *cause)
 {
     memset(&line, 0x55, sizeof line);
     assert_int_equal(control_parse(text, "f:1", &line, &error), GLINT_E_FORMAT);
     assert_string_equal(error.text, cause);
-    assert_int_equal(line.n, 0x55555555); /* it is left alone */
+    assert_int_equal(line.n, 0x55555555); /* unchanged */
 }
 
 TEST(mistakes)
 {
     static char text[400];
 
-    refuses("orbti 3 4",
-            "f:1:1: 'orbti' is not a command; did you mean 'orbit'?");
-    refuses("frob", "f:1:1: 'frob' is not a command");
-    refuses("orbit 3", "f:1:8: expected orbit YAW PITCH");
-    refuses("orbit 3 x",
-            "f:1:9: 'x' is not a number; expected orbit YAW PITCH");
-    refuses("orbit 3 4 5",
-            "f:1:11: '5' is one value too many; expected orbit YAW PITCH");
-    refuses("orbit 3 400",
-            "f:1:9: orbit YAW PITCH must be -360 to 360, not 400");
-    refuses("orbit nan 4",
-            "f:1:7: 'nan' is not a number; expected orbit YAW PITCH");
-    refuses("set", "f:1:4: expected set MATERIAL alpha X [Y]");
-    refuses("set steel", "f:1:10: expected set MATERIAL alpha X [Y]");
-    refuses("set steel alhpa 1",
-            "f:1:11: 'alhpa' is not a word of set; did you mean 'alpha'?");
-    refuses("environment", "f:1:12: expected environment turn DEG");
-    refuses("environment nxt",
-            "f:1:13: 'nxt' is not a word of environment; did you mean 'next'?");
-    refuses("environment map", "f:1:16: expected environment map NAME");
-    refuses("environment map a b",
-            "f:1:19: 'b' is one value too many; expected environment map NAME");
-    refuses("environment scale 0",
-            "f:1:19: environment scale X must be 1e-06 to 1000000, not 0");
-    refuses("set steel alpha 0",
-            "f:1:17: set MATERIAL alpha X [Y] must be 0.001 to 1, not 0");
-    refuses("jump 1.5", "f:1:6: jump N needs whole numbers, not 1.5");
-    refuses("-1 stop",
-            "f:1:1: a frame must be a whole number from 0, not '-1'");
-    refuses("1.5 stop",
-            "f:1:1: a frame must be a whole number from 0, not '1.5'");
-    refuses("7 ", "f:1:3: a command must follow the frame");
-    refuses("show a23456789012345678901234567890123",
-            "f:1:6: a name has at most 31 letters");
+    expect_error("orbti 3 4",
+                 "f:1:1: 'orbti' is no command; did you mean 'orbit'?");
+    expect_error("frob", "f:1:1: 'frob' is no command");
+    expect_error("orbit 3", "f:1:8: expected orbit YAW PITCH");
+    expect_error("orbit 3 x",
+                 "f:1:9: 'x' is no number; expected orbit YAW PITCH");
+    expect_error("orbit 3 4 5",
+                 "f:1:11: '5' is too much; expected orbit YAW PITCH");
+    expect_error("orbit 3 400",
+                 "f:1:9: orbit YAW PITCH is -360 to 360, not 400");
+    expect_error("orbit nan 4",
+                 "f:1:7: 'nan' is no number; expected orbit YAW PITCH");
+    expect_error("set", "f:1:4: expected set MATERIAL alpha X [Y]");
+    expect_error("set steel", "f:1:10: expected set MATERIAL alpha X [Y]");
+    expect_error("set steel alhpa 1",
+                 "f:1:11: 'alhpa' is no word of set; did you mean 'alpha'?");
+    expect_error("environment", "f:1:12: expected environment turn DEG");
+    expect_error("environment nxt",
+                 "f:1:13: 'nxt' is no word of environment; did "
+                 "you mean 'next'?");
+    expect_error("environment map", "f:1:16: expected environment map NAME");
+    expect_error("environment map a b",
+                 "f:1:19: 'b' is too much; expected environment map NAME");
+    expect_error("environment scale 0",
+                 "f:1:19: environment scale X is 1e-06 to 1000000, not 0");
+    expect_error("set steel alpha 0",
+                 "f:1:17: set MATERIAL alpha X [Y] is 0.001 to 1, not 0");
+    expect_error("jump 1.5", "f:1:6: jump N takes whole numbers, not 1.5");
+    expect_error("-1 stop",
+                 "f:1:1: a frame is a whole number from 0, not '-1'");
+    expect_error("1.5 stop",
+                 "f:1:1: a frame is a whole number from 0, not '1.5'");
+    expect_error("7 ", "f:1:3: a command has to follow the frame");
+    expect_error("show a23456789012345678901234567890123",
+                 "f:1:6: a name has 31 letters at most");
     memset(text, 'a', sizeof text - 1);
-    refuses(text, "f:1:256: a line has at most 255 bytes");
+    expect_error(text, "f:1:256: a line has 255 bytes at most");
 }
 
-/* The forms of one word take as many names. */
+/* Checks that all forms of one word have the same number of names. */
 TEST(forms)
 {
     for (int i = 0; i < control_n_forms; i++)
@@ -137,7 +140,7 @@ TEST(keys)
     assert_true(line.is_change && line.v[0] > 0 && line.v[1] == 0);
     assert_int_equal(keyboard_take("+", 1, &line), 1);
     assert_true(line.verb == CONTROL_DISTANCE && line.v[0] < 1);
-    /* keys that are none: a function key, a lone escape, a letter */
+    /* not control keys: a function key, a single escape, a letter */
     assert_int_equal(keyboard_take("\033[15~+", 6, &line), 5);
     assert_int_equal(line.verb, CONTROL_NONE);
     assert_int_equal(keyboard_take("\033", 1, &line), 1);
@@ -151,7 +154,7 @@ TEST(keys)
     assert_int_equal(keyboard_open(&(struct keyboard){0}, -1), GLINT_E_IO);
 }
 
-static int played(struct playback *p, const char *text, double elapsed_s)
+static int play_line(struct playback *p, const char *text, double elapsed_s)
 {
     assert_ok(control_parse(text, "f:1", &line, &error));
     assert_int_equal(playback_take(p, &line), *text != 0);
@@ -163,29 +166,31 @@ TEST(playback)
     struct playback p;
 
     playback_init(&p);
-    for (int i = 0; i < 5; i++) /* one a picture, however long that takes */
+    /* one frame per picture, however long it takes */
+    for (int i = 0; i < 5; i++)
         assert_int_equal(playback_next(&p, 7), i);
-    assert_int_equal(played(&p, "pause", 1), 4);
-    assert_int_equal(played(&p, "", 1), 4);
-    assert_int_equal(played(&p, "step", 1), 5);
-    assert_int_equal(played(&p, "step -2", 1), 3);
-    assert_int_equal(played(&p, "step -9", 1), 0);
-    assert_int_equal(played(&p, "jump 20", 1), 20);
-    assert_int_equal(played(&p, "", 1), 20);
-    assert_int_equal(played(&p, "play 10", .1), 21);
-    for (int i = 1; i < 40; i++) /* 40 a second show each frame 4 times */
+    assert_int_equal(play_line(&p, "pause", 1), 4);
+    assert_int_equal(play_line(&p, "", 1), 4);
+    assert_int_equal(play_line(&p, "step", 1), 5);
+    assert_int_equal(play_line(&p, "step -2", 1), 3);
+    assert_int_equal(play_line(&p, "step -9", 1), 0);
+    assert_int_equal(play_line(&p, "jump 20", 1), 20);
+    assert_int_equal(play_line(&p, "", 1), 20);
+    assert_int_equal(play_line(&p, "play 10", .1), 21);
+    /* at 40 pictures per second each frame is shown 4 times */
+    for (int i = 1; i < 40; i++)
         assert_int_equal(playback_next(&p, .025), 21 + i / 4);
-    assert_int_equal(played(&p, "play 0", 9), 30);
-    assert_int_equal(played(&p, "stop", 9), 0);
-    assert_int_equal(played(&p, "", 9), 0);
+    assert_int_equal(play_line(&p, "play 0", 9), 30);
+    assert_int_equal(play_line(&p, "stop", 9), 0);
+    assert_int_equal(play_line(&p, "", 9), 0);
     p.last = 2;
-    assert_int_equal(played(&p, "play", 1), 1);
-    assert_int_equal(played(&p, "", 1), 2);
-    assert_int_equal(played(&p, "", 1), 2);
-    assert_int_equal(played(&p, "jump 9", 1), 2);
+    assert_int_equal(play_line(&p, "play", 1), 1);
+    assert_int_equal(play_line(&p, "", 1), 2);
+    assert_int_equal(play_line(&p, "", 1), 2);
+    assert_int_equal(play_line(&p, "jump 9", 1), 2);
 }
 
-static void next_is(int picture, enum control_verb verb)
+static void expect_next(int picture, enum control_verb verb)
 {
     const struct control_line *const l = controls_next(&input, picture);
 
@@ -203,7 +208,8 @@ static enum glint_status read_text(const char *text)
     return controls_open(&input, scratch_file, false, &error);
 }
 
-/* In their order; one of a later picture holds those behind it. */
+/* Checks that lines are applied in order, and that a line for a later
+ * picture delays those after it. */
 TEST(file)
 {
     char where[CONTROL_WHERE], wanted[CONTROL_WHERE];
@@ -211,14 +217,14 @@ TEST(file)
     assert_ok(read_text("orbit 1 2\n\n# none\n3 stop\nplay\n2 pause"));
     assert_int_equal(controls_row(&input, 3)->verb, CONTROL_PAUSE);
     assert_null(controls_row(&input, 4));
-    next_is(0, CONTROL_ORBIT);
+    expect_next(0, CONTROL_ORBIT);
     assert_null(controls_next(&input, 2));
-    next_is(3, CONTROL_STOP);
+    expect_next(3, CONTROL_STOP);
     controls_where(&input, -1, where);
     snprintf(wanted, sizeof wanted, "%s:4", scratch_file);
     assert_string_equal(where, wanted);
-    next_is(3, CONTROL_PLAY);
-    next_is(3, CONTROL_PAUSE);
+    expect_next(3, CONTROL_PLAY);
+    expect_next(3, CONTROL_PAUSE);
     assert_null(controls_next(&input, 9));
     controls_close(&input);
     assert_int_equal(read_text("stop\n  jumb 3\n"), GLINT_E_FORMAT);
@@ -231,7 +237,8 @@ TEST(file)
     controls_close(&input);
 }
 
-/* Lines come as they are whole; bad ones are counted and end nothing. */
+/* Checks that lines from a pipe are applied when complete, and that invalid
+ * lines are counted and do not end reading. */
 TEST(pipe)
 {
     int to;
@@ -245,25 +252,25 @@ TEST(pipe)
     assert_int_equal(write(to, "pau", 3), 3);
     assert_null(controls_next(&input, 1));
     assert_int_equal(write(to, "se\nrubbish\n5 play\nstop\n", 23), 23);
-    next_is(2, CONTROL_PAUSE);
+    expect_next(2, CONTROL_PAUSE);
     assert_null(controls_next(&input, 2));
     assert_int_equal(input.n_bad, 1);
     assert_non_null(strstr(input.bad.text, ":2:1: 'rubbish' is not a command"));
     assert_null(controls_next(&input, 4));
-    next_is(5, CONTROL_PLAY);
-    next_is(5, CONTROL_STOP);
+    expect_next(5, CONTROL_PLAY);
+    expect_next(5, CONTROL_STOP);
     for (int i = 0; i < 700; i++) /* a line that is too long */
         assert_int_equal(write(to, "7", 1), 1);
     assert_int_equal(write(to, "\nstep\n", 6), 6);
-    next_is(6, CONTROL_STEP);
+    expect_next(6, CONTROL_STEP);
     assert_int_equal(input.n_bad, 2);
     close(to);
     controls_close(&input);
     unlink(scratch_file);
 }
 
-/* Takes the keys of terminal PATH, as a session of its own, and leaves. */
-static void take_keys(const char *path, int is_killed)
+/* Opens the keys of the terminal PATH in a new session, and ends. */
+static void read_keys(const char *path, int is_killed)
 {
     struct keyboard keys;
     int fd;
@@ -280,8 +287,8 @@ static void take_keys(const char *path, int is_killed)
     exit(line.verb == CONTROL_ORBIT ? 7 : 4);
 }
 
-/* Keys come at once, and the terminal is as it was, however the process ends.
- */
+/* Checks that keys arrive at once, and that the terminal's mode is restored,
+ * however the process ends. */
 TEST(terminal)
 {
     for (int is_killed = 0; is_killed < 2; is_killed++) {
@@ -294,7 +301,7 @@ TEST(terminal)
         assert_int_equal(grantpt(terminal) | unlockpt(terminal), 0);
         child = fork();
         if (child == 0)
-            take_keys(ptsname(terminal), is_killed);
+            read_keys(ptsname(terminal), is_killed);
         fd = open(ptsname(terminal), O_RDWR | O_NOCTTY);
         do
             assert_int_equal(tcgetattr(fd, &now), 0);

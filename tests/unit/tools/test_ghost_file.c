@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Files of single ghosts: values and errors.
+ * Tests files that solo, mute or tint single ghosts: values and errors.
  */
 #include <stdint.h>
 #include <stdlib.h>
@@ -9,8 +9,8 @@
 #include "model/ghost_file.h"
 #include "support/test.h"
 
-/* Three ghosts, and a part of the second. */
-static struct glint_setup *setup_of(void)
+/* Makes a setup of three ghosts and a second part of ghost 1's pupil. */
+static struct glint_setup *make_setup(void)
 {
     static const int pair[4][2] = {{3, 1}, {12, 2}, {12, 5}, {12, 2}};
     struct glint_setup *s = calloc(1, sizeof *s);
@@ -28,7 +28,7 @@ static struct glint_setup *setup_of(void)
 static enum glint_status parse(const char *text, struct glint_tint **tints,
                                struct glint_error *error)
 {
-    struct glint_setup *s = setup_of();
+    struct glint_setup *s = make_setup();
     enum glint_status status;
 
     error->text[0] = '\0';
@@ -38,7 +38,7 @@ static enum glint_status parse(const char *text, struct glint_tint **tints,
     return status;
 }
 
-static double gain(const struct glint_tint *tints, int ghost)
+static double gain_of(const struct glint_tint *tints, int ghost)
 {
     return glint_real_value(tints[ghost].gain);
 }
@@ -51,11 +51,12 @@ TEST(values)
     assert_ok(parse("# remark\nlens lens-a\n\n0 mute # gone\r\n"
                     "\t12-2  gain 2.5 tint 1,0.5,0\n",
                     &t, &error));
-    assert_true(gain(t, 0) == 0 && gain(t, 1) == 2.5 && gain(t, 2) == 1);
+    assert_true(gain_of(t, 0) == 0 && gain_of(t, 1) == 2.5 &&
+                gain_of(t, 2) == 1);
     assert_int_equal(t[1].rgb_q14[0], 16384);
     assert_int_equal(t[1].rgb_q14[1], 8192);
     assert_int_equal(t[1].rgb_q14[2], 0);
-    assert_memory_equal(&t[3], &t[1], sizeof *t); /* the part */
+    assert_memory_equal(&t[3], &t[1], sizeof *t); /* part of ghost 1's pupil */
     assert_int_equal(t[2].rgb_q14[2], 16384);
     free(t);
 }
@@ -66,8 +67,8 @@ TEST(solo)
     struct glint_error error;
 
     assert_ok(parse("1 solo gain 3\n2 mute\n", &t, &error));
-    assert_true(gain(t, 0) == 0 && gain(t, 1) == 3);
-    assert_true(gain(t, 2) == 0 && gain(t, 3) == 3);
+    assert_true(gain_of(t, 0) == 0 && gain_of(t, 1) == 3);
+    assert_true(gain_of(t, 2) == 0 && gain_of(t, 3) == 3);
     free(t);
     assert_int_equal(parse("1 mute\n2 solo\n1 solo\n", &t, &error),
                      GLINT_E_FORMAT);
@@ -87,7 +88,7 @@ TEST(lines_read_back)
     free(t);
     ghost_file_line(line, sizeof line, 0, NULL);
     assert_ok(parse(line, &t, &error));
-    assert_true(gain(t, 0) == 1);
+    assert_true(gain_of(t, 0) == 1);
     free(t);
 }
 

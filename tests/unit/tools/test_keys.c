@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Key frames: values between and beyond them, and files that are refused.
+ * Tests key frames: values between and outside them, and invalid files.
  */
 #include <stdint.h>
 #include <stdio.h>
@@ -31,7 +31,7 @@ TEST(values)
     assert_true(keys_at(&k, KEYS_GAIN, 15, 7) == 2);
     assert_true(keys_at(&k, KEYS_GAIN, 20, 7) == 3);
     assert_true(keys_at(&k, KEYS_GAIN, 1000000, 7) == 3);
-    /* an empty field is not a key: from frame 10 to 30 */
+    /* an empty field is not a key: interpolates from frame 10 to 30 */
     assert_true(keys_at(&k, KEYS_EXPOSURE, 20, 7) == 3);
     assert_true(keys_at(&k, KEYS_X, 15, 7) == 50);
     assert_true(keys_at(&k, KEYS_Y, 20, 7) == 25);
@@ -39,7 +39,7 @@ TEST(values)
     assert_false(keys_has(&k, KEYS_GAIN));
 }
 
-/* Between many keys the right two must be found. */
+/* Checks that the right two of many keys are used. */
 TEST(many)
 {
     static char text[40000] = "frame,gain\n";

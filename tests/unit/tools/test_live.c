@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint live from its command line to its exit code, with a fake camera:
- * resources, cost of a frame, signals and lost cameras.
+ * Tests glint live from its command line to its exit code with a fake camera:
+ * resources, cost per frame, signals and lost cameras.
  */
 #include <stdint.h>
 
@@ -24,9 +24,9 @@ static char said_path[] = "/tmp/glint-test-said-XXXXXX";
 static char shot_dir[] = "/tmp/glint-test-shot-XXXXXX";
 
 static int n_waits, n_unwaited;
-static void (*script)(int wait); /* Each wait calls this with its number. */
+static void (*script)(int wait); /* called at each wait with its number */
 
-/* Each wait brings a frame, unless the script takes it away again. */
+/* Each wait delivers a frame; the script may remove it. */
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
                  const sigset_t *mask);
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
@@ -46,14 +46,14 @@ int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
     return 1;
 }
 
-/* A program that asks again and again without waiting is stopped here. */
+/* Fails a program that dequeues repeatedly without waiting. */
 static void on_dequeue(void)
 {
     if (++n_unwaited == 1000)
         raise(SIGTERM);
 }
 
-static void must_wait(void)
+static void fail_without_wait(void)
 {
     assert_true(n_unwaited < 1000);
 }
@@ -67,11 +67,11 @@ static void write_config(const char *text)
     fclose(f);
 }
 
-/* Runs `glint live -d FAKE -o null -q LINE`, with stderr to a file; returns its
- * exit code. The stop is a circle unless LINE has another, as the star of round
- * blades, made at each begin and reload, would take a hundred times what all
- * else does. */
-static int live(const char *line)
+/* Runs `glint live -d FAKE -o null -q LINE` with stderr to a file. Returns
+ * its exit code. Unless LINE sets the stop, it is a circle: computing the
+ * starburst of rounded blades, at each start and reload, would take 100
+ * times longer than the rest. */
+static int run_live(const char *line)
 {
     static char words[1024];
     char *argv[64] = {NULL};
@@ -95,8 +95,8 @@ static int live(const char *line)
     return code;
 }
 
-/* Returns how often TEXT was printed to stderr. */
-static int n_said(const char *text)
+/* Returns the number of times that TEXT was printed to stderr. */
+static int count_messages(const char *text)
 {
     static char all[100000];
     FILE *const f = fopen(said_path, "r");
@@ -110,9 +110,9 @@ static int n_said(const char *text)
     return n;
 }
 
-static void must_leave_nothing(void)
+static void expect_no_leaks(void)
 {
-    must_wait();
+    fail_without_wait();
     assert_int_equal(camera.fd, -1);
     assert_int_equal(camera.n_maps, 0);
     assert_int_equal(camera.breaches, 0);
@@ -123,7 +123,7 @@ static void must_leave_nothing(void)
 
 static int asked[200], blocks[200];
 
-static void count(int wait)
+static void count_allocations(int wait)
 {
     if (wait < 200) {
         asked[wait] = fake_camera_asked();
@@ -138,12 +138,13 @@ TEST_BEFORE
 
 TEST(frames)
 {
-    script = count;
-    assert_ok(live("--count 150 --stop polygon:6,round:0.2"));
-    must_leave_nothing();
+    script = count_allocations;
+    assert_ok(run_live("--count 150 --stop polygon:6,round:0.2"));
+    expect_no_leaks();
     assert_int_equal(n_waits, 150);
     assert_true(asked[2] >= 5);
-    assert_int_equal(asked[149] - asked[2], 0); /* Frames take no memory. */
+    /* drawing frames allocates nothing */
+    assert_int_equal(asked[149] - asked[2], 0);
 }
 
 static int asked_at_stream[200], n_streams;
@@ -153,18 +154,18 @@ static void count_stream(void)
     asked_at_stream[n_streams++] = fake_camera_asked();
 }
 
-/* Runs LINE with the waits of FOLLOW. Checks that STREAMON came N_STARTS times,
- * each after all set-up: no memory is requested between it and frame WAIT + 1
- * of the waits that follow. */
-static void must_set_up_first(const char *line, void (*follow)(int wait),
+/* Runs LINE with the waits of FOLLOW. Checks that streaming was started
+ * N_STARTS times, each time after all set-up: nothing is allocated between
+ * it and frame WAIT + 1 of the following waits. */
+static void check_setup_order(const char *line, void (*follow)(int wait),
                               const int *wait, int n_starts)
 {
     fake_camera_reset();
     camera.on_stream = count_stream;
     n_streams = 0;
     script = follow;
-    assert_ok(live(line));
-    must_leave_nothing();
+    assert_ok(run_live(line));
+    expect_no_leaks();
     assert_int_equal(n_streams, n_starts);
     for (int i = 0; i < n_starts; i++)
         if (asked[wait[i]] != asked_at_stream[i])
@@ -175,7 +176,7 @@ static void must_set_up_first(const char *line, void (*follow)(int wait),
 static void unplug(int wait)
 {
     camera.is_gone = wait >= 20 && wait < 30;
-    count(wait);
+    count_allocations(wait);
 }
 
 static void change_size(int wait)
@@ -185,27 +186,27 @@ static void change_size(int wait)
         camera.n_events = 1;
         camera.n_frames = 0;
     }
-    count(wait);
+    count_allocations(wait);
 }
 
-/* The camera must stream only after all set-up, at the start, after it was
- * unplugged, and for another size. */
+/* Checks that the camera starts streaming only after all set-up: at the
+ * start, after it was unplugged, and at another size. */
 TEST(streams_last)
 {
     static const int start[] = {10}, back[] = {10, 40},
                      sizes[] = {4, 14, 24, 29};
 
-    must_set_up_first("--count 20", count, start, 1);
-    must_set_up_first("--count 50 --reconnect", unplug, back, 2);
-    must_set_up_first("--count 27", change_size, sizes, 4);
+    check_setup_order("--count 20", count_allocations, start, 1);
+    check_setup_order("--count 50 --reconnect", unplug, back, 2);
+    check_setup_order("--count 27", change_size, sizes, 4);
 }
 
 TEST(skip)
 {
     script = NULL;
-    assert_ok(live("--count 5 --skip 20"));
+    assert_ok(run_live("--count 5 --skip 20"));
     assert_int_equal(n_waits, 25);
-    must_leave_nothing();
+    expect_no_leaks();
 }
 
 static void stop_at_30(int wait)
@@ -220,14 +221,15 @@ static int last_shot = 149;
 
 static void reload_often(int wait)
 {
-    if (wait == 3 || wait == last_shot) /* Both frames have one code. */
+    /* Both snapshots are of frames with the same code. */
+    if (wait == 3 || wait == last_shot)
         raise(SIGUSR2);
     if (wait % 10 == 5)
         raise(SIGHUP);
-    count(wait);
+    count_allocations(wait);
 }
 
-static const char *snapshot(int number)
+static const char *read_snapshot(int number)
 {
     static char mem[2][20000], path[64];
     char *const into = mem[number % 2];
@@ -243,8 +245,7 @@ static const char *snapshot(int number)
     return into;
 }
 
-/* Many reloads must not let memory grow, and the picture must stay as it
- * was. */
+/* Checks that many reloads neither increase memory nor change the image. */
 TEST(reloads)
 {
     char line[200];
@@ -257,19 +258,20 @@ TEST(reloads)
     for (int exact = 0; exact < 2; exact++) {
         fake_camera_reset();
         script = reload_often;
-        last_shot = exact ? 29 : 149; /* Exact rays take 0.15 s a frame. */
+        last_shot = exact ? 29 : 149; /* Exact rays take 0.15 s per frame. */
         snprintf(line, sizeof line, "--count %d --config %s%s", last_shot + 1,
                  config_path, exact ? " --rays exact --grid 8" : "");
-        assert_ok(live(line));
-        must_leave_nothing();
-        assert_int_equal(n_said("glint live: reloaded"), exact ? 3 : 15);
+        assert_ok(run_live(line));
+        expect_no_leaks();
+        assert_int_equal(count_messages("glint live: reloaded"),
+                         exact ? 3 : 15);
         assert_int_equal(blocks[last_shot - 1], blocks[exact ? 18 : 28]);
-        assert_memory_equal(snapshot(1), snapshot(2), 3 * 64 * 48);
+        assert_memory_equal(read_snapshot(1), read_snapshot(2), 3 * 64 * 48);
     }
     last_shot = 149;
 }
 
-static void spoil_config(int wait)
+static void write_bad_config(int wait)
 {
     if (wait == 20)
         write_config("lens = " LENS "\nno-such-thing = 1\n");
@@ -287,14 +289,13 @@ TEST(bad_reloads)
 
     write_config("lens = " LENS "\n");
     fake_camera_reset();
-    script = spoil_config;
+    script = write_bad_config;
     snprintf(line, sizeof line, "--count 100 --config %s", config_path);
-    assert_ok(live(line));
-    must_leave_nothing();
-    assert_int_equal(
-        n_said("not reloaded: the previous configuration stays in use"), 6);
-    assert_int_equal(n_said("live: reloaded"), 2);
-    assert_int_equal(n_said(":2: no-such-thing is not an option"), 4);
+    assert_ok(run_live(line));
+    expect_no_leaks();
+    assert_int_equal(count_messages("not reloaded: all stays as it was"), 6);
+    assert_int_equal(count_messages("live: reloaded"), 2);
+    assert_int_equal(count_messages(":2: there is no option no-such-thing"), 4);
 }
 
 /* ---------------------------------------------------------------- snapshot */
@@ -313,7 +314,7 @@ static void snapshot_at_2(int wait)
         raise(SIGUSR2);
 }
 
-/* With --layer flare and no light to speak of, the picture must be black in
+/* Checks that with --layer flare and almost no light the image is black in
  * every format and range. */
 TEST(black)
 {
@@ -333,9 +334,9 @@ TEST(black)
                  "--count 3 --layer flare --exposure -60 --range %s --snapshot "
                  "%s/%%02d.ppm",
                  i % 2 ? "full" : "limited", shot_dir);
-        assert_ok(live(line));
-        must_leave_nothing();
-        rgb = snapshot(1) + strlen("P6\n64 48\n255\n");
+        assert_ok(run_live(line));
+        expect_no_leaks();
+        rgb = read_snapshot(1) + strlen("P6\n64 48\n255\n");
         for (int k = 0; k < 3 * 64 * 48; k++)
             if (rgb[k] != 0)
                 fail_msg("%.4s: byte %d is %d", (const char *)&kind[i / 2], k,
@@ -343,7 +344,7 @@ TEST(black)
     }
 }
 
-/* A snapshot must wait for the next frame, and the program must wait, too. */
+/* Checks that a snapshot is taken of the next frame, without a busy loop. */
 TEST(snapshot_waits)
 {
     char line[100], path[60], said[80];
@@ -354,9 +355,9 @@ TEST(snapshot_waits)
     unlink(path);
     fake_camera_reset();
     script = silence_and_snapshot;
-    assert_ok(live(line));
-    must_leave_nothing();
-    assert_int_equal(n_said(said), 1);
+    assert_ok(run_live(line));
+    expect_no_leaks();
+    assert_int_equal(count_messages(said), 1);
     assert_int_equal(unlink(path), 0);
 }
 
@@ -365,9 +366,9 @@ TEST(snapshot_waits)
 TEST(unplugged)
 {
     script = unplug;
-    assert_int_equal(live("--count 100"), EXIT_DEVICE);
-    must_leave_nothing();
-    assert_int_equal(n_said("the camera is gone\n"), 1);
+    assert_int_equal(run_live("--count 100"), EXIT_DEVICE);
+    expect_no_leaks();
+    assert_int_equal(count_messages("the camera is gone\n"), 1);
     assert_true(n_waits <= 21);
 }
 
@@ -376,26 +377,26 @@ TEST(comes_back)
     {
         fake_camera_reset();
         script = unplug;
-        assert_ok(live("--count 100 --reconnect"));
-        must_leave_nothing();
-        assert_int_equal(n_said("waiting for the camera"), 1);
-        assert_int_equal(n_said("(Fake): YUYV 64x48 at 30 fps"), 2);
+        assert_ok(run_live("--count 100 --reconnect"));
+        expect_no_leaks();
+        assert_int_equal(count_messages("waiting for the camera"), 1);
+        assert_int_equal(count_messages("(Fake): YUYV 64x48 at 30 fps"), 2);
     }
 }
 
 TEST(other_sizes)
 {
     script = change_size;
-    assert_ok(live("--count 150"));
-    must_leave_nothing();
-    assert_true(n_said("YUYV 128x48") >= 7);
+    assert_ok(run_live("--count 150"));
+    expect_no_leaks();
+    assert_true(count_messages("YUYV 128x48") >= 7);
     assert_int_equal(blocks[149], blocks[29]);
 }
 
 /* ---------------------------------------------------------------- failures */
 
-/* Whichever call fails once, frames must continue, or there must be an exit
- * code and a message. */
+/* Checks that if any call fails once, frames continue, or the run ends with
+ * an exit code and a message. */
 TEST(every_failure)
 {
     int n = 0, n_failed = 0, n_calls;
@@ -407,23 +408,23 @@ TEST(every_failure)
         n += n < 60 ? 1 : 7;
         fake_camera_reset();
         fake_camera_fail_at(n, ENOMEM, false);
-        code = live("--count 6");
+        code = run_live("--count 6");
         n_calls = fake_camera_fail_at(0, 0, false);
-        must_leave_nothing();
+        expect_no_leaks();
         if (code != EXIT_OK) {
             n_failed++;
-            assert_true(n_said("glint live: ") >= 1);
+            assert_true(count_messages("glint live: ") >= 1);
         }
     } while (n <= n_calls);
     assert_true(n_failed >= 10);
 }
 
-/* This test must come last: the stop remains. */
+/* Runs last, as the request to stop cannot be reset. */
 TEST(stops)
 {
     script = stop_at_30;
-    assert_ok(live(""));
-    must_leave_nothing();
+    assert_ok(run_live(""));
+    expect_no_leaks();
     assert_int_equal(n_waits, 30);
 }
 

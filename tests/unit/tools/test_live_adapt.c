@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Control of the frame rate, against machines that have a time for each
- * step.
+ * Tests the control of the frame rate on simulated machines with a given frame
+ * time per quality step.
  */
 #include <stdint.h>
 
@@ -22,9 +22,10 @@ static struct seen {
     double first_down_s, last_change_s;
 } seen;
 
-/* Runs a machine that takes COST_MS[step] for a frame, for SECONDS. A frame
- * that takes longer than a period misses those that come meanwhile. */
-static void run(const double *cost_ms, double seconds)
+/* Simulates a machine that takes cost_ms[step] per frame for SECONDS. A
+ * frame that takes longer than a period misses the frames that arrive
+ * meanwhile. */
+static void simulate(const double *cost_ms, double seconds)
 {
     double now_s = 0;
 
@@ -66,22 +67,22 @@ TEST(easy)
 {
     static const double cost[8] = {25, 20, 15, 10, 8, 6, 5, 4};
 
-    run(cost, 600);
+    simulate(cost, 600);
     assert_int_equal(adapt.step, 0);
-    assert_true(seen.last_change_s < 0); /* no change */
+    assert_true(seen.last_change_s < 0); /* no change of step */
 }
 
-/* Half a second of misses must lead to a change, by more than one step where a
- * frame takes more than two periods. */
+/* Checks that half a second of misses changes the step, by more than one
+ * step if a frame takes more than two periods. */
 TEST(overload)
 {
     static const double cost[8] = {80, 70, 45, 26, 20, 15, 10, 5};
 
-    run(cost, 3);
+    simulate(cost, 3);
     assert_int_equal(adapt.step, 3);
     assert_true(seen.first_down_s > 0.2 && seen.first_down_s < 0.5);
     assert_true(seen.last_change_s < 1.5);
-    run(cost, 600); /* The step stays: no time is to spare. */
+    simulate(cost, 600); /* The step stays, as there is no spare time. */
     assert_int_equal(adapt.step, 3);
     assert_int_equal(seen.n_down, 0);
     assert_int_equal(seen.n_missed, 0);
@@ -92,51 +93,52 @@ TEST(worst)
     static const double cost[8] = {900, 900, 900, 900, 900, 900, 900, 900};
     static const double none[8] = {0, 0, 0, 0, 0, 0, 0, 0};
 
-    run(cost, 600);
+    simulate(cost, 600);
     assert_int_equal(adapt.step, LIVE_MAX_STEP);
     assert_int_equal(seen.n_down, LIVE_MAX_STEP);
-    run(none, 600);
+    simulate(none, 600);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_up, LIVE_MAX_STEP);
 }
 
-/* A single slow frame, as when a picture is saved, must change nothing. */
+/* Checks that a single slow frame, as when an image is saved, changes
+ * nothing. */
 TEST(hiccup)
 {
     static const double cost[8] = {20, 15, 10, 8, 6, 5, 4, 3};
 
-    run(cost, 0.2);
+    simulate(cost, 0.2);
     assert_false(live_adapt_note(&adapt, 30, PERIOD_MS, 0));
-    run(cost, 10);
+    simulate(cost, 10);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_down, 0);
 }
 
-/* After a burst of many lights all steps down must be taken back, within some
- * seconds each. */
+/* Checks that after a burst of many lights all steps down are reversed,
+ * within some seconds each. */
 TEST(recovers)
 {
     static const double heavy[8] = {150, 120, 90, 70, 50, 29, 20, 10};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    run(heavy, 4);
+    simulate(heavy, 4);
     assert_int_equal(adapt.step, 5);
-    run(light, 15);
+    simulate(light, 15);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_down, 0);
 }
 
-/* A next step up that takes too long must be tried ever more rarely. */
+/* Checks that a step up that takes too long is tried less and less often. */
 TEST(does_not_oscillate)
 {
     static const double cost[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     int n_early;
 
-    run(cost, 60);
+    simulate(cost, 60);
     n_early = seen.n_up;
     assert_int_equal(adapt.step, 3);
     assert_in_range(n_early, 1, 6);
-    run(cost, 600);
+    simulate(cost, 600);
     assert_in_range(seen.n_up, 5, 12); /* once a minute */
     assert_true(seen.n_missed < seen.n_frames / 100);
 }
@@ -147,8 +149,8 @@ TEST(forgets)
     static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    run(heavy, 300);
-    run(light, 75); /* a minute at most, then as at first */
+    simulate(heavy, 300);
+    simulate(light, 75); /* a minute at most, then as at first */
     assert_int_equal(adapt.step, 0);
 }
 

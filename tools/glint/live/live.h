@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint live: camera in, flares on the panel.
+ * glint live: draws flares on camera frames and shows them on a panel.
  *
  * cmd_live.c parses the options, live_input.c opens the source of frames,
- * live_output.c opens their sink, and live_loop.c runs the loop. */
+ * live_output.c opens their sink, and live_loop.c runs the loop.
+ */
 #ifndef GLINT_TOOLS_LIVE_LIVE_H
 #define GLINT_TOOLS_LIVE_LIVE_H
 
@@ -40,7 +41,7 @@ struct live_output {
     bool dither;             /* dither on panels with 16 bits per pixel */
     struct glint_sink *sink; /* NULL if closed */
     union {
-        struct glint_sink sink; /* the first member of all of these */
+        struct glint_sink sink; /* first member of every variant */
         struct glint_fbdev fb;
         struct glint_y4m_sink y4m;
         struct glint_v4l2_sink v4l2;
@@ -53,8 +54,7 @@ struct live_output {
  * false if NAME is not one of the names above. */
 bool live_output_parse(struct live_output *output, const char *name);
 
-/* Returns whether the output can be opened before the size of pictures is
- * known. */
+/* Returns whether the output can be opened before the image size is known. */
 bool live_output_is_flexible(const struct live_output *output);
 
 /* Opens OUTPUT for frames of IMAGE's format and size; IMAGE is ignored if
@@ -63,9 +63,9 @@ enum glint_status live_output_open(struct live_output *output,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error);
 
-/* Describe an open output. live_output_text() writes a description to TEXT, ""
- * if the output's name suffices, and returns TEXT. live_output_note() returns a
- * problem of the output, or NULL. */
+/* Describe an open output. live_output_text() writes a description to TEXT,
+ * "" if the output's name suffices, and returns TEXT. live_output_note()
+ * returns the description of a problem with the output, or NULL. */
 const char *live_output_text(const struct live_output *output, char *text,
                              size_t size);
 const char *live_output_note(const struct live_output *output);
@@ -91,7 +91,7 @@ enum live_adaptive {
 };
 
 struct live_options {
-    /* Only its line is set before live_run(). */
+    /* only its command line is set before live_run() */
     struct drawing drawing;
     struct live_wish input;
     const char *output, *snapshot;
@@ -104,8 +104,8 @@ struct live_options {
     enum live_report report;
 };
 
-/* Reads OPTIONS again as at the start, on SIGHUP. Returns -1, or an exit code
- * after printing the error. */
+/* Reads the options again into OPTIONS, on SIGHUP. Returns -1, or an exit
+ * code after printing the error. */
 typedef int live_reread_fn(void *ctx, struct tool *tool,
                            struct live_options *options);
 

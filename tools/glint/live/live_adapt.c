@@ -5,16 +5,17 @@
 
 #include "glint/quality.h"
 
-#define TIGHT      0.9 /* busy fraction of a period above which quality drops */
-#define SPARE      0.55 /* busy share below which it may rise, after a while */
-#define SETTLE_S   0.3  /* min seconds from a step to the next step down */
+#define TIGHT 0.9 /* busy fraction of a period above which quality drops */
+/* busy fraction below which quality may rise, after a while */
+#define SPARE      0.55
+#define SETTLE_S   0.3 /* min seconds from a step to the next step down */
 #define HOLD_S     2.0
 #define MAX_HOLD_S 60.0
 #define SMOOTHING  0.2
 
-/* Quality and lights of each step. Steps go down the table of qualities from
- * its middle, and never above the quality requested; then lights are left
- * out. */
+/* Quality and number of lights of each step. Steps go down the table of
+ * qualities from its middle, and never above the requested quality; after
+ * its end they reduce the number of lights. */
 static const struct {
     double quality;
     int max_lights;
@@ -28,18 +29,18 @@ void live_adapt_init(struct live_adapt *a)
     *a = (struct live_adapt){.hold_s = HOLD_S, .busy_ms = -1};
 }
 
-static bool go(struct live_adapt *a, int by)
+static bool change_step(struct live_adapt *a, int by)
 {
     const int step = a->step + by;
 
     a->below_s = 0;
     if (step < 0 || step > LIVE_MAX_STEP)
         return false;
-    /* A step down soon after a step up shows that the step up was too early:
-     * the next step up waits longer. */
+    /* A step down soon after a step up shows that the step up was too early,
+     * so the next step up waits longer. */
     if (by > 0 && a->rose && a->since_s < 2 * HOLD_S)
         a->hold_s = fmin(MAX_HOLD_S, 2 * a->hold_s);
-    /* The last step up lasted, so that the wait is short again. */
+    /* The last step up lasted, so the wait is short again. */
     if (by < 0 && a->rose)
         a->hold_s = HOLD_S;
     a->rose = by < 0;
@@ -49,8 +50,8 @@ static bool go(struct live_adapt *a, int by)
     return true;
 }
 
-/* Returns by how many steps to go down at once if a frame takes PERIODS
- * periods: each step saves about a third. */
+/* Returns the number of steps to go down at once if a frame takes PERIODS
+ * frame periods. Each step saves about a third. */
 static int steps_down(const struct live_adapt *a, double periods)
 {
     const int wanted = periods > 8 ? 4 : periods > 4 ? 3 : periods > 2 ? 2 : 1;
@@ -70,9 +71,9 @@ bool live_adapt_note(struct live_adapt *a, double busy_ms, double period_ms,
     a->since_s += elapsed_s;
     if (n_missed > 0 || a->busy_ms > TIGHT * period_ms)
         return a->since_s >= SETTLE_S &&
-               go(a, steps_down(a, a->busy_ms / period_ms));
+               change_step(a, steps_down(a, a->busy_ms / period_ms));
     a->below_s = a->busy_ms < SPARE * period_ms ? a->below_s + elapsed_s : 0;
-    return a->below_s >= a->hold_s && go(a, -1);
+    return a->below_s >= a->hold_s && change_step(a, -1);
 }
 
 double live_adapt_quality(const struct live_adapt *a)

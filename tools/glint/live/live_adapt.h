@@ -2,11 +2,12 @@
  *
  * Keeps the frame rate by changing quality in steps.
  *
- * Quality falls by one step at once if frames are missed or hardly any time is
- * left, and by several steps if a frame takes several periods. It rises by one
- * step only after some seconds with time to spare; these seconds are doubled
- * each time that a step up was too early. Steps follow the table of --quality;
- * steps after its end reduce the number of lights. */
+ * Quality falls by one step if frames are missed or hardly any time is left,
+ * and by several steps if a frame takes several frame periods. It rises by one
+ * step only after some seconds with spare time; this wait is doubled each time
+ * that a step up was too early. Steps follow the table of --quality; steps
+ * after its end reduce the number of lights.
+ */
 #ifndef GLINT_TOOLS_LIVE_LIVE_ADAPT_H
 #define GLINT_TOOLS_LIVE_LIVE_ADAPT_H
 
@@ -17,21 +18,21 @@
 #define LIVE_MAX_STEP 7
 
 struct live_adapt {
-    int step;       /* 0 .. LIVE_MAX_STEP; 0: as requested */
-    double busy_ms; /* smoothed time of a frame; -1: no frame since the last
-                       step */
-    /* below_s: seconds so far with time to spare; hold_s: seconds of these that
-     * a step up requires. */
+    int step; /* 0 .. LIVE_MAX_STEP; 0: as requested */
+    /* smoothed time of a frame, ms; -1: no frame since the last step */
+    double busy_ms;
+    /* below_s: seconds with spare time so far; hold_s: seconds with spare
+     * time that a step up requires */
     double below_s, hold_s;
     double since_s; /* seconds since the last step */
-    /* true: the last change was a step up, to better quality (STEP fell) */
+    /* the last change was a step up, to better quality (STEP decreased) */
     bool rose;
 };
 
 void live_adapt_init(struct live_adapt *adapt);
 
-/* Adds a frame that took BUSY_MS of its period PERIOD_MS, after N_MISSED lost
- * frames. Returns whether the step has changed. */
+/* Records a frame that took BUSY_MS of its period PERIOD_MS, after N_MISSED
+ * lost frames. Returns whether the step has changed. */
 bool live_adapt_note(struct live_adapt *adapt, double busy_ms, double period_ms,
                      int n_missed);
 
@@ -39,7 +40,7 @@ bool live_adapt_note(struct live_adapt *adapt, double busy_ms, double period_ms,
 struct glint_dials live_adapt_dials(const struct live_adapt *adapt,
                                     struct glint_dials asked);
 
-/* Returns the max quality, as of --quality, for drawing a scene. */
+/* Returns the max --quality for drawing a scene at this step. */
 double live_adapt_quality(const struct live_adapt *adapt);
 
 #endif

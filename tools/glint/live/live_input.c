@@ -11,19 +11,19 @@
 #include "formats/paint.h"
 #include "posix/clock.h"
 
-static void no_done(struct glint_source *source,
-                    struct glint_source_frame *frame)
+static void ignore_done(struct glint_source *source,
+                        struct glint_source_frame *frame)
 {
     (void)source, (void)frame;
 }
 
-static void describe(const struct glint_source *source,
-                     struct glint_source_format *format)
+static void get_format(const struct glint_source *source,
+                       struct glint_source_format *format)
 {
     *format = ((const struct live_timed *)source)->format;
 }
 
-/* Starts the timer, unless the source has an fd of its own. */
+/* Starts the timer, unless the source has its own descriptor. */
 static enum glint_status start_timer(struct glint_source *source,
                                      struct glint_error *error)
 {
@@ -46,9 +46,10 @@ static enum glint_status start_timer(struct glint_source *source,
     return GLINT_OK;
 }
 
-/* Prepares TIMED for frames of FORMAT, with the rate, range and matrix of WISH
- * if it gives any. CARD states what the source is. start begins a timer and
- * makes it the source's fd. The implementation sets next and close. */
+/* Initialises TIMED for frames of FORMAT; rate, range and matrix of WISH, if
+ * set, override those of FORMAT. CARD is a description of the source.
+ * start() starts a timer and makes it the source's descriptor. The caller
+ * sets next() and close(). */
 static void init_timed(struct live_timed *timed,
                        const struct glint_source_format *format,
                        const struct glint_v4l2_config *wish, const char *card)
@@ -58,8 +59,8 @@ static void init_timed(struct live_timed *timed,
     timed->source = (struct glint_source){.fd = -1,
                                           .has_signal = true,
                                           .start = start_timer,
-                                          .done = no_done,
-                                          .describe = describe};
+                                          .done = ignore_done,
+                                          .describe = get_format};
     timed->format = *format;
     timed->name = wish->device;
     timed->timer = -1;
@@ -79,7 +80,7 @@ static void init_timed(struct live_timed *timed,
              (double)f->fps_num / f->fps_den);
 }
 
-/* Returns how many frames are due now. The first is due at once; without a
+/* Returns the number of frames due now. The first is due at once; without a
  * timer one is due at every call. */
 static uint64_t count_due(struct live_timed *timed)
 {
@@ -90,8 +91,8 @@ static uint64_t count_due(struct live_timed *timed)
     return read(timed->timer, &n, sizeof n) == (ssize_t)sizeof n ? n : 0;
 }
 
-/* Begins FRAME. Returns how many frames have come due since the last call, of
- * which the last is to be shown; 0 if none has. */
+/* Begins FRAME. Returns the number of frames due since the last call, of
+ * which the last is shown; 0 if none is due. */
 static uint64_t begin_frame(struct live_timed *timed,
                             struct glint_source_frame *frame)
 {
@@ -103,9 +104,10 @@ static uint64_t begin_frame(struct live_timed *timed,
     return n;
 }
 
-/* Completes FRAME with IMAGE, the last of N frames that were due. */
-static void show(struct live_timed *timed, struct glint_source_frame *frame,
-                 const struct glint_image *image, uint64_t n)
+/* Completes FRAME with IMAGE, the last of N frames due. */
+static void finish_frame(struct live_timed *timed,
+                         struct glint_source_frame *frame,
+                         const struct glint_image *image, uint64_t n)
 {
     frame->image = *image;
     frame->image.range = timed->format.image.range;
@@ -125,20 +127,21 @@ static void stop_timer(struct live_timed *timed)
 enum { HOUSES = 14, DARKEST = 22, BRIGHTEST = 235 };
 
 /* Returns a hash of X. */
-static uint32_t mixed(uint32_t x)
+static uint32_t hash_bits(uint32_t x)
 {
     x = (x ^ x >> 16) * 0x7feb352du;
     x = (x ^ x >> 15) * 0x846ca68bu;
     return x ^ x >> 16;
 }
 
-/* Draws house number HOUSE from the bottom up, some of its windows lit, none so
+/* Draws house number HOUSE from the bottom up. Some windows are lit, none so
  * bright that it would count as a lamp. */
 static void build_house(struct live_timed *s, int house)
 {
     const int w = s->image.width, h = s->image.height;
     const int left = house * w / HOUSES, right = (house + 1) * w / HOUSES;
-    const int tall = h / 5 + (int)(mixed((uint32_t)house + 7) % 100) * h / 400;
+    const int tall =
+        h / 5 + (int)(hash_bits((uint32_t)house + 7) % 100) * h / 400;
     const int pane = 2 + h / 120;
 
     for (int y = h - tall; y < h; y++)
@@ -146,7 +149,7 @@ static void build_house(struct live_timed *s, int house)
             const int column = (x - left) / (2 * pane),
                       row = (y - h + tall) / (3 * pane);
             const uint32_t bits =
-                mixed((uint32_t)(house * 997 + column * 31 + row * 7));
+                hash_bits((uint32_t)(house * 997 + column * 31 + row * 7));
             const int is_pane = (x - left) % (2 * pane) < pane &&
                                 (y - h + tall) % (3 * pane) < 2 * pane;
 
@@ -155,7 +158,7 @@ static void build_house(struct live_timed *s, int house)
         }
 }
 
-static void build(struct live_timed *s)
+static void draw_street(struct live_timed *s)
 {
     const int w = s->image.width, h = s->image.height;
 
@@ -166,12 +169,12 @@ static void build(struct live_timed *s)
         build_house(s, house);
 }
 
-/* Copies the still picture to the frame and adds noise of -1 to 2 codes, by the
- * seed and N. */
-static void expose(struct live_timed *s, int64_t n)
+/* Copies the static street to the frame and adds noise of -1 .. 2 codes that
+ * depends on the seed and N. */
+static void start_frame(struct live_timed *s, int64_t n)
 {
     const int w = s->image.width;
-    uint32_t bits = mixed(s->seed * 2654435761u + (uint32_t)n) | 1;
+    uint32_t bits = hash_bits(s->seed * 2654435761u + (uint32_t)n) | 1;
 
     for (int y = 0; y < s->image.height; y++) {
         uint8_t *row = s->image.plane[0] + y * s->image.stride_bytes[0];
@@ -188,7 +191,7 @@ static void expose(struct live_timed *s, int64_t n)
 
 /* Adds a disc of RADIUS pixels at (CX, CY), with a halo that falls with the
  * square of the distance. */
-static void light(struct live_timed *s, double cx, double cy, double radius)
+static void add_lamp(struct live_timed *s, double cx, double cy, double radius)
 {
     const int reach = (int)(12 * radius) + 1;
 
@@ -220,14 +223,15 @@ static void draw_test(struct live_timed *s, int64_t n)
         paint_black(i);
         return;
     }
-    expose(s, n);
-    for (int p = 1; p < 3; p++) /* a bluish night */
+    start_frame(s, n);
+    for (int p = 1; p < 3; p++) /* chroma of a bluish night */
         for (int y = 0; y < glint_image_plane_height(i->format, p, i->height);
              y++)
             memset(i->plane[p] + y * i->stride_bytes[p], p == 1 ? 134 : 125,
                    glint_image_row_bytes(i->format, p, i->width));
-    light(s, i->width * (0.5 + 0.32 * cos(angle)),
-          i->height * (0.38 + 0.25 * sin(angle)), fmax(1.5, i->height / 120.0));
+    add_lamp(s, i->width * (0.5 + 0.32 * cos(angle)),
+             i->height * (0.38 + 0.25 * sin(angle)),
+             fmax(1.5, i->height / 120.0));
 }
 
 /* ------------------------------------------------------------------- source */
@@ -244,7 +248,7 @@ static enum glint_status next_test(struct glint_source *source,
         return GLINT_OK;
     s->n += (int64_t)n;
     draw_test(s, s->n - 1);
-    show(s, frame, &s->image, n);
+    finish_frame(s, frame, &s->image, n);
     return GLINT_OK;
 }
 
@@ -257,9 +261,9 @@ static void close_test(struct glint_source *source)
     s->mem = NULL;
 }
 
-/* Returns the picture of frames, of limited range and without memory, in the
- * size of WISH or 640 x 360. */
-static struct glint_image lay_out(const struct glint_v4l2_config *wish)
+/* Returns the format of the test image: limited range, the size of WISH or
+ * 640 x 360, without memory. */
+static struct glint_image make_format(const struct glint_v4l2_config *wish)
 {
     const int width = wish->width ? wish->width : 640;
     const int height = wish->width ? wish->height : 360;
@@ -273,7 +277,7 @@ static struct glint_image lay_out(const struct glint_v4l2_config *wish)
                                 .transfer = GLINT_TONE_BT709};
 }
 
-static enum glint_status place(struct live_timed *s)
+static enum glint_status allocate_images(struct live_timed *s)
 {
     const int w = s->image.width, h = s->image.height;
     const size_t luma = (size_t)w * (size_t)h;
@@ -283,20 +287,20 @@ static enum glint_status place(struct live_timed *s)
         return GLINT_E_MEMORY;
     s->still = s->mem;
     glint_image_place(&s->image, s->still + luma);
-    build(s);
+    draw_street(s);
     return GLINT_OK;
 }
 
-/* Opens the test picture. WISH may give a size of 16 to GLINT_PANEL_SIDE pixels
- * a side, rate, range and matrix. SEED is for the noise; IS_BLACK: there is
- * nothing. The lamp goes round in eight seconds. On failure TEST is closed.
- * GLINT_E_UNSUPPORTED, GLINT_E_MEMORY, GLINT_E_DEVICE. */
+/* Opens the test image. WISH may set a size of 16 to GLINT_PANEL_SIDE pixels
+ * per side, rate, range and matrix. SEED seeds the noise. The lamp circles
+ * in eight seconds. IS_BLACK: all frames are black. On failure TEST is
+ * closed. Errors: GLINT_E_UNSUPPORTED, GLINT_E_MEMORY, GLINT_E_DEVICE. */
 static enum glint_status open_test(struct live_timed *test,
                                    const struct glint_v4l2_config *wish,
                                    uint32_t seed, bool is_black,
                                    struct glint_error *error)
 {
-    const struct glint_image image = lay_out(wish);
+    const struct glint_image image = make_format(wish);
 
     if (image.width < 16 || image.height < 16 ||
         image.width > GLINT_PANEL_SIDE || image.height > GLINT_PANEL_SIDE)
@@ -305,7 +309,7 @@ static enum glint_status open_test(struct live_timed *test,
                                   GLINT_PANEL_SIDE);
     *test =
         (struct live_timed){.image = image, .seed = seed, .is_black = is_black};
-    if (place(test) != GLINT_OK)
+    if (allocate_images(test) != GLINT_OK)
         return glint_error_report(error, GLINT_E_MEMORY, "test",
                                   "no memory for %d x %d pixels", image.width,
                                   image.height);
@@ -316,8 +320,8 @@ static enum glint_status open_test(struct live_timed *test,
     return GLINT_OK;
 }
 
-/* Shows the last frame that is due, or the last frame of the video if it ends
- * before; the frames skipped count as late. */
+/* Shows the last frame due, or the last frame of the video if it ends
+ * before. Skipped frames count as late. */
 static enum glint_status next_video(struct glint_source *source,
                                     struct glint_source_frame *frame,
                                     struct glint_error *error)
@@ -340,7 +344,7 @@ static enum glint_status next_video(struct glint_source *source,
     }
     v->n += (int64_t)n_read;
     if (image)
-        show(v, frame, image, n_read);
+        finish_frame(v, frame, image, n_read);
     return n > 0 && !image ? GLINT_E_CLOSED : GLINT_OK;
 }
 
@@ -353,7 +357,7 @@ static void close_video(struct glint_source *source)
 }
 
 /* Opens the video that is the device of WISH, FILE.y4m or "-". WISH may
- * overrule rate, range and matrix. On failure VIDEO is closed. */
+ * override rate, range and matrix. On failure VIDEO is closed. */
 static enum glint_status open_video(struct live_timed *video,
                                     const struct glint_v4l2_config *wish,
                                     struct glint_error *error)
@@ -433,7 +437,7 @@ void live_input_close(struct live_input *input)
     input->source = NULL;
 }
 
-/* Returns whether NAME has the extension of a file, as no device has. */
+/* Returns whether NAME has a file extension, unlike devices. */
 static bool is_file_name(const char *name)
 {
     const char *const slash = strrchr(name, '/');

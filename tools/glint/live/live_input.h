@@ -17,8 +17,8 @@
 #include "linux/v4l2.h"
 #include "live/live_log.h"
 
-/* A source without a device: its frames are due by a clock, and their format is
- * known when it is opened. */
+/* A source without a device: frames are due at times of a clock, and the
+ * format is known when it is opened. */
 struct live_timed {
     struct glint_source source;
     struct glint_source_format format;
@@ -27,8 +27,8 @@ struct live_timed {
                          arrives */
     int64_t n;        /* number of the next frame */
 
-    struct glint_y4m_reader reader; /* of a video */
-    /* For the test picture: */
+    struct glint_y4m_reader reader; /* of a video file */
+    /* members of the test image: */
     struct glint_image image; /* the last frame, I420, limited range */
     uint32_t seed;
     bool is_black;
@@ -37,9 +37,10 @@ struct live_timed {
 };
 
 struct live_wish {
-    struct glint_v4l2_config camera; /* device, size and rate; of any source */
-    enum glint_v4l2_io io;           /* I/O method of a camera */
-    int n_buffers;                   /* buffers of a camera */
+    /* device, size and rate; used for any source */
+    struct glint_v4l2_config camera;
+    enum glint_v4l2_io io; /* I/O method of a camera */
+    int n_buffers;         /* buffers of a camera */
 };
 
 struct live_input {
@@ -53,8 +54,8 @@ struct live_input {
 /* Returns whether NAME is a camera. */
 bool live_input_is_camera(const char *name);
 
-/* Opens the source that WISH names; live_input_start() starts it. SEED is for
- * the noise of the test picture. */
+/* Opens the source that WISH names; live_input_start() starts it. SEED seeds
+ * the noise of the test image. */
 enum glint_status live_input_open(struct live_input *input,
                                   const struct live_wish *wish, uint32_t seed,
                                   struct glint_error *error);

@@ -9,7 +9,7 @@
 #include "posix/clock.h"
 
 #define SECOND_US 1000000
-#define COLUMNS   79 /* columns of a terminal, but one for the cursor */
+#define COLUMNS   79 /* columns of a terminal minus one for the cursor */
 
 static const char *const stage_names[LIVE_N_STAGES] = {
     [LIVE_CONVERT] = "convert", [LIVE_FIND] = "find", [LIVE_PLAN] = "plan",
@@ -40,8 +40,8 @@ void live_stats_next(struct live_stats *stats, int64_t now_us)
     start_sums(&stats->second, now_us);
 }
 
-/* Counts a latency of US microseconds. If a bin is full, all bins are halved,
- * which preserves their fractions; no bin becomes 0. */
+/* Counts a latency of US microseconds. If a bin is full, all bins are
+ * halved, which preserves percentiles; nonzero bins stay nonzero. */
 static void count_latency(struct live_sums *s, int64_t us)
 {
     const int64_t at = us < 0 ? 0 : us / LIVE_BIN_US;
@@ -67,7 +67,7 @@ static void add_frame(struct live_sums *s, const struct live_frame_times *t)
     s->reused += t->reused;
 }
 
-static void add(struct live_sums *s, const struct live_frame_times *t)
+static void add_to_sums(struct live_sums *s, const struct live_frame_times *t)
 {
     s->drops += (unsigned)t->n_dropped;
     s->late += (unsigned)t->n_late;
@@ -79,8 +79,8 @@ static void add(struct live_sums *s, const struct live_frame_times *t)
 void live_stats_add(struct live_stats *stats,
                     const struct live_frame_times *times)
 {
-    add(&stats->second, times);
-    add(&stats->total, times);
+    add_to_sums(&stats->second, times);
+    add_to_sums(&stats->total, times);
 }
 
 /* --------------------------------------------------------------- evaluating */
@@ -107,7 +107,7 @@ static double seconds_since(int64_t began_us, int64_t now_us)
     return 1e-6 * (double)(now_us - began_us);
 }
 
-static double fps(const struct live_sums *s, int64_t now_us)
+static double compute_fps(const struct live_sums *s, int64_t now_us)
 {
     const double seconds = seconds_since(s->began_us, now_us);
 
@@ -116,7 +116,7 @@ static double fps(const struct live_sums *s, int64_t now_us)
 
 /* ------------------------------------------------------------------ writing */
 
-/* Text that grows up to ROOM bytes; text that does not fit is cut off. */
+/* A text of at most ROOM bytes; longer text is truncated. */
 struct writer {
     char *text;
     size_t used, room;
@@ -126,7 +126,7 @@ struct writer {
 __attribute__((format(printf, 2, 3)))
 #endif
 static void
-put(struct writer *w, const char *format, ...)
+append(struct writer *w, const char *format, ...)
 {
     va_list args;
     int n;
@@ -140,27 +140,26 @@ put(struct writer *w, const char *format, ...)
 
 /* Writes SUM / number of frames, with DIGITS after the point, or null if there
  * are no frames. */
-static void put_mean(struct writer *w, const struct live_sums *s, double sum,
-                     int digits)
+static void append_mean(struct writer *w, const struct live_sums *s, double sum,
+                        int digits)
 {
     if (s->frames)
-        put(w, "%.*f", digits, sum / (double)s->frames);
+        append(w, "%.*f", digits, sum / (double)s->frames);
     else
-        put(w, "null");
+        append(w, "null");
 }
 
-static void put_latency(struct writer *w, const struct live_sums *s,
-                        int percent)
+static void append_latency(struct writer *w, const struct live_sums *s,
+                           int percent)
 {
     if (s->frames)
-        put(w, "%.2f", live_stats_latency_ms(s, percent));
+        append(w, "%.2f", live_stats_latency_ms(s, percent));
     else
-        put(w, "null");
+        append(w, "null");
 }
 
-/* Returns whether STAGE is reported: a run without a scene has no
- * LIVE_SCENE. */
-static bool is_said(const struct live_stats *stats, int stage)
+/* Returns whether STAGE is reported: LIVE_SCENE only in a run with a scene. */
+static bool is_reported(const struct live_stats *stats, int stage)
 {
     return stage != LIVE_SCENE || stats->total.stage_us[LIVE_SCENE] > 0;
 }
@@ -171,59 +170,59 @@ char *live_stats_json(const struct live_stats *stats, int64_t now_us,
     const struct live_sums *const s = total ? &stats->total : &stats->second;
     struct writer w = {text, 0, LIVE_STATS_TEXT};
 
-    put(&w,
-        "{\"t\":%.3f,\"fps\":%.2f,\"frames\":%" PRIu64 ",\"drops\":%" PRIu64
-        ",\"late\":%" PRIu64 ",\"corrupt\":%" PRIu64 ",\"latency_ms_p50\":",
-        seconds_since(stats->total.began_us, now_us), fps(s, now_us), s->frames,
-        s->drops, s->late, s->corrupt);
-    put_latency(&w, s, 50);
-    put(&w, ",\"latency_ms_p99\":");
-    put_latency(&w, s, 99);
-    put(&w, ",\"ms\":{");
+    append(&w,
+           "{\"t\":%.3f,\"fps\":%.2f,\"frames\":%" PRIu64 ",\"drops\":%" PRIu64
+           ",\"late\":%" PRIu64 ",\"corrupt\":%" PRIu64 ",\"latency_ms_p50\":",
+           seconds_since(stats->total.began_us, now_us), compute_fps(s, now_us),
+           s->frames, s->drops, s->late, s->corrupt);
+    append_latency(&w, s, 50);
+    append(&w, ",\"latency_ms_p99\":");
+    append_latency(&w, s, 99);
+    append(&w, ",\"ms\":{");
     for (int i = 0; i < LIVE_N_STAGES; i++) {
-        if (!is_said(stats, i))
+        if (!is_reported(stats, i))
             continue;
-        put(&w, "%s\"%s\":", i ? "," : "", stage_names[i]);
-        put_mean(&w, s, 1e-3 * (double)s->stage_us[i], 3);
+        append(&w, "%s\"%s\":", i ? "," : "", stage_names[i]);
+        append_mean(&w, s, 1e-3 * (double)s->stage_us[i], 3);
     }
-    put(&w, "},\"lights\":%d,\"ghosts\":%d,\"bytes\":%zu,\"quality\":",
-        s->most_lights, s->most_ghosts, s->most_bytes);
-    put_mean(&w, s, s->quality, 3);
-    put(&w, ",\"reused\":%" PRIu64, s->reused);
-    put(&w, "%s}", total ? ",\"total\":true" : "");
+    append(&w, "},\"lights\":%d,\"ghosts\":%d,\"bytes\":%zu,\"quality\":",
+           s->most_lights, s->most_ghosts, s->most_bytes);
+    append_mean(&w, s, s->quality, 3);
+    append(&w, ",\"reused\":%" PRIu64, s->reused);
+    append(&w, "%s}", total ? ",\"total\":true" : "");
     return text;
 }
 
-static void put_summary(struct writer *w, const struct live_stats *stats,
-                        int64_t now_us)
+static void append_summary(struct writer *w, const struct live_stats *stats,
+                           int64_t now_us)
 {
     const struct live_sums *const s = &stats->second;
     const struct live_sums *const t = &stats->total;
 
-    put(w, "%.1f fps", fps(s, now_us));
+    append(w, "%.1f fps", compute_fps(s, now_us));
     if (s->frames)
-        put(w, "  %.1f ms, p99 %.1f", live_stats_latency_ms(s, 50),
-            live_stats_latency_ms(s, 99));
-    put(w,
-        "  %" PRIu64 " dropped %" PRIu64 " late %" PRIu64
-        " bad  %d lights %d ghosts",
-        t->drops, t->late, t->corrupt, s->most_lights, s->most_ghosts);
+        append(w, "  %.1f ms, p99 %.1f", live_stats_latency_ms(s, 50),
+               live_stats_latency_ms(s, 99));
+    append(w,
+           "  %" PRIu64 " dropped %" PRIu64 " late %" PRIu64
+           " bad  %d lights %d ghosts",
+           t->drops, t->late, t->corrupt, s->most_lights, s->most_ghosts);
     if (s->frames)
-        put(w, "  q %.2f", s->quality / (double)s->frames);
+        append(w, "  q %.2f", s->quality / (double)s->frames);
 }
 
-static void put_stages(struct writer *w, const struct live_stats *stats)
+static void append_stages(struct writer *w, const struct live_stats *stats)
 {
     const struct live_sums *const s = &stats->second;
 
-    put(w, "  ms:");
+    append(w, "  ms:");
     for (int i = 0; i < LIVE_N_STAGES; i++) {
-        if (!is_said(stats, i))
+        if (!is_reported(stats, i))
             continue;
-        put(w, " %s ", stage_names[i]);
-        put_mean(w, s, 1e-3 * (double)s->stage_us[i], 2);
+        append(w, " %s ", stage_names[i]);
+        append_mean(w, s, 1e-3 * (double)s->stage_us[i], 2);
     }
-    put(w, "  %zu bytes\n", s->most_bytes);
+    append(w, "  %zu bytes\n", s->most_bytes);
 }
 
 char *live_stats_line(const struct live_stats *stats, int64_t now_us,
@@ -232,15 +231,15 @@ char *live_stats_line(const struct live_stats *stats, int64_t now_us,
     struct writer w = {text, 0, LIVE_STATS_TEXT};
 
     if (!terminal) {
-        put_summary(&w, stats, now_us);
-        put_stages(&w, stats);
+        append_summary(&w, stats, now_us);
+        append_stages(&w, stats);
         return text;
     }
-    put(&w, "\r");
-    w.room = 1 + COLUMNS + 1; /* A line that wraps cannot be overwritten. */
-    put_summary(&w, stats, now_us);
+    append(&w, "\r");
+    w.room = 1 + COLUMNS + 1; /* a wrapped line could not be overwritten */
+    append_summary(&w, stats, now_us);
     w.room = LIVE_STATS_TEXT;
-    put(&w, "\033[K");
+    append(&w, "\033[K");
     return text;
 }
 

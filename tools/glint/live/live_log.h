@@ -128,8 +128,8 @@ int live_log_fail(const struct live_log *log, enum glint_status status,
 /* Prints TEXT on a line of its own, unless -q is given. */
 void live_log_say(const struct live_log *log, const char *text);
 
-/* Counts a frame that, by its statistics OF, did not fit into memory
- * completely, and reports the first such frame. */
+/* Counts a frame that, by its statistics OF, was drawn incompletely because
+ * of the memory limit. Reports the first such frame. */
 void live_log_short(struct live_log *log, const struct glint_flare_stats *of);
 
 /* If the second is over or IS_ASKED, prints its statistics and begins the next

@@ -12,7 +12,7 @@
 #include "posix/clock.h"
 
 #define RETRY_MS 500
-#define WAIT_MS  250 /* max wait, ms, so that a silent input is noticed */
+#define WAIT_MS  250 /* max wait, ms, after which a silent input is checked */
 
 struct live {
     struct tool *tool;
@@ -23,15 +23,17 @@ struct live {
     struct live_input in;
     /* Format of the input when it was opened or restarted. */
     struct glint_source_format format;
-    int n_restarts; /* restarts of the input when FORMAT was read */
+    /* restarts of the input up to the last reading of FORMAT */
+    int n_restarts;
     struct live_output output;
-    struct live_copy copy; /* copy of frames that lie in slow memory */
+    struct live_copy copy; /* copy of frames whose memory is slow */
 
     struct live_adapt adapt;
-    struct glint_dials asked; /* dials requested, before adapting */
+    /* requested quality parameters, before adaptation */
+    struct glint_dials asked;
     struct live_log log;
     int n_shown, n_snapshots;
-    /* why the camera could not be opened the last time */
+    /* error of the last attempt to open the camera */
     struct glint_error why;
     int64_t time_us;  /* time of the last frame */
     int64_t retry_us; /* earliest time to reopen the output; 0: none so far */
@@ -40,8 +42,8 @@ struct live {
 
 /* --------------------------------------------------------------------- made */
 
-/* Asks the input for its format, and prints that. */
-static void take_format(struct live *l)
+/* Queries and prints the format of the input. */
+static void read_format(struct live *l)
 {
     const struct glint_source *source = l->in.source;
 
@@ -61,7 +63,7 @@ static enum glint_status start_input(struct live *l, struct glint_error *error)
     return GLINT_OK;
 }
 
-static void say_output(const struct live *l)
+static void print_output(const struct live *l)
 {
     char text[320];
 
@@ -97,7 +99,7 @@ static int open_output(struct live *l, const struct glint_image *image)
     status = live_output_open(&l->output, image, l->format.fps_num,
                               l->format.fps_den, &error);
     if (status == GLINT_OK)
-        say_output(l);
+        print_output(l);
     if (status == GLINT_OK || (l->retry_us && status == GLINT_E_DEVICE)) {
         l->retry_us = glint_now_us() + 1000 * RETRY_MS;
         return EXIT_OK;
@@ -121,9 +123,8 @@ static int apply_quality_step(struct live *l)
     return status == GLINT_OK ? EXIT_OK : tool_fail(l->tool, status, NULL);
 }
 
-/* Prepares the drawing for pictures of IMAGE's size. Returns an exit
- * code. */
-static int take_size(struct live *l, const struct glint_image *image)
+/* Prepares the drawing for images of IMAGE's size. Returns an exit code. */
+static int prepare_drawing(struct live *l, const struct glint_image *image)
 {
     struct drawing *drawing = &l->o->drawing;
     int code;
@@ -145,14 +146,14 @@ static int set_up(struct live *l)
 {
     int code;
 
-    take_format(l);
-    code = take_size(l, &l->format.image);
+    read_format(l);
+    code = prepare_drawing(l, &l->format.image);
     return code == EXIT_OK ? open_output(l, &l->format.image) : code;
 }
 
 /* ------------------------------------------------------------------- frames */
 
-static void snapshot(struct live *l, const struct glint_image *image)
+static void save_snapshot(struct live *l, const struct glint_image *image)
 {
     struct glint_error error = {""};
     char name[LIVE_NAME_BYTES], text[LIVE_NAME_BYTES + 320];
@@ -183,7 +184,7 @@ static bool is_adaptive(const struct live_options *o)
             o->drawing.line.settings.options.budget == 0);
 }
 
-static void adapt(struct live *l, int64_t busy_us, int n_missed)
+static void adapt_quality(struct live *l, int64_t busy_us, int n_missed)
 {
     const int before = l->adapt.step;
     char text[96];
@@ -200,15 +201,15 @@ static void adapt(struct live *l, int64_t busy_us, int n_missed)
     live_log_say(&l->log, text);
 }
 
-static int64_t us(double ms)
+static int64_t to_us(double ms)
 {
     return (int64_t)(1e3 * ms);
 }
 
-/* Adds FRAME to the statistics. AT_US[4]: times at which it was taken, copied,
- * drawn and shown; NULL: there was no frame to show. */
-static void note(struct live *l, const struct glint_source_frame *frame,
-                 const int64_t *at_us)
+/* Adds FRAME to the statistics. AT_US[4]: times at which it was received,
+ * copied, drawn and shown; NULL: there was no frame to show. */
+static void record_frame(struct live *l, const struct glint_source_frame *frame,
+                         const int64_t *at_us)
 {
     const struct drawing *drawing = &l->o->drawing;
     struct live_frame_times t = {.shown = at_us != NULL,
@@ -220,11 +221,11 @@ static void note(struct live *l, const struct glint_source_frame *frame,
         t.captured_us = frame->time_us;
         t.shown_us = at_us[3];
         t.stage_us[LIVE_CONVERT] = at_us[1] - at_us[0];
-        t.stage_us[LIVE_FIND] = us(drawing->run.find_ms);
-        t.stage_us[LIVE_SCENE] = us(drawing->files.scene.ms);
-        t.stage_us[LIVE_PLAN] = us(drawing->run.report.plan_ms);
-        t.stage_us[LIVE_BIN] = us(drawing->run.report.bin_ms);
-        t.stage_us[LIVE_DRAW] = us(drawing->run.report.draw_ms);
+        t.stage_us[LIVE_FIND] = to_us(drawing->run.find_ms);
+        t.stage_us[LIVE_SCENE] = to_us(drawing->files.scene.ms);
+        t.stage_us[LIVE_PLAN] = to_us(drawing->run.report.plan_ms);
+        t.stage_us[LIVE_BIN] = to_us(drawing->run.report.bin_ms);
+        t.stage_us[LIVE_DRAW] = to_us(drawing->run.report.draw_ms);
         t.stage_us[LIVE_SHOW] = at_us[3] - at_us[2];
         t.lights = drawing->run.report.drawn_lights;
         t.ghosts = drawing->run.report.ghosts;
@@ -239,9 +240,8 @@ static void note(struct live *l, const struct glint_source_frame *frame,
 
 /* ------------------------------------------------------------- what is lost */
 
-/* Reports the loss of a device. With --reconnect the run waits for it, and the
- * panel keeps the last picture meanwhile. Returns -1 to continue, or an exit
- * code. */
+/* Reports the loss of a device. With --reconnect the run waits for it, while
+ * the panel shows the last image. Returns -1 to continue, or an exit code. */
 static int handle_device_loss(struct live *l, const char *what,
                               enum glint_status status, const char *why)
 {
@@ -271,7 +271,7 @@ static int lose_output(struct live *l, enum glint_status status,
     return handle_device_loss(l, "output", status, why);
 }
 
-/* Returns -1 to continue, or an exit code. */
+/* Tries to reopen the camera. Returns -1 to continue, or an exit code. */
 static int retry_camera(struct live *l)
 {
     struct glint_error error = {""};
@@ -291,8 +291,8 @@ static int retry_camera(struct live *l)
     return -1;
 }
 
-/* Returns the us since the frame before, at most 10^9; 40000 for the first
- * frame, or if none have passed. */
+/* Returns the microseconds since the previous frame, at most 1e9; 40000 for
+ * the first frame or if no time has passed. */
 static int32_t elapsed_us(struct live *l, int64_t time_us)
 {
     const int64_t before_us = l->time_us;
@@ -304,10 +304,10 @@ static int32_t elapsed_us(struct live *l, int64_t time_us)
                                          : (int32_t)elapsed;
 }
 
-/* Draws FRAME, which was requested at TAKEN_US, and shows it. Returns -1 to
+/* Draws and shows FRAME, which was requested at TAKEN_US. Returns -1 to
  * continue, or an exit code. */
-static int show(struct live *l, const struct glint_source_frame *frame,
-                int64_t taken_us)
+static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
+                         int64_t taken_us)
 {
     struct drawing *drawing = &l->o->drawing;
     const struct glint_image *image = &frame->image;
@@ -316,10 +316,11 @@ static int show(struct live *l, const struct glint_source_frame *frame,
     int64_t at_us[4];
     int code;
 
-    at_us[0] = taken_us; /* A JPEG was decoded after that. */
+    at_us[0] = taken_us; /* includes the decoding of a JPEG */
     if (!frame->is_drawable)
         image = live_copy(&l->copy, image);
-    code = image ? take_size(l, image) : tool_fail(l->tool, GLINT_E_MEMORY, "");
+    code = image ? prepare_drawing(l, image)
+                 : tool_fail(l->tool, GLINT_E_MEMORY, "");
     if (code != EXIT_OK)
         return code;
     at_us[1] = glint_now_us();
@@ -328,7 +329,7 @@ static int show(struct live *l, const struct glint_source_frame *frame,
         return tool_fail(l->tool, status, NULL);
     live_log_short(&l->log, &drawing->run.report.stats);
     if (live_signal(LIVE_SNAPSHOT))
-        snapshot(l, image);
+        save_snapshot(l, image);
     code = open_output(l, image);
     if (code != EXIT_OK)
         return code;
@@ -336,16 +337,16 @@ static int show(struct live *l, const struct glint_source_frame *frame,
     if (l->output.sink)
         status = l->output.sink->put(l->output.sink, image, &error);
     at_us[3] = glint_now_us();
-    note(l, frame, at_us);
-    adapt(l, at_us[3] - at_us[0],
-          l->n_shown ? frame->n_dropped + frame->n_late : 0);
+    record_frame(l, frame, at_us);
+    adapt_quality(l, at_us[3] - at_us[0],
+                  l->n_shown ? frame->n_dropped + frame->n_late : 0);
     l->n_shown++;
     return status == GLINT_OK ? -1 : lose_output(l, status, error.text);
 }
 
 /* ---------------------------------------------------------------- the loop */
 
-static void say_signal(struct live *l)
+static void report_signal(struct live *l)
 {
     const bool has = l->in.source->has_signal;
 
@@ -357,9 +358,9 @@ static void say_signal(struct live *l)
     l->had_signal = has;
 }
 
-/* Sets up for the format that the input has agreed on again, and starts it.
- * Returns -1 to continue, or an exit code. */
-static int restart(struct live *l)
+/* Prepares for the format that the input has negotiated again, and starts
+ * it. Returns -1 to continue, or an exit code. */
+static int restart_input(struct live *l)
 {
     struct glint_error error = {""};
     const int code = set_up(l);
@@ -373,7 +374,7 @@ static int restart(struct live *l)
 
 /* Gets a frame from the input and shows it, if there is one. Returns -1 to
  * continue, or an exit code. */
-static int step(struct live *l)
+static int process_frame(struct live *l)
 {
     struct glint_source *const source = l->in.source;
     struct glint_source_frame frame;
@@ -384,21 +385,21 @@ static int step(struct live *l)
 
     if (status != GLINT_OK)
         return lose_camera(l, status, error.text);
-    say_signal(l);
+    report_signal(l);
     if (!frame.image.plane[0]) {
-        note(l, &frame, NULL);
-        return source->n_restarts != l->n_restarts ? restart(l) : -1;
+        record_frame(l, &frame, NULL);
+        return source->n_restarts != l->n_restarts ? restart_input(l) : -1;
     }
     if (l->o->skip > 0)
         l->o->skip--;
     else
-        code = show(l, &frame, taken_us);
+        code = draw_and_show(l, &frame, taken_us);
     source->done(source, &frame);
     return code;
 }
 
-/* Returns false if FRESH lost its lens option: the file may be still being
- * written, and the default lens was not meant. */
+/* Returns false if FRESH has no lens option but the present options do: the
+ * file may be only partly written. */
 static bool names_lens(const struct live *l, const struct live_options *fresh)
 {
     if (GLINT_OPTION_GIVEN(&fresh->drawing.line.settings.options, lens) ||
@@ -409,9 +410,9 @@ static bool names_lens(const struct live *l, const struct live_options *fresh)
     return false;
 }
 
-/* Reads configuration and lens again; devices stay open, and nothing is baked.
- * If anything is wrong, all stays as it was. */
-static void reload(struct live *l)
+/* Reads configuration and lens again. Devices stay open, and nothing is
+ * baked. On any error the present configuration is kept. */
+static void reload_config(struct live *l)
 {
     struct live_options *fresh = calloc(1, sizeof *fresh);
 
@@ -433,27 +434,27 @@ static void reload(struct live *l)
     free(fresh);
 }
 
-static int loop(struct live *l)
+static int run_loop(struct live *l)
 {
     int code = -1;
 
     while (code < 0 && !live_signal(LIVE_STOP) &&
            (l->o->count == 0 || l->n_shown < l->o->count)) {
         if (live_signal(LIVE_RELOAD))
-            reload(l);
+            reload_config(l);
         if (!l->in.source) {
             code = retry_camera(l);
             live_log_second(&l->log, live_signal(LIVE_REPORT_NOW));
             continue;
         }
         live_signals_wait(l->in.source->fd, WAIT_MS);
-        code = step(l);
+        code = process_frame(l);
         live_log_second(&l->log, live_signal(LIVE_REPORT_NOW));
     }
     return code < 0 ? EXIT_OK : code;
 }
 
-static int start(struct live *l)
+static int start_run(struct live *l)
 {
     const char *const device = l->o->input.camera.device;
     struct glint_error error = {""};
@@ -470,7 +471,7 @@ static int start(struct live *l)
     code = drawing_open(l->tool, &l->o->drawing);
     if (code != EXIT_OK)
         return code;
-    live_signals_take(); /* Until here a signal kills the run at once. */
+    live_signals_take(); /* until here a signal ends the run at once */
     code = set_up(l);
     if (code != EXIT_OK)
         return code;
@@ -501,10 +502,10 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
                   l->output.kind == LIVE_OUTPUT_Y4M &&
                       strcmp(l->output.path, "-") == 0);
     if (code == EXIT_OK)
-        code = start(l);
+        code = start_run(l);
     if (code == EXIT_OK) {
         live_stats_start(&l->log.stats, glint_now_us());
-        code = loop(l);
+        code = run_loop(l);
         if (code == EXIT_OK)
             code = drawing_finish(tool, &o->drawing);
         live_log_conclude(&l->log, code == EXIT_OK, l->n_shown,

@@ -10,17 +10,18 @@
 
 struct live_copy {
     struct glint_image image;
-    void *mem; /* NULL: none yet */
+    void *mem; /* NULL: not allocated yet */
     size_t bytes;
 };
 
-/* Copies FROM, reading each row once, and returns the copy, or NULL if there is
- * no memory. Allocates only if FROM is larger than all pictures before. */
+/* Copies FROM, reading each row only once. Returns the copy, or NULL if
+ * there is no memory. Allocates only if FROM is larger than all images
+ * before. */
 const struct glint_image *live_copy(struct live_copy *copy,
                                     const struct glint_image *from);
 void live_copy_free(struct live_copy *copy);
 
-/* Saves FROM, of any 8-bit format, by formats/picture.h. */
+/* Saves FROM, in any 8-bit pixel format, to the image file NAME. */
 enum glint_status live_save(const char *name, const struct glint_image *from,
                             struct glint_error *error);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE /* ppoll */
+#define _GNU_SOURCE /* for ppoll() */
 #include "live/live_signals.h"
 
 #include <poll.h>
@@ -22,9 +22,9 @@ enum { N_TAKEN = (int)(sizeof taken / sizeof *taken) };
 
 static volatile sig_atomic_t asked[LIVE_N_SIGNALS];
 
-/* Stores that signal NUMBER arrived. The second signal to stop kills the
+/* Records that signal NUMBER arrived. A second signal to stop kills the
  * process. */
-static void note(int number)
+static void handle_signal(int number)
 {
     for (int i = 0; i < N_TAKEN; i++)
         if (taken[i].number == number) {
@@ -36,7 +36,7 @@ static void note(int number)
 
 void live_signals_take(void)
 {
-    struct sigaction act = {.sa_handler = note};
+    struct sigaction act = {.sa_handler = handle_signal};
 
     sigemptyset(&act.sa_mask);
     for (int i = 0; i < N_TAKEN; i++)
@@ -48,14 +48,14 @@ bool live_signal(enum live_signal which)
 {
     const bool was = asked[which];
 
-    /* if not set, clearing could lose a new one */
+    /* only if it was set: else clearing could lose a new signal */
     if (was && which != LIVE_STOP)
         asked[which] = 0;
     return was;
 }
 
-/* Checks whether a signal is to be handled now. A snapshot is not: it waits for
- * the next frame, which may take long. */
+/* Returns whether a signal must be handled now. A snapshot is handled with
+ * the next frame instead. */
 static bool is_any_asked(void)
 {
     for (int i = 0; i < LIVE_N_SIGNALS; i++)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * live_signals.h - signals to a live run. A signal ends a wait, even if it
- * arrives between the check and the wait. */
+ * live_signals.h - signals to a live run. A signal ends a wait even if it
+ * arrives just before the wait begins.
+ */
 #ifndef GLINT_TOOLS_LIVE_LIVE_SIGNALS_H
 #define GLINT_TOOLS_LIVE_LIVE_SIGNALS_H
 
@@ -9,7 +10,7 @@
 #include <stdint.h>
 
 enum live_signal {
-    LIVE_STOP,       /* SIGINT, SIGTERM; the second one kills */
+    LIVE_STOP,       /* SIGINT, SIGTERM; the second signal kills the process */
     LIVE_RELOAD,     /* SIGHUP */
     LIVE_REPORT_NOW, /* SIGUSR1 */
     LIVE_SNAPSHOT,   /* SIGUSR2 */
@@ -18,7 +19,7 @@ enum live_signal {
 
 void live_signals_take(void);
 
-/* Returns whether signal WHICH arrived since the last call; LIVE_STOP stays
+/* Returns whether signal WHICH arrived since the last call. LIVE_STOP stays
  * true. */
 bool live_signal(enum live_signal which);
 

@@ -13,8 +13,8 @@
 #include "options/suggest.h"
 
 /* Sets the instruction sets that VALUE, a word of --kernels, allows. Returns
- * false if it is no such word or this CPU lacks the set. */
-static bool take_sets(struct tool *tool, const char *value)
+ * false if the word is unknown or this CPU lacks the set. */
+static bool parse_sets(struct tool *tool, const char *value)
 {
     static const char *const words[] = {"c",    "sse41", "avx2",
                                         "neon", "auto",  NULL};
@@ -38,8 +38,8 @@ void tool_line(char **argv)
     line = argv;
 }
 
-/* Sets NAME to the long option that getopt_long() took last, without its value.
- * Returns false if it took none. */
+/* Sets NAME to the long option, without its value, that getopt_long() read
+ * last. Returns false if there is none. */
 static bool last_option(char name[SUGGEST_CHARS])
 {
     const char *text = line && optind > 0 ? line[optind - 1] : NULL;
@@ -110,7 +110,7 @@ int tool_getopt(int argc, char *const *argv, const char *shorts,
     return getopt_long(argc, argv, shorts, options, index);
 }
 
-/* Prints the version and the kernels that this machine runs. */
+/* Prints the version and the kernels that this CPU runs. */
 static void print_version(bool is_json)
 {
     static const struct {
@@ -177,7 +177,7 @@ int tool_option(struct tool *tool, int option, const char *value)
         return tool_usage(tool, "--threads must be 1 to %d, not '%s'",
                           GLINT_MAX_WORKERS, value);
     case 'K':
-        if (take_sets(tool, value))
+        if (parse_sets(tool, value))
             return -1;
         return tool_usage(tool,
                           "--kernels must be c, auto or an instruction set of "
@@ -201,8 +201,9 @@ int tool_option(struct tool *tool, int option, const char *value)
 const char *tool_value_of(int argc, char **argv, const char *shorts,
                           const struct option *options, int option)
 {
-    /* A copy, as getopt_long() moves words: an option at the end that lacks
-     * its value would take the input for it the second time. */
+    /* Works on a copy, as getopt_long() reorders the words: an option at the
+     * end without its value would otherwise consume the input at the second
+     * pass. */
     char **const words = malloc(((size_t)argc + 1) * sizeof *words);
     const char *value = NULL;
     int c;
@@ -211,7 +212,7 @@ const char *tool_value_of(int argc, char **argv, const char *shorts,
         return NULL;
     memcpy(words, argv, ((size_t)argc + 1) * sizeof *words);
     opterr = 0;
-    optind = 0; /* glibc and musl: from the start, with nothing remembered */
+    optind = 0; /* resets glibc's and musl's getopt to the beginning */
     while ((c = getopt_long(argc, words, shorts, options, NULL)) >= 0)
         if (c == option)
             value = optarg;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * This file splits the text and passes lines to inih one by one. Otherwise inih
- * would break long lines in two and treat an indented line as a continuation of
- * the last value.
+ * Splits the text into lines and passes them to inih one at a time. Otherwise
+ * inih would break long lines in two and treat an indented line as a
+ * continuation of the previous value.
  */
 #include "options/config.h"
 
@@ -15,9 +15,9 @@
 #include "posix/input.h"
 #include "options/command_line.h"
 
-#define MAX_BYTES   (1 << 20) /* largest file */
-#define MAX_OPTIONS 256       /* most options of a command */
-#define NAME_CHARS  100       /* bytes of a file's name in errors */
+#define MAX_BYTES   (1 << 20) /* max size of a file */
+#define MAX_OPTIONS 256       /* max number of options of a command */
+#define NAME_CHARS  100       /* max bytes of a file name in errors */
 
 /* One pass over a file: the first pass checks all lines, the second applies
  * them. */
@@ -27,11 +27,11 @@ struct pass {
     const char *name;
     const char *at, *end; /* rest of the text */
     int line, section_line;
-    char section[64];            /* section of the last entry */
+    char section[64];            /* section of the previous entry */
     char where[NAME_CHARS + 32]; /* "FILE:LINE" */
-    char *value;                 /* room for the values to come */
+    char *value;                 /* memory for the following values */
     bool stated[MAX_OPTIONS];
-    int code; /* EXIT_OK: all is well so far */
+    int code; /* EXIT_OK: no error so far */
     struct glint_error *error;
 };
 
@@ -44,9 +44,9 @@ static void set_where(struct pass *p, int line)
              p->name + (len > NAME_CHARS ? len - NAME_CHARS : 0), line);
 }
 
-/* Reports FORMAT, which has one %s for ABOUT, and ends the pass. Returns 0,
- * which reports the failure to inih. */
-static int fail(struct pass *p, const char *format, const char *about)
+/* Sets the error to FORMAT, which has one %s for ABOUT, and ends the pass.
+ * Returns 0, which is inih's failure. */
+static int fail_pass(struct pass *p, const char *format, const char *about)
 {
     char cause[160];
 
@@ -73,7 +73,7 @@ static bool is_text(const char *text, size_t n)
 }
 
 /* Sets LINE to the next line, without blanks around it. Returns its length. */
-static size_t take_line(struct pass *p, const char **line)
+static size_t next_line(struct pass *p, const char **line)
 {
     const char *const feed = memchr(p->at, '\n', (size_t)(p->end - p->at));
     const char *first = p->at, *last = feed ? feed : p->end;
@@ -88,7 +88,8 @@ static size_t take_line(struct pass *p, const char **line)
     return (size_t)(last - first);
 }
 
-/* Reads a line for inih, in place of fgets(); a comment as an empty line. */
+/* Reads a line for inih, instead of fgets(); comments are read as empty
+ * lines. */
 static char *read_line(char *dst, int size, void *stream)
 {
     struct pass *const p = stream;
@@ -97,15 +98,15 @@ static char *read_line(char *dst, int size, void *stream)
 
     if (p->code != EXIT_OK || p->at == p->end)
         return NULL;
-    n = take_line(p, &line);
+    n = next_line(p, &line);
     if (n > 0 && (*line == ';' || *line == '#'))
         n = 0;
     if (n > 0 && *line == '[')
         p->section_line = p->line;
     if (!is_text(line, n))
-        return fail(p, "holds a control character%s", ""), NULL;
+        return fail_pass(p, "holds a control character%s", ""), NULL;
     if (n > CONFIG_LINE || n + 2 > (size_t)size)
-        return fail(p, "has a line that is too long%s", ""), NULL;
+        return fail_pass(p, "is too long a line%s", ""), NULL;
     memcpy(dst, line, n);
     memcpy(dst + n, "\n", 2);
     return dst;
@@ -130,8 +131,8 @@ static void note_section(struct pass *p, const char *section)
             p->config->tool->name, p->where, section);
 }
 
-/* Returns the option NAME, or NULL if a file must not have it: help and version
- * are only for the command line, and files do not nest. */
+/* Returns the option NAME, or NULL if files must not contain it: help and
+ * version are for the command line only, and files cannot be nested. */
 static const struct option *find_option(const struct config *config,
                                         const char *name)
 {
@@ -151,21 +152,21 @@ static int check_entry(struct pass *p, const struct option *option,
     const ptrdiff_t index = option - p->config->options;
 
     if (option->has_arg == required_argument && !*value)
-        return fail(p, "%s needs a value", option->name);
+        return fail_pass(p, "%s needs a value", option->name);
     if (option->has_arg != no_argument)
         return 1;
     if (strcmp(value, "yes") != 0 && strcmp(value, "no") != 0)
-        return fail(p, "%s takes yes or no", option->name);
+        return fail_pass(p, "%s takes yes or no", option->name);
     if (index < MAX_OPTIONS && p->stated[index])
-        return fail(p, "%s is stated twice", option->name);
+        return fail_pass(p, "%s is stated twice", option->name);
     if (index < MAX_OPTIONS)
         p->stated[index] = true;
     return 1;
 }
 
-/* Takes VALUE of OPTION. VALUE is copied, as inih reuses its memory. */
-static int take_entry(struct pass *p, const struct option *option,
-                      const char *value)
+/* Applies OPTION with a copy of VALUE, as inih reuses its memory. */
+static int apply_entry(struct pass *p, const struct option *option,
+                       const char *value)
 {
     const bool plain = option->has_arg == no_argument;
     const size_t bytes = strlen(value) + 1;
@@ -181,8 +182,7 @@ static int take_entry(struct pass *p, const struct option *option,
     tool->where = NULL;
     p->value += bytes;
     if (code == EXIT_OK) /* an option such as --list-devices */
-        return fail(p, "%s is an option of the command line only",
-                    option->name);
+        return fail_pass(p, "%s is for the command line", option->name);
     if (code > 0)
         p->code = code;
     return code < 0;
@@ -199,8 +199,8 @@ static int on_entry(void *ctx, const char *section, const char *name,
     note_section(p, section);
     option = find_option(p->config, name);
     if (!option)
-        return fail(p, "%s is not an option of configuration files", name);
-    return p->taking ? take_entry(p, option, value)
+        return fail_pass(p, "there is no option %s for a file", name);
+    return p->taking ? apply_entry(p, option, value)
                      : check_entry(p, option, value);
 }
 
@@ -217,7 +217,7 @@ static void run_pass(struct pass *p, const char *text, size_t bytes)
     malformed = ini_parse_stream(read_line, p, on_entry, p);
     if (malformed > 0 && (p->code == EXIT_OK || malformed < p->line)) {
         p->line = malformed;
-        fail(p, "is neither [section] nor name = value%s", "");
+        fail_pass(p, "is neither [section] nor name = value%s", "");
     }
 }
 
@@ -225,7 +225,7 @@ int config_parse(struct config *config, const char *name, const char *text,
                  size_t bytes, struct glint_error *error)
 {
     static const char mark[] =
-        "\xef\xbb\xbf"; /* the mark of UTF-8 that some editors write */
+        "\xef\xbb\xbf"; /* UTF-8 byte order mark, which some editors write */
     struct pass p = {.config = config, .name = name, .error = error};
 
     error->text[0] = '\0';
@@ -236,8 +236,7 @@ int config_parse(struct config *config, const char *name, const char *text,
     run_pass(&p, text, bytes);
     if (p.code != EXIT_OK)
         return p.code;
-    /* All values fit into BYTES: each is shorter than its line, which has a
-     * name and =, too. */
+    /* All values fit into BYTES, as each is shorter than its line. */
     p.value = config->values = malloc(bytes + 1);
     if (!p.value) {
         glint_error_report(error, GLINT_E_MEMORY, name, "no memory for it");

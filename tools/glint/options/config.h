@@ -6,7 +6,7 @@
  *     path = tool_value_of(argc, argv, "o:", options, OPT_CONFIG);
  *     if (path && (code = config_read(&config, path)) != EXIT_OK)
  *         return code;
- *     ... getopt_long() as ever: the line comes later and wins
+ *     ... getopt_long() as usual: the command line overrides the file
  *     config_free(&config);
  *
  * A file has lines "name = value" or "name: value", where name is a long
@@ -19,7 +19,8 @@
  *
  * If any line is malformed or any option does not exist, no option of the file
  * is applied. inih parses the file; built without it, config_read() fails with
- * a message. */
+ * a message.
+ */
 #ifndef GLINT_TOOLS_OPTIONS_CONFIG_H
 #define GLINT_TOOLS_OPTIONS_CONFIG_H
 
@@ -36,7 +37,7 @@ typedef int config_take_fn(void *ctx, const struct option *option,
 
 struct config {
     struct tool *tool;
-    const struct option *options; /* a row without a name ends it */
+    const struct option *options; /* ends with a row without a name */
     config_take_fn *take;
     void *ctx;
     char *values; /* private: values passed to TAKE; NULL before

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stands in for config.c where glint is built without inih.
+ * Replaces config.c in builds without inih.
  */
 #include "options/config.h"
 

@@ -30,13 +30,13 @@ int engine_option(const struct tool *tool, struct glint_options *values,
 
 enum { ABOUT_COLUMN = 22, LINE = 79 };
 
-/* Text that is written in lines. */
+/* A text buffer that is written line by line. */
 struct page {
     char *at, *end;
     int column;
 };
 
-static void put(struct page *page, const char *text, size_t n)
+static void write_text(struct page *page, const char *text, size_t n)
 {
     for (; n > 0 && page->at < page->end; n--, text++) {
         page->column = *text == '\n' ? 0 : page->column + 1;
@@ -45,32 +45,32 @@ static void put(struct page *page, const char *text, size_t n)
     *page->at = '\0';
 }
 
-static void put_to_column(struct page *page, int column)
+static void write_blanks(struct page *page, int column)
 {
     while (page->column < column && page->at < page->end)
-        put(page, " ", 1);
+        write_text(page, " ", 1);
 }
 
 /* Writes the words of TEXT into the column of explanations. */
-static void put_words(struct page *page, const char *text)
+static void write_words(struct page *page, const char *text)
 {
     while (*text) {
         const size_t n = strcspn(text, " ");
 
         if (page->column + 1 + (int)n > LINE)
-            put(page, "\n", 1);
+            write_text(page, "\n", 1);
         else if (page->column > ABOUT_COLUMN)
-            put(page, " ", 1);
-        put_to_column(page, ABOUT_COLUMN);
-        put(page, text, n);
+            write_text(page, " ", 1);
+        write_blanks(page, ABOUT_COLUMN);
+        write_text(page, text, n);
         text += n + (text[n] == ' ');
     }
 }
 
-/* Sets VALUE and TEXT to the default of row I, TEXT to NULL if it is a number
- * or if there is none. */
-static void default_of(const struct glint_options *defaults, int i,
-                       double *value, const char **text)
+/* Sets VALUE and TEXT to the default of row I. TEXT is NULL if the option is
+ * numeric or has no default. */
+static void find_default(const struct glint_options *defaults, int i,
+                         double *value, const char **text)
 {
     *value = NAN;
     *text = NULL;
@@ -92,7 +92,8 @@ static void default_of(const struct glint_options *defaults, int i,
         *value = NAN;
 }
 
-/* Returns what a range from LOW begins with; START has room for it. */
+/* Returns the text with which a range from LOW begins; START is the buffer
+ * for it. */
 static const char *range_start(double low, char start[32])
 {
     if (low > 0 && low < 1e-5)
@@ -101,10 +102,10 @@ static const char *range_start(double low, char start[32])
     return start;
 }
 
-/* Writes "(LOW to HIGH, default VALUE)" of row I, without the parts that its
+/* Writes "(LOW to HIGH, default VALUE)" of row I, without values that the
  * help text already states. */
-static void put_limits(struct page *page, const struct glint_options *defaults,
-                       int i)
+static void write_limits(struct page *page,
+                         const struct glint_options *defaults, int i)
 {
     const struct glint_option *const row = glint_option(i);
     const bool is_number =
@@ -113,7 +114,7 @@ static void put_limits(struct page *page, const struct glint_options *defaults,
     char range[64] = "", all[160], start[32], text_in_brackets[164];
     double value;
 
-    default_of(defaults, i, &value, &text);
+    find_default(defaults, i, &value, &text);
     if (is_number && row->high < INT_MAX)
         snprintf(range, sizeof range, "%s%.10g", range_start(row->low, start),
                  row->high);
@@ -134,23 +135,23 @@ static void put_limits(struct page *page, const struct glint_options *defaults,
     }
     if (*all) {
         snprintf(text_in_brackets, sizeof text_in_brackets, "(%s)", all);
-        put_words(page, text_in_brackets);
+        write_words(page, text_in_brackets);
     }
 }
 
-static void put_row(struct page *page, const struct tool *tool, int i)
+static void write_row(struct page *page, const struct tool *tool, int i)
 {
     const struct glint_option *const row = glint_option(i);
     char text[96];
 
     snprintf(text, sizeof text, "  --%s%s%s", row->name, *row->value ? " " : "",
              row->value);
-    put(page, text, strlen(text));
-    put_to_column(page, page->column < ABOUT_COLUMN - 1 ? ABOUT_COLUMN
-                                                        : page->column + 2);
-    put_words(page, row->help);
-    put_limits(page, tool->defaults, i);
-    put(page, "\n", 1);
+    write_text(page, text, strlen(text));
+    write_blanks(page, page->column < ABOUT_COLUMN - 1 ? ABOUT_COLUMN
+                                                       : page->column + 2);
+    write_words(page, row->help);
+    write_limits(page, tool->defaults, i);
+    write_text(page, "\n", 1);
 }
 
 void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES])
@@ -166,9 +167,9 @@ void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES])
     for (int group = 0; group < GLINT_OPTION_GROUPS; group++) {
         if (!has_group(tool, (enum glint_option_group)group))
             continue;
-        put(&page, headings[group], strlen(headings[group]));
+        write_text(&page, headings[group], strlen(headings[group]));
         for (int i = 0; (row = glint_option(i)) != NULL; i++)
             if ((int)row->group == group)
-                put_row(&page, tool, i);
+                write_row(&page, tool, i);
     }
 }

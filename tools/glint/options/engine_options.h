@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * engine_options.h - the engine's options on a command line: for getopt_long(),
- * for the help, and their values, all from the table of glint/options.h.
+ * engine_options.h - the engine's options on a command line: parsing, help and
+ * values, all generated from the table in glint/options.h.
  *
  *     static const struct option own[] = {{"output", ...}, {NULL, 0, NULL, 0}};
  *     options = engine_getopt(&tool, ENGINE_ALL, &values, own);

@@ -28,7 +28,7 @@ static void write_text(FILE *file, const char *text)
     fputc('"', file);
 }
 
-/* Writes the next of VALUES, an integer of the size that FORM names. */
+/* Writes the next of VALUES, an integer whose size FORM states (l, ll or z). */
 static void write_integer(FILE *file, const char *form, va_list *values)
 {
     const char *const size = form + strcspn(form, "lz");
@@ -43,7 +43,7 @@ static void write_integer(FILE *file, const char *form, va_list *values)
         fprintf(file, form, va_arg(*values, int));
 }
 
-/* Writes the next of VALUES by the conversion of N characters at FORMAT. */
+/* Writes the next of VALUES by the conversion FORMAT[N]. */
 static void write_value(FILE *file, const char *format, size_t n,
                         va_list *values)
 {
@@ -76,7 +76,7 @@ static void write_comma(struct json_writer *json, const char *comma)
     json->is_due = false;
 }
 
-/* Writes the key, conversion or word AT; returns what follows it. */
+/* Writes the key, conversion or word at AT. Returns the text after it. */
 static const char *write_word(struct json_writer *json, const char *at,
                               va_list *values)
 {
@@ -116,7 +116,8 @@ void json_write(struct json_writer *json, const char *format, ...)
             json->is_due = true;
         } else if (*format == '\n') {
             n += strspn(format + 1, " ");
-            if (!strchr("]}", format[n])) /* nor at the end of FORMAT */
+            /* no comma before these and at the end of FORMAT */
+            if (!strchr("]}", format[n]))
                 write_comma(json, ",");
             fwrite(format, 1, n, json->to);
         } else if (*format == '%' || strchr(letters, *format)) {

@@ -4,16 +4,16 @@
 #include <stdio.h>
 #include <string.h>
 
-static int least(int a, int b, int c)
+static int min3(int a, int b, int c)
 {
     const int ab = a < b ? a : b;
 
     return ab < c ? ab : c;
 }
 
-/* Returns how many letters have to be inserted, left out, changed or swapped
- * with the next one to get from A to B, or SUGGEST_CHARS if A or B has that
- * many characters. */
+/* Returns the edit distance from A to B: the number of characters to insert,
+ * remove, change or swap with the next one. Returns SUGGEST_CHARS if A or B
+ * has that many characters. */
 static int word_distance(const char *a, const char *b)
 {
     const int n = (int)strlen(a), m = (int)strlen(b);
@@ -29,10 +29,10 @@ static int word_distance(const char *a, const char *b)
 
         row[0] = i;
         for (int k = 1; k <= m; k++) {
-            row[k] = least(last[k] + 1, row[k - 1] + 1,
-                           last[k - 1] + (a[i - 1] != b[k - 1]));
+            row[k] = min3(last[k] + 1, row[k - 1] + 1,
+                          last[k - 1] + (a[i - 1] != b[k - 1]));
             if (i > 1 && k > 1 && a[i - 1] == b[k - 2] && a[i - 2] == b[k - 1])
-                row[k] = least(row[k], before[k - 2] + 1, row[k]);
+                row[k] = min3(row[k], before[k - 2] + 1, row[k]);
         }
     }
     return rows[n % 3][m];

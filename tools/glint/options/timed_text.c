@@ -15,7 +15,7 @@
 #include "options/tool.h"
 #include "posix/input.h"
 
-enum { READINGS = 16 }; /* max calls of read() of a pipe per turn */
+enum { READINGS = 16 }; /* max calls of read() from a pipe per turn */
 
 const char text_no_memory[] = "no memory";
 
@@ -46,7 +46,7 @@ enum glint_status text_lines_open(struct text_lines *lines, const char *name,
         memcpy(lines->mem, text, bytes);
     lines->rest = lines->mem;
     if (lines->mem && strncmp(lines->mem, "\xef\xbb\xbf", 3) == 0)
-        lines->rest += 3; /* the mark of UTF-8 that some editors write */
+        lines->rest += 3; /* UTF-8 byte order mark, which some editors write */
     free(data);
     return status;
 }
@@ -86,8 +86,8 @@ void text_lines_close(struct text_lines *lines)
 
 /* ------------------------------------------------------------------- lines */
 
-/* Reads more of a pipe. Returns false if no data was available. */
-static bool fill(struct text_lines *l)
+/* Reads more from a pipe. Returns false if no data was available. */
+static bool read_pipe(struct text_lines *l)
 {
     struct pollfd there = {.fd = l->fd, .events = POLLIN};
     ssize_t n;
@@ -114,7 +114,7 @@ static char *end_line(struct text_lines *l)
     return l->text;
 }
 
-static char *next_of_pipe(struct text_lines *l)
+static char *next_pipe_line(struct text_lines *l)
 {
     for (;;) {
         while (l->at < l->n_bytes) {
@@ -127,7 +127,7 @@ static char *next_of_pipe(struct text_lines *l)
             else
                 l->is_cut = true;
         }
-        if (!fill(l)) /* a last line may lack its end */
+        if (!read_pipe(l)) /* the last line may lack a line feed */
             return l->has_ended && l->n_text ? end_line(l) : NULL;
     }
 }
@@ -137,7 +137,7 @@ char *text_lines_raw(struct text_lines *lines)
     char *const line = lines->rest, *end;
 
     if (lines->is_pipe)
-        return next_of_pipe(lines);
+        return next_pipe_line(lines);
     if (!line)
         return NULL;
     end = strchr(line, '\n');
@@ -148,7 +148,7 @@ char *text_lines_raw(struct text_lines *lines)
     return line;
 }
 
-/* Cuts off the blanks around TEXT. */
+/* Returns TEXT without leading and trailing blanks. */
 static char *trim(char *text)
 {
     char *end = text + strlen(text);
@@ -235,13 +235,13 @@ int text_column(const struct text_column *column, int n, const char *name)
     return n - 1;
 }
 
-static char *skip(char *at)
+static char *skip_blanks(char *at)
 {
     return at + strspn(at, blanks);
 }
 
-static const char *no_column(struct text_lines *lines,
-                             const struct text_column *column, int n)
+static const char *report_no_column(struct text_lines *lines,
+                                    const struct text_column *column, int n)
 {
     int at = snprintf(lines->cause, sizeof lines->cause, "a key is none of");
 
@@ -254,10 +254,11 @@ static const char *no_column(struct text_lines *lines,
 const char *text_object(struct text_lines *lines, char *line,
                         const struct text_column *column, int n, char **field)
 {
-    char *at = line, mark = ','; /* AT: the brace, then the marks */
+    /* at: first the opening brace, then each separator */
+    char *at = line, mark = ',';
 
     while (mark == ',') {
-        char *key = skip(at + 1), *value, *end = NULL;
+        char *key = skip_blanks(at + 1), *value, *end = NULL;
         int k;
 
         if (*key++ == '"')
@@ -267,24 +268,24 @@ const char *text_object(struct text_lines *lines, char *line,
         *end = '\0';
         k = text_column(column, n, key);
         if (k < 0)
-            return no_column(lines, column, n);
-        value = skip(end + 1);
+            return report_no_column(lines, column, n);
+        value = skip_blanks(end + 1);
         if (*value != ':')
             return "expected : after a key";
-        value = skip(value + 1);
+        value = skip_blanks(value + 1);
         end = *value == '"' ? strchr(value + 1, '"') : NULL;
         at = end ? end + 1 : value + strspn(value, numerals);
         field[k] = value;
         if (at == value)
             return "a value is not a number";
         end = end ? end : at;
-        at = skip(at);
+        at = skip_blanks(at);
         mark = *at;
         *end = '\0';
     }
     if (mark != '}')
         return "expected , or }";
-    return *skip(at + 1) ? "something follows the object" : NULL;
+    return *skip_blanks(at + 1) ? "something follows the object" : NULL;
 }
 
 const char *text_value(const struct text_column *column, const char *text,

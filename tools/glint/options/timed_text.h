@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * timed_text.h - reads text that describes frames, line by line: key frames,
- * lists of lamps, poses and control lines.
+ * timed_text.h - reads text files with one line per event of a video, line by
+ * line: key frames, lists of lamps, poses and control lines.
  *
  *     text_lines_open(&lines, path, NULL, max_bytes, &error);
  *     status = text_lines_each(&lines, take, ctx, &error);
  *
- * or from a pipe, without ever waiting for data:
+ * or from a pipe, without waiting for data:
  *
  *     text_lines_pipe(&lines, path, &error);
  *     text_lines_turn(&lines);                             each picture
@@ -37,7 +37,7 @@ struct text_lines {
 
     /* Private. */
     char *mem, *rest; /* contents of a file, and the part not yet read */
-    int fd;           /* this and the members below are for a pipe */
+    int fd;           /* members from here on are for pipes */
     char text[TEXT_PIPE_BYTES], bytes[4096];
     size_t n_text, at, n_bytes;
     bool is_cut, has_ended;
@@ -46,9 +46,10 @@ struct text_lines {
 
 /* ------------------------------------------------------------------- lines */
 
-/* Copies TEXT[BYTES], or, if TEXT is NULL, reads the file NAME, of at most
- * BYTES bytes (0: any size). NAME must outlive LINES. Errors: GLINT_E_IO,
- * GLINT_E_MEMORY, and GLINT_E_FORMAT if the text contains a zero byte. */
+/* Opens a copy of TEXT[BYTES], or, if TEXT is NULL, the file NAME, of at
+ * most BYTES bytes (0: any size). NAME must outlive LINES. Errors:
+ * GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT if the text contains a zero
+ * byte. */
 enum glint_status text_lines_open(struct text_lines *lines, const char *name,
                                   const char *text, size_t bytes,
                                   struct glint_error *error);
@@ -63,9 +64,10 @@ enum glint_status text_lines_pipe(struct text_lines *lines, const char *path,
                                   struct glint_error *error);
 void text_lines_turn(struct text_lines *lines);
 
-/* Return the next line, which the caller may change, or NULL at the end of the
- * file or turn. text_lines_raw() returns every line as it is, text_lines_next()
- * trims lines and skips empty lines and lines that begin with #. */
+/* Return the next line, which the caller may change, or NULL at the end of
+ * the file or turn. text_lines_raw() returns every line unchanged;
+ * text_lines_next() trims lines and skips those that are empty or begin with
+ * #. */
 char *text_lines_raw(struct text_lines *lines);
 char *text_lines_next(struct text_lines *lines);
 
@@ -110,8 +112,8 @@ int text_column(const struct text_column *column, int n, const char *name);
 const char *text_object(struct text_lines *lines, char *line,
                         const struct text_column *column, int n, char **field);
 
-/* Sets VALUE to the number TEXT. Returns NULL, or a cause of failure: OTHER if
- * TEXT is not a number, column->range if it is out of range. */
+/* Sets VALUE to the number TEXT. Returns NULL on success, OTHER if TEXT is
+ * not a number, or column->range if it is out of range. */
 const char *text_value(const struct text_column *column, const char *text,
                        const char *other, double *value);
 

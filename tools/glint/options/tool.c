@@ -84,7 +84,8 @@ int tool_fail(const struct tool *tool, enum glint_status status,
                                [GLINT_E_CLOSED] = EXIT_OK,
                                [GLINT_E_DEVICE] = EXIT_DEVICE};
 
-    if (status == GLINT_E_CLOSED) /* the reader had enough: no failure */
+    /* the reader closed the pipe early, which is not an error */
+    if (status == GLINT_E_CLOSED)
         return EXIT_OK;
     tool_error(tool, "%s", text && *text ? text : glint_status_text(status));
     return code[status];
@@ -111,7 +112,7 @@ void tool_finish(struct tool *tool)
 
 static volatile sig_atomic_t reader_gone;
 
-static void note_reader(int signal_number)
+static void record_closed_pipe(int signal_number)
 {
     (void)signal_number;
     reader_gone = 1;
@@ -119,9 +120,10 @@ static void note_reader(int signal_number)
 
 void tool_watch_reader(void)
 {
-    struct sigaction note = {.sa_handler = note_reader};
+    struct sigaction note = {.sa_handler = record_closed_pipe};
 
-    sigaction(SIGPIPE, &note, NULL); /* Writing fails as well. */
+    /* writing then fails with an error as well */
+    sigaction(SIGPIPE, &note, NULL);
 }
 
 int tool_end(int code)
@@ -260,7 +262,7 @@ void tool_progress_part(struct tool_progress *p, double from, double share)
     p->share = share;
 }
 
-/* Prints a line every ten seconds, if there is no terminal for a bar. */
+/* Prints a line every ten seconds, if standard error is not a terminal. */
 static void show_line(struct tool_progress *p, double now, double done)
 {
     const double spent = now - p->started;
@@ -272,9 +274,9 @@ static void show_line(struct tool_progress *p, double now, double done)
             100 * p->most, spent, spent * (1 - done) / done);
 }
 
-/* Prints once, after a second, an estimate of the time if it is 20 s or
+/* Prints an estimate of the time once, after a second, if it is 20 s or
  * more. */
-static void tell_length(struct tool_progress *p, double spent, double done)
+static void print_estimate(struct tool_progress *p, double spent, double done)
 {
     const double all = spent / done, left = all - spent;
 
@@ -304,7 +306,7 @@ void tool_progress_show(void *progress, double done)
     p->most = fmax(done, p->most);
     filled = (int)(p->most * width);
     if (p->shown && !p->told && done > 0)
-        tell_length(p, spent, done);
+        print_estimate(p, spent, done);
     if (p->shown && !p->is_terminal)
         show_line(p, now, done);
     if (!p->shown || !p->is_terminal || (now - p->last < 0.1 && done < 1))

@@ -24,16 +24,17 @@ enum exit_code {
 struct tool {
     const char *name; /* name of the command */
     const char *help; /* help text of the command's own options */
-    /* Groups of engine options that the command has, a bit each by enum
-     * glint_option_group, and their defaults; NULL if it has none. */
+    /* groups of engine options that the command has, one bit per enum
+     * glint_option_group, and their defaults; NULL if there are none */
     unsigned groups;
     const struct glint_options *defaults;
     const char *help_end; /* help text after these options, or NULL */
     bool json, quiet;
-    bool no_bake; /* reject a lens whose model is not cached: for reloading */
+    /* rejects a lens whose model is not cached, as a reload must not bake */
+    bool no_bake;
     int verbose;
     int n_threads;
-    int seed; /* random seed: of synth, and of the noise of live -d test */
+    int seed; /* random seed for synth, and for the noise of live -d test */
     unsigned sets_off;             /* instruction sets not to use */
     const char *kernels;           /* argument of --kernels, or NULL */
     struct glint_workers *workers; /* made by tool_start() */
@@ -75,8 +76,8 @@ int tool_refuse(const struct tool *tool, const char *option, const char *value);
 
 /* ------------------------------------------------------------------ numbers */
 
-/* Parse all of TEXT as one finite number, or as up to MAX numbers separated by
- * commas. Return how many numbers were parsed, 0 on failure. */
+/* Parse all of TEXT: as one finite number, or as up to MAX numbers separated
+ * by commas. Return the number of values, 0 on failure. */
 bool tool_number(const char *text, double *value);
 int tool_numbers(const char *text, double *values, int max);
 
@@ -91,7 +92,7 @@ bool tool_size(const char *text, int *width, int *height);
 /* Returns the index of TEXT in the NULL-terminated WORDS, or -1. */
 int tool_word(const char *text, const char *const *words);
 
-/* Returns the seconds of a monotonic clock. */
+/* Returns the time of a monotonic clock, s. */
 double tool_seconds(void);
 
 /* ------------------------------------------------------------------- output */
@@ -102,8 +103,8 @@ double tool_seconds(void);
  * a folder. */
 int tool_check_output(const struct tool *tool, const char *path);
 
-/* Checks that PATH has the extension ENDING of WHAT, the kind of file written,
- * or no extension, as "-" or /dev/stdout. Returns EXIT_OK, or the code of
+/* Checks that PATH has the extension ENDING for a file of type WHAT, or no
+ * extension, as "-" or /dev/stdout. Returns EXIT_OK, or the code of
  * tool_usage(). */
 int tool_check_ending(struct tool *tool, const char *path, const char *ending,
                       const char *what);
