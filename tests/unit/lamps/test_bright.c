@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Bright pixels in random pictures of every format and threshold, against a
- * look at each pixel; and how far equal pixels reach.
+ * Tests the search for bright pixels in random images of every format and
+ * threshold against a check of each pixel, and the length of runs of equal
+ * pixels.
  */
 #include "support/canvas.h"
 #include "support/rng.h"
@@ -19,8 +20,8 @@ enum { HEIGHT = 6 };
 
 static uint32_t seed = 1;
 
-/* Fills IMAGE with random bytes, of which one in RARE may be more than 63. */
-static void fill(const struct glint_image *image, int rare)
+/* Fills IMAGE with random bytes, of which one in RARE may exceed 63. */
+static void fill_random(const struct glint_image *image, int rare)
 {
     const size_t bytes =
         glint_image_bytes(image->format, image->width, image->height);
@@ -46,20 +47,20 @@ static struct glint_bright *new_bright(int width, void **mem)
     return b;
 }
 
-static int weigh(int r, int g, int b)
+static int compute_luma(int r, int g, int b)
 {
     return (54 * r + 183 * g + 19 * b + 128) / 256;
 }
 
-static int widen(int v, int bits)
+static int widen_code(int v, int bits)
 {
     return v << (8 - bits) | v >> (2 * bits - 8);
 }
 
-/* Sets *LARGEST to the largest channel and *LUMA to the luma of a pixel, by the
- * definition of YCbCr. */
-static void judge_ycc(const struct glint_image *image, const int code[3],
-                      double *largest, int *luma)
+/* Sets *LARGEST to the largest RGB channel and *LUMA to the luma of a pixel,
+ * by the definition of YCbCr. */
+static void measure_ycc(const struct glint_image *image, const int code[3],
+                        double *largest, int *luma)
 {
     const int limited = image->range == GLINT_RANGE_LIMITED;
     const int is_709 = image->matrix == GLINT_MATRIX_BT709;
@@ -74,17 +75,18 @@ static void judge_ycc(const struct glint_image *image, const int code[3],
     *luma = (int)fmax(0, fmin(255, floor(y + 0.5)));
 }
 
-static const uint8_t *at(const struct glint_image *image, int plane, int x,
-                         int y)
+static const uint8_t *sample_address(const struct glint_image *image, int plane,
+                                     int x, int y)
 {
     return image->plane[plane] + y * image->stride_bytes[plane] + x;
 }
 
-/* Sets CODE to Y, Cb, Cr of the pixel (X, Y). */
-static void codes_at(const struct glint_image *image, int x, int y, int code[3])
+/* Sets CODE to Y, Cb, Cr of pixel (X, Y). */
+static void read_codes(const struct glint_image *image, int x, int y,
+                       int code[3])
 {
     const int cx = x / 2, cy = y / 2;
-    const uint8_t *row = at(image, 0, 0, y);
+    const uint8_t *row = sample_address(image, 0, 0, y);
 
     code[0] = row[x];
     code[1] = code[2] = 128;
@@ -96,15 +98,15 @@ static void codes_at(const struct glint_image *image, int x, int y, int code[3])
         code[2] = row[4 * cx + 2];
     for (int i = 1; i < 3; i++) {
         if (image->format == GLINT_I420)
-            code[i] = *at(image, i, cx, cy);
+            code[i] = *sample_address(image, i, cx, cy);
         if (image->format == GLINT_I422)
-            code[i] = *at(image, i, cx, y);
+            code[i] = *sample_address(image, i, cx, y);
         if (image->format == GLINT_I444)
-            code[i] = *at(image, i, x, y);
+            code[i] = *sample_address(image, i, x, y);
         if (image->format == GLINT_NV12)
-            code[i] = *at(image, 1, 2 * cx + i - 1, cy);
+            code[i] = *sample_address(image, 1, 2 * cx + i - 1, cy);
         if (image->format == GLINT_NV21)
-            code[i] = *at(image, 1, 2 * cx + 2 - i, cy);
+            code[i] = *sample_address(image, 1, 2 * cx + 2 - i, cy);
     }
 }
 
@@ -117,16 +119,16 @@ static int value_of_rgb(int r, int g, int b)
 {
     const int largest = r > g ? r > b ? r : b : g > b ? g : b;
 
-    return largest < 250 ? largest : clipped_value(weigh(r, g, b));
+    return largest < 250 ? largest : clipped_value(compute_luma(r, g, b));
 }
 
-/* Sets *LEAST and *MOST to the brightness of a pixel by the definition of its
- * format. The two differ where chroma makes a code so nearly a half that
- * rounding may fall either way. */
-static void value_at(const struct glint_image *image, int x, int y, int *least,
-                     int *most)
+/* Sets *LEAST and *MOST to the brightness of pixel (X, Y) by the definition
+ * of its format. They differ if the value is so close to a half that it may
+ * round either way. */
+static void brightness_range(const struct glint_image *image, int x, int y,
+                             int *least, int *most)
 {
-    const uint8_t *row = at(image, 0, 0, y);
+    const uint8_t *row = sample_address(image, 0, 0, y);
     int code[3], bits, luma, rounded[2];
     double largest;
 
@@ -145,13 +147,13 @@ static void value_at(const struct glint_image *image, int x, int y, int *least,
         return;
     case GLINT_RGB565:
         bits = row[2 * x] | row[2 * x + 1] << 8;
-        *least = *most =
-            value_of_rgb(widen(bits >> 11, 5), widen(bits >> 5 & 63, 6),
-                         widen(bits & 31, 5));
+        *least = *most = value_of_rgb(widen_code(bits >> 11, 5),
+                                      widen_code(bits >> 5 & 63, 6),
+                                      widen_code(bits & 31, 5));
         return;
     default:
-        codes_at(image, x, y, code);
-        judge_ycc(image, code, &largest, &luma);
+        read_codes(image, x, y, code);
+        measure_ycc(image, code, &largest, &luma);
     }
     for (int i = 0; i < 2; i++) {
         rounded[i] = (int)floor(largest + 0.3 + 0.4 * i);
@@ -177,7 +179,7 @@ static void check_scan(struct glint_bright *b, const struct glint_image *image,
             const int is_marked = any && b->block[x / BRIGHT_BLOCK];
             int least, most;
 
-            value_at(image, x, y, &least, &most);
+            brightness_range(image, x, y, &least, &most);
             n_bright += most >= low;
             n_marked += is_marked;
             if (is_marked)
@@ -209,7 +211,7 @@ TEST(scan_against_every_pixel)
         image.range = round / (CANVAS_FORMATS * 24) ? GLINT_RANGE_LIMITED
                                                     : GLINT_RANGE_FULL;
         image.matrix = (enum glint_matrix)(round % 2);
-        fill(&image, rares[round / (CANVAS_FORMATS * 8) % 3]);
+        fill_random(&image, rares[round / (CANVAS_FORMATS * 8) % 3]);
         for (int low = 1; low <= 255; low++)
             check_scan(b, &image, low);
         free(b);
@@ -218,8 +220,8 @@ TEST(scan_against_every_pixel)
     }
 }
 
-/* A single pixel of exactly the threshold must be found anywhere, and a pixel
- * of a code less must not. */
+/* Checks that a single pixel of exactly the threshold is found anywhere, and
+ * one a code below it is not. */
 TEST(no_pixel_is_missed)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 96, HEIGHT);
@@ -247,8 +249,8 @@ TEST(no_pixel_is_missed)
     free(image.plane[0]);
 }
 
-/* In a row of one dim grey the one code that differs must be judged, in the
- * four blocks that are looked at together and in the fifth. */
+/* Checks that in a row of dim grey the one code that differs is detected, in
+ * the four blocks that are tested together and in the fifth. */
 TEST(no_colour_is_missed)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};

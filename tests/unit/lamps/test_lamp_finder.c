@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps in drawn pictures: where they are found, that they stay there, and what
- * must not be found.
+ * Tests the lamp finder on drawn images: position and its stability, and what
+ * must not count as a lamp.
  */
 #include "glint/lamps.h"
 
@@ -16,7 +16,7 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* Returns noise of standard deviation SIGMA, nearly normal: a sum of eight
+/* Returns nearly Gaussian noise of standard deviation SIGMA, a sum of eight
  * uniform numbers. */
 static double draw_noise(double sigma)
 {
@@ -116,7 +116,8 @@ TEST(one_pixel)
     free(image.plane[0]);
 }
 
-/* sRGB code 188 is linear 0.5029: three such pixels touch a white one. */
+/* Checks moments computed by hand: sRGB code 188 is linear 0.5029; three
+ * such pixels touch a white one. */
 TEST(moments_by_hand)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 16, 8);
@@ -126,7 +127,8 @@ TEST(moments_by_hand)
     canvas_set_grey(&image, 11, 5, 255);
     canvas_set_grey(&image, 12, 5, 188);
     canvas_set_grey(&image, 11, 6, 188);
-    canvas_set_grey(&image, 0, 0, 188); /* This pixel is too dark for a seed. */
+    /* this pixel is too dark to be a seed */
+    canvas_set_grey(&image, 0, 0, 188);
     assert_int_equal(finder_find(&cfg, &image), 1);
     assert_int_equal(finder_spot[0].area, 4);
     assert_int_equal(finder_spot[0].n_clipped, 1);
@@ -161,8 +163,8 @@ TEST(disc_is_found_to_a_sixteenth)
     }
 }
 
-/* Adds a lamp of RADIUS to a grey picture: it is four times white, and beyond
- * the radius its light falls by a factor of e every FALL pixels. */
+/* Adds a lamp of RADIUS to a grey image: four times white, falling by a
+ * factor e per FALL pixels outside the radius. */
 static void draw_lamp(const struct glint_image *image, double cx, double cy,
                       double radius, double fall)
 {
@@ -180,8 +182,8 @@ static void draw_lamp(const struct glint_image *image, double cx, double cy,
         }
 }
 
-/* With the defaults, which cut off the rim evenly, a lamp must be found within
- * 0.35 pixels. */
+/* Checks that with the default configuration, which cuts off the rim evenly,
+ * a lamp is found within 0.35 pixels. */
 TEST(disc_with_defaults)
 {
     for (int round = 0; round < 100; round++) {
@@ -200,8 +202,8 @@ TEST(disc_with_defaults)
 
 /* --------------------------------------------------------------- stability */
 
-/* A lamp with a blurred rim must be found within 0.25 pixels RMS in 100 frames
- * with camera noise of 3 codes. */
+/* Checks that a lamp with a blurred rim is found within 0.25 pixels RMS in
+ * 100 frames with camera noise of 3 codes. */
 TEST(noise_does_not_move_a_light)
 {
     double square = 0;
@@ -228,7 +230,7 @@ TEST(noise_does_not_move_a_light)
     assert_true(sqrt(square / 100) < 0.25);
 }
 
-/* One pixel of a lamp of 8 x 8 that flickers to white, any of them, must move
+/* Checks that any one pixel of a lamp of 8 x 8 that flickers to white moves
  * the lamp by less than 0.1 pixels. */
 TEST(sparkle_does_not_move_a_light)
 {
@@ -247,8 +249,8 @@ TEST(sparkle_does_not_move_a_light)
     free(image.plane[0]);
 }
 
-/* One hot pixel, 40 times as bright as the other 63 of the darkest lamp that
- * can be found, must move the lamp by less than a pixel. */
+/* Checks that one hot pixel, 40 times brighter than the other 63 of the
+ * darkest lamp that can be found, moves the lamp by less than a pixel. */
 TEST(hot_pixel_among_dim_ones)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 64, 64);
@@ -298,12 +300,12 @@ TEST(black_and_white)
     assert_int_equal(finder_spot[0].y_q8, 25 * 256);
     assert_int_equal(finder_spot[0].area, 5000);
     assert_true(finder_spot[0].flux_q16 == INT64_C(5000) << 16);
-    /* The square of the RMS radius is (100^2 + 50^2 - 2) / 12. */
+    /* the squared RMS radius is (100^2 + 50^2 - 2) / 12 */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - 32.2723) < 1.0 / 128);
     free(image.plane[0]);
 }
 
-/* A large picture that is all white is the worst case for sums of moments. */
+/* Checks a large all-white image, the worst case for sums of moments. */
 TEST(large_picture)
 {
     enum { SIDE = 8192 };
@@ -322,7 +324,7 @@ TEST(large_picture)
     free(image.plane[0]);
 }
 
-static struct glint_region region_of(int x0, int y0, int x1, int y1)
+static struct glint_region make_region(int x0, int y0, int x1, int y1)
 {
     const struct glint_region_light white = {1 << 14,
                                              {1 << 14, 1 << 14, 1 << 14}};
@@ -336,8 +338,8 @@ static struct glint_region region_of(int x0, int y0, int x1, int y1)
     return r;
 }
 
-/* White rectangles of the largest picture, and all of it, must have the right
- * place, size and light. */
+/* Checks position, size and light of white rectangles in the largest image,
+ * and of the whole image. */
 TEST(largest_regions)
 {
     enum { S = GLINT_MAX_SIDE };
@@ -349,7 +351,7 @@ TEST(largest_regions)
     for (size_t k = 0; k < sizeof box / sizeof *box; k++) {
         const int *b = box[k];
         const double w = b[2] - b[0], h = b[3] - b[1];
-        const struct glint_region r = region_of(b[0], b[1], b[2], b[3]);
+        const struct glint_region r = make_region(b[0], b[1], b[2], b[3]);
         int32_t x_q8, y_q8, rgb_q15[3];
 
         glint_region_centroid(&r, &x_q8, &y_q8);
@@ -364,7 +366,8 @@ TEST(largest_regions)
     }
 }
 
-/* Lamps at both ends of the longest pictures must be found where they are. */
+/* Checks that lamps at both ends of the longest images are found at their
+ * positions. */
 TEST(longest_pictures)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, OFF = 20, SIDE = 6 };
@@ -412,8 +415,8 @@ TEST(sky_is_no_light)
     free(image.plane[0]);
 }
 
-/* A lit surface must be no lamp while fewer than one pixel in 8 reach the upper
- * threshold; the glow of a lamp has as many. */
+/* Checks that a lit surface is not a lamp if fewer than one pixel in 8
+ * reaches the upper threshold; the glow of a lamp has that many. */
 TEST(few_seeds_are_no_light)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 100);
@@ -428,8 +431,8 @@ TEST(few_seeds_are_no_light)
     free(image.plane[0]);
 }
 
-/* A ring around a core belongs to the lamp; a darker ring around that does not,
- * nor does a bright one beyond it, which has no seed. */
+/* Checks that a ring around a core belongs to the lamp, but not a darker
+ * ring around it, nor a bright ring outside that, which has no seed. */
 TEST(hysteresis)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 60, 60);
@@ -453,8 +456,8 @@ TEST(hysteresis)
     free(image.plane[0]);
 }
 
-/* When faint regions are kept too, the lamps must be as before, and the faint
- * regions must come after them, marked as faint. */
+/* Checks that if faint regions are returned too, the lamps are unchanged,
+ * and faint regions follow them, marked as faint. */
 TEST(faint_regions_come_last)
 {
     static struct glint_spot light[FINDER_SPOTS];
@@ -497,8 +500,8 @@ TEST(faint_regions_come_last)
     assert_true(most_faint > 20);
 }
 
-/* The sums of a region that fills the picture, drawn of noise and of patches of
- * one code, must be those in double precision. */
+/* Checks the sums of a region that fills the image, made of noise and
+ * patches of one code, against double precision. */
 TEST(sums_of_a_large_region)
 {
     for (int round = 0; round < 20; round++) {
@@ -544,7 +547,7 @@ TEST(small_ones_are_noise)
     cfg.min_area = 5;
     canvas_fill_grey(&image, 10, 10, 12, 12, 255);
     assert_int_equal(finder_find(&cfg, &image), 0);
-    /* A fifth pixel touches the square by a corner. */
+    /* a fifth pixel touches the square at a corner */
     canvas_set_grey(&image, 12, 12, 255);
     assert_int_equal(finder_find(&cfg, &image), 1);
     free(image.plane[0]);
@@ -579,8 +582,8 @@ TEST(ties_go_by_position)
     free(image.plane[0]);
 }
 
-/* Nine white pixels and three, 4 apart, must merge into one lamp, 1 pixel from
- * the greater. */
+/* Checks that regions of nine and three white pixels, 4 pixels apart, are
+ * merged into one lamp, 1 pixel from the larger. */
 TEST(near_ones_merge)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 128, 64);
@@ -589,14 +592,15 @@ TEST(near_ones_merge)
     canvas_fill_grey(&image, 20, 20, 23, 23, 255);
     canvas_fill_grey(&image, 25, 20, 26, 23, 255);
     cfg.merge_q15 = 4 * 32768 / 128;
-    assert_int_equal(finder_find(&cfg, &image), 2); /* not closer than 4 */
+    /* merge distance: less than 4 pixels */
+    assert_int_equal(finder_find(&cfg, &image), 2);
     cfg.merge_q15 = 5 * 32768 / 128;
     assert_int_equal(finder_find(&cfg, &image), 1);
     assert_true(finder_x(0) == 22.5 && finder_y(0) == 21.5);
     assert_int_equal(finder_spot[0].area, 12);
     assert_true(finder_spot[0].flux_q16 == 12 << 16);
-    /* The square of the RMS radius is, in x, (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12
-     * = 3.5, and in y 2 / 3. */
+    /* the squared RMS radius is (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12 = 3.5 in
+     * x, and 2 / 3 in y */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(3.5 + 0.6667)) <
                 0.01);
     free(image.plane[0]);
@@ -625,8 +629,8 @@ TEST(merged_ones_keep_their_distance)
     free(image.plane[0]);
 }
 
-/* Of four lights two are wanted: the third is near the first and must join it,
- * the fourth is far from all and must be dropped. */
+/* Checks a limit of two lights of four: the third is near the first and is
+ * merged with it; the fourth is far from all and is dropped. */
 TEST(cap)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 256, 64);
@@ -636,7 +640,8 @@ TEST(cap)
     cfg.merge_q15 = 4 * 32768 / 256;
     canvas_fill_grey(&image, 20, 20, 26, 26, 255);   /* 36 px */
     canvas_fill_grey(&image, 100, 20, 105, 25, 255); /* 25 px */
-    canvas_fill_grey(&image, 35, 20, 37, 26, 255);   /* 12 px, 13 away */
+    /* 12 px, at a distance of 13 */
+    canvas_fill_grey(&image, 35, 20, 37, 26, 255);
     canvas_fill_grey(&image, 200, 20, 202, 22, 255); /* 4 px */
     assert_int_equal(finder_find_at_most(&cfg, &image, 2, &dropped), 2);
     assert_int_equal(dropped, 1);

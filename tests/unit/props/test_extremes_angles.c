@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Extreme angles: the axis and a millionth of a degree beside it, borders of
- * zones and of where each ghost is seen, the largest angles, all azimuths,
- * lights on pixel borders.
+ * Tests extreme angles of lights: on the axis and 1e-6 degrees off it, borders
+ * of angular zones and of each ghost's visibility, the largest angles, all
+ * azimuths, and lights on pixel borders.
  */
 #include <math.h>
 #include <stdint.h>
@@ -21,11 +21,10 @@ static uint8_t codes[3][3 * W * H];
 
 #define DEGREE 0.017453292519943295
 
-/* Largest difference, in codes of a block's mean, that another grid may make of
- * the same light. Where codes are drawn, grids have 3/4 of the cells each way,
- * so that an outline may be off by 0.1 / (3/4)^2 = 0.18 pixel. One that moves
- * by so much along a side of a block of 8 x 8 changes its mean by 255 * 0.18 /
- * 8. */
+/* Max difference between two grids of the same light, codes in the mean of a
+ * block of 8 x 8 pixels. For codes, grids have 3/4 of the cells in each
+ * direction, so an outline may be off by 0.1 / (3/4)^2 = 0.18 pixel, which
+ * along one side of the block changes its mean by 255 * 0.18 / 8. */
 #define GRID_CODES 5.7
 
 TEST_OPEN
@@ -34,13 +33,14 @@ TEST_OPEN
                 stage_prepare(&heliar, 8) && stage_model(&heliar, 1, 60));
 }
 
-static void draw(struct stage *s, const struct glint_lamp *lamp, uint8_t *to)
+static void draw_codes(struct stage *s, const struct glint_lamp *lamp,
+                       uint8_t *to)
 {
     memset(to, 0, sizeof codes[0]);
     assert_true(stage_codes(s, lamp, 1, to));
 }
 
-static double against_exact(struct stage *s, const struct glint_lamp *lamp)
+static double compare_with_exact(struct stage *s, const struct glint_lamp *lamp)
 {
     assert_true(stage_linear(s, lamp, 1, test));
     assert_true(stage_exact(s, lamp, 1, 192, exact));
@@ -49,11 +49,10 @@ static double against_exact(struct stage *s, const struct glint_lamp *lamp)
 
 /* -------------------------------------------------------------------- axis */
 
-/* On the axis a picture must be as exact as anywhere: 45 dB for pictures so
- * small (test_exact asks the same of 480x270). A light a millionth of a degree
- * away must look the same: its ghosts move by 1e-6 pixel, and a cell whose
- * irradiance lies between two steps of a percent, 1.2 codes where it is bright,
- * may take the other step. */
+/* Checks that on the axis an image has at least 45 dB, as elsewhere at this
+ * size, and that a light 1e-6 degrees away gives the same image: its ghosts
+ * move by 1e-6 pixel, and a cell whose irradiance is half-way between two
+ * steps of 1 % (1.2 codes in bright parts) may round to the other. */
 TEST(near_the_axis)
 {
     static const double theta[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
@@ -63,14 +62,14 @@ TEST(near_the_axis)
     stage_view(&heliar, W, H, 0);
     for (int i = 0; i < 5; i++) {
         lamp = stage_lamp(theta[i], 77, 1);
-        worst = fmin(worst, against_exact(&heliar, &lamp));
+        worst = fmin(worst, compare_with_exact(&heliar, &lamp));
     }
     lamp.theta_deg = 0;
     lamp.power = stage_power(&heliar, &lamp);
-    draw(&heliar, &lamp, codes[0]);
+    draw_codes(&heliar, &lamp, codes[0]);
     for (int i = 1; i < 3; i++) {
         lamp.theta_deg = theta[i];
-        draw(&heliar, &lamp, codes[1]);
+        draw_codes(&heliar, &lamp, codes[1]);
         jump = fmax(jump, stage_block_jump(&heliar, codes[0], codes[1]));
     }
     assert_at_least("angles: on the axis, and up to 0.1 deg beside", worst, 45,
@@ -79,8 +78,8 @@ TEST(near_the_axis)
                    "codes");
 }
 
-/* On the axis the azimuth must change nothing but the way that rows of the grid
- * run. */
+/* Checks that on the axis the azimuth changes only the orientation of the
+ * grid. */
 TEST(azimuth_on_the_axis)
 {
     struct glint_lamp lamp = stage_lamp(0, 0, 1);
@@ -88,10 +87,10 @@ TEST(azimuth_on_the_axis)
 
     stage_view(&heliar, W, H, 0);
     lamp.power = stage_power(&heliar, &lamp);
-    draw(&heliar, &lamp, codes[0]);
+    draw_codes(&heliar, &lamp, codes[0]);
     for (int phi = 5; phi < 360; phi += 5) {
         lamp.phi_deg = phi;
-        draw(&heliar, &lamp, codes[1]);
+        draw_codes(&heliar, &lamp, codes[1]);
         jump = fmax(jump, stage_block_jump(&heliar, codes[0], codes[1]));
     }
     assert_at_most("angles: azimuths of a light on the axis", jump, GRID_CODES,
@@ -100,16 +99,16 @@ TEST(azimuth_on_the_axis)
 
 /* ---------------------------------------------------------------- azimuths */
 
-/* Where all light falls into the picture, its sum must not depend on the
- * azimuth. Half a percent is left to steps of irradiance and to chords of
- * outlines, where ghosts are ten pixels wide as here. */
+/* Checks that if all light falls inside the image its sum does not depend on
+ * the azimuth, within 0.5 % for the steps of irradiance and for chords of
+ * outlines of ghosts ten pixels wide. */
 TEST(flux_of_all_azimuths)
 {
     double least = HUGE_VAL, most = 0;
 
     stage_view(&heliar, SIDE, SIDE, 400);
     for (int k = 0; k < 4 * 24; k++) {
-        /* Azimuths just beside the quarters are tried, too. */
+        /* also azimuths close to multiples of 90 degrees */
         const double phi = k % 4 == 0 ? 15.0 * k / 4
                            : k % 4 == 1
                                ? 15.0 * (k / 4) + 1e-9 * (k & 8 ? 1 : -1)
@@ -127,9 +126,9 @@ TEST(flux_of_all_azimuths)
                    "");
 }
 
-/* A quarter turn of the light must turn the picture: stop (an octagon) and
- * picture (a square) stay as they are. Rows and columns change places, which
- * shows in how edges are rounded. */
+/* Checks that a light rotated by 90 degrees rotates the image: stop (an
+ * octagon) and image (a square) are symmetric. Rows and columns are
+ * exchanged, which changes the rounding of edges. */
 TEST(quarter_turns)
 {
     double worst = 0;
@@ -162,13 +161,13 @@ TEST(quarter_turns)
 
 /* ------------------------------------------------------------------- zones */
 
-/* Returns the light at the angle of this sine. */
-static struct glint_lamp at_sine(int32_t sine_q30, double power)
+/* Returns the light at the angle with this sine. */
+static struct glint_lamp light_at_sine(int32_t sine_q30, double power)
 {
     return stage_lamp(asin(sine_q30 * 0x1p-30) / DEGREE, 33, power);
 }
 
-/* Returns whether SINE is a border between two zones of ghost G. */
+/* Returns whether SINE_Q30 is a border between two zones of ghost G. */
 static int is_inner(const struct glint_lens *lens,
                     const struct glint_model_ghost *g, int32_t sine_q30)
 {
@@ -183,20 +182,20 @@ static int is_inner(const struct glint_lens *lens,
     return ends && begins;
 }
 
-/* Returns by how much means of blocks change, in codes, between a light at
- * SINE_Q30 and lights whose sines are 2^-29 smaller or larger. Raises *FLUX to
- * the largest relative change of the sum of codes, if that is larger. */
-static double jump_at(int32_t sine_q30, double *flux)
+/* Returns the max change of block means, codes, between a light at SINE_Q30
+ * and lights with sines 2^-29 smaller and larger. Raises *FLUX to the max
+ * relative change of the sum of codes. */
+static double measure_jump(int32_t sine_q30, double *flux)
 {
-    const struct glint_lamp middle = at_sine(sine_q30, 1);
+    const struct glint_lamp middle = light_at_sine(sine_q30, 1);
     const double power = fmin(1e9, stage_power(&heliar, &middle));
     double sum[3], jump = 0;
 
     for (int k = 0; k < 3; k++) {
         const int32_t at = sine_q30 + 2 * (k - 1);
-        const struct glint_lamp lamp = at_sine(at < 0 ? 0 : at, power);
+        const struct glint_lamp lamp = light_at_sine(at < 0 ? 0 : at, power);
 
-        draw(&heliar, &lamp, codes[k]);
+        draw_codes(&heliar, &lamp, codes[k]);
         sum[k] = 1e-9;
         for (int i = 0; i < 3 * W * H; i++)
             sum[k] += codes[k][i];
@@ -209,11 +208,11 @@ static double jump_at(int32_t sine_q30, double *flux)
     return jump;
 }
 
-/* Neighbouring zones are fitted separately, energies to 0.6 % and what lies
- * between rays to a percent. So a flat part that is nearly white may change by
- * 2 codes at their border, and by 2 more where a side falls on the next step of
- * irradiance. A ghost begins and ends where none of it is left in the field, so
- * those borders must not show. */
+/* Checks the borders of zones. Neighbouring zones are fitted separately
+ * (energy within 0.6 %, interpolation between rays 1 %), so an almost white
+ * flat part may change by 2 codes at the border, and by 2 more if one side
+ * rounds to the next step of irradiance. A ghost appears and vanishes
+ * outside the image, so these borders must be invisible. */
 TEST(zone_borders)
 {
     const struct glint_lens *lens;
@@ -230,15 +229,16 @@ TEST(zone_borders)
             const int32_t border[2] = {s->sine_lo_q30, s->sine_hi_q30};
 
             for (int e = 0; e < 2; e++) {
-                /* The axis is no border; beyond 30 degrees none is tested. */
+                /* The axis is not a border; angles above 30 degrees are not
+                 * tested. */
                 if (border[e] == 0 || border[e] > 0.5 * 0x1p30)
                     continue;
                 if (is_inner(lens, ghost, border[e])) {
                     if (e == 0)
-                        continue; /* seen as an end */
-                    inner = fmax(inner, jump_at(border[e], &flux));
+                        continue; /* counts as an end of visibility */
+                    inner = fmax(inner, measure_jump(border[e], &flux));
                 } else
-                    outer = fmax(outer, jump_at(border[e], &flux_outer));
+                    outer = fmax(outer, measure_jump(border[e], &flux_outer));
                 n++;
             }
         }
@@ -256,8 +256,9 @@ TEST(zone_borders)
 
 /* ------------------------------------------------------------- wide angles */
 
-/* Up to 60 degrees the model must draw what is there; a light beyond must be
- * counted and draw nothing, and no pixel may be undefined up to the horizon. */
+/* Checks that up to 60 degrees the model draws the light, that a light at a
+ * larger angle is counted and draws nothing, and that all pixels are defined
+ * up to the horizon. */
 TEST(wide)
 {
     static const double theta[] = {59.9, 60, 60.0001, 89, 89.9, 90};
@@ -267,7 +268,7 @@ TEST(wide)
     for (int i = 0; i < 6; i++) {
         const struct glint_lamp lamp = stage_lamp(theta[i], 20, 1e6);
 
-        worst = fmin(worst, against_exact(&heliar, &lamp));
+        worst = fmin(worst, compare_with_exact(&heliar, &lamp));
         assert_int_equal(heliar.drawn.beyond_lights, theta[i] > 60);
         for (int k = 0; k < 3 * W * H; k++)
             assert_true(isfinite(exact[k]) && exact[k] >= 0);
@@ -276,7 +277,7 @@ TEST(wide)
                     "dB");
 }
 
-/* A ball lens, which sees to all sides, must be drawn with 45 dB, too. */
+/* Checks that a ball lens, which sees in all directions, also has 45 dB. */
 TEST(wide_ball)
 {
     static struct stage ball;
@@ -293,7 +294,7 @@ TEST(wide_ball)
     stage_view(&ball, W, H, 0);
     for (int deg = 10; deg < 90; deg += 13) {
         const struct glint_lamp lamp = stage_lamp(deg, 140, 1);
-        const double db = against_exact(&ball, &lamp);
+        const double db = compare_with_exact(&ball, &lamp);
 
         lit += stage_flux(&ball, exact) > 0;
         worst = fmin(worst, db);
@@ -306,8 +307,8 @@ TEST(wide_ball)
 
 /* ----------------------------------------------------------- pixel borders */
 
-/* A light whose image lies on the corner of a pixel or of a tile must be drawn
- * as exactly as any other, and must not jump where it crosses. */
+/* Checks that a light imaged to the corner of a pixel or tile is drawn as
+ * exactly as others, and that crossing it causes no jump. */
 TEST(pixel_borders)
 {
     static const double at[][2] = {{120, 80},  {64, 64},   {128, 64},  {0, 0},
@@ -321,19 +322,19 @@ TEST(pixel_borders)
 
         glint_view_to_angles(&heliar.view, heliar.setup.optics.focal_mm,
                              at[i][0], at[i][1], &lamp);
-        worst = fmin(worst, against_exact(&heliar, &lamp));
+        worst = fmin(worst, compare_with_exact(&heliar, &lamp));
         lamp.power = stage_power(&heliar, &lamp);
         for (int k = 0; k < 2; k++) {
             glint_view_to_angles(&heliar.view, heliar.setup.optics.focal_mm,
                                  at[i][0] + (k ? step : -step),
                                  at[i][1] + (k ? step : -step), &lamp);
-            draw(&heliar, &lamp, codes[k]);
+            draw_codes(&heliar, &lamp, codes[k]);
         }
         jump = fmax(jump, stage_block_jump(&heliar, codes[0], codes[1]));
     }
     assert_at_least("angles: lights on borders of pixels and tiles", worst, 45,
                     "dB");
-    /* A lamp that passes the axis also turns the grid. */
+    /* The grid's orientation also changes when a lamp passes the axis. */
     assert_at_most("angles: across the border of a pixel", jump, GRID_CODES,
                    "codes");
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Caustics and sizes: all light of a lens must arrive, and folds must be as
- * bright as they are, with a ghost in focus or a hundred times larger than the
- * frame.
+ * Tests caustics: all light of a lens arrives and folds have the right
+ * brightness, with a ghost in focus, as a point, or a hundred times larger than
+ * the frame.
  */
 #include <math.h>
 #include <stdint.h>
@@ -18,7 +18,7 @@ enum { W = 144, H = 96, N = 3 * W * H };
 static struct stage stage;
 static float test[N], exact[N];
 
-static double peak(const float *rgb)
+static double find_peak(const float *rgb)
 {
     double most = 0;
 
@@ -27,10 +27,10 @@ static double peak(const float *rgb)
     return most;
 }
 
-/* The light of all ghosts, folds and foci among them, must add up to the exact
- * picture's within 1 %, as outlines are 0.1 pixel off and ghosts some twenty
- * pixels wide. At its edge the light of a fold grows without bound, but a pixel
- * has a mean of it, which a grid may miss by a tenth. */
+/* Checks that the total light of all ghosts, including folds and foci,
+ * equals that of the exact image within 1 % (outlines are 0.1 pixel off,
+ * ghosts about twenty pixels wide). At its edge a fold's irradiance is
+ * unbounded, but a pixel averages it; the grid may be off by 10 % there. */
 TEST(folds)
 {
     double flux = 0, high = 0;
@@ -46,14 +46,14 @@ TEST(folds)
         flux = fmax(
             flux,
             fabs(stage_flux(&stage, test) / stage_flux(&stage, exact) - 1));
-        high = fmax(high, peak(test) / peak(exact) - 1);
+        high = fmax(high, find_peak(test) / find_peak(exact) - 1);
     }
     assert_at_most("caustics: all ghosts of the Heliar, flux", flux, 0.01, "");
     assert_at_most("caustics: brightest pixel, above the exact one", high, 0.1,
                    "");
 }
 
-/* Opens a lens with a single ghost and its sensor GAP_MM behind the stop. */
+/* Makes a lens with a single ghost and its sensor GAP_MM behind the stop. */
 static void open_singlet(double gap_mm, double f_number)
 {
     char text[300];
@@ -70,8 +70,8 @@ static void open_singlet(double gap_mm, double f_number)
     assert_true(stage_prepare(&stage, 0));
 }
 
-/* Returns the gap at which rays near the axis meet on the sensor; behind the
- * stop they are straight lines. */
+/* Returns the gap at which paraxial rays of the ghost meet on the sensor,
+ * mm; behind the stop they are straight lines. */
 static double focus_mm(void)
 {
     const struct glint_ghost ghost = {0, 1};
@@ -91,10 +91,10 @@ static double focus_mm(void)
     return 5 + x[0] / (x[0] - x[1]);
 }
 
-/* With rays near the axis in focus on the sensor, the middle of the ghost is a
- * point with a halo of aberrations. 6 % are allowed: the outermost part of the
- * halo comes from next to rays that vanish by total reflection, and cells that
- * have lost two corners are not drawn. */
+/* Checks a ghost whose paraxial rays focus on the sensor: a point with a
+ * halo of aberrations. 6 % of the light may be missing, as the outermost
+ * part of the halo is next to rays lost by total reflection, and cells with
+ * two invalid corners are not drawn. */
 TEST(focus)
 {
     double flux = 0;
@@ -114,8 +114,8 @@ TEST(focus)
     assert_at_most("caustics: a ghost in focus, flux", flux, 0.06, "");
 }
 
-/* Returns the sum of the 7 x 7 pixels around AT. */
-static double around(const float *rgb, int at)
+/* Returns the sum of the 7 x 7 pixels around pixel AT. */
+static double sum_around(const float *rgb, int at)
 {
     double sum = 0;
 
@@ -135,17 +135,18 @@ static int brightest(const float *rgb)
     return most / 3;
 }
 
-/* Stopped down, the ghost is a point whose cells are smaller than the 1/256
- * pixel to which corners are rounded: their light must still arrive. It is
- * measured around the point, as a rim next to total reflection throws faint
- * light far away, for which the exact picture needs a grid of a thousand. 2 %
- * are allowed, as the exact grid has six rays across the stop at f/400; exact
- * rays, which are interpolated, lose up to 6.3 % there. */
+/* Checks a stopped-down ghost that is a point with cells smaller than 1/256
+ * pixel, the precision of corners: its light must arrive. Only light around
+ * the point is compared, since near total reflection faint light goes far
+ * away and the exact image would need a grid of a thousand cells. 2 % are
+ * allowed: at f/400 the exact grid has only six rays across the stop. Images
+ * by exact rays, which are interpolated, lose up to 6.3 % there. */
 TEST(point)
 {
     static const double f_number[] = {80, 150, 400};
     const double focus = focus_mm();
-    double apart[3] = {0, 0, 0}; /* exact rays, models; exact rays at f/400 */
+    /* max errors: exact rays; models; exact rays at f/400 */
+    double apart[3] = {0, 0, 0};
 
     for (int k = 0; k < 6; k++) {
         const int modelled = k & 1;
@@ -162,10 +163,10 @@ TEST(point)
             assert_true(stage_linear(&stage, &lamp, 1, test));
             assert_true(stage_exact(&stage, &lamp, 1, 512, exact));
             at = brightest(exact);
-            want = around(exact, at);
+            want = sum_around(exact, at);
             assert_true(want > 0);
             apart[which] =
-                fmax(apart[which], fabs(around(test, at) / want - 1));
+                fmax(apart[which], fabs(sum_around(test, at) / want - 1));
         }
     }
     assert_at_most("caustics: a ghost that is a point, exact rays, flux",
@@ -175,8 +176,8 @@ TEST(point)
                    0.02, "");
 }
 
-/* The frame shows a hundredth of a ghost: a few cells, drawn thousands of
- * pixels wide, must have the light of the exact picture. */
+/* Checks a frame that shows a hundredth of a ghost: a few cells, thousands
+ * of pixels wide, have the light of the exact image. */
 TEST(huge)
 {
     const struct glint_lamp lamp = stage_lamp(2, 33, 1);

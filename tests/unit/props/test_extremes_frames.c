@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Extreme frames: one pixel, one row, 8192 x 8192, odd sizes, strides longer
- * than rows and negative ones.
+ * Tests extreme frames: one pixel, one row, 8192 x 8192, odd sizes, padded rows
+ * and negative strides.
  */
 #include <math.h>
 #include <stdint.h>
@@ -14,8 +14,8 @@
 
 static struct stage heliar;
 
-/* Power at which a light 7.5 degrees off is well exposed at one pixel a
- * millimetre; it must grow with the square of the pixels a millimetre. */
+/* Power at which a light 7.5 degrees off the axis is well exposed at one
+ * pixel per mm. The power needed grows with the square of the pixels per mm. */
 static double power_of_mm;
 
 TEST_OPEN
@@ -29,7 +29,7 @@ TEST_OPEN
     power_of_mm = stage_power(&heliar, &lamp) / 7 / 7;
 }
 
-static void *take(size_t bytes)
+static void *allocate(size_t bytes)
 {
     void *p = malloc(bytes);
 
@@ -37,8 +37,7 @@ static void *take(size_t bytes)
     return p;
 }
 
-/* Draws onto a picture of FORMAT, WIDTH x HEIGHT, with PX_MM pixels a
- * millimetre. */
+/* Draws onto an image of FORMAT and WIDTH x HEIGHT with PX_MM pixels per mm. */
 static void draw(enum glint_pixel_format format, int width, int height,
                  double px_mm, uint8_t *bytes)
 {
@@ -53,14 +52,14 @@ static void draw(enum glint_pixel_format format, int width, int height,
 
 /* ------------------------------------------------------------------- sizes */
 
-/* Returns how many samples of a small picture differ from the middle of a
- * larger one of the same scale, whose sides have the same parity. None may,
- * except where one frame leaves out a ghost that the other has, as light beside
- * a picture may count as lit there. */
-static int differing(int width, int height, const uint8_t *large, int large_w,
-                     int large_h, double px_mm)
+/* Returns the number of samples of a small image that differ from the middle
+ * of a larger image of the same scale and parity of sides. None may differ,
+ * unless one frame drops a ghost as invisible that the other draws, as
+ * off-screen light counts as lit in the larger one. */
+static int count_differing(int width, int height, const uint8_t *large,
+                           int large_w, int large_h, double px_mm)
 {
-    uint8_t *small = take((size_t)width * (size_t)height * 3);
+    uint8_t *small = allocate((size_t)width * (size_t)height * 3);
     const int x0 = (large_w - width) / 2, y0 = (large_h - height) / 2;
     int n = 0;
 
@@ -81,7 +80,7 @@ TEST(every_size)
                                    {65, 63}, {301, 3},   {17, 129}, {127, 65},
                                    {7, 9},   {299, 199}, {193, 1},  {1, 65}};
     enum { W = 301, H = 199 };
-    uint8_t *large = take(3 * W * H);
+    uint8_t *large = allocate(3 * W * H);
     int n = 0, lit = 0;
 
     memset(large, 40, 3 * W * H);
@@ -90,19 +89,20 @@ TEST(every_size)
         lit += large[i] != 40;
     assert_true(lit > W * H);
     for (int i = 0; i < 12; i++)
-        n += differing(sizes[i][0], sizes[i][1], large, W, H, 7);
+        n += count_differing(sizes[i][0], sizes[i][1], large, W, H, 7);
     free(large);
     assert_at_most("frames: 1x1 to 301x199, samples that differ from the large "
                    "frame's middle",
                    n, 0, "samples");
 }
 
-/* The largest frame must have the same middle as a small frame: places far from
- * the middle must not lose bits, and nothing may overflow. */
+/* Checks that the middle of the largest frame equals a small frame: no loss
+ * of precision far from the middle, no overflow. */
 TEST(largest)
 {
     enum { SIDE = 8192, MIDDLE = 512 };
-    uint8_t *large = take((size_t)SIDE * SIDE), *small = take(MIDDLE * MIDDLE);
+    uint8_t *large = allocate((size_t)SIDE * SIDE),
+            *small = allocate(MIDDLE * MIDDLE);
     int n = 0, corners = 0;
 
     memset(large, 0, (size_t)SIDE * SIDE);
@@ -124,11 +124,11 @@ TEST(largest)
                    "samples");
 }
 
-/* The longest frames must have the same middles as short ones. */
+/* Checks that the middles of the longest frames equal short frames. */
 TEST(longest)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, MIDDLE = 512 };
-    uint8_t *large = take(LONG * SHORT), *small = take(MIDDLE * SHORT);
+    uint8_t *large = allocate(LONG * SHORT), *small = allocate(MIDDLE * SHORT);
     int n = 0, lit[2] = {0, 0};
 
     for (int turned = 0; turned < 2; turned++) {
@@ -158,10 +158,10 @@ TEST(longest)
 
 /* ----------------------------------------------------------------- strides */
 
-/* Returns how many rows or bytes are wrong where rows are PAD bytes farther
- * apart than they need be, and upside down for DOWN -1: samples must be the
- * same, and no byte beside them may change. */
-static int strided(enum glint_pixel_format format, int pad, int down)
+/* Draws with rows padded by PAD bytes, bottom row first if DOWN is -1.
+ * Returns the number of rows that differ plus the number of bytes written
+ * outside the rows. */
+static int count_wrong(enum glint_pixel_format format, int pad, int down)
 {
     enum { W = 157, H = 83, ROOM = 1 << 19 };
     static uint8_t want[ROOM], got[ROOM];
@@ -197,7 +197,7 @@ static int strided(enum glint_pixel_format format, int pad, int down)
 
             n += memcmp(row, plain.plane[p] + y * plain.stride_bytes[p],
                         bytes) != 0;
-            memset(row, 90, bytes); /* so that all bytes must be 90 again */
+            memset(row, 90, bytes); /* afterwards all bytes must be 90 again */
         }
     for (int i = 0; i < ROOM; i++)
         n += got[i] != 90;
@@ -210,9 +210,9 @@ TEST(strides)
 
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         /* YUYV and UYVY need even strides, int32 multiples of 4. */
-        n += strided((enum glint_pixel_format)format, 52, 1);
-        n += strided((enum glint_pixel_format)format, 0, -1);
-        n += strided((enum glint_pixel_format)format, 4, -1);
+        n += count_wrong((enum glint_pixel_format)format, 52, 1);
+        n += count_wrong((enum glint_pixel_format)format, 0, -1);
+        n += count_wrong((enum glint_pixel_format)format, 4, -1);
     }
     assert_at_most("frames: strides of 13 formats, rows or bytes that differ",
                    n, 0, "");
@@ -220,9 +220,9 @@ TEST(strides)
 
 /* ------------------------------------------------------------------- tiles */
 
-/* A cell whose sides lie exactly on borders of tiles and of pixels must light
- * the pixels within it and no others, whatever the tiles are, with exactly its
- * flux. */
+/* Checks that a cell whose sides lie exactly on borders of tiles and pixels
+ * lights exactly the pixels inside it, with its exact flux, for every tile
+ * size. */
 TEST(on_tile_borders)
 {
     enum { W = 192, H = 192 };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Extreme lenses: f-numbers up to 1000, stops of 3 to 64 blades, sensors of 1
- * to 100 mm, focal lengths of 1 mm to 10 m, one lens a thousand times smaller
- * and larger, radii of 1e-2 and 1e7 mm, 2 to 64 surfaces, no ghosts and two
- * thousand. Pictures of models are compared with exact ones.
+ * Tests extreme lenses: f-numbers up to 1000, stops of 3 to 64 blades, sensors
+ * of 1 to 100 mm, focal lengths of 1 mm to 10 m, a lens a thousand times
+ * smaller and larger, radii of 1e-2 and 1e7 mm, 2 to 64 surfaces, no ghosts and
+ * two thousand. Images by models are compared with exact ones.
  */
 #include <math.h>
 #include <stdint.h>
@@ -15,11 +15,10 @@
 #include "support/stage.h"
 #include "support/test.h"
 
-/* Pictures are so small that each takes a tenth of a second. A draft (tolerance
- * 4) may be off by 0.12 pixel, in faint ghosts by a pixel, and by 2.4 % of
- * energy: it has 40 dB where ghosts are some ten pixels wide; most lenses have
- * 50. Flux must be within 3 %: these 2.4 %, and an outline a tenth of a pixel
- * off. */
+/* Images are so small that each takes 0.1 s. A draft (tolerance 4) may be
+ * off by 0.12 pixel, in faint ghosts by a pixel, and by 2.4 % in energy: it
+ * has 40 dB if ghosts are about ten pixels wide; most lenses reach 50 dB.
+ * Flux must be within 3 %: 2.4 % plus an outline 0.1 pixel off. */
 enum { W = 144, H = 96 };
 
 #define LEAST_DB  40.0
@@ -32,13 +31,14 @@ struct worst {
     double db, flux;
 };
 
-static struct worst fresh(void)
+static struct worst new_worst(void)
 {
     return (struct worst){999, 0};
 }
 
-static void compare(struct worst *worst, const struct glint_lamp *lamp,
-                    const char *what, double value)
+static void compare_with_exact(struct worst *worst,
+                               const struct glint_lamp *lamp, const char *what,
+                               double value)
 {
     struct glint_measure m;
 
@@ -52,7 +52,7 @@ static void compare(struct worst *worst, const struct glint_lamp *lamp,
     worst->flux = fmax(worst->flux, fabs(m.flux - 1));
 }
 
-static bool report(const char *what, struct worst worst)
+static bool report_worst(const char *what, struct worst worst)
 {
     char name[100];
     bool ok;
@@ -77,7 +77,7 @@ static void open_text(const char *text, int n_blades)
     assert_true(stage_prepare(&stage, n_blades));
 }
 
-static void bake(double max_deg)
+static void bake_model(double max_deg)
 {
     assert_true(stage_model(&stage, 4, max_deg));
     stage_view(&stage, W, H, 0);
@@ -89,7 +89,7 @@ TEST(f_numbers)
 {
     static const double f[] = {5.1, 8, 16, 45, 128, 1000};
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
-    struct worst worst = fresh();
+    struct worst worst = new_worst();
 
     for (int k = 0; k < 6; k++) {
         struct glint_error error;
@@ -99,31 +99,31 @@ TEST(f_numbers)
         if (glint_prescription_set_f_number(&stage.lens, f[k], &error))
             fail_msg("%s", error.text);
         assert_true(stage_prepare(&stage, 8));
-        bake(8);
-        compare(&worst, &lamp, "f/", f[k]);
+        bake_model(8);
+        compare_with_exact(&worst, &lamp, "f/", f[k]);
     }
-    assert_true(report("f/5.1 (open) to f/1000", worst));
+    assert_true(report_worst("f/5.1 (open) to f/1000", worst));
 }
 
 TEST(blades)
 {
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
-    struct worst worst = fresh();
+    struct worst worst = new_worst();
 
     open_text(doublet, 0);
-    bake(8);
+    bake_model(8);
     for (int n = 0; n <= 64; n += n == 0 ? 3 : n < 12 ? 1 : 13) {
         assert_true(stage_prepare(&stage, n));
         assert_true(stage_model(&stage, 4, 8));
         stage_view(&stage, W, H, 0);
-        compare(&worst, &lamp, "blades", n);
+        compare_with_exact(&worst, &lamp, "blades", n);
     }
-    assert_true(report("stops of 3 to 64 blades and a circle", worst));
+    assert_true(report_worst("stops of 3 to 64 blades and a circle", worst));
 }
 
-/* The outline of a round stop 300 pixels wide, whose ghost hardly bends
- * elsewhere, must show no chords. The bound of 50 dB is between the 44.4 dB of
- * 8 cells across and the 54.5 dB of the cells that are planned. */
+/* Checks that the outline of a round stop 300 pixels wide, whose ghost is
+ * otherwise hardly bent, shows no chords. The limit of 50 dB is between the
+ * 44.4 dB of 8 cells and the 54.5 dB of the planned cells. */
 TEST(round_stop)
 {
     enum { WIDE = 432, HIGH = 288 };
@@ -148,9 +148,10 @@ TEST(round_stop)
                     "dB");
 }
 
-/* Barrels that cut away half of the light must have nearly the same outline by
- * 8 cells across as by 128: chords lie on both sides of it. 48 dB lie between
- * the 46.0 of chords within the outline and the 49.9 of chords about it. */
+/* Checks that barrels which clip half of the light have nearly the same
+ * outline with 8 cells as with 128, as chords lie on both sides of it. 48 dB
+ * is between the 46.0 dB of chords inside the outline and the 49.9 dB of
+ * chords around it. */
 TEST(barrels)
 {
     static const char narrow[] = "name narrow\nf-number 5.6\nfilm 36 24\n"
@@ -182,13 +183,14 @@ TEST(barrels)
 
 /* ----------------------------------------------------------------- lengths */
 
-/* A model is good for its film and a tenth more, so a larger sensor needs
- * another, as tools/glint/model/settings.c bakes it. */
+/* Checks sensors of several sizes. A model is valid for its film plus a
+ * tenth, so a larger sensor needs another model, baked as in
+ * tools/glint/model/settings.c. */
 TEST(sensors)
 {
     static const double mm[] = {1, 2.5, 6.4, 36, 100};
     const struct glint_lamp lamp = stage_lamp(4, 25, 1);
-    struct worst worst = fresh();
+    struct worst worst = new_worst();
 
     for (int k = 0; k < 5; k++) {
         stage_close(&stage);
@@ -196,15 +198,15 @@ TEST(sensors)
         stage.lens.film_width_mm = mm[k];
         stage.lens.film_height_mm = mm[k] * H / W;
         assert_true(stage_prepare(&stage, 8));
-        bake(6);
-        compare(&worst, &lamp, "sensor", mm[k]);
+        bake_model(6);
+        compare_with_exact(&worst, &lamp, "sensor", mm[k]);
     }
-    assert_true(report("sensors of 1 to 100 mm", worst));
+    assert_true(report_worst("sensors of 1 to 100 mm", worst));
 }
 
-/* Multiplies all lengths of the lens by FACTOR but those of films, which belong
- * to wavelengths. */
-static void scale(struct glint_prescription *l, double factor)
+/* Multiplies all lengths of the lens by FACTOR, except the thickness of
+ * coatings, which depends on the wavelength. */
+static void scale_lens(struct glint_prescription *l, double factor)
 {
     for (int k = 0; k < l->n_surfaces; k++) {
         l->surface[k].radius_mm *= factor;
@@ -222,18 +224,18 @@ static void open_scaled(double factor, double max_deg)
 {
     stage_close(&stage);
     assert_true(stage_load(&stage, "heliar-tronnier"));
-    scale(&stage.lens, factor);
+    scale_lens(&stage.lens, factor);
     assert_true(stage_prepare(&stage, 8));
     assert_true(stage_model(&stage, 4, max_deg));
     stage_view(&stage, W, H, 0);
 }
 
-/* Without diffraction only angles count, so a lens that is a thousand times
- * smaller or larger must throw the same picture on a film of its scale. With a
- * power of two no rounding of a double differs, and the exact picture must have
- * the same bits; with 1000 rays differ by 1e-15, and single ones may fall on
- * the other side of a threshold. Models are fitted again and must agree to 50
- * dB: less would hide a length in mm in the bake. */
+/* Checks that a lens scaled by 1000 or 1/1000 gives the same image on a
+ * scaled film, as without diffraction only angles count. With a power of two
+ * the exact image is the same bit by bit; with 1000 rays differ by 1e-15,
+ * and single rays may fall on the other side of a threshold. Models are
+ * fitted again and must agree to 50 dB; less would reveal a fixed length in
+ * mm in the bake. */
 TEST(scaled)
 {
     static const double factor[] = {0x1p-10, 0x1p10, 1e-3, 1e3};
@@ -274,7 +276,7 @@ TEST(scaled)
 TEST(focal_lengths)
 {
     static const double focal[] = {1, 10, 1000, 10000};
-    struct worst worst = fresh();
+    struct worst worst = new_worst();
     struct glint_optics o;
 
     for (int k = 0; k < 4; k++) {
@@ -283,12 +285,12 @@ TEST(focal_lengths)
         stage_close(&stage);
         assert_true(stage_parse(&stage, doublet));
         glint_optics_of(&stage.lens, &o);
-        scale(&stage.lens, focal[k] / o.focal_mm);
+        scale_lens(&stage.lens, focal[k] / o.focal_mm);
         assert_true(stage_prepare(&stage, 8));
-        bake(8);
-        compare(&worst, &lamp, "focal length", focal[k]);
+        bake_model(8);
+        compare_with_exact(&worst, &lamp, "focal length", focal[k]);
     }
-    assert_true(report("focal lengths of 1 mm to 10 m", worst));
+    assert_true(report_worst("focal lengths of 1 mm to 10 m", worst));
 }
 
 /* ------------------------------------------------------------------- radii */
@@ -296,31 +298,30 @@ TEST(focal_lengths)
 TEST(smallest_ball)
 {
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
-    struct worst worst = fresh();
+    struct worst worst = new_worst();
 
     stage_close(&stage);
-    /* Radii of 1/100 mm, scaled from 1.1, are the smallest that a table
-     * takes. */
+    /* Radii of 1/100 mm (scaled from 1.1) are the smallest valid ones. */
     assert_true(stage_parse(&stage, "name ball\nf-number 4\nfilm 1 0.7\n"
                                     "surface 1.1 1.1 1 1.5168 64.17\n"
                                     "stop 1.1 0.3\n"
                                     "surface -1.1 0.6 1 1.62 36.4\n"
                                     "surface -1.6 0.5 1.5 air\n"));
-    scale(&stage.lens, 0.01 / 1.1);
+    scale_lens(&stage.lens, 0.01 / 1.1);
     assert_true(stage_prepare(&stage, 8));
-    bake(8);
-    compare(&worst, &lamp, "ball of mm", 0.01);
-    assert_true(report("radii of 1e-2 mm", worst));
+    bake_model(8);
+    compare_with_exact(&worst, &lamp, "ball of mm", 0.01);
+    assert_true(report_worst("radii of 1e-2 mm", worst));
 }
 
-/* A surface 28 mm wide with a radius of 1e7 mm differs from a plane by 1e-5 mm,
- * a fiftieth of a wavelength, and must give the picture of the plane. */
+/* Checks that a surface 28 mm wide with a radius of 1e7 mm, which differs
+ * from a plane by 1e-5 mm (1/50 wavelength), gives the image of a plane. */
 TEST(nearly_planes)
 {
     static const char *const radius[] = {"flat", "1e7", "-1e7", "1e9"};
     const struct glint_lamp lamp = stage_lamp(6, 25, 1);
     static float plane[3 * W * H];
-    struct worst worst = fresh();
+    struct worst worst = new_worst();
     double db = 999;
 
     for (int k = 0; k < 4; k++) {
@@ -334,20 +335,20 @@ TEST(nearly_planes)
                  "surface %s 2 12 air\nstop 92 10\n",
                  radius[k], radius[k], radius[k]);
         open_text(text, 8);
-        bake(8);
-        compare(&worst, &lamp, "radius", k);
+        bake_model(8);
+        compare_with_exact(&worst, &lamp, "radius", k);
         if (k == 0)
             memcpy(plane, exact, sizeof plane);
         db = fmin(db, stage_compare(&stage, plane, exact).psnr_db);
     }
-    assert_true(report("planes and radii of 1e7 mm", worst));
+    assert_true(report_worst("planes and radii of 1e7 mm", worst));
     assert_at_least("lenses: radii of 1e7 mm against planes", db, 70, "dB");
 }
 
 /* ---------------------------------------------------------------- surfaces */
 
-/* Opens a lens of N surfaces with a focal length near 100 mm, with the stop
- * behind SPLIT of them and the sensor where light comes to a focus. */
+/* Makes a lens of N surfaces with a focal length near 100 mm, the stop
+ * behind the first SPLIT of them and the sensor at the focus. */
 static void open_many(int n, int split)
 {
     struct glint_prescription *l = &stage.lens;
@@ -357,8 +358,8 @@ static void open_many(int n, int split)
     assert_true(stage_parse(&stage, doublet));
     l->n_surfaces = n;
     l->stop_after = split;
-    /* Rear surfaces are nearly planes, so that all elements have about the same
-     * power. */
+    /* Rear surfaces are almost planes, so that all elements have about the
+     * same power. */
     for (int k = 0; k < n; k++)
         l->surface[k] = (struct glint_surface){
             .radius_mm = k % 2 ? -3000.0 - 100 * k : 52.0 * n / 2,
@@ -381,14 +382,14 @@ static void open_many(int n, int split)
     assert_true(stage_prepare(&stage, 8));
 }
 
-/* A single surface has the same medium on both sides, and its table must be
- * refused. Two surfaces with the stop between have no ghost; more must be drawn
- * with the right picture. */
+/* Checks 2 to 64 surfaces. A single surface has the same medium on both
+ * sides and is rejected. Two surfaces with the stop between them have no
+ * ghost; more must give the right image. */
 TEST(surfaces)
 {
     static const int n[] = {2, 4, 8, 16, 32, 64};
     const struct glint_lamp lamp = stage_lamp(2, 25, 1);
-    struct worst worst = fresh();
+    struct worst worst = new_worst();
     struct glint_error error;
     struct glint_prescription lens;
     static const char one[] = "name one\nf-number 8\nfilm 36 24\n"
@@ -401,14 +402,14 @@ TEST(surfaces)
         open_many(n[k], n[k] / 2);
         if (n[k] == 2)
             assert_int_equal(stage.setup.n_ghosts, 0);
-        bake(3);
-        compare(&worst, &lamp, "surfaces", n[k]);
+        bake_model(3);
+        compare_with_exact(&worst, &lamp, "surfaces", n[k]);
     }
-    assert_true(report(extreme_long() ? "2 to 64 surfaces" : "2 to 16 surfaces",
-                       worst));
+    assert_true(report_worst(
+        extreme_long() ? "2 to 64 surfaces" : "2 to 16 surfaces", worst));
 }
 
-/* With a model without ghosts the picture must stay as it was. */
+/* Checks that a model without ghosts does not change the image. */
 TEST(no_ghosts)
 {
     const struct glint_lamp lamp = stage_lamp(2, 25, 1e9);
@@ -416,7 +417,7 @@ TEST(no_ghosts)
     int changed = 0;
 
     open_many(2, 1);
-    bake(3);
+    bake_model(3);
     memset(codes, 77, sizeof codes);
     assert_true(stage_codes(&stage, &lamp, 1, codes));
     for (int i = 0; i < 3 * W * H; i++)
@@ -424,12 +425,13 @@ TEST(no_ghosts)
     assert_at_most("lenses: no ghosts, samples changed", changed, 0, "samples");
 }
 
-/* 64 surfaces before the stop have 2016 pairs. Rays are exact here, as a bake
- * of so many takes an hour; plan, bins and sums have as much to do. */
+/* Checks 64 surfaces before the stop, which have 2016 pairs. Rays are exact,
+ * as baking so many ghosts takes an hour; planning, binning and summing have
+ * the same work. */
 TEST(two_thousand_ghosts)
 {
     const struct glint_lamp lamp = stage_lamp(2, 25, 1);
-    struct worst worst = fresh();
+    struct worst worst = new_worst();
 
     if (!extreme_long()) {
         skip();
@@ -448,7 +450,7 @@ TEST(two_thousand_ghosts)
         assert_int_equal(stage.drawn.stats.dropped_bundles, 0);
         print_message("  %d of 2016 ghosts drawn\n", stage.drawn.ghosts);
     }
-    assert_true(report("2016 ghosts, exact rays", worst));
+    assert_true(report_worst("2016 ghosts, exact rays", worst));
 }
 
 TEST_CLOSE

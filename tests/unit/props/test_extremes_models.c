@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Hostile models: a frame of each of a hundred (tests/support/models/hostile.h)
- * is drawn, or the model refused, and takes no more work and memory than frames
- * may. Work is counted, not timed.
+ * Tests a hundred hostile models (tests/support/models/hostile.h): each is
+ * drawn or rejected, within the limits of work and memory of a frame. Work is
+ * counted, not timed.
  */
 #include <math.h>
 #include <stdint.h>
@@ -15,7 +15,7 @@
 
 static struct stage stage;
 
-/* Those that take seconds have thousands of ghosts. */
+/* Returns whether the family takes seconds, as it has thousands of ghosts. */
 static bool is_heavy(int family)
 {
     return family == HOSTILE_WHOLE || family == HOSTILE_FOLDS ||
@@ -27,9 +27,8 @@ static bool is_drawn(int family, int number)
     return extreme_long() || number == 8 || (number == 3 && !is_heavy(family));
 }
 
-/* Work may exceed its bound by this factor: plans tell it only roughly, and a
- * plan that must be made again, coarser or with more memory, has cost work,
- * too. */
+/* Work may exceed its limit by this factor, as plans estimate it roughly,
+ * and replanning (coarser or with more memory) costs work as well. */
 #define MOST_WORK 1.5
 
 TEST(hostile_models)
@@ -56,7 +55,7 @@ TEST(hostile_models)
             memory = fmax(memory, r.bytes / r.most_bytes);
         }
     stage_close(&stage);
-    /* Most are not damaged files: they reach what draws. */
+    /* Most models must be valid, so that they are actually drawn. */
     assert_true(n_of[HOSTILE_COARSER] >= 2);
     assert_true(n_of[HOSTILE_DRAWN] >= 5);
     assert_at_most("models: hostile ones, frames that failed", n_failed, 0,

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * One model for all f-numbers: baked for the full opening, then stopped down,
- * it is compared with exact pictures and with models baked at that f-number.
- * Nothing may jump from the full opening to an eleventh of it, as from f/2 to
- * f/22.
+ * Tests one model for all f-numbers: baked for the full opening, then stopped
+ * down, it is compared with exact images and with models baked at that
+ * f-number. The image must change continuously from full opening to an eleventh
+ * of it, as from f/2 to f/22.
  */
 #include <math.h>
 #include <stdint.h>
@@ -38,7 +38,7 @@ static void open_wide(int n_blades)
     stage_view(&stage, W, H, 0);
 }
 
-/* Draws the lens by a model that is baked at F_NUMBER. */
+/* Draws the lens by a model baked at F_NUMBER. */
 static void draw_native(double f_number, int n_blades,
                         const struct glint_lamp *lamp)
 {
@@ -87,8 +87,8 @@ TEST(against_exact)
                 is_near);
 }
 
-/* A model that is stopped down must have the picture of one baked there, with
- * at most a third more edges. */
+/* Checks that a stopped-down model gives the image of a model baked there,
+ * with at most a third more edges. */
 TEST(against_native)
 {
     static const double f[] = {8, 22};
@@ -131,9 +131,9 @@ static void set_blocks(const float *rgb, double exposure, double *mean)
                 code_of(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
 }
 
-/* As the stop closes, ghosts shrink: the error of a block against the exact
- * picture must change by at most 1.5 codes from frame to frame, where blocks of
- * the exact picture change by tens. */
+/* Checks, while the stop closes and ghosts shrink, that the error of a block
+ * against the exact image changes by at most 1.5 codes per frame, while
+ * blocks of the exact image change by tens of codes. */
 TEST(closing)
 {
     const int frames = extreme_long() ? 100 : 34;
@@ -152,7 +152,8 @@ TEST(closing)
         assert_true(stage_exact(&stage, &lamp, 1, 128, exact));
         if (k == 0)
             exposure = stage_power(&stage, &lamp);
-        /* Irradiance stays while the direct image gets fainter. */
+        /* The ghosts' irradiance is constant, while the direct image gets
+         * fainter. */
         set_blocks(drawn, exposure * pow(OPEN_F / f, 2), now);
         set_blocks(exact, exposure * pow(OPEN_F / f, 2), exactly);
         for (int b = 0; k > 0 && b < BLOCKS; b++) {

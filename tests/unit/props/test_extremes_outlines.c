@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * How far outlines are off by --error, in pixels: ghost by ghost, where light
- * ends in pictures of the grids that it requests, against the finest grid.
+ * Tests the accuracy of outlines with --error, in pixels: compares the position
+ * of each ghost's outline in grids for that error with the finest grid.
  */
 #include <math.h>
 #include <stdint.h>
@@ -21,16 +21,16 @@ static const double error_px[ERRORS] = {0.05, 0.1, 0.25, 0.5, 1};
 static struct stage stage;
 static float finest[N], drawn[N];
 
-/* Offsets, pixels, of all places where light ends. */
+/* Offsets of all outline positions, pixels. */
 struct offsets {
     int n;
     double sum, squares, most;
 };
 
-/* Returns where light ends, in pixels outwards from the start of the window:
- * the window's light over that of the pixel before it. AT is the last pixel of
- * the inner part, STEP leads outwards. */
-static double end_of(const float *rgb, int at, int step)
+/* Returns the position of the outline, pixels outwards from the start of the
+ * window: the window's light divided by that of the pixel before it. AT is
+ * the last pixel of the inner part; STEP leads outwards. */
+static double find_end(const float *rgb, int at, int step)
 {
     double sum = 0;
 
@@ -39,7 +39,7 @@ static double end_of(const float *rgb, int at, int step)
     return sum / (double)rgb[at - 3 * step];
 }
 
-/* Returns whether light ends cleanly: even within, none outside. */
+/* Returns whether the outline is clean: even light inside, none outside. */
 static bool is_end(const float *rgb, int at, int step)
 {
     const double first = (double)rgb[at - INSIDE * step];
@@ -53,9 +53,8 @@ static bool is_end(const float *rgb, int at, int step)
     return first > 0 && (double)rgb[at] < 0.98 * first;
 }
 
-/* Returns the square of the cosine between STEP and the way that light
- * falls. */
-static double along(const float *rgb, int at, int step)
+/* Returns the squared cosine between STEP and the gradient of the light. */
+static double gradient_cosine2(const float *rgb, int at, int step)
 {
     const int aside = step == 3 || step == -3 ? 3 * W : 3;
     const double a = (double)rgb[at - step] - (double)rgb[at + step];
@@ -66,12 +65,13 @@ static double along(const float *rgb, int at, int step)
 
 static void add_offset(struct offsets *o, int at, int step)
 {
-    const double cos2 = along(finest, at, step);
+    const double cos2 = gradient_cosine2(finest, at, step);
     double off;
 
     if (cos2 < 0.5 || !is_end(finest, at, step) || !(drawn[at - 3 * step] > 0))
         return;
-    off = fabs(end_of(drawn, at, step) - end_of(finest, at, step)) * sqrt(cos2);
+    off = fabs(find_end(drawn, at, step) - find_end(finest, at, step)) *
+          sqrt(cos2);
     o->n++;
     o->sum += off;
     o->squares += off * off;
@@ -111,17 +111,18 @@ static void add_angle(double theta_deg, struct offsets *o)
         for (int k = 0; k < ERRORS; k++) {
             f->dials =
                 glint_quality_at(glint_quality_for_error(error_px[k])).dials;
-            f->dials.irradiance_steps = 0; /* Outlines need no steps. */
+            /* Quantised irradiance does not matter for outlines. */
+            f->dials.irradiance_steps = 0;
             assert_true(stage_linear(&stage, &lamp, 1, drawn));
             add_ghost(&o[k]);
         }
     }
 }
 
-/* No outline may be off by more than 1.5 times --error and a twentieth of a
- * pixel, as grids follow how a ghost bends in the mean. Most are far better, so
- * the mean must be at most a fifth of --error. */
-static void outlines(const char *lens)
+/* Checks that no outline is off by more than 1.5 times --error plus 1/20
+ * pixel, as grids depend on the mean bend of a ghost; and, since most are
+ * far better, that the mean is at most a fifth of --error. */
+static void check_outlines(const char *lens)
 {
     struct offsets o[ERRORS] = {{0, 0, 0, 0}};
     bool ok = true;
@@ -150,13 +151,13 @@ static void outlines(const char *lens)
     assert_true(ok);
 }
 
-TEST(outlines)
+TEST(check_outlines)
 {
-    outlines("heliar-tronnier");
+    check_outlines("heliar-tronnier");
     if (!extreme_long())
         return;
-    outlines("double-gauss-angenieux");
-    outlines("nikon-zoom-mid");
+    check_outlines("double-gauss-angenieux");
+    check_outlines("nikon-zoom-mid");
 }
 
 TEST_CLOSE

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Extreme powers: a millionth of white to a thousand suns, none at all, and
- * what files may say in place of a number.
+ * Tests extreme powers: from 1e-6 of white to a thousand suns, zero, and
+ * invalid numbers in files.
  */
 #include <math.h>
 #include <stdint.h>
@@ -28,10 +28,10 @@ TEST_OPEN
 
 /* ------------------------------------------------------------- linear light */
 
-/* Linear pictures are drawn at a scale of a power of two, so for powers of two
- * each picture must be that of power 1 to the last bit of a float. For powers
- * of ten, irradiance falls on other steps of a percent, and pixels are off by
- * up to half a step; their sum must be within 0.1 %. */
+/* Checks that linear images are proportional to the power. They are drawn at
+ * a power-of-two scale, so for powers of two each image equals that of power
+ * 1 bit by bit. For powers of ten, irradiance rounds to other steps of 1 %,
+ * and pixels may be off by half a step; their sum must be within 0.1 %. */
 TEST(linear_in_power)
 {
     const struct glint_lamp lamp = stage_lamp(7.5, 33, 1);
@@ -62,10 +62,10 @@ TEST(linear_in_power)
 
 /* ------------------------------------------------------------------- codes */
 
-/* While the power rises by factors of 4, and of 10 000 above 1e9, from what no
- * code shows to what saturates all, no sample may get darker than the ground,
- * as from a sum that wraps, nor darker than at the power before. The brightest
- * light must leave white what it reaches. */
+/* Checks, while the power rises by factors of 4 (of 10 000 above 1e9) from
+ * below one code to saturation, that no sample becomes darker than the
+ * ground or than at the previous power, as by a sum that wraps. The
+ * brightest light leaves all pixels white that it reaches. */
 TEST(codes_never_fall)
 {
     uint64_t r = 5;
@@ -84,8 +84,8 @@ TEST(codes_never_fall)
             last[i] = codes[0][i];
         }
     }
-    /* At the last power, 1e29, every pixel that light reaches must be white,
-     * but for pixels that an edge crosses. */
+    /* At the last power, 1e29, every pixel that light reaches is white,
+     * except those that an edge crosses. */
     for (int i = 0; i < N; i++) {
         lit += last[i] != ground[i];
         white += last[i] == 255 && ground[i] != 255;
@@ -98,8 +98,8 @@ TEST(codes_never_fall)
                     (double)white / lit, 0.999, "");
 }
 
-/* A power of 0, below 0 or that is no number must draw nothing, alone and
- * beside a light, in codes and in linear light. */
+/* Checks that a power of 0, below 0 or NaN draws nothing, alone and next to
+ * a light, in codes and in linear light. */
 TEST(no_power)
 {
     const double none[] = {
@@ -143,8 +143,8 @@ static enum glint_status read_text(const char *text, struct lamp_list *list,
     return status;
 }
 
-/* A power in a file must be one that can be drawn, else its line must be
- * refused. */
+/* Checks that a power in a file is rejected, with its line, unless it can be
+ * drawn. */
 TEST(files)
 {
     static const char *const bad[] = {"nan",       "inf",   "-inf", "-1",

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Long runs: a light that goes round and round must give the same frames each
- * time, bit for bit, and take no more memory. 600 frames, or 100 000 with
+ * Tests long runs: a light that moves periodically gives the same frames in
+ * each period, bit by bit, without more memory. 600 frames, or 100 000 with
  * GLINT_LONG.
  */
 #include <math.h>
@@ -19,7 +19,7 @@ enum { W = 80, H = 54, N = 3 * W * H, ROUND = 200 };
 
 static struct stage heliar;
 
-static uint64_t hash_of(const uint8_t *codes)
+static uint64_t hash_image(const uint8_t *codes)
 {
     uint64_t hash = UINT64_C(0xcbf29ce484222325);
 
@@ -28,7 +28,7 @@ static uint64_t hash_of(const uint8_t *codes)
     return hash;
 }
 
-/* Returns the memory of this process, KiB; 0 where that cannot be known. */
+/* Returns the resident memory of this process, KiB, or 0 if unknown. */
 static long resident_kib(void)
 {
     FILE *file = fopen("/proc/self/statm", "r");
@@ -41,10 +41,10 @@ static long resident_kib(void)
     return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-/* Sets the lamps of frame K: a light that leaves the picture on one side, comes
- * in on the other and passes near the axis, and a second one that comes and
- * goes, so that what a frame needs rises and falls. */
-static int lamps_at(int k, struct glint_lamp *lamp)
+/* Sets the lamps of frame K: one leaves the image on one side, enters on the
+ * other and passes near the axis; a second one appears and vanishes, so that
+ * the memory needed rises and falls. Returns the number of lamps. */
+static int set_lamps(int k, struct glint_lamp *lamp)
 {
     const double t = 6.283185307179586 * k / ROUND;
 
@@ -70,8 +70,8 @@ TEST(round_and_round)
         uint64_t hash;
 
         memset(codes, 30, sizeof codes);
-        assert_true(stage_codes(&heliar, lamp, lamps_at(k, lamp), codes));
-        hash = hash_of(codes);
+        assert_true(stage_codes(&heliar, lamp, set_lamps(k, lamp), codes));
+        hash = hash_image(codes);
         if (k < ROUND)
             first[k] = hash;
         differ += hash != first[k % ROUND];
@@ -84,7 +84,7 @@ TEST(round_and_round)
     }
     if (extreme_long())
         fprintf(stderr, "\r%d frames            \n", n);
-    /* Frames that are all alike would hide a difference. */
+    /* Frames must differ, or the comparison would prove nothing. */
     assert_true(first[0] != first[ROUND / 4]);
     assert_at_most(
         extreme_long()
@@ -93,7 +93,8 @@ TEST(round_and_round)
         differ, 0, "frames");
     assert_int_equal(heliar.frame.memory.bytes, bytes);
 #ifndef GLINT_SANITIZED
-    /* stdio and the allocator may take this once, for any number of frames. */
+    /* stdio and the allocator may need this memory once, for any number of
+     * frames. */
     assert_at_most("runs: memory at the end, above the second round's",
                    (double)(resident_kib() - resident), 256, "KiB");
 #else

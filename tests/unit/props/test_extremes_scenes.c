@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Extremes of scenes: what grazes, sizes from 1e-6 to 1e6, lights from 1e-6 to
- * 1e9, what is behind and around the camera, pictures of one pixel and 8192
- * wide. Integers against the reference renderer, a point a pixel, off
- * silhouettes and edges of shadows.
+ * Tests extreme scenes: grazing views and lights, sizes from 1e-6 to 1e6,
+ * lights from 1e-6 to 1e9, objects behind and around the camera, images of one
+ * pixel and 8192 wide. The integer renderer is compared with the reference
+ * renderer, one sample per pixel, excluding silhouettes and shadow edges.
  */
 #include <math.h>
 #include <stdint.h>
@@ -17,14 +17,15 @@
 #include "support/extreme.h"
 #include "support/test.h"
 
-/* Light that the run time holds: what is more is saturated. */
+/* light at which the run time saturates */
 #define MOST_LIGHT 2047.0
 
-/* What differs of a picture; of several the worst. */
+/* Difference of an image, or the worst of several. */
 struct outcome {
-    double db;    /* of light up to 1 where neighbours are alike */
-    double wrong; /* fraction of all pixels of which another thing is seen */
-    double share; /* largest error of light, over the light and 1/255 */
+    /* PSNR of light up to 1, in pixels whose neighbours show the same object */
+    double db;
+    double wrong; /* fraction of all pixels that show another object */
+    double share; /* max error of light / (light + 1/255) */
 };
 
 static void read_text(struct glint_description *scene, const char *text)
@@ -38,9 +39,9 @@ static void read_text(struct glint_description *scene, const char *text)
         fail_msg("%s", error.text);
 }
 
-/* Draws SCENE by integers: light, linear. */
-static void draw(const struct glint_description *scene, int width, int height,
-                 int32_t *light_q20)
+/* Draws SCENE by the integer renderer in linear light. */
+static void draw_scene(const struct glint_description *scene, int width,
+                       int height, int32_t *light_q20)
 {
     const struct tool tool = {.name = "extremes"};
     const struct scene_dials dials = {.width = width,
@@ -67,7 +68,8 @@ static void draw(const struct glint_description *scene, int width, int height,
     free(data);
 }
 
-/* Returns whether pixel X, Y of the reference is like those about it. */
+/* Returns whether pixel (X, Y) of the reference shows the same as its
+ * neighbours. */
 static int is_inside(const struct twin_pixel *p, int width, int height, int x,
                      int y)
 {
@@ -88,8 +90,8 @@ static int is_inside(const struct twin_pixel *p, int width, int height, int x,
     return 1;
 }
 
-/* Draws TEXT, WIDTH x HEIGHT, with both renderers; WORST keeps the larger
- * errors. */
+/* Draws TEXT at WIDTH x HEIGHT with both renderers and raises the errors in
+ * WORST. */
 static void compare(const char *text, int width, int height,
                     struct outcome *worst)
 {
@@ -104,7 +106,7 @@ static void compare(const char *text, int width, int height,
 
     assert_true(scene && exact && light_q20);
     read_text(scene, text);
-    draw(scene, width, height, light_q20);
+    draw_scene(scene, width, height, light_q20);
     assert_ok(twin_open(&twin, scene));
     twin_render(&twin, &view, NULL, exact);
     twin_close(&twin);
@@ -130,8 +132,9 @@ static void compare(const char *text, int width, int height,
     free(light_q20);
 }
 
-/* Prints the errors of WORST, of the scenes WHAT, with their bounds. */
-static void judge(const char *what, const struct outcome *worst)
+/* Prints the errors of WORST, for scenes of type WHAT, with their limits,
+ * and checks them. */
+static void check_outcome(const char *what, const struct outcome *worst)
 {
     char name[96];
 
@@ -146,7 +149,8 @@ static void judge(const char *what, const struct outcome *worst)
         .db = HUGE_VAL \
     }
 
-/* A floor that is seen and lit ever flatter, and a ball that rays graze. */
+/* Checks a floor seen and lit at ever flatter angles, and a ball hit by
+ * grazing rays. */
 TEST(grazing)
 {
     struct outcome worst = NOTHING_YET;
@@ -169,10 +173,10 @@ TEST(grazing)
                  fmax(10 * flat, .1), flat);
         compare(text, 96, 54, &worst);
     }
-    judge("floors and balls that graze, to 1e-5", &worst);
+    check_outcome("floors and balls that graze, to 1e-5", &worst);
 }
 
-/* The same ball and pyramid, from 1e-6 to 1e5 wide. */
+/* Checks the same ball and pyramid at sizes from 1e-6 to 1e5. */
 TEST(sizes)
 {
     struct outcome worst = NOTHING_YET;
@@ -193,10 +197,11 @@ TEST(sizes)
             break;
         compare(text, 96, 54, &worst);
     }
-    judge("sizes 1e-6 to 1e3", &worst);
+    check_outcome("sizes 1e-6 to 1e3", &worst);
 }
 
-/* A sun, whose light does not request places, on objects up to 1e6 wide. */
+/* Checks a sun, whose light does not depend on positions, on objects up to
+ * 1e6 wide. */
 TEST(large)
 {
     struct outcome worst = NOTHING_YET;
@@ -217,8 +222,8 @@ TEST(large)
                     60, "dB");
 }
 
-/* Lamps and suns of any power: what an object shows is that, as far as light is
- * held. */
+/* Checks lamps and suns of any power: objects are proportionally bright up
+ * to saturation. */
 TEST(powers)
 {
     struct outcome worst = NOTHING_YET;
@@ -242,7 +247,7 @@ TEST(powers)
                    "");
 }
 
-/* Objects behind, around and across the camera. */
+/* Checks objects behind, around and across the camera. */
 TEST(behind)
 {
     static const char head[] =
@@ -257,8 +262,8 @@ TEST(behind)
         "triangle t -1 -1 2  1 -1 2  0 1 2 material m\n",
         "triangle t -9 -1 9  9 -1 9  0 -1 -40 material m\n",
         "triangle t -9 -1e-3 9  9 -1e-3 9  0 -1e-3 -40 material m\n",
-        /* Of 1e5 all corners are on the horizon, to 1/512 of a pixel: such a
-         * floor is a plane. */
+        /* At 1e5 all corners would lie on the horizon within 1/512 pixel:
+         * such a floor is a plane. */
         "triangle t -2e4 -1 2e4  2e4 -1 2e4  0 -1 -2e4 material m\n",
         "plane p at 0 0 2 normal 0 0 1 material m\n",
         "plane p at 0 -1e-3 0 normal 0 1 .001 material m\n"};
@@ -270,10 +275,10 @@ TEST(behind)
         snprintf(text, sizeof text, "%s%s", head, things[i]);
         compare(text, 96, 54, &worst);
     }
-    judge("behind, around and across the camera", &worst);
+    check_outcome("behind, around and across the camera", &worst);
 }
 
-/* Pictures of one pixel, and as wide and as high as pictures are. */
+/* Checks images of one pixel, and of max width and height. */
 TEST(pictures)
 {
     static const int size[][2] = {{1, 1},    {1, 2},    {2, 1},
@@ -287,10 +292,11 @@ TEST(pictures)
                 "sphere ball at 0 .5 0 radius .5 material m\n"
                 "plane floor at 0 0 0 normal 0 1 0 material m\nshadow on\n",
                 size[i][0], size[i][1], &worst);
-    judge("one pixel to 8192 wide and 4096 high", &worst);
+    check_outcome("one pixel to 8192 wide and 4096 high", &worst);
 }
 
-/* Powers of 1 and 4096, glass of index 1/4 to 4, mirrors of mirrors. */
+/* Checks Phong powers of 1 and 4096, glass of index 1/4 to 4, and mirrors in
+ * mirrors. */
 TEST(surfaces)
 {
     static const char *const materials[] = {
@@ -316,7 +322,7 @@ TEST(surfaces)
                  "plane floor at 0 -1 0 normal 0 1 0 material w\n",
                  materials[i]);
         compare(text, 160, 90, &worst);
-        /* the same from within the ball, near its rim */
+        /* the same from inside the ball, near its rim */
         snprintf(text + strlen(text), sizeof text - strlen(text),
                  "camera fov 90 at .9 0 -4 toward .9 0 -9\n");
         compare(text, 160, 90, &worst);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Extremes of stars: powers from 2^-20 to 2^30 and places from a pixel's corner
- * to 1000 pixels off-screen, of stops of 3 to 64 blades and a circle.
+ * Tests extreme starbursts: powers from 2^-20 to 2^30, positions from a pixel's
+ * corner to 1000 pixels off-screen, stops of 3 to 64 blades and a circle.
  */
 #include <math.h>
 #include <stdint.h>
@@ -19,8 +19,8 @@ enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
 static const int blades[] = {0, 3, 6, 64};
 static const double airy_px[] = {0.02, 0.4, 4};
 
-/* On a pixel's middle and its corner, on the picture's corner and sides, and
- * 1000 pixels away on two sides. */
+/* Positions: centre and corner of a pixel, corner and sides of the image,
+ * and 1000 pixels off two sides. */
 static const double place[][2] = {
     {48.5, 41.5},   {48, 41},   {0, 0},      {WIDTH, HEIGHT},
     {WIDTH, 40.25}, {50.75, 0}, {-1000, 40}, {50, 1000 + HEIGHT}};
@@ -29,11 +29,11 @@ enum { PLACES = sizeof place / sizeof *place };
 static int32_t linear_q20[N];
 static uint8_t codes[N], others[N];
 
-/* Returns the largest difference between what was drawn of a light of
- * 2^POWER_LOG2 at PLACE and what tables give there, as a fraction; a step of a
- * linear picture counts as nothing. */
-static double most_off(const struct glint_star_tables *t, const double at[2],
-                       int power_log2)
+/* Returns the max relative difference between the drawn star of a light of
+ * power 2^POWER_LOG2 at AT and its tables; differences below one step of a
+ * linear image are ignored. */
+static double max_difference(const struct glint_star_tables *t,
+                             const double at[2], int power_log2)
 {
     double most = 0;
 
@@ -69,7 +69,7 @@ TEST(far_powers)
 
             star_canvas_draw(&c, t, &light, 1, glint_real_of(0),
                              GLINT_LINEAR_Q20, linear_q20);
-            most = fmax(most, most_off(t, at, ev));
+            most = fmax(most, max_difference(t, at, ev));
         }
         star_canvas_close(&c);
         glint_star_tables_free(t);
@@ -78,7 +78,8 @@ TEST(far_powers)
                    0.03, "");
 }
 
-/* Where a light lies within its pixel must not change its star's light. */
+/* Checks that the position of a light inside its pixel does not change its
+ * star's total light. */
 TEST(corners)
 {
     static const double within[][2] = {
@@ -112,8 +113,8 @@ TEST(corners)
                    most, 0.005, "");
 }
 
-/* Twice the power must nowhere give less light, and what cannot be seen
- * nothing. */
+/* Checks that twice the power nowhere gives less light, and that an
+ * invisible power gives none. */
 TEST(rising)
 {
     double most = 0;

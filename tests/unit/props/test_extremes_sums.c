@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sums at their bounds: thousands of lights, bundles that add up to the most
- * that a picture holds and beyond, and the traps of CONFIG=qcheck.
+ * Tests sums at their limits: thousands of lights, bundles that sum to the max
+ * value of an image and above, and the range checks of CONFIG=qcheck.
  */
 #include <math.h>
 #include <signal.h>
@@ -29,8 +29,8 @@ TEST_OPEN
 
 /* ------------------------------------------------------------------ lights */
 
-/* 10 000 lights at one place must give the picture of one light of 10 000 times
- * the power; their powers are added with 31 bits. */
+/* Checks that 10 000 lights at one position give the image of one light of
+ * 10 000 times the power; their powers are added with 31 bits. */
 TEST(same_place)
 {
     const struct glint_lamp sum = stage_lamp(7.5, 33, LIGHTS);
@@ -49,9 +49,9 @@ TEST(same_place)
                    "of the brightest pixel");
 }
 
-/* Spread over the frame, lights must merge to 128 without losing any light.
- * Merged ones draw their ghosts in one place, so that some leave the frame that
- * would have stayed: 3 % are allowed. */
+/* Checks that lights spread over the frame are merged to 128 without loss of
+ * light. Merged lights draw their ghosts in one place, so some of the light
+ * leaves the frame: 3 % are allowed. */
 TEST(spread)
 {
     const int n = extreme_long() ? LIGHTS : 1000;
@@ -76,7 +76,7 @@ TEST(spread)
                    fabs(stage_flux(&heliar, test) / whole - 1), 0.03, "");
 }
 
-/* 10 000 suns must leave white everywhere, and no sum that wraps. */
+/* Checks that 10 000 suns give white everywhere, without a sum that wraps. */
 TEST(ten_thousand_suns)
 {
     static uint8_t codes[N];
@@ -98,11 +98,11 @@ TEST(ten_thousand_suns)
 
 enum { SIDE = 64, MANY = 1 << 15 };
 
-/* Draws COUNT bundles of 2^LOG2 times white over the whole picture, in codes
- * and in linear light. Returns what each pixel holds in linear light; -1 if
- * pixels differ or codes are not white. HELD gets the counts of what was cut
- * down: cells before they were added, and samples. */
-static double pile(int count, int log2, int held[2])
+/* Draws COUNT bundles of 2^LOG2 times white over the whole image, in codes
+ * and in linear light. Returns the value of each pixel in linear light, or
+ * -1 if pixels differ or codes are not white. Sets HELD to the counts of
+ * clamped values: cells before they were added, and samples. */
+static double draw_pile(int count, int log2, int held[2])
 {
     struct glint_flare_config c = {.width = SIDE,
                                    .height = SIDE,
@@ -113,7 +113,8 @@ static double pile(int count, int log2, int held[2])
                                    .max_refs = 8 * count};
     const struct glint_bundle b = {.n_cells = 1,
                                    .flux_q31 = 1 << 30,
-                                   .flux_exponent = 13 + log2, /* for 64^2 px */
+                                   /* for 64^2 px */
+                                   .flux_exponent = 13 + log2,
                                    .rgb_q14 = {16384, 16384, 16384}};
     static int32_t linear[3 * SIDE * SIDE];
     static uint8_t codes[3 * SIDE * SIDE];
@@ -145,7 +146,8 @@ static double pile(int count, int log2, int held[2])
     image.format = GLINT_RGB24;
     glint_image_place(&image, codes);
     glint_flare_draw(f, &image);
-    assert_int_equal(glint_flare_held(f), 0); /* Codes saturate uncounted. */
+    /* Saturation of codes is not counted. */
+    assert_int_equal(glint_flare_held(f), 0);
     free(mem);
     value = linear[0] == INT32_MAX ? 2048 : linear[0] / 1048576.0;
     for (int i = 0; i < 3 * SIDE * SIDE; i++)
@@ -154,10 +156,10 @@ static double pile(int count, int log2, int held[2])
     return value;
 }
 
-/* A pixel of linear light holds just below 2048 times white: sums below that
- * must be exact, and all others must saturate there. A cell gives a pixel 2048
- * at most, and all cells together 2^24; more is cut down before it is added
- * (by_edges.c). Both must be counted. */
+/* Checks that a pixel of linear light, which is limited to just below 2048
+ * times white, is exact below and saturates above. A cell adds at most 2048
+ * to a pixel, and all cells together 2^24; more is clamped before it is
+ * added (by_edges.c). Both clamps must be counted. */
 TEST(piles)
 {
     static const struct {
@@ -176,7 +178,7 @@ TEST(piles)
 
     for (int k = 0; k < 15; k++) {
         int held[2];
-        const double got = pile(piles[k].count, piles[k].log2, held);
+        const double got = draw_pile(piles[k].count, piles[k].log2, held);
         const int samples = piles[k].holds < 2048 ? 0 : 3 * SIDE * SIDE;
 
         miscounted += held[0] != piles[k].held_cells || held[1] != samples;
@@ -194,13 +196,13 @@ TEST(piles)
 
 /* ------------------------------------------------------------------- traps */
 
-/* Returns whether F traps, in a child process. */
-static int traps(void (*f)(void))
+/* Returns whether F ends in a trap, in a child process. */
+static int is_trapped(void (*f)(void))
 {
     const pid_t pid = fork();
     int status = 0;
 
-    if (pid == 0) { /* without cmocka's handlers */
+    if (pid == 0) { /* disables cmocka's handlers */
         signal(SIGILL, SIG_DFL);
         signal(SIGTRAP, SIG_DFL);
         f();
@@ -243,9 +245,9 @@ static void multiply_above(void)
     sink = q_mul((int32_t)(INT32_MAX * one), INT32_MAX, 30);
 }
 
-/* The bounds of each range must pass everywhere; one more must trap where
- * ranges are checked, and only there. */
-TEST(traps)
+/* Checks that the limits of each range pass in every build, and that one
+ * step above traps only in builds that check ranges. */
+TEST(is_trapped)
 {
 #ifdef GLINT_Q_CHECK
     const int checked = 1;
@@ -254,11 +256,12 @@ TEST(traps)
 #endif
     int wrong = 0;
 
-    wrong += traps(narrow_most) + traps(shift_most) + traps(multiply_most);
-    wrong += traps(narrow_above) != checked;
-    wrong += traps(narrow_below) != checked;
-    wrong += traps(shift_above) != checked;
-    wrong += traps(multiply_above) != checked;
+    wrong += is_trapped(narrow_most) + is_trapped(shift_most) +
+             is_trapped(multiply_most);
+    wrong += is_trapped(narrow_above) != checked;
+    wrong += is_trapped(narrow_below) != checked;
+    wrong += is_trapped(shift_above) != checked;
+    wrong += is_trapped(multiply_above) != checked;
     assert_at_most(checked ? "sums: bounds of q.h, with traps"
                            : "sums: bounds of q.h, without traps",
                    wrong, 0, "cases");

@@ -139,23 +139,24 @@ TEST(does_not_oscillate)
     assert_int_equal(adapt.step, 3);
     assert_in_range(n_early, 1, 6);
     simulate(cost, 600);
-    assert_in_range(seen.n_up, 5, 12); /* once a minute */
+    assert_in_range(seen.n_up, 5, 12); /* once per minute */
     assert_true(seen.n_missed < seen.n_frames / 100);
 }
 
-/* A step up that took too long once must be tried again later. */
+/* Checks that a step up that once took too long is tried again later. */
 TEST(forgets)
 {
     static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
     simulate(heavy, 300);
-    simulate(light, 75); /* a minute at most, then as at first */
+    /* waits at most a minute, then as short as at first */
+    simulate(light, 75);
     assert_int_equal(adapt.step, 0);
 }
 
-/* Step 0 must be the dials that were requested, and no step may be finer than
- * the one before. */
+/* Checks that step 0 has the requested quality parameters, and that no step
+ * is finer than the previous one. */
 TEST(steps)
 {
     static const struct glint_dials ask[] = {
@@ -176,7 +177,7 @@ TEST(steps)
             d = live_adapt_dials(&adapt, ask[i]);
             if (s == 0)
                 assert_memory_equal(&d, &ask[i], sizeof d);
-            /* Steps above 3 draw half as many pixels each way. */
+            /* Steps above 3 draw at half resolution. */
             assert_int_equal(glint_dials_half(&d), s > 3);
             assert_in_range(d.fineness, 1, last.fineness);
             assert_in_range(d.max_lights, 1, last.max_lights);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Statistics of a live run: percentiles against all latencies sorted, sums
- * against sums by hand, lines to the letter, counts beyond 32 bits.
+ * Tests the statistics of a live run: percentiles against sorted latencies,
+ * sums against hand-computed values, exact output lines, counts above 32 bits.
  */
 #include <stdint.h>
 
@@ -23,7 +23,7 @@ static void add_latency(int64_t us)
     live_stats_add(&stats, &t);
 }
 
-static int compare(const void *a, const void *b)
+static int compare_int64(const void *a, const void *b)
 {
     const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
 
@@ -41,12 +41,13 @@ static void check_percentiles(int n, int64_t low_us, int64_t span_us)
     for (int i = 0; i < n; i++) {
         const int64_t r = (rng_bits(&seed) >> 8) % span_us;
 
-        us[i] = low_us + r * r / span_us; /* most are short */
+        us[i] = low_us + r * r / span_us; /* most latencies are short */
         add_latency(us[i]);
     }
-    qsort(us, (size_t)n, sizeof *us, compare);
+    qsort(us, (size_t)n, sizeof *us, compare_int64);
     for (int percent = 1; percent <= 100; percent++) {
-        const int rank = (n * percent + 99) / 100; /* nearest rank, from 1 */
+        /* nearest rank, counted from 1 */
+        const int rank = (n * percent + 99) / 100;
         const double want = 1e-3 * (double)us[rank - 1];
         const double is = live_stats_latency_ms(&stats.second, percent);
 
@@ -83,7 +84,8 @@ TEST(extreme_latencies)
     assert_true(live_stats_latency_ms(&stats.second, 100) == 3e9);
 }
 
-/* A full bin must halve all bins, and shares and rare latencies must stay. */
+/* Checks that a full bin halves all bins, and that percentiles and rare
+ * latencies are preserved. */
 TEST(full_bin)
 {
     live_stats_start(&stats, 0);
@@ -97,7 +99,7 @@ TEST(full_bin)
     assert_true(live_stats_latency_ms(&stats.total, 50) == 5.05);
     assert_true(live_stats_latency_ms(&stats.total, 51) == 6.05);
     assert_int_equal(stats.second.bin[50], 1);
-    /* The sum of all counts passes 32 bits, too. */
+    /* The sum of all counts also exceeds 32 bits. */
     add_latency(2000000);
     stats.total.bin[50] = stats.total.bin[60] = UINT32_MAX;
     stats.total.bin[LIVE_BINS] = UINT32_MAX;
@@ -152,7 +154,8 @@ TEST(json)
         "\"reused\":1}");
 }
 
-/* After a second its figures must restart, and those of the total continue. */
+/* Checks that after a second its statistics restart, while those of the run
+ * continue. */
 TEST(seconds)
 {
     add_frames();
@@ -210,7 +213,7 @@ TEST(lines)
         "5.00 show 0.00  3000 bytes\n");
 }
 
-/* Every count and time as large as it can be must be printed in full. */
+/* Checks that counts and times at their max values are printed completely. */
 TEST(large_counts)
 {
     struct live_frame_times t = {.shown = true,

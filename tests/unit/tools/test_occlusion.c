@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps that a mask hides, and that fade off-screen.
+ * Tests the dimming of lamps by a mask, and their fading off-screen.
  */
 #include <math.h>
 #include <stdint.h>
@@ -17,8 +17,8 @@ static const struct glint_view view = {
     .width = 4 * SIDE, .height = 4 * SIDE, .sensor_width_mm = 36};
 static const double focal_mm = 50;
 
-/* A mask a quarter as large as the picture, black left of COLUMN. */
-static struct occlusion mask_of(int column)
+/* Returns a mask a quarter as large as the image, black left of COLUMN. */
+static struct occlusion make_mask(int column)
 {
     struct occlusion o = {.file = "mask.ppm", .black = 0, .white = 255};
 
@@ -30,8 +30,10 @@ static struct occlusion mask_of(int column)
     return o;
 }
 
-/* Returns what O leaves of a lamp of power 8 and RADIUS pixels at (X, Y). */
-static double left(struct occlusion *o, double x, double y, double radius)
+/* Returns the fraction of light that O leaves of a lamp of power 8 and
+ * RADIUS pixels at (X, Y). */
+static double remaining_light(struct occlusion *o, double x, double y,
+                              double radius)
 {
     struct glint_lamp lamp = {.power = 8, .rgb = {1, 1, 1}};
     struct glint_engine_lamp known;
@@ -49,25 +51,26 @@ static double left(struct occlusion *o, double x, double y, double radius)
 
 TEST(share)
 {
-    struct occlusion o = mask_of(SIDE / 2);
+    struct occlusion o = make_mask(SIDE / 2);
 
-    assert_true(fabs(left(&o, 200, 100, 20) - 1) < 1e-9);
-    assert_true(left(&o, 60, 100, 20) == 0);
-    assert_true(fabs(left(&o, 128, 100, 20) - 0.5) < 0.03);
-    /* the segment of a disc beyond half of its radius */
-    assert_true(fabs(left(&o, 118, 100, 20) - 0.1955) < 0.04);
-    assert_true(fabs(left(&o, 128, 100, 0) - 0.5) < 0.1); /* a point */
-    assert_true(left(&o, -30, 100, 5) == 1);              /* beside it */
+    assert_true(fabs(remaining_light(&o, 200, 100, 20) - 1) < 1e-9);
+    assert_true(remaining_light(&o, 60, 100, 20) == 0);
+    assert_true(fabs(remaining_light(&o, 128, 100, 20) - 0.5) < 0.03);
+    /* area of the segment of a disc beyond half its radius, as a fraction */
+    assert_true(fabs(remaining_light(&o, 118, 100, 20) - 0.1955) < 0.04);
+    assert_true(fabs(remaining_light(&o, 128, 100, 0) - 0.5) <
+                0.1);                                   /* a point lamp */
+    assert_true(remaining_light(&o, -30, 100, 5) == 1); /* off-screen */
 }
 
-/* A lamp that crosses the rim of a mask must fade by small steps. */
+/* Checks that a lamp that crosses the edge of a mask fades in small steps. */
 TEST(no_step)
 {
-    struct occlusion o = mask_of(SIDE / 2);
+    struct occlusion o = make_mask(SIDE / 2);
     double last = 0;
 
     for (int i = 0; i <= 120; i++) {
-        const double now = left(&o, 98 + 0.5 * i, 90, 15);
+        const double now = remaining_light(&o, 98 + 0.5 * i, 90, 15);
 
         assert_true(now >= last - 0.02 && now - last < 0.05);
         last = now;
@@ -80,21 +83,22 @@ TEST(fade)
     struct occlusion o = {.fade_px = 100};
     double last = 1;
 
-    assert_true(left(&o, 10, 10, 5) == 1 && left(&o, 256, 256, 0) == 1);
+    assert_true(remaining_light(&o, 10, 10, 5) == 1 &&
+                remaining_light(&o, 256, 256, 0) == 1);
     for (int i = 0; i <= 110; i++) {
-        const double now = left(&o, 256 + i, 128, 0);
+        const double now = remaining_light(&o, 256 + i, 128, 0);
 
         assert_true(now <= last && last - now < 0.02);
         assert_true(i == 0 || i > 99 || (now > 0 && now < 1));
         last = now;
     }
     assert_true(last == 0);
-    assert_true(fabs(left(&o, -30, -40, 0) - 0.5) < 1e-9);
+    assert_true(fabs(remaining_light(&o, -30, -40, 0) - 0.5) < 1e-9);
 }
 
 TEST(nothing_asked)
 {
     struct occlusion o = {.fade_px = 0};
 
-    assert_true(left(&o, -500, 10, 5) == 1);
+    assert_true(remaining_light(&o, -500, 10, 5) == 1);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Poses of a scene, from files and from a pipe: their order, their hand, and
- * lines that are none. */
+ * Tests the poses of a scene's objects, from files and from a pipe: order,
+ * handedness, and invalid lines.
+ */
 #include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
@@ -23,8 +24,9 @@ static struct glint_scene_model model;
 static struct poses poses;
 static struct glint_error error;
 
-/* Two objects, a sun and a lamp, 16 steps a unit. */
-static void make(uint32_t hand)
+/* Makes a scene of two objects, a sun and a lamp, with 16 steps per unit and
+ * handedness HAND. */
+static void make_scene(uint32_t hand)
 {
     header = (struct glint_scene_header){
         .variant = hand, .unit_log2 = 4, .n_objects = 2, .n_lights = 2};
@@ -45,11 +47,11 @@ static enum glint_status read_text(const char *text, uint32_t hand)
     assert_non_null(file);
     fputs(text, file);
     fclose(file);
-    make(hand);
+    make_scene(hand);
     return poses_open(&poses, scratch_file, false, &model, &error);
 }
 
-static void next_is(int frame, int thing, int x)
+static void expect_pose(int frame, int thing, int x)
 {
     const struct pose *const p = poses_next(&poses, frame);
 
@@ -58,7 +60,8 @@ static void next_is(int frame, int thing, int x)
     assert_int_equal(p->at[0], x);
 }
 
-/* By frames, of one frame by lines; every frame is the first. */
+/* Checks that poses are sorted by frame, then by line; "*" counts as frame
+ * 0. */
 TEST(order)
 {
     assert_ok(read_text("frame,object,x,y,z,qw,qx,qy,qz\n"
@@ -68,18 +71,18 @@ TEST(order)
                         "\"x\":3,\"z\":0}\n"
                         "*,lamp,4,0,0\n",
                         GLINT_HAND_LEFT));
-    next_is(0, 3, 64);
+    expect_pose(0, 3, 64);
     assert_null(poses_next(&poses, 0));
     assert_null(poses_next(&poses, 2));
-    next_is(5, POSES_CAMERA, 32);
-    next_is(5, 0, 48);
+    expect_pose(5, POSES_CAMERA, 32);
+    expect_pose(5, 0, 48);
     assert_null(poses_next(&poses, 6));
-    next_is(100, 1, 16);
+    expect_pose(100, 1, 16);
     assert_null(poses_next(&poses, 100));
     poses_close(&poses);
 }
 
-/* A pose with the other hand is the mirrored one. */
+/* Checks that in a scene of the other handedness a pose is mirrored. */
 TEST(hand)
 {
     static const char text[] = "0,ball,1,2,3,2,.4,.6,.8\n0,sun,1,2,2\n";
@@ -106,7 +109,7 @@ TEST(hand)
         fabs(pose[0][0].turn_q30[0] / (double)ONE_Q30 - 2 / sqrt(5.16)) < 1e-9);
 }
 
-static void refused(const char *text, int line, const char *cause)
+static void expect_error(const char *text, int line, const char *cause)
 {
     char where[64];
 
@@ -118,28 +121,28 @@ static void refused(const char *text, int line, const char *cause)
 
 TEST(mistakes)
 {
-    refused("0,ball,1,2\n", 1, "expected frame,object,x,y,z");
-    refused("\n0,ball,1,2,3,4\n", 2, "expected frame,object,x,y,z");
-    refused("0,ball,1,2,3,1,0,0,0,0\n", 1, "expected frame,object,x,y,z");
-    refused("0,ball,1,two,3\n", 1, "are numbers");
-    refused("-3,ball,1,2,3\n", 1, "frame must be");
-    refused("-1,ball,1,2,3\n", 1, "frame must be");
-    refused("1.5,ball,1,2,3\n", 1, "frame must be");
-    refused("0,bell,1,2,3\n", 1, "no 'bell'; did you mean 'ball'?");
-    refused("0,ball,1e8,2,3\n", 1, "beyond");
-    refused("0,sun,0,0,0\n", 1, "must not be 0 0 0");
-    refused("0,ball,0,0,0,0,0,0,0\n", 1, "must not be all 0");
-    refused("frame,ball\n", 1, "the heading");
-    refused("{\"x\":1}\n", 1, "are needed");
-    refused("{\"x\":1\n", 1, "expected , or }");
-    refused("{\"x\" 1}\n", 1, "expected :");
-    refused("{\"w\":1}\n", 1, "a key is none of");
-    refused("{\"object\":3}\n", 1, "object is a");
+    expect_error("0,ball,1,2\n", 1, "expected frame,object,x,y,z");
+    expect_error("\n0,ball,1,2,3,4\n", 2, "expected frame,object,x,y,z");
+    expect_error("0,ball,1,2,3,1,0,0,0,0\n", 1, "expected frame,object,x,y,z");
+    expect_error("0,ball,1,two,3\n", 1, "are numbers");
+    expect_error("-3,ball,1,2,3\n", 1, "frame must be");
+    expect_error("-1,ball,1,2,3\n", 1, "frame must be");
+    expect_error("1.5,ball,1,2,3\n", 1, "frame must be");
+    expect_error("0,bell,1,2,3\n", 1, "no 'bell'; did you mean 'ball'?");
+    expect_error("0,ball,1e8,2,3\n", 1, "beyond");
+    expect_error("0,sun,0,0,0\n", 1, "must not be 0 0 0");
+    expect_error("0,ball,0,0,0,0,0,0,0\n", 1, "must not be all 0");
+    expect_error("frame,ball\n", 1, "the heading");
+    expect_error("{\"x\":1}\n", 1, "are needed");
+    expect_error("{\"x\":1\n", 1, "expected , or }");
+    expect_error("{\"x\" 1}\n", 1, "expected :");
+    expect_error("{\"w\":1}\n", 1, "a key is none of");
+    expect_error("{\"object\":3}\n", 1, "object is a");
     assert_int_equal(poses_open(&poses, "/no/such/file", false, &model, &error),
                      GLINT_E_IO);
 }
 
-/* A pipe gives lines as they come, whole ones alone. */
+/* Checks that a pipe returns lines as they arrive, only when complete. */
 TEST(pipe)
 {
     static const char parts[4][64] = {"0,ba",
@@ -149,7 +152,7 @@ TEST(pipe)
 
     unlink(scratch_file);
     assert_int_equal(mkfifo(scratch_file, 0600), 0);
-    make(GLINT_HAND_LEFT);
+    make_scene(GLINT_HAND_LEFT);
     assert_ok(poses_open(&poses, scratch_file, true, &model, &error));
     assert_null(poses_next(&poses, 0));
     to = open(scratch_file, O_WRONLY);
@@ -160,32 +163,33 @@ TEST(pipe)
         if (i == 0)
             assert_null(poses_next(&poses, 1));
         if (i == 1)
-            next_is(2, 0, 16);
+            expect_pose(2, 0, 16);
         if (i == 2)
-            next_is(3, 1, 48);
+            expect_pose(3, 1, 48);
     }
     assert_null(poses_next(&poses, 4));
-    next_is(5, 1, 32);
+    expect_pose(5, 1, 32);
     assert_int_equal(poses.n_bad, 2);
     assert_non_null(strstr(poses.bad.text, ":2: "));
-    /* a line that is too long, and the next one */
+    /* a line that is too long, and the next line */
     for (int i = 0; i < 700; i++)
         assert_int_equal(write(to, "7", 1), 1);
     assert_int_equal(write(to, "\n*,ball,9,0,0\n", 14), 14);
-    next_is(6, 0, 144);
+    expect_pose(6, 0, 144);
     assert_int_equal(poses.n_bad, 3);
-    /* without a writer, and with another one */
+    /* without a writer, and with a new one */
     close(to);
     assert_null(poses_next(&poses, 7));
     to = open(scratch_file, O_WRONLY);
     assert_int_equal(write(to, "*,ball,8,0,0\n", 13), 13);
-    next_is(8, 0, 128);
+    expect_pose(8, 0, 128);
     close(to);
     poses_close(&poses);
     unlink(scratch_file);
 }
 
-/* A writer that never stops gets no more than its fraction of a frame. */
+/* Checks that a pipe whose writer never pauses is read only up to its limit
+ * per frame. */
 TEST(flood)
 {
     static char lines[1 << 18];
@@ -197,7 +201,7 @@ TEST(flood)
         n += (size_t)sprintf(lines + n, "*,ball,1,0,0\n");
     unlink(scratch_file);
     assert_int_equal(mkfifo(scratch_file, 0600), 0);
-    make(GLINT_HAND_LEFT);
+    make_scene(GLINT_HAND_LEFT);
     assert_ok(poses_open(&poses, scratch_file, true, &model, &error));
     to = open(scratch_file, O_WRONLY | O_NONBLOCK);
     for (int frame = 0; frame < 3; frame++) {

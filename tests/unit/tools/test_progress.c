@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Progress on standard error, by a clock that the test sets.
+ * Tests the display of progress on standard error with a fake clock.
  */
 #include <stdint.h>
 
@@ -18,7 +18,7 @@ static double clock_s(void)
     return now_s;
 }
 
-static struct tool_progress start(bool quiet, bool is_terminal)
+static struct tool_progress start_progress(bool quiet, bool is_terminal)
 {
     const struct tool tool = {.name = "bake", .quiet = quiet};
     struct tool_progress p;
@@ -30,8 +30,9 @@ static struct tool_progress start(bool quiet, bool is_terminal)
     return p;
 }
 
-/* Returns what P prints of DONE at AT_S seconds. */
-static const char *shown(struct tool_progress *p, double at_s, double done)
+/* Returns what P prints when DONE (0 .. 1) is reached at AT_S seconds. */
+static const char *show_progress(struct tool_progress *p, double at_s,
+                                 double done)
 {
     static char text[400];
     FILE *const file = tmpfile();
@@ -53,74 +54,75 @@ static const char *shown(struct tool_progress *p, double at_s, double done)
 
 TEST(short_work)
 {
-    struct tool_progress p = start(false, false);
+    struct tool_progress p = start_progress(false, false);
 
     for (int k = 0; k <= 99; k++)
-        assert_string_equal(shown(&p, 0.1 * k, k / 100.), "");
-    assert_string_equal(shown(&p, 500, 1), ""); /* nothing is left */
+        assert_string_equal(show_progress(&p, 0.1 * k, k / 100.), "");
+    assert_string_equal(show_progress(&p, 500, 1),
+                        ""); /* nothing is left to do */
 }
 
 TEST(line_every_ten_seconds)
 {
-    struct tool_progress p = start(false, false);
+    struct tool_progress p = start_progress(false, false);
 
-    assert_string_equal(shown(&p, 1, 0.1), "");
-    assert_string_equal(shown(&p, 9.9, 0.2), "");
-    assert_string_equal(shown(&p, 10, 0.25),
+    assert_string_equal(show_progress(&p, 1, 0.1), "");
+    assert_string_equal(show_progress(&p, 9.9, 0.2), "");
+    assert_string_equal(show_progress(&p, 10, 0.25),
                         "bake: 25 % in 10 s, about 30 s left\n");
-    assert_string_equal(shown(&p, 19.9, 0.4), "");
-    /* More work than was expected takes nothing back. */
-    assert_string_equal(shown(&p, 20, 0.2),
+    assert_string_equal(show_progress(&p, 19.9, 0.4), "");
+    /* If the estimate falls back, the displayed progress does not. */
+    assert_string_equal(show_progress(&p, 20, 0.2),
                         "bake: 40 % in 20 s, about 80 s left\n");
 }
 
-/* The second part of the work counts from where the first ends. */
+/* Checks that the second part of the work continues where the first ends. */
 TEST(parts)
 {
-    struct tool_progress p = start(false, false);
+    struct tool_progress p = start_progress(false, false);
 
     tool_progress_part(&p, 0, 0.6);
-    assert_string_equal(shown(&p, 1, 0.5), "");
+    assert_string_equal(show_progress(&p, 1, 0.5), "");
     tool_progress_part(&p, 0.6, 0.4);
-    assert_string_equal(shown(&p, 20, 0.5),
+    assert_string_equal(show_progress(&p, 20, 0.5),
                         "bake: 80 % in 20 s, about 5 s left\n");
 }
 
-/* Work of twenty seconds or more is announced once. */
+/* Checks that an estimate is printed once for work of 20 s or more. */
 TEST(long_work)
 {
-    struct tool_progress p = start(false, false);
+    struct tool_progress p = start_progress(false, false);
 
-    assert_string_equal(shown(&p, 1, 0), "");
-    assert_string_equal(shown(&p, 1, 0.02), "bake: will take about 49 s\n");
-    assert_string_equal(shown(&p, 2, 0.02), "");
-    p = start(false, false);
+    assert_string_equal(show_progress(&p, 1, 0), "");
+    assert_string_equal(show_progress(&p, 1, 0.02), "bake: takes about 49 s\n");
+    assert_string_equal(show_progress(&p, 2, 0.02), "");
+    p = start_progress(false, false);
     p.less = "a larger --tolerance";
     p.besides = ", and reports";
-    assert_string_equal(shown(&p, 6, 0.01),
-                        "bake: will take about 10 minutes, and reports; less "
-                        "with a larger --tolerance\n");
+    assert_string_equal(show_progress(&p, 6, 0.01),
+                        "bake: takes about 10 minutes, and reports; less with "
+                        "a larger --tolerance\n");
 }
 
 TEST(quiet)
 {
     for (int is_terminal = 0; is_terminal < 2; is_terminal++) {
-        struct tool_progress p = start(true, is_terminal);
+        struct tool_progress p = start_progress(true, is_terminal);
 
-        assert_string_equal(shown(&p, 1, 0.01), "");
-        assert_string_equal(shown(&p, 100, 0.5), "");
+        assert_string_equal(show_progress(&p, 1, 0.01), "");
+        assert_string_equal(show_progress(&p, 100, 0.5), "");
     }
 }
 
-/* A terminal gets a bar ten times a second, and at the end. */
+/* Checks that a terminal gets a bar ten times per second, and at the end. */
 TEST(bar)
 {
-    struct tool_progress p = start(false, true);
+    struct tool_progress p = start_progress(false, true);
 
-    assert_string_equal(shown(&p, 5, 0.5),
+    assert_string_equal(show_progress(&p, 5, 0.5),
                         "\rbake [###############...............]  50 %  "
                         "5 s left \033[K");
-    assert_string_equal(shown(&p, 5.05, 0.6), "");
-    assert_non_null(strstr(shown(&p, 5.2, 0.6), " 60 %  3 s left"));
-    assert_non_null(strstr(shown(&p, 5.15, 1), "100 %  0 s left"));
+    assert_string_equal(show_progress(&p, 5.05, 0.6), "");
+    assert_non_null(strstr(show_progress(&p, 5.2, 0.6), " 60 %  3 s left"));
+    assert_non_null(strstr(show_progress(&p, 5.15, 1), "100 %  0 s left"));
 }

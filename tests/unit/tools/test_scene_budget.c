@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Qualities of the dials of a scene's budget, and a scene that is drawn coarser
- * while it runs: by live, to hold a rate, and to keep a budget. No test reads
- * the time: frames take what tables say, and the clock is a fake one. */
+ * Tests the quality of a scene that adapts while it runs: in glint live, to
+ * hold a frame rate, and to keep a budget. Frame times come from tables, and
+ * the clock is fake.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +15,7 @@
 
 enum { WIDTH = 64, HEIGHT = 36, BYTES = 3 * WIDTH * HEIGHT };
 
-/* Qualities are those of the option that has the same dials. */
+/* Checks the --quality of each level: the one with the same parameters. */
 TEST(qualities)
 {
     static const double quality[SCENE_BUDGET_LEVELS] = {1, .5, .375, .125, 0};
@@ -35,7 +36,7 @@ TEST(qualities)
     }
 }
 
-/* Steps of live go down that scale to its end. */
+/* Checks that the steps of glint live go down the levels to the last. */
 TEST(steps)
 {
     struct live_adapt adapt;
@@ -52,7 +53,7 @@ TEST(steps)
     assert_true(last == 0);
 }
 
-static void draw(struct over_scene *over, uint8_t *pixels)
+static void draw_scene(struct over_scene *over, uint8_t *pixels)
 {
     struct glint_image image =
         glint_image_over(pixels, GLINT_RGB24, WIDTH, HEIGHT);
@@ -61,8 +62,8 @@ static void draw(struct over_scene *over, uint8_t *pixels)
     assert_ok(over_scene_draw(over, &image, 0));
 }
 
-/* A scene that is drawn coarser, and finer again,
- * is what the same dials draw from the start. */
+/* Checks that a scene that was drawn coarser and then finer gives the image
+ * of a new scene with the same parameters. */
 TEST(coarser)
 {
     static const struct tool tool = {.name = "test", .quiet = true};
@@ -73,23 +74,23 @@ TEST(coarser)
     assert_ok(over_scene_open(&over, &tool));
     scene_dials_be(&dials, 0);
     assert_ok(over_scene_size(&over, &dials));
-    draw(&over, coarse);
+    draw_scene(&over, coarse);
     dials = (struct scene_dials){.width = WIDTH, .height = HEIGHT};
     assert_ok(over_scene_size(&over, &dials));
-    draw(&over, fine);
+    draw_scene(&over, fine);
     assert_memory_not_equal(fine, coarse, BYTES);
     assert_ok(over_scene_coarsen(&over, 0));
-    draw(&over, got);
+    draw_scene(&over, got);
     assert_memory_equal(got, coarse, BYTES);
     assert_ok(over_scene_coarsen(&over, 1));
-    draw(&over, got);
+    draw_scene(&over, got);
     assert_memory_equal(got, fine, BYTES);
     over_scene_close(&over);
 }
 
 /* ------------------------------------------------------------------ budgets */
 
-/* Milliseconds of each level, when the machine is as fast as usual. */
+/* time of each level, ms, at the machine's usual speed */
 static const double level_ms[SCENE_BUDGET_LEVELS] = {40, 40, 24, 12, 8};
 
 static struct scene_budget new_budget(void)
@@ -101,9 +102,10 @@ static struct scene_budget new_budget(void)
     return budget;
 }
 
-/* Draws N frames that take SLOWER times what the table says, within LIMIT_MS.
- * Returns how many took longer. */
-static int follow(struct scene_budget *b, int n, double slower, double limit_ms)
+/* Draws N frames that take SLOWER times the table's time, with a limit of
+ * LIMIT_MS. Returns the number of frames above the limit. */
+static int count_late(struct scene_budget *b, int n, double slower,
+                      double limit_ms)
 {
     int late = 0;
 
@@ -116,52 +118,55 @@ static int follow(struct scene_budget *b, int n, double slower, double limit_ms)
     return late;
 }
 
-/* The finest level that fits is found from above, and from below again. */
+/* Checks that the finest level that fits is reached from finer levels and,
+ * later, from coarser ones. */
 TEST(follows)
 {
     struct scene_budget b = new_budget();
 
-    assert_int_equal(follow(&b, 100, 1, 1000), 0);
+    assert_int_equal(count_late(&b, 100, 1, 1000), 0);
     assert_int_equal(b.level, 0);
-    follow(&b, 12, 1, 30);
+    count_late(&b, 12, 1, 30);
     assert_int_equal(b.level, 2);
-    assert_int_equal(follow(&b, 300, 1, 30), 0);
+    assert_int_equal(count_late(&b, 300, 1, 30), 0);
     assert_int_equal(b.level, 2);
-    follow(&b, 7, 2, 30);
+    count_late(&b, 7, 2, 30);
     assert_int_equal(b.level, 3);
-    follow(&b, 12, 10, 30);
+    count_late(&b, 12, 10, 30);
     assert_int_equal(b.level, SCENE_BUDGET_LEVELS - 1);
-    follow(&b, 200, 1, 30);
+    count_late(&b, 200, 1, 30);
     assert_int_equal(b.level, 2);
-    follow(&b, 200, .5, 30);
-    assert_int_equal(b.level, 1); /* as dials are requested: 0 is the same */
+    count_late(&b, 200, .5, 30);
+    /* equals level 0 with the requested parameters */
+    assert_int_equal(b.level, 1);
 }
 
-/* A level that is too slow is seldom tried again. */
+/* Checks that a level that is too slow is rarely tried again. */
 TEST(rests)
 {
     struct scene_budget b = new_budget();
 
-    follow(&b, 7, 1, 22);
+    count_late(&b, 7, 1, 22);
     assert_int_equal(b.level, 3);
-    assert_true(follow(&b, 1000, 1, 22) <= 14);
+    assert_true(count_late(&b, 1000, 1, 22) <= 14);
 }
 
-/* One slow frame changes nothing. */
+/* Checks that one slow frame changes nothing. */
 TEST(one_slow)
 {
     struct scene_budget b = new_budget();
 
-    follow(&b, 12, 1, 30);
+    count_late(&b, 12, 1, 30);
     assert_int_equal(b.level, 2);
     assert_false(scene_budget_follow(&b, 300, 30));
-    assert_int_equal(follow(&b, 100, 1, 30), 0);
+    assert_int_equal(count_late(&b, 100, 1, 30), 0);
     assert_int_equal(b.level, 2);
 }
 
-/* The flare takes what the scene leaves, within LEAST and MOST milliseconds of
- * its qualities 0 and 1. Together they keep 60 ms from some frame on. */
-static void share(double least_ms, double most_ms, int level)
+/* Draws a scene at LEVEL with a flare that uses the time that the scene
+ * leaves, within LEAST_MS at quality 0 and MOST_MS at quality 1. Checks that
+ * from some frame on both together keep 60 ms. */
+static void check_shared_budget(double least_ms, double most_ms, int level)
 {
     struct scene_budget b = new_budget();
     double flare_ms = 0, quality = 0;
@@ -178,21 +183,21 @@ static void share(double least_ms, double most_ms, int level)
         late += i >= 20 && scene_ms + flare_ms > 60;
     }
     assert_int_equal(b.level, level);
-    assert_true(late <= 10); /* of tries */
+    assert_true(late <= 10); /* late frames of trials */
 }
 
 TEST(shares)
 {
-    share(1, 2, 0);    /* a flare that takes next to nothing */
-    share(10, 200, 2); /* one that could take it all */
-    share(30, 200, 2); /* one that leaves half of it */
-    share(50, 200, 4); /* one that hardly leaves any */
+    check_shared_budget(1, 2, 0);    /* a flare that needs almost no time */
+    check_shared_budget(10, 200, 2); /* a flare that could use all the time */
+    check_shared_budget(30, 200, 2); /* a flare that leaves half of the time */
+    check_shared_budget(50, 200, 4); /* a flare that leaves almost no time */
     assert_true(scene_budget_limit(60, 59, 0) == 6);
 }
 
 static double now_s, step_s;
 
-/* Each reading of the clock takes a step. */
+/* Each reading of the clock advances it by one step. */
 double __wrap_tool_seconds(void);
 double __wrap_tool_seconds(void)
 {
@@ -200,7 +205,7 @@ double __wrap_tool_seconds(void)
     return now_s;
 }
 
-/* Pictures of a scene within a budget are those of its quality. */
+/* Checks that images of a scene with a budget equal those of its quality. */
 TEST(draws)
 {
     static const struct tool tool = {.name = "test", .quiet = true};
@@ -212,16 +217,16 @@ TEST(draws)
     assert_ok(over_scene_open(&over, &tool));
     scene_dials_be(&dials, 0);
     assert_ok(over_scene_size(&over, &dials));
-    draw(&over, coarse);
+    draw_scene(&over, coarse);
     dials = (struct scene_dials){.width = WIDTH, .height = HEIGHT};
     assert_ok(over_scene_size(&over, &dials));
     over.budget_ms = 2 * over.ms;
     for (int i = 0; i < 20; i++)
-        draw(&over, got);
+        draw_scene(&over, got);
     assert_true(scene_budget_quality(&over.budget) == .5);
     step_s = 3e-3;
     for (int i = 0; i < 20; i++)
-        draw(&over, got);
+        draw_scene(&over, got);
     assert_true(scene_budget_quality(&over.budget) == 0);
     assert_memory_equal(got, coarse, BYTES);
     over_scene_close(&over);

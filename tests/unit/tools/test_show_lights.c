@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Marks of lights in pictures of every format: the right pixels, the right
- * colours, and nothing off-screen.
+ * Tests the marks of lights in images of every format: position, colour, and no
+ * writes off-screen.
  */
 #include <stdint.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 
 enum { WIDTH = 96, HEIGHT = 64, GUARD = 4096 };
 
-/* Returns a grey picture between guards of bytes 0xee. */
+/* Returns a grey image between guard bytes of 0xee. */
 static struct glint_image new_image(enum glint_pixel_format format,
                                     uint8_t **mem)
 {
@@ -39,7 +39,7 @@ static void assert_guards(const struct glint_image *image, const uint8_t *mem)
     }
 }
 
-static struct glint_lamp_track track_at(int x, int y)
+static struct glint_lamp_track make_track(int x, int y)
 {
     return (struct glint_lamp_track){.id = 907,
                                      .state = GLINT_LAMP_STEADY,
@@ -48,14 +48,14 @@ static struct glint_lamp_track track_at(int x, int y)
                                      .size_q8 = 2 << 8};
 }
 
-/* With lines one pixel wide, a mark must be a cross of 5 pixels, a box of +-8
- * and the digits 907. */
+/* Checks that with lines one pixel wide a mark is a cross of 5 pixels, a box
+ * of +-8 and the digits 907. */
 TEST(what_is_drawn)
 {
     static const char *const number[5] = {"### ### ###", "# # # #   #",
                                           "### # #   #", "  # # #  # ",
                                           "### ###  # "};
-    const struct glint_lamp_track track = track_at(30, 20);
+    const struct glint_lamp_track track = make_track(30, 20);
     uint8_t *mem;
     struct glint_image image = new_image(GLINT_RGB24, &mem);
     const uint8_t *px = image.plane[0];
@@ -81,13 +81,13 @@ TEST(what_is_drawn)
     free(mem);
 }
 
-/* Green must be right at the middle: (0, 255, 0) is (145, 54, 34) in BT.601
- * limited and (182, 30, 12) in BT.709 full. */
+/* Checks green at the mark's centre: (0, 255, 0) is (145, 54, 34) in BT.601
+ * limited range and (182, 30, 12) in BT.709 full range. */
 TEST(colours_of_formats)
 {
     static const struct {
         enum glint_pixel_format format;
-        int offset[3]; /* bytes to Y Cb Cr or R G B of pixel (30, 20) */
+        int offset[3]; /* byte offsets of Y Cb Cr or R G B of pixel (30, 20) */
         int is_rgb;
     } at[] = {
         {GLINT_RGB24, {5850, 5851, 5852}, 1},
@@ -105,7 +105,7 @@ TEST(colours_of_formats)
         {0, 255, 0}, {145, 54, 34}, {182, 30, 12}};
 
     for (unsigned i = 0; i < 2 * sizeof at / sizeof *at; i++) {
-        const struct glint_lamp_track track = track_at(30, 20);
+        const struct glint_lamp_track track = make_track(30, 20);
         uint8_t *mem;
         struct glint_image image = new_image(at[i / 2].format, &mem);
 
@@ -121,7 +121,7 @@ TEST(colours_of_formats)
 
 TEST(writes_565)
 {
-    struct glint_lamp_track track = track_at(30, 20);
+    struct glint_lamp_track track = make_track(30, 20);
     uint8_t *mem;
     struct glint_image image = new_image(GLINT_RGB565, &mem);
 
@@ -132,8 +132,8 @@ TEST(writes_565)
     free(mem);
 }
 
-/* A mark may be anywhere, inside, across the borders or far away, and must not
- * touch the guards. */
+/* Checks that marks inside, across the borders and far off-screen do not
+ * write to the guard bytes. */
 TEST(clipped_at_the_borders)
 {
     static const int places[] = {-(1 << 20), -100, -9, -1,     0,      5,
@@ -141,7 +141,7 @@ TEST(clipped_at_the_borders)
 
     for (int i = 0; i < 144 * CANVAS_FORMATS; i++) {
         struct glint_lamp_track track =
-            track_at(places[i % 12], places[i / 12 % 12]);
+            make_track(places[i % 12], places[i / 12 % 12]);
         uint8_t *mem;
         struct glint_image image = new_image(canvas_format[i / 144], &mem);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The parts of glint sweep that measure nothing: fronts, PNG, parameters
- * and levels.
+ * Tests those functions of glint sweep that do not measure: Pareto fronts, PNG,
+ * parameters and quality levels.
  */
 #include <stdint.h>
 
@@ -14,8 +14,8 @@
 #include "measure/sweep.h"
 #include "support/test.h"
 
-/* Returns whether A beats B: it is cheaper and no worse, or better and no more
- * costly. */
+/* Returns whether A dominates B: it is cheaper and not worse, or better and
+ * not costlier. */
 static int dominates(const double *cost, const double *quality, int a, int b)
 {
     return cost[a] <= cost[b] && quality[a] >= quality[b] &&
@@ -36,9 +36,10 @@ TEST(front_by_hand)
     assert_int_equal(sweep_front(cost, quality, 0, front), 0);
 }
 
-/* Heights above the line through the levels, dB: of a dial on the line between
- * two levels, one above it, one more costly than a level like it, one cheaper
- * than all, and one between levels of which one draws half the pixels. */
+/* Checks the height in dB above the line through the quality levels: of a
+ * setting on the line between two levels, one above it, one costlier than an
+ * equal level, one cheaper than all, and one between levels of which one
+ * draws at half resolution. */
 TEST(above_the_ladder)
 {
     struct sweep_setting level = {.kind = SWEEP_QUALITY}, halves = level;
@@ -64,8 +65,9 @@ TEST(above_the_ladder)
     assert_true(fabs(sweep_above(mean, n, 8) + 2) < 1e-9);
 }
 
-/* No setting may beat one on the front, and some setting on the front must be
- * as good as each one off it. Values are few, so that many are equal. */
+/* Checks that no setting dominates one on the front, and that each setting
+ * off the front is dominated by one on it. Values are few, so many are
+ * equal. */
 TEST(front_of_many)
 {
     enum { N = 60 };
@@ -97,7 +99,7 @@ TEST(front_of_many)
     }
 }
 
-/* The smallest PNG must have the checksums of zlib. */
+/* Checks the checksums of the smallest PNG against zlib's. */
 TEST(png)
 {
     static const uint8_t red[] = {255, 0, 0};
@@ -116,7 +118,7 @@ TEST(png)
     free(text);
 }
 
-/* Returns what S says of the parameters by their names, but of one. */
+/* Returns a hash of the settings in S, except the parameter NAME. */
 static uint64_t settings_without(const struct settings *s, const char *name)
 {
     const double all[] = {
@@ -139,8 +141,8 @@ static uint64_t settings_without(const struct settings *s, const char *name)
     return hash;
 }
 
-/* Each value of a parameter that is not its standard one must change the
- * settings by itself, and no other parameter. */
+/* Checks that each non-default value of a parameter changes the settings,
+ * and changes no other parameter. */
 TEST(parameters)
 {
     struct sweep_setting standard = {.alone = -1, .quality = -1};
@@ -177,8 +179,9 @@ static int is_half(const struct settings *settings)
     return glint_dials_half(&settings->dials);
 }
 
-/* A better level must never be coarser, among levels that draw all pixels and
- * among those that draw half; the middle level must be the default settings. */
+/* Checks that a better level is never coarser, among levels at full
+ * resolution and among those at half, and that the middle level is the
+ * default settings. */
 TEST(ladder)
 {
     struct settings last, settings, plain;
@@ -199,7 +202,7 @@ TEST(ladder)
     for (int i = 1; i <= 100; i++) {
         settings_set_quality(&settings, i / 100.);
         if (is_half(&settings) ==
-            is_half(&last)) { /* Else the number of pixels rises. */
+            is_half(&last)) { /* otherwise the resolution rises */
             assert_in_range(settings.dials.fineness, last.dials.fineness,
                             GLINT_MAX_CELLS);
             assert_true(settings.quantum <= last.quantum);

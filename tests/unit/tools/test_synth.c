@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Items of data sets: lines give back every number, numbers keep to their
- * ranges, and none depends on another.
+ * Tests the random items of data sets: a line restores every number, numbers
+ * stay in their ranges, and none depends on another.
  */
 #include <math.h>
 #include <stdint.h>
@@ -20,7 +20,7 @@ static const struct synth_item named = {.width = 64,
                                         .coating = "mixed",
                                         .quality = 0.3};
 
-static double number(const struct synth_item *item, int k)
+static double field_of(const struct synth_item *item, int k)
 {
     return *(const double *)(const void *)((const char *)item +
                                            synth_field[k].at);
@@ -42,7 +42,7 @@ TEST(lines_hold_all)
         assert_non_null(line);
         if (synth_item_read(&back, line, &error) == GLINT_E_UNSUPPORTED) {
             free(line);
-            skip(); /* without jansson */
+            skip(); /* needs jansson */
         }
         assert_string_equal(error.text, "");
         for (int k = 0; k < SYNTH_FIELDS; k++)
@@ -50,7 +50,7 @@ TEST(lines_hold_all)
                 assert_string_equal((char *)&item + synth_field[k].at,
                                     (char *)&back + synth_field[k].at);
             else
-                assert_true(number(&item, k) == number(&back, k));
+                assert_true(field_of(&item, k) == field_of(&back, k));
         for (int k = 0; k < (int)item.n_lights; k++)
             assert_memory_equal(&item.light[k], &back.light[k],
                                 sizeof item.light[k]);
@@ -76,9 +76,9 @@ TEST(numbers_keep_to_ranges)
         zeros += item.dust == 0;
         assert_true(item.light[0].power == 1);
         for (int k = 0; k < SYNTH_FIELDS; k++)
-            if (synth_field[k].law > SYNTH_COUNTED && number(&item, k) != 0) {
-                low[k] = fmin(low[k], number(&item, k));
-                high[k] = fmax(high[k], number(&item, k));
+            if (synth_field[k].law > SYNTH_COUNTED && field_of(&item, k) != 0) {
+                low[k] = fmin(low[k], field_of(&item, k));
+                high[k] = fmax(high[k], field_of(&item, k));
             }
     }
     assert_in_range(zeros, 1850, 2150); /* 5 sigma are 158 */
@@ -93,7 +93,7 @@ TEST(numbers_keep_to_ranges)
     }
 }
 
-/* Another range for one number leaves all others. */
+/* Checks that a changed range of one number does not change the others. */
 TEST(numbers_stand_alone)
 {
     struct synth_item a = named, b = named;
@@ -102,7 +102,7 @@ TEST(numbers_stand_alone)
 
     synth_ranges_defaults(&ranges);
     synth_item_draw(&a, &ranges, 3, 14);
-    /* Names of one length are as different as others. */
+    /* Numbers whose names have the same length are independent as well. */
     assert_true(a.crop_x != a.crop_y);
     assert_true(synth_ranges_take(&ranges, "level=0.5", &why));
     synth_item_draw(&b, &ranges, 3, 14);
@@ -120,7 +120,7 @@ TEST(numbers_stand_alone)
     assert_true(synth_ranges_take(&ranges, "star=0", &why));
 }
 
-/* The noise of a sensor has the variance of its photons and of reading. */
+/* Checks that sensor noise has the variance of photon noise plus read noise. */
 TEST(noise_is_of_photons)
 {
     enum { SIDE = 256, N = 3 * SIDE * SIDE };

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What positions of a zoom are baked with: their keys tell. */
+ * Tests the options with which the positions of a zoom lens are baked, by the
+ * keys of the models.
+ */
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -27,10 +29,10 @@ static void zoom_to(struct glint_prescription *at, double along)
         fail_msg("%s", error.text);
 }
 
-/* Bakes both ends, and what it takes for HALFWAY_DB. KEY receives those of the
- * models of the ends. */
-static void bake(const struct glint_bake_options *options, double halfway_db,
-                 uint64_t key[2])
+/* Bakes both ends and the positions needed for an error of HALFWAY_DB in
+ * between. Sets KEY to the keys of the models of the ends. */
+static void bake_zoom(const struct glint_bake_options *options,
+                      double halfway_db, uint64_t key[2])
 {
     static struct glint_zoom_lens zoom;
     struct tool tool = {.name = "test", .quiet = true};
@@ -53,10 +55,10 @@ static void bake(const struct glint_bake_options *options, double halfway_db,
     free(baked.data);
 }
 
-/* Returns the key of the position ALONG with that at BESIDE, below 0 none, next
- * to it. */
-static uint64_t key_of(const struct glint_bake_options *options, double along,
-                       double beside)
+/* Returns the model key of the position ALONG (0 .. 1) whose neighbour is at
+ * BESIDE; BESIDE < 0: no neighbour. */
+static uint64_t compute_key(const struct glint_bake_options *options,
+                            double along, double beside)
 {
     struct glint_prescription at, other;
     struct glint_bake_options with = *options;
@@ -68,8 +70,8 @@ static uint64_t key_of(const struct glint_bake_options *options, double along,
     return glint_bake_key(&at, &with);
 }
 
-/* Two positions may be halved four times: finest steps are a sixteenth of the
- * way. */
+/* Checks the step between positions: an interval may be halved four times,
+ * so the finest step is 1/16. */
 TEST(ends_know_what_lies_a_finest_step_off)
 {
     struct glint_bake_options options;
@@ -81,12 +83,12 @@ TEST(ends_know_what_lies_a_finest_step_off)
         fail_msg("%s", error.text);
     glint_bake_defaults(&options);
     options.max_deg = 3;
-    bake(&options, 1, key);
-    assert_true(key[0] == key_of(&options, 0, 1 / 16.0));
-    assert_true(key[1] == key_of(&options, 1, 15 / 16.0));
-    bake(&options, 0, key);
-    assert_true(key[0] == key_of(&options, 0, -1));
-    assert_true(key[1] == key_of(&options, 1, -1));
-    assert_true(key_of(&options, 0, 1) != key_of(&options, 0, -1));
-    assert_true(key_of(&options, 0, 1) != key_of(&options, 0, 0.5));
+    bake_zoom(&options, 1, key);
+    assert_true(key[0] == compute_key(&options, 0, 1 / 16.0));
+    assert_true(key[1] == compute_key(&options, 1, 15 / 16.0));
+    bake_zoom(&options, 0, key);
+    assert_true(key[0] == compute_key(&options, 0, -1));
+    assert_true(key[1] == compute_key(&options, 1, -1));
+    assert_true(compute_key(&options, 0, 1) != compute_key(&options, 0, -1));
+    assert_true(compute_key(&options, 0, 1) != compute_key(&options, 0, 0.5));
 }

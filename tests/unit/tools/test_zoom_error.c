@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Errors of a zoom of two lenses that was baked at both ends: lights come from
- * where they are reported to, an end is exact, and the middle is not. */
+ * Tests the error of a zoom lens of two elements that was baked at both ends:
+ * lights come from the reported angles, ends are exact, the middle is not.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -21,7 +22,8 @@ static const char table[] = "name t\n"
                             "surface  90    4  12  1.62 36\n"
                             "surface -90   40/38  12  air\n";
 
-static struct glint_prescription at[3]; /* both ends, and half-way */
+/* the lens at both ends, and half-way */
+static struct glint_prescription at[3];
 static struct glint_bake_model model[2];
 static unsigned char *file;
 static struct glint_zoom_lens zoom;
@@ -66,11 +68,12 @@ TEST_CLOSE
     free(file);
 }
 
-/* Sets the errors of ghosts whose first is below 0, with lights up to MAX_DEG,
- * SHIFT of their shares on. The zoom is set to ALONG, as LENS is. */
-static void measure_to(double max_deg, const struct glint_prescription *lens,
-                       double along, double shift,
-                       struct zoom_error error[GHOSTS])
+/* Measures the errors of the ghosts whose first error is below 0, with
+ * lights up to MAX_DEG that are shifted by SHIFT of their spacing. ALONG is
+ * the zoom position, LENS the table at that position. */
+static void measure_up_to(double max_deg, const struct glint_prescription *lens,
+                          double along, double shift,
+                          struct zoom_error error[GHOSTS])
 {
     const struct tool tool = {.name = "test"};
     struct glint_error message = {""};
@@ -84,13 +87,14 @@ static void measure_to(double max_deg, const struct glint_prescription *lens,
 static void measure(const struct glint_prescription *lens, double along,
                     double shift, struct zoom_error error[GHOSTS])
 {
-    measure_to(MAX_DEG, lens, along, shift, error);
+    measure_up_to(MAX_DEG, lens, along, shift, error);
 }
 
-enum { EACH = 4 }; /* of the angles is measured in any case */
+enum { EACH = 4 }; /* of the angles, one in EACH is always measured */
 
-/* Requests the errors of ghost 0; those of the other one are 2. */
-static void ask(struct zoom_error error[GHOSTS])
+/* Marks the errors of ghost 0 as wanted (-1) and those of the other ghost as
+ * done (2). */
+static void mark_wanted(struct zoom_error error[GHOSTS])
 {
     for (int g = 0; g < GHOSTS; g++)
         for (int a = 0; a < ZOOM_ANGLES; a++)
@@ -110,23 +114,23 @@ TEST(ends_are_exact)
 {
     struct zoom_error end[GHOSTS];
 
-    ask(end);
+    mark_wanted(end);
     measure(&at[0], 0, 0.5, end);
     for (int a = 0; a < ZOOM_ANGLES; a++) {
-        /* 49.2 dB, of a model at 50 dB against interpolated exact rays */
+        /* 49.2 dB: a model of 50 dB against interpolated exact rays */
         assert_true(end[0].of[a] >= 0 && end[0].of[a] < 1.2e-5);
         assert_true(end[1].of[a] == 2);
     }
 }
 
-/* The middle is not. The end of a fraction of the angles is where the next
- * begins. */
+/* Checks that the middle is not exact, and that the last angle of one
+ * interval is the first of the next. */
 TEST(lights_are_shifted)
 {
     struct zoom_error begin[GHOSTS], end[GHOSTS];
 
-    ask(begin);
-    ask(end);
+    mark_wanted(begin);
+    mark_wanted(end);
     measure(&at[2], 0.5, 0, begin);
     measure(&at[2], 0.5, 1, end);
     assert_true(largest(&begin[0]) > 3e-5);
@@ -134,17 +138,17 @@ TEST(lights_are_shifted)
         assert_true(end[0].of[a] == begin[0].of[a + EACH]);
 }
 
-/* Where a ghost ends, here as the model does, angles between those that are
- * measured in any case have the errors of lights that come from there. */
+/* Checks that where a ghost vanishes (here in the model as well) angles
+ * between those that are always measured are measured too. */
 TEST(ends_of_ghosts_are_found)
 {
     struct zoom_error halves[GHOSTS], there[GHOSTS];
     int ends = 0;
 
-    ask(halves);
-    ask(there);
-    measure_to(80, &at[0], 0, 0, halves);
-    measure_to(80, &at[0], 0, 0.5, there);
+    mark_wanted(halves);
+    mark_wanted(there);
+    measure_up_to(80, &at[0], 0, 0, halves);
+    measure_up_to(80, &at[0], 0, 0.5, there);
     for (int a = 0; a + EACH < ZOOM_ANGLES; a += EACH) {
         const double *const of = &halves[0].of[a];
 
@@ -158,8 +162,9 @@ TEST(ends_of_ghosts_are_found)
     assert_int_equal(ends, 1);
 }
 
-/* Lights go up to 1.5 times the half diagonal, here beyond what was baked, so
- * that the last of them show whole ghosts as errors. */
+/* Checks that lights go up to 1.5 times the half diagonal, here further than
+ * the model was baked for, so that at the last angles whole ghosts count as
+ * errors. */
 TEST(lights_end_beyond_the_corner)
 {
     const double corner_mm = 0.5 * hypot(24, 16);
@@ -169,12 +174,12 @@ TEST(lights_end_beyond_the_corner)
 
     glint_optics_of(&at[0], &optics);
     corner_deg = 180 / GLINT_PI * atan(corner_mm / optics.focal_mm);
-    ask(asked);
-    ask(all);
-    ask(less);
-    measure_to(1.5 * corner_deg, &at[0], 0, 0.5, asked);
-    measure_to(80, &at[0], 0, 0.5, all);
-    measure_to(1.4 * corner_deg, &at[0], 0, 0.5, less);
+    mark_wanted(asked);
+    mark_wanted(all);
+    mark_wanted(less);
+    measure_up_to(1.5 * corner_deg, &at[0], 0, 0.5, asked);
+    measure_up_to(80, &at[0], 0, 0.5, all);
+    measure_up_to(1.4 * corner_deg, &at[0], 0, 0.5, less);
     assert_memory_equal(asked, all, sizeof all);
     assert_memory_not_equal(asked, less, sizeof all);
 }

@@ -19,7 +19,8 @@
 
 /* clang-format off */
 const struct control_form control_forms[] = {
-    /* verb             word           clause    names, behind it; numbers, from, to, whole */
+    /* verb, word, clause; number of names, names after the clause; min and
+     * max count of numbers, lowest, highest, integers only */
     {CONTROL_ORBIT,    "orbit",       NULL,       0, 0, 2, 2, -360, 360, false,
      "orbit YAW PITCH"},
     {CONTROL_DISTANCE, "distance",    NULL,       0, 0, 1, 1, 1e-6, 1e6, false,
@@ -68,7 +69,7 @@ const struct control_form control_forms[] = {
 /* clang-format on */
 const int control_n_forms = sizeof control_forms / sizeof *control_forms;
 
-/* Returns whether lines of control can change OPTION. */
+/* Returns whether control lines can change OPTION. */
 static bool is_changeable(const struct glint_option *option)
 {
     return option->changes == GLINT_OPTION_FRAME &&
@@ -77,12 +78,12 @@ static bool is_changeable(const struct glint_option *option)
 
 static const char blanks[] = " \t\r\n";
 
-/* A line while it is read, word by word. */
+/* State of reading a line word by word. */
 struct reader {
-    const char *text, *at; /* AT: behind the last word */
+    const char *text, *at; /* at: after the last word */
     const char *where;
     char word[CONTROL_LINE];
-    int column; /* of the word, or of the end of the line */
+    int column; /* column of the word, or of the end of the line */
     struct glint_error *error;
 };
 
@@ -112,8 +113,8 @@ static bool next_word(struct reader *r)
     return n > 0;
 }
 
-/* Returns a reader after the next word; R itself does not move. */
-static struct reader peek(const struct reader *r)
+/* Returns a copy of R advanced by one word; R does not change. */
+static struct reader peek_word(const struct reader *r)
 {
     struct reader ahead = *r;
 
@@ -123,7 +124,7 @@ static struct reader peek(const struct reader *r)
 
 /* ---------------------------------------------------------------- the form */
 
-/* Reports which words are valid instead of this word. */
+/* Reports that the word is unknown, and which words are valid. */
 static enum glint_status fail_word(const struct reader *r, const char *before)
 {
     struct suggest suggest;
@@ -146,8 +147,9 @@ static enum glint_status fail_word(const struct reader *r, const char *before)
                         suggest_words(&suggest));
 }
 
-/* Returns the first form from index I on that begins with WORD, or NULL. */
-static const struct control_form *form_of(const char *word, int i)
+/* Returns the first form at index I or later whose first word is WORD, or
+ * NULL. */
+static const struct control_form *find_form(const char *word, int i)
 {
     for (; i < control_n_forms; i++)
         if (strcmp(control_forms[i].word, word) == 0)
@@ -173,8 +175,8 @@ static enum glint_status read_names(struct reader *r,
     return GLINT_OK;
 }
 
-/* Reads the clause, if forms of the word have some, and sets FORM to that of
- * it. */
+/* Reads the clause, if the word has forms with one, and sets FORM to the
+ * form of that clause. */
 static enum glint_status read_clause(struct reader *r,
                                      const struct control_form **form)
 {
@@ -185,7 +187,7 @@ static enum glint_status read_clause(struct reader *r,
     if (!next_word(r))
         return control_fail(r->error, r->where, r->column, "expected %s",
                             f->usage);
-    for (; f; f = form_of(f->word, (int)(f - control_forms) + 1))
+    for (; f; f = find_form(f->word, (int)(f - control_forms) + 1))
         if (strcmp(f->clause, r->word) == 0) {
             *form = f;
             return GLINT_OK;
@@ -197,7 +199,7 @@ static enum glint_status read_numbers(struct reader *r,
                                       const struct control_form *form,
                                       struct control_line *line)
 {
-    line->column = peek(r).column;
+    line->column = peek_word(r).column;
     while (line->n < form->most && next_word(r)) {
         double v;
 
@@ -222,10 +224,10 @@ static enum glint_status read_numbers(struct reader *r,
 
 /* -------------------------------------------------------------------- line */
 
-/* Reads a number of a frame, if the line begins with one. */
+/* Reads the frame number, if the line begins with one. */
 static enum glint_status read_frame(struct reader *r, struct control_line *line)
 {
-    const struct reader ahead = peek(r);
+    const struct reader ahead = peek_word(r);
     double v;
 
     if (!strchr("+-.0123456789", *ahead.word) || !*ahead.word)
@@ -263,7 +265,7 @@ static enum glint_status read_option(struct reader *r,
                         option->name, accepts, line->v[0]);
 }
 
-/* Reads what follows the number of the frame. */
+/* Reads the command after the frame number. */
 static enum glint_status read_command(struct reader *r,
                                       struct control_line *line)
 {
@@ -285,7 +287,7 @@ static enum glint_status read_command(struct reader *r,
         set.usage = usage;
         status = read_option(r, option, form, line);
     } else {
-        form = form_of(r->word, 0);
+        form = find_form(r->word, 0);
         if (!form)
             return fail_word(r, NULL);
         status = read_names(r, form, form->names, line);
@@ -324,7 +326,7 @@ enum glint_status control_parse(const char *text, const char *where,
     return status;
 }
 
-/* Degrees, and factors of distances and slopes. */
+/* Changes per key: degrees, and factors of distances and slopes. */
 #define STEP_DEG 3
 #define NEARER   0.95
 #define SMOOTHER 0.87
@@ -363,11 +365,11 @@ static const struct {
 
 enum { N_KEYS = (int)(sizeof keys / sizeof *keys) };
 
-/* Settings of the terminal before keys were read, for restoring them. */
+/* terminal settings to restore at the end */
 static struct termios before;
 static volatile sig_atomic_t terminal = -1;
 
-static void put_back(void)
+static void restore_terminal(void)
 {
     if (terminal >= 0)
         tcsetattr(terminal, TCSANOW, &before);
@@ -381,21 +383,21 @@ enum glint_status keyboard_open(struct keyboard *k, int fd)
     if (tcgetattr(fd, &before) != 0)
         return GLINT_E_IO;
     k->fd = fd;
-    glint_at_death(put_back);
+    glint_at_death(restore_terminal);
     terminal = fd;
     raw = before;
     raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
     raw.c_cc[VMIN] = 0;
     raw.c_cc[VTIME] = 0;
-    /* From the background this would stop the process. */
+    /* Called from the background, tcsetattr() would stop the process. */
     if (tcgetpgrp(fd) == getpgrp())
         tcsetattr(fd, TCSANOW, &raw);
     return GLINT_OK;
 }
 
-/* Returns how many bytes the first key of TEXT[N] has: one, or those up to the
- * letter that ends an escape sequence. */
-static int length_of(const char *text, int n)
+/* Returns the length of the first key of TEXT[N]: one byte, or the bytes of
+ * an escape sequence up to its final letter. */
+static int key_length(const char *text, int n)
 {
     int i = 2;
 
@@ -408,7 +410,7 @@ static int length_of(const char *text, int n)
 
 int keyboard_take(const char *text, int n, struct control_line *line)
 {
-    const int length = length_of(text, n);
+    const int length = key_length(text, n);
 
     *line = (struct control_line){.frame = -1};
     for (int i = 0; i < N_KEYS; i++)
@@ -422,7 +424,7 @@ int keyboard_take(const char *text, int n, struct control_line *line)
 }
 
 /* Reads pressed keys into K. Returns false if there are none. */
-static bool fill(struct keyboard *k)
+static bool read_keys(struct keyboard *k)
 {
     struct pollfd there = {.fd = k->fd, .events = POLLIN};
     ssize_t n = 0;
@@ -436,7 +438,7 @@ static bool fill(struct keyboard *k)
 
 bool keyboard_next(struct keyboard *k, struct control_line *line)
 {
-    while (k->at < k->n || fill(k)) {
+    while (k->at < k->n || read_keys(k)) {
         if (k->bytes[k->at] == 'q')
             raise(SIGINT);
         k->at += keyboard_take(k->bytes + k->at, k->n - k->at, line);
@@ -449,7 +451,7 @@ bool keyboard_next(struct keyboard *k, struct control_line *line)
 static void close_keyboard(struct keyboard *k)
 {
     if (k->fd >= 0)
-        put_back();
+        restore_terminal();
     terminal = -1;
     k->fd = -1;
 }
@@ -465,10 +467,10 @@ static void print_where(const struct controls *in, int number, char *where)
              number);
 }
 
-/* Parses TEXT, the line read last, into LINE. */
-static enum glint_status take(const struct controls *in, const char *text,
-                              struct control_line *line,
-                              struct glint_error *error)
+/* Parses TEXT, the last line read, into LINE. */
+static enum glint_status parse_line(const struct controls *in, const char *text,
+                                    struct control_line *line,
+                                    struct glint_error *error)
 {
     char where[CONTROL_WHERE];
     enum glint_status status;
@@ -495,7 +497,7 @@ static enum glint_status read_all(struct controls *in,
             return glint_error_report(error, GLINT_E_MEMORY, in->lines.name,
                                       "%s", text_no_memory);
         in->row = more;
-        status = take(in, text, &line, error);
+        status = parse_line(in, text, &line, error);
         if (status == GLINT_OK && line.verb != CONTROL_NONE)
             more[in->n++] = line;
     }
@@ -539,8 +541,8 @@ void controls_close(struct controls *input)
 
 /* -------------------------------------------------------------------- lines */
 
-/* Reads the next command of the pipe into in->ahead; returns false if none has
- * come. */
+/* Reads the next command of the pipe into in->ahead. Returns false if none
+ * has arrived. */
 static bool read_ahead(struct controls *in)
 {
     const char *text;
@@ -548,7 +550,7 @@ static bool read_ahead(struct controls *in)
     while (in->lines.is_pipe && (text = text_lines_raw(&in->lines))) {
         struct glint_error error;
 
-        if (take(in, text, &in->ahead, &error) != GLINT_OK)
+        if (parse_line(in, text, &in->ahead, &error) != GLINT_OK)
             controls_refuse(in, &error);
         else if (in->ahead.verb != CONTROL_NONE)
             return true;

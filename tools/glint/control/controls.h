@@ -12,8 +12,8 @@
  * lines after it, wait for that frame.
  *
  * The terminal is set to return keys at once, without echo; its settings are
- * restored however the process ends. While the process is in the background, no
- * key is read.
+ * restored however the process ends. No key is read while the process is in the
+ * background.
  *
  * Examples of lines:
  *
@@ -24,8 +24,9 @@
  * A line has words, then numbers, separated by blanks; # begins a comment.
  * Every command that changes a scene is a row of the table control_forms, which
  * states its arguments: a new command needs a row there and a case in steer.c.
- * Commands that change a flare are the options in glint/options.inc that are
- * numbers and take effect with the next frame: strength 0.4. */
+ * Commands that change a flare are the numeric options in glint/options.inc
+ * that take effect with the next frame, such as: strength 0.4.
+ */
 #ifndef GLINT_TOOLS_CONTROL_CONTROLS_H
 #define GLINT_TOOLS_CONTROL_CONTROLS_H
 
@@ -41,34 +42,38 @@ enum {
 
 enum control_verb {
     CONTROL_NONE, /* an empty line */
-    /* The camera. */
-    CONTROL_ORBIT,    /* about the point ahead: yaw to the right, pitch up,
-                         degrees */
-    CONTROL_DISTANCE, /* from the middle of the orbit, units */
-    CONTROL_SENSOR,   /* to the position of a sensor of the motion, number from
-                         1 */
-    CONTROL_SCENE,    /* back to its position in the scene */
-    CONTROL_WALK,     /* moves by units to the right, up and ahead */
-    CONTROL_LOOK,     /* yaw to the right, pitch up, roll clockwise, degrees */
-    /* Materials, by name. */
-    CONTROL_ALPHA,    /* of brushed metal; one value sets both axes */
-    CONTROL_COLOUR,   /* of Phong materials; specular of brushed metal */
-    CONTROL_DIFFUSE,  /* of brushed metal */
-    CONTROL_MATERIAL, /* name of an object, name of its material */
-    /* Objects, or kinds of objects of a motion, by name. */
+    /* Camera: */
+    /* orbits the point ahead: yaw to the right, pitch up, degrees */
+    CONTROL_ORBIT,
+    /* sets the distance from the centre of the orbit, units */
+    CONTROL_DISTANCE,
+    /* moves to the position of a motion's sensor, numbered from 1 */
+    CONTROL_SENSOR,
+    CONTROL_SCENE, /* returns to the position in the scene file */
+    CONTROL_WALK,  /* moves by units to the right, up and ahead */
+    /* rotates: yaw to the right, pitch up, roll clockwise, degrees */
+    CONTROL_LOOK,
+    /* Materials, by name: */
+    CONTROL_ALPHA, /* alpha of brushed metal; a single value sets both axes */
+    /* colour of Phong materials; specular colour of brushed metal */
+    CONTROL_COLOUR,
+    CONTROL_DIFFUSE, /* diffuse colour of brushed metal */
+    /* changes an object's material: names of object and material */
+    CONTROL_MATERIAL,
+    /* Objects, or types of objects of a motion, by name: */
     CONTROL_SHOW,
     CONTROL_HIDE,
     CONTROL_SIZE, /* radius of a ball, units */
-    /* Environment light. */
+    /* Environment light: */
     CONTROL_TURN,     /* rotation to the right, degrees */
-    CONTROL_SCALE,    /* factor on all its light */
+    CONTROL_SCALE,    /* factor for all of its light */
     CONTROL_MAP,      /* selects an environment of the scene by name */
     CONTROL_NEXT_MAP, /* selects the next environment */
-    /* Time of poses and recorded motions. */
-    CONTROL_STEP, /* by frames, default 1; may be negative */
-    CONTROL_JUMP, /* to a frame */
-    CONTROL_PLAY, /* frames per second; without a number one frame per
-                     picture */
+    /* Time of poses and recorded motions: */
+    CONTROL_STEP, /* moves by a number of frames, default 1; may be negative */
+    CONTROL_JUMP, /* moves to a frame */
+    /* sets the frames per second; without a number one frame per picture */
+    CONTROL_PLAY,
     CONTROL_PAUSE,
     CONTROL_STOP, /* pauses at frame 0 */
     /* The flare: name[0] is an engine option that takes effect with the next
@@ -81,10 +86,10 @@ enum control_verb {
 struct control_form {
     enum control_verb verb;
     const char *word;   /* first word of the line */
-    const char *clause; /* word after the names, or NULL */
+    const char *clause; /* keyword after the names, or NULL */
     int names;          /* 0 .. 2 names, the same for all forms of a word */
-    int behind;         /* names after the clause instead */
-    int least, most;    /* min and max count of numbers */
+    int behind;      /* number of names after the clause instead of before it */
+    int least, most; /* min and max count of numbers */
     double lowest, highest;
     bool is_whole; /* numbers must be integers */
     const char *usage;
@@ -98,12 +103,14 @@ struct control_line {
     int number; /* line number in the file, from 1 */
     int frame;  /* -1: no frame given */
     enum control_verb verb;
-    bool is_change; /* from a key: degrees are added to the current value, other
-                       values multiply it */
+    /* from a key: angles (degrees) are added to the current value, other
+     * values multiply it */
+    bool is_change;
     char name[2][CONTROL_NAME];
-    int name_column[2], column; /* byte positions in the line, from 1, of the
-                                   names and of the first value */
-    int n;                      /* values */
+    /* byte positions in the line, from 1: of the names, and of the first
+     * value */
+    int name_column[2], column;
+    int n; /* number of values */
     double v[CONTROL_VALUES];
 };
 
@@ -120,8 +127,7 @@ extern const char keyboard_help[];
 
 enum {
     CONTROL_WHERE = 200
-}; /* max bytes of a position in a text, "FILE:LINE",
-      with its end */
+}; /* max bytes of a text position, "FILE:LINE", with its terminator */
 
 struct controls {
     long n_bad;             /* number of lines that were skipped */
@@ -129,7 +135,7 @@ struct controls {
 
     /* Private. */
     bool is_open, is_keys, has_ahead;
-    struct text_lines lines;  /* closed once a file is read */
+    struct text_lines lines;  /* closed after a file was read */
     struct control_line *row; /* lines of a file */
     int n, next;
     int read_at; /* picture at which the pipe was last read */
@@ -163,25 +169,25 @@ bool keyboard_next(struct keyboard *k, struct control_line *line);
 int keyboard_take(const char *text, int n, struct control_line *line);
 
 /* Opens PATH, which must outlive INPUT; "-" is standard input. If IS_LIVE, a
- * FIFO and standard input are read line by line as data arrives, and a terminal
- * on standard input key by key; else all is read at once. Errors: GLINT_E_IO,
- * GLINT_E_MEMORY, and GLINT_E_FORMAT with "FILE:LINE:COLUMN: cause" in
- * ERROR. */
+ * FIFO and standard input are read line by line as data arrives, and a
+ * terminal on standard input is read key by key; else everything is read at
+ * once. Errors: GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT with
+ * "FILE:LINE:COLUMN: cause" in ERROR. */
 enum glint_status controls_open(struct controls *input, const char *path,
                                 bool is_live, struct glint_error *error);
 
-/* Returns the next line for PICTURE or an earlier one, or NULL if there are no
- * more. PICTURE must not fall from call to call. */
+/* Returns the next line for PICTURE or an earlier one, or NULL if there are
+ * no more. PICTURE must not decrease from call to call. */
 const struct control_line *controls_next(struct controls *input, int picture);
 
-/* Returns line I of a file, or NULL if I is past its last line. */
+/* Returns line I of a file, or NULL if there are fewer. */
 const struct control_line *controls_row(const struct controls *input, int i);
 
-/* Writes "FILE:LINE" of line I of a file, or, if I is below 0, of the line
- * returned last, to WHERE[CONTROL_WHERE]. */
+/* Writes "FILE:LINE" of line I of a file (I < 0: of the line returned last)
+ * to WHERE[CONTROL_WHERE]. */
 void controls_where(const struct controls *input, int i, char *where);
 
-/* Counts the line returned last as skipped, for the reason ERROR. */
+/* Counts the line returned last as skipped because of ERROR. */
 void controls_refuse(struct controls *input, const struct glint_error *error);
 
 void controls_close(struct controls *input);

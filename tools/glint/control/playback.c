@@ -9,7 +9,7 @@ void playback_init(struct playback *playback)
 }
 
 /* Jumps to frame AT, clamped to the valid frames; the next picture shows it. */
-static void go(struct playback *p, double at)
+static void jump(struct playback *p, double at)
 {
     p->at = fmax(0, fmin(at, p->last));
     p->has_shown = false;
@@ -20,22 +20,22 @@ bool playback_take(struct playback *playback, const struct control_line *line)
     switch (line->verb) {
     case CONTROL_STEP:
         playback->is_paused = true;
-        go(playback, floor(playback->at) + (line->n ? line->v[0] : 1));
+        jump(playback, floor(playback->at) + (line->n ? line->v[0] : 1));
         return true;
     case CONTROL_JUMP:
-        go(playback, line->v[0]);
+        jump(playback, line->v[0]);
         return true;
     case CONTROL_PLAY:
         playback->is_paused = false;
         playback->fps = line->n ? line->v[0] : -1;
         return true;
     case CONTROL_PAUSE:
-        /* A second time it continues, as the key does. */
+        /* pressing the key again continues */
         playback->is_paused = !line->is_change || !playback->is_paused;
         return true;
     case CONTROL_STOP:
         playback->is_paused = true;
-        go(playback, 0);
+        jump(playback, 0);
         return true;
     default:
         return false;

@@ -7,8 +7,9 @@
  *     playback_take(&playback, &line);              step, jump, play ...
  *     frame = playback_next(&playback, elapsed_s);  each picture
  *
- * If a rate is set, playback follows the time, not the number of pictures:
- * frame k looks the same whatever was shown before. */
+ * If a rate is set, playback follows time, not the number of pictures: frame k
+ * does not depend on what was shown before.
+ */
 #ifndef GLINT_TOOLS_CONTROL_PLAYBACK_H
 #define GLINT_TOOLS_CONTROL_PLAYBACK_H
 
@@ -20,14 +21,14 @@ struct playback {
     int last;   /* last frame */
 
     /* Private. */
-    double at;      /* position, frames, with its fraction */
+    double at;      /* position in frames, with fraction */
     bool has_shown; /* a picture was shown since the last jump */
 };
 
 /* Sets PLAYBACK to play from frame 0, one frame per picture. */
 void playback_init(struct playback *playback);
 
-/* Executes LINE if it is a command of time; returns whether it is. */
+/* Executes LINE if it is a command about time. Returns whether it is. */
 bool playback_take(struct playback *playback, const struct control_line *line);
 
 /* Returns the frame of the next picture, ELAPSED_S after the previous

@@ -10,7 +10,8 @@
 
 #define RADIAN 0.017453292519943295
 
-/* Min and max factor on light that keys can reach, as in scene texts. */
+/* Min and max factor on the environment's light by keys; scene texts have
+ * the same limits. */
 #define LEAST_SCALE 1e-6
 #define MOST_SCALE  1e6
 
@@ -31,7 +32,7 @@ static void open_environments(struct steer *steer)
     }
 }
 
-/* Checks LINE, which is about environments. */
+/* Checks LINE, a command about environments. */
 static enum glint_status check_environment(const struct steer *steer,
                                            const struct control_line *line,
                                            const char *where,
@@ -73,9 +74,9 @@ static enum glint_status show_environment(const struct steer *s,
     return status;
 }
 
-static enum glint_status take_environment(struct steer *steer,
-                                          struct glint_scene *scene,
-                                          const struct control_line *line)
+static enum glint_status change_environment(struct steer *steer,
+                                            struct glint_scene *scene,
+                                            const struct control_line *line)
 {
     struct steer_map *const m = &steer->environment[steer->shown];
     const double v = line->v[0];
@@ -93,10 +94,10 @@ static enum glint_status take_environment(struct steer *steer,
     return show_environment(steer, scene);
 }
 
-/* Sets KIND to the kind of objects called NAME; returns false if there is none,
- * or an object has that name. */
-static bool kind_of(const struct steer *steer, const char *name,
-                    enum glint_scene_kind *kind)
+/* Sets KIND to the type of objects called NAME. Returns false if there is no
+ * such type, or if an object has that name. */
+static bool find_kind(const struct steer *steer, const char *name,
+                      enum glint_scene_kind *kind)
 {
     static const char *const kinds[GLINT_KINDS] = {"body",   "sensors", "foods",
                                                    "shells", "lines",   "box"};
@@ -116,7 +117,7 @@ static bool names_kind(const struct steer *s, const struct control_line *line,
 {
     return (line->verb == CONTROL_SHOW || line->verb == CONTROL_HIDE ||
             line->verb == CONTROL_SIZE) &&
-           kind_of(s, line->name[0], kind);
+           find_kind(s, line->name[0], kind);
 }
 
 static enum glint_status check_sensor(const struct steer *steer,
@@ -146,7 +147,7 @@ static enum glint_status set_camera(const struct steer *s,
 }
 
 /* Rotates axis A towards axis B by DEG degrees. */
-static void turn(double axis[3][3], int a, int b, double deg)
+static void rotate_axes(double axis[3][3], int a, int b, double deg)
 {
     const double c = cos(deg * RADIAN), sine = sin(deg * RADIAN);
 
@@ -158,7 +159,7 @@ static void turn(double axis[3][3], int a, int b, double deg)
     }
 }
 
-/* Sets FROM to the unit vector from the middle of the orbit to the camera. */
+/* Sets FROM to the unit vector from the centre of the orbit to the camera. */
 static void set_from(const struct steer_orbit *o, double from[3])
 {
     const double yaw = o->yaw_deg * RADIAN, pitch = o->pitch_deg * RADIAN;
@@ -168,8 +169,8 @@ static void set_from(const struct steer_orbit *o, double from[3])
     from[2] = -cos(pitch) * cos(yaw);
 }
 
-/* Sets at and axes of CAMERA to where the orbit has it. GLINT_E_ARGUMENT: out
- * of range. */
+/* Sets position and axes of CAMERA from the orbit. Returns GLINT_E_ARGUMENT
+ * if the position is out of range. */
 static enum glint_status orbit_camera(const struct steer *steer,
                                       struct glint_scene_camera *camera)
 {
@@ -179,7 +180,7 @@ static enum glint_status orbit_camera(const struct steer *steer,
     double from[3];
 
     set_from(&s->orbit, from);
-    /* up is ahead x right, of axes whose z runs away */
+    /* up is ahead x right, as z points away from the viewer */
     const double axis[3][3] = {
         {x, 0, z},
         {-from[1] * z, from[0] * z - from[2] * x, from[1] * x},
@@ -197,9 +198,9 @@ static enum glint_status orbit_camera(const struct steer *steer,
     return GLINT_OK;
 }
 
-/* Moves or turns the camera by its own axes, from where it is. */
-static enum glint_status take_free(struct steer *s, struct glint_scene *scene,
-                                   const struct control_line *line)
+/* Moves or rotates the camera along its own axes. */
+static enum glint_status move_camera(struct steer *s, struct glint_scene *scene,
+                                     const struct control_line *line)
 {
     const struct steer before = *s;
     struct glint_scene_camera *const c = &s->camera;
@@ -222,9 +223,9 @@ static enum glint_status take_free(struct steer *s, struct glint_scene *scene,
             c->at[i] = (int32_t)lround(at);
     }
     if (line->verb == CONTROL_LOOK) {
-        turn(axis, 2, 0, line->v[0]); /* ahead to the right */
-        turn(axis, 2, 1, line->v[1]); /* ahead up */
-        turn(axis, 1, 0, line->v[2]); /* up to the right */
+        rotate_axes(axis, 2, 0, line->v[0]); /* rotates ahead to the right */
+        rotate_axes(axis, 2, 1, line->v[1]); /* rotates ahead upwards */
+        rotate_axes(axis, 1, 0, line->v[2]); /* rolls up to the right */
     }
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3; i++)
@@ -241,8 +242,9 @@ static enum glint_status take_free(struct steer *s, struct glint_scene *scene,
     return status;
 }
 
-static enum glint_status take_sensor(struct steer *s, struct glint_scene *scene,
-                                     const struct control_line *line)
+static enum glint_status move_to_sensor(struct steer *s,
+                                        struct glint_scene *scene,
+                                        const struct control_line *line)
 {
     const int sensor = line->verb == CONTROL_SENSOR ? (int)line->v[0] - 1 : -1;
     enum glint_status status = GLINT_OK;
@@ -262,9 +264,9 @@ static enum glint_status take_sensor(struct steer *s, struct glint_scene *scene,
 /* --------------------------------------------------------------------- kinds
  */
 
-static enum glint_status take_kind(struct steer *s, struct glint_scene *scene,
-                                   const struct control_line *line,
-                                   enum glint_scene_kind kind)
+static enum glint_status change_kind(struct steer *s, struct glint_scene *scene,
+                                     const struct control_line *line,
+                                     enum glint_scene_kind kind)
 {
     const double steps = rint(ldexp(line->v[0], s->model.header->unit_log2));
     enum glint_status status = GLINT_OK;
@@ -297,10 +299,10 @@ static void apply_motion(const struct steer *steer, struct glint_scene *scene)
         set_camera(steer, scene);
 }
 
-/* Below 90 degrees: a camera straight above would have no right axis. */
+/* degrees; a camera directly above would have no right axis */
 #define MOST_PITCH 89.0
 
-/* Min and max alpha of brushed metal that keys can reach. */
+/* Min and max alpha of brushed metal by keys. */
 #define LEAST_ALPHA 0.001
 #define MOST_ALPHA  1.0
 
@@ -376,11 +378,11 @@ static const char *name_of(const struct steer *s, bool is_material, int i)
     return is_material ? s->model.material[i].name : s->model.object[i].name;
 }
 
-/* Sets INDEX to that of name K of LINE. */
-static enum glint_status find(const struct steer *s,
-                              const struct control_line *line, int k,
-                              bool is_material, const char *where,
-                              struct glint_error *error, int *index)
+/* Sets INDEX to the index of name K of LINE. */
+static enum glint_status find_index(const struct steer *s,
+                                    const struct control_line *line, int k,
+                                    bool is_material, const char *where,
+                                    struct glint_error *error, int *index)
 {
     const char *const name = line->name[k];
     const int n = is_material ? n_materials(s) : n_objects(s);
@@ -401,26 +403,27 @@ static enum glint_status find(const struct steer *s,
         is_material ? "material" : "thing", name, suggest_words(&suggest));
 }
 
-/* Returns whether the first name of LINE is that of a material. */
+/* Returns whether the first name of LINE is a material. */
 static bool is_of_material(const struct control_line *line)
 {
     return line->verb == CONTROL_ALPHA || line->verb == CONTROL_COLOUR ||
            line->verb == CONTROL_DIFFUSE;
 }
 
-/* Sets INDEX[2] to what LINE names; 0 where it names nothing. */
-static enum glint_status find_all(const struct steer *s,
-                                  const struct control_line *line,
-                                  const char *where, struct glint_error *error,
-                                  int index[2])
+/* Sets INDEX[2] to the indices of the names of LINE, 0 for a missing name. */
+static enum glint_status find_indices(const struct steer *s,
+                                      const struct control_line *line,
+                                      const char *where,
+                                      struct glint_error *error, int index[2])
 {
     enum glint_status status = GLINT_OK;
 
     index[0] = index[1] = 0;
     if (*line->name[0])
-        status = find(s, line, 0, is_of_material(line), where, error, index);
+        status =
+            find_index(s, line, 0, is_of_material(line), where, error, index);
     if (status == GLINT_OK && *line->name[1])
-        status = find(s, line, 1, true, where, error, index + 1);
+        status = find_index(s, line, 1, true, where, error, index + 1);
     return status;
 }
 
@@ -452,7 +455,7 @@ enum glint_status steer_check(const struct steer *steer,
     }
     if (names_kind(steer, line, &kind))
         return GLINT_OK;
-    status = find_all(steer, line, where, error, index);
+    status = find_indices(steer, line, where, error, index);
     if (status != GLINT_OK)
         return status;
     if (is_set && line->verb != CONTROL_COLOUR && !is_metal(steer, index[0]))
@@ -482,9 +485,9 @@ static enum glint_status apply_orbit(const struct steer *s,
                : status;
 }
 
-/* Starts an orbit about a point ahead of the camera, at the depth of the
- * objects' mean position (without planes and hidden objects), or one unit ahead
- * if that is behind the camera. */
+/* Starts an orbit about a point ahead of the camera at the depth of the
+ * objects' mean position (without planes and hidden objects), or one unit
+ * ahead if that lies behind the camera. */
 static void begin_orbit(struct steer *s)
 {
     const struct glint_scene_camera *const c = &s->camera;
@@ -525,8 +528,9 @@ bool steer_camera(struct steer *steer, const int32_t at[3],
     return !steer->orbit.is_there && steer->sensor < 0;
 }
 
-static enum glint_status take_camera(struct steer *s, struct glint_scene *scene,
-                                     const struct control_line *line)
+static enum glint_status change_camera(struct steer *s,
+                                       struct glint_scene *scene,
+                                       const struct control_line *line)
 {
     const struct steer before = *s;
     const double *const v = line->v;
@@ -560,7 +564,7 @@ static enum glint_status take_camera(struct steer *s, struct glint_scene *scene,
 /* --------------------------------------------------------------------- looks
  */
 
-/* Changes LOOK, of material I, as LINE requests. */
+/* Changes LOOK, the appearance of material I, by LINE. */
 static void change_look(const struct steer *s, const struct control_line *line,
                         int i, struct glint_scene_look *look)
 {
@@ -582,7 +586,8 @@ static void change_look(const struct steer *s, const struct control_line *line,
     }
 }
 
-/* Returns whether LOOK of material I reflects at most the light it receives. */
+/* Returns whether material I with the appearance LOOK reflects at most the
+ * light it receives. */
 static bool is_darker(const struct steer *s, int i,
                       const struct glint_scene_look *look)
 {
@@ -593,10 +598,12 @@ static bool is_darker(const struct steer *s, int i,
     return is;
 }
 
-/* Changes the look of material INDEX, or of all metals. Changes nothing if any
- * of them cannot be set as LINE requests. */
-static enum glint_status take_look(struct steer *s, struct glint_scene *scene,
-                                   const struct control_line *line, int index)
+/* Changes the appearance of material INDEX, or of all metals. Changes
+ * nothing if any of them cannot be set as LINE requests. */
+static enum glint_status change_appearance(struct steer *s,
+                                           struct glint_scene *scene,
+                                           const struct control_line *line,
+                                           int index)
 {
     const bool all = !*line->name[0];
     const int end = all ? n_materials(s) : index + 1;
@@ -626,8 +633,8 @@ static enum glint_status take_look(struct steer *s, struct glint_scene *scene,
 /* -------------------------------------------------------------------- objects
  */
 
-/* Returns the first object that shows a material, or -1. */
-static int first_thing(const struct steer *s)
+/* Returns the first object that has a material, or -1. */
+static int first_object(const struct steer *s)
 {
     for (int i = 0; i < n_objects(s); i++)
         if (s->thing[i].is_shown && s->model.object[i].catcher_q15 == 0)
@@ -635,12 +642,12 @@ static int first_thing(const struct steer *s)
     return -1;
 }
 
-static enum glint_status take_material(struct steer *s,
-                                       struct glint_scene *scene,
-                                       const struct control_line *line,
-                                       const int index[2])
+static enum glint_status change_material(struct steer *s,
+                                         struct glint_scene *scene,
+                                         const struct control_line *line,
+                                         const int index[2])
 {
-    const int i = line->is_change ? first_thing(s) : index[0];
+    const int i = line->is_change ? first_object(s) : index[0];
     int material = index[1];
     enum glint_status status;
 
@@ -656,8 +663,8 @@ static enum glint_status take_material(struct steer *s,
     return status;
 }
 
-static enum glint_status take_size(struct steer *s, struct glint_scene *scene,
-                                   const struct control_line *line, int i)
+static enum glint_status change_size(struct steer *s, struct glint_scene *scene,
+                                     const struct control_line *line, int i)
 {
     const double radius = ldexp(line->v[0], s->model.header->unit_log2);
     const int32_t steps = (int32_t)lround(fmin(radius, GLINT_SCENE_SPAN));
@@ -671,9 +678,11 @@ static enum glint_status take_size(struct steer *s, struct glint_scene *scene,
 /* ---------------------------------------------------------------------- line
  */
 
-static enum glint_status obey(struct steer *s, struct glint_scene *scene,
-                              const struct control_line *line,
-                              const char *where, struct glint_error *error)
+static enum glint_status execute_line(struct steer *s,
+                                      struct glint_scene *scene,
+                                      const struct control_line *line,
+                                      const char *where,
+                                      struct glint_error *error)
 {
     enum glint_scene_kind kind;
     enum glint_status status;
@@ -682,40 +691,40 @@ static enum glint_status obey(struct steer *s, struct glint_scene *scene,
     switch (line->verb) {
     case CONTROL_SENSOR:
     case CONTROL_SCENE:
-        return take_sensor(s, scene, line);
+        return move_to_sensor(s, scene, line);
     case CONTROL_WALK:
     case CONTROL_LOOK:
-        return take_free(s, scene, line);
+        return move_camera(s, scene, line);
     case CONTROL_TURN:
     case CONTROL_SCALE:
     case CONTROL_MAP:
     case CONTROL_NEXT_MAP:
-        return take_environment(s, scene, line);
+        return change_environment(s, scene, line);
     case CONTROL_ORBIT:
     case CONTROL_DISTANCE:
-        return take_camera(s, scene, line);
+        return change_camera(s, scene, line);
     default:
         break;
     }
     if (names_kind(s, line, &kind))
-        return take_kind(s, scene, line, kind);
-    status = find_all(s, line, where, error, index);
+        return change_kind(s, scene, line, kind);
+    status = find_indices(s, line, where, error, index);
     if (status != GLINT_OK)
         return status;
     switch (line->verb) {
     case CONTROL_ALPHA:
     case CONTROL_COLOUR:
     case CONTROL_DIFFUSE:
-        return take_look(s, scene, line, index[0]);
+        return change_appearance(s, scene, line, index[0]);
     case CONTROL_MATERIAL:
-        return take_material(s, scene, line, index);
+        return change_material(s, scene, line, index);
     case CONTROL_SHOW:
     case CONTROL_HIDE:
         s->thing[index[0]].is_shown = line->verb == CONTROL_SHOW;
         glint_scene_show(scene, index[0], s->thing[index[0]].is_shown);
         return GLINT_OK;
     case CONTROL_SIZE:
-        return take_size(s, scene, line, index[0]);
+        return change_size(s, scene, line, index[0]);
     default:
         return GLINT_OK;
     }
@@ -729,7 +738,7 @@ enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
 
     if (status != GLINT_OK)
         return line->is_change ? GLINT_OK : status;
-    status = obey(steer, scene, line, where, error);
+    status = execute_line(steer, scene, line, where, error);
     if (line->is_change)
         return GLINT_OK;
     if (status == GLINT_E_ARGUMENT)

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * steer.h - applies control lines to a scene and stores the changes.
+ * steer.h - applies control lines to a scene and records the changes.
  *
  *     steer_open(&steer, &model);
  *     steer_take(&steer, scene, &line, where, &error);    each line
  *     steer_apply(&steer, scene);               a scene that was placed again
  *     steer_close(&steer);
  *
- * No change needs baking: the next picture shows it. */
+ * No change requires a bake: the next picture shows it.
+ */
 #ifndef GLINT_TOOLS_CONTROL_STEER_H
 #define GLINT_TOOLS_CONTROL_STEER_H
 
@@ -18,7 +19,7 @@
 struct steer_thing {
     bool is_shown;
     int material;
-    int32_t radius; /* of a ball, steps */
+    int32_t radius; /* of a ball, scene steps */
 };
 
 /* Current state of an environment. */
@@ -26,16 +27,16 @@ struct steer_map {
     double turn_deg, scale;
 };
 
-/* Current state of a kind of objects of a motion. */
+/* Current state of one type of objects of a motion. */
 struct steer_kind {
     bool is_hidden;
-    int32_t steps; /* radius or width; 0: as in the scene */
+    int32_t steps; /* radius or width, scene steps; 0: as in the scene */
 };
 
 /* A camera that orbits a point. */
 struct steer_orbit {
     bool is_there;
-    double middle[3], distance; /* steps */
+    double middle[3], distance; /* centre and distance, scene steps */
     double yaw_deg, pitch_deg;
 };
 
@@ -47,22 +48,23 @@ struct steer {
     struct steer_orbit orbit;
     /* The camera before it began to orbit. */
     struct glint_scene_camera camera;
-    bool is_free; /* it was moved by hand, so that poses no longer move it */
+    /* the camera was moved by control lines, so that poses no longer move it */
+    bool is_free;
     struct steer_map environment[GLINT_SCENE_MAX_ENVIRONMENTS];
-    int shown; /* environment */
+    int shown; /* index of the visible environment */
     struct steer_kind kind[GLINT_KINDS];
-    int sensor; /* sensor at which the camera is, or -1 */
+    int sensor; /* sensor that the camera is at, or -1 */
 };
 
-/* Initialises STEER for MODEL, which is copied; the data that it points to must
+/* Initialises STEER with a copy of MODEL; the data that MODEL points to must
  * outlive STEER. Returns GLINT_E_MEMORY on failure. */
 enum glint_status steer_open(struct steer *steer,
                              const struct glint_scene_model *model);
 
 void steer_close(struct steer *steer);
 
-/* Stores that a pose moved the camera to AT, AXIS_Q30. Returns false if the
- * camera ignores the pose, because control lines have moved it. */
+/* Records that a pose moved the camera to AT, AXIS_Q30. Returns false if the
+ * camera ignores poses, because control lines have moved it. */
 bool steer_camera(struct steer *steer, const int32_t at[3],
                   const int32_t axis_q30[3][3]);
 
@@ -72,13 +74,14 @@ enum glint_status steer_check(const struct steer *steer,
                               const struct control_line *line,
                               const char *where, struct glint_error *error);
 
-/* Executes LINE, which must not be a command of time. Returns GLINT_E_FORMAT as
- * steer_check() does; nothing is changed then. */
+/* Executes LINE, which must not be a command about time. Returns
+ * GLINT_E_FORMAT like steer_check(), without any change. */
 enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
                              const struct control_line *line, const char *where,
                              struct glint_error *error);
 
-/* Applies all changes so far to SCENE, which must be as its model has it. */
+/* Applies all recorded changes to SCENE, which must be in the state of its
+ * model. */
 void steer_apply(const struct steer *steer, struct glint_scene *scene);
 
 #endif

@@ -7,12 +7,12 @@
 #include "options/json_writer.h"
 #include "scenes/scene_frame.h"
 
-/* Name of each kind of work that is counted. */
+/* names of the counted types of work */
 extern const char *const scene_item_name[GLINT_SCENE_ITEMS];
 
 /* Statistics of the frame drawn last. */
 struct scene_account {
-    struct glint_scene_part *objects; /* [n_objects], malloc'ed */
+    struct glint_scene_part *objects; /* [n_objects], owned */
     struct glint_scene_part all;
     int16_t *seen; /* [height][width]: index of the visible object, or -1 */
     struct glint_scene_layered layer[GLINT_KINDS];

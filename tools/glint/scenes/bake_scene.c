@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake NAME.scene: writes a scene as the run time takes it.
+ * glint bake NAME.scene: bakes a scene text into the format of the run time.
  */
 #include "model/bake_line.h"
 #include "scenes/baked_scene.h"

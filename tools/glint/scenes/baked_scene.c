@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is in a baked scene, in words and in numbers.
+ * Opens baked scenes and prints their contents and sizes.
  */
 #include "scenes/baked_scene.h"
 
@@ -42,7 +42,7 @@ int baked_scene_open(const struct tool *tool, const char *path,
             return code;
         status = glint_input_slurp(&data, &scene->bytes, path, MAX_SCENE_BYTES,
                                    &error);
-        scene->data = data; /* malloc aligns it */
+        scene->data = data; /* malloc() aligns it */
     }
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
@@ -61,7 +61,7 @@ void baked_scene_close(struct baked_scene *scene)
     *scene = (struct baked_scene){.data = NULL};
 }
 
-/* What the bytes of a baked scene hold. */
+/* Sections of a baked scene whose bytes are counted. */
 enum {
     HEADER,
     LIGHT,
@@ -70,7 +70,7 @@ enum {
     ENVIRONMENT,
     STONE,
     OBJECT,
-    MESH, /* all that follow, and their headers */
+    MESH, /* all mesh sections below, with their headers */
     VERTICES,
     NORMALS,
     UV,
@@ -121,8 +121,8 @@ static void measure_mesh(const struct glint_scene_model *model,
     b[MESH] += sizeof *m;
 }
 
-/* Returns the bytes of translucent media, and of the maps of what is of them.
- */
+/* Returns the bytes of translucent media and of the light maps of the
+ * objects made of them. */
 static size_t stone_bytes(const struct glint_scene_model *model)
 {
     const struct glint_scene_header *h = model->header;
@@ -156,7 +156,7 @@ static size_t environment_bytes(const struct glint_scene_model *model)
     return bytes;
 }
 
-static struct scene_counts measure(const struct glint_scene_model *model)
+static struct scene_counts count_contents(const struct glint_scene_model *model)
 {
     const struct glint_scene_header *h = model->header;
     struct scene_counts n = {
@@ -186,7 +186,7 @@ static struct scene_counts measure(const struct glint_scene_model *model)
 void baked_scene_bytes(struct json_writer *json,
                        const struct glint_scene_model *model)
 {
-    const struct scene_counts n = measure(model);
+    const struct scene_counts n = count_contents(model);
 
     json_write(json, "bytes: {");
     for (int k = 0; k <= MESH; k++)
@@ -260,7 +260,7 @@ static void print_text(const struct baked_scene *scene,
 
 void baked_scene_print(const struct tool *tool, const struct baked_scene *scene)
 {
-    const struct scene_counts counts = measure(&scene->model);
+    const struct scene_counts counts = count_contents(&scene->model);
 
     (tool->json ? print_json : print_text)(scene, &counts);
 }

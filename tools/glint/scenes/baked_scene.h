@@ -8,19 +8,19 @@
 #include "scenes/scene_file.h"
 
 struct baked_scene {
-    void *data; /* malloc'ed; MODEL points into it */
+    void *data; /* owned; MODEL points into it */
     size_t bytes;
     struct glint_scene_model model;
-    struct glint_scene_bake_report report; /* zeros if the scene was read from a
-                                              baked file */
+    /* all zero if the scene was read from a baked file */
+    struct glint_scene_bake_report report;
     bool is_text;
 };
 
 /* Returns whether ARGUMENT is a scene: a text, NAME.scene, or a file that
- * begins as baked scenes do. */
+ * begins with the magic number of baked scenes. */
 bool baked_scene_is(const char *argument);
 
-/* Opens PATH as SCENE: bakes it if it is a text, else reads it. Returns an exit
+/* Opens PATH as SCENE: bakes a text, reads a baked file. Returns an exit
  * code, after printing the reason on failure. */
 int baked_scene_open(const struct tool *tool, const char *path,
                      struct baked_scene *scene);

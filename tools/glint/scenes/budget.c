@@ -3,22 +3,23 @@
 
 #include <math.h>
 
-/* Frames with a level before a finer one is tried. Each try that fails doubles
- * them. */
+/* Frames to draw with a level before a finer one is tried. Each failed trial
+ * doubles the number. */
 #define HOLD     8
 #define MAX_HOLD 512
-/* Fraction of the time below which a finer level is tried: a step takes 1.3
- * times as long at least. */
+/* Fraction of the limit below which a finer level is tried; a level takes at
+ * least 1.3 times as long as the next coarser one. */
 #define SPARE 0.75
-/* Fraction of the time that is the scene's if the flare needs the rest, and
- * that it has at least. */
+/* Fraction of a frame's time for the scene if the flare needs the rest, and
+ * its min fraction. */
 #define FRACTION     0.6
 #define MIN_FRACTION 0.1
 
-/* Points of light and lookups of metal go first, as edges of shadows are little
- * of a picture and 4 lookups lose less than 2 dB, then places shaded, last the
- * outlines. QUALITY: of --quality, from which on it is drawn. PSNR falls from
- * 48 dB to 36 (mean of three scenes at revision e8a4a84c). */
+/* Shadow points and metal lookups are reduced first, as penumbrae cover
+ * little of an image and 4 lookups lose less than 2 dB; then the number of
+ * shaded points, last the edge samples. QUALITY: min --quality at which the
+ * level is used. PSNR falls from 48 dB to 36 dB (mean of three scenes at
+ * revision e8a4a84c). */
 static const struct {
     int points, edge, samples;
     bool half;
@@ -29,7 +30,7 @@ static const struct {
                                  {1, 4, 4, true, 0.125},
                                  {1, 1, 4, true, 0}};
 
-enum { USUAL = 1 }; /* the level of the default quality */
+enum { USUAL = 1 }; /* level of the default quality */
 
 void scene_budget_init(struct scene_budget *budget,
                        const struct scene_dials *asked)
@@ -60,7 +61,7 @@ void scene_dials_be(struct scene_dials *dials, double quality)
     dials->half_shading |= levels[i].half;
 }
 
-static int least(int a, int b)
+static int min_int(int a, int b)
 {
     return a < b ? a : b;
 }
@@ -70,15 +71,15 @@ struct scene_dials scene_budget_dials(const struct scene_budget *budget,
 {
     struct scene_dials d = budget->asked;
 
-    d.shadow_points = least(d.shadow_points, levels[level].points);
-    d.edge_samples = least(d.edge_samples, levels[level].edge);
+    d.shadow_points = min_int(d.shadow_points, levels[level].points);
+    d.edge_samples = min_int(d.edge_samples, levels[level].edge);
     d.half_shading = d.half_shading || levels[level].half;
-    d.ward_samples = least(d.ward_samples, levels[level].samples);
+    d.ward_samples = min_int(d.ward_samples, levels[level].samples);
     return d;
 }
 
-/* Returns the level BY, 1 or -1, from budget->level, of other dials. If there
- * is none, returns budget->level. */
+/* Returns the nearest level in direction BY (1 or -1) whose parameters
+ * differ from those of budget->level, or budget->level if there is none. */
 static int next_level(const struct scene_budget *budget, int by)
 {
     const struct scene_dials from = scene_budget_dials(budget, budget->level);
@@ -99,7 +100,7 @@ static int next_level(const struct scene_budget *budget, int by)
 bool scene_budget_follow(struct scene_budget *budget, double ms,
                          double limit_ms)
 {
-    /* A single slow frame is ignored: another program may have caused it. */
+    /* A single slow frame is ignored, as another program may have caused it. */
     const double low_ms = fmin(ms, budget->last_ms);
     const int before = budget->level;
 
@@ -110,7 +111,7 @@ bool scene_budget_follow(struct scene_budget *budget, double ms,
     if (low_ms > limit_ms) {
         budget->level = next_level(budget, 1);
         if (budget->is_try)
-            budget->hold = least(MAX_HOLD, 2 * budget->hold);
+            budget->hold = min_int(MAX_HOLD, 2 * budget->hold);
         budget->is_try = false;
     } else if (budget->n_frames >= budget->hold) {
         if (budget->is_try)
@@ -125,8 +126,8 @@ bool scene_budget_follow(struct scene_budget *budget, double ms,
     return true;
 }
 
-/* The flare's planner takes what the scene leaves, so that its time alone does
- * not show that it needs more: its quality does. */
+/* The flare's planner uses all the time that the scene leaves. Its time
+ * therefore does not show whether it needs more; its quality does. */
 double scene_budget_limit(double all_ms, double flare_ms, double quality)
 {
     const double rest_ms = all_ms - flare_ms, part_ms = FRACTION * all_ms;

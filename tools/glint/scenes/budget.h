@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adapts the quality of a scene to a time per frame: one level coarser after
- * two frames that took too long, one level finer after some frames that took
- * much less. */
+ * Adapts the quality of a scene to a time limit per frame: one level coarser
+ * after two frames above the limit, one level finer after some frames far below
+ * it.
+ */
 #ifndef GLINT_TOOLS_SCENES_BUDGET_H
 #define GLINT_TOOLS_SCENES_BUDGET_H
 
@@ -30,25 +31,25 @@ void scene_budget_init(struct scene_budget *budget,
 struct scene_dials scene_budget_dials(const struct scene_budget *budget,
                                       int level);
 
-/* Sets budget->level for the next frame, after a frame that took MS and should
- * have taken at most LIMIT_MS. Returns whether the level changed. */
+/* Sets budget->level for the next frame, after a frame that took MS with a
+ * limit of LIMIT_MS. Returns whether the level changed. */
 bool scene_budget_follow(struct scene_budget *budget, double ms,
                          double limit_ms);
 
-/* Returns how many of the ALL_MS milliseconds of a frame the scene may use, if
- * the flare took FLARE_MS at QUALITY, as of --quality. Both are 0 before the
- * first frame. */
+/* Returns how much of ALL_MS, the time of a frame, the scene may use, ms.
+ * FLARE_MS: time of the flare, at QUALITY of --quality. Both are 0 before
+ * the first frame. */
 double scene_budget_limit(double all_ms, double flare_ms, double quality);
 
-/* Sets the members of DIALS that are 0 by QUALITY, as of --quality. At 0.5, the
- * default, they stay 0. */
+/* Sets those members of DIALS that are 0 by QUALITY, the --quality. At the
+ * default of 0.5 they stay 0. */
 void scene_dials_be(struct scene_dials *dials, double quality);
 
-/* Returns the highest quality, as of --quality, whose parameters are nowhere
- * finer than budget->level. */
+/* Returns the highest --quality whose parameters are nowhere finer than
+ * those of budget->level. */
 double scene_budget_quality(const struct scene_budget *budget);
 
-/* Returns the finest level that is not finer than QUALITY, as of --quality. */
+/* Returns the finest level that is not finer than the --quality QUALITY. */
 int scene_budget_level(double quality);
 
 #endif

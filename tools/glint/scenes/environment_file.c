@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is in a baked environment, in words and in numbers.
+ * Reads, bakes and prints environment maps.
  */
 #include "scenes/environment_file.h"
 
@@ -50,11 +50,11 @@ static enum glint_status read_text(const char *path,
     return status;
 }
 
-/* Bakes the picture FROM, under the name of the file NAMED. */
-static enum glint_status bake(const char *named, const char *from,
-                              const struct glint_environment_options *options,
-                              struct environment_file *file,
-                              struct glint_error *error)
+/* Bakes the picture FROM under the name of the file NAMED. */
+static enum glint_status
+bake_picture(const char *named, const char *from,
+             const struct glint_environment_options *options,
+             struct environment_file *file, struct glint_error *error)
 {
     struct glint_float_image picture = {0};
     unsigned char *data = NULL;
@@ -94,7 +94,8 @@ bake_source(const char *path, const char *written,
     const char *picture = path;
     enum glint_status status = GLINT_OK;
 
-    memset(&options, 0, sizeof options); /* padding is a part of the key */
+    /* padding is part of the hashed key */
+    memset(&options, 0, sizeof options);
     glint_environment_defaults(&options);
     if (is_text(path)) {
         status = read_text(path, &options, source, error);
@@ -104,8 +105,9 @@ bake_source(const char *path, const char *written,
     }
     if (override)
         override(ctx, &options);
-    return status == GLINT_OK ? bake(path, picture, &options, file, error)
-                              : status;
+    return status == GLINT_OK
+               ? bake_picture(path, picture, &options, file, error)
+               : status;
 }
 
 enum glint_status environment_file_read(
@@ -125,7 +127,7 @@ enum glint_status environment_file_read(
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
-        file->data = data; /* malloc aligns it */
+        file->data = data; /* malloc() aligns it */
     }
     if (status != GLINT_OK ||
         glint_environment_open(&file->environment, file->data, file->bytes,
@@ -159,12 +161,13 @@ void environment_file_close(struct environment_file *file)
 }
 
 struct counts {
-    long long texels, mips, full; /* these; of mips; of all levels as fine as
-                                     the first */
-    size_t levels, irradiance, lights, header; /* bytes */
+    /* texels: in all levels; mips: if they were a mipmap; full: if all
+     * levels had the size of the first */
+    long long texels, mips, full;
+    size_t levels, irradiance, lights, header; /* bytes of each section */
 };
 
-static struct counts count(const struct environment_file *file)
+static struct counts count_contents(const struct environment_file *file)
 {
     const struct glint_environment_header *h = file->environment.header;
     const long long first = 1LL << (2 * h->side_log2);
@@ -280,7 +283,7 @@ void environment_file_print(const struct tool *tool,
 
     if (!file->environment.header)
         return;
-    n = count(file);
+    n = count_contents(file);
     (tool->json ? print_json : print_text)(file, &n);
 }
 
@@ -302,7 +305,7 @@ static const char bake_help[] =
     "  --turn DEG          about the vertical, to the right\n"
     "  --scale X           factor of all light\n";
 
-/* What the line says; -1, or has_ false: nothing. */
+/* Values of the command line; -1, or has_ false: not given. */
 struct line {
     int side_log2, lights;
     bool has_turn, has_scale;

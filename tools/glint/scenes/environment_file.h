@@ -8,24 +8,24 @@
 #include "options/tool.h"
 
 struct environment_file {
-    void *data; /* malloc'ed; ENVIRONMENT points into it */
+    void *data; /* owned; ENVIRONMENT points into it */
     size_t bytes;
     struct glint_environment environment;
     struct glint_environment_report report; /* of the bake, if is_baked_now */
     bool is_baked_now;
 };
 
-/* Return whether ARGUMENT is a source, a picture of light (.exr, .hdr, .pfm,
- * .dds) or the text of an environment, or a file that begins as baked
- * environments do. */
+/* Return whether ARGUMENT is a source (a picture of light, .exr, .hdr, .pfm
+ * or .dds, or the text of an environment), or a file that begins with the
+ * magic number of baked environments. */
 bool environment_file_is_source(const char *argument);
 bool environment_file_is_baked(const char *argument);
 
-/* Open the picture, text or baked file PATH. They reject it if PATH, or the
- * picture of a text, is the output file WRITTEN. OVERRIDE, unless NULL, is
- * called to change the options of the bake after the options of a text were
- * read. environment_file_open() prints the reason of a failure and returns an
- * exit code. */
+/* Open the picture, text or baked file PATH. They reject PATH, or the
+ * picture that a text names, if it is the output file WRITTEN. OVERRIDE,
+ * unless NULL, is called after the options of a text were read and may
+ * change them. environment_file_open() prints the reason of a failure and
+ * returns an exit code. */
 enum glint_status environment_file_read(
     const char *path, const char *written,
     void (*override)(void *ctx, struct glint_environment_options *), void *ctx,

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Alignment of the tracker's arena, bytes. */
+/* alignment of the tracker's memory, bytes */
 #define ALIGNMENT 64
 
 enum glint_status glints_open(struct glints *glints, int width, int height)
@@ -16,7 +16,8 @@ enum glint_status glints_open(struct glints *glints, int width, int height)
     glint_lamp_tracker_defaults(&cfg, width, height);
     cfg.max_tracks = GLINTS_MAX;
     cfg.max_shown = GLINT_SCENE_MAX_HIGHLIGHTS;
-    /* Objects that turn show several highlights at once: that is not a cut. */
+    /* Disables cut detection: rotating objects may show several highlights
+     * at once. */
     cfg.cut_q15 = (1 << 15) + 1;
     bytes = glint_lamp_tracker_bytes(&cfg);
     if (posix_memalign(&glints->mem, ALIGNMENT, bytes)) {
@@ -32,8 +33,9 @@ void glints_close(struct glints *glints)
     *glints = (struct glints){.n = 0};
 }
 
-/* Returns SPOT of a still picture as a track. */
-static struct glint_lamp_track still(const struct glint_spot *spot, int number)
+/* Returns SPOT of an independent picture as a track at full level. */
+static struct glint_lamp_track make_track(const struct glint_spot *spot,
+                                          int number)
 {
     return (struct glint_lamp_track){
         .id = (uint32_t)number + 1,
@@ -60,7 +62,7 @@ int glints_frame(struct glints *glints, const struct glint_scene *scene,
     g->n = g->n_found;
     for (int i = 0; i < g->n_found; i++) {
         spot[i] = g->found[i].spot;
-        g->track[i] = still(&spot[i], i);
+        g->track[i] = make_track(&spot[i], i);
     }
     if (elapsed_us > 0)
         g->n = glint_lamp_tracker_step(g->tracks, spot, g->n_found, elapsed_us,

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * glints.h - highlights of a scene over time, as lamps of the flare.
+ * glints.h - tracks the highlights of a scene over time and returns them as
+ * lamps of the flare.
  *
  *     glints_open(&glints, width, height);
  *     n = glints_frame(&glints, scene, elapsed_us);            each picture
  *     glints_lamp(&glints, i, &view, focal_mm, &lamp, &level);
  *     glints_close(&glints);
  *
- * Highlights are tracked as lamps of a picture are: they fade in and out, and
- * do not jump. */
+ * Highlights are tracked like lamps in a picture: they fade in and out and do
+ * not jump.
+ */
 #ifndef GLINT_TOOLS_SCENES_GLINTS_H
 #define GLINT_TOOLS_SCENES_GLINTS_H
 
@@ -17,13 +19,13 @@
 #include "glint/setup.h"
 #include "glint/view.h"
 
-/* twice the max found: others may fade out meanwhile */
+/* twice the number that can be found, as others may be fading out */
 enum { GLINTS_MAX = 2 * GLINT_SCENE_MAX_HIGHLIGHTS };
 
 struct glints {
     struct glint_scene_highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
     struct glint_lamp_track track[GLINTS_MAX];
-    int n_found, n; /* of the last picture */
+    int n_found, n; /* n_found: highlights in the last picture; n: tracks */
 
     /* Private. */
     struct glint_lamp_tracker *tracks;

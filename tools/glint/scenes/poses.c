@@ -26,8 +26,8 @@ static const struct text_column columns[COLUMNS] = {
 /* --------------------------------------------------------------------- line */
 
 /* Returns the index of the object NAME, or -2 with a cause in LINES. */
-static int find_thing(const struct glint_scene_model *m, const char *name,
-                      struct text_lines *lines)
+static int find_object(const struct glint_scene_model *m, const char *name,
+                       struct text_lines *lines)
 {
     const int n = (int)m->header->n_objects;
     struct suggest suggest;
@@ -53,8 +53,9 @@ static int find_thing(const struct glint_scene_model *m, const char *name,
     return -2;
 }
 
-/* Sets TO to X over its length, _q30, z as the file has it; of a turn, which a
- * mirror turns the other way, x and y. Returns false if there is no length. */
+/* Sets TO to the unit vector of X[N], Q30, with z in the handedness of the
+ * scene; for a quaternion of a mirrored scene negates x and y. Returns false
+ * if the length is 0. */
 static bool set_unit(const struct glint_scene_model *m, const double *x, int n,
                      int32_t *to)
 {
@@ -88,9 +89,9 @@ static bool set_place(const struct glint_scene_model *m, const double at[3],
 }
 
 /* Sets POSE to the values V of the object NAME. */
-static const char *make(const struct glint_scene_model *m,
-                        struct text_lines *lines, const char *name,
-                        const double v[COLUMNS], struct pose *pose)
+static const char *make_pose(const struct glint_scene_model *m,
+                             struct text_lines *lines, const char *name,
+                             const double v[COLUMNS], struct pose *pose)
 {
     const int n = (int)m->header->n_objects;
     bool is_sun;
@@ -98,7 +99,7 @@ static const char *make(const struct glint_scene_model *m,
     if (v[FRAME] != floor(v[FRAME]))
         return columns[FRAME].range;
     pose->frame = v[FRAME] < 0 ? 0 : (int)v[FRAME];
-    pose->thing = find_thing(m, name, lines);
+    pose->thing = find_object(m, name, lines);
     if (pose->thing == -2)
         return lines->cause;
     is_sun =
@@ -113,9 +114,9 @@ static const char *make(const struct glint_scene_model *m,
     return NULL;
 }
 
-/* Splits LINE into FIELD. */
-static const char *split(struct text_lines *lines, char *line,
-                         char *field[COLUMNS])
+/* Splits LINE into the columns FIELD. */
+static const char *split_line(struct text_lines *lines, char *line,
+                              char *field[COLUMNS])
 {
     const char *cause;
     int n = 0;
@@ -146,7 +147,7 @@ static const char *parse(const struct poses *p, struct text_lines *lines,
     const bool is_object = *line == '{';
     double v[COLUMNS] = {-1};
     char *field[COLUMNS] = {NULL};
-    const char *const late = split(lines, line, field);
+    const char *const late = split_line(lines, line, field);
     const char *cause = NULL;
 
     for (int k = 0; k < COLUMNS && !cause; k++)
@@ -161,7 +162,7 @@ static const char *parse(const struct poses *p, struct text_lines *lines,
     *pose = (struct pose){.has_turn = field[TURN] != NULL};
     if (cause || late)
         return cause ? cause : late;
-    return make(&p->model, lines, field[OBJECT], v, pose);
+    return make_pose(&p->model, lines, field[OBJECT], v, pose);
 }
 
 static const char *check_heading(char *line)
@@ -178,7 +179,7 @@ static const char *check_heading(char *line)
                : "the heading must be frame,object,x,y,z[,qw,qx,qy,qz]";
 }
 
-static int by_frame(const void *a, const void *b)
+static int compare_frames(const void *a, const void *b)
 {
     const struct pose *p = a, *q = b;
 
@@ -187,7 +188,8 @@ static int by_frame(const void *a, const void *b)
     return p->order < q->order ? -1 : p->order > q->order;
 }
 
-/* Adds POSE to those of a file, or of a pipe behind those of its frame. */
+/* Inserts POSE: at the end for a file, for a pipe after the poses of its
+ * frame. */
 static const char *insert(struct poses *p, const struct pose *pose)
 {
     struct pose *more;
@@ -211,7 +213,7 @@ static const char *insert(struct poses *p, const struct pose *pose)
     return NULL;
 }
 
-static const char *take_line(void *ctx, struct text_lines *lines, char *line)
+static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
 {
     struct poses *const p = ctx;
     struct pose pose;
@@ -237,9 +239,9 @@ enum glint_status poses_open(struct poses *poses, const char *path,
         return text_lines_pipe(&poses->lines, path, error);
     status = text_lines_open(&poses->lines, path, NULL, MAX_BYTES, error);
     if (status == GLINT_OK)
-        status = text_lines_each(&poses->lines, take_line, poses, error);
+        status = text_lines_each(&poses->lines, parse_line, poses, error);
     if (poses->n > 0)
-        qsort(poses->row, (size_t)poses->n, sizeof *poses->row, by_frame);
+        qsort(poses->row, (size_t)poses->n, sizeof *poses->row, compare_frames);
     if (status != GLINT_OK)
         poses_close(poses);
     return status;
@@ -254,8 +256,8 @@ void poses_close(struct poses *poses)
 
 /* --------------------------------------------------------------------- pipe */
 
-/* Notes that the last line was skipped. */
-static void note_bad(struct poses *p, const char *cause)
+/* Records CAUSE for the last line, which is skipped. */
+static void record_error(struct poses *p, const char *cause)
 {
     if (p->n_bad++ == 0)
         text_lines_fail(&p->lines, &p->bad, cause);
@@ -269,9 +271,9 @@ static void read_pipe(struct poses *p)
     text_lines_turn(&p->lines);
     while ((line = text_lines_next(&p->lines))) {
         cause = p->lines.is_long ? "the line is longer than 511 bytes"
-                                 : take_line(p, &p->lines, line);
+                                 : parse_line(p, &p->lines, line);
         if (cause)
-            note_bad(p, cause);
+            record_error(p, cause);
     }
 }
 

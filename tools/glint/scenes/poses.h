@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * poses.h - positions and rotations of the objects of a scene, frame by frame.
+ * poses.h - reads positions and rotations of the objects of a scene, frame by
+ * frame.
  *
  *     poses_open(&poses, path, is_live, &model, &error);
  *     while ((pose = poses_next(&poses, frame)))           each frame
@@ -10,12 +11,13 @@
  * The text is CSV, "frame,object,x,y,z[,qw,qx,qy,qz]", of which the first line
  * may be this heading, or flat JSON objects with these keys. object is the name
  * of an object or light of the scene, or camera. Frames count from 0; * is
- * every frame until a later line for the object. x, y, z are scene units, of a
+ * every frame until a later line for the object. x, y, z are scene units, for a
  * sun the direction to it, in the handedness of the scene's text. The
  * quaternion rotates from the object's own axes (camera: x right, y up, looking
  * in the direction of a camera that is not rotated) to those of the scene;
- * without it the rotation stays. A pose is valid until the next pose of its
- * object. */
+ * without it the rotation does not change. A pose is valid until the next pose
+ * of its object.
+ */
 #ifndef GLINT_TOOLS_SCENES_POSES_H
 #define GLINT_TOOLS_SCENES_POSES_H
 
@@ -24,7 +26,8 @@
 
 enum {
     POSES_CAMERA = -1,
-    POSES_AHEAD = 1 << 16 /* max poses from a pipe that wait for their frames */
+    /* max number of poses from a pipe that wait for their frames */
+    POSES_AHEAD = 1 << 16
 };
 
 struct pose {
@@ -32,7 +35,7 @@ struct pose {
     int thing;        /* index of an object, n_objects + index of a light, or
                          POSES_CAMERA */
     bool has_turn;
-    /* position in scene steps; of a sun a unit vector, q30 */
+    /* position in scene steps; for a sun a unit vector, Q30 */
     int32_t at[3];
     int32_t turn_q30[4]; /* unit quaternion w, x, y, z */
 };
@@ -44,30 +47,30 @@ struct poses {
     /* Private. */
     bool is_open;
     struct glint_scene_model model;
-    struct text_lines lines; /* closed once a file is read */
+    struct text_lines lines; /* closed after a file was read */
     struct pose *row;        /* sorted by frame */
     int n, next;
-    int read_at; /* frame at which a pipe was read last */
+    int read_at; /* frame at which the pipe was last read */
 };
 
-/* Opens PATH. PATH and the data of MODEL must outlive POSES. If IS_LIVE, a FIFO
- * is read line by line without ever waiting for data; else the file is read to
- * its end. Errors: GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT with
+/* Opens PATH. PATH and the data of MODEL must outlive POSES. If IS_LIVE, a
+ * FIFO is read line by line without waiting for data; else the file is read
+ * to its end. Errors: GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT with
  * "FILE:LINE: cause" in ERROR. */
 enum glint_status poses_open(struct poses *poses, const char *path,
                              bool is_live,
                              const struct glint_scene_model *model,
                              struct glint_error *error);
 
-/* Returns the next pose for FRAME or an earlier frame, or NULL if there are no
- * more. FRAME must not fall from call to call. */
+/* Returns the next pose for FRAME or an earlier frame, or NULL if there are
+ * no more. FRAME must not decrease from call to call. */
 const struct pose *poses_next(struct poses *poses, int frame);
 
 /* Restarts before the first frame. Returns false for a pipe, which cannot
  * restart. */
 bool poses_rewind(struct poses *poses);
 
-/* Counts POSE as skipped, because the scene would exceed its range. */
+/* Counts POSE as skipped, because it would move the scene out of its range. */
 void poses_refuse(struct poses *poses, const struct pose *pose);
 
 void poses_close(struct poses *poses);

@@ -19,27 +19,28 @@ bool tool_is_scene(const char *argument)
     return glint_ends_in(argument, ".scene");
 }
 
-/* A text while it is read, and the key of what was read so far. */
+/* State of reading a text. */
 struct reading {
     const struct tool *tool;
     const char *path;
-    const char *written; /* a file that is not to be read, or NULL */
+    const char *written; /* output file, which must not be read, or NULL */
     uint64_t key;
 };
 
-/* Sets PATH to the file NAME, beside the text. Errors of tool_find_input(). */
-static enum glint_status find(const struct reading *reading, const char *name,
-                              char path[TOOL_PATH_BYTES],
-                              struct glint_error *error)
+/* Sets PATH to the file NAME, relative to the folder of the text. Errors as
+ * tool_find_input(). */
+static enum glint_status find_file(const struct reading *reading,
+                                   const char *name, char path[TOOL_PATH_BYTES],
+                                   struct glint_error *error)
 {
     return tool_find_input(reading->path, name, reading->written, path, error);
 }
 
-/* Passes FROM[N] on if STATUS is GLINT_OK, and mixes it into the key. Returns
- * STATUS. */
-static enum glint_status pass(struct reading *reading, enum glint_status status,
-                              void *from, size_t n, uint8_t **data,
-                              size_t *bytes)
+/* If STATUS is GLINT_OK, sets *DATA and its size to FROM[N] and adds them to
+ * the key. Returns STATUS. */
+static enum glint_status return_data(struct reading *reading,
+                                     enum glint_status status, void *from,
+                                     size_t n, uint8_t **data, size_t *bytes)
 {
     if (status != GLINT_OK)
         return status;
@@ -60,7 +61,7 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
 {
     struct reading *reading = ctx;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status = find_file(reading, name, path, error);
 
     if (status != GLINT_OK)
         return status;
@@ -71,7 +72,8 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
         status = glint_assimp_read(data, bytes, path,
                                    GLINT_DESCRIPTION_MAX_MESH_BYTES,
                                    GLINT_DESCRIPTION_MAX_TRIANGLES, error);
-    if (status == GLINT_E_FORMAT) /* as a mistake in an OBJ file is */
+    /* same code as for an error in an OBJ file */
+    if (status == GLINT_E_FORMAT)
         status = GLINT_E_LENS;
     if (status == GLINT_OK)
         tool_key_mix(&reading->key, *data, *bytes);
@@ -84,7 +86,7 @@ static enum glint_status read_picture(void *ctx, const char *name,
 {
     struct reading *reading = ctx;
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status = find_file(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = glint_picture_load(path, image, error);
@@ -94,7 +96,7 @@ static enum glint_status read_picture(void *ctx, const char *name,
     return status;
 }
 
-/* Reads or bakes an environment, whose data the caller takes. */
+/* Reads or bakes an environment. The caller frees its data. */
 static enum glint_status read_environment(void *ctx, const char *name,
                                           uint8_t **data, size_t *bytes,
                                           struct glint_error *error)
@@ -102,30 +104,30 @@ static enum glint_status read_environment(void *ctx, const char *name,
     struct reading *reading = ctx;
     struct environment_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status = find_file(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = environment_file_read(path, reading->written, NULL, NULL,
                                        &file, error);
-    return pass(reading, status, file.data, file.bytes, data, bytes);
+    return return_data(reading, status, file.data, file.bytes, data, bytes);
 }
 
-/* Reads or bakes a translucent medium as read_environment() does. */
+/* Reads or bakes a translucent medium. The caller frees its data. */
 static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
                                     size_t *bytes, struct glint_error *error)
 {
     struct reading *reading = ctx;
     struct stone_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status = find_file(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = stone_file_read(reading->tool, path, NULL, NULL, false, &file,
                                  error);
-    return pass(reading, status, file.data, file.bytes, data, bytes);
+    return return_data(reading, status, file.data, file.bytes, data, bytes);
 }
 
-/* Reads or bakes a motion as read_environment() does. */
+/* Reads or bakes a motion. The caller frees its data. */
 static enum glint_status read_motion(void *ctx, const char *name,
                                      uint8_t **data, size_t *bytes,
                                      struct glint_error *error)
@@ -133,11 +135,11 @@ static enum glint_status read_motion(void *ctx, const char *name,
     struct reading *reading = ctx;
     struct motion_file file = {.data = NULL};
     char path[TOOL_PATH_BYTES];
-    enum glint_status status = find(reading, name, path, error);
+    enum glint_status status = find_file(reading, name, path, error);
 
     if (status == GLINT_OK)
         status = motion_file_read(path, reading->written, &file, error);
-    return pass(reading, status, file.data, file.bytes, data, bytes);
+    return return_data(reading, status, file.data, file.bytes, data, bytes);
 }
 
 int tool_scene(const struct tool *tool, const char *path,

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Alignment of the run time's arenas, bytes. */
+/* alignment of the run time's memory, bytes */
 #define ALIGNMENT 64
 
 /* ------------------------------------------------------------------- dials
@@ -26,8 +26,8 @@ void scene_dials_choose(struct scene_dials *dials,
     dials->highlights = o->highlights;
 }
 
-static void turn(struct glint_scene_config *cfg,
-                 const struct scene_dials *dials)
+static void set_config(struct glint_scene_config *cfg,
+                       const struct scene_dials *dials)
 {
     if (dials->edge_samples)
         cfg->edge_samples = dials->edge_samples;
@@ -46,8 +46,8 @@ static void turn(struct glint_scene_config *cfg,
 /* ------------------------------------------------------------------ memory
  */
 
-/* Places the scene in memory of its own. */
-static enum glint_status place(struct scene_frame *frame)
+/* Allocates memory for the scene and initialises it there. */
+static enum glint_status place_scene(struct scene_frame *frame)
 {
     const size_t bytes = glint_scene_bytes(&frame->cfg, frame->model);
     void *mem = NULL;
@@ -70,7 +70,7 @@ static enum glint_status place(struct scene_frame *frame)
     return GLINT_OK;
 }
 
-static int say(const struct tool *tool, enum glint_status status)
+static int report_status(const struct tool *tool, enum glint_status status)
 {
     return tool_fail(
         tool, status,
@@ -90,14 +90,14 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
     glint_scene_defaults(&frame->cfg, dials->width, dials->height);
     frame->cfg.workers = tool->workers;
     frame->cfg.sets = tool_sets(tool);
-    turn(&frame->cfg, dials);
+    set_config(&frame->cfg, dials);
     frame->cfg.focal_q16 = llrint(fmin(dials->focal_px, 1e6) * 0x1p16);
     frame->cfg.parts = (struct glint_scene_parts){
         &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
         &glint_scene_wards,  &glint_scene_stones,   &glint_scene_highlights,
         &glint_scene_motions};
-    status = place(frame);
-    return status == GLINT_OK ? EXIT_OK : say(tool, status);
+    status = place_scene(frame);
+    return status == GLINT_OK ? EXIT_OK : report_status(tool, status);
 }
 
 void scene_frame_close(struct scene_frame *frame)
@@ -125,7 +125,7 @@ enum glint_status scene_frame_try(struct scene_frame *frame,
         enum glint_status status;
 
         frame->cfg.max_refs = frame->stats.need_refs;
-        status = place(frame);
+        status = place_scene(frame);
         if (status != GLINT_OK)
             return status;
         scene_frame_begin(frame);
@@ -145,5 +145,5 @@ int scene_frame_draw(struct scene_frame *frame, const struct glint_image *image)
 {
     const enum glint_status status = scene_frame_try(frame, image);
 
-    return status == GLINT_OK ? EXIT_OK : say(frame->tool, status);
+    return status == GLINT_OK ? EXIT_OK : report_status(frame->tool, status);
 }

@@ -11,22 +11,23 @@
 
 #include "options/tool.h"
 
-/* Parameters of a picture. 0 means the default of the run time. */
+/* Drawing parameters; 0: the default of the run time. */
 struct scene_dials {
     int width, height; /* pixels */
-    double focal_px;   /* focal length of a camera with the lens's field of
-                          view */
-    int edge_samples;  /* 1, 4, 8 or 16 */
-    int shadow_points; /* 1, 4 or 16 */
-    bool half_shading; /* shade 2 x 2 pixels at once, within one object */
-    int ward_samples;  /* 1 .. 32 lookups per point of brushed metal */
+    /* focal length of a pinhole camera with the lens's field of view, pixels */
+    double focal_px;
+    int edge_samples;  /* samples per pixel at edges: 1, 4, 8 or 16 */
+    int shadow_points; /* points per light for soft shadows: 1, 4 or 16 */
+    /* one shading value per 2 x 2 pixels of the same object */
+    bool half_shading;
+    int ward_samples; /* 1 .. 32 lookups per point of brushed metal */
     bool has_highlights;
     int highlights; /* with has_highlights: 0 .. 8, overrides the scene */
     int tile_log2;
     bool dither;
 };
 
-/* Sets the members of DIALS for which OPTIONS have a value. */
+/* Sets the members of DIALS that OPTIONS set. */
 void scene_dials_choose(struct scene_dials *dials,
                         const struct glint_options *options);
 
@@ -37,19 +38,20 @@ struct scene_frame {
     const struct tool *tool;
     const struct glint_scene_model *model; /* not owned */
     struct glint_scene_config cfg;
-    struct glint_scene *scene; /* in MEM */
+    struct glint_scene *scene; /* points into MEM */
     void *mem;
     size_t bytes;
     /* Unless NULL, called with POSE_CTX before the first picture after the
-     * scene was initialised, which resets poses and materials to those of the
-     * model. */
+     * scene was initialised, as initialising resets poses and materials to
+     * those of the model. */
     scene_frame_pose_fn *pose;
     void *pose_ctx;
     bool is_fresh; /* the scene was initialised and POSE not called yet */
 
-    /* Of the picture drawn last. */
+    /* Statistics of the picture drawn last: */
     struct glint_scene_stats stats;
-    int map_texels; /* texels of translucent objects computed for it */
+    /* number of light-map texels of translucent objects computed for it */
+    int map_texels;
     double project_ms, map_ms, draw_ms;
 };
 
@@ -63,9 +65,9 @@ void scene_frame_close(struct scene_frame *frame);
 /* Calls POSE if needed and prepares a frame. */
 void scene_frame_begin(struct scene_frame *frame);
 
-/* Draw the scene onto IMAGE, whose size must be that of the dials. They
- * allocate more memory if the triangle lists need it. scene_frame_draw() prints
- * the reason of a failure and returns an exit code; scene_frame_try() prints
+/* Draw the scene onto IMAGE, which must have the size of the dials. Allocate
+ * more memory if the triangle lists need it. scene_frame_draw() prints the
+ * reason of a failure and returns an exit code; scene_frame_try() prints
  * nothing. */
 int scene_frame_draw(struct scene_frame *frame,
                      const struct glint_image *image);

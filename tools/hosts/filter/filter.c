@@ -10,11 +10,11 @@
 
 struct filter {
     struct tool tool;
-    struct glint_error cause; /* of a failure, as hosts show it */
+    struct glint_error cause; /* cause of a failure, for display by hosts */
     struct drawing drawing;
     int width, height;
     struct filter_values values;
-    struct glint_options opened; /* those of values that are not live */
+    struct glint_options opened; /* options that the lens was opened with */
     bool is_open, failed;
 };
 
@@ -32,7 +32,7 @@ struct filter *filter_create(const char *host, int width, int height)
     return f;
 }
 
-static void shut(struct filter *f)
+static void close_drawing(struct filter *f)
 {
     if (f->is_open)
         drawing_close(&f->drawing);
@@ -44,7 +44,7 @@ void filter_destroy(struct filter *f)
 {
     if (!f)
         return;
-    shut(f);
+    close_drawing(f);
     filter_values_free(&f->values);
     free(f);
 }
@@ -63,7 +63,7 @@ void filter_set_live(struct filter *f, const struct filter_values *values)
 void filter_set(struct filter *f, const struct filter_values *values)
 {
     if (!filter_values_serve(&f->values, values)) {
-        shut(f); /* its options point to the texts */
+        close_drawing(f); /* its options point to texts of the old values */
         filter_values_free(&f->values);
         filter_values_copy(&f->values, values);
         f->failed = false;
@@ -85,7 +85,7 @@ bool filter_fits(const struct filter *f, const struct filter_values *values,
 
 /* ------------------------------------------------------------------ opening */
 
-/* Sets the option P to value I; returns -1 or an exit code. */
+/* Sets the option of parameter P to value I. Returns -1 or an exit code. */
 static int set_option(struct filter *f, const struct filter_parameter *p, int i)
 {
     const struct filter_values *const v = &f->values;
@@ -101,8 +101,8 @@ static int set_option(struct filter *f, const struct filter_parameter *p, int i)
                                          v->number[i]);
 }
 
-/* Sets the options that are not live; returns -1 or an exit code. The style
- * comes first, so that other options replace those of the style. */
+/* Sets the options that are not live. Returns -1 or an exit code. The style
+ * is set first, so that other options override the style's. */
 static int set_options(struct filter *f)
 {
     const struct filter_values *const v = &f->values;
@@ -153,7 +153,7 @@ bool filter_open(struct filter *f)
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Sets the options that are live, and the place of a lamp. */
+/* Sets the live options and the position of a manual lamp. */
 static void set_live_options(struct filter *f)
 {
     const struct filter_values *const v = &f->values;

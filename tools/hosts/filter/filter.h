@@ -21,12 +21,12 @@ enum { FILTER_MAX = 16 }; /* max parameters */
 
 enum filter_type { FILTER_NUMBER, FILTER_SWITCH, FILTER_TEXT };
 
-/* A parameter that hosts show: an option of the engine by its name, or auto, x
- * and y, which set a lamp by hand. */
+/* A parameter shown by hosts: an engine option with this name, or auto, x
+ * and y, which place a lamp manually. */
 struct filter_parameter {
     const char *name, *label, *help;
     enum filter_type type;
-    double low, high, initial; /* in the option's unit; a switch is 0 or 1 */
+    double low, high, initial; /* in the option's unit; for a switch 0 or 1 */
     bool is_live;              /* true: a change takes effect with the next
                                   picture, without opening the lens again */
 };
@@ -37,8 +37,8 @@ bool filter_parameter(int index, struct filter_parameter *parameter);
 
 /* The value of each parameter. */
 struct filter_values {
-    double number[FILTER_MAX]; /* value of a number; 0 or 1 of a switch */
-    char *text[FILTER_MAX];    /* malloc'ed, or NULL for "" */
+    double number[FILTER_MAX]; /* a number's value; 0 or 1 for a switch */
+    char *text[FILTER_MAX];    /* owned, or NULL for "" */
 };
 
 /* Sets VALUES to the defaults; frees its texts. */
@@ -53,37 +53,37 @@ void filter_set_text(struct filter_values *values, int index, const char *text);
 
 struct filter;
 
-/* Returns a filter of pictures of WIDTH x HEIGHT, or NULL if there is no
- * memory. The filter opens its lens with the first picture. Messages begin with
+/* Returns a filter for pictures of WIDTH x HEIGHT, or NULL if there is no
+ * memory. The lens is opened at the first picture. Messages begin with
  * "glint HOST". */
 struct filter *filter_create(const char *host, int width, int height);
 void filter_destroy(struct filter *filter);
 
-/* filter_set() sets all parameters; the next picture opens the lens again if a
- * parameter that is not live has changed. filter_set_live() sets only live
+/* filter_set() sets all parameters; if one that is not live has changed, the
+ * next picture opens the lens again. filter_set_live() sets only live
  * parameters. */
 void filter_set(struct filter *filter, const struct filter_values *values);
 void filter_set_live(struct filter *filter, const struct filter_values *values);
 
-/* Return whether FILTER draws pictures of WIDTH x HEIGHT; filter_fits() also
- * whether it can draw with VALUES without opening its lens again. */
+/* filter_has_size() returns whether FILTER draws pictures of WIDTH x HEIGHT,
+ * filter_fits() also whether it can draw with VALUES without opening its
+ * lens again. */
 bool filter_has_size(const struct filter *filter, int width, int height);
 bool filter_fits(const struct filter *filter,
                  const struct filter_values *values, int width, int height);
 
-/* Opens the lens before the first picture; if its model is not cached, bakes
- * it, which costs seconds to hours. Returns false on failure, as filter_draw()
- * does. */
+/* Opens the lens before the first picture. If its model is not cached, bakes
+ * it, which takes seconds to hours. Returns false on failure. */
 bool filter_open(struct filter *filter);
 
 /* Returns the cause of the last failure of filter_draw() or filter_open(), or
  * "" if it was only printed to standard error. */
 const char *filter_cause(const struct filter *filter);
 
-/* Draws the flare onto IMAGE, ELAPSED_US after the previous picture; 0: a
- * static picture. On failure prints a line to standard error, once, returns
- * false and does not change pictures until a parameter that is not live
- * changes. */
+/* Draws the flare onto IMAGE, ELAPSED_US microseconds after the previous
+ * picture; 0: a still image. On failure prints the cause to standard error,
+ * once, and returns false; pictures then remain unchanged until a parameter
+ * that is not live changes. */
 bool filter_draw(struct filter *filter, const struct glint_image *image,
                  int32_t elapsed_us);
 

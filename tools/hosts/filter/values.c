@@ -7,16 +7,17 @@
 
 #include "glint/options.h"
 
-/* A parameter. Its range, default and help are those of the option NAME. */
+/* A parameter. Range, default and help are those of the option NAME. */
 struct row {
     const char *name;
-    double high; /* end of the range in hosts, which is 1 in frei0r; 0: that of
-                    the option */
-    const char *label; /* NULL: NAME */
+    /* upper end of the range in hosts, where frei0r's value is 1; 0: that of
+     * the option */
+    double high;
+    const char *label; /* label; NULL: same as NAME */
 };
 
-/* In the order in which ffmpeg passes parameters to frei0r: new rows go to the
- * end. A row needs a name alone. */
+/* In the order in which ffmpeg passes parameters to frei0r, so new rows must
+ * be appended. Only the name is required. */
 static const struct row rows[FILTER_MAX] = {
     {"lens", 0, "Lens, or a file of one"},
     {"strength", 1, "Strength"},
@@ -30,8 +31,8 @@ static const struct row rows[FILTER_MAX] = {
     {"style", 0, "Style"},
 };
 
-/* A number without a default, as the f-number, is a text in hosts: "" leaves it
- * to the lens. */
+/* Returns the type in hosts. A number without a default, such as the
+ * f-number, is a text: "" means the lens's value. */
 static enum filter_type type_of(const struct glint_option *option)
 {
     if (option->type == GLINT_OPTION_FLAG)

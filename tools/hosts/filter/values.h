@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * values.h - comparing and copying the filter's parameter values.
+ * values.h - compares and copies the filter's parameter values.
  */
 #ifndef GLINT_TOOLS_FILTER_VALUES_H
 #define GLINT_TOOLS_FILTER_VALUES_H
@@ -17,7 +17,7 @@ bool filter_is_default(const struct filter_parameter *parameter, double number);
 void filter_values_copy(struct filter_values *to,
                         const struct filter_values *from);
 
-/* Returns whether all values but live ones are the same in A and B. */
+/* Returns whether all values that are not live are equal in A and B. */
 bool filter_values_serve(const struct filter_values *a,
                          const struct filter_values *b);
 

@@ -14,10 +14,11 @@
 #include <stdint.h>
 
 enum { F0R_MAJOR = 1 };
-enum { F0R_FILTER = 0 }; /* kinds of plug-in: one picture in, one out */
-enum { F0R_BGRA = 0 };   /* colour models: bytes B, G, R, A */
+/* types of plug-in; filter: one picture in, one out */
+enum { F0R_FILTER = 0 };
+enum { F0R_BGRA = 0 }; /* colour models: bytes B, G, R, A */
 enum f0r_type {
-    F0R_BOOL = 0,   /* a double; from 0.5 on true */
+    F0R_BOOL = 0,   /* a double; true from 0.5 on */
     F0R_DOUBLE = 1, /* a double, 0 .. 1 by convention */
     F0R_STRING = 4  /* a char *, UTF-8 */
 };

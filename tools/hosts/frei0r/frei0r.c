@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The frei0r plug-in: what ffmpeg, MLT, Kdenlive, Shotcut and GStreamer call.
+ * The frei0r plug-in, for ffmpeg, MLT, Kdenlive, Shotcut and GStreamer.
  */
 #include "frei0r/abi.h"
 
@@ -22,10 +22,10 @@ struct instance {
     struct filter *filter;
     struct filter_values values;
     struct glint_image image;
-    double seconds; /* moment of the last picture; NAN: there was none */
+    double seconds; /* time of the last picture; NAN: none yet */
 };
 
-/* Numbers of frei0r are 0 .. 1. */
+/* numeric parameters of frei0r are 0 .. 1 */
 int f0r_init(void)
 {
     struct filter_parameter p;
@@ -80,8 +80,8 @@ static bool stop_at_first(void *ctx, const char *name)
     return false;
 }
 
-/* Returns whether there are lenses. Later the host cannot be informed: its call
- * for pictures returns nothing. */
+/* Returns whether any lens is installed. Checked here, as later failures
+ * cannot be reported to the host: its call for pictures returns nothing. */
 static bool has_lenses(void)
 {
     if (lens_files_each(stop_at_first, NULL) > 0)
@@ -148,11 +148,11 @@ void f0r_get_param_value(void *instance, void *value, int index)
         *(double *)value = (values->number[index] - p.low) / (p.high - p.low);
 }
 
-/* Returns the microseconds since the last picture. The first, and one of before
- * the last as after a jump back, counts as the next of 25 a second. Ten seconds
- * and more are taken for milliseconds: ffmpeg 5.1 passes a thousand times the
- * seconds. */
-static int32_t elapsed(const struct instance *i, double seconds)
+/* Returns the microseconds since the last picture. For the first picture,
+ * and after a jump back, returns those of 25 pictures per second. Ten
+ * seconds and more are read as milliseconds, as ffmpeg 5.1 passes the time
+ * times 1000. */
+static int32_t elapsed_us(const struct instance *i, double seconds)
 {
     const double us = 1e6 * (seconds - i->seconds);
     const double frame = us < 1e7 ? us : us / 1000;
@@ -171,6 +171,6 @@ void f0r_update(void *instance, double seconds, const uint32_t *in,
             glint_image_bytes(GLINT_XRGB8888, i->image.width, i->image.height));
     glint_image_place(&i->image, out);
     filter_set(i->filter, &i->values);
-    if (filter_draw(i->filter, &i->image, elapsed(i, seconds)))
+    if (filter_draw(i->filter, &i->image, elapsed_us(i, seconds)))
         i->seconds = seconds;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The GStreamer element glintflare: a flare over the frames of a pipeline, in
- * place, as glint overlay draws it.
+ * The GStreamer element glintflare: adds a flare to the frames of a pipeline in
+ * place, like glint overlay.
  */
 #include <gst/video/gstvideofilter.h>
 #include <gst/video/video.h>
@@ -20,13 +20,14 @@ G_DECLARE_FINAL_TYPE(GlintFlareElement, glint_flare_element, GLINT, FLARE,
 
 struct _GlintFlareElement {
     GstVideoFilter parent;
-    /* Of the properties, under the object's lock; set in the filter, which the
-     * streaming thread alone uses, before each frame. */
+    /* values of the properties, guarded by the object's lock; copied before
+     * each frame to the filter, which only the streaming thread uses */
     struct filter_values values;
     struct filter *filter;
     struct glint_image image; /* format, size and colours of frames */
-    gint32 frame_us;          /* nominal; 0: still pictures */
-    GstClockTime last;        /* time of the last frame drawn */
+    /* nominal duration of a frame, microseconds; 0: still pictures */
+    gint32 frame_us;
+    GstClockTime last; /* time of the last frame drawn */
 };
 
 G_DEFINE_TYPE(GlintFlareElement, glint_flare_element, GST_TYPE_VIDEO_FILTER)
@@ -66,7 +67,7 @@ static void get_property(GObject *object, guint id, GValue *value,
     GST_OBJECT_UNLOCK(e);
 }
 
-static GParamSpec *spec_of(const struct filter_parameter *p)
+static GParamSpec *make_spec(const struct filter_parameter *p)
 {
     const GParamFlags flags =
         (GParamFlags)(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
@@ -84,7 +85,7 @@ static GParamSpec *spec_of(const struct filter_parameter *p)
 
 /* ------------------------------------------------------------------- frames */
 
-static gboolean format_of(GstVideoFormat from, enum glint_pixel_format *to)
+static gboolean find_format(GstVideoFormat from, enum glint_pixel_format *to)
 {
     static const struct {
         GstVideoFormat from;
@@ -114,9 +115,9 @@ static gboolean format_of(GstVideoFormat from, enum glint_pixel_format *to)
     return FALSE;
 }
 
-/* Returns the curve from the codes of frames to light: that of the caps, else
- * what is usual for R, G, B and for luma. */
-static enum glint_tone tone_of(const GstVideoInfo *info)
+/* Returns the transfer curve of the frames: that of the caps, else the usual
+ * one for RGB or luma. */
+static enum glint_tone find_tone(const GstVideoInfo *info)
 {
     switch (info->colorimetry.transfer) {
     case GST_VIDEO_TRANSFER_SRGB:
@@ -152,16 +153,16 @@ static gboolean set_info(GstVideoFilter *base, GstCaps *in_caps,
         .matrix = in->colorimetry.matrix == GST_VIDEO_COLOR_MATRIX_BT709
                       ? GLINT_MATRIX_BT709
                       : GLINT_MATRIX_BT601,
-        .transfer = tone_of(in)};
+        .transfer = find_tone(in)};
     e->frame_us =
         fps_n > 0 ? (gint32)CLAMP(1e6 * GST_VIDEO_INFO_FPS_D(in) / fps_n + 0.5,
                                   1, 1e9)
                   : 0;
-    return format_of(GST_VIDEO_INFO_FORMAT(in), &e->image.format);
+    return find_format(GST_VIDEO_INFO_FORMAT(in), &e->image.format);
 }
 
-/* Returns the microseconds since the last frame drawn: those of the caps, but
- * after a gap, as of frames that came too late to be drawn. */
+/* Returns the microseconds since the last frame drawn: the nominal duration
+ * of the caps, except after a gap, as when late frames were dropped. */
 static gint32 elapsed_us(const GlintFlareElement *e, GstClockTime now)
 {
     const gint64 us =
@@ -187,7 +188,7 @@ static GstFlowReturn transform(GstVideoFilter *base, GstVideoFrame *frame)
                                        GST_FORMAT_TIME, now));
     if (GST_BUFFER_IS_DISCONT(frame->buffer) &&
         GST_CLOCK_TIME_IS_VALID(e->last) && now <= e->last)
-        drop_filter(e); /* a jump back */
+        drop_filter(e); /* after a jump back */
     if (!e->filter)
         e->filter =
             filter_create("glintflare", e->image.width, e->image.height);
@@ -255,7 +256,7 @@ static void glint_flare_element_class_init(GlintFlareElementClass *class)
     object->get_property = get_property;
     object->finalize = finalize;
     for (int i = 0; filter_parameter(i, &p); i++)
-        g_object_class_install_property(object, (guint)i + 1, spec_of(&p));
+        g_object_class_install_property(object, (guint)i + 1, make_spec(&p));
     gst_element_class_set_static_metadata(
         GST_ELEMENT_CLASS(class), "Lens flare", "Filter/Effect/Video",
         "Draws the ghosts and stars of a real lens on frames, in place",

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The filter of OBS: a flare over the frames of a camera, a video or another
- * source whose frames are in memory, where they lie, as glint overlay draws it.
+ * The OBS filter: adds a flare in place to the frames of a camera, a video or
+ * another source whose frames are in memory, like glint overlay.
  */
 #include <math.h>
 #include <obs-module.h>
@@ -14,7 +14,7 @@
 #include "glint/glint.h"
 #include "model/lens_files.h"
 
-static bool format_of(enum video_format from, enum glint_pixel_format *to)
+static bool find_format(enum video_format from, enum glint_pixel_format *to)
 {
     static const struct {
         enum video_format from;
@@ -41,10 +41,10 @@ static bool format_of(enum video_format from, enum glint_pixel_format *to)
     return false;
 }
 
-/* Returns the matrix of luma that FRAME's own, from codes to R, G, B, is
- * nearest to: what Cr gives to R is 1.40 of BT.601 and 1.57 of BT.709 at full
- * range. A source that says nothing has zeros there. */
-static enum glint_matrix matrix_of(const struct obs_source_frame *frame)
+/* Returns the matrix of luma that is nearest to FRAME's matrix from codes to
+ * RGB: the factor from Cr to R is 1.40 in BT.601 and 1.57 in BT.709 at full
+ * range. A source without a matrix has zeros. */
+static enum glint_matrix find_matrix(const struct obs_source_frame *frame)
 {
     const float cr = frame->color_matrix[2];
     const float between = frame->full_range ? 1.488F : 1.694F;
@@ -52,10 +52,10 @@ static enum glint_matrix matrix_of(const struct obs_source_frame *frame)
     return cr > between ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
 }
 
-/* Returns the curve from codes to light: that of the frame, else what is usual
- * for R, G, B and for luma. */
-static enum glint_tone tone_of(const struct obs_source_frame *frame,
-                               bool is_rgb)
+/* Returns the transfer curve: that of the frame, else the usual one for RGB
+ * or luma. */
+static enum glint_tone find_tone(const struct obs_source_frame *frame,
+                                 bool is_rgb)
 {
     return frame->trc == VIDEO_TRC_SRGB ||
                    (frame->trc == VIDEO_TRC_DEFAULT && is_rgb)
@@ -63,15 +63,15 @@ static enum glint_tone tone_of(const struct obs_source_frame *frame,
                : GLINT_TONE_BT709;
 }
 
-/* Sets IMAGE to the pixels of FRAME where they lie, upside down where OBS will
- * turn them. Returns false for frames that glint does not draw on: of more than
- * 8 bits, of HDR curves, of a format or size that it does not have. */
+/* Sets IMAGE to the pixels of FRAME in place, bottom row first if OBS will
+ * flip them. Returns false for frames that glint cannot draw on: more than 8
+ * bits, HDR curves, or an unsupported format or size. */
 static bool frame_image(const struct obs_source_frame *frame,
                         struct glint_image *image)
 {
     enum glint_pixel_format format;
 
-    if (!format_of(frame->format, &format) || frame->trc == VIDEO_TRC_PQ ||
+    if (!find_format(frame->format, &format) || frame->trc == VIDEO_TRC_PQ ||
         frame->trc == VIDEO_TRC_HLG || frame->width - 1 >= GLINT_MAX_SIDE ||
         frame->height - 1 >= GLINT_MAX_SIDE)
         return false;
@@ -80,8 +80,8 @@ static bool frame_image(const struct obs_source_frame *frame,
         .width = (int)frame->width,
         .height = (int)frame->height,
         .range = frame->full_range ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED,
-        .matrix = matrix_of(frame),
-        .transfer = tone_of(frame, glint_image_is_rgb(format))};
+        .matrix = find_matrix(frame),
+        .transfer = find_tone(frame, glint_image_is_rgb(format))};
     for (int i = 0; i < glint_image_planes(format); i++) {
         const ptrdiff_t stride = (ptrdiff_t)frame->linesize[i];
         const int rows = glint_image_plane_height(format, i, image->height);
@@ -94,8 +94,8 @@ static bool frame_image(const struct obs_source_frame *frame,
 }
 
 struct opening {
-    struct filter *filter; /* the thread's until it is done */
-    pthread_mutex_t lock;  /* of these: */
+    struct filter *filter; /* owned by the thread until is_done */
+    pthread_mutex_t lock;  /* guards the following members */
     bool is_done, is_left;
 };
 
@@ -111,7 +111,8 @@ static void *open_filter(void *arg)
     struct opening *const o = arg;
     bool is_left;
 
-    filter_open(o->filter); /* if it cannot, drawing will not, either */
+    /* after a failure drawing fails as well and reports it */
+    filter_open(o->filter);
     pthread_mutex_lock(&o->lock);
     o->is_done = true;
     is_left = o->is_left;
@@ -121,8 +122,8 @@ static void *open_filter(void *arg)
     return NULL;
 }
 
-/* Begins to open a filter with VALUES for frames of WIDTH x HEIGHT. Returns
- * NULL without memory or threads. */
+/* Starts opening a filter with VALUES for frames of WIDTH x HEIGHT in a
+ * thread. Returns NULL if there is no memory or thread. */
 static struct opening *begin_opening(const struct filter_values *values,
                                      int width, int height)
 {
@@ -143,8 +144,8 @@ static struct opening *begin_opening(const struct filter_values *values,
     return o;
 }
 
-/* Returns whether the filter is open, or has failed to open; if so it is the
- * caller's, and O is freed. */
+/* Returns whether opening has ended, successfully or not. If so, passes the
+ * filter to the caller and frees O. */
 static bool end_opening(struct opening *o, struct filter **filter)
 {
     bool is_done;
@@ -160,8 +161,8 @@ static bool end_opening(struct opening *o, struct filter **filter)
     return true;
 }
 
-/* Leaves an opening, or NULL, to itself: it frees what it has when it is done.
- */
+/* Abandons an opening (may be NULL): its thread frees everything when it
+ * ends. */
 static void leave_opening(struct opening *o)
 {
     bool is_done;
@@ -182,13 +183,13 @@ OBS_DECLARE_MODULE()
 enum { FRAME_US = 40000, LONGEST_US = 10000000 };
 
 struct flare {
-    pthread_mutex_t lock; /* of what the user set last */
+    pthread_mutex_t lock; /* guards WANTED, the values set last by the user */
     struct filter_values wanted;
-    /* The graphics thread's alone: */
+    /* used only by the graphics thread: */
     struct filter *filter;
     struct opening *opening;
     obs_source_t *source;
-    uint64_t last_ns; /* of the last frame drawn; 0: none */
+    uint64_t last_ns; /* time of the last frame drawn; 0: none */
     bool has_warned;
 };
 
@@ -227,7 +228,7 @@ static bool add_lens(void *list, const char *name)
     return true;
 }
 
-/* Shows the place of a lamp unless lamps are found. */
+/* Shows the position of a lamp only if lamps are not detected. */
 static bool show_place(obs_properties_t *all, obs_property_t *changed,
                        obs_data_t *data)
 {
@@ -293,8 +294,8 @@ static void warn_once(struct flare *f, const char *text)
     f->has_warned = true;
 }
 
-/* Disables the source's filter, which its user sees, and drops what failed, so
- * that it is opened again once the user enables it. */
+/* Disables the filter in the source, which its user sees, and closes the
+ * failed filter, so that it is opened again when the user enables it. */
 static void disable(struct flare *f)
 {
     blog(LOG_ERROR, "glint: the filter is disabled: %s",
@@ -304,10 +305,10 @@ static void disable(struct flare *f)
     obs_source_set_enabled(f->source, false);
 }
 
-/* Takes the filter that has been opened, if there is one, begins to open
- * another if it does not fit, and sets what is live. Returns whether the filter
- * can draw. */
-static bool ready(struct flare *f, const struct glint_image *image)
+/* Adopts a filter whose opening has ended, starts opening another if the
+ * present one does not fit, and sets the live values. Returns whether the
+ * filter can draw. */
+static bool prepare_filter(struct flare *f, const struct glint_image *image)
 {
     const int w = image->width, h = image->height;
     struct filter *opened;
@@ -330,8 +331,9 @@ static bool ready(struct flare *f, const struct glint_image *image)
     return f->filter && filter_has_size(f->filter, w, h);
 }
 
-/* Returns the microseconds since the last frame drawn. The first, and one of
- * before the last or long after it, counts as the next of 25 a second. */
+/* Returns the microseconds since the last frame drawn. For the first frame,
+ * after a jump back and after a long gap, returns those of 25 frames per
+ * second. */
 static int32_t elapsed_us(const struct flare *f, uint64_t now_ns)
 {
     const uint64_t us = (now_ns - f->last_ns + 500) / 1000;
@@ -353,7 +355,7 @@ static struct obs_source_frame *filter_video(void *ctx,
         return frame;
     }
     pthread_mutex_lock(&f->lock);
-    is_ready = ready(f, &image);
+    is_ready = prepare_filter(f, &image);
     pthread_mutex_unlock(&f->lock);
     if (!is_ready)
         return frame;

@@ -11,22 +11,24 @@
 #include "glint/engine.h"
 #include "glint/options.h"
 
-/* Roundness of the blades unless --stop has a shape, as of glint overlay. */
+/* roundness of the aperture blades unless --stop sets a shape, as in glint
+ * overlay */
 #define PHOTO_ROUNDNESS 0.2
 
-/* Microseconds since the picture before, of quick pictures. */
+/* time between pictures that are drawn quickly, microseconds */
 enum { QUICK_US = 1000000 };
 
-/* Wavelengths of exact rays for "auto". */
+/* number of wavelengths of exact rays for "auto" */
 enum { EXACT_WAVES = 9 };
 
 static struct {
     struct glint_error error;
     struct glint_options options;
-    char *text[GLINT_N_OPTIONS]; /* values of options of type TEXT */
+    char *text[GLINT_N_OPTIONS]; /* values of text options */
 
     struct glint_prescription table;
-    bool is_open, is_model; /* IS_MODEL: opened for a WIDEST f-number */
+    /* is_model: opened by web_open() with a WIDEST f-number */
+    bool is_open, is_model;
     char name[GLINT_NAME_BYTES + 32];
     unsigned char *data;
     size_t bytes;
@@ -43,7 +45,7 @@ static struct {
     double row[GLINT_ENGINE_MAX_LAMPS][WEB_COLUMNS];
 } web;
 
-/* Sets the reason of a failure; returns 0. */
+/* Records the reason of a failure. Returns 0. */
 static int fail(const char *reason)
 {
     snprintf(web.error.text, sizeof web.error.text, "%s", reason);
@@ -128,8 +130,8 @@ static void close_lens(void)
     web.is_open = false;
 }
 
-/* Puts the films of --coating on the table. */
-static int coat(void)
+/* Applies the films of --coating to the table. */
+static int apply_coating(void)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
     const char *const text = web.options.coating;
@@ -166,8 +168,8 @@ static int move_groups(void)
     return check(status);
 }
 
-/* Returns what the model is baked with, as glint overlay chooses it; a model
- * that was requested separately has the defaults of glint bake. */
+/* Returns the bake options of the model, those of glint overlay; for a model
+ * that was requested with its own f-number, the defaults of glint bake. */
 static struct glint_bake_options bake_options(void)
 {
     const struct glint_options *const o = &web.options;
@@ -209,7 +211,7 @@ const char *web_open(double widest)
     if (!check(glint_prescription_parse(&web.table, from->text,
                                         strlen(from->text), from->name,
                                         &web.error)) ||
-        !move_groups() || !coat())
+        !move_groups() || !apply_coating())
         return NULL;
     web.is_model = widest > 0;
     if (web.is_model)
@@ -271,8 +273,8 @@ size_t web_model_bytes(void)
 
 /* ------------------------------------------------------------------- engine */
 
-/* Sets CAMERA, with the blades of photographs unless the options or the table
- * have others, and makes its setup. */
+/* Sets CAMERA, with the blades of photographs unless options or table define
+ * others, and makes the lens's setup. */
 static int set_up(struct glint_engine_camera *camera, bool exact)
 {
     double nm[GLINT_MAX_WAVELENGTHS];
@@ -293,18 +295,18 @@ static int set_up(struct glint_engine_camera *camera, bool exact)
                                     camera, &web.dirt, &web.error));
 }
 
-/* How bright flares of the last lenses and stops are, which takes about as long
- * to measure as a coarse picture to draw. */
+/* Cache of the responses (brightness of the flare) of recent lenses and
+ * stops; measuring one takes about as long as drawing a coarse picture. */
 enum { KEPT = 16, KEPT_BYTES = 4096 };
 static struct {
     uint64_t key;
-    size_t bytes; /* 0: free */
+    size_t bytes; /* 0: unused */
     unsigned char data[KEPT_BYTES];
 } kept[KEPT];
 static int next_kept;
 
-static int read_kept(void *ctx, const char *name, uint64_t key, void *data,
-                     size_t bytes)
+static int read_cached(void *ctx, const char *name, uint64_t key, void *data,
+                       size_t bytes)
 {
     (void)ctx;
     (void)name;
@@ -316,8 +318,8 @@ static int read_kept(void *ctx, const char *name, uint64_t key, void *data,
     return 0;
 }
 
-static void write_kept(void *ctx, const char *name, uint64_t key,
-                       const void *data, size_t bytes)
+static void write_cached(void *ctx, const char *name, uint64_t key,
+                         const void *data, size_t bytes)
 {
     (void)ctx;
     (void)name;
@@ -333,7 +335,7 @@ int web_size(int width, int height)
 {
     const struct glint_options *const o = &web.options;
     const bool exact = o->rays == GLINT_RAYS_EXACT;
-    const struct glint_engine_cache cache = {read_kept, write_kept, NULL};
+    const struct glint_engine_cache cache = {read_cached, write_cached, NULL};
     struct glint_engine_config cfg;
     double miss_deg;
 
@@ -366,7 +368,7 @@ int web_size(int width, int height)
     return check(glint_engine_create(&web.engine, &cfg, &web.error));
 }
 
-static struct glint_image image_of(uint8_t *pixels)
+static struct glint_image make_image(uint8_t *pixels)
 {
     return glint_image_over(pixels, GLINT_XBGR8888, web.width, web.height);
 }
@@ -376,7 +378,7 @@ double *web_lamps(void)
     return web.row[0];
 }
 
-/* Writes the row that glint overlay --save-lights would save of LAMP. */
+/* Writes the row of LAMP that glint overlay --save-lights would write. */
 static void set_row(double row[WEB_COLUMNS],
                     const struct glint_engine_lamp *lamp)
 {
@@ -396,9 +398,9 @@ static void set_row(double row[WEB_COLUMNS],
     row[WEB_SEEN] = fmax(lamp->seen_px, 0);
 }
 
-/* Returns the lamp that glint overlay --lights makes of ROW. */
-static struct glint_engine_lamp lamp_of(const double row[WEB_COLUMNS],
-                                        uint32_t id)
+/* Returns the lamp that glint overlay --lights would read from ROW. */
+static struct glint_engine_lamp make_lamp(const double row[WEB_COLUMNS],
+                                          uint32_t id)
 {
     const struct glint_view *const view = glint_engine_view(web.engine);
     const double focal_mm = web.setup.optics.focal_mm;
@@ -429,7 +431,7 @@ int web_find(uint8_t *pixels)
 
     if (!web.engine)
         return 0;
-    image = image_of(pixels);
+    image = make_image(pixels);
     web.n_found = glint_engine_find(web.engine, &image, 0, web.found,
                                     GLINT_ENGINE_MAX_LAMPS);
     for (int i = 0; i < web.n_found; i++)
@@ -448,7 +450,7 @@ int web_doubtful(double xy[2])
     return 1;
 }
 
-/* Returns whether ROW is one that glint overlay --lights accepts. */
+/* Returns whether glint overlay --lights would accept ROW. */
 static bool is_row(const double row[WEB_COLUMNS])
 {
     return fabs(row[WEB_X]) <= 1e6 && fabs(row[WEB_Y]) <= 1e6 &&
@@ -471,7 +473,7 @@ int web_draw(uint8_t *pixels, int n, int quick)
     if (n < WEB_FOUND || n > GLINT_ENGINE_MAX_LAMPS)
         return fail("not 0 to 1024 lamps");
     web.error.text[0] = '\0';
-    image = image_of(pixels);
+    image = make_image(pixels);
     if (n == WEB_FOUND) {
         n = web.n_found;
         memcpy(web.lamp, web.found, (size_t)n * sizeof *web.lamp);
@@ -479,7 +481,7 @@ int web_draw(uint8_t *pixels, int n, int quick)
         for (int i = 0; i < n; i++) {
             if (!is_row(web.row[i]))
                 return fail("a lamp is out of range");
-            web.lamp[i] = lamp_of(web.row[i], (uint32_t)i + 1);
+            web.lamp[i] = make_lamp(web.row[i], (uint32_t)i + 1);
         }
     glint_engine_configure(&cfg, &web.options);
     glint_engine_set_light(web.engine, &cfg.light);

@@ -27,7 +27,8 @@ enum { WEB_FOUND = -1 };
 struct web_lens {
     const char *name, *folder, *text;
 };
-extern const struct web_lens web_lens[]; /* ends with a name NULL */
+/* ends with a row whose name is NULL */
+extern const struct web_lens web_lens[];
 
 /* Columns of the rows of lamps, doubles in the units of glint overlay
  * --save-lights. */
@@ -67,11 +68,10 @@ WEB_EXPORT(web_reset) void web_reset(void);
  * --budget. */
 WEB_EXPORT(web_set) int web_set(const char *name, const char *text);
 
-/* Opens the lens of the options. If WIDEST is not 0, its model is baked for
- * that f-number, as by glint bake --f-number WIDEST; if it is 0, for the
- * f-number of the table or the options, as by glint overlay. Returns the
- * model's file name in glint's cache, NAME-KEY.glint; valid until the next
- * call. */
+/* Opens the lens of the options. WIDEST: the f-number that its model is
+ * baked for, as by glint bake --f-number WIDEST; 0: that of the table or the
+ * options, as by glint overlay. Returns the model's file name in glint's
+ * cache, NAME-KEY.glint, valid until the next call. */
 WEB_EXPORT(web_open) const char *web_open(double widest);
 
 /* Set the model of the lens: web_model() to DATA, which must come from
@@ -85,8 +85,8 @@ WEB_EXPORT(web_model_bytes) size_t web_model_bytes(void);
 /* Makes an engine for pictures of WIDTH x HEIGHT with the current options. */
 WEB_EXPORT(web_size) int web_size(int width, int height);
 
-/* Finds the lamps of a picture; returns the number of rows of web_lamps() that
- * it set. */
+/* Finds the lamps of a picture and sets the rows of web_lamps(). Returns
+ * their number. */
 WEB_EXPORT(web_find) int web_find(uint8_t *pixels);
 WEB_EXPORT(web_lamps) double *web_lamps(void);
 
@@ -95,9 +95,10 @@ WEB_EXPORT(web_lamps) double *web_lamps(void);
 WEB_EXPORT(web_doubtful) int web_doubtful(double xy[2]);
 
 /* Draws the flare of N rows of web_lamps(), 0 .. 1024, or of the lamps that
- * web_find() found (WEB_FOUND), into PIXELS. If QUICK is not 0, draws as in a
- * video: brightness is estimated and wide lamps have fewer points. Strength,
- * exposure, gain and starburst may have changed since web_size(). */
+ * web_find() found (WEB_FOUND), into PIXELS. If QUICK is not 0, draws as in
+ * a video: brightness is estimated and wide lamps have fewer points.
+ * Strength, exposure, gain and starburst may have been changed since
+ * web_size(). */
 WEB_EXPORT(web_draw) int web_draw(uint8_t *pixels, int n, int quick);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The tables of the library as JSON. */
+ * Writes the library's tables as JSON.
+ */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -12,12 +13,13 @@
 #include "glint/prescription.h"
 #include "web/glint_web.h"
 
-static char *json; /* what is returned, [room] */
+static char *json; /* the text to return, [room] */
 static size_t used, room;
 
-/* Appends text; without memory what follows is left out, so that it is no
- * JSON. */
-__attribute__((format(printf, 1, 2))) static void put(const char *format, ...)
+/* Appends a formatted text. If there is no memory, the rest is dropped, and
+ * the text is not valid JSON. */
+__attribute__((format(printf, 1, 2))) static void append(const char *format,
+                                                         ...)
 {
     va_list arguments;
 
@@ -34,34 +36,34 @@ __attribute__((format(printf, 1, 2))) static void put(const char *format, ...)
     va_end(arguments);
 }
 
-/* Appends KEY and TEXT, which has no control characters. */
-static void put_text(const char *key, const char *text)
+/* Appends KEY and TEXT, which must not contain control characters. */
+static void append_text(const char *key, const char *text)
 {
-    put("\"%s\":\"", key);
+    append("\"%s\":\"", key);
     for (; text && *text; text++)
-        put(*text == '"' || *text == '\\' ? "\\%c" : "%c", *text);
-    put("\",");
+        append(*text == '"' || *text == '\\' ? "\\%c" : "%c", *text);
+    append("\",");
 }
 
-static void put_number(const char *key, double value)
+static void append_number(const char *key, double value)
 {
     if (isfinite(value))
-        put("\"%s\":%.17g,", key, value);
+        append("\"%s\":%.17g,", key, value);
     else
-        put("\"%s\":null,", key);
+        append("\"%s\":null,", key);
 }
 
-static void begin(void)
+static void begin_json(void)
 {
     used = 0;
-    put("[");
+    append("[");
 }
 
-static const char *end(void)
+static const char *end_json(void)
 {
     if (used && json[used - 1] == ',')
         used--;
-    put("]");
+    append("]");
     return json;
 }
 
@@ -74,51 +76,51 @@ const char *web_options(void)
     static const char *const changes[] = {"create", "resize", "frame"};
     const struct glint_option *row;
 
-    begin();
+    begin_json();
     for (int i = 0; (row = glint_option(i)) != NULL; i++) {
-        put("{");
-        put_text("name", row->name);
-        put_text("value", row->value);
-        put_text("accepts", row->accepts);
-        put_text("help", row->help);
-        put_text("text", row->text);
-        put_number("low", row->low);
-        put_number("high", row->high);
-        put_number("initial", row->initial);
-        put_text("type", types[row->type]);
-        put_text("group", groups[row->group]);
-        put("\"changes\":\"%s\"},", changes[row->changes]);
+        append("{");
+        append_text("name", row->name);
+        append_text("value", row->value);
+        append_text("accepts", row->accepts);
+        append_text("help", row->help);
+        append_text("text", row->text);
+        append_number("low", row->low);
+        append_number("high", row->high);
+        append_number("initial", row->initial);
+        append_text("type", types[row->type]);
+        append_text("group", groups[row->group]);
+        append("\"changes\":\"%s\"},", changes[row->changes]);
     }
-    return end();
+    return end_json();
 }
 
 const char *web_styles(void)
 {
-    begin();
+    begin_json();
     for (const struct style *s = styles; s->name; s++) {
-        put("{");
-        put_text("name", s->name);
-        put_text("about", s->about);
-        put("\"set\":{");
+        append("{");
+        append_text("name", s->name);
+        append_text("about", s->about);
+        append("\"set\":{");
         for (int i = 0; s->set[i].option; i++)
-            put("%s\"%s\":\"%s\"", i ? "," : "", s->set[i].option,
-                s->set[i].value);
-        put("}},");
+            append("%s\"%s\":\"%s\"", i ? "," : "", s->set[i].option,
+                   s->set[i].value);
+        append("}},");
     }
-    return end();
+    return end_json();
 }
 
 /* Appends the surfaces: radius, thickness, semi-diameter, index behind. */
-static void put_surfaces(const struct glint_prescription *lens)
+static void append_surfaces(const struct glint_prescription *lens)
 {
-    put("\"surfaces\":[");
+    append("\"surfaces\":[");
     for (int i = 0; i < lens->n_surfaces; i++) {
         const struct glint_surface *const s = &lens->surface[i];
 
-        put("%s[%.6g,%.6g,%.6g,%.6g]", i ? "," : "", s->radius_mm,
-            s->thickness_mm, s->semi_mm, glint_surface_index(s, 587.56));
+        append("%s[%.6g,%.6g,%.6g,%.6g]", i ? "," : "", s->radius_mm,
+               s->thickness_mm, s->semi_mm, glint_surface_index(s, 587.56));
     }
-    put("]},");
+    append("]},");
 }
 
 const char *web_lenses(void)
@@ -127,27 +129,27 @@ const char *web_lenses(void)
     struct glint_error error;
     struct glint_optics optics;
 
-    begin();
+    begin_json();
     for (const struct web_lens *l = web_lens; lens && l->name; l++) {
         if (glint_prescription_parse(lens, l->text, strlen(l->text), l->name,
                                      &error) != GLINT_OK)
             continue;
         glint_optics_of(lens, &optics);
-        put("{");
-        put_text("name", l->name);
-        put_text("folder", l->folder);
-        put_text("source", lens->source);
-        put_text("character", lens->character);
-        put_number("f", lens->f_number);
-        put_number("focal", optics.focal_mm);
-        put_number("filmWidth", lens->film_width_mm);
-        put_number("filmHeight", lens->film_height_mm);
-        put_number("positions", lens->zoom.n_positions);
-        put_number("stopAfter", lens->stop_after);
-        put_number("stopThickness", lens->stop_thickness_mm);
-        put_number("stopSemi", optics.stop_radius_mm);
-        put_surfaces(lens);
+        append("{");
+        append_text("name", l->name);
+        append_text("folder", l->folder);
+        append_text("source", lens->source);
+        append_text("character", lens->character);
+        append_number("f", lens->f_number);
+        append_number("focal", optics.focal_mm);
+        append_number("filmWidth", lens->film_width_mm);
+        append_number("filmHeight", lens->film_height_mm);
+        append_number("positions", lens->zoom.n_positions);
+        append_number("stopAfter", lens->stop_after);
+        append_number("stopThickness", lens->stop_thickness_mm);
+        append_number("stopSemi", optics.stop_radius_mm);
+        append_surfaces(lens);
     }
     free(lens);
-    return end();
+    return end_json();
 }
