@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What programs share that must give the same on every kind of CPU: a hash,
- * pictures to draw onto, kernels by name. */
+ * Helpers of programs whose output must be the same on every type of CPU: a
+ * hash, images to draw onto, kernels by name.
+ */
 #ifndef GLINT_TESTS_KINDS_H
 #define GLINT_TESTS_KINDS_H
 
@@ -36,7 +37,8 @@ static inline uint64_t kinds_hash_number(uint64_t h, int64_t x)
     return h;
 }
 
-/* Makes IMAGE of MEM[BYTES], with codes of any kind and a pattern in it. */
+/* Sets IMAGE to MEM[BYTES], with a random range, matrix and transfer curve,
+ * and fills it with a fixed pattern. */
 static inline void kinds_fill(struct glint_image *image, uint8_t *mem,
                               size_t bytes, uint32_t *seed)
 {
@@ -50,8 +52,8 @@ static inline void kinds_fill(struct glint_image *image, uint8_t *mem,
                                : (i * 7 + (i >> 8)) % 61 + 16);
 }
 
-/* Returns the instruction sets that WORD names, c, sse41, avx2, neon or best;
- * ends PROGRAM if they are not here. */
+/* Returns the instruction sets of WORD: c, sse41, avx2, neon or best. Ends
+ * PROGRAM if this CPU lacks them. */
 static inline unsigned kinds_sets(const char *program, const char *word)
 {
     static const struct {

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * scenes SET N MODEL... - draws N random scenes by the run-time half alone and
- * prints a hash of all output, which is the same on every CPU, whatever it was
- * compiled for and whatever kernels were used. SET is c, sse41, avx2, neon or
- * best.
+ * scenes SET N MODEL... - draws N random frames with the run-time half and
+ * prints a hash of all output, which is the same on every CPU, compiler target
+ * and set of kernels. SET is c, sse41, avx2, neon or best.
  *
  *     240 scenes, 236 with light, 1b3f...
  *
- * Models, directions, powers, formats, sizes, tiles and, in every second
- * scene, stars are random, by integers alone: no libm has a say. Lamps
- * are then found in each picture and added to the hash. With GLINT_EACH set,
- * the hash after each scene is printed, too. Exit code 3: a model is refused.
+ * Models, directions, powers, formats, sizes, tiles and, in every second frame,
+ * stars are random, by integers only so as not to depend on libm. Lamps are
+ * then found in each image and added to the hash. With GLINT_EACH set, the hash
+ * after each frame is printed as well. Exit code 3: a model is invalid.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,18 +38,18 @@ static unsigned sets;
 static uint32_t seed = 2026;
 static void *arena, *finder_memory, *star_memory;
 
-/* Returns 0 .. BELOW - 1. A statement may call it once: C leaves open in which
- * order arguments are evaluated. */
-static int number(int below)
+/* Returns a random number of 0 .. BELOW - 1. A statement may call it only
+ * once, as C does not define the order in which arguments are evaluated. */
+static int random_number(int below)
 {
     return (int)(rng_xorshift(&seed) % (uint32_t)below);
 }
 
 /* ----------------------------------------------------------------- a scene */
 
-/* Sets *SINE and *COSINE, _q30, for twice the angle whose tangent is T /
- * 2^15. */
-static void circle(int32_t t, int32_t *sine, int32_t *cosine)
+/* Sets *SINE and *COSINE, Q30, to those of twice the angle whose tangent is
+ * T / 2^15. */
+static void set_circle(int32_t t, int32_t *sine, int32_t *cosine)
 {
     const int64_t one = INT64_C(1) << 30, t2 = (int64_t)t * t;
 
@@ -63,15 +62,16 @@ static void make_beam(struct glint_light *b)
     int32_t sine, cosine;
     int exponent;
 
-    b->apart_q30 = 0;                                   /* it is a single one */
-    circle(number(7000), &b->sine_q30, &b->cosine_q30); /* up to 24 degrees */
-    circle(number(1 << 15), &sine, &cosine);
-    b->sin_q30 = number(2) ? sine : -sine;
-    b->cos_q30 = number(2) ? cosine : -cosine;
-    exponent = number(14) - 20;
-    b->power = real_of(1 + number(1 << 30), exponent);
+    b->apart_q30 = 0; /* a single light */
+    set_circle(random_number(7000), &b->sine_q30,
+               &b->cosine_q30); /* up to 24 degrees */
+    set_circle(random_number(1 << 15), &sine, &cosine);
+    b->sin_q30 = random_number(2) ? sine : -sine;
+    b->cos_q30 = random_number(2) ? cosine : -cosine;
+    exponent = random_number(14) - 20;
+    b->power = real_of(1 + random_number(1 << 30), exponent);
     for (int c = 0; c < 3; c++)
-        b->rgb_q14[c] = 4096 + number(12289);
+        b->rgb_q14[c] = 4096 + random_number(12289);
 }
 
 static void make_waves(struct glint_wave wave[3])
@@ -84,7 +84,7 @@ static void make_waves(struct glint_wave wave[3])
 
     for (int i = 0; i < 3; i++) {
         wave[i] = plain[i];
-        wave[i].weight = real_of(1 + number(1 << 20), -30);
+        wave[i].weight = real_of(1 + random_number(1 << 20), -30);
     }
 }
 
@@ -98,13 +98,13 @@ static struct glint_flare_config make_config(struct shuffle *shuffle)
                                    .max_primitives = 150000,
                                    .max_refs = 600000};
 
-    c.width = 1 + number(400);
-    c.height = 1 + number(300);
-    c.tile_log2 = 3 + number(4);
+    c.width = 1 + random_number(400);
+    c.height = 1 + random_number(300);
+    c.tile_log2 = 3 + random_number(4);
     shuffle_init(shuffle, 1 + (int)(seed % 4), seed);
-    c.irradiance_steps = number(3) * 30;
-    c.dither = number(2);
-    if (number(2)) {
+    c.irradiance_steps = random_number(3) * 30;
+    c.dither = random_number(2);
+    if (random_number(2)) {
         c.stop.n_blades = 4;
         c.stop.apothem_q16 = 46341;
         memcpy(c.stop.normal_q30, side, sizeof side);
@@ -120,10 +120,10 @@ static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
     int n;
 
     glint_lamp_finder_defaults(&c, image->width, image->height);
-    c.threshold_high_q8 = -number(512);
-    c.threshold_low_q8 = c.threshold_high_q8 - number(512);
-    c.judge = number(2);
-    c.keep_faint = number(2);
+    c.threshold_high_q8 = -random_number(512);
+    c.threshold_low_q8 = c.threshold_high_q8 - random_number(512);
+    c.judge = random_number(2);
+    c.keep_faint = random_number(2);
     if (image->format == GLINT_LINEAR_Q20 ||
         glint_lamp_finder_init(&finder, &c, finder_memory, FINDER_BYTES) !=
             GLINT_OK)
@@ -151,9 +151,9 @@ static void draw_stars(const struct glint_flare_config *c,
                                                   c->height, MAX_LIGHTS};
     struct glint_star_light light[MAX_LIGHTS];
     struct glint_star *star;
-    const int n = 1 + number(MAX_LIGHTS);
+    const int n = 1 + random_number(MAX_LIGHTS);
     const struct glint_real faintest =
-        number(2) ? real_of(1, -13) : real_of(0, 0);
+        random_number(2) ? real_of(1, -13) : real_of(0, 0);
 
     if (glint_star_init(&star, &star_config, star_memory, STAR_BYTES) !=
         GLINT_OK) {
@@ -177,19 +177,19 @@ static void draw_flare(const struct glint_flare_config *c,
     struct glint_flare_frame rays = {.wave = wave,
                                      .pixels_per_mm = real_of(image->width, -5),
                                      .only_ghost = -1};
-    const int n_given = 1 + number(MAX_LIGHTS);
-    const int most = 1 + number(MAX_LIGHTS);
-    const int32_t near_q30 = 1 << number(24);
+    const int n_given = 1 + random_number(MAX_LIGHTS);
+    const int most = 1 + random_number(MAX_LIGHTS);
+    const int32_t near_q30 = 1 << random_number(24);
     int n, n_apart;
 
     if (glint_flare_init(&flare, c, arena, ARENA_BYTES) != GLINT_OK) {
         fputs("scenes: the arena is too small\n", stderr);
         exit(1);
     }
-    rays.lens = &lens[number(n_models)];
-    rays.n_waves = 1 + number(3);
-    rays.fineness = 8 << number(4);
-    rays.half = number(3) == 0 ? &glint_half : NULL;
+    rays.lens = &lens[random_number(n_models)];
+    rays.n_waves = 1 + random_number(3);
+    rays.fineness = 8 << random_number(4);
+    rays.half = random_number(3) == 0 ? &glint_half : NULL;
     make_waves(wave);
     for (int i = 0; i < n_given; i++)
         make_beam(&light[i]);
@@ -198,19 +198,20 @@ static void draw_flare(const struct glint_flare_config *c,
     n = glint_lights_merge(light, n_given, near_q30, most, &n_apart);
     glint_flare_plan(flare, &rays, light, n);
     glint_flare_bin(flare, &stats);
-    if (number(2))
+    if (random_number(2))
         draw_stars(c, flare, image);
     else
         glint_flare_draw(flare, image);
 }
 
-/* Draws a scene and adds its picture to *H; returns whether light was added. */
+/* Draws a random frame and adds its image to *H. Returns whether light was
+ * added. */
 static int draw_scene(uint64_t *h)
 {
     struct shuffle shuffle;
     const struct glint_flare_config c = make_config(&shuffle);
     struct glint_image image = {
-        .format = (enum glint_pixel_format)number(GLINT_RGB565 + 1),
+        .format = (enum glint_pixel_format)random_number(GLINT_RGB565 + 1),
         .width = c.width,
         .height = c.height};
     const size_t bytes = glint_image_bytes(image.format, c.width, c.height);
@@ -264,8 +265,8 @@ int main(int argc, char **argv)
         return 1;
     for (int i = 0; i < n; i++) {
         lit += draw_scene(&h);
-        if (getenv("GLINT_EACH")) /* The first hash that differs tells the
-                                   * scene. */
+        /* the first line that differs identifies the frame */
+        if (getenv("GLINT_EACH"))
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));
     }
     printf("%d scenes, %d with light, %08lx%08lx\n", n, lit,

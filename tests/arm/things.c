@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * objects SET N SCENE... - draws N pictures of baked scenes and prints a hash
- * of all output, which is the same on every CPU, whatever it was compiled for
- * and whatever kernels were used. SET is c, sse41, avx2, neon or best.
+ * objects SET N SCENE... - draws N images of baked scenes and prints a hash of
+ * all output, which is the same on every CPU, compiler target and set of
+ * kernels. SET is c, sse41, avx2, neon or best.
  *
  *     240 pictures, 236 with objects, 1b3f...
  *
  * Sizes, tiles, formats, samples, poses and lights are random, by integers
- * alone, as are the order of jobs and their workers. Lights and what covers
- * them are added to the hash. With GLINT_EACH set, the hash after each picture
- * is printed, too. Exit code 3: a scene is refused.
+ * only, as are the order of jobs and their workers. Lights and their coverage
+ * are added to the hash. With GLINT_EACH set, the hash after each image is
+ * printed as well. Exit code 3: a scene is invalid.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,9 +28,9 @@ static int n_models;
 static unsigned sets;
 static uint32_t seed = 2026;
 
-/* Returns 0 .. BELOW - 1. A statement may call it once: C leaves open in which
- * order arguments are evaluated. */
-static int number(int below)
+/* Returns a random number of 0 .. BELOW - 1. A statement may call it only
+ * once, as C does not define the order in which arguments are evaluated. */
+static int random_number(int below)
 {
     return (int)(rng_xorshift(&seed) % (uint32_t)below);
 }
@@ -39,18 +39,18 @@ static struct glint_scene_config make_config(struct shuffle *shuffle)
 {
     static const int points[3] = {1, 4, 16}, samples[4] = {1, 4, 8, 16};
     struct glint_scene_config c;
-    const int width = 1 + number(200), height = 1 + number(150);
+    const int width = 1 + random_number(200), height = 1 + random_number(150);
 
     glint_scene_defaults(&c, width, height);
     shuffle_init(shuffle, 1 + (int)(seed % 4), seed);
     c.workers = &shuffle->workers;
     c.sets = sets;
-    c.tile_log2 = 3 + number(4);
-    c.edge_samples = samples[number(4)];
-    c.half_shading = number(2);
-    c.shadow_points = points[number(3)];
-    c.dither = number(2);
-    c.focal_q16 = (int64_t)(1 + number(400)) << 16;
+    c.tile_log2 = 3 + random_number(4);
+    c.edge_samples = samples[random_number(4)];
+    c.half_shading = random_number(2);
+    c.shadow_points = points[random_number(3)];
+    c.dither = random_number(2);
+    c.focal_q16 = (int64_t)(1 + random_number(400)) << 16;
     c.max_refs = 200000;
     c.parts = (struct glint_scene_parts){
         &glint_scene_meshes, &glint_scene_textures, &glint_scene_bounces,
@@ -59,9 +59,10 @@ static struct glint_scene_config make_config(struct shuffle *shuffle)
     return c;
 }
 
-/* Moves an object and the camera, or leaves them. What is out of range is
- * refused, everywhere alike. */
-static void move(struct glint_scene *scene, const struct glint_scene_model *m)
+/* Moves an object and the camera, or neither. Positions out of range are
+ * rejected, on every machine alike. */
+static void move_objects(struct glint_scene *scene,
+                         const struct glint_scene_model *m)
 {
     static const int32_t turn_q30[3][4] = {{1 << 30, 0, 0, 0},
                                            {858993459, 0, 644245094, 0},
@@ -72,21 +73,22 @@ static void move(struct glint_scene *scene, const struct glint_scene_model *m)
                                               {{858993459, 0, -644245094},
                                                {0, 1 << 30, 0},
                                                {644245094, 0, 858993459}}};
-    const int n = (int)m->header->n_objects, which = n ? number(n) : 0;
+    const int n = (int)m->header->n_objects, which = n ? random_number(n) : 0;
     int32_t at[3];
     enum glint_status status = GLINT_OK;
 
-    if (n && number(2)) {
+    if (n && random_number(2)) {
         for (int k = 0; k < 3; k++)
-            at[k] = m->object[which].at[k] / 4 * number(8);
-        status = glint_scene_set_pose(scene, which, at, turn_q30[number(3)]);
+            at[k] = m->object[which].at[k] / 4 * random_number(8);
+        status =
+            glint_scene_set_pose(scene, which, at, turn_q30[random_number(3)]);
     }
-    if (status == GLINT_OK && number(3) == 0) {
+    if (status == GLINT_OK && random_number(3) == 0) {
         for (int k = 0; k < 3; k++)
-            at[k] = m->header->camera.at[k] / 4 * (1 + number(5));
-        status = glint_scene_set_camera(scene, at, axis_q30[number(2)]);
+            at[k] = m->header->camera.at[k] / 4 * (1 + random_number(5));
+        status = glint_scene_set_camera(scene, at, axis_q30[random_number(2)]);
     }
-    if (status == GLINT_OK && n && number(4) == 0)
+    if (status == GLINT_OK && n && random_number(4) == 0)
         glint_scene_show(scene, which, 0);
 }
 
@@ -107,14 +109,14 @@ static uint64_t hash_lights(uint64_t h, struct glint_scene *scene, int width)
         h, glint_scene_cover(scene, width << 7, width << 6, width << 5));
 }
 
-/* Draws a picture and adds it to *H; returns whether it changed. */
+/* Draws an image and adds it to *H. Returns whether objects changed it. */
 static int draw_picture(uint64_t *h)
 {
     struct shuffle shuffle;
     const struct glint_scene_config c = make_config(&shuffle);
-    const struct glint_scene_model *const m = &model[number(n_models)];
+    const struct glint_scene_model *const m = &model[random_number(n_models)];
     struct glint_image image = {
-        .format = (enum glint_pixel_format)number(GLINT_RGB565 + 1),
+        .format = (enum glint_pixel_format)random_number(GLINT_RGB565 + 1),
         .width = c.width,
         .height = c.height};
     const size_t bytes = glint_image_bytes(image.format, c.width, c.height);
@@ -125,7 +127,8 @@ static int draw_picture(uint64_t *h)
     uint64_t before, after;
     void *mem;
 
-    if (!room) { /* it sees too much for this shape: refused, everywhere */
+    /* too many triangles for this image shape: rejected on every machine */
+    if (!room) {
         free(pixels);
         return 0;
     }
@@ -134,7 +137,7 @@ static int draw_picture(uint64_t *h)
         exit(1);
     kinds_fill(&image, pixels, bytes, &seed);
     before = kinds_hash(KINDS_HASH_START, pixels, bytes);
-    move(scene, m);
+    move_objects(scene, m);
     glint_scene_begin(scene, &stats);
     glint_scene_draw(scene, &image);
     after = kinds_hash(KINDS_HASH_START, pixels, bytes);
@@ -176,7 +179,8 @@ int main(int argc, char **argv)
         open_scene(argv[i]);
     for (int i = 0; i < n; i++) {
         changed += draw_picture(&h);
-        if (getenv("GLINT_EACH")) /* The first that differs tells which. */
+        /* the first line that differs identifies the image */
+        if (getenv("GLINT_EACH"))
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));
     }
     printf("%d pictures, %d with objects, %08lx%08lx\n", n, changed,

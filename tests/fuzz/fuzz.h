@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What fuzz targets share. */
+ * Functions shared by the fuzz targets.
+ */
 #ifndef GLINT_TESTS_FUZZ_FUZZ_H
 #define GLINT_TESTS_FUZZ_FUZZ_H
 
@@ -19,8 +20,8 @@ static inline void require(int condition)
         abort();
 }
 
-/* Returns a malloc'ed copy of DATA, exactly as long, so that ASan sees an
- * overrun. */
+/* Returns an allocated copy of exactly SIZE bytes, so that ASan detects
+ * overreads. */
 static inline unsigned char *fuzz_copy(const uint8_t *data, size_t size)
 {
     unsigned char *copy = malloc(size ? size : 1);
@@ -31,7 +32,8 @@ static inline unsigned char *fuzz_copy(const uint8_t *data, size_t size)
     return copy;
 }
 
-/* The same, with magic, version, size and checksum of a blob put right. */
+/* As fuzz_copy(), but sets magic, version, size and checksum of a baked file
+ * to valid values. */
 static inline unsigned char *fuzz_blob(const uint8_t *data, size_t size,
                                        uint32_t magic, uint32_t version)
 {

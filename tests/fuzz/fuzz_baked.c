@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens any bytes as a baked scene, after magic, version, size and checksum are
- * put right, so that the other checks are reached. What is accepted must be
- * drawn onto a small picture, from where its camera stands or, as its checksum
- * says, from elsewhere, or its objects moved; sanitizers and range traps judge
- * it.
+ * Opens random bytes as a baked scene, with valid magic, version, size and
+ * checksum so that the other checks are reached. An accepted scene must be
+ * drawable onto a small image: from its camera or, depending on its checksum,
+ * with camera or objects moved. Sanitizers and range traps detect errors.
  *
  *     make fuzz FUZZ=baked SECONDS=120
  */
@@ -13,8 +12,10 @@
 
 enum { SIDE = 10, ROOM = 1 << 22, ONE_Q30 = 1 << 30 };
 
-/* Draws as the scene stands; lights must have fractions of 16. */
-static void draw(struct glint_scene *scene, enum glint_pixel_format format)
+/* Draws the scene in its present state. The visible fraction of each light
+ * must be 0 .. 16 sixteenths. */
+static void draw_scene(struct glint_scene *scene,
+                       enum glint_pixel_format format)
 {
     static uint8_t pixels[12 * SIDE * SIDE];
     struct glint_image image = glint_image_over(pixels, format, SIDE, SIDE);
@@ -32,10 +33,10 @@ static void draw(struct glint_scene *scene, enum glint_pixel_format format)
     require(n >= 0 && n <= 256);
 }
 
-/* Draws as the scene stands, or with the camera at the first thing, or with
- * that turned or hidden. */
-static void draw_one(struct glint_scene *scene,
-                     const struct glint_scene_model *model, int which)
+/* Draws the scene unchanged, or with the camera at the first object, or with
+ * that object rotated or hidden. */
+static void draw_variant(struct glint_scene *scene,
+                         const struct glint_scene_model *model, int which)
 {
     static const int32_t axis_q30[3][3] = {
         {0, 0, -ONE_Q30}, {0, ONE_Q30, 0}, {ONE_Q30, 0, 0}};
@@ -53,10 +54,10 @@ static void draw_one(struct glint_scene *scene,
         return;
     if (!is_empty && which == 3)
         glint_scene_show(scene, 0, 0);
-    draw(scene, format[which]);
+    draw_scene(scene, format[which]);
 }
 
-static void use(const struct glint_scene_model *model, int which)
+static void draw_model(const struct glint_scene_model *model, int which)
 {
     static uint8_t mem[ROOM] __attribute__((aligned(64)));
     struct glint_scene_config cfg;
@@ -80,7 +81,7 @@ static void use(const struct glint_scene_model *model, int which)
     if (model->header->n_environments)
         require(glint_scene_set_environment(
                     scene, (int)model->header->n_environments - 1) == GLINT_OK);
-    draw_one(scene, model, which);
+    draw_variant(scene, model, which);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -93,7 +94,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (glint_scene_open(&model, copy, size, &reason) != GLINT_OK)
         require(reason && *reason);
     else if (model.header->n_objects <= 16)
-        use(&model, (int)(glint_blob_crc32(copy, size) & 3));
+        draw_model(&model, (int)(glint_blob_crc32(copy, size) & 3));
     free(copy);
     return 0;
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses any bytes as a configuration. The callback take() must get options
- * that exist, with values of their kind and without control characters. A file
- * that is refused must have set nothing, and parsing any file again must set as
- * much.
+ * Parses random bytes as a configuration file. The callback must receive
+ * existing options with values of the right type and without control
+ * characters. A rejected file must have set nothing, and parsing a file again
+ * must set the same options.
  *
  *     make fuzz FUZZ=config SECONDS=60
  */
@@ -19,10 +19,12 @@ static const struct option options[] = {{"lens", required_argument, NULL, 'L'},
 struct taken {
     int n;
     size_t bytes;
-    const char *last; /* last value, which must live until config_free() */
+    /* last value, which must remain valid until config_free() */
+    const char *last;
 };
 
-static int take(void *ctx, const struct option *option, const char *value)
+static int check_option(void *ctx, const struct option *option,
+                        const char *value)
 {
     struct taken *const t = ctx;
 
@@ -43,7 +45,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct tool tool = {.name = "fuzz", .quiet = true};
     struct taken first = {0}, second = {0};
-    struct config config = {&tool, options, take, &first, NULL};
+    struct config config = {&tool, options, check_option, &first, NULL};
     struct glint_error error;
     const int code =
         config_parse(&config, "f", (const char *)data, size, &error);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses any bytes as control lines, and as keys. Accepted lines must be in
- * range and equal themselves when written and read again; rejected ones must
- * name their place; frames of a playback must exist.
+ * Parses random bytes as control lines, and as keys. Accepted lines must be in
+ * range and unchanged after writing and reading them; rejected lines must have
+ * a position in the message; frames of a playback must be valid.
  *
  *     make fuzz FUZZ=control SECONDS=60
  */
@@ -13,7 +13,7 @@
 #include "control/playback.h"
 #include "fuzz/fuzz.h"
 
-static const struct control_form *form_of(enum control_verb verb)
+static const struct control_form *find_form(enum control_verb verb)
 {
     static const struct control_form option = {.verb = CONTROL_OPTION,
                                                .word = "",
@@ -56,14 +56,14 @@ static void check_again(const struct control_line *l,
         require(again.v[i] == l->v[i]);
 }
 
-static void check(const struct control_line *l)
+static void check_line(const struct control_line *l)
 {
     const struct control_form *f;
 
     require(l->frame >= -1 && l->frame <= CONTROL_MOST_FRAME);
     if (l->verb == CONTROL_NONE)
         return;
-    f = form_of(l->verb);
+    f = find_form(l->verb);
     require(l->n >= f->least && l->n <= f->most && !l->is_change);
     for (int i = 0; i < l->n; i++)
         require(l->v[i] >= f->lowest && l->v[i] <= f->highest);
@@ -73,7 +73,7 @@ static void check(const struct control_line *l)
     check_again(l, f);
 }
 
-static void take(const char *text, struct playback *playback)
+static void check_text(const char *text, struct playback *playback)
 {
     struct control_line line;
     struct glint_error error;
@@ -83,7 +83,7 @@ static void take(const char *text, struct playback *playback)
         require(!strncmp(error.text, "fuzz:7:", 7) && atoi(error.text + 7) > 0);
         return;
     }
-    check(&line);
+    check_line(&line);
     playback_take(playback, &line);
     frame = playback_next(playback, .04);
     require(frame >= 0 && frame <= playback->last);
@@ -110,7 +110,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     playback_init(&playback);
     for (at = strtok(text, "\n"); at; at = strtok(NULL, "\n"))
-        take(at, &playback);
+        check_text(at, &playback);
     free(text);
     return 0;
 }

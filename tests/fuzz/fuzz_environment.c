@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens any bytes as a baked environment, after magic, version, size and
- * checksum are put right, and parses them as the text of one. What is accepted
- * must be as its header says.
+ * Opens random bytes as a baked environment, with valid magic, version, size
+ * and checksum, and parses them as the text of an environment. An accepted file
+ * must agree with its header.
  *
  *     make fuzz FUZZ=environment SECONDS=60
  */
@@ -11,8 +11,8 @@
 #include "fuzz/fuzz.h"
 #include "glint/scene/environment_bake.h"
 
-/* Reads all that a lookup may read. */
-static void use(const struct glint_environment *e)
+/* Reads all bytes that a lookup may read. */
+static void read_all_texels(const struct glint_environment *e)
 {
     const unsigned char *byte;
     volatile unsigned sum = 0;
@@ -39,7 +39,7 @@ static void open_blob(const uint8_t *data, size_t size)
     const char *reason = NULL;
 
     if (glint_environment_open(&environment, copy, size, &reason) == GLINT_OK)
-        use(&environment);
+        read_all_texels(&environment);
     else
         require(reason && *reason);
     free(copy);

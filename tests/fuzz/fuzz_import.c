@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * Imports any bytes as the format that the first of them says, from 'a' on, and
- * an odd one strictly, at the position of a zoom that the size picks. What is
- * refused must say why, what is not must be a text of a table that parses or is
- * refused with a place; the same again must give the same.
+ * Imports random bytes as a lens file. The first byte selects the format, from
+ * 'a' on, and, if odd, --strict; the size selects the zoom position. A rejected
+ * file must have an error message; an accepted one must give a lens table that
+ * parses, or is rejected with a position. A second import must give the same
+ * result.
  *
  *     make fuzz FUZZ=import SECONDS=60
  */
 #include "fuzz/fuzz.h"
 #include "import/imported.h"
 
-static char *import(struct imported *lens, const struct import_format *format,
-                    const uint8_t *data, size_t size, bool strict,
-                    size_t *bytes)
+static char *import_copy(struct imported *lens,
+                         const struct import_format *format,
+                         const uint8_t *data, size_t size, bool strict,
+                         size_t *bytes)
 {
     uint8_t *copy = malloc(size + 1);
     char *text;
@@ -44,13 +46,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     strict = (data[0] - 'a') % 2 == 1;
     if (!format)
         return 0;
-    text = import(&lens, format, data + 1, size - 1, strict, &bytes);
+    text = import_copy(&lens, format, data + 1, size - 1, strict, &bytes);
     if (!text) {
         require(strncmp(lens.error, "f:", 2) == 0 && lens.error[3]);
         return 0;
     }
     require(!strict || lens.n_guesses == 0);
-    second = import(&lens, format, data + 1, size - 1, strict, &again);
+    second = import_copy(&lens, format, data + 1, size - 1, strict, &again);
     require(second && again == bytes && memcmp(text, second, bytes) == 0);
     if (glint_prescription_parse(&table, text, bytes, "t", &error) != GLINT_OK)
         require(strncmp(error.text, "t:", 2) == 0);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses any bytes as a lens table. A lens that is accepted must have a list of
- * ghosts that fits, finite optics, and rays whose records are numbers, one by
- * one and many at once with the same bits: those of the picture, and of the one
- * ghost that the text's length picks.
+ * Parses random bytes as a lens table. An accepted lens must have a list of
+ * ghosts within its limit, finite optics, and rays without NaN, the same bits
+ * one by one and in batches: the rays of the image, and of the ghost that the
+ * text's length selects.
  *
  *     make fuzz FUZZ=lens SECONDS=60
  */
@@ -54,7 +54,7 @@ static void trace_some(const struct glint_prescription *lens,
     }
 }
 
-static void use(const struct glint_prescription *lens, size_t pick)
+static void trace_lens(const struct glint_prescription *lens, size_t pick)
 {
     static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
     const int n = glint_ghost_list(lens, ghosts, GLINT_MAX_GHOSTS);
@@ -85,7 +85,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                                       "fuzz.lens", &error);
     require(status == GLINT_OK || status == GLINT_E_LENS);
     if (status == GLINT_OK)
-        use(&lens, size);
+        trace_lens(&lens, size);
     else
         require(memchr(error.text, 0, sizeof(error.text)) != NULL &&
                 strncmp(error.text, "fuzz.lens:", 10) == 0);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses any bytes as a list of lights. Rows that are accepted must be in the
- * ranges of lamps.h, make lamps that are numbers, and parse to the same values
- * after they are written as CSV and as JSON lines.
+ * Parses random bytes as a list of lights. Accepted rows must be in the ranges
+ * of lamps.h, give finite lamps, and be unchanged after writing and reading
+ * them as CSV and as JSON lines.
  *
  *     make fuzz FUZZ=lights SECONDS=60
  */
@@ -39,7 +39,7 @@ static void check_lamps(const struct lamp_list *list, int frame)
     }
 }
 
-/* Writes row R to TEXT with 17 digits, which tell all doubles apart. */
+/* Writes row R to TEXT with 17 digits, which represent every double exactly. */
 static int print_row(char *text, const struct lamp_row *r, int as_json)
 {
     const char *const format =

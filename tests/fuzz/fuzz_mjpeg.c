@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Decodes any bytes as an MJPEG frame of up to 256 x 128 pixels. A frame that
- * decodes must give the same samples again after a frame that is cut in half.
+ * Decodes random bytes as an MJPEG frame of up to 256 x 128 pixels. A valid
+ * frame must decode to the same samples again after a frame truncated in the
+ * middle.
  *
  *     make fuzz FUZZ=mjpeg SECONDS=60
  */
 #include "fuzz/fuzz.h"
 #include "jpeg/mjpeg.h"
 
-/* Returns a hash of all samples; so the memory checker looks at each. */
-static uint32_t hash_of(const struct glint_image *image)
+/* Returns a hash of all samples, so that a memory checker checks each. */
+static uint32_t hash_samples(const struct glint_image *image)
 {
     uint32_t hash = 2166136261U;
 
@@ -41,10 +42,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (status == GLINT_OK) {
         require(image.width >= 1 && image.width <= 256);
         require(image.height >= 1 && image.height <= 128);
-        hash = hash_of(&image);
+        hash = hash_samples(&image);
         glint_mjpeg_decode(decoder, data, size / 2, &again, &error);
         require(!glint_mjpeg_decode(decoder, data, size, &again, &error));
-        require(again.format == image.format && hash_of(&again) == hash);
+        require(again.format == image.format && hash_samples(&again) == hash);
     } else
         require(error.text[0]);
     glint_mjpeg_close(decoder);

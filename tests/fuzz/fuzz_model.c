@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens any bytes as a model, or as a zoom of models if they begin as one,
- * after magic, version, size and checksum are put right, so that the other
- * checks are reached. A model that is accepted must carry rays at the ends of
- * every range of angles, between and outside them, over the corners of the
- * pupil, to places near and far, and draw a whole frame; no integer may leave
- * the range that rays rely on. So must a zoom, at its positions and between.
+ * Opens random bytes as a model, or as a zoom if they begin like one, with
+ * valid magic, version, size and checksum so that the other checks are reached.
+ * An accepted model must trace rays at the ends of every range of angles,
+ * inside and outside them, over the corners of the pupil, to near and far
+ * positions, and draw a complete frame; no integer may leave its range. The
+ * same holds for a zoom, at its positions and between them.
  *
  *     make fuzz FUZZ=model SECONDS=120
  */
@@ -14,7 +14,10 @@
 #include "glint/flare.h"
 #include "glint/transfer.h"
 
-enum { ONE = 1 << 30, SLACK = 64 /* units of 2^-30, between two knots */ };
+enum {
+    ONE = 1 << 30,
+    SLACK = 64 /* max deviation between two knots, units of 2^-30 */
+};
 
 static void check_rays(struct glint_transfer *t)
 {
@@ -66,7 +69,7 @@ static void check_grids(struct glint_transfer *t)
     }
 }
 
-/* Checks that the window of an opening lies within the ghost's box. */
+/* Checks that the window of an opening is inside the ghost's box. */
 static void check_window(struct glint_transfer *t, int32_t opening_q30)
 {
     static struct glint_window_nodes nodes;
@@ -102,7 +105,7 @@ static void check_azimuth(const struct glint_lens *lens, int ghost,
     check_grids(&t);
 }
 
-/* Lights of models whose ghosts do not depend on it have one azimuth. */
+/* Uses a single azimuth for models whose ghosts do not depend on it. */
 static void check_bundle(const struct glint_lens *lens, int ghost,
                          int32_t sine_q30, int32_t wave_q24)
 {
@@ -118,7 +121,7 @@ static void check_bundle(const struct glint_lens *lens, int ghost,
         check_azimuth(lens, ghost, sine_q30, at[k], wave_q24);
 }
 
-/* Checks GHOST, and of its systems that which PICK says. */
+/* Checks GHOST with the system that PICK selects. */
 static void check_ghost(const struct glint_lens *lens, int ghost, uint32_t pick)
 {
     const struct glint_model_ghost *g = &lens->ghost[ghost];
@@ -141,7 +144,7 @@ static void check_ghost(const struct glint_lens *lens, int ghost, uint32_t pick)
     }
 }
 
-/* Plans, bins and draws a frame of the model; sanitizers judge it. */
+/* Plans, bins and draws a frame of the model; sanitizers detect errors. */
 static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
 {
     enum { SIDE = 48, ROOM = 1 << 22 };
@@ -187,8 +190,9 @@ static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
     glint_flare_draw(flare, &image);
 }
 
-/* Writes a valid magic, version, size and checksum into the header. */
-static void seal(uint32_t *word, size_t size, uint32_t magic, uint32_t version)
+/* Sets magic, version, size and checksum in the header to valid values. */
+static void seal_blob(uint32_t *word, size_t size, uint32_t magic,
+                      uint32_t version)
 {
     if (size < 16)
         return;
@@ -201,7 +205,7 @@ static void seal(uint32_t *word, size_t size, uint32_t magic, uint32_t version)
 /* ---------------------------------------------------------------------- zoom
  */
 
-/* Seals the models of the zoom in WORD[SIZE], where they lie within, and it. */
+/* Seals the zoom in WORD[SIZE] and those of its models that lie inside it. */
 static void seal_zoom(uint32_t *word, size_t size)
 {
     const struct glint_zoom_header *const h = (const void *)word;
@@ -215,13 +219,14 @@ static void seal_zoom(uint32_t *word, size_t size)
             if (m[k].at >= h->model_at + h->n_models * sizeof *m &&
                 m[k].at % 4 == 0 && m[k].bytes < size &&
                 m[k].at < size - m[k].bytes)
-                seal(word + m[k].at / 4, m[k].bytes, GLINT_MODEL_MAGIC,
-                     GLINT_MODEL_VERSION);
+                seal_blob(word + m[k].at / 4, m[k].bytes, GLINT_MODEL_MAGIC,
+                          GLINT_MODEL_VERSION);
     }
-    seal(word, size, GLINT_ZOOM_MAGIC, GLINT_ZOOM_VERSION);
+    seal_blob(word, size, GLINT_ZOOM_MAGIC, GLINT_ZOOM_VERSION);
 }
 
-/* Checks GHOST of the zoom at angles of the model below where it is set. */
+/* Checks GHOST of the zoom at angles of the model at the next lower
+ * position. */
 static void check_zoomed(const struct glint_zoom_lens *zoom, int ghost,
                          uint32_t pick)
 {
@@ -282,7 +287,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         free(copy);
         return 0;
     }
-    seal(copy, size, GLINT_MODEL_MAGIC, GLINT_MODEL_VERSION);
+    seal_blob(copy, size, GLINT_MODEL_MAGIC, GLINT_MODEL_VERSION);
     if (glint_lens_open(&lens, copy, size, &reason) == GLINT_OK) {
         const uint32_t pick = copy[3];
         const uint32_t n = lens.header->n_ghosts;

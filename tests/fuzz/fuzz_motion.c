@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens any bytes as a baked motion, after magic, version, size and checksum
- * are put right, in memory and by blocks. What is accepted in memory has all
- * its frames; by blocks each is had or refused, and those that both have are
- * the same.
+ * Opens random bytes as a baked motion, with valid magic, version, size and
+ * checksum, in memory and by blocks. If it is accepted in memory, all frames
+ * must be readable; by blocks each is read or rejected, and frames read both
+ * ways must be the same.
  *
  *     make fuzz FUZZ=motion SECONDS=60
  */
@@ -15,7 +15,7 @@ struct file {
     uint32_t n_blocks;
 };
 
-/* Hands out a block with its number and sum put right. */
+/* Returns a block with valid number and checksum. */
 static int read_block(void *ctx, uint32_t block, uint8_t *to)
 {
     const struct file *file = ctx;
@@ -29,8 +29,8 @@ static int read_block(void *ctx, uint32_t block, uint8_t *to)
     return 1;
 }
 
-static void by_blocks(const uint8_t *data, size_t size,
-                      struct glint_motion *whole)
+static void check_by_blocks(const uint8_t *data, size_t size,
+                            struct glint_motion *whole)
 {
     static uint32_t buffer[GLINT_MOTION_BLOCK / 4];
     struct file file = {data, (uint32_t)(size / GLINT_MOTION_BLOCK)};
@@ -73,7 +73,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     is_whole = glint_motion_open(&motion, copy, size, &reason) == GLINT_OK;
     require(is_whole || (reason && *reason));
-    by_blocks(copy, size, is_whole ? &motion : NULL);
+    check_by_blocks(copy, size, is_whole ? &motion : NULL);
     free(copy);
     return 0;
 }

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads any bytes as a PPM, PGM or PFM. A picture that is accepted must be in
- * memory to its last sample, must have a file larger than its samples, and can
- * be written.
+ * Reads random bytes as PPM, PGM or PFM. An accepted image must be in memory to
+ * its last sample, its file must be larger than its samples, and writing it
+ * must succeed.
  *
  *     make fuzz FUZZ=pnm SECONDS=60
  */
 #include "formats/pnm.h"
 #include "fuzz/fuzz.h"
 
-unsigned glint_fuzz_sink; /* keeps reads from being optimised away */
+unsigned glint_fuzz_sink; /* prevents reads from being optimised away */
 
 static void open_null(struct glint_output *out)
 {
@@ -18,7 +18,7 @@ static void open_null(struct glint_output *out)
     require(!glint_output_open(out, "/dev/null", GLINT_OUTPUT_BINARY, &error));
 }
 
-static void use_pnm(const uint8_t *data, size_t size)
+static void check_pnm(const uint8_t *data, size_t size)
 {
     struct glint_image image;
     struct glint_error error;
@@ -41,7 +41,7 @@ static void use_pnm(const uint8_t *data, size_t size)
     free(image.plane[0]);
 }
 
-static void use_pfm(const uint8_t *data, size_t size)
+static void check_pfm(const uint8_t *data, size_t size)
 {
     struct glint_float_image floats;
     struct glint_error error;
@@ -62,7 +62,7 @@ static void use_pfm(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    use_pnm(data, size);
-    use_pfm(data, size);
+    check_pnm(data, size);
+    check_pfm(data, size);
     return 0;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads any bytes as a recording in JSON, by pieces of several sizes, and bakes
- * it. What is accepted opens and has finite poses.
+ * Reads random bytes as a recording in JSON, in pieces of several sizes, and
+ * bakes it. An accepted recording must open and have finite poses.
  *
  *     make fuzz FUZZ=recording SECONDS=60
  */
@@ -28,8 +28,8 @@ static long read_text(void *ctx, char *to, size_t n)
     return (long)n;
 }
 
-static void use(const unsigned char *data, size_t bytes,
-                const struct glint_motion_report *report)
+static void check_motion(const unsigned char *data, size_t bytes,
+                         const struct glint_motion_report *report)
 {
     struct glint_motion motion;
     struct glint_motion_frame frame;
@@ -62,7 +62,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         status = glint_motion_baker_finish(baker, "x", 1, &baked, &bytes,
                                            &report, &error);
     if (status == GLINT_OK)
-        use(baked, bytes, &report);
+        check_motion(baked, bytes, &report);
     else
         require(status == GLINT_E_LENS && error.text[0]);
     free(baked);

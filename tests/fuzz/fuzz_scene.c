@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parses any bytes as a scene text. The mesh that it may name has what follows
- * the first zero byte as its text. A scene that is accepted must be as its
- * header says: numbers finite and in range, indices of objects that are there.
- * Baked, the run time must accept it.
+ * Parses random bytes as a scene text; the bytes after the first zero are the
+ * text of any mesh that it names. An accepted scene must fulfil the conditions
+ * of its header: numbers finite and in range, existing indices. After baking,
+ * the run time must accept it.
  *
  *     make fuzz FUZZ=scene SECONDS=60
  */
@@ -18,7 +18,7 @@ struct rest {
     size_t size;
 };
 
-/* Environments likewise. */
+/* Returns the bytes after the first zero as any mesh or environment. */
 static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
                                    size_t *bytes, struct glint_error *error)
 {
@@ -27,7 +27,7 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
     (void)error;
     if (strchr(name, '!'))
         return GLINT_E_IO;
-    /* exactly as long as the text, so that ASan sees an overrun */
+    /* exactly as long as the text, so that ASan detects overreads */
     *data = malloc(rest->size ? rest->size : 1);
     require(*data != NULL);
     memcpy(*data, rest->data, rest->size);
@@ -93,7 +93,7 @@ static void check_object(const struct glint_description *s,
         require(o->radius >= GLINT_DESCRIPTION_LEAST && o->material >= 0);
 }
 
-static void check(const struct glint_description *s)
+static void check_scene(const struct glint_description *s)
 {
     require(s->n_objects >= 1);
     check_unit(s->camera.right);
@@ -110,7 +110,7 @@ static void check(const struct glint_description *s)
             check_unit(s->light[i].at);
 }
 
-static void bake(const struct glint_description *scene)
+static void bake_scene(const struct glint_description *scene)
 {
     struct glint_scene_bake_report report;
     struct glint_scene_model model;
@@ -147,8 +147,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     status = glint_description_parse(&scene, (const char *)data, bytes,
                                      "fuzz.scene", &files, &error);
     if (status == GLINT_OK) {
-        check(&scene);
-        bake(&scene);
+        check_scene(&scene);
+        bake_scene(&scene);
         glint_description_free(&scene);
     } else {
         require(memchr(error.text, 0, sizeof error.text) != NULL &&

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens any bytes as a baked translucent medium, after magic, version, size and
- * checksum are put right, and spreads light as it says; parses them as the text
- * of one. No sum may leave its range, whatever is accepted.
+ * Opens random bytes as a baked translucent medium, with valid magic, version,
+ * size and checksum, and spreads light by it; parses them as the text of a
+ * medium. No sum may leave its range.
  *
  *     make fuzz FUZZ=stone SECONDS=60
  */
@@ -11,8 +11,9 @@
 #include "fuzz/fuzz.h"
 #include "glint/scene/stone_bake.h"
 
-/* Spreads even light and a checked one over a small translucent medium. */
-static void use(const struct glint_translucent *t)
+/* Spreads uniform light and a chequered pattern over a small translucent
+ * medium. */
+static void spread_light(const struct glint_translucent *t)
 {
     const size_t side = (size_t)1 << t->header->side_log2;
     const size_t n = 3 * side * side;
@@ -37,7 +38,7 @@ static void open_blob(const uint8_t *data, size_t size)
     if (glint_translucent_open(&stone, copy, size, &reason) != GLINT_OK)
         require(reason && *reason);
     else if (stone.header->side_log2 == GLINT_TRANSLUCENT_LEAST_LOG2)
-        use(&stone);
+        spread_light(&stone);
     free(copy);
 }
 

@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads any bytes as a Y4M stream. The first byte sets how many bytes arrive at
- * a time, 1 to 200. A header that is accepted must print as one that parses to
- * the same header; every frame must be in memory to its last sample and can be
- * written.
+ * Reads random bytes as a Y4M stream. The first byte sets how many bytes arrive
+ * per read, 1 to 200. An accepted header must print as one that parses to the
+ * same header; every frame must be in memory to its last sample, and writing it
+ * must succeed.
  *
  *     make fuzz FUZZ=y4m SECONDS=60
  */
 #include "fuzz/fuzz.h"
 #include "video/y4m.h"
 
-unsigned glint_fuzz_sink; /* keeps reads from being optimised away */
+unsigned glint_fuzz_sink; /* prevents reads from being optimised away */
 
 struct memory {
     const uint8_t *data;
     size_t bytes, chunk;
 };
 
-static ptrdiff_t pull(void *ctx, void *dst, size_t bytes)
+static ptrdiff_t read_memory(void *ctx, void *dst, size_t bytes)
 {
     struct memory *const m = ctx;
     size_t n = m->bytes < m->chunk ? m->bytes : m->chunk;
@@ -39,7 +39,7 @@ static void check_printed(const struct glint_y4m_header *header)
     require(header->width >= 1 && header->width <= GLINT_MAX_SIDE);
     require(header->height >= 1 && header->height <= GLINT_MAX_SIDE);
     require(len == strlen(line) && len < sizeof line && line[len - 1] == '\n');
-    if (len > GLINT_Y4M_LINE) /* made too long by tags that were added */
+    if (len > GLINT_Y4M_LINE) /* added tags can make it too long */
         return;
     line[len - 1] = 0;
     require(!glint_y4m_header_parse(&again, line, "again", &error));
@@ -49,7 +49,7 @@ static void check_printed(const struct glint_y4m_header *header)
     require(again.format == header->format && again.range == header->range);
 }
 
-/* Checks the header as it was read, and as its fields alone print it. */
+/* Checks the header as read, and as printed from its fields only. */
 static void check_header(const struct glint_y4m_header *header)
 {
     struct glint_y4m_header own = *header;
@@ -59,8 +59,8 @@ static void check_header(const struct glint_y4m_header *header)
     check_printed(&own);
 }
 
-/* Returns the sum of all samples; so the memory checker looks at each. */
-static unsigned touch(const struct glint_image *frame)
+/* Returns the sum of all samples, so that a memory checker checks each. */
+static unsigned sum_samples(const struct glint_image *frame)
 {
     unsigned sum = 0;
 
@@ -77,7 +77,7 @@ static unsigned touch(const struct glint_image *frame)
     return sum;
 }
 
-static void use(struct glint_y4m_reader *reader)
+static void read_frames(struct glint_y4m_reader *reader)
 {
     const struct glint_image *frame;
     struct glint_y4m_writer writer;
@@ -87,7 +87,7 @@ static void use(struct glint_y4m_reader *reader)
     require(
         !glint_y4m_writer_open(&writer, "/dev/null", &reader->header, &error));
     while (!glint_y4m_reader_next(reader, &frame, &error) && frame) {
-        glint_fuzz_sink += touch(frame);
+        glint_fuzz_sink += sum_samples(frame);
         require(
             !glint_y4m_writer_put(&writer, frame, reader->frame_tags, &error));
     }
@@ -104,8 +104,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (size < 1)
         return 0;
     memory = (struct memory){data + 1, size - 1, 1 + data[0] % 200U};
-    if (!glint_y4m_reader_start(&reader, pull, &memory, "fuzz", &error))
-        use(&reader);
+    if (!glint_y4m_reader_start(&reader, read_memory, &memory, "fuzz", &error))
+        read_frames(&reader);
     glint_y4m_reader_close(&reader);
     return 0;
 }

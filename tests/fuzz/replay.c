@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Runs every file of the directories on the command line through one fuzz
- * target, without a fuzzer:
+ * Runs every file of the given directories through one fuzz target, without a
+ * fuzzer:
  *
  *     build/.../tests/fuzz/replay_y4m tests/fuzz/corpus/y4m
  */
@@ -17,7 +17,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* Returns 1 if PATH was replayed, 0 if it is not a regular file, -1 if it could
+/* Returns 1 if PATH was run, 0 if it is not a regular file, -1 if it could
  * not be read or is larger than MAX_BYTES. */
 static int replay_file(const char *path)
 {
@@ -31,7 +31,7 @@ static int replay_file(const char *path)
     if (!S_ISREG(st.st_mode))
         return 0;
     file = fopen(path, "rb");
-    /* exactly as long as the input, so that ASan sees an overrun */
+    /* exactly as long as the input, so that ASan detects overreads */
     data = malloc(st.st_size > 0 ? (size_t)st.st_size : 1);
     if (!file || !data || st.st_size > MAX_BYTES) {
         free(data);
@@ -46,8 +46,8 @@ static int replay_file(const char *path)
     return 1;
 }
 
-/* Returns how many files of DIR were replayed; -1 if DIR or one of its files
- * was not readable. */
+/* Returns the number of files of DIR that were run, or -1 if DIR or one of
+ * its files could not be read. */
 static int replay_directory(const char *dir)
 {
     DIR *const d = opendir(dir);
@@ -85,5 +85,5 @@ int main(int argc, char **argv)
         sum += n;
     }
     printf("%s: %d inputs replayed\n", slash ? slash + 1 : argv[0], sum);
-    return sum > 0 ? 0 : 1; /* an empty corpus is a mistake */
+    return sum > 0 ? 0 : 1; /* an empty corpus is an error */
 }

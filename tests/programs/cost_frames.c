@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * cost_frames [--from N] FILE - draws the frames that the cost model is fitted
- * to, a third of which through lenses that are held out, and writes a line for
- * each into FILE: 1 if it is held out, what it is, the counts that its plan
- * predicts, and those that were drawn. If FILE is there, only the frames are
- * drawn, from number N on: tools/measure/cost-fit counts their instructions by
- * callgrind.
+ * cost_frames [--from N] FILE - draws the frames to which the cost model is
+ * fitted, a third of them through lenses that are held out for validation.
+ * Writes a line for each to FILE: 1 if it is held out, its description, the
+ * counts that its plan predicts, and those of drawing. If FILE exists, only
+ * draws the frames from number N on: tools/measure/cost-fit counts their
+ * instructions with callgrind.
  *
- * Lights, sizes, qualities, stops and parts are random, the same ones each
- * time.
+ * Lights, sizes, qualities, stops and parts are pseudo-random, the same in each
+ * run.
  */
 #include <math.h>
 #include <stdio.h>
@@ -44,14 +44,14 @@ struct stage {
     double exposure;
 };
 
-static double among(uint32_t *seed, double low, double high)
+static double random_between(uint32_t *seed, double low, double high)
 {
     return low + (high - low) * rng_unit(seed);
 }
 
-/* Makes frame I. Dust and soft edges, of many edges, are drawn in small
- * pictures. */
-static struct shape shape_of(int i)
+/* Returns the parameters of frame I. Dust and soft edges, which have many
+ * edges, are drawn in small images. */
+static struct shape make_shape(int i)
 {
     static const int width[] = {320, 480, 640};
     static const int lamps[] = {1, 1, 2, 4};
@@ -67,22 +67,25 @@ static struct shape shape_of(int i)
     s.width = width[rng_below(&seed, dirty ? 1 : 3)];
     s.height = s.width * 9 / 16;
     s.n_lamps = lamps[rng_below(&seed, dirty ? 2 : 4)];
-    s.angle = among(&seed, 1, 25);
-    s.stops = among(&seed, -5, 1);
-    s.quality = among(&seed, 0, dirty ? 0.5 : 0.75);
-    s.dim = rng_below(&seed, 3) ? 0 : exp2(among(&seed, -2, 2));
+    s.angle = random_between(&seed, 1, 25);
+    s.stops = random_between(&seed, -5, 1);
+    s.quality = random_between(&seed, 0, dirty ? 0.5 : 0.75);
+    s.dim = rng_below(&seed, 3) ? 0 : exp2(random_between(&seed, -2, 2));
     s.dispersion = rng_below(&seed, 4) ? 0 : 1;
     s.starburst = rng_below(&seed, 3) ? 0 : 1;
-    s.star_stops = among(&seed, 3, 14);
+    s.star_stops = random_between(&seed, 3, 14);
     s.veil = rng_below(&seed, 4) ? 0 : 0.02;
     s.haze = rng_below(&seed, 5) ? 0 : 0.02;
-    s.dust = dirty && rng_below(&seed, 3) ? exp2(among(&seed, -9, -5)) : 0;
-    s.soft = dirty && rng_below(&seed, 3) == 0 ? among(&seed, 0.01, 0.1) : 0;
-    s.round = rng_below(&seed, 4) ? 0 : among(&seed, 0.1, 0.9);
+    s.dust =
+        dirty && rng_below(&seed, 3) ? exp2(random_between(&seed, -9, -5)) : 0;
+    s.soft = dirty && rng_below(&seed, 3) == 0
+                 ? random_between(&seed, 0.01, 0.1)
+                 : 0;
+    s.round = rng_below(&seed, 4) ? 0 : random_between(&seed, 0.1, 0.9);
     return s;
 }
 
-static void set(struct settings *to, const struct shape *s)
+static void set_settings(struct settings *to, const struct shape *s)
 {
     settings_defaults(to);
     settings_set_quality(to, s->quality);
@@ -110,7 +113,7 @@ static void fail(const char *what)
 
 static void open_stage(struct stage *s, const struct shape *shape)
 {
-    set(&s->opened.settings, shape);
+    set_settings(&s->opened.settings, shape);
     if (opened_lens_open(&s->tool, &s->opened.lens, &s->opened.settings,
                          shape->lens) != EXIT_OK ||
         settings_frame(&s->tool, &s->opened, shape->width, shape->height,
@@ -128,8 +131,8 @@ static void close_stage(struct stage *s)
     opened_lens_close(&s->opened.lens);
 }
 
-/* Calls glint_frame_draw(), as a function of its own, whose instructions
- * tools/measure/cost-fit counts. */
+/* Calls glint_frame_draw(). A separate function, so that
+ * tools/measure/cost-fit can count its instructions. */
 enum glint_status cost_frame(struct glint_frame *frame,
                              const struct glint_lamp *lamp, int n,
                              const struct glint_image *image,
@@ -142,8 +145,9 @@ enum glint_status cost_frame(struct glint_frame *frame,
     return glint_frame_draw(frame, lamp, n, 1, image, report);
 }
 
-static enum glint_status expose(struct glint_frame *frame,
-                                const struct glint_lamp *lamp, double *exposure)
+static enum glint_status find_exposure(struct glint_frame *frame,
+                                       const struct glint_lamp *lamp,
+                                       double *exposure)
 {
     const int width = frame->view.width, height = frame->view.height;
     const size_t n = 3 * (size_t)width * (size_t)height;
@@ -159,14 +163,14 @@ static enum glint_status expose(struct glint_frame *frame,
     return status;
 }
 
-/* Draws the frame twice, so that the second has its memory. */
-static void draw(struct stage *s, const struct shape *shape)
+/* Draws the frame twice, so that the second allocates no memory. */
+static void draw_frame(struct stage *s, const struct shape *shape)
 {
     struct glint_engine_report report;
 
     for (int i = 0; i < shape->n_lamps; i++)
         s->lamp[i].power *= s->exposure * exp2(shape->stops);
-    /* The star's share makes the lamps as bright as they are. */
+    /* The star's fraction compensates the exposure of the lamps. */
     s->frame.star.share *= exp2(shape->star_stops) /
                            (s->exposure * exp2(shape->stops)) * shape->n_lamps;
     canvas_fresh(&s->canvas);
@@ -179,7 +183,7 @@ static void draw(struct stage *s, const struct shape *shape)
         fail("no memory");
 }
 
-static void count(const struct stage *s, double *counted)
+static void count_lit(const struct stage *s, double *counted)
 {
     struct glint_planned b;
 
@@ -219,7 +223,7 @@ static double lit_pixels(const struct stage *s)
     return lit;
 }
 
-static void print(struct stage *s, const struct shape *shape, FILE *file)
+static void print_line(struct stage *s, const struct shape *shape, FILE *file)
 {
     const struct glint_cost_plan plan = glint_frame_plan(&s->frame);
     const struct glint_cost planned = glint_cost_of(&plan, &plan.dials);
@@ -233,7 +237,7 @@ static void print(struct stage *s, const struct shape *shape, FILE *file)
     for (int k = 0; k < GLINT_COST_KINDS; k++)
         fprintf(file, " %g", planned.count[k]);
     fprintf(file, " |");
-    count(s, counted);
+    count_lit(s, counted);
     counted[GLINT_COST_LIT] = lit_pixels(s);
     for (int k = GLINT_COST_LIT + 1; k < GLINT_COST_KINDS; k++)
         counted[k] = planned.count[k];
@@ -256,7 +260,7 @@ int main(int argc, char **argv)
     s->tool.name = "cost_frames";
     s->tool.quiet = true;
     for (int i = 0; i < FIT + HELD; i++) {
-        const struct shape shape = shape_of(i);
+        const struct shape shape = make_shape(i);
         double exposure = 1;
 
         s->tool.name = "cost_frames";
@@ -266,11 +270,12 @@ int main(int argc, char **argv)
             continue;
         open_stage(s, &shape);
         s->exposure = exposure;
-        if (!from && expose(&s->frame, s->lamp, &s->exposure) != GLINT_OK)
+        if (!from &&
+            find_exposure(&s->frame, s->lamp, &s->exposure) != GLINT_OK)
             fail("no memory");
-        draw(s, &shape);
+        draw_frame(s, &shape);
         if (to) {
-            print(s, &shape, to);
+            print_line(s, &shape, to);
             fflush(to);
         }
         close_stage(s);

@@ -3,21 +3,21 @@
  * motion LENS [--from DEG] [--to DEG] [--csv OUT]
  *             [--jump CODES] [--flux SHARE] [--crawl CODES]
  *
- * Moves a light slowly across the frame and measures by how much the picture in
- * codes changes from frame to frame beyond the true change. The true change is
- * that of a reference: the model with grids four times as fine, irradiance
- * without steps and nothing left out.
+ * Moves a light slowly across the frame and measures by how much the image in
+ * codes changes from frame to frame beyond the true change, which is that of a
+ * reference: the model with grids four times as fine, irradiance without steps
+ * and nothing dropped.
  *
- *   jump   the largest change of the mean of any 8 x 8 block, codes: popping
- *   flux   the change of the sum of all codes, over that sum
+ *   jump   max change of the mean of any 8 x 8 block, codes: popping
+ *   flux   change of the sum of all codes / that sum
  *   crawl  99.9th percentile of the change of pixels, codes: crawling edges
  *
  * The error of a frame is its codes minus those of the reference, which are not
- * rounded; the measures say how much the error changes. For jump and flux the
- * picture is dithered, so that means of blocks are right to 1/64 of a code:
- * without dither, a flat part that grows brighter changes by a whole code at
- * once, for which the format is to blame. Exit code 1: a measure exceeded its
- * bound (--jump, --flux, --crawl).
+ * rounded; the measures are the change of the error. For jump and flux the
+ * image is dithered, so that means of blocks are accurate to 1/64 code; without
+ * dither, a uniform area that becomes brighter would change by a whole code at
+ * once because of the format. Exit code 1: a measure exceeded its limit
+ * (--jump, --flux, --crawl).
  */
 #include <getopt.h>
 #include <math.h>
@@ -46,13 +46,13 @@ struct sweep {
     float error[2][2][SAMPLES]; /* [frame & 1][0: dithered, 1: as drawn] */
     uint8_t codes[SAMPLES];
     double power;
-    double sum; /* codes: sum of the reference's last frame */
+    double sum; /* sum of the reference's last frame, codes */
     struct sample worst;
 };
 
 /* ------------------------------------------------------------------ frames */
 
-/* Sets ERROR to the codes of the picture, with dither or not, minus those of
+/* Sets ERROR to the codes of the image, dithered if DITHER, minus those of
  * the reference in s->linear. */
 static bool add_error(struct sweep *s, const struct glint_lamp *lamp,
                       int dither, float *error)
@@ -111,7 +111,7 @@ static double flux_jump(const struct sweep *s, const float *a, const float *b)
     return s->sum > 0 ? fabs(sum) / s->sum : 0;
 }
 
-static double crawl(const float *a, const float *b)
+static double edge_crawl(const float *a, const float *b)
 {
     enum { BINS = 4096 };
     static int count[BINS];
@@ -128,7 +128,7 @@ static double crawl(const float *a, const float *b)
     return at / 16.0;
 }
 
-static bool run(struct sweep *s)
+static bool run_sweep(struct sweep *s)
 {
     const int steps = (int)lrint((s->to - s->from) / STEP_DEG);
     FILE *const csv = s->csv ? fopen(s->csv, "w") : NULL;
@@ -147,7 +147,7 @@ static bool run(struct sweep *s)
             continue;
         now = (struct sample){block_jump(here[0], before[0]),
                               flux_jump(s, here[0], before[0]),
-                              crawl(here[1], before[1])};
+                              edge_crawl(here[1], before[1])};
         s->worst.jump = fmax(s->worst.jump, now.jump);
         s->worst.flux = fmax(s->worst.flux, now.flux);
         s->worst.crawl = fmax(s->worst.crawl, now.crawl);
@@ -179,8 +179,8 @@ static bool open_sweep(struct sweep *s)
     return true;
 }
 
-static bool judge(const struct sweep *s, const char *what, double worst,
-                  double bound, const char *unit)
+static bool check_limit(const struct sweep *s, const char *what, double worst,
+                        double bound, const char *unit)
 {
     char name[200];
 
@@ -221,9 +221,10 @@ int main(int argc, char **argv)
                         "[--jump CODES] [--flux SHARE] [--crawl CODES]\n");
         return 2;
     }
-    if (!open_sweep(&s) || !run(&s))
+    if (!open_sweep(&s) || !run_sweep(&s))
         return 1;
-    ok = judge(&s, "block mean", s.worst.jump, s.bound.jump, "codes");
-    ok &= judge(&s, "sum of codes", s.worst.flux, s.bound.flux, "");
-    return !(judge(&s, "crawl", s.worst.crawl, s.bound.crawl, "codes") && ok);
+    ok = check_limit(&s, "block mean", s.worst.jump, s.bound.jump, "codes");
+    ok &= check_limit(&s, "sum of codes", s.worst.flux, s.bound.flux, "");
+    return !(check_limit(&s, "crawl", s.worst.crawl, s.bound.crawl, "codes") &&
+             ok);
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * motion_table FRAMES - prints the errors of localised positions, by method and
- * motion.
+ * motion_table FRAMES - prints the errors of localisation (a body's pose from
+ * observed foods), by method and motion.
  *
- * Methods take turns at chunks of frames, so that their times are of one run.
+ * Methods take turns at blocks of frames, so that their times are comparable.
  */
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +16,8 @@
 
 enum { CHUNK = 1000, BINS = 100, MOST_METHODS = 6, SEED = 163635 };
 
-/* ALL: as glint bake, with or without the average; else by four foods. */
+/* A method of localisation. ALL: uses all foods as glint bake does, with or
+ * without averaging; else uses four foods. */
 struct method {
     const char *name;
     bool all, average;
@@ -24,14 +25,16 @@ struct method {
     enum four_arithmetic arithmetic;
 };
 
-/* What became of a method on a track; errors are distances of places. */
+/* Result of a method on a track; errors are distances between estimated and
+ * true positions. */
 struct result {
     struct glint_localiser all;
     struct four four;
     const char *wrong;
     double square[BINS], worst, last_worst, seconds, residual[BINS];
     int count[BINS];
-    /* Sums of error, mean distance of foods, their squares and product. */
+    /* sums of the error, of the mean distance of foods, of their squares and
+     * product */
     double sums[5];
 };
 
@@ -56,8 +59,8 @@ static const char *const motions[TRACK_MOTIONS] = {
 
 static struct track_frame chunk[CHUNK];
 
-static void note(struct result *r, const struct glint_located *located,
-                 const struct track_frame *f, int bin, bool is_last)
+static void add_error(struct result *r, const struct glint_located *located,
+                      const struct track_frame *f, int bin, bool is_last)
 {
     double square = 0, x, y = f->food_distance;
 
@@ -88,8 +91,8 @@ static const char *localise(const struct method *method, struct result *r,
                        : four_localise(&r->four, n, seen, f->is_new, located);
 }
 
-static void run(const struct track_options *options,
-                const struct method *method, int n, struct result *result)
+static void run_track(const struct track_options *options,
+                      const struct method *method, int n, struct result *result)
 {
     struct track track;
 
@@ -114,15 +117,15 @@ static void run(const struct track_options *options,
             for (int k = 0; k < CHUNK && !r->wrong; k++) {
                 const int frame = first + k;
 
-                note(r, &located[k], &chunk[k],
-                     (int)((long long)frame * BINS / options->n_frames),
-                     frame >= options->n_frames / 10 * 9);
+                add_error(r, &located[k], &chunk[k],
+                          (int)((long long)frame * BINS / options->n_frames),
+                          frame >= options->n_frames / 10 * 9);
             }
         }
     }
 }
 
-/* Returns the root of the mean square error of bins FIRST .. END - 1. */
+/* Returns the root mean square error of bins FIRST .. END - 1. */
 static double rms(const struct result *r, int first, int end)
 {
     double square = 0;
@@ -143,8 +146,8 @@ static double correlation(const struct result *r, int n)
     return (s[4] - s[0] * s[1] / n) / sqrt(x * y);
 }
 
-static void print(const struct method *method, int n, int n_frames,
-                  const struct result *result)
+static void print_row(const struct method *method, int n, int n_frames,
+                      const struct result *result)
 {
     for (int i = 0; i < n; i++) {
         const struct result *r = &result[i];
@@ -160,8 +163,8 @@ static void print(const struct method *method, int n, int n_frames,
 
 /* ------------------------------------------------------------------ tables */
 
-static void compare(int reset_every, int digits, const struct method *method,
-                    int n, int n_frames)
+static void compare_methods(int reset_every, int digits,
+                            const struct method *method, int n, int n_frames)
 {
     static struct result result[MOST_METHODS];
 
@@ -171,9 +174,9 @@ static void compare(int reset_every, int digits, const struct method *method,
         const struct track_options options = {
             m, n_frames, 5, reset_every, digits, (uint32_t)(SEED + m)};
 
-        run(&options, method, n, result);
+        run_track(&options, method, n, result);
         printf("| %s | | | | | |\n", motions[m]);
-        print(method, n, n_frames, result);
+        print_row(method, n, n_frames, result);
     }
 }
 
@@ -190,7 +193,7 @@ static void time_methods(void)
                                          rounded_input[3], rounded_input[4]};
         const struct track_options options = {0, lengths[i], 5, 0, 0, SEED};
 
-        run(&options, method, 4, result);
+        run_track(&options, method, 4, result);
         first = i ? first : result[0].seconds;
         printf("| %d |", lengths[i]);
         for (int k = 0; k < 4; k++)
@@ -208,11 +211,11 @@ int main(int argc, char **argv)
         return 2;
     }
     printf("### Foods that stay, all digits, %d frames\n\n", n);
-    compare(0, 0, exact_input, 6, n);
+    compare_methods(0, 0, exact_input, 6, n);
     printf("\n### A food ends every 200 frames, %d times; text of six "
            "digits\n\n",
            (n - 1) / 200);
-    compare(200, 6, rounded_input, 5, n);
+    compare_methods(200, 6, rounded_input, 5, n);
     printf("\n### Times, in those of first4 for 10000 frames\n\n");
     time_methods();
     return 0;

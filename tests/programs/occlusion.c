@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * occlusion [--log] - prints how the power of a lamp follows the fraction of it
- * that can be seen, while a pole passes before it.
+ * occlusion [--log] - prints how well the power of a lamp follows its visible
+ * fraction while a pole passes in front of it.
  *
- * A lamp is a disc 6 stops over white, whose image has the glare of a lens: a
+ * A lamp is a disc 6 stops above white; its image has the glare of a lens: a
  * narrow core and a tail that falls with the cube of the distance. The pole
- * hides the disc, not the glare. Power over its mean before the pole is
- * compared with the fraction of the disc's area that is in view, of that frame
- * and (lag) of the frames before that fit best. --log prints every frame.
+ * hides the disc, but not the glare. The power, divided by its mean before the
+ * pole, is compared with the visible fraction of the disc's area in the same
+ * frame, and in the earlier frame that fits best (lag). --log prints every
+ * frame.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -30,10 +31,10 @@ enum {
 
 struct scene {
     const char *name;
-    double radius, pole, speed; /* pixels; pixels a frame */
+    double radius, pole, speed; /* pixels, pixels, pixels per frame */
 };
 
-/* Frames of one scene. */
+/* Visible fraction and measured power in the frames of one scene. */
 struct passing {
     double share[FRAMES], power[FRAMES];
     int lamps[FRAMES];
@@ -42,22 +43,23 @@ struct passing {
 static struct glint_lamp_detector detector;
 static uint8_t rgb[3 * WIDTH * HEIGHT];
 
-/* Light at distance R of a point, per unit of its light; sums to about 1 */
+/* Returns the glare at distance R of a point, per unit of its light;
+ * integrates to about 1. */
 static double glare(double r)
 {
     return 0.14 * exp(-r * r / 2) + 0.02 / pow(1 + r, 3);
 }
 
-static uint8_t code_of(double x)
+static uint8_t to_code(double x)
 {
     x = x > 1 ? 1 : x;
     x = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
     return (uint8_t)lrint(255 * x);
 }
 
-/* Draws the disc behind a pole between columns X0 and X1; returns the fraction
- * of it that is in view. */
-static double draw(const struct scene *s, double x0, double x1)
+/* Draws the disc behind a pole between columns X0 and X1. Returns the
+ * visible fraction of the disc. */
+static double draw_lamp(const struct scene *s, double x0, double x1)
 {
     const double cx = WIDTH / 2.0 + 0.3, cy = HEIGHT / 2.0 - 0.2;
     const double each = 64 * 3.14159265 * s->radius * s->radius / POINTS;
@@ -66,7 +68,7 @@ static double draw(const struct scene *s, double x0, double x1)
 
     for (int i = 0; i < 4 * SQUARES && table[0] == 0; i++)
         table[4 * SQUARES - 1 - i] = glare(sqrt((4 * SQUARES - 0.5 - i) / 4));
-    for (int i = 0; i < POINTS; i++) { /* a sunflower's seeds */
+    for (int i = 0; i < POINTS; i++) { /* points in a sunflower spiral */
         const double r = s->radius * sqrt((i + 0.5) / POINTS);
         const double x = cx + r * cos(2.399963 * i);
 
@@ -88,13 +90,13 @@ static double draw(const struct scene *s, double x0, double x1)
 
                 light += each * table[(int)(4 * (dx * dx + dy * dy))];
             }
-            memset(rgb + 3 * (y * WIDTH + x), code_of(light), 3);
+            memset(rgb + 3 * (y * WIDTH + x), to_code(light), 3);
         }
     return (double)n / POINTS;
 }
 
-/* Returns the power of all lamps, which are at their places. */
-static double power_of(const struct glint_lamp *lamp, int n)
+/* Returns the total power of N lamps. */
+static double total_power(const struct glint_lamp *lamp, int n)
 {
     double sum = 0;
 
@@ -103,7 +105,7 @@ static double power_of(const struct glint_lamp *lamp, int n)
     return sum;
 }
 
-static bool pass(const struct scene *s, struct passing *p)
+static bool run_scene(const struct scene *s, struct passing *p)
 {
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     const struct glint_view view = glint_view_fit(WIDTH, HEIGHT, 36, 24);
@@ -120,17 +122,18 @@ static bool pass(const struct scene *s, struct passing *p)
         const double x =
             WIDTH / 2.0 - s->radius - s->pole - 4 + s->speed * (i - 30);
 
-        p->share[i] = draw(s, x, x + s->pole);
+        p->share[i] = draw_lamp(s, x, x + s->pole);
         p->lamps[i] = glint_lamp_detector_frame(&detector, &image, FRAME_US,
                                                 &view, 50, lamp);
-        p->power[i] = power_of(lamp, p->lamps[i]);
+        p->power[i] = total_power(lamp, p->lamps[i]);
     }
     glint_lamp_detector_close(&detector);
     return true;
 }
 
-/* Returns the RMS difference of power and the fraction LAG frames before. */
-static double off_by(const struct passing *p, double full, int lag)
+/* Returns the RMS difference between the power and the fraction LAG frames
+ * before. */
+static double rms_difference(const struct passing *p, double full, int lag)
 {
     double sum = 0;
 
@@ -139,7 +142,8 @@ static double off_by(const struct passing *p, double full, int lag)
     return sqrt(sum / (FRAMES - 30));
 }
 
-static void print(const struct scene *s, const struct passing *p, bool log)
+static void print_scene(const struct scene *s, const struct passing *p,
+                        bool log)
 {
     double full = 0, least_share = 1, least = 1e30, step = 0, share_step = 0;
     int lag = 0;
@@ -147,7 +151,8 @@ static void print(const struct scene *s, const struct passing *p, bool log)
     for (int i = 20; i < 30; i++)
         full += p->power[i] / 10;
     for (int i = 1; i < 10; i++)
-        lag = off_by(p, full, i) < off_by(p, full, lag) ? i : lag;
+        lag =
+            rms_difference(p, full, i) < rms_difference(p, full, lag) ? i : lag;
     for (int i = 30; i < FRAMES; i++) {
         least_share = fmin(least_share, p->share[i]);
         least = fmin(least, p->power[i] / full);
@@ -161,7 +166,8 @@ static void print(const struct scene *s, const struct passing *p, bool log)
         printf("| %s | %.0f, %.0f | %.2f | %.2f | %.3f | %d: %.3f | %.2f | "
                "%.2f |\n",
                s->name, s->radius, s->pole, least_share, least,
-               off_by(p, full, 0), lag, off_by(p, full, lag), share_step, step);
+               rms_difference(p, full, 0), lag, rms_difference(p, full, lag),
+               share_step, step);
 }
 
 int main(int argc, char **argv)
@@ -180,9 +186,9 @@ int main(int argc, char **argv)
                "| RMS | lag: RMS | largest step of the share | of power |\n"
                "|---|---|---|---|---|---|---|---|");
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-        if (!pass(&scenes[i], &p))
+        if (!run_scene(&scenes[i], &p))
             return 1;
-        print(&scenes[i], &p, log);
+        print_scene(&scenes[i], &p, log);
     }
     return 0;
 }

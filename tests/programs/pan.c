@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * pan IN FRAMES WxH > OUT.y4m - a camera that pans over a photograph, with the
- * noise of a small sensor: video with real lamps that move in a known way.
- * Frame n of N shows the window at x = (width - W) n / N, y = middle + a slow
- * sway; noise is the same in every run.
+ * pan IN FRAMES WxH > OUT.y4m - makes a video of a camera that pans over a
+ * photograph, with the noise of a small sensor: real lamps that move in a known
+ * way. Frame n of N shows the window at x = (width - W) n / N, y = middle + a
+ * slow oscillation; the noise is the same in every run.
  */
 #include <math.h>
 #include <stdint.h>
@@ -15,23 +15,23 @@
 #include "video/y4m.h"
 #include "options/tool.h"
 
-/* Returns noise, -6 .. 6 codes: the sum of three uniform numbers. */
-static int noise(uint32_t *state)
+/* Returns noise of -6 .. 6 codes, the sum of three uniform numbers. */
+static int random_noise(uint32_t *state)
 {
     return (int)((rng_bits(state) >> 16) % 5 + (rng_bits(state) >> 16) % 5 +
                  (rng_bits(state) >> 16) % 5) -
            6;
 }
 
-static uint8_t clamp(double x)
+static uint8_t clamp_code(double x)
 {
     return (uint8_t)(x < 0 ? 0 : x > 255 ? 255 : x + 0.5);
 }
 
-/* Writes the window of FROM at (X0, Y0) to TO as BT.601, limited range, with
+/* Converts the window of FROM at (X0, Y0) to TO, BT.601 limited range, with
  * noise on luma. */
-static void convert(const struct glint_image *from, int x0, int y0,
-                    const struct glint_image *to, uint32_t *state)
+static void convert_window(const struct glint_image *from, int x0, int y0,
+                           const struct glint_image *to, uint32_t *state)
 {
     for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++) {
@@ -41,17 +41,18 @@ static void convert(const struct glint_image *from, int x0, int y0,
             const double luma = 0.299 * r + 0.587 * g + 0.114 * b;
 
             to->plane[0][y * to->stride_bytes[0] + x] =
-                clamp(16 + luma * 219 / 255 + noise(state));
+                clamp_code(16 + luma * 219 / 255 + random_noise(state));
             if (x & 1 || y & 1)
                 continue;
             to->plane[1][y / 2 * to->stride_bytes[1] + x / 2] =
-                clamp(128 + (b - luma) / 1.772 * 224 / 255);
+                clamp_code(128 + (b - luma) / 1.772 * 224 / 255);
             to->plane[2][y / 2 * to->stride_bytes[2] + x / 2] =
-                clamp(128 + (r - luma) / 1.402 * 224 / 255);
+                clamp_code(128 + (r - luma) / 1.402 * 224 / 255);
         }
 }
 
-static int pan(const struct glint_image *photo, int n, int width, int height)
+static int write_video(const struct glint_image *photo, int n, int width,
+                       int height)
 {
     struct glint_error error = {""};
     struct glint_image frame = {
@@ -72,7 +73,7 @@ static int pan(const struct glint_image *photo, int n, int width, int height)
         const int x = (photo->width - width) * i / n;
         const int y = (int)(0.5 * room * (1 + 0.5 * sin(i / 12.0)));
 
-        convert(photo, x, y, &frame, &state);
+        convert_window(photo, x, y, &frame, &state);
         status = glint_y4m_writer_put(&out, &frame, "", &error);
     }
     if (status == GLINT_OK)
@@ -102,7 +103,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "pan: %s is smaller than the window\n", argv[1]);
         return 2;
     }
-    code = pan(&photo, n, width, height);
+    code = write_video(&photo, n, width, height);
     glint_picture_free(&photo);
     return code;
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * power_table [PANORAMA.pfm ...] - prints what tests/power-fit fits to: a line
- * of group, power, light seen and of the core, and features, for each picture
- * of a clipped lamp. Lamps that are rendered or in HDR panoramas are exposed
- * ten times, each time half as bright, to codes of 8 bits, every fourth picture
- * to RGB565, and measured as those of any picture. Every second lamp and
- * panorama is left out: the fit can be tried on it.
+ * power_table [PANORAMA.pfm ...] - prints the data to which tests/power-fit
+ * fits the power of clipped lamps. Each line has group, power, visible light,
+ * light of the core, and features, of one image of a clipped lamp. Lamps
+ * (rendered, or in HDR panoramas) are exposed ten times, each time half as
+ * bright, to codes of 8 bits, every fourth image to RGB565, and measured like
+ * those of any image. Every second lamp and panorama is held out for
+ * validation.
  */
 #include <math.h>
 #include <stdio.h>
@@ -23,15 +24,17 @@ enum {
     EXPOSURES = 10,
     LAMPS = 720,
     VIEWS = 48,
-    PANORAMA = 10000, /* group of the first panorama */
+    PANORAMA = 10000, /* group number of the first panorama */
     MAX_SPOTS = 64
 };
 
 /* ------------------------------------------------------------------ measure */
 
 struct camera {
-    struct glint_image image, coarse; /* RGB24; the same as RGB565 */
-    const struct glint_image *seen;   /* what the finder sees of the two */
+    /* image as RGB24; coarse: the same as RGB565 */
+    struct glint_image image, coarse;
+    /* the one of the two that the finder receives */
+    const struct glint_image *seen;
     struct glint_lamp_finder *finder;
     struct glint_profile *profile;
     struct glint_spot spot[MAX_SPOTS];
@@ -80,11 +83,12 @@ static int is_bright(const struct camera *c, int i)
     return px[0] >= 240 || px[1] >= 240 || px[2] >= 240;
 }
 
-/* Returns the sum of luminance of SCENE, times GAIN, over the bright pixels
- * that touch (CX, CY), and sets SPOT to what an ideal finder would make of
- * them. */
-static double region_at(struct camera *c, const struct power_picture *scene,
-                        double gain, int cx, int cy, struct glint_spot *spot)
+/* Returns the sum of the luminance of SCENE times GAIN over the bright
+ * pixels connected to (CX, CY). Sets SPOT to the result of an ideal finder
+ * for them. */
+static double measure_region(struct camera *c,
+                             const struct power_picture *scene, double gain,
+                             int cx, int cy, struct glint_spot *spot)
 {
     static const double weight[3] = {0.2126, 0.7152, 0.0722};
     const int width = c->image.width, height = c->image.height;
@@ -135,8 +139,8 @@ static double region_at(struct camera *c, const struct power_picture *scene,
     return area ? light : 0;
 }
 
-/* Returns the index of SPOT by its place from the left. */
-static int id_of(const struct camera *c, const struct glint_spot *spot)
+/* Returns the rank of SPOT, counted from the left. */
+static int find_rank(const struct camera *c, const struct glint_spot *spot)
 {
     int i = 0;
 
@@ -152,7 +156,8 @@ static void print_features(struct camera *c, int id, double power,
     int32_t feature_q16[GLINT_UNCLIP_FEATURES];
     int64_t seen_q16, core_q16;
 
-    glint_rings_sum(&sums, &c->profile->rings, c->spot, c->n, id_of(c, spot));
+    glint_rings_sum(&sums, &c->profile->rings, c->spot, c->n,
+                    find_rank(c, spot));
     glint_unclip_light(&seen_q16, &core_q16, spot, &sums);
     glint_unclip_features(feature_q16, spot, &sums);
     printf("%d %.6g %.6g %.6g", id, power, (double)seen_q16 / 65536,
@@ -162,8 +167,8 @@ static void print_features(struct camera *c, int id, double power,
     printf("\n");
 }
 
-/* Takes a picture of SCENE times GAIN with noise of SIGMA codes. Every fourth
- * picture, by its number K, is RGB565. */
+/* Takes an image of SCENE times GAIN with noise of SIGMA codes. Every fourth
+ * image, by its number K, is RGB565. */
 static void expose(struct camera *c, const struct power_picture *scene,
                    double gain, double sigma, int k, uint32_t *seed)
 {
@@ -185,14 +190,14 @@ static void expose(struct camera *c, const struct power_picture *scene,
 
 /* ----------------------------------------------------------------- rendered */
 
-static double between(double low, double high, uint32_t *seed)
+static double random_between(double low, double high, uint32_t *seed)
 {
     return low + (high - low) * rng_unit(seed);
 }
 
-/* Sets RGB to the colour of a random lamp, of luminance 1: white, tungsten,
+/* Sets RGB to the colour of a random lamp, luminance 1: white, tungsten,
  * sodium, blue, warm white or green. */
-static void any_colour(double *rgb, uint32_t *seed)
+static void random_colour(double *rgb, uint32_t *seed)
 {
     static const double colours[6][3] = {{1, 1, 1},      {1, 0.55, 0.18},
                                          {1, 0.4, 0.02}, {0.35, 0.55, 1},
@@ -201,34 +206,35 @@ static void any_colour(double *rgb, uint32_t *seed)
     double y;
 
     for (int i = 0; i < 3; i++)
-        rgb[i] = from[i] * between(0.9, 1.1, seed);
+        rgb[i] = from[i] * random_between(0.9, 1.1, seed);
     y = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
     for (int i = 0; i < 3; i++)
         rgb[i] /= y;
 }
 
-static struct power_lamp any_lamp(int i, int width, int height, uint32_t *seed)
+static struct power_lamp random_lamp(int i, int width, int height,
+                                     uint32_t *seed)
 {
     struct power_lamp l = {.shape = (enum power_shape)(i % POWER_SHAPES)};
 
     l.radius = 0.3 * pow(100, rng_unit(seed));
-    l.x = width / 2 + between(-1, 1, seed);
-    l.y = height / 2 + between(-1, 1, seed);
-    l.angle = between(0, 3.14, seed);
-    l.sigma = between(0.5, 1.3, seed);
+    l.x = width / 2 + random_between(-1, 1, seed);
+    l.y = height / 2 + random_between(-1, 1, seed);
+    l.angle = random_between(0, 3.14, seed);
+    l.sigma = random_between(0.5, 1.3, seed);
     l.glare = 0.01 * pow(8, rng_unit(seed));
-    l.reach = between(1, 3, seed);
-    l.fall = between(2.3, 3.3, seed);
-    any_colour(l.rgb, seed);
+    l.reach = random_between(1, 3, seed);
+    l.fall = random_between(2.3, 3.3, seed);
+    random_colour(l.rgb, seed);
     return l;
 }
 
-static int is_held(int i)
+static int is_held_out(int i)
 {
     return (i / 4 + i) & 1;
 }
 
-static void rendered(int i)
+static void print_rendered(int i)
 {
     enum { W = 288, H = 224 };
     struct power_picture scene = {W, H, malloc(sizeof(double) * 3 * W * H)};
@@ -240,26 +246,27 @@ static void rendered(int i)
 
     for (int k = 0; k < 5; k++)
         rng_unit(&seed);
-    lamp = any_lamp(i, W, H, &seed);
-    power = exp2(between(9, 16, &seed));
-    black = i % 4 == 3 ? between(0.1, 0.6, &seed)
+    lamp = random_lamp(i, W, H, &seed);
+    power = exp2(random_between(9, 16, &seed));
+    black = i % 4 == 3 ? random_between(0.1, 0.6, &seed)
                        : 0.001 * pow(50, rng_unit(&seed));
-    slope = between(0, 0.6, &seed);
-    noise = between(0, 3, &seed);
+    slope = random_between(0, 0.6, &seed);
+    noise = random_between(0, 3, &seed);
     power_draw(light, W, H, &lamp);
     open_camera(&c, W, H);
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = exp2(-k - rng_unit(&seed));
 
-        /* The background keeps its exposure, as lamps are seen by day and by
-         * night. */
+        /* The background keeps its exposure, as lamps are visible by day and
+         * by night. */
         for (int p = 0; p < W * H; p++)
             for (int j = 0; j < 3; j++)
                 scene.rgb[3 * p + j] =
                     ((double)light[p] * power * lamp.rgb[j] * gain +
                      black * (1 + slope * (p % W - W / 2) / W));
         expose(&c, &scene, 1, noise, k, &seed);
-        if (region_at(&c, &scene, 1, (int)lamp.x, (int)lamp.y, c.spot) > 0 &&
+        if (measure_region(&c, &scene, 1, (int)lamp.x, (int)lamp.y, c.spot) >
+                0 &&
             c.spot->area >= 2 && c.spot->area < W * H / 5) {
             c.n = 1;
             glint_profile_measure(c.profile, c.seen, c.spot, c.n);
@@ -304,7 +311,7 @@ static void cut_view(struct power_picture *s, const struct glint_float_image *p,
     }
 }
 
-static double mean_of(const struct power_picture *s)
+static double compute_mean(const struct power_picture *s)
 {
     double sum = 0;
 
@@ -313,13 +320,13 @@ static double mean_of(const struct power_picture *s)
     return sum / (3 * s->width * s->height);
 }
 
-/* Changes the picture into what a camera with a random lens sees, with the
- * glare of all that is above OVER. */
-static void see_view(struct power_picture *s, double over, uint32_t *seed)
+/* Applies a random lens to the image, with the glare of all pixels above
+ * OVER. */
+static void apply_lens(struct power_picture *s, double over, uint32_t *seed)
 {
     const int n = s->width * s->height;
     double *light = malloc(sizeof *light * (size_t)n);
-    const struct power_lamp lens = any_lamp(0, s->width, s->height, seed);
+    const struct power_lamp lens = random_lamp(0, s->width, s->height, seed);
 
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < n; i++)
@@ -331,10 +338,10 @@ static void see_view(struct power_picture *s, double over, uint32_t *seed)
     free(light);
 }
 
-/* Takes one view of panorama P in all exposures and notes the lamps found.
+/* Takes one view of panorama P at all exposures and prints the lamps found.
  * TRUTH is the light that enters the lens, without its glare. */
-static void view(const struct glint_float_image *p, int id, double yaw,
-                 double pitch)
+static void print_view(const struct glint_float_image *p, int id, double yaw,
+                       double pitch)
 {
     const int width = p->width * 2 / 9, height = width * 9 / 16;
     const size_t bytes = sizeof(double) * 3 * (size_t)(width * height);
@@ -346,20 +353,20 @@ static void view(const struct glint_float_image *p, int id, double yaw,
 
     cut_view(&scene, p, yaw, pitch);
     memcpy(truth.rgb, scene.rgb, bytes);
-    base = 0.7 / fmax(mean_of(&scene), 1e-4);
-    see_view(&scene, 8 / base, &seed);
+    base = 0.7 / fmax(compute_mean(&scene), 1e-4);
+    apply_lens(&scene, 8 / base, &seed);
     open_camera(&c, width, height);
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = base * exp2(-k);
 
-        expose(&c, &scene, gain, between(0, 3, &seed), k, &seed);
+        expose(&c, &scene, gain, random_between(0, 3, &seed), k, &seed);
         c.n = glint_lamp_finder_find(c.finder, c.seen, c.spot, MAX_SPOTS);
         glint_profile_measure(c.profile, c.seen, c.spot, c.n);
         for (int i = 0; i < c.n; i++) {
             struct glint_spot ideal;
             const double power =
-                region_at(&c, &truth, gain, c.spot[i].x_q8 >> 8,
-                          c.spot[i].y_q8 >> 8, &ideal);
+                measure_region(&c, &truth, gain, c.spot[i].x_q8 >> 8,
+                               c.spot[i].y_q8 >> 8, &ideal);
 
             if (power > 0 && !c.spot[i].faint)
                 print_features(&c, PANORAMA + id / 100, power, &c.spot[i]);
@@ -370,7 +377,7 @@ static void view(const struct glint_float_image *p, int id, double yaw,
     free(truth.rgb);
 }
 
-static void panorama(const char *path, int id)
+static void print_panorama(const char *path, int id)
 {
     struct glint_float_image p = {0};
     struct glint_error error = {""};
@@ -383,17 +390,17 @@ static void panorama(const char *path, int id)
         if (!(p.rgb[i] > 0))
             p.rgb[i] = 0;
     for (int k = 0; k < VIEWS; k++)
-        view(&p, 100 * id + k, (k % 8 + k / 16 / 3.0) * 3.14159265 / 4,
-             (k / 8 % 2 - 0.3) * 0.6);
+        print_view(&p, 100 * id + k, (k % 8 + k / 16 / 3.0) * 3.14159265 / 4,
+                   (k / 8 % 2 - 0.3) * 0.6);
     free(p.rgb);
 }
 
 int main(int argc, char **argv)
 {
     for (int i = 0; i < LAMPS; i++)
-        if (!is_held(i))
-            rendered(i);
+        if (!is_held_out(i))
+            print_rendered(i);
     for (int i = 2; i < argc; i += 2)
-        panorama(argv[i], i);
+        print_panorama(argv[i], i);
     return 0;
 }

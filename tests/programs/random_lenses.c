@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * random_lenses SEED NUMBER [--table]
+ * random_lenses SEED NUMBER [--table] - bakes a random but valid lens
+ * (support/random_lens.h) as a draft and compares an image of its model, in
+ * linear light and in codes, with the exact image.
  *
- * Bakes a random but valid lens (support/random_lens.h) as a draft and compares
- * a picture of its model, in linear light and in codes, with the exact picture.
- * Prints a line: number; drawn, dark both ways, or refused by the bake; tables
- * that were thrown away; surfaces, ghosts, focal length in mm, f-number,
- * degrees of the light, PSNR in dB, flux over the exact one's, 99th percentile
- * of differences in codes, and the grid of the exact picture. --table: prints
- * the table of the lens instead. tests/extremes runs many, each for a limited
- * time.
+ * Prints a line: number; drawn, dark both ways, or refused by the bake; number
+ * of rejected tables; surfaces, ghosts, focal length in mm, f-number, degrees
+ * of the light, PSNR in dB, flux / exact flux, 99th percentile of differences
+ * in codes, and the grid of the exact image. --table: prints the table of the
+ * lens instead. tests/extremes runs many, each with a time limit.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -20,9 +19,9 @@
 
 enum { WIDTH = 144, HEIGHT = 96, MANY_GHOSTS = 60 };
 
-/* Returns a lamp of power 1 in the picture or somewhat outside. */
-static struct glint_lamp lamp_for(const struct stage *s, uint64_t seed,
-                                  int number)
+/* Returns a lamp of power 1, inside the image or slightly off-screen. */
+static struct glint_lamp random_lamp(const struct stage *s, uint64_t seed,
+                                     int number)
 {
     uint64_t r = ~seed * UINT64_C(0xd1342543de82ef95) + (uint64_t)number;
     const double half =
@@ -34,9 +33,10 @@ static struct glint_lamp lamp_for(const struct stage *s, uint64_t seed,
     return stage_lamp(theta, stage_uniform(&r, -180, 180), 1);
 }
 
-/* Prints what is known of lens NUMBER of S, which is WHAT. */
-static int print(const struct stage *s, int number, const char *what, int tries,
-                 double theta_deg, const struct glint_measure *m, int grid)
+/* Prints the line of lens NUMBER of S with the result WHAT. */
+static int print_line(const struct stage *s, int number, const char *what,
+                      int tries, double theta_deg,
+                      const struct glint_measure *m, int grid)
 {
     printf("%d %s %d %d %d %.4g %.3g %.3g %.1f %.4f %.0f %d\n", number, what,
            tries, s->lens.n_surfaces, glint_ghost_list(&s->lens, NULL, 0),
@@ -45,7 +45,7 @@ static int print(const struct stage *s, int number, const char *what, int tries,
     return 0;
 }
 
-static int run(uint64_t seed, int number)
+static int run_lens(uint64_t seed, int number)
 {
     static struct stage s;
     static char text[RANDOM_LENS_TEXT];
@@ -60,12 +60,12 @@ static int run(uint64_t seed, int number)
     int grid;
 
     if (tries < 0 || !stage_prepare(&s, blades))
-        return print(&s, number, "refused", tries, 0, &m, 0);
-    lamp = bright = lamp_for(&s, seed, number);
+        return print_line(&s, number, "refused", tries, 0, &m, 0);
+    lamp = bright = random_lamp(&s, seed, number);
     if (!stage_bake(&s, 4, fmin(89, lamp.theta_deg + 0.5)))
-        return print(&s, number, "refused", tries, lamp.theta_deg, &m, 0);
+        return print_line(&s, number, "refused", tries, lamp.theta_deg, &m, 0);
     stage_view(&s, WIDTH, HEIGHT, 0);
-    bright.power = 1e9; /* Codes saturate; nothing must trap here. */
+    bright.power = 1e9; /* codes saturate; nothing must trap */
     grid = glint_ghost_list(&s.lens, NULL, 0) > MANY_GHOSTS ? 64 : 128;
     if (!stage_linear(&s, &lamp, 1, model) ||
         !stage_codes(&s, &bright, 1, codes) ||
@@ -73,14 +73,14 @@ static int run(uint64_t seed, int number)
         return 1;
     m = stage_compare(&s, exact, model);
     if (m.psnr_db < 45 && stage_exact(&s, &lamp, 1, 2 * grid, exact)) {
-        grid *= 2; /* shows whether the exact one was at fault */
+        grid *= 2; /* shows whether the exact image caused the difference */
         m = stage_compare(&s, exact, model);
     }
-    return print(&s, number,
-                 stage_flux(&s, exact) <= 0 && stage_flux(&s, model) <= 0
-                     ? "dark"
-                     : "drawn",
-                 tries, lamp.theta_deg, &m, grid);
+    return print_line(&s, number,
+                      stage_flux(&s, exact) <= 0 && stage_flux(&s, model) <= 0
+                          ? "dark"
+                          : "drawn",
+                      tries, lamp.theta_deg, &m, grid);
 }
 
 int main(int argc, char **argv)
@@ -94,7 +94,7 @@ int main(int argc, char **argv)
         return 2;
     }
     if (argc == 3)
-        return run(seed, atoi(argv[2]));
+        return run_lens(seed, atoi(argv[2]));
     random_lens(&lens, seed, atoi(argv[2]), text);
     printf("# seed %s, lens %s\n%s", argv[1], argv[2], text);
     return 0;

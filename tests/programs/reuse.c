@@ -1,15 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * reuse MODEL.glint LIGHTS [SCALE] - what frames take and are whose lights
- * stand still: 1920x1080 codes on black with LIGHTS lights of a night street,
- * at the default quality with three wavelengths. With SCALE, a factor on their
- * powers, it draws, by the function measured() and each on a frame that was
- * drawn before: again; with the same lights; with lights that moved by up to
- * half a pixel and whose powers wavered by a fifth. Without, it prints the
- * scale at which all but a ten-thousandth of the samples are at most a quarter
- * of white; bytes of a frame without and with room for lights that stand; and
- * for 0.25, 0.5 and 1 pixel the least PSNR of three frames in which lights are
- * up to that far from where they stand, against frames drawn again.
+ * reuse MODEL.glint LIGHTS [SCALE] - measures frames that reuse the rays of
+ * stationary lights: 1920x1080 codes on black with LIGHTS lights of a night
+ * street, at the default quality with three wavelengths.
+ *
+ * With SCALE, a factor on their powers, draws several times, by the function
+ * measured(), onto a frame that was drawn before: without reuse; with the same
+ * lights; with lights that moved by up to half a pixel and whose powers changed
+ * by up to a fifth.
+ *
+ * Without SCALE, prints the scale at which all but 1e-4 of the samples are at
+ * most a quarter of white; the bytes of a frame without and with memory for
+ * reuse; and for tolerances of 0.25, 0.5 and 1 pixel the min PSNR of three
+ * frames whose lights have moved by up to that distance, against frames without
+ * reuse.
  */
 #include <math.h>
 #include <stdio.h>
@@ -37,14 +41,13 @@ static void measured(struct glint_frame *f, int n, double scale, uint8_t *codes)
         exit(1);
 }
 
-/* A pointer that may change, so that the function keeps its name in profiles.
- */
+/* A volatile pointer prevents inlining, so that the function keeps its name
+ * in profiles. */
 static void (*volatile frame)(struct glint_frame *, int, double,
                               uint8_t *) = measured;
 
-/* Draws on black, with reuse of lights that moved by less than PX; below 0:
- * without. */
-static void draw(int n, double scale, double px, uint8_t *codes)
+/* Draws on black. PX: tolerance of reuse, pixels; below 0: no reuse. */
+static void draw_frame(int n, double scale, double px, uint8_t *codes)
 {
     struct glint_frame *f = px < 0 ? &plain : &reusing;
 
@@ -53,8 +56,8 @@ static void draw(int n, double scale, double px, uint8_t *codes)
     frame(f, n, scale, codes);
 }
 
-/* Moves N lamps by up to PX pixels, and has their powers waver. */
-static void waver(int n, double px, uint64_t *noise)
+/* Moves N lamps by up to PX pixels and changes their powers at random. */
+static void move_lamps(int n, double px, uint64_t *noise)
 {
     const double focal = stage.of_model.optics.focal_mm;
 
@@ -71,7 +74,7 @@ static void waver(int n, double px, uint64_t *noise)
     }
 }
 
-static double scale_for(int n)
+static double find_scale(int n)
 {
     const int quarter = 137, most = BYTES / 10000;
     double low = -30, high = 30;
@@ -80,7 +83,7 @@ static double scale_for(int n)
         const double middle = (low + high) / 2;
         int above = 0;
 
-        draw(n, exp2(middle), -1, got);
+        draw_frame(n, exp2(middle), -1, got);
         for (int k = 0; k < BYTES; k++)
             above += got[k] > quarter;
         if (above > most)
@@ -91,8 +94,8 @@ static double scale_for(int n)
     return exp2(low);
 }
 
-/* Returns the least PSNR of frames whose lights stand up to PX pixels off. */
-static double error_of(int n, double scale, double px)
+/* Returns the min PSNR of frames whose lights have moved by up to PX pixels. */
+static double min_psnr(int n, double scale, double px)
 {
     uint64_t noise = 1;
     struct glint_measure m;
@@ -100,12 +103,12 @@ static double error_of(int n, double scale, double px)
 
     for (int i = 0; i < 3; i++) {
         street_lamps(&stage, lamps, n);
-        draw(n, scale, px * 1.1, got);
-        waver(n, px, &noise);
-        draw(n, scale, px * 1.1, got);
+        draw_frame(n, scale, px * 1.1, got);
+        move_lamps(n, px, &noise);
+        draw_frame(n, scale, px * 1.1, got);
         if (!stage.drawn.stats.reused)
             exit(1);
-        draw(n, scale, -1, want);
+        draw_frame(n, scale, -1, want);
         glint_measure_codes(want, got, W, H, &m);
         least = fmin(least, m.psnr_db);
     }
@@ -114,15 +117,15 @@ static double error_of(int n, double scale, double px)
 
 static void print_figures(int n)
 {
-    const double scale = scale_for(n);
+    const double scale = find_scale(n);
     size_t bytes;
 
-    draw(n, scale, -1, got);
+    draw_frame(n, scale, -1, got);
     bytes = stage.drawn.need_bytes;
-    draw(n, scale, 0.5, got);
+    draw_frame(n, scale, 0.5, got);
     printf("%.17g %zu %zu", scale, bytes, stage.drawn.need_bytes);
     for (double px = 0.25; px <= 1; px *= 2)
-        printf(" %.1f", error_of(n, scale, px));
+        printf(" %.1f", min_psnr(n, scale, px));
     puts("");
 }
 
@@ -131,11 +134,11 @@ static void draw_all(int n, double scale)
     uint64_t noise = 1;
 
     for (int i = 0; i < 2; i++)
-        draw(n, scale, -1, got);
+        draw_frame(n, scale, -1, got);
     for (int i = 0; i < 3; i++)
-        draw(n, scale, 0.5, got);
-    waver(n, 0.4, &noise);
-    draw(n, scale, 0.5, got);
+        draw_frame(n, scale, 0.5, got);
+    move_lamps(n, 0.4, &noise);
+    draw_frame(n, scale, 0.5, got);
 }
 
 static bool open_model(const char *path)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * scene_exact NAME.scene -o OUT - draws a scene over black by the reference
- * renderer: every ray in double precision. */
+ * scene_exact NAME.scene -o OUT - draws a scene on black with the reference
+ * renderer, which traces every ray in double precision.
+ */
 #include <stdlib.h>
 
 #include "desk/render_file.h"
@@ -25,8 +26,8 @@ struct exact {
     int width, height, samples, shadow_points, ward_samples;
 };
 
-static int take(const struct tool *tool, struct exact *e, int c,
-                const char *name)
+static int parse_option(const struct tool *tool, struct exact *e, int c,
+                        const char *name)
 {
     bool ok = true;
 
@@ -65,7 +66,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct exact *e)
 
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &at)) >= 0) {
-        int code = take(tool, e, c, options[at].name);
+        int code = parse_option(tool, e, c, options[at].name);
 
         if (code == -2)
             code = tool_option(tool, c, optarg);
@@ -89,8 +90,8 @@ static void print_json(const struct glint_description *scene,
            scene->n_objects, scene->n_triangles, scene->n_lights, covered);
 }
 
-static int draw(const struct tool *tool, const struct exact *e,
-                const struct glint_description *scene)
+static int draw_scene(const struct tool *tool, const struct exact *e,
+                      const struct glint_description *scene)
 {
     const struct twin_view view = {e->width, e->height, 0, e->samples};
     const size_t n = (size_t)e->width * (size_t)e->height;
@@ -135,7 +136,7 @@ int main(int argc, char **argv)
     if (code == EXIT_OK && tool.workers && scene) {
         code = tool_scene(&tool, argv[optind], scene, NULL);
         if (code == EXIT_OK) {
-            code = draw(&tool, &e, scene);
+            code = draw_scene(&tool, &e, scene);
             glint_description_free(scene);
         }
     }

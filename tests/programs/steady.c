@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * steady [--lens LENS] [VIDEO.y4m...] - prints how steady the flare is over
- * drawn scenes and over videos.
+ * steady [--lens LENS] [VIDEO.y4m...] - prints how steady the flare is in
+ * synthetic scenes and in videos.
  *
  * From frame to frame the total light of the drawn flare changes because of the
- * lamps, which move, rise, fade or are hidden, and because of the exposure. The
- * change at a constant exposure is the lamps'. A step between 0 and that change
- * is due to the lamps; what goes beyond is glint's own. Frames after a cut are
- * not counted. In drawn scenes the lamps are known, too: there a step is due to
- * them as far as their true light, through the lens, spans as much within the
- * last WINDOW frames, as a tracked lamp rises and fades in six. Exit code 1: by
- * either measure a step of glint's own is larger than MOST.
+ * lamps, which move, appear, vanish or are hidden, and because of the exposure.
+ * The change at a constant exposure is due to the lamps; the part of a step
+ * outside the interval from 0 to that change is glint's own step. Frames after
+ * a cut are not counted. In synthetic scenes the lamps are known as well: there
+ * a step is due to the lamps as far as their true light, through the lens,
+ * varies as much within the last WINDOW frames, as a tracked lamp fades in and
+ * out over six frames. Exit code 1: by either measure a step of glint's own is
+ * larger than MOST.
  */
 #include <getopt.h>
 #include <math.h>
@@ -32,17 +33,17 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000, WINDOW = 10 };
 struct steady {
     struct tool tool;
     struct drawing drawing;
-    double total, own;        /* last frame's light after and before exposure */
-    double truth[WINDOW + 1]; /* true light, the last frame first; -1:
-                               * unknown */
-    double worst, largest;    /* largest step of glint's own; largest of all */
-    double unmade;            /* largest step beyond what true lamps explain */
+    double total, own; /* light of the last frame after and before exposure */
+    /* true light, most recent frame first; -1: unknown */
+    double truth[WINDOW + 1];
+    double worst, largest; /* largest own step; largest step of all */
+    double unmade; /* largest part of a step that true lamps do not explain */
     int worst_frame, unmade_frame, cuts, frames, most_lights;
 };
 
 /* ------------------------------------------------------------------- steps */
 
-static double light_of(struct steady *s)
+static double total_light(struct steady *s)
 {
     const struct drawing *const c = &s->drawing;
     struct glint_response_light light;
@@ -56,17 +57,17 @@ static double light_of(struct steady *s)
     return glint_largest_channel(light.mean);
 }
 
-/* Returns by how much STEP exceeds the interval between 0 and OWN, all of them
+/* Returns by how much STEP exceeds the interval between 0 and OWN; all are
  * logarithms of ratios. */
-static double beyond(double step, double own)
+static double excess_step(double step, double own)
 {
     const double low = fmin(own, 0), high = fmax(own, 0);
 
     return step > high ? step - high : step < low ? low - step : 0;
 }
 
-/* Returns the logarithm of the ratio of the most to the least true light within
- * the last WINDOW frames. */
+/* Returns the logarithm of max / min true light within the last WINDOW
+ * frames. */
 static double true_span(const struct steady *s)
 {
     double low = s->truth[0], high = s->truth[0];
@@ -78,16 +79,16 @@ static double true_span(const struct steady *s)
     return low > 0 ? log(high / low) : HUGE_VAL;
 }
 
-static void note(struct steady *s, double total, double own)
+static void record_step(struct steady *s, double total, double own)
 {
     const bool is_cut = drawing_is_new(&s->drawing);
-    /* A fainter flare is unseen, so it does not step when it appears. */
+    /* a fainter flare is invisible, so its appearance is not a step */
     const double least = 1e-6;
 
     s->cuts += is_cut && s->frames > 0;
     if (!is_cut && s->total > least && total > least) {
         const double step = log(total / s->total);
-        const double ours = exp(beyond(step, log(own / s->own))) - 1;
+        const double ours = exp(excess_step(step, log(own / s->own))) - 1;
 
         const double alone = exp(fmax(fabs(step) - true_span(s), 0)) - 1;
 
@@ -105,28 +106,28 @@ static void note(struct steady *s, double total, double own)
     s->own = own;
 }
 
-static void frame(struct steady *s, const struct glint_image *image,
-                  int32_t elapsed_us)
+static void draw_frame(struct steady *s, const struct glint_image *image,
+                       int32_t elapsed_us)
 {
     struct drawing *drawing = &s->drawing;
     double own, drawn, power = 0, held = 0;
 
     drawing_find(drawing, image, elapsed_us);
-    own = drawn = light_of(s);
+    own = drawn = total_light(s);
     for (int i = 0; i < drawing->run.n_lamps; i++)
         power += drawing->run.lamp[i].lamp.power;
     drawing_expose(drawing, image);
     for (int i = 0; i < drawing->run.n_lamps; i++)
         held += drawing->run.lamp[i].lamp.power;
-    if (held < power) /* where lamps are too bright */
-        drawn = light_of(s);
-    note(s, drawn * drawing_scale(&drawing->run), own);
+    if (held < power) /* limits lamps that are too bright */
+        drawn = total_light(s);
+    record_step(s, drawn * drawing_scale(&drawing->run), own);
     if (drawing->run.n_lamps > s->most_lights)
         s->most_lights = drawing->run.n_lamps;
     s->frames++;
 }
 
-static void begin(struct steady *s, int width, int height)
+static void begin_video(struct steady *s, int width, int height)
 {
     s->total = s->own = s->worst = s->largest = 0;
     s->unmade = s->unmade_frame = 0;
@@ -135,7 +136,7 @@ static void begin(struct steady *s, int width, int height)
         exit(EXIT_RUNTIME);
 }
 
-static bool end(const struct steady *s, const char *name)
+static bool print_result(const struct steady *s, const char *name)
 {
     printf("| %s | %d | %d | %d | %.1f | %.1f | %d |", name, s->frames,
            s->most_lights, s->cuts, 100 * s->largest, 100 * s->worst,
@@ -153,9 +154,9 @@ static bool end(const struct steady *s, const char *name)
 
 typedef int lamps_fn(struct night *night, int i, struct night_lamp *lamp);
 
-/* Sets LAMP to the five lamps of a street, all visible; returns their
+/* Sets LAMP to the five lamps of a street, all visible. Returns their
  * number. */
-static int street(struct night_lamp *lamp)
+static int set_street(struct night_lamp *lamp)
 {
     for (int i = 0; i < 5; i++)
         lamp[i] =
@@ -167,7 +168,7 @@ static int noise(struct night *night, int i, struct night_lamp *lamp)
 {
     (void)i;
     night->sigma = 4;
-    return street(lamp);
+    return set_street(lamp);
 }
 
 static int sun_alone(struct night *night, int i, struct night_lamp *lamp)
@@ -179,7 +180,7 @@ static int sun_alone(struct night *night, int i, struct night_lamp *lamp)
 
 static int sun_enters(struct night *night, int i, struct night_lamp *lamp)
 {
-    const int n = street(lamp);
+    const int n = set_street(lamp);
 
     (void)night;
     lamp[n] = (struct night_lamp){-30 + 3 * i, 250 - 0.5 * i, 14, 2000};
@@ -211,7 +212,7 @@ static int pole(struct night *night, int i, struct night_lamp *lamp)
 
 static int train(struct night *night, int i, struct night_lamp *lamp)
 {
-    const int n = street(lamp);
+    const int n = set_street(lamp);
 
     (void)night;
     for (int k = 0; k < n; k++)
@@ -222,7 +223,7 @@ static int train(struct night *night, int i, struct night_lamp *lamp)
 static int cuts(struct night *night, int i, struct night_lamp *lamp)
 {
     if (i / 40 % 2 == 0)
-        return street(lamp);
+        return set_street(lamp);
     (void)night;
     lamp[0] = (struct night_lamp){400, 90, 20, 3000};
     lamp[1] = (struct night_lamp){100, 300, 3, 8};
@@ -243,10 +244,10 @@ static const struct {
     {"hard cuts", cuts},
 };
 
-/* Returns the light of LAMP's visible pixels, white x pixels, and sets AT to
+/* Returns the light of LAMP's visible pixels, white x pixels. Sets AT to
  * their centroid, pixels. */
-static double seen_of(const struct night *night, const struct night_lamp *lamp,
-                      double at[2])
+static double visible_light(const struct night *night,
+                            const struct night_lamp *lamp, double at[2])
 {
     const int reach = (int)lamp->radius + 14;
     double sum = 0, sums[2] = {0, 0};
@@ -270,9 +271,9 @@ static double seen_of(const struct night *night, const struct night_lamp *lamp,
     return sum;
 }
 
-/* Adds the flare's light of the true lamps to the frames of S->TRUTH. */
-static void note_truth(struct steady *s, const struct night *night,
-                       const struct night_lamp *lamp, int n)
+/* Adds the flare's light of the true lamps to s->truth. */
+static void record_truth(struct steady *s, const struct night *night,
+                         const struct night_lamp *lamp, int n)
 {
     const struct drawing *c = &s->drawing;
     struct glint_engine_lamp all[16];
@@ -283,7 +284,7 @@ static void note_truth(struct steady *s, const struct night *night,
         double at[2];
         struct glint_lamp one = {.rgb = {1, 1, 1}};
 
-        one.power = seen_of(night, &lamp[i], at);
+        one.power = visible_light(night, &lamp[i], at);
         glint_view_to_angles(&c->run.view, c->files.lens.setup.optics.focal_mm,
                              at[0], at[1], &one);
         all[i] = glint_engine_lamp_of(&one, 1);
@@ -300,16 +301,16 @@ static bool run_scene(struct steady *s, int k)
 
     night_init(&night, WIDTH, HEIGHT);
     night.sigma = 1;
-    begin(s, WIDTH, HEIGHT);
+    begin_video(s, WIDTH, HEIGHT);
     for (int i = 0; i < FRAMES; i++) {
         const int n = scenes[k].lamps(&night, i, lamp);
 
         night_draw(&night, lamp, n);
-        note_truth(s, &night, lamp, n);
-        frame(s, &night.image, FRAME_US);
+        record_truth(s, &night, lamp, n);
+        draw_frame(s, &night.image, FRAME_US);
     }
     night_close(&night);
-    return end(s, scenes[k].name);
+    return print_result(s, scenes[k].name);
 }
 
 static bool run_video(struct steady *s, const char *path)
@@ -322,12 +323,12 @@ static bool run_video(struct steady *s, const char *path)
         fprintf(stderr, "steady: %s\n", error.text);
         exit(EXIT_INPUT);
     }
-    begin(s, in.header.width, in.header.height);
+    begin_video(s, in.header.width, in.header.height);
     s->truth[0] = -1;
     while (glint_y4m_reader_next(&in, &image, &error) == GLINT_OK && image)
-        frame(s, image, FRAME_US);
+        draw_frame(s, image, FRAME_US);
     glint_y4m_reader_close(&in);
-    return end(s, path);
+    return print_result(s, path);
 }
 
 int main(int argc, char **argv)

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * stone_cost FILE [FRAMES [SET]] - spreads light over the whole map of a baked
- * translucent medium, three channels, one thread, for
- * tools/measure/scenes/stone-table, which counts instructions.
- * Prints, of each set of kernels in turn (c, sse41, avx2, neon) or of SET
- * alone, the median of processor milliseconds of FRAMES maps, whose runs take
- * turns, and a hash of the map.
+ * stone_cost FILE [FRAMES [SET]] - measures the light map of a baked
+ * translucent medium: spreads light over the whole map, three channels, one
+ * thread. tools/measure/scenes/stone-table counts its instructions. Prints for
+ * each set of kernels (c, sse41, avx2, neon), or for SET only, the median CPU
+ * time of FRAMES maps, ms, and a hash of the map; sets take turns.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +24,8 @@ static const struct {
                   {"avx2", GLINT_SET_SSE41 | GLINT_SET_AVX2},
                   {"neon", GLINT_SET_NEON}};
 
-/* Instructions of a map are those from here to stone_cost_idle(). */
+/* Instructions of a map are counted from the call of stone_cost_frame() to
+ * that of stone_cost_idle(). */
 void stone_cost_frame(const struct glint_spread *spread,
                       struct glint_spread_scratch *scratch);
 void stone_cost_idle(const struct glint_spread *spread);
@@ -44,7 +44,8 @@ void stone_cost_idle(const struct glint_spread *spread)
         spread->map[c][0] = 0;
 }
 
-/* A ramp with a shadow across, and every tenth texel bright. */
+/* Sets the light to a ramp with a shadow across, and every tenth texel
+ * bright. */
 static void set_light(const struct glint_spread *s)
 {
     for (int c = 0; c < CHANNELS; c++)
@@ -56,7 +57,7 @@ static void set_light(const struct glint_spread *s)
                                                     : 32767 - 500 * c);
 }
 
-static uint64_t hash_of(const struct glint_spread *s)
+static uint64_t hash_map(const struct glint_spread *s)
 {
     uint64_t hash = UINT64_C(14695981039346656037);
 
@@ -66,28 +67,29 @@ static uint64_t hash_of(const struct glint_spread *s)
     return hash;
 }
 
-static double now(void)
+static double cpu_seconds(void)
 {
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-static int by_size(const void *a, const void *b)
+static int compare_doubles(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
 
     return (x > y) - (x < y);
 }
 
-static int is_run(int set, const char *only)
+static int is_selected(int set, const char *only)
 {
     return only ? !strcmp(set_of[set].name, only)
                 : (set_of[set].bits & ~glint_sets_here()) == 0;
 }
 
-static void run(struct glint_spread *s, struct glint_spread_scratch *scratch,
-                int frames, const char *only)
+static void run_map(struct glint_spread *s,
+                    struct glint_spread_scratch *scratch, int frames,
+                    const char *only)
 {
-    /* Not inlined: counters look for their names. */
+    /* not inlined, as counters search for these names */
     void (*volatile idle)(const struct glint_spread *) = stone_cost_idle;
     void (*volatile frame)(const struct glint_spread *,
                            struct glint_spread_scratch *) = stone_cost_frame;
@@ -98,26 +100,26 @@ static void run(struct glint_spread *s, struct glint_spread_scratch *scratch,
         for (int k = 0; k < SETS; k++) {
             double start;
 
-            if (!is_run(k, only))
+            if (!is_selected(k, only))
                 continue;
             s->convolve = glint_convolve_of(set_of[k].bits);
             idle(s);
-            start = now();
+            start = cpu_seconds();
             frame(s, scratch);
-            took[k][i] = now() - start;
-            hash[k] = hash_of(s);
+            took[k][i] = cpu_seconds() - start;
+            hash[k] = hash_map(s);
         }
     idle(s);
     for (int k = 0; k < SETS; k++)
-        if (is_run(k, only)) {
-            qsort(took[k], (size_t)frames, sizeof **took, by_size);
+        if (is_selected(k, only)) {
+            qsort(took[k], (size_t)frames, sizeof **took, compare_doubles);
             printf("%s %.3f %016llx\n", set_of[k].name,
                    1000 * took[k][frames / 2], (unsigned long long)hash[k]);
         }
 }
 
-static int spread(const struct glint_translucent *stone, int frames,
-                  const char *only)
+static int measure_sets(const struct glint_translucent *stone, int frames,
+                        const char *only)
 {
     const int side = 1 << stone->header->side_log2;
     const size_t n = (size_t)side * (size_t)side;
@@ -136,7 +138,7 @@ static int spread(const struct glint_translucent *stone, int frames,
             s.map[c] = s.light[c] + n;
         }
         set_light(&s);
-        run(&s, &scratch, frames, only);
+        run_map(&s, &scratch, frames, only);
     }
     free(maps);
     free(mem);
@@ -155,7 +157,7 @@ int main(int argc, char **argv)
     if (file && data && frames > 0 && frames <= MOST &&
         glint_translucent_open(&stone, data, fread(data, 1, LIMIT, file),
                                &reason) == GLINT_OK)
-        code = spread(&stone, frames, argc > 3 ? argv[3] : NULL);
+        code = measure_sets(&stone, frames, argc > 3 ? argv[3] : NULL);
     else
         fprintf(stderr, "stone_cost: %s\n", reason);
     if (file)

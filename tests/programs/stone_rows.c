@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * stone_rows DIR - bakes two translucent media, chess and veins, by all
+ * stone_rows DIR - bakes two translucent media, chess and veins, with all
  * models that a frame can draw, for tools/measure/scenes/stone-table. Prints a
- * line each: translucent medium, model, decibels of the fit and of the integers
- * to the light of all rows, and processor seconds of the fit. Those of the
- * first translucent medium are written to DIR/MODEL.glint. Translucent media
- * have 128 texels, kernels 29. */
+ * line each: medium, model, PSNR in dB of the fit and of the integers against
+ * the light of all rows, and CPU seconds of the fit. The models of the first
+ * medium are written to DIR/MODEL.glint. Media have 128 texels, kernels 29.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,11 +54,11 @@ static void write_stone(const char *dir, const char *name, const void *data,
         fail(path);
 }
 
-/* LIGHT[3][n] is what falls on the translucent medium, what its rows make of
- * that, and room.
- */
-static void bake(const struct glint_scatter_fit *fit, const double *const light,
-                 double *room, const char *dir, const char *name, double *db)
+/* LIGHT: three arrays of [3][n]: incident light, the result by all rows, and
+ * scratch. */
+static void bake_fit(const struct glint_scatter_fit *fit,
+                     const double *const light, double *room, const char *dir,
+                     const char *name, double *db)
 {
     const size_t n = 3 * (size_t)(fit->side * fit->side);
     struct glint_stone_report report;
@@ -95,9 +95,9 @@ static void fit_and_bake(struct glint_scatter_rows *rows, int stone, int model,
 
     if (glint_scatter_fit(rows, &o, NULL, &fit) != GLINT_OK)
         fail("no fit");
-    /* Of clusters and albedo it counts at the bake only. */
+    /* Clusters and albedo have a rank only in the bake. */
     fit.rank = o.rank;
-    bake(&fit, light, room, stone ? NULL : dir, model_of[model].name, &db);
+    bake_fit(&fit, light, room, stone ? NULL : dir, model_of[model].name, &db);
     printf("%s %s %.2f %.2f %.1f\n", stone_name[stone], model_of[model].name,
            fit.error.light_db, db, (double)(clock() - start) / CLOCKS_PER_SEC);
     fflush(stdout);

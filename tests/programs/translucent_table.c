@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * translucent_table - models of scattering side by side on four translucent
- * media of 48 texels with kernels of 21, as Markdown: the tables of [Kurt14],
- * and its figures beside ours. */
+ * translucent_table - compares scattering models on four translucent media of
+ * 48 texels with kernels of 21. Prints the tables of [Kurt14] as Markdown, with
+ * the published values next to ours.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +19,7 @@ enum { STONES = 4, GRID_TERMS = 5, GRID_DEGREES = 5 };
 static const char *const stone_name[STONES] = {"chess 4 x 4", "chess 8 x 8",
                                                "veins", "pale veins"};
 
-/* What is judged once for each translucent medium, and used by many tables. */
+/* Candidates that are evaluated once per medium and used by several tables. */
 enum run {
     CLUSTERED,
     FACTORED,
@@ -62,12 +63,12 @@ static const struct {
 
 struct table {
     int side, kernel;
-    double seconds[STONES]; /* processor time of the rows */
+    double seconds[STONES]; /* CPU time of the rows */
     struct glint_scatter_rows rows[STONES];
     struct glint_scatter_judgement j[STONES][RUNS];
 };
 
-static double now(void)
+static double cpu_seconds(void)
 {
     return (double)clock() / CLOCKS_PER_SEC;
 }
@@ -78,9 +79,10 @@ static void fail(const char *what)
     exit(1);
 }
 
-/* What JUDGEMENT has to say, but for its maps. */
+/* Returns the judgement of candidate O on ROWS, without its maps. */
 static struct glint_scatter_judgement
-judge(struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o)
+evaluate(struct glint_scatter_rows *rows,
+         const struct glint_scatter_candidate *o)
 {
     struct glint_scatter_judgement j, kept;
 
@@ -91,7 +93,7 @@ judge(struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o)
     return kept;
 }
 
-static struct glint_scatter_candidate candidate(enum run run)
+static struct glint_scatter_candidate make_candidate(enum run run)
 {
     struct glint_scatter_candidate o;
 
@@ -105,7 +107,7 @@ static void open_stone(struct table *t, int i)
 {
     struct glint_stone stone;
     struct glint_error error;
-    const double start = now();
+    const double start = cpu_seconds();
 
     glint_stone_defaults(&stone);
     stone.side = t->side;
@@ -113,22 +115,22 @@ static void open_stone(struct table *t, int i)
     stone.pattern = i < 2 ? GLINT_STONE_CHESS : GLINT_STONE_VEINS;
     stone.fields = i ? 8 : 4;
     stone.seed = (uint32_t)i;
-    if (i == 3) /* materials that are near each other */
+    if (i == 3) /* similar materials */
         stone.material[1] =
             (struct glint_stone_material){{1.6, 1.8, 2}, {0.004, 0.007, 0.012}};
     if (glint_scatter_compute(&stone, NULL, &t->rows[i], &error) != GLINT_OK)
         fail(error.text);
-    t->seconds[i] = now() - start;
+    t->seconds[i] = cpu_seconds() - start;
     for (int run = 0; run < RUNS; run++) {
-        const struct glint_scatter_candidate o = candidate((enum run)run);
+        const struct glint_scatter_candidate o = make_candidate((enum run)run);
 
-        t->j[i][run] = judge(&t->rows[i], &o);
+        t->j[i][run] = evaluate(&t->rows[i], &o);
         fprintf(stderr, "%s, %s: %.0f s\n", stone_name[i], run_of[run].name,
                 t->j[i][run].seconds);
     }
 }
 
-static void heads(const char *first, const char *const *column, int n)
+static void print_heads(const char *first, const char *const *column, int n)
 {
     printf("\n| %s |", first);
     for (int i = 0; i < n; i++)
@@ -139,7 +141,7 @@ static void heads(const char *first, const char *const *column, int n)
     printf("\n");
 }
 
-static void all_models(const struct table *t)
+static void print_all_models(const struct table *t)
 {
     static const char *const columns[] = {
         "RMSE", "kB",  "smaller by", "entries, dB", "light, dB", "p50",
@@ -155,7 +157,7 @@ static void all_models(const struct table *t)
         printf(", %d x %d texels, kernels of %d: rows in %.1f processor "
                "seconds\n",
                t->side, t->side, t->kernel, t->seconds[i]);
-        heads("model", columns, 12);
+        print_heads("model", columns, 12);
         for (int run = 0; run < RUNS; run++) {
             const struct glint_scatter_judgement *j = &t->j[i][run];
 
@@ -168,12 +170,12 @@ static void all_models(const struct table *t)
     }
 }
 
-/* RMSE of some runs by translucent medium, and what the source has. */
-static void beside(const struct table *t, const char *title,
-                   const enum run *runs, int n, const char *theirs)
+/* Prints the RMSE of RUNS by medium, and the published values. */
+static void print_comparison(const struct table *t, const char *title,
+                             const enum run *runs, int n, const char *theirs)
 {
     printf("\n### %s\n", title);
-    heads("model", stone_name, STONES);
+    print_heads("model", stone_name, STONES);
     for (int k = 0; k < n; k++) {
         printf("| %s |", run_of[runs[k]].name);
         for (int i = 0; i < STONES; i++)
@@ -184,7 +186,7 @@ static void beside(const struct table *t, const char *title,
     printf("\nSource, its own four or eight stones: %s\n", theirs);
 }
 
-static void source_tables(const struct table *t)
+static void print_source_tables(const struct table *t)
 {
     static const enum run in_72[] = {TUCKER15, TUCKER5, PEERS10, PEERS20};
     static const enum run in_74[] = {LOG5, SVD5};
@@ -192,21 +194,24 @@ static void source_tables(const struct table *t)
     static const enum run in_76[] = {SVD20,   PEERS20, SVD10,
                                      PEERS10, SVD5,    PEERS5};
 
-    beside(t, "Tucker and Peers (table 7.2; C9, C10)", in_72, 4,
-           "Tucker .0102 .0242 .0072 .0152, 24.1 10.2 4.19 11.0 MiB; Peers at "
-           "equal size .0134 beside .007, .0384 beside .0212.");
-    beside(t, "Logarithms (table 7.4; C6, C9)", in_74, 2,
-           "S = 5 .0340 .0312 .0398 .0225 .0228 .0422 .0268 .0574, 1.48 2.48 "
-           "7.88 1.56 8.96 5.82 2.05 5.32 MiB.");
-    beside(t, "Profiles (table 7.5; C9)", in_75, 3,
-           "S = 10 .017 .028 .016 .013; SubEdit .05 .049 .029 .158.");
-    beside(t, "SVD and Peers at equal terms (table 7.6; C10)", in_76, 6,
-           "S = 20 and 10: .0066 beside .0138, .0197 beside .0492.");
+    print_comparison(
+        t, "Tucker and Peers (table 7.2; C9, C10)", in_72, 4,
+        "Tucker .0102 .0242 .0072 .0152, 24.1 10.2 4.19 11.0 MiB; Peers at "
+        "equal size .0134 beside .007, .0384 beside .0212.");
+    print_comparison(
+        t, "Logarithms (table 7.4; C6, C9)", in_74, 2,
+        "S = 5 .0340 .0312 .0398 .0225 .0228 .0422 .0268 .0574, 1.48 2.48 "
+        "7.88 1.56 8.96 5.82 2.05 5.32 MiB.");
+    print_comparison(t, "Profiles (table 7.5; C9)", in_75, 3,
+                     "S = 10 .017 .028 .016 .013; SubEdit .05 .049 .029 .158.");
+    print_comparison(t, "SVD and Peers at equal terms (table 7.6; C10)", in_76,
+                     6,
+                     "S = 20 and 10: .0066 beside .0138, .0197 beside .0492.");
 }
 
-/* Sets OFF to ROWS of which 30 % are a texel off. */
-static void shift(const struct glint_scatter_rows *rows,
-                  struct glint_scatter_rows *off)
+/* Sets OFF to ROWS with 30 % of them shifted by a texel. */
+static void shift_rows(const struct glint_scatter_rows *rows,
+                       struct glint_scatter_rows *off)
 {
     const size_t texels = (size_t)rows->side * (size_t)rows->side;
     const size_t k2 = (size_t)rows->kernel * (size_t)rows->kernel;
@@ -226,26 +231,26 @@ static void shift(const struct glint_scatter_rows *rows,
                        rows->r + (x * 3 + c) * k2, (k2 - 1) * sizeof *off->r);
 }
 
-/* C3 */
-static void turned_rows(struct table *t)
+/* Table C3. */
+static void print_shifted_rows(struct table *t)
 {
     static const int terms[] = {1, 2, 5, 15};
     static const char *const columns[] = {"T = 1", "T = 2", "T = 5", "T = 15"};
     struct glint_scatter_rows off;
 
-    shift(&t->rows[0], &off);
+    shift_rows(&t->rows[0], &off);
     printf("\n### Turned rows (C3): RMSE, P = 4, chess 4 x 4\n");
-    heads("rows", columns, 4);
+    print_heads("rows", columns, 4);
     for (int way = 0; way < 4; way++) {
         printf("| %s, %s |",
                way & 2 ? "30 % of them a texel off" : "as they are",
                way & 1 ? "turned" : "plain");
         for (int k = 0; k < 4; k++) {
-            struct glint_scatter_candidate o = candidate(TUCKER5);
+            struct glint_scatter_candidate o = make_candidate(TUCKER5);
 
             o.terms = terms[k];
             o.turned = way & 1;
-            printf(" %.5f |", judge(way & 2 ? &off : &t->rows[0], &o).rmse);
+            printf(" %.5f |", evaluate(way & 2 ? &off : &t->rows[0], &o).rmse);
         }
         printf("\n");
     }
@@ -253,8 +258,8 @@ static void turned_rows(struct table *t)
     free(off.r);
 }
 
-/* C5. */
-static void polynomials(struct table *t)
+/* Table C5. */
+static void print_polynomials(struct table *t)
 {
     static const int terms[GRID_TERMS] = {1, 2, 5, 10, 15};
     static const char *const columns[] = {"P = 1", "P = 2", "P = 3", "P = 4",
@@ -262,24 +267,24 @@ static void polynomials(struct table *t)
 
     printf("\n### Terms and degrees (C5, figure 4.6): RMSE, and how much "
            "smaller than 8-byte rows, veins\n");
-    heads("Tucker", columns, GRID_DEGREES);
+    print_heads("Tucker", columns, GRID_DEGREES);
     for (int k = 0; k < GRID_TERMS; k++) {
         printf("| T = %d |", terms[k]);
         for (int p = 1; p <= GRID_DEGREES; p++) {
-            struct glint_scatter_candidate o = candidate(TUCKER5);
+            struct glint_scatter_candidate o = make_candidate(TUCKER5);
             struct glint_scatter_judgement j;
 
             o.terms = terms[k];
             o.degree = p;
-            j = judge(&t->rows[2], &o);
+            j = evaluate(&t->rows[2], &o);
             printf(" %.5f, %.0f x |", j.rmse, j.compression);
         }
         printf("\n");
     }
 }
 
-/* C6 */
-static void logarithms(struct table *t)
+/* Table C6. */
+static void print_logarithms(struct table *t)
 {
     static const double as[] = {0.01, 0.1, 1, 10, 100, 1000};
     static const char *const columns[] = {
@@ -289,17 +294,17 @@ static void logarithms(struct table *t)
     printf("\n### ln(R' / a + b), b = 1, S = 5 (C6): RMSE, share of entries "
            "below 0 (%d entries a row)\n",
            n);
-    heads("stone", columns, 7);
+    print_heads("stone", columns, 7);
     for (int i = 0; i < STONES; i++) {
         const struct glint_scatter_judgement *found = &t->j[i][LOG5];
 
         printf("| %s |", stone_name[i]);
         for (int k = 0; k < 6; k++) {
-            struct glint_scatter_candidate o = candidate(LOG5);
+            struct glint_scatter_candidate o = make_candidate(LOG5);
             struct glint_scatter_judgement j;
 
             o.a = as[k];
-            j = judge(&t->rows[i], &o);
+            j = evaluate(&t->rows[i], &o);
             printf(" %.5f, %.2f %% |", j.rmse, 100 * j.negative);
         }
         printf(" %.5f: %g, %g |\n", found->rmse, found->candidate.a,
@@ -308,20 +313,20 @@ static void logarithms(struct table *t)
     printf("\nSource: \"never negative\"; its prototype: .4 to 7 %%.\n");
 }
 
-/* C11: processor seconds of the sums of all rows of a fit of five terms, entry
- * by entry and by kept sums. */
-static void sums(struct table *t)
+/* Table C11: CPU seconds for summing all rows of a fit of five terms, entry
+ * by entry and by running sums. */
+static void print_sums(struct table *t)
 {
     const struct glint_scatter_options options = {GLINT_SCATTER_FACTORED, 5, 3};
     const int texels = t->side * t->side, k2 = t->kernel * t->kernel;
-    const struct glint_scatter_candidate svd = candidate(SVD5);
+    const struct glint_scatter_candidate svd = make_candidate(SVD5);
     volatile double plain = 0, kept = 0;
     struct glint_scatter_fit fit;
     double start, first, second;
 
     if (glint_scatter_fit(&t->rows[0], &options, NULL, &fit) != GLINT_OK)
         fail("out of memory");
-    start = now();
+    start = cpu_seconds();
     for (int x = 0; x < texels; x++)
         for (int d = 0; d < k2; d++) {
             double entry = 0;
@@ -330,8 +335,8 @@ static void sums(struct table *t)
                 entry += fit.f[3 * j * texels + x] * fit.h[3 * j * k2 + d];
             plain = plain + entry;
         }
-    first = now() - start;
-    start = now();
+    first = cpu_seconds() - start;
+    start = cpu_seconds();
     for (int again = 0; again < 100; again++) {
         double sum[5] = {0};
 
@@ -345,7 +350,7 @@ static void sums(struct table *t)
             kept = kept + row;
         }
     }
-    second = (now() - start) / 100;
+    second = (cpu_seconds() - start) / 100;
     glint_scatter_fit_close(&fit);
     printf("\n### Sums of all rows (C11)\n\nOne channel, five terms: %.4f s "
            "entry by entry, %.6f s by kept sums of h, %.0f times less; %.0f "
@@ -356,12 +361,12 @@ static void sums(struct table *t)
                glint_scatter_candidate_sums(&svd, texels, k2, true));
 }
 
-/* Returns processor seconds of a picture by FIT, entry by entry. */
+/* Returns the CPU seconds of an image by FIT, entry by entry. */
 static double light_by_entries(const struct glint_scatter_fit *fit,
                                const double *light, double *out)
 {
     const int n = fit->side * fit->side, k2 = fit->kernel * fit->kernel;
-    const double start = now();
+    const double start = cpu_seconds();
 
     for (int x = 0; x < n; x++)
         for (int c = 0; c < 3; c++)
@@ -373,10 +378,11 @@ static double light_by_entries(const struct glint_scatter_fit *fit,
                              fit->h[(3 * j + c) * k2 + d];
                 out[3 * x + c] += light[3 * x + c] * entry;
             }
-    return now() - start;
+    return cpu_seconds() - start;
 }
 
-/* Returns the same by the integers of what ROWS are baked to. */
+/* Returns the CPU seconds of an image by the integers that ROWS are baked
+ * to. */
 static double light_by_integers(struct glint_scatter_rows *rows,
                                 const double *light, double *out)
 {
@@ -396,17 +402,17 @@ static double light_by_integers(struct glint_scatter_rows *rows,
             GLINT_OK ||
         glint_translucent_open(&stone, data, bytes, &reason) != GLINT_OK)
         fail("no stone");
-    start = now();
+    start = cpu_seconds();
     for (int i = 0; i < 10; i++)
         glint_stone_light(&stone, light, out);
-    took = (now() - start) / 10;
+    took = (cpu_seconds() - start) / 10;
     glint_scatter_fit_close(&fit);
     free(data);
     return took;
 }
 
-/* C12: processor seconds of a picture of 64 x 64 texels. */
-static void pictures(void)
+/* Table C12: CPU seconds of an image of 64 x 64 texels. */
+static void print_images(void)
 {
     enum { SIDE = 64, N = 3 * SIDE * SIDE };
     static double light[N], out[N];
@@ -424,10 +430,10 @@ static void pictures(void)
         glint_scatter_fit(&rows, &svd, NULL, &fit) != GLINT_OK)
         fail("no rows");
     glint_scatter_test_light(SIDE, light);
-    start = now();
+    start = cpu_seconds();
     for (int i = 0; i < 5; i++)
         glint_scatter_light_rows(&rows, light, out);
-    by_rows_s = (now() - start) / 5;
+    by_rows_s = (cpu_seconds() - start) / 5;
     by_terms_s = light_by_entries(&fit, light, out);
     by_integers_s = light_by_integers(&rows, light, out);
     printf("\n### One picture (C12)\n\n64 x 64 texels, RGB, kernels of 21, "
@@ -446,13 +452,13 @@ int main(void)
 
     for (int i = 0; i < STONES; i++)
         open_stone(&t, i);
-    source_tables(&t);
-    turned_rows(&t);
-    polynomials(&t);
-    logarithms(&t);
-    sums(&t);
-    pictures();
-    all_models(&t);
+    print_source_tables(&t);
+    print_shifted_rows(&t);
+    print_polynomials(&t);
+    print_logarithms(&t);
+    print_sums(&t);
+    print_images();
+    print_all_models(&t);
     for (int i = 0; i < STONES; i++)
         glint_scatter_close(&t.rows[i]);
     return 0;

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * ward_table PICTURE... - how near lookups of Ward's lobe come to sums
- * over all texels, by alpha, rule and number of samples: PSNR in dB of a
- * brushed ball of 32 pixels, its median at 1/4 of white, mean of all pictures;
- * of sRGB codes, and of linear light.
+ * ward_table PICTURE... - measures lookups of Ward's reflection lobe against
+ * sums over all texels, by alpha, rule and number of samples: PSNR in dB of a
+ * brushed ball 32 pixels wide, exposed with its median at 1/4 of white, mean
+ * over all pictures; of sRGB codes and of linear light.
  *
- * The sums are in double over 512 x 512 texels. Split lights are added to the
- * lookups in double, as lobes of alpha^2 + r^2 / 8. */
+ * The sums are over 512 x 512 texels in double precision. Separated lights are
+ * added to the lookups in double precision, as lobes of alpha^2 + r^2 / 8.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +23,7 @@ static const double alphas[ALPHAS][2] = {
 static const double view[3] = {0, 0, -1};
 
 struct map {
-    unsigned char *data[2][2]; /* gauss, mip; without lights, with */
+    unsigned char *data[2][2]; /* [gauss, mip][without lights, with lights] */
     struct glint_environment environment[2][2];
     struct glint_sphere sphere;
 };
@@ -77,16 +78,16 @@ static int open_map(struct map *m, const char *path)
     return 1;
 }
 
-static void psnr(ward_picture want, ward_picture got, double db[WAYS])
+static void compute_psnr(ward_picture want, ward_picture got, double db[WAYS])
 {
     db[0] = ward_psnr_codes(want, got);
     db[1] = ward_psnr(want, got);
 }
 
-/* Sets DB to the PSNR of the published rule, each way at its best bias. */
-static void best(const struct glint_environment *e,
-                 const struct glint_ward_material *material, ward_picture want,
-                 ward_picture got, double db[WAYS])
+/* Sets DB to the PSNR of the published rule, each at its best bias. */
+static void find_best_bias(const struct glint_environment *e,
+                           const struct glint_ward_material *material,
+                           ward_picture want, ward_picture got, double db[WAYS])
 {
     struct glint_ward_options o = {8, GLINT_WARD_PUBLISHED, 0, 0};
 
@@ -95,13 +96,13 @@ static void best(const struct glint_environment *e,
         double here[WAYS];
 
         ward_look(e, material, &o, got);
-        psnr(want, got, here);
+        compute_psnr(want, got, here);
         for (int w = 0; w < WAYS; w++)
             db[w] = fmax(db[w], here[w]);
     }
 }
 
-static void measure(struct map *m, int a, double db[COLUMNS][WAYS])
+static void measure_map(struct map *m, int a, double db[COLUMNS][WAYS])
 {
     static const int samples[5] = {1, 4, 8, 16, 32};
     static ward_picture want, got;
@@ -112,23 +113,23 @@ static void measure(struct map *m, int a, double db[COLUMNS][WAYS])
         material.alpha_q24[k] = (int32_t)lrint(0x1p24 * alphas[a][k]);
     ward_sum(&m->sphere, alphas[a], want);
     ward_look(&m->environment[1][0], &material, &o, got);
-    psnr(want, got, db[0]);
-    best(&m->environment[1][0], &material, want, got, db[1]);
-    best(&m->environment[0][0], &material, want, got, db[2]);
+    compute_psnr(want, got, db[0]);
+    find_best_bias(&m->environment[1][0], &material, want, got, db[1]);
+    find_best_bias(&m->environment[0][0], &material, want, got, db[2]);
     o.rule = GLINT_WARD_CONSTANT;
     ward_look(&m->environment[1][0], &material, &o, got);
-    psnr(want, got, db[3]);
+    compute_psnr(want, got, db[3]);
     ward_look(&m->environment[0][0], &material, &o, got);
-    psnr(want, got, db[4]);
+    compute_psnr(want, got, db[4]);
     for (int k = 0; k < 5; k++) {
         o.samples = samples[k];
         ward_look(&m->environment[0][1], &material, &o, got);
         add_lights(&m->environment[0][1], alphas[a], got);
-        psnr(want, got, db[5 + k]);
+        compute_psnr(want, got, db[5 + k]);
     }
 }
 
-static void print(double sum[ALPHAS][COLUMNS][WAYS], int way, int n)
+static void print_table(double sum[ALPHAS][COLUMNS][WAYS], int way, int n)
 {
     printf("\n%s\n\n", way ? "Linear light:" : "Codes of sRGB:");
     printf("| alpha | published: mip, N 8 | mip, Gauss at its best bias | "
@@ -157,7 +158,7 @@ int main(int argc, char **argv)
         for (int a = 0; a < ALPHAS; a++) {
             double db[COLUMNS][WAYS];
 
-            measure(&m, a, db);
+            measure_map(&m, a, db);
             for (int c = 0; c < COLUMNS; c++)
                 for (int w = 0; w < WAYS; w++)
                     sum[a][c][w] += db[c][w];
@@ -167,6 +168,6 @@ int main(int argc, char **argv)
         glint_sphere_close(&m.sphere);
     }
     for (int way = 0; way < WAYS; way++)
-        print(sum, way, argc - 1);
+        print_table(sum, way, argc - 1);
     return 0;
 }

@@ -8,15 +8,15 @@
 #include "ppm.h"
 
 /* Returns the square of X, 0 .. 1, rounded down. */
-static uint16_t squared_q16(uint16_t x_q16)
+static uint16_t square_q16(uint16_t x_q16)
 {
     return (uint16_t)((uint32_t)x_q16 * x_q16 >> 16);
 }
 
-/* Sets RGB to a glow around (X0, Y0), white at the centre and redder farther
+/* Sets RGB to a glow around (X0, Y0), white at the centre and redder further
  * out. Red falls to a quarter at RADIUS pixels. */
-static void glow(uint16_t *const rgb[3], int width, int height, int x0, int y0,
-                 int radius)
+static void set_glow(uint16_t *const rgb[3], int width, int height, int x0,
+                     int y0, int radius)
 {
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
@@ -26,13 +26,13 @@ static void glow(uint16_t *const rgb[3], int width, int height, int x0, int y0,
                 (uint16_t)((one * 65535) / (one + dx * dx + dy * dy));
             const size_t at = (size_t)y * (size_t)width + (size_t)x;
 
-            rgb[0][at] = squared_q16(near_q16);
-            rgb[1][at] = squared_q16(rgb[0][at]);
-            rgb[2][at] = squared_q16(rgb[1][at]);
+            rgb[0][at] = square_q16(near_q16);
+            rgb[1][at] = square_q16(rgb[0][at]);
+            rgb[2][at] = square_q16(rgb[1][at]);
         }
 }
 
-static int add(const struct glint_image *image, int x, int y, int radius)
+static int add_glow(const struct glint_image *image, int x, int y, int radius)
 {
     const size_t n = (size_t)image->width * (size_t)image->height;
     const size_t bytes = glint_composite_bytes();
@@ -48,7 +48,7 @@ static int add(const struct glint_image *image, int x, int y, int radius)
         const struct glint_layer layer = {{rgb[0], rgb[1], rgb[2]},
                                           image->width};
 
-        glow(rgb, image->width, image->height, x, y, radius);
+        set_glow(rgb, image->width, image->height, x, y, radius);
         glint_composite_add(composite, image, &layer);
         code = 0;
     } else
@@ -70,7 +70,7 @@ int main(int argc, char **argv)
     code = ppm_read(argv[1], &image);
     if (code != 0)
         return code;
-    code = add(&image, atoi(argv[2]), atoi(argv[3]), atoi(argv[4]));
+    code = add_glow(&image, atoi(argv[2]), atoi(argv[3]), atoi(argv[4]));
     if (code == 0)
         code = ppm_write(&image);
     free(image.plane[0]);

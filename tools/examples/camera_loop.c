@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * camera_loop MODEL DEVICE FRAMES >FRAMES.yuyv - draws the flare of the lamps
- * in each frame of a camera, with a thread per processor: 640x480, read by
- * read(), as the simplest cameras deliver frames. DEVICE may be a file of such
- * frames.
+ * in each frame of a camera, with one thread per processor. Frames are 640x480,
+ * read by read(), which the simplest cameras support. DEVICE may be a file of
+ * such frames.
  */
 #include <fcntl.h>
 #include <stdio.h>

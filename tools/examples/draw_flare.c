@@ -13,8 +13,7 @@
 
 enum { MAX_MODEL = 2 << 20, MAX_PICTURE = 12 << 20, MAX_FLARE = 16 << 20 };
 
-/* On a board the model would lie in ROM, and the picture in the camera's
- * buffer. */
+/* On a board the model would be in ROM and the image in the camera's buffer. */
 static uint32_t model[MAX_MODEL / sizeof(uint32_t)];
 static uint8_t picture[MAX_PICTURE];
 #ifdef __GNUC__
@@ -24,7 +23,7 @@ static uint8_t flare_memory[MAX_FLARE];
 
 /* Reads the file PATH into BLOCK. Returns the number of bytes, or 0 if the file
  * cannot be read or has ROOM bytes or more. */
-static size_t load(const char *path, void *block, size_t room)
+static size_t load_file(const char *path, void *block, size_t room)
 {
     FILE *file = fopen(path, "rb");
     size_t bytes = 0;
@@ -39,7 +38,7 @@ static size_t load(const char *path, void *block, size_t room)
 }
 
 /* Parses the number at *AT, after one white space, and moves *AT past it. */
-static int number(const uint8_t **at)
+static int parse_number(const uint8_t **at)
 {
     int n = 0;
 
@@ -57,9 +56,9 @@ static int find_image(struct glint_image *image, size_t bytes)
     if (picture[0] != 'P' || picture[1] != '6')
         return 0;
     *image = (struct glint_image){.format = GLINT_RGB24};
-    image->width = number(&at);
-    image->height = number(&at);
-    if (number(&at) != 255 || image->width < 1 || image->height < 1 ||
+    image->width = parse_number(&at);
+    image->height = parse_number(&at);
+    if (parse_number(&at) != 255 || image->width < 1 || image->height < 1 ||
         image->width > GLINT_MAX_SIDE || image->height > GLINT_MAX_SIDE)
         return 0;
     at++;
@@ -70,8 +69,9 @@ static int find_image(struct glint_image *image, size_t bytes)
 
 /* Adds the flare of LIGHT to IMAGE. Returns 1, or 0 if flare_memory is too
  * small. */
-static int draw(const struct glint_lens *lens, const struct glint_image *image,
-                const struct glint_light *light)
+static int draw_flare(const struct glint_lens *lens,
+                      const struct glint_image *image,
+                      const struct glint_light *light)
 {
     struct glint_wave wave[GLINT_FLARE_WAVES];
     struct glint_flare_config config;
@@ -99,7 +99,7 @@ static int draw(const struct glint_lens *lens, const struct glint_image *image,
 
 /* Returns the centre of the pixel with the number TEXT. The number is clamped
  * to 2 * GLINT_MAX_SIDE, far outside the largest picture. */
-static int32_t middle_q8(const char *text)
+static int32_t pixel_centre_q8(const char *text)
 {
     const int pixel = atoi(text);
 
@@ -108,7 +108,7 @@ static int32_t middle_q8(const char *text)
                : 512 * GLINT_MAX_SIDE;
 }
 
-static int failed(int code, const char *what)
+static int print_error(int code, const char *what)
 {
     fprintf(stderr, "draw_flare: %s\n", what);
     return code;
@@ -124,18 +124,19 @@ int main(int argc, char **argv)
     size_t bytes;
 
     if (stops < -60 || stops > 60)
-        return failed(2, "MODEL IN.ppm X Y STOPS >OUT.ppm");
-    bytes = load(argv[1], model, sizeof model);
+        return print_error(2, "MODEL IN.ppm X Y STOPS >OUT.ppm");
+    bytes = load_file(argv[1], model, sizeof model);
     if (!bytes || glint_lens_open(&lens, model, bytes, &reason) != GLINT_OK)
-        return failed(5, reason);
-    bytes = load(argv[2], picture, sizeof picture);
+        return print_error(5, reason);
+    bytes = load_file(argv[2], picture, sizeof picture);
     if (!find_image(&image, bytes))
-        return failed(3, "no binary PPM of 8 bits, or more than 12 MiB");
+        return print_error(3, "no binary PPM of 8 bits, or more than 12 MiB");
     light = glint_light_from_pixel(&lens, image.width, image.height,
-                                   middle_q8(argv[3]), middle_q8(argv[4]));
+                                   pixel_centre_q8(argv[3]),
+                                   pixel_centre_q8(argv[4]));
     light.power.exponent += stops;
-    if (!draw(&lens, &image, &light))
-        return failed(1, "a picture of this size takes more than 16 MiB");
+    if (!draw_flare(&lens, &image, &light))
+        return print_error(1, "a picture of this size takes more than 16 MiB");
     return fwrite(picture, 1, bytes, stdout) == bytes && !fflush(stdout) ? 0
                                                                          : 6;
 }

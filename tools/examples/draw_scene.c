@@ -24,14 +24,14 @@ static size_t read_file(const char *path, void *data, size_t bytes)
     return n;
 }
 
-static int complain(const char *path, const char *cause)
+static int print_error(const char *path, const char *cause)
 {
     fprintf(stderr, "%s: %s\n", path, cause);
     return 5;
 }
 
-static int draw(const char *path, const struct glint_scene_model *model,
-                const struct glint_image *image)
+static int draw_scene(const char *path, const struct glint_scene_model *model,
+                      const struct glint_image *image)
 {
     struct glint_scene_config cfg;
     struct glint_scene_stats stats;
@@ -43,15 +43,15 @@ static int draw(const char *path, const struct glint_scene_model *model,
     glint_scene_defaults(&cfg, image->width, image->height);
     cfg.sets = glint_sets_here();
     if (glint_scene_lacks(&cfg.parts, model))
-        return complain(path, glint_scene_lacks(&cfg.parts, model));
+        return print_error(path, glint_scene_lacks(&cfg.parts, model));
     bytes = glint_scene_bytes(&cfg, model);
     if (posix_memalign(&mem, 64, bytes) != 0)
-        return complain(path, "out of memory");
+        return print_error(path, "out of memory");
     if (glint_scene_init(&scene, &cfg, model, mem, bytes) == GLINT_OK) {
         glint_scene_begin(scene, &stats);
         glint_scene_draw(scene, image);
     } else {
-        code = complain(path, "the camera is of a lens, or too wide");
+        code = print_error(path, "the camera is of a lens, or too wide");
     }
     free(mem);
     return code;
@@ -71,15 +71,15 @@ int main(int argc, char **argv)
     }
     data = malloc(LIMIT);
     if (!data)
-        return complain(argv[1], "out of memory");
+        return print_error(argv[1], "out of memory");
     if (glint_scene_open(&model, data, read_file(argv[1], data, LIMIT),
                          &reason) != GLINT_OK) {
         free(data);
-        return complain(argv[1], reason);
+        return print_error(argv[1], reason);
     }
     code = ppm_read(argv[2], &image);
     if (code == 0) {
-        code = draw(argv[1], &model, &image);
+        code = draw_scene(argv[1], &model, &image);
         if (code == 0)
             code = ppm_write(&image);
         free(image.plane[0]);

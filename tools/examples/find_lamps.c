@@ -8,7 +8,7 @@
 
 enum { MOST = 32 };
 
-static int find(const struct glint_image *image)
+static int print_lamps(const struct glint_image *image)
 {
     struct glint_lamp_finder_config cfg;
     struct glint_lamp_finder *finder;
@@ -44,7 +44,7 @@ int main(int argc, char **argv)
     }
     code = ppm_read(argv[1], &image);
     if (code == 0) {
-        code = find(&image);
+        code = print_lamps(&image);
         free(image.plane[0]);
     }
     return code;

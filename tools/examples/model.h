@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Baked models, for the examples.
+ * Reads baked models, for the examples.
  */
 #ifndef GLINT_TOOLS_EXAMPLES_MODEL_H
 #define GLINT_TOOLS_EXAMPLES_MODEL_H

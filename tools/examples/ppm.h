@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pictures for the examples: binary PPM of 8 bits.
+ * Reads and writes images for the examples: binary PPM of 8 bits.
  */
 #ifndef GLINT_TOOLS_EXAMPLES_PPM_H
 #define GLINT_TOOLS_EXAMPLES_PPM_H

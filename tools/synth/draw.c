@@ -38,8 +38,8 @@ static bool is_picture(const char *name)
     return false;
 }
 
-static bool add(struct synth_backgrounds *list, const char *folder,
-                const char *name)
+static bool add_path(struct synth_backgrounds *list, const char *folder,
+                     const char *name)
 {
     const size_t bytes = strlen(folder) + strlen(name) + 2;
     char **const more =
@@ -73,7 +73,7 @@ static int add_folder(const struct tool *tool, struct synth_backgrounds *list,
             error.text);
     while (is_room && (entry = readdir(dir)))
         if (is_picture(entry->d_name))
-            is_room = add(list, folder, entry->d_name);
+            is_room = add_path(list, folder, entry->d_name);
     closedir(dir);
     if (!is_room)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
@@ -86,7 +86,7 @@ static int add_folder(const struct tool *tool, struct synth_backgrounds *list,
     return EXIT_OK;
 }
 
-static int by_name(const void *a, const void *b)
+static int compare_names(const void *a, const void *b)
 {
     return strcmp(synth_background_name(*(char *const *)a),
                   synth_background_name(*(char *const *)b));
@@ -108,15 +108,15 @@ int synth_backgrounds_open(const struct tool *tool,
                              error.text);
         else if (S_ISDIR(st.st_mode))
             code = add_folder(tool, list, words[i]);
-        else if (!add(list, "", words[i]))
+        else if (!add_path(list, "", words[i]))
             code = tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (code != EXIT_OK)
         return code;
-    qsort(list->path, (size_t)list->n, sizeof *list->path, by_name);
+    qsort(list->path, (size_t)list->n, sizeof *list->path, compare_names);
     for (int i = 0; i < list->n; i++) {
         if (strlen(synth_background_name(list->path[i])) >= SYNTH_NAME_BYTES)
             return tool_usage(tool, "%s: its name is too long", list->path[i]);
-        if (i > 0 && by_name(&list->path[i - 1], &list->path[i]) == 0)
+        if (i > 0 && compare_names(&list->path[i - 1], &list->path[i]) == 0)
             return tool_usage(tool,
                               "%s and %s have the same name, so that the "
                               "manifest could not distinguish them",
@@ -155,8 +155,8 @@ enum glint_status synth_background_key(char key[20], const char *path,
 
 /* Sets TO to the light of FROM at (X, Y), in pixels, interpolated bilinearly
  * between pixel centres. */
-static void light_between(const struct glint_float_image *from, double x,
-                          double y, double to[3])
+static void interpolate_light(const struct glint_float_image *from, double x,
+                              double y, double to[3])
 {
     const double u = fmin(fmax(x - 0.5, 0), from->width - 1);
     const double v = fmin(fmax(y - 0.5, 0), from->height - 1);
@@ -175,10 +175,11 @@ static void light_between(const struct glint_float_image *from, double x,
     }
 }
 
-/* Resamples the part of FROM that ITEM requests to RGB. A pixel is the mean of
- * N x N points, N being the pixels of FROM that it covers per side. */
-static void take_part(const struct glint_float_image *from,
-                      const struct synth_item *item, float *rgb)
+/* Resamples the crop of FROM that ITEM defines to RGB. A pixel is the mean
+ * of N x N points, where N is the number of pixels of FROM per pixel of RGB,
+ * in one direction. */
+static void resample_crop(const struct glint_float_image *from,
+                          const struct synth_item *item, float *rgb)
 {
     const int width = (int)item->width, height = (int)item->height;
     const double step = item->crop * fmin((double)from->width / width,
@@ -196,8 +197,9 @@ static void take_part(const struct glint_float_image *from,
             for (int k = 0; k < n * n; k++) {
                 const int across = k % n, down = k / n;
 
-                light_between(from, left + step * (column + (across + 0.5) / n),
-                              top + step * (y + (down + 0.5) / n), one);
+                interpolate_light(from,
+                                  left + step * (column + (across + 0.5) / n),
+                                  top + step * (y + (down + 0.5) / n), one);
                 for (int c = 0; c < 3; c++)
                     sum[c] += one[c];
             }
@@ -206,9 +208,9 @@ static void take_part(const struct glint_float_image *from,
         }
 }
 
-/* Scales RGB so that its mean light is LEVEL, by SYNTH_LEAST_EV to
- * SYNTH_MOST_EV stops. Returns the stops. */
-static double bring(float *rgb, size_t n, double level)
+/* Scales RGB by SYNTH_LEAST_EV to SYNTH_MOST_EV stops so that its mean light
+ * is LEVEL. Returns the stops. */
+static double scale_to_level(float *rgb, size_t n, double level)
 {
     double sum = 0, ev;
 
@@ -222,8 +224,8 @@ static double bring(float *rgb, size_t n, double level)
 }
 
 /* Returns the path of ITEM's background, or NULL. */
-static const char *find(const struct synth_backgrounds *list,
-                        const struct synth_item *item)
+static const char *find_background(const struct synth_backgrounds *list,
+                                   const struct synth_item *item)
 {
     for (int i = 0; i < list->n; i++)
         if (strcmp(synth_background_name(list->path[i]), item->background) == 0)
@@ -231,17 +233,17 @@ static const char *find(const struct synth_backgrounds *list,
     return NULL;
 }
 
-/* Sets RGB, [height][width][3], linear light, to the part of the background
- * that ITEM requests, and EV to the stops by which it was scaled to ITEM's
+/* Sets RGB[height][width][3], linear light, to the crop of the background
+ * that ITEM defines, and EV to the stops by which it was scaled to ITEM's
  * level. Returns GLINT_E_IO with ERROR if there is no such background or the
- * file's key differs from ITEM's, or the errors of
+ * file's hash differs from ITEM's, or the errors of
  * glint_picture_load_float(). */
 static enum glint_status load_background(const struct synth_backgrounds *list,
                                          const struct synth_item *item,
                                          float *rgb, double *ev,
                                          struct glint_error *error)
 {
-    const char *const path = find(list, item);
+    const char *const path = find_background(list, item);
     struct glint_float_image image = {.rgb = NULL};
     char key[20] = "";
     enum glint_status status;
@@ -259,10 +261,10 @@ static enum glint_status load_background(const struct synth_backgrounds *list,
         status = glint_picture_load_float(path, &image, error);
     if (status != GLINT_OK)
         return status;
-    take_part(&image, item, rgb);
+    resample_crop(&image, item, rgb);
     free(image.rgb);
-    *ev =
-        bring(rgb, 3 * (size_t)item->width * (size_t)item->height, item->level);
+    *ev = scale_to_level(rgb, 3 * (size_t)item->width * (size_t)item->height,
+                         item->level);
     return GLINT_OK;
 }
 
@@ -284,8 +286,8 @@ void synth_drawing_finish(struct synth_drawing *d)
     free(d->layer[0]);
 }
 
-static struct glint_float_image image_of(const struct synth_drawing *d,
-                                         float *rgb)
+static struct glint_float_image make_image(const struct synth_drawing *d,
+                                           float *rgb)
 {
     return (struct glint_float_image){d->width, d->height, rgb};
 }
@@ -332,8 +334,8 @@ int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
     *lens = calloc(1, sizeof **lens);
     if (!*lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    lenses->lens[lenses->n++] = *lens; /* added also if it fails to open, so
-                                          that it is closed later */
+    /* added even if opening fails, so that it is closed later */
+    lenses->lens[lenses->n++] = *lens;
     return open_lens(tool, *lens, item);
 }
 
@@ -345,7 +347,7 @@ void synth_lenses_close(struct synth_lenses *lenses)
     }
 }
 
-/* Sets the stop of LENS and the dirt on its front by ITEM. */
+/* Sets the stop of LENS and the dirt on its front element by ITEM. */
 static int set_lens(const struct tool *tool, struct synth_lens *lens,
                     const struct synth_item *item, struct synth_result *result)
 {
@@ -364,8 +366,8 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
     camera->front_dirt.dust = item->front_dust;
     camera->front_dirt.dust_seed = (int)item->front_dust_seed;
     result->f_number = lens->widest * exp2(item->stops_down / 2);
-    /* At 0 stops down requests no f-number: rounding might make it wider than
-     * the model's stop. */
+    /* 0 stops down requests no f-number, as rounding might make it wider
+     * than the model's stop. */
     s->options.f_number = item->stops_down > 0 ? result->f_number : 0;
     status = opened_lens_stop(&lens->opened, s, &error);
     if (status != GLINT_OK)
@@ -376,9 +378,9 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
 
 /* ------------------------------------------------------------------- lights */
 
-/* Sets RGB to the colour of a black body of KELVIN [Planck01], scaled so that
- * the largest channel is 1. */
-static void black_body(double kelvin, double rgb[3])
+/* Sets RGB to the colour of a black body of KELVIN [Planck01], scaled so
+ * that the largest component is 1. */
+static void set_black_body(double kelvin, double rgb[3])
 {
     enum { WAVES = 16 };
     double nm[WAVES], colour[WAVES][3], share[WAVES], most = 0;
@@ -415,7 +417,7 @@ static void set_lamps(const struct synth_item *item,
         lamp[i] = (struct glint_lamp){.power = light->power};
         glint_view_to_angles(&view, focal, light->x * item->width,
                              light->y * item->height, &lamp[i]);
-        black_body(light->kelvin, lamp[i].rgb);
+        set_black_body(light->kelvin, lamp[i].rgb);
         /* The RMS extent of a disc along an axis is half of its radius. */
         glint_area_set_round(&lamp[i],
                              0.5 * light->radius * item->height *
@@ -426,7 +428,8 @@ static void set_lamps(const struct synth_item *item,
     }
 }
 
-/* Draws the discs of the lights of ITEM into the source layer and the cover. */
+/* Draws the discs of the lights of ITEM into the source layer and the
+ * coverage. */
 static void draw_sources(const struct synth_item *item,
                          const struct glint_lamp *lamp, struct synth_drawing *d,
                          struct synth_result *result)
@@ -465,7 +468,7 @@ static void draw_sources(const struct synth_item *item,
 
 /* ------------------------------------------------------------------- flares */
 
-/* Draws PART of the flare, of enum glint_engine_part, to RGB. */
+/* Draws one part of the flare (enum glint_engine_part) to RGB. */
 static int draw_part(const struct tool *tool, const struct synth_lens *lens,
                      const struct synth_item *item,
                      const struct glint_lamp *lamp, unsigned part, float *rgb)
@@ -492,11 +495,11 @@ static int draw_part(const struct tool *tool, const struct synth_lens *lens,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Returns the power of the lights, given IMAGE, their ghosts at power 1: the
- * brightest thousandth of the pixels gets the light LEVEL, but the mean at most
- * SYNTH_MOST_MEAN times LEVEL, as broad ghosts that fill the picture would hide
+/* Returns the power of the lights. IMAGE shows their ghosts at power 1. The
+ * brightest 0.1 % of the pixels get the light LEVEL, but the mean is at most
+ * SYNTH_MOST_MEAN times LEVEL, as wide ghosts that fill the image would hide
  * everything else. */
-static double power_of(const struct glint_float_image *image, double level)
+static double find_power(const struct glint_float_image *image, double level)
 {
     const size_t n = 3 * (size_t)image->width * (size_t)image->height;
     const double by_peak = level * glint_measure_exposure(image);
@@ -508,7 +511,7 @@ static double power_of(const struct glint_float_image *image, double level)
                 sum > 0 ? level * SYNTH_MOST_MEAN * (double)n / sum : by_peak);
 }
 
-static void times(float *rgb, size_t n, double factor)
+static void scale_pixels(float *rgb, size_t n, double factor)
 {
     for (size_t i = 0; i < n; i++)
         rgb[i] = (float)((double)rgb[i] * factor);
@@ -521,9 +524,9 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
     const size_t n = 3 * (size_t)d->width * (size_t)d->height;
     float *const ghosts = d->layer[SYNTH_GHOSTS];
     float *const glare = d->layer[SYNTH_GLARE];
-    float *const spare = d->layer[SYNTH_SOURCE]; /* free until the sources are
-                                                    drawn, last */
-    struct glint_float_image image = image_of(d, ghosts);
+    /* unused until the sources are drawn, last */
+    float *const spare = d->layer[SYNTH_SOURCE];
+    struct glint_float_image image = make_image(d, ghosts);
     struct glint_lamp lamp[SYNTH_MAX_LIGHTS] = {{.power = 0}};
     double power;
     int code;
@@ -532,16 +535,16 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
     code = draw_part(tool, lens, item, lamp, GLINT_ENGINE_GHOSTS, ghosts);
     if (code != EXIT_OK)
         return code;
-    power = power_of(&image, item->ghost_level);
-    times(ghosts, n, power);
-    /* Haze is quantised to a millionth of white, so lamps must have their final
+    power = find_power(&image, item->ghost_level);
+    scale_pixels(ghosts, n, power);
+    /* Haze is quantised to 1e-6 of white, so lamps must have their final
      * power. */
     for (int i = 0; i < (int)item->n_lights; i++)
         lamp[i].power *= power;
     memset(glare, 0, n * sizeof *glare);
     if (item->star > 0)
         code = draw_part(tool, lens, item, lamp, GLINT_ENGINE_STAR, glare);
-    times(glare, n, item->star);
+    scale_pixels(glare, n, item->star);
     if (code == EXIT_OK && (item->haze > 0 || item->front_dust > 0)) {
         code = draw_part(tool, lens, item, lamp, GLINT_ENGINE_VEIL, spare);
         for (size_t i = 0; i < n && code == EXIT_OK; i++)
@@ -588,9 +591,9 @@ void synth_sum(const struct synth_drawing *d, unsigned layers, float *rgb)
             rgb[i] += d->layer[k][i];
 }
 
-/* Returns a nearly normal random number of mean 0 and variance 1: a sum of
+/* Returns a nearly Gaussian random number of mean 0 and variance 1, a sum of
  * twelve uniform numbers, the same on every machine. */
-static double normal(uint64_t *state)
+static double random_normal(uint64_t *state)
 {
     int64_t sum = 0;
 
@@ -611,7 +614,7 @@ void synth_noise(const struct synth_item *item, float *rgb)
     for (size_t i = 0; i < n; i++) {
         const double light = rgb[i];
 
-        rgb[i] = (float)(light + normal(&state) *
+        rgb[i] = (float)(light + random_normal(&state) *
                                      sqrt(light / item->full_well +
                                           item->read_noise * item->read_noise));
     }

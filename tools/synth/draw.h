@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * draw.h - the layers of an item, in linear light, and the picture that a
- * sensor records of them.
+ * draw.h - draws the layers of an item of a data set, in linear light, and
+ * simulates a sensor's image of them.
  *
- * ghost_level sets the brightness of the ghosts, from which the power of the
- * lights follows, and from that the brightness of the lights, the starburst and
- * the haze; item->star scales the starburst.
+ * ghost_level sets the brightness of the ghosts. The power of the lights
+ * follows from it, and from that the brightness of the lights, the starburst
+ * and the haze; item->star scales the starburst.
  */
 #ifndef GLINT_TOOLS_SYNTH_DRAW_H
 #define GLINT_TOOLS_SYNTH_DRAW_H
@@ -29,10 +29,11 @@ enum synth_layer {
 struct synth_drawing {
     int width, height;
     float *layer[SYNTH_LAYERS]; /* [height][width][3] linear light */
-    float *cover; /* [height][width][3], fraction covered by lights, 0 .. 1 */
+    /* [height][width][3], fraction of the pixel covered by lights, 0 .. 1 */
+    float *cover;
 };
 
-/* max mean light of ghosts with ghost_level 1 */
+/* max mean light of ghosts at a ghost_level of 1 */
 #define SYNTH_MOST_MEAN 0.2
 
 enum { SYNTH_MAX_LENSES = 64 };
@@ -42,17 +43,18 @@ struct synth_lens {
     struct opened_lens opened;
     char name[64], coating[64];
     double quality;
-    double widest; /* f-number of the model, its widest opening */
+    double widest; /* widest f-number that the model was baked for */
 };
 
-/* Opened lenses, each opened only once. */
+/* Opened lenses; each lens is opened only once. */
 struct synth_lenses {
     int n;
     struct synth_lens *lens[SYNTH_MAX_LENSES];
 };
 
-/* Lists pictures, sorted by name. WORDS[N] are files or folders, whose pictures
- * are recognised by extension. Names must differ. Returns an exit code. */
+/* Lists image files, sorted by name. WORDS[N] are files, or folders whose
+ * image files are recognised by extension. Names must be unique. Returns an
+ * exit code. */
 int synth_backgrounds_open(const struct tool *tool,
                            struct synth_backgrounds *list, char **words, int n);
 

@@ -68,7 +68,7 @@ const struct synth_field synth_light_field[SYNTH_LIGHT_FIELDS] = {
 
 /* ------------------------------------------------------------------- ranges */
 
-static const struct synth_field *field_of(int k)
+static const struct synth_field *field_at(int k)
 {
     return k < SYNTH_FIELDS ? &synth_field[k]
                             : &synth_light_field[k - SYNTH_FIELDS];
@@ -77,17 +77,17 @@ static const struct synth_field *field_of(int k)
 void synth_ranges_defaults(struct synth_ranges *ranges)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++) {
-        ranges->low[k] = field_of(k)->low;
-        ranges->high[k] = field_of(k)->high;
+        ranges->low[k] = field_at(k)->low;
+        ranges->high[k] = field_at(k)->high;
     }
 }
 
-static int field_named(const char *name, size_t n)
+static int find_field(const char *name, size_t n)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (field_of(k)->law > SYNTH_COUNTED &&
-            strlen(field_of(k)->name) == n &&
-            strncmp(field_of(k)->name, name, n) == 0)
+        if (field_at(k)->law > SYNTH_COUNTED &&
+            strlen(field_at(k)->name) == n &&
+            strncmp(field_at(k)->name, name, n) == 0)
             return k;
     return -1;
 }
@@ -96,7 +96,7 @@ bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
                        struct glint_error *why)
 {
     const size_t n = strcspn(text, "=");
-    const int k = field_named(text, n);
+    const int k = find_field(text, n);
     const struct synth_field *f;
     double v[2];
     int count;
@@ -107,7 +107,7 @@ bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
                  (int)(n < 60 ? n : 60), text);
         return false;
     }
-    f = field_of(k);
+    f = field_at(k);
     count = text[n] ? tool_numbers(text + n + 1, v, 2) : 0;
     if (count == 1)
         v[1] = v[0];
@@ -139,17 +139,17 @@ void synth_ranges_print(FILE *file, const struct synth_ranges *ranges)
                                       "whole numbers"};
 
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (field_of(k)->law > SYNTH_COUNTED)
-            fprintf(file, "%s=%.7g,%.7g  %s\n", field_of(k)->name,
-                    ranges->low[k], ranges->high[k], law[field_of(k)->law]);
+        if (field_at(k)->law > SYNTH_COUNTED)
+            fprintf(file, "%s=%.7g,%.7g  %s\n", field_at(k)->name,
+                    ranges->low[k], ranges->high[k], law[field_at(k)->law]);
 }
 
 void synth_ranges_json(struct json_writer *json,
                        const struct synth_ranges *ranges)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (field_of(k)->law > SYNTH_COUNTED)
-            json_write(json, "%s: [%.9g, %.9g]", field_of(k)->name,
+        if (field_at(k)->law > SYNTH_COUNTED)
+            json_write(json, "%s: [%.9g, %.9g]", field_at(k)->name,
                        ranges->low[k], ranges->high[k]);
 }
 
@@ -176,9 +176,9 @@ uint64_t synth_item_stream(const struct synth_item *item, const char *what)
     return state;
 }
 
-/* Returns a random number from 0 to below 1 that depends on ITEM's seed and
- * number and on WHAT. */
-static double unit(const struct synth_item *item, const char *what)
+/* Returns a random number in [0, 1) that depends on ITEM's seed and number
+ * and on WHAT. */
+static double random_unit(const struct synth_item *item, const char *what)
 {
     uint64_t state = synth_item_stream(item, what);
 
@@ -187,15 +187,15 @@ static double unit(const struct synth_item *item, const char *what)
 
 int synth_item_choose(const struct synth_item *item, const char *what, int n)
 {
-    return (int)(unit(item, what) * n);
+    return (int)(random_unit(item, what) * n);
 }
 
-/* Returns a random value of the member NAME, distributed by LAW between LOW and
- * HIGH, rounded to a millionth. */
-static double drawn(const struct synth_item *item, const char *name,
-                    enum synth_law law, double low, double high)
+/* Returns a random value of the member NAME, distributed by LAW between LOW
+ * and HIGH, rounded to 1e-6. */
+static double random_value(const struct synth_item *item, const char *name,
+                           enum synth_law law, double low, double high)
 {
-    double x = unit(item, name), value;
+    double x = random_unit(item, name), value;
 
     if (law == SYNTH_WHOLE)
         return floor(low + x * (high - low + 1));
@@ -226,12 +226,12 @@ void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
     for (int k = 0; k < SYNTH_FIELDS; k++)
         if (synth_field[k].law > SYNTH_COUNTED)
             *number_at(item, &synth_field[k]) =
-                drawn(item, synth_field[k].name, synth_field[k].law,
-                      ranges->low[k], ranges->high[k]);
+                random_value(item, synth_field[k].name, synth_field[k].law,
+                             ranges->low[k], ranges->high[k]);
     for (int i = 0; i < SYNTH_MAX_LIGHTS; i++)
         for (int k = 0; k < SYNTH_LIGHT_FIELDS; k++) {
             snprintf(name, sizeof name, "%s %d", synth_light_field[k].name, i);
-            *number_at(&item->light[i], &synth_light_field[k]) = drawn(
+            *number_at(&item->light[i], &synth_light_field[k]) = random_value(
                 item, name, synth_light_field[k].law,
                 ranges->low[SYNTH_FIELDS + k], ranges->high[SYNTH_FIELDS + k]);
         }
@@ -240,7 +240,7 @@ void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
 
 /* ----------------------------------------------------------------- printing */
 
-/* Writes X, an integer or a multiple of a millionth, without trailing zeros. */
+/* Writes X, a multiple of 1e-6, without trailing zeros. */
 static void write_exact(struct json_writer *json, const char *name, double x)
 {
     char text[40], format[16];

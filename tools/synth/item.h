@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
  * item.h - an item of a data set for flare removal: all numbers that define its
- * pictures.
+ * images.
  *
- *     synth_item_draw(&item, &ranges, seed, number);   at random, the same
- * again synth_item_print(&text, &item, &result);         a line of a manifest
- *     synth_item_read(&item, line, &error);            and back
+ * synth_item_draw(&item, &ranges, seed, number);   random, but reproducible
+ * synth_item_print(&text, &item, &result);         as a line of a manifest
+ * synth_item_read(&item, line, &error);            reads that line
  *
  * Each number depends only on the seed, the item's number and its own name, so
- * a new member changes no other. Numbers are rounded to a millionth, which the
- * line holds exactly, so that the line reproduces the item.
+ * adding a member changes no other. Numbers are rounded to 1e-6, which the line
+ * stores exactly, so the line reproduces the item.
  */
 #ifndef GLINT_TOOLS_SYNTH_ITEM_H
 #define GLINT_TOOLS_SYNTH_ITEM_H
@@ -34,14 +34,14 @@ struct synth_light {
 struct synth_item {
     double number, seed, width, height;
     char glint[16];                    /* version of glint that drew it */
-    char background[SYNTH_NAME_BYTES]; /* file name without folder */
+    char background[SYNTH_NAME_BYTES]; /* file name without its folder */
     char background_key[20];           /* hash of that file's bytes */
     char lens[64], coating[64];
     double quality;
 
-    /* The part of the background that is used: its size, as a fraction of the
-     * largest part of that shape; its position, 0 .. 1; whether it is mirrored;
-     * and the mean light it is scaled to, 1 = white, by SYNTH_LEAST_EV to
+    /* The crop of the background: its size, as a fraction of the largest
+     * crop of that shape; its position, 0 .. 1; whether it is mirrored; and
+     * the mean light to which it is scaled (1 = white), by SYNTH_LEAST_EV to
      * SYNTH_MOST_EV stops. */
     double crop, crop_x, crop_y, mirrored, level;
 
@@ -50,10 +50,10 @@ struct synth_item {
     double stops_down, blades, rotation, roundness, softness;
     double dust, dust_seed, front_dust, front_dust_seed, haze;
 
-    /* ghost_level: light of the brightest thousandth of the ghosts' pixels,
-     * from which the lights' power follows; lower if the mean would exceed
-     * SYNTH_MOST_MEAN times ghost_level. star: factor on the starburst of these
-     * lights. */
+    /* ghost_level: light of the brightest 0.1 % of the ghosts' pixels, which
+     * determines the power of the lights; reduced if the mean would exceed
+     * SYNTH_MOST_MEAN times ghost_level. star: factor on the starburst of
+     * these lights. */
     double ghost_level, star;
 
     double read_noise, full_well; /* fraction of white; electrons at white */
@@ -64,11 +64,11 @@ struct synth_item {
 
 enum { SYNTH_LEAST_EV = -7, SYNTH_MOST_EV = 1 };
 
-/* Results for readers of a manifest; not an input of drawing. */
+/* Results for readers of a manifest; drawing does not use them. */
 struct synth_result {
     double background_ev, f_number, focal_mm, sensor_width_mm;
-    /* per light: power, in display white times pixels; light of its disc, white
-     * = 1; angle off the axis and azimuth; linear colour */
+    /* per light: power, display white x pixels; light of its disc, 1 =
+     * white; angle off the axis and azimuth, degrees; linear colour */
     double power[SYNTH_MAX_LIGHTS], white[SYNTH_MAX_LIGHTS],
         theta_deg[SYNTH_MAX_LIGHTS], phi_deg[SYNTH_MAX_LIGHTS],
         rgb[SYNTH_MAX_LIGHTS][3];
@@ -85,8 +85,8 @@ struct synth_ranges {
 
 void synth_ranges_defaults(struct synth_ranges *ranges);
 
-/* Parses TEXT, "NAME=LOW,HIGH" or "NAME=VALUE". Returns false, with the cause
- * in WHY, if there is no such name or a number is out of range. */
+/* Parses TEXT, "NAME=LOW,HIGH" or "NAME=VALUE", into RANGES. Returns false,
+ * with the cause in WHY, if the name is unknown or a number is out of range. */
 bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
                        struct glint_error *why);
 
@@ -97,8 +97,8 @@ void synth_ranges_print(FILE *file, const struct synth_ranges *ranges);
 void synth_ranges_json(struct json_writer *json,
                        const struct synth_ranges *ranges);
 
-/* Sets the numbers of ITEM at random, by SEED and NUMBER. Texts, the size and
- * the quality are not changed. */
+/* Sets the numbers of ITEM to random values that depend on SEED and NUMBER.
+ * Does not change texts, size and quality. */
 void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
                      int seed, int number);
 
@@ -106,29 +106,29 @@ void synth_item_draw(struct synth_item *item, const struct synth_ranges *ranges,
  * and on WHAT. */
 int synth_item_choose(const struct synth_item *item, const char *what, int n);
 
-/* synth_item_stream() returns the initial state of random bits for WHAT of
- * ITEM; synth_bits() returns the next 64 bits [Steele14]. */
+/* synth_item_stream() returns the initial state of a random generator for
+ * WHAT of ITEM; synth_bits() returns its next 64 bits [Steele14]. */
 uint64_t synth_item_stream(const struct synth_item *item, const char *what);
 uint64_t synth_bits(uint64_t *state);
 
-/* Returns ITEM and RESULT as a line of JSON, malloc'ed, or NULL if there is no
- * memory. */
+/* Returns ITEM and RESULT as a line of JSON, which the caller frees, or NULL
+ * if there is no memory. */
 char *synth_item_print(const struct synth_item *item,
                        const struct synth_result *result);
 
-/* Reads LINE, as synth_item_print() writes it. Returns GLINT_E_FORMAT with
+/* Reads LINE, written by synth_item_print(). Returns GLINT_E_FORMAT with
  * ERROR if LINE is not JSON, or a member is missing or out of range;
  * GLINT_E_UNSUPPORTED if glint was built without jansson. */
 enum glint_status synth_item_read(struct synth_item *item, const char *line,
                                   struct glint_error *error);
 
-/* How a member of an item is set at random. */
+/* distribution of a member's random value */
 enum synth_law {
     SYNTH_GIVEN,   /* not random */
     SYNTH_COUNTED, /* not random, an integer */
     SYNTH_EVEN,    /* uniform over the range */
     SYNTH_LOG,     /* logarithm uniform over the range */
-    SYNTH_HALF,    /* 0 for half of the items, else as SYNTH_LOG */
+    SYNTH_HALF,    /* 0 for half of the items, else like SYNTH_LOG */
     SYNTH_WHOLE    /* integers, uniform */
 };
 struct synth_field {

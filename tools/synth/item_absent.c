@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reading items from lines, for builds without jansson.
+ * Replaces item_json.c in builds without jansson: items cannot be read.
  */
 #include "posix/error.h"
 #include "synth/item.h"

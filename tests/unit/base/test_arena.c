@@ -13,7 +13,7 @@
 
 TEST(measure_and_place)
 {
-    static uint8_t mem[256]; /* Aligning it is the caller's business. */
+    static uint8_t mem[256]; /* The caller must align the memory. */
     struct glint_arena m = glint_arena_measure(), p;
 
     assert_null(glint_arena_take(&m, 3, 4));  /* 64 bytes */
@@ -37,7 +37,7 @@ TEST(overflow_is_full)
     assert_true(m.used > SIZE_MAX - 256);
 }
 
-/* Rounding is to nearest, ties up, also below zero. */
+/* Checks rounding to nearest, ties up, also of negative numbers. */
 TEST(rounding)
 {
     assert_int_equal(q_shift(5, 1), 3);
@@ -57,8 +57,8 @@ TEST(rounding)
     assert_int_equal(bit_length(1 << 8), 9);
 }
 
-/* CONFIG=qcheck must stop where a result does not fit. Other builds may wrap or
- * not, and skip this test. */
+/* Checks that CONFIG=qcheck traps if a result does not fit. Skipped in other
+ * builds, in which it may wrap. */
 TEST(overflow_traps)
 {
 #ifdef GLINT_Q_CHECK
@@ -69,7 +69,7 @@ TEST(overflow_traps)
         if (child == 0) {
             volatile int64_t big = INT64_C(1) << 40;
 
-            signal(SIGILL, SIG_DFL); /* cmocka catches SIGILL. */
+            signal(SIGILL, SIG_DFL); /* cmocka handles SIGILL */
             signal(SIGTRAP, SIG_DFL);
             _exit(q_narrow(big) == 0);
         }
@@ -98,7 +98,7 @@ TEST(image_sizes)
     assert_int_equal(image.stride_bytes[1], 3);
 }
 
-static void count(void *ctx, int job, int worker)
+static void count_job(void *ctx, int job, int worker)
 {
     int *sum = ctx;
 
@@ -110,7 +110,7 @@ TEST(serial_workers)
 {
     int sum = 0;
 
-    glint_workers_run(NULL, 5, count, &sum);
+    glint_workers_run(NULL, 5, count_job, &sum);
     assert_int_equal(sum, 10);
     assert_int_equal(glint_workers_count(NULL), 1);
 }

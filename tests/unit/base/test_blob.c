@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The container of baked files: bytes that are written here by hand, and each
- * fault that they can have.
+ * Tests the container format of baked files with hand-written bytes, and each
+ * fault that it can have.
  */
 #include "base/blob.h"
 #include "support/test.h"
@@ -12,13 +12,13 @@ enum { HEADER = 100, BYTES = 124 };
 
 static const struct glint_blob_kind kind = {UINT32_C(0x424f4c42), 3, HEADER};
 
-/* A file with two words of its own at the end of its header, then 24 bytes of
- * sections. */
+/* A file with two additional words at the end of its header, followed by 24
+ * bytes of sections. */
 struct file {
     uint32_t word[BYTES / 4];
 };
 
-static void make(struct file *f)
+static void make_file(struct file *f)
 {
     memset(f, 0, sizeof *f);
     f->word[0] = kind.magic;
@@ -31,7 +31,7 @@ static void make(struct file *f)
     glint_blob_seal(f, BYTES);
 }
 
-static enum glint_blob_fault opened(const struct file *f, size_t bytes)
+static enum glint_blob_fault open_file(const struct file *f, size_t bytes)
 {
     struct glint_blob blob;
 
@@ -44,13 +44,13 @@ TEST(crc)
     assert_true(glint_blob_crc32("", 0) == 0);
 }
 
-/* Fields must lie where files on disk have them. */
+/* Checks that fields have the offsets of existing files. */
 TEST(layout)
 {
     struct glint_blob blob;
     struct file f;
 
-    make(&f);
+    make_file(&f);
     assert_int_equal(f.word[2], BYTES);
     assert_true(f.word[3] == glint_blob_crc32(&f.word[4], BYTES - 16));
     assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
@@ -75,37 +75,37 @@ TEST(faults)
     struct file f;
 
     for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
-        make(&f);
+        make_file(&f);
         f.word[of[k].word] = of[k].value;
-        assert_int_equal(opened(&f, BYTES), of[k].fault);
+        assert_int_equal(open_file(&f, BYTES), of[k].fault);
     }
-    make(&f);
-    assert_int_equal(opened(&f, 7), GLINT_BLOB_FOREIGN);
-    assert_int_equal(opened(&f, 8), GLINT_BLOB_TRUNCATED);
-    assert_int_equal(opened(&f, HEADER - 1), GLINT_BLOB_TRUNCATED);
+    make_file(&f);
+    assert_int_equal(open_file(&f, 7), GLINT_BLOB_FOREIGN);
+    assert_int_equal(open_file(&f, 8), GLINT_BLOB_TRUNCATED);
+    assert_int_equal(open_file(&f, HEADER - 1), GLINT_BLOB_TRUNCATED);
     assert_int_equal(glint_blob_open(&(struct glint_blob){0}, &kind,
                                      (const unsigned char *)&f + 1, BYTES - 4),
                      GLINT_BLOB_UNALIGNED);
 }
 
-/* Any bit that is wrong in the checksum or behind it must be noticed. */
+/* Checks that a wrong bit in the checksum or after it is detected. */
 TEST(damage)
 {
     struct file f;
 
     for (int bit = 8 * 12; bit < 8 * BYTES; bit++) {
-        make(&f);
+        make_file(&f);
         ((unsigned char *)&f)[bit / 8] ^= (unsigned char)(1 << bit % 8);
-        assert_int_equal(opened(&f, BYTES), GLINT_BLOB_DAMAGED);
+        assert_int_equal(open_file(&f, BYTES), GLINT_BLOB_DAMAGED);
     }
 }
 
-static enum glint_blob_fault named(const char *name, size_t length)
+static enum glint_blob_fault check_name(const char *name, size_t length)
 {
     struct glint_blob blob;
     struct file f;
 
-    make(&f);
+    make_file(&f);
     memset(&f.word[7], 0, 64);
     memcpy(&f.word[7], name, length);
     glint_blob_seal(&f, BYTES);
@@ -118,12 +118,12 @@ TEST(names)
     char longest[64];
 
     memset(longest, '~', sizeof longest);
-    assert_int_equal(named(longest, 63), GLINT_BLOB_OK);
-    assert_int_equal(named(longest, 64), GLINT_BLOB_NAME_ENDLESS);
-    assert_int_equal(named("", 0), GLINT_BLOB_NAME_EMPTY);
-    assert_int_equal(named("a\033[2J", 5), GLINT_BLOB_NAME_CONTROL);
-    assert_int_equal(named("a\177", 2), GLINT_BLOB_NAME_CONTROL);
-    assert_int_equal(named("a\233", 2), GLINT_BLOB_NAME_FOREIGN);
+    assert_int_equal(check_name(longest, 63), GLINT_BLOB_OK);
+    assert_int_equal(check_name(longest, 64), GLINT_BLOB_NAME_ENDLESS);
+    assert_int_equal(check_name("", 0), GLINT_BLOB_NAME_EMPTY);
+    assert_int_equal(check_name("a\033[2J", 5), GLINT_BLOB_NAME_CONTROL);
+    assert_int_equal(check_name("a\177", 2), GLINT_BLOB_NAME_CONTROL);
+    assert_int_equal(check_name("a\233", 2), GLINT_BLOB_NAME_FOREIGN);
 }
 
 TEST(sections)
@@ -131,7 +131,7 @@ TEST(sections)
     struct glint_blob blob;
     struct file f;
 
-    make(&f);
+    make_file(&f);
     assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
     assert_ptr_equal(glint_blob_section(&blob, HEADER, 3, 8),
                      &f.word[HEADER / 4]);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps that something hides, or that come together: the energy that is shown
- * must not jump, and tracks must keep their numbers.
+ * Tests tracking of lamps that are hidden or that meet: the displayed energy
+ * must not jump, and tracks must keep their ids.
  */
 #include "glint/lamp_tracker.h"
 
@@ -22,14 +22,13 @@ static void open_night(int width, int height, double sigma)
     assert_true(night_open(&night));
 }
 
-/* The largest step of the energy from picture to picture, and the largest
- * energy. */
+/* Last energy, largest step from frame to frame, and largest energy. */
 struct steps {
     double last, most, largest;
     int n;
 };
 
-static void note(struct steps *s, double energy)
+static void record_energy(struct steps *s, double energy)
 {
     if (s->n++ > 0)
         s->largest = fmax(s->largest, fabs(energy - s->last));
@@ -37,8 +36,8 @@ static void note(struct steps *s, double energy)
     s->last = energy;
 }
 
-/* Returns the energy of all tracks in the lower half, which must have the
- * number *ID; where that is 0, it becomes theirs. */
+/* Returns the energy of all tracks in the lower half. Checks that their id
+ * is *ID; if that is 0, sets it to theirs. */
 static double energy_below(const struct night *n, uint32_t *id)
 {
     double energy = 0;
@@ -55,10 +54,10 @@ static double energy_below(const struct night *n, uint32_t *id)
     return energy;
 }
 
-/* A lamp passes behind a pole of 20 pixels, at several speeds. The energy of
- * its track must change by less than a quarter from picture to picture, though
- * that of its spot goes to 0 at once, and the track must keep its number. Where
- * N_LAMPS is 2, a second lamp stands still. */
+/* Moves a lamp behind a pole of 20 pixels at several speeds. Checks that the
+ * energy of its track changes by less than a quarter per frame, although the
+ * energy of its spot drops to 0 at once, and that the track keeps its id. If
+ * N_LAMPS is 2, there is a second, stationary lamp. */
 static void pass_behind_a_pole(int n_lamps)
 {
     static const double speeds[] = {0.7, 1, 2, 4, 6};
@@ -79,8 +78,8 @@ static void pass_behind_a_pole(int n_lamps)
             for (int i = 0; i < night.n_spots; i++)
                 if (night.spot[i].y_q8 > 70 * 256)
                     seen += night_spot_power(&night.spot[i]);
-            note(&raw, seen);
-            note(&tracked, energy_below(&night, &id));
+            record_energy(&raw, seen);
+            record_energy(&tracked, energy_below(&night, &id));
         }
         print_message("%.1f px a frame: steps of %.2f -> %.2f\n", speeds[k],
                       raw.largest / raw.most, tracked.largest / tracked.most);
@@ -90,20 +89,21 @@ static void pass_behind_a_pole(int n_lamps)
     }
 }
 
-TEST(a_pole_makes_nothing_pop)
+TEST(pole_causes_no_jump)
 {
     pass_behind_a_pole(2);
 }
 
-/* The glow that remains must not count as white, though nothing in the picture
- * is brighter. */
+/* Checks that the remaining glow does not count as white, although nothing
+ * in the image is brighter. */
 TEST(a_pole_hides_a_lamp_alone)
 {
     pass_behind_a_pole(1);
 }
 
-/* White must be kept, ever less of it, for as long as a lamp is remembered. */
-TEST(white_is_kept_for_a_while)
+/* Checks that the white level is remembered, decreasing, as long as a lamp
+ * is. */
+TEST(white_level_is_remembered)
 {
     const struct night_lamp lamp = {160, 100, 5, 3};
     int frame = 0;
@@ -123,8 +123,8 @@ TEST(white_is_kept_for_a_while)
     night_close(&night);
 }
 
-/* Two lamps meet, until the finder takes them for one, and part again. Their
- * energy together must stay within bounds, and neither may jump. */
+/* Checks two lamps that meet until the finder merges them, and part again:
+ * their total energy stays within limits, and neither jumps. */
 TEST(merging_and_splitting)
 {
     struct steps energy = {0, 0, 0, 0};
@@ -143,7 +143,7 @@ TEST(merging_and_splitting)
 
         night_step(&night, lamp, 2, FPS30);
         n_merged += night.n_spots == 1;
-        note(&energy, night_energy(&night));
+        record_energy(&energy, night_energy(&night));
         both = frame < 20 ? fmax(both, night_energy(&night)) : both;
         least = fmin(least, night_energy(&night));
         for (int i = 0; i < night.n_tracks; i++)

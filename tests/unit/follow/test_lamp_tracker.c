@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps over time, in drawn night scenes and through the real finder: noise
- * must not show, motion must, and nothing may jump.
+ * Tests tracking of lamps in synthetic night scenes with the real finder: noise
+ * must be suppressed, motion followed, and nothing may jump.
  */
 #include "glint/lamp_tracker.h"
 
@@ -25,7 +25,7 @@ static void open_night(int width, int height, double sigma)
     assert_true(night_open(&night));
 }
 
-static const struct glint_lamp_track *only_track(void)
+static const struct glint_lamp_track *find_only_track(void)
 {
     assert_int_equal(night.n_tracks, 1);
     return &night.track[0];
@@ -93,7 +93,7 @@ struct moments {
     int n;
 };
 
-static void add(struct moments *m, double v)
+static void add_value(struct moments *m, double v)
 {
     m->sum += v;
     m->square += v * v;
@@ -112,8 +112,8 @@ static double mean(const struct moments *m)
     return m->sum / m->n;
 }
 
-/* Six lamps must stand still over 300 frames with noise of 3 codes. The columns
- * printed are spots and tracks. */
+/* Checks that six lamps stay in place over 300 frames with noise of 3 codes.
+ * Prints columns of spots and tracks. */
 TEST(static_scene_stands_still)
 {
     static const struct night_lamp lamp[] = {
@@ -140,13 +140,15 @@ TEST(static_scene_stands_still)
                 id[i] = t->id;
             assert_int_equal(t->id, id[i]);
             assert_int_equal(t->level_q15, FULL);
-            add(&x[i][0], s->x_q8 / 256.0), add(&x[i][1], t->x_q8 / 256.0);
-            add(&y[i][0], s->y_q8 / 256.0), add(&y[i][1], t->y_q8 / 256.0);
-            add(&power[i][0], night_spot_power(s));
-            add(&power[i][1], night_power(t));
+            add_value(&x[i][0], s->x_q8 / 256.0),
+                add_value(&x[i][1], t->x_q8 / 256.0);
+            add_value(&y[i][0], s->y_q8 / 256.0),
+                add_value(&y[i][1], t->y_q8 / 256.0);
+            add_value(&power[i][0], night_spot_power(s));
+            add_value(&power[i][1], night_power(t));
             sum += night_spot_power(s);
         }
-        add(&total[0], sum), add(&total[1], night_energy(&night));
+        add_value(&total[0], sum), add_value(&total[1], night_energy(&night));
     }
     for (int i = 0; i < N; i++) {
         double px[2], percent[2];
@@ -169,9 +171,9 @@ TEST(static_scene_stands_still)
     night_close(&night);
 }
 
-/* Returns by how much the axis of a track turns from frame to frame, degrees
- * RMS, where a tube at DEGREES is seen with noise of 3.5 degrees. */
-static double turns_of(double degrees)
+/* Returns the RMS change per frame of the axis of a track, degrees, for a
+ * tube at DEGREES observed with noise of 3.5 degrees. */
+static double measure_rotation(double degrees)
 {
     struct moments turn = {0, 0, 0};
 
@@ -202,7 +204,7 @@ static double turns_of(double degrees)
                   3.14159 -
               degrees;
         if (frame >= 30)
-            add(&turn, remainder(off, 180));
+            add_value(&turn, remainder(off, 180));
     }
     night_close(&night);
     return deviation(&turn);
@@ -210,15 +212,15 @@ static double turns_of(double degrees)
 
 TEST(axes_are_steady_however_they_lie)
 {
-    const double lying = turns_of(0), standing = turns_of(90);
+    const double lying = measure_rotation(0), standing = measure_rotation(90);
 
     print_message("axes: %.2f degrees lying, %.2f standing\n", lying, standing);
     assert_true(lying < 1 && standing < 1);
 }
 
-/* Returns how far, pixels, the track of a dim lamp of 8 x 8 pixels moves while
- * in every EVERY-th picture another pixel of it is 41 times as bright (code 255
- * against 43, linear 1 against 0.0242). */
+/* Returns the max distance that the track of a dim lamp of 8 x 8 pixels
+ * moves, pixels, while in every EVERY-th frame another of its pixels is 41
+ * times as bright (code 255 against 43, linear 1 against 0.0242). */
 static double sparkle_moves(int every, uint32_t seed)
 {
     double furthest = 0;
@@ -241,7 +243,7 @@ static double sparkle_moves(int every, uint32_t seed)
             corner[320 * rng_below(&night.seed, 8) +
                    rng_below(&night.seed, 8)] = 255;
         night_track(&night, FPS30);
-        t = only_track();
+        t = find_only_track();
         furthest =
             fmax(furthest, hypot(t->x_q8 / 256.0 - 154, t->y_q8 / 256.0 - 104));
     }
@@ -263,8 +265,8 @@ TEST(sparkle_moves_less_than_a_pixel)
     assert_true(rarely < 1);
 }
 
-/* The brightest pixels of a lamp are about the upper threshold, so that its
- * spot is often faint: the track must stay. */
+/* Checks that the track stays if the lamp's brightest pixels are near the
+ * upper threshold, so that its spot is often faint. */
 TEST(hysteresis)
 {
     uint32_t id = 0;
@@ -279,17 +281,18 @@ TEST(hysteresis)
             memset(night.image.plane[0] + 320 * (100 + y) + 150, code, 6);
         night_track(&night, FPS30);
         n_faint += night.spot[0].faint;
-        assert_int_equal(only_track()->state, GLINT_LAMP_STEADY);
+        assert_int_equal(find_only_track()->state, GLINT_LAMP_STEADY);
         if (frame == 0)
-            id = only_track()->id;
-        assert_int_equal(only_track()->id, id);
+            id = find_only_track()->id;
+        assert_int_equal(find_only_track()->id, id);
     }
     assert_true(n_faint > 30);
     night_close(&night);
 }
 
-/* A spot that is faint from the start must begin no track, and a faint spot
- * much larger than a lamp, such as a wall, must not continue its track. */
+/* Checks that a spot that is faint from the start begins no track, and that
+ * a faint spot much larger than a lamp, such as a wall, does not continue
+ * its track. */
 TEST(faint_spots_begin_no_track)
 {
     struct glint_spot spot[2] = {{.x_q8 = 100 << 8,
@@ -333,9 +336,9 @@ static bool is_spot(const struct glint_lamp_track *t,
            memcmp(t->rgb_q15, s->rgb_q15, sizeof t->rgb_q15) == 0;
 }
 
-/* Returns whether each track is exactly its spot, and each spot that is not
+/* Returns whether each track equals its spot, and each spot that is not
  * faint has a track. */
-static bool all_settled(void)
+static bool tracks_equal_spots(void)
 {
     int n_lights = 0;
 
@@ -351,9 +354,9 @@ static bool all_settled(void)
     return night.n_tracks >= n_lights;
 }
 
-/* Whatever noise or motion there was before, tracks must be exactly the spots
- * of a picture that repeats: after attack + 1 s or five pictures, at any
- * rate. */
+/* Checks that for a repeated image tracks converge exactly to its spots,
+ * whatever noise or motion preceded: after attack + 1 s or five frames, at
+ * any frame rate. */
 TEST(repeated_pictures_are_met_exactly)
 {
     static const int32_t rates[] = {1000, FPS60, FPS30, 200000, 1000000};
@@ -380,7 +383,7 @@ TEST(repeated_pictures_are_met_exactly)
             night.n_tracks =
                 glint_lamp_tracker_step(night.tracks, night.spot, night.n_spots,
                                         us, night.track, NIGHT_MAX);
-            n_settled = all_settled() ? n_settled + 1 : 0;
+            n_settled = tracks_equal_spots() ? n_settled + 1 : 0;
         }
         if (us < 200000)
             slowest = fmax(slowest, (n_frames - n_settled + 1) * (us * 1e-6));
@@ -394,8 +397,8 @@ TEST(repeated_pictures_are_met_exactly)
 
 /* ------------------------------------------------------------------ motion */
 
-/* A lamp that moves must be followed within half a pixel, at speeds of 0.05 to
- * 12 pixels a frame, without noise and with it. */
+/* Checks that a lamp is followed within half a pixel at speeds of 0.05 to 12
+ * pixels per frame, with and without noise. */
 TEST(a_moving_lamp_does_not_lag)
 {
     static const double speeds[] = {0.05, 0.1, 0.2, 0.5, 1, 2, 4, 8, 12};
@@ -413,14 +416,14 @@ TEST(a_moving_lamp_does_not_lag)
             const struct glint_lamp_track *t;
 
             night_step(&night, &lamp, 1, FPS30);
-            t = only_track();
+            t = find_only_track();
             id = frame ? id : t->id;
             assert_int_equal(t->id, id);
             if (frame < 15)
                 continue;
             most = fmax(most, hypot(t->x_q8 / 256.0 - lamp.x,
                                     t->y_q8 / 256.0 - lamp.y));
-            add(&lag, lamp.x - t->x_q8 / 256.0);
+            add_value(&lag, lamp.x - t->x_q8 / 256.0);
         }
         print_message("%5.2f px a frame%s: behind by %.3f px, off by %.3f\n",
                       speed, k < 9 ? "" : " in noise", mean(&lag), most);
@@ -429,8 +432,8 @@ TEST(a_moving_lamp_does_not_lag)
     }
 }
 
-/* A wide lamp in a pan that shakes, whose motion turns round twice a second,
- * must be followed within a pixel, without noise and with it. */
+/* Checks that a wide lamp in a shaky pan, whose direction reverses twice per
+ * second, is followed within a pixel, with and without noise. */
 TEST(a_shaken_lamp_does_not_lag)
 {
     for (int k = 0; k < 2; k++) {
@@ -443,7 +446,7 @@ TEST(a_shaken_lamp_does_not_lag)
             const struct glint_lamp_track *t;
 
             night_step(&night, &lamp, 1, FPS30);
-            t = only_track();
+            t = find_only_track();
             most = fmax(most, fabs(t->x_q8 / 256.0 - lamp.x));
         }
         print_message("shaken%s: off by %.3f px\n", k ? " in noise" : "", most);
@@ -452,8 +455,8 @@ TEST(a_shaken_lamp_does_not_lag)
     }
 }
 
-/* A lamp that stood still for two seconds and then moves by 2 pixels a frame
- * must be followed from the first frame on. */
+/* Checks that a lamp that was stationary for two seconds and then moves by 2
+ * pixels per frame is followed from the first frame on. */
 TEST(a_lamp_that_starts_is_followed)
 {
     for (int k = 0; k < 2; k++) {
@@ -463,15 +466,15 @@ TEST(a_lamp_that_starts_is_followed)
                 60 + (frame < 60 ? 0 : 2.0 * (frame - 59)), 100, 6, 3};
 
             night_step(&night, &lamp, 1, FPS30);
-            assert_true(fabs(only_track()->x_q8 / 256.0 - lamp.x) < 0.5);
+            assert_true(fabs(find_only_track()->x_q8 / 256.0 - lamp.x) < 0.5);
         }
         night_close(&night);
     }
 }
 
-/* After a second a lamp may come back 25 pixels off, which is too far from one
- * picture to the next (0.06 of 320 is 19 pixels). Its track must rise from
- * where the lamp is now. */
+/* Checks a lamp that returns after a second, 25 pixels off, which is too far
+ * for one frame (0.06 of 320 is 19 pixels): its track fades in at the new
+ * position. */
 TEST(a_lamp_that_comes_back)
 {
     for (int k = 0; k < 2; k++) {
@@ -503,7 +506,7 @@ TEST(a_lamp_that_comes_back)
     }
 }
 
-/* Two lamps that meet and pass must keep their numbers, as their motion
+/* Checks that two lamps that meet and pass keep their ids, as their motion
  * distinguishes them. */
 TEST(lamps_that_pass_keep_their_numbers)
 {
@@ -528,8 +531,8 @@ TEST(lamps_that_pass_keep_their_numbers)
     night_close(&night);
 }
 
-/* A fast lamp leaves to the right: its track must continue outside at that
- * speed, and fade in 400 ms by steps of at most 1 / 12. */
+/* Checks a fast lamp that leaves to the right: its track continues
+ * off-screen at that speed and fades in 400 ms by steps of at most 1 / 12. */
 TEST(leaving_lamp_moves_on_and_fades)
 {
     double last_x = 0, last_power = 0;
@@ -543,7 +546,7 @@ TEST(leaving_lamp_moves_on_and_fades)
         night_step(&night, &lamp, 1, FPS30);
         if (night.n_tracks == 0)
             break;
-        t = only_track();
+        t = find_only_track();
         if (frame > 10 && lamp.x < 310) {
             assert_true(fabs(t->x_q8 / 256.0 - lamp.x) < 0.5);
         } else if (t->state == GLINT_LAMP_LEAVING) {
@@ -556,15 +559,15 @@ TEST(leaving_lamp_moves_on_and_fades)
         last_power = night_power(t);
     }
     assert_int_equal(night.n_tracks, 0);
-    assert_int_equal(n_leaving, 11); /* the twelfth step ends at 0 */
+    assert_int_equal(n_leaving, 11); /* the twelfth step reaches 0 */
     assert_true(n_outside >= 8);
     night_close(&night);
 }
 
 /* ---------------------------------------------------------- rise, fade, cut */
 
-/* Returns the level of a lamp US microseconds after it came on, with a picture
- * every ELAPSED_US. */
+/* Returns the level of a lamp US microseconds after it was switched on, with
+ * a frame every ELAPSED_US. */
 static double level_after(int32_t us, int32_t elapsed_us, int32_t attack_ms)
 {
     const struct night_lamp lamp[2] = {{60, 60, 5, 3}, {200, 120, 5, 3}};
@@ -600,8 +603,8 @@ TEST(rise_does_not_depend_on_the_rate)
     assert_true(level_after(4 * 50000, 50000, 200) == 1);
 }
 
-/* Where lamps are elsewhere from one picture to the next, all old tracks must
- * be gone and all new ones at full level at once. */
+/* Checks that if all lamps are elsewhere in the next frame, old tracks end
+ * and new ones have full level at once. */
 TEST(cut_restarts_in_one_frame)
 {
     static const struct night_lamp before[] = {
@@ -637,8 +640,8 @@ TEST(cut_restarts_in_one_frame)
     night_close(&night);
 }
 
-/* Three lamps that go or come at once must be a cut to the dark or from it; two
- * may be hidden, and must fade. */
+/* Checks that three lamps that vanish or appear together are a cut to or
+ * from a dark scene, and that two, which may be hidden, fade instead. */
 TEST(cut_to_the_dark)
 {
     static const struct night_lamp lamp[] = {
@@ -663,9 +666,9 @@ TEST(cut_to_the_dark)
     }
 }
 
-/* A lamp of three that goes out, another one that comes on, and a pan must be
- * no cuts. */
-TEST(what_is_no_cut)
+/* Checks that these are not cuts: one of three lamps vanishes, another
+ * appears, a pan. */
+TEST(changes_without_a_cut)
 {
     open_night(640, 200, 3);
     for (int frame = 0; frame < 60; frame++) {
@@ -683,9 +686,10 @@ TEST(what_is_no_cut)
 
 /* -------------------------------------------------------------------- many */
 
-/* Returns what the star of a clipped lamp goes by (engine/frame/frame_star.c):
- * at most 32 times its power, or the cube of the width of its white spot. */
-static double star_of(const struct glint_lamp_track *t)
+/* Returns the quantity that determines the star of a clipped lamp
+ * (engine/frame/frame_star.c): at most 32 times its power, or the cube of
+ * the width of its white spot. */
+static double star_power(const struct glint_lamp_track *t)
 {
     const double photo_airy = 0.55e-3 * 22 / 43.27 * hypot(160, 120);
 
@@ -694,9 +698,9 @@ static double star_of(const struct glint_lamp_track *t)
                      0.5 * pow(4.443 * t->size_q8 / 256, 3) / photo_airy));
 }
 
-/* The power of a clipped lamp in noise of 8 codes, which is a guess from what
- * is left of its rim, must neither jump nor wander; where it halves for good
- * the tracks must have it within a second. */
+/* Checks the power of a clipped lamp in noise of 8 codes, which is estimated
+ * from the rest of its rim: it neither jumps nor drifts, and if it halves
+ * permanently the tracks follow within a second. */
 TEST(power_in_noise)
 {
     static const struct night_lamp lamps[] = {
@@ -718,9 +722,9 @@ TEST(power_in_noise)
             last = night_power(night.track);
             least = fmin(least, last);
             most = fmax(most, last);
-            star_step = fmax(star_step,
-                             star ? fabs(star_of(night.track) / star - 1) : 0);
-            star = star_of(night.track);
+            star_step = fmax(
+                star_step, star ? fabs(star_power(night.track) / star - 1) : 0);
+            star = star_power(night.track);
         }
         print_message("%g px: steps of %.1f %%, %.0f %% in all, %.1f %% of "
                       "its star\n",
@@ -735,9 +739,9 @@ TEST(power_in_noise)
     }
 }
 
-/* Of ten lamps four are shown: these must stay the same four while noise makes
- * others take the fourth place of the finder in turns. A lamp that gets much
- * brighter must fade in while another one fades out. */
+/* Checks that of ten lamps the same four are shown, while noise makes others
+ * take the fourth rank of the finder in turns. A lamp that becomes much
+ * brighter fades in while another one fades out. */
 TEST(cap_does_not_flicker)
 {
     struct night_lamp lamp[10];
@@ -773,8 +777,8 @@ TEST(cap_does_not_flicker)
     night_close(&night);
 }
 
-/* With more lights than tracks, the five brightest must be shown in each
- * picture. */
+/* Checks that with more lights than tracks the five brightest are shown in
+ * each frame. */
 TEST(more_lights_than_tracks)
 {
     static struct glint_spot spot[NIGHT_MAX];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps over time from any input: results must be in bounds, and the same in
- * whatever order spots come.
+ * Tests tracking with random input: results stay within limits and do not
+ * depend on the order of spots.
  */
 #include "glint/lamp_tracker.h"
 
@@ -14,7 +14,7 @@
 
 static struct night night;
 
-static struct glint_spot any_spot(void)
+static struct glint_spot random_spot(void)
 {
     static const int32_t extremes[] = {INT32_MIN, -1, 0, 1, INT32_MAX};
     struct glint_spot s = {.x_q8 = rng_below(&night.seed, 640 << 8),
@@ -49,7 +49,7 @@ static struct glint_spot any_spot(void)
     return s;
 }
 
-static int32_t any_time(void)
+static int32_t random_time(void)
 {
     static const int32_t times[] = {0,     1,       1000,      16667,
                                     33333, 1000000, INT32_MAX, -1};
@@ -57,7 +57,7 @@ static int32_t any_time(void)
     return times[rng_below(&night.seed, 8)];
 }
 
-static void assert_sound(int n)
+static void assert_valid(int n)
 {
     for (int i = 0; i < n; i++) {
         const struct glint_lamp_track *t = &night.track[i];
@@ -75,7 +75,8 @@ static void assert_sound(int n)
 }
 
 /* Sets MIXED to the N spots of SPOT in random order. */
-static void mix(struct glint_spot *mixed, const struct glint_spot *spot, int n)
+static void shuffle_spots(struct glint_spot *mixed,
+                          const struct glint_spot *spot, int n)
 {
     for (int i = 0; i < n; i++) {
         const int j = rng_below(&night.seed, i + 1);
@@ -85,8 +86,8 @@ static void mix(struct glint_spot *mixed, const struct glint_spot *spot, int n)
     }
 }
 
-/* Two trackers get the same spots, one of them shuffled, and must give the same
- * tracks. Some spots come back from step to step, moved a little. */
+/* Checks that two trackers give the same tracks for the same spots in
+ * different order. Some spots return in the next step, slightly moved. */
 TEST(order_of_spots_changes_nothing)
 {
     static struct glint_spot spot[NIGHT_MAX], mixed[NIGHT_MAX];
@@ -108,21 +109,22 @@ TEST(order_of_spots_changes_nothing)
         assert_ok(glint_lamp_tracker_init(
             &other, &night.cfg, mem, glint_lamp_tracker_bytes(&night.cfg)));
         for (int step = 0; step < 50; step++) {
-            const int32_t us = any_time();
+            const int32_t us = random_time();
             const int n_new =
                 rng_below(&night.seed, round % 4 ? 100 : NIGHT_MAX);
             int n_tracks;
 
             for (int i = 0; i < n_new; i++) {
                 if (i >= n || rng_below(&night.seed, 4) == 0)
-                    spot[i] = any_spot();
+                    spot[i] = random_spot();
                 else if (spot[i].x_q8 > 0 && spot[i].x_q8 < 600 << 8)
                     spot[i].x_q8 += rng_below(&night.seed, 2048);
             }
             n = n_new;
-            if (n > 3) /* equal spots, and one that is equal but for faint */
+            /* equal spots, and one that differs only in its faint flag */
+            if (n > 3)
                 spot[1] = spot[0], spot[2] = spot[0], spot[2].faint ^= 1;
-            mix(mixed, spot, n);
+            shuffle_spots(mixed, spot, n);
             night.n_tracks = glint_lamp_tracker_step(night.tracks, spot, n, us,
                                                      night.track, NIGHT_MAX);
             n_tracks =
@@ -130,7 +132,7 @@ TEST(order_of_spots_changes_nothing)
             assert_int_equal(n_tracks, night.n_tracks);
             assert_memory_equal(track, night.track,
                                 (size_t)n_tracks * sizeof *track);
-            assert_sound(n_tracks);
+            assert_valid(n_tracks);
             if (rng_below(&night.seed, 20) == 0) {
                 glint_lamp_tracker_restart(night.tracks);
                 glint_lamp_tracker_restart(other);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tracks and spots in pairs, the nearest first, against a search of all
+ * Tests the pairing of tracks and spots, nearest first, against a search of all
  * pairs.
  */
 #include "support/rng.h"
@@ -36,7 +36,7 @@ TEST_CLOSE
     free(mem);
 }
 
-static void scatter(int n_seekers, int n_spots, int side_q8)
+static void place_random(int n_seekers, int n_spots, int side_q8)
 {
     match.n_seekers = n_seekers;
     for (int i = 0; i < n_seekers; i++)
@@ -54,8 +54,8 @@ static void scatter(int n_seekers, int n_spots, int side_q8)
                                       .faint = rng_below(&seed, 4) == 0};
 }
 
-/* Returns what pairing S with P costs by the definition in the header; -1: they
- * are out of reach. */
+/* Returns the cost of pairing S with P by the definition in the header; -1:
+ * out of reach. */
 static int64_t glint_cost_of(const struct glint_seeker *s,
                              const struct glint_spot *p)
 {
@@ -70,9 +70,9 @@ static int64_t glint_cost_of(const struct glint_seeker *s,
     return p->faint || s->is_lost ? 4 * (d2 + 65536) : d2;
 }
 
-/* Pairs seekers and spots by taking the cheapest remaining pair again and
- * again. Sets PARTNER[i] to the spot of seeker i or -1, and returns how many
- * pairs there are. */
+/* Pairs seekers and spots by repeatedly choosing the cheapest remaining
+ * pair. Sets PARTNER[i] to the spot of seeker i, or -1. Returns the number
+ * of pairs. */
 static int match_slowly(int n_spots, int32_t *partner)
 {
     static uint8_t taken[MAX];
@@ -99,19 +99,19 @@ static int match_slowly(int n_spots, int32_t *partner)
     }
 }
 
-/* No two costs are equal here, so the pairs must be those of the slow
- * search. */
+/* Checks the pairs against those of the slow search; no two costs are equal. */
 TEST(against_all_pairs)
 {
     static int32_t partner[MAX];
     int n_matched = 0;
 
     for (int round = 0; round < 300; round++) {
-        const int is_near = round % 3 == 0; /* up to eight for the same spots */
+        /* up to eight seekers compete for the same spots */
+        const int is_near = round % 3 == 0;
         const int n_seekers = rng_below(&seed, is_near ? 9 : 40);
         const int n_spots = rng_below(&seed, 40);
 
-        scatter(n_seekers, n_spots, 300 << 8);
+        place_random(n_seekers, n_spots, 300 << 8);
         for (int i = 0; is_near && i < n_seekers; i++) {
             match.seeker[i].x_q8 = match.seeker[i].x_q8 / 8 + (130 << 8);
             match.seeker[i].y_q8 = match.seeker[i].y_q8 / 8 + (130 << 8);
@@ -125,7 +125,7 @@ TEST(against_all_pairs)
     assert_true(n_matched > 1000);
 }
 
-/* Returns how many spots are nearer to S than spot AT. */
+/* Returns the number of spots nearer to S than spot AT. */
 static int count_nearer(const struct glint_seeker *s, int at)
 {
     int n = 0;
@@ -138,15 +138,15 @@ static int count_nearer(const struct glint_seeker *s, int at)
     return n;
 }
 
-/* With as many seekers and spots as there can be, all in reach of each other,
- * no spot may be given twice, and each must be one of its seeker's eight
+/* Checks the max number of seekers and spots, all within reach of each
+ * other: no spot is used twice, and each is one of its seeker's eight
  * nearest. */
 TEST(crowd)
 {
     static uint8_t seen[MAX];
     int n = 0;
 
-    scatter(MAX, MAX, 30 << 8);
+    place_random(MAX, MAX, 30 << 8);
     for (int i = 0; i < MAX; i++)
         match.seeker[i].reach_q8 = 1 << 23;
     glint_match_find(&match, spot, MAX);
@@ -165,8 +165,8 @@ TEST(crowd)
     assert_in_range(n, MAX / 2, MAX);
 }
 
-/* A spot as far away as a seeker reaches must be taken, and one farther away
- * must not. */
+/* Checks that a spot exactly at a seeker's max distance is paired, and one
+ * further away is not. */
 TEST(reach)
 {
     static const int32_t way[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
@@ -184,9 +184,9 @@ TEST(reach)
         }
 }
 
-/* Sets N seekers and N spots at few places, so that most costs are equal. All
- * spots of a place differ in one number. */
-static void scatter_alike(int n)
+/* Places N seekers and N spots at a few positions, so that most costs are
+ * equal. All spots of a position differ in one member. */
+static void place_with_ties(int n)
 {
     match.n_seekers = n;
     for (int i = 0; i < n; i++) {
@@ -201,8 +201,8 @@ static void scatter_alike(int n)
     }
 }
 
-/* Mixes the first N of THINGS, BYTES each. */
-static void mix(void *things, int n, size_t bytes)
+/* Shuffles the first N of THINGS, BYTES each. */
+static void shuffle(void *things, int n, size_t bytes)
 {
     uint8_t *const at = things, kept[sizeof(struct glint_spot)];
 
@@ -216,8 +216,8 @@ static void mix(void *things, int n, size_t bytes)
     }
 }
 
-/* Sets POWER, by id, to that of each seeker's spot; -1: it has none. */
-static void take_powers(int64_t power[MAX + 1])
+/* Sets POWER, by seeker id, to the power of the seeker's spot; -1: no spot. */
+static void read_powers(int64_t power[MAX + 1])
 {
     for (int i = 0; i < match.n_seekers; i++) {
         const int32_t at = match.seeker[i].spot;
@@ -226,8 +226,8 @@ static void take_powers(int64_t power[MAX + 1])
     }
 }
 
-/* Among pairs that cost the same, ids and the members of spots must decide, and
- * not the order in which seekers and spots come. */
+/* Checks that ties of cost are decided by ids and the members of spots, not
+ * by their order. */
 TEST(order_is_no_matter)
 {
     static int64_t power[MAX + 1], again[MAX + 1];
@@ -235,15 +235,15 @@ TEST(order_is_no_matter)
     for (int round = 0; round < 100; round++) {
         const int n = 1 + rng_below(&seed, 60);
 
-        scatter_alike(n);
+        place_with_ties(n);
         glint_match_find(&match, spot, n);
         memset(power, 0, sizeof power);
         memset(again, 0, sizeof again);
-        take_powers(power);
-        mix(match.seeker, n, sizeof *match.seeker);
-        mix(spot, n, sizeof *spot);
+        read_powers(power);
+        shuffle(match.seeker, n, sizeof *match.seeker);
+        shuffle(spot, n, sizeof *spot);
         glint_match_find(&match, spot, n);
-        take_powers(again);
+        read_powers(again);
         assert_memory_equal(power, again, sizeof power);
     }
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light of a program must be added as defined in linear light, in every format
- * and size, and change nothing else.
+ * Tests compositing a program's own light: it is added in linear light as
+ * defined, in every format and size, and changes nothing else.
  */
 #include <math.h>
 #include <stdint.h>
@@ -16,9 +16,9 @@ enum { MOST = 150, N_MOST = MOST * MOST };
 
 static uint16_t light[3][N_MOST];
 
-/* Returns a layer with a lamp of three colours near (30, 20) and no light from
- * column 100 on. */
-static struct glint_layer lamp(int width, int height)
+/* Returns a layer with a lamp of three colours near (30, 20) and no light
+ * from column 100 on. */
+static struct glint_layer make_layer(int width, int height)
 {
     static const int most[3] = {65535, 30000, 900};
 
@@ -33,8 +33,8 @@ static struct glint_layer lamp(int width, int height)
     return (struct glint_layer){{light[0], light[1], light[2]}, MOST};
 }
 
-static struct glint_composite *make(const struct glint_image *image,
-                                    unsigned sets, void **mem)
+static struct glint_composite *make_composite(const struct glint_image *image,
+                                              unsigned sets, void **mem)
 {
     const size_t bytes = glint_composite_bytes();
     struct glint_composite *c;
@@ -44,23 +44,23 @@ static struct glint_composite *make(const struct glint_image *image,
     return c;
 }
 
-static void add(const struct glint_image *image, unsigned sets)
+static void add_layer(const struct glint_image *image, unsigned sets)
 {
-    const struct glint_layer layer = lamp(image->width, image->height);
+    const struct glint_layer layer = make_layer(image->width, image->height);
     void *mem;
 
-    glint_composite_add(make(image, sets, &mem), image, &layer);
+    glint_composite_add(make_composite(image, sets, &mem), image, &layer);
     free(mem);
 }
 
-static double linear_of(double code)
+static double to_linear(double code)
 {
     const double x = code / 255;
 
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
-static double code_of(double x)
+static double to_code(double x)
 {
     return x >= 1 ? 255
                   : 255 * (x <= 0.0031308 ? 12.92 * x
@@ -76,12 +76,12 @@ TEST(definition)
     for (int code = 0; code < 256; code += 15) {
         memset(rgb, code, sizeof rgb);
         glint_image_place(&image, rgb);
-        add(&image, 0);
+        add_layer(&image, 0);
         for (int y = 0; y < 77; y++)
             for (int x = 0; x < 131; x++)
                 for (int c = 0; c < 3; c++) {
-                    const double want = code_of(
-                        linear_of(code) + light[c][y * MOST + x] / 65535.0);
+                    const double want = to_code(
+                        to_linear(code) + light[c][y * MOST + x] / 65535.0);
 
                     assert_true(fabs(rgb[3 * (131 * y + x) + c] - want) < 0.65);
                     if (light[c][y * MOST + x] == 0)
@@ -90,8 +90,8 @@ TEST(definition)
     }
 }
 
-/* All instruction sets must give the same bits; pixels without light and guard
- * bytes must stay. */
+/* Checks that all instruction sets give the same bits, and that pixels
+ * without light and guard bytes are unchanged. */
 TEST(formats)
 {
     enum { GUARD = 256, BYTES = 3 * N_MOST + 2 * GUARD };
@@ -112,9 +112,9 @@ TEST(formats)
             memset(plain, 99, sizeof plain);
             memset(fast, 99, sizeof fast);
             glint_image_place(&image, plain + GUARD);
-            add(&image, 0);
+            add_layer(&image, 0);
             glint_image_place(&image, fast + GUARD);
-            add(&image, glint_sets_here());
+            add_layer(&image, glint_sets_here());
             assert_memory_equal(plain, fast, sizeof plain);
             for (size_t i = 0; i < BYTES; i++) {
                 changed += plain[i] != 99;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Curves, and codes under added light, against libm; matrices against the
- * colours that the standards give.
+ * Tests transfer curves, and codes after light is added, against libm; colour
+ * matrices against the standards' colours.
  */
 #include "image/curve.h"
 
@@ -14,16 +14,16 @@
 
 static const enum glint_tone transfers[2] = {GLINT_TONE_SRGB, GLINT_TONE_BT709};
 
-/* Returns the light of V, both 0 .. 1, by IEC 61966-2-1 or the inverse of ITU-R
- * BT.709. */
-static double light_of(enum glint_tone transfer, double v)
+/* Returns the linear light of V, both 0 .. 1, by IEC 61966-2-1 or the
+ * inverse of ITU-R BT.709. */
+static double to_light(enum glint_tone transfer, double v)
 {
     if (transfer == GLINT_TONE_SRGB)
         return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
     return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
 }
 
-static double code_of(enum glint_tone transfer, double light)
+static double to_code(enum glint_tone transfer, double light)
 {
     if (transfer == GLINT_TONE_SRGB)
         return light <= 0.04045 / 12.92 ? 12.92 * light
@@ -53,7 +53,7 @@ TEST(decode_is_the_standard_at_codes)
 
         glint_curve_init(&curve, transfers[t]);
         for (int i = 0; i < 256; i++) {
-            const double want = light_of(transfers[t], i / 255.0) * 0x1p20;
+            const double want = to_light(transfers[t], i / 255.0) * 0x1p20;
 
             assert_true(fabs(curve.decode_q20[i] - want) <= 0.51);
             assert_true(i == 0 ||
@@ -73,14 +73,14 @@ TEST(decode_rises)
     }
 }
 
-/* Errors of codes after light is added to each code, against codes in double
- * that are not rounded. */
+/* Errors after light is added to each code, against unrounded codes in
+ * double precision. */
 struct errors {
     double worst, squares;
     int n;
 };
 
-static struct errors errors_of(enum glint_tone transfer)
+static struct errors measure_errors(enum glint_tone transfer)
 {
     const int16_t round[8] = {64, 64, 64, 64, 64, 64, 64, 64};
     struct errors e = {0, 0, 0};
@@ -98,8 +98,8 @@ static struct errors errors_of(enum glint_tone transfer)
                              round);
             for (int i = 0; i < GLINT_LANES; i++) {
                 const double sum =
-                    light_of(transfer, code / 255.0) + light[i] / 65535.0;
-                const double want = 255 * code_of(transfer, fmin(1, sum));
+                    to_light(transfer, code / 255.0) + light[i] / 65535.0;
+                const double want = 255 * to_code(transfer, fmin(1, sum));
                 const double error = fabs(lit[i] - want);
 
                 e.worst = fmax(e.worst, error);
@@ -112,12 +112,12 @@ static struct errors errors_of(enum glint_tone transfer)
     return e;
 }
 
-/* Added light must be right within 0.62 code and 0.3 RMS; rounding alone takes
- * 0.5 and 0.289. */
+/* Checks that added light is right within 0.62 code and 0.3 code RMS;
+ * rounding alone gives 0.5 and 0.289. */
 TEST(added_light)
 {
     for (int t = 0; t < 2; t++) {
-        const struct errors e = errors_of(transfers[t]);
+        const struct errors e = measure_errors(transfers[t]);
         const double rms = sqrt(e.squares / e.n);
 
         print_message("codes under light are within %.3f, %.4f RMS\n", e.worst,
@@ -138,8 +138,8 @@ static void assert_rgb(const struct glint_ycc *ycc, int y, int cb, int cr,
     assert_true(abs(rgb_q7[2] - b * 128) <= within);
 }
 
-/* The standards' colour bars of 100 %, which they round to whole codes, must be
- * right within 1.5 codes. */
+/* Checks the standards' 100 % colour bars, which are rounded to whole codes,
+ * within 1.5 codes. */
 TEST(ycc_bars)
 {
     struct glint_ycc ycc;
@@ -161,8 +161,8 @@ TEST(ycc_bars)
     assert_rgb(&ycc, 76, 85, 255, 255, 0, 0, 192);
 }
 
-/* Checks the sums of rows, Y_Q15 for luma and 0 for chroma, and that the
- * product of both matrices is 1. */
+/* Checks the row sums of the matrices, Y_Q15 for luma and 0 for chroma, and
+ * that their product is 1. */
 static void check_inverse(const struct glint_ycc *ycc, int y_q15)
 {
     for (int i = 0; i < 3; i++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light added to pictures of every coding, against the same in double: by the
- * curves and matrices of the standards, not by tables.
+ * Tests adding light to images of every format against double precision, by the
+ * standards' curves and matrices instead of tables.
  */
 #include "support/canvas.h"
 #include "support/rng.h"
@@ -25,7 +25,7 @@ enum {
 
 #define WHITE_Q20 INT64_C(1048576)
 
-/* A picture with guard bytes around and between its rows, its bytes before
+/* An image with guard bytes around and between its rows, its bytes before
  * light is added, and the light to add. */
 struct fixture {
     struct glint_image image;
@@ -37,10 +37,10 @@ static struct fixture fixture;
 static struct glint_resolve resolve;
 static uint32_t seed = 1;
 
-/* Sets up a picture of guard bytes whose strides are 5 bytes more than a row,
- * and negative for UPSIDE_DOWN. */
-static void set_up(enum glint_pixel_format format, int width, int height,
-                   int upside_down)
+/* Makes an image of guard bytes. Strides are 5 bytes more than a row,
+ * negative if UPSIDE_DOWN. */
+static void make_image(enum glint_pixel_format format, int width, int height,
+                       int upside_down)
 {
     struct glint_image *image = &fixture.image;
 
@@ -62,36 +62,36 @@ static void set_up(enum glint_pixel_format format, int width, int height,
     }
 }
 
-static uint8_t *sample(int plane, int x, int y)
+static uint8_t *sample_at(int plane, int x, int y)
 {
     return fixture.image.plane[plane] + y * fixture.image.stride_bytes[plane] +
            x;
 }
 
-/* Returns the bytes of a row of plane PLANE. */
-static int across(int plane)
+/* Returns the bytes per row of plane PLANE. */
+static int row_bytes(int plane)
 {
     const struct glint_image *image = &fixture.image;
 
     return (int)glint_image_row_bytes(image->format, plane, image->width);
 }
 
-static int down(int plane)
+static int row_count(int plane)
 {
     const struct glint_image *image = &fixture.image;
 
     return glint_image_plane_height(image->format, plane, image->height);
 }
 
-static void fill(int plane, int low, int high)
+static void fill_random(int plane, int low, int high)
 {
-    for (int y = 0; y < down(plane); y++)
-        for (int x = 0; x < across(plane); x++)
-            *sample(plane, x, y) =
+    for (int y = 0; y < row_count(plane); y++)
+        for (int x = 0; x < row_bytes(plane); x++)
+            *sample_at(plane, x, y) =
                 (uint8_t)(low + rng_below(&seed, high - low + 1));
 }
 
-/* Returns light _q20 as kernels get it, 0 .. 65535. */
+/* Converts light from Q20 to the 0 .. 65535 that kernels receive. */
 static uint16_t light_q16(int32_t light_q20)
 {
     const int32_t l = (light_q20 >> 4) + (light_q20 >> 3 & 1);
@@ -99,12 +99,12 @@ static uint16_t light_q16(int32_t light_q20)
     return (uint16_t)(l < 0 ? 0 : l > 65535 ? 65535 : l);
 }
 
-static double lit(int i, int at)
+static double light_at(int i, int at)
 {
     return light_q16(fixture.light_q20[i][at]) / 65535.0;
 }
 
-/* Adds the light to IMAGE in stretches of two rows, the last stretch first. */
+/* Adds the light to IMAGE in strips of two rows, the last strip first. */
 static void add_light_to(const struct glint_image *image, int dither,
                          unsigned sets)
 {
@@ -117,7 +117,8 @@ static void add_light_to(const struct glint_image *image, int dither,
             const int x1 = x0 + TILE < image->width ? x0 + TILE : image->width;
             const int y1 = y0 + 2 < image->height ? y0 + 2 : image->height;
 
-            memset(&light, 0x55, sizeof light); /* bright where unused */
+            /* bright where it must not be read */
+            memset(&light, 0x55, sizeof light);
             for (int i = 0; i < 3; i++)
                 for (int y = y0; y < y1; y++)
                     for (int x = x0; x < x1; x++)
@@ -134,9 +135,9 @@ static void add_light(int dither)
     add_light_to(&fixture.image, dither, 0);
 }
 
-static int before(int plane, int x, int y)
+static int byte_before(int plane, int x, int y)
 {
-    return fixture.before[plane][sample(plane, x, y) - fixture.plane[plane]];
+    return fixture.before[plane][sample_at(plane, x, y) - fixture.plane[plane]];
 }
 
 static void assert_guards_whole(void)
@@ -146,9 +147,9 @@ static void assert_guards_whole(void)
 
         memset(inside, 0, sizeof inside);
         if (i < glint_image_planes(fixture.image.format))
-            for (int y = 0; y < down(i); y++)
-                for (int x = 0; x < across(i); x++)
-                    inside[sample(i, x, y) - fixture.plane[i]] = 1;
+            for (int y = 0; y < row_count(i); y++)
+                for (int x = 0; x < row_bytes(i); x++)
+                    inside[sample_at(i, x, y) - fixture.plane[i]] = 1;
         for (int k = 0; k < PLANE_BYTES; k++)
             assert_true(inside[k] || fixture.plane[i][k] == GUARD);
     }
@@ -156,8 +157,8 @@ static void assert_guards_whole(void)
 
 /* --------------------------------------------------------------- reference */
 
-/* Returns by how much V, 1 = white, changes under LIGHT. */
-static double change(double v, double light)
+/* Returns the change of V, 1 = white, when LIGHT is added. */
+static double code_change(double v, double light)
 {
     const double held = fmax(0, fmin(v, 1));
     const enum glint_tone tone = fixture.image.transfer;
@@ -171,7 +172,7 @@ struct coding {
     double kr, kg, kb, black, y_steps, c_steps;
 };
 
-static struct coding coding(void)
+static struct coding image_coding(void)
 {
     const int bt601 = fixture.image.matrix == GLINT_MATRIX_BT601;
     const int full = fixture.image.range == GLINT_RANGE_FULL;
@@ -185,20 +186,20 @@ static struct coding coding(void)
     return c;
 }
 
-/* Sets RGB to how much R'G'B' of pixel (X, Y) change in a Y'CbCr picture. */
+/* Sets RGB to the change of R'G'B' of pixel (X, Y) in a Y'CbCr image. */
 static void ycc_pixel_change(const struct coding *c, int x, int y, int cx,
                              int cy, double rgb[3])
 {
-    const double luma = (before(0, x, y) - c->black) / c->y_steps;
-    const double cb = (before(1, cx, cy) - 128) / c->c_steps;
-    const double cr = (before(2, cx, cy) - 128) / c->c_steps;
+    const double luma = (byte_before(0, x, y) - c->black) / c->y_steps;
+    const double cb = (byte_before(1, cx, cy) - 128) / c->c_steps;
+    const double cr = (byte_before(2, cx, cy) - 128) / c->c_steps;
     const int at = y * fixture.image.width + x;
 
     rgb[0] = luma + 2 * (1 - c->kr) * cr;
     rgb[2] = luma + 2 * (1 - c->kb) * cb;
     rgb[1] = (luma - c->kr * rgb[0] - c->kb * rgb[2]) / c->kg;
     for (int i = 0; i < 3; i++)
-        rgb[i] = change(rgb[i], lit(i, at));
+        rgb[i] = code_change(rgb[i], light_at(i, at));
 }
 
 static void assert_code(double want, int got, double within)
@@ -208,76 +209,78 @@ static void assert_code(double want, int got, double within)
         fail_msg("code %d where %.3f is right", got, want);
 }
 
-/* Checks the chroma sample (CX, CY) and the luma of the pixels that fraction
+/* Checks the chroma sample (CX, CY) and the luma of the pixels that share
  * it. */
 static void check_block(int cx, int cy, double within)
 {
     const enum glint_pixel_format format = fixture.image.format;
-    const struct coding c = coding();
+    const struct coding c = image_coding();
     const int nx = format == GLINT_I444 ? 1 : 2;
     const int ny = format == GLINT_I420 ? 2 : 1;
     double total[3] = {0, 0, 0};
     int n = 0;
 
-    for (int y = cy * ny; y < cy * ny + ny && y < down(0); y++)
-        for (int x = cx * nx; x < cx * nx + nx && x < across(0); x++, n++) {
+    for (int y = cy * ny; y < cy * ny + ny && y < row_count(0); y++)
+        for (int x = cx * nx; x < cx * nx + nx && x < row_bytes(0); x++, n++) {
             double rgb[3];
 
             ycc_pixel_change(&c, x, y, cx, cy, rgb);
             for (int i = 0; i < 3; i++)
                 total[i] += rgb[i];
-            assert_code(before(0, x, y) +
+            assert_code(byte_before(0, x, y) +
                             c.y_steps *
                                 (c.kr * rgb[0] + c.kg * rgb[1] + c.kb * rgb[2]),
-                        *sample(0, x, y), within);
+                        *sample_at(0, x, y), within);
         }
     for (int i = 0; i < 3; i++)
         total[i] /= n;
     {
         const double luma = c.kr * total[0] + c.kg * total[1] + c.kb * total[2];
 
-        assert_code(before(1, cx, cy) +
+        assert_code(byte_before(1, cx, cy) +
                         c.c_steps * (total[2] - luma) / 2 / (1 - c.kb),
-                    *sample(1, cx, cy), within);
-        assert_code(before(2, cx, cy) +
+                    *sample_at(1, cx, cy), within);
+        assert_code(byte_before(2, cx, cy) +
                         c.c_steps * (total[0] - luma) / 2 / (1 - c.kr),
-                    *sample(2, cx, cy), within);
+                    *sample_at(2, cx, cy), within);
     }
 }
 
 static void check_ycc(double within)
 {
-    for (int cy = 0; cy < down(1); cy++)
-        for (int cx = 0; cx < across(1); cx++)
+    for (int cy = 0; cy < row_count(1); cy++)
+        for (int cx = 0; cx < row_bytes(1); cx++)
             check_block(cx, cy, within);
 }
 
 static void check_rgb24(double within)
 {
-    for (int y = 0; y < down(0); y++)
-        for (int x = 0; x < across(0); x++) {
-            const double light = lit(x % 3, y * fixture.image.width + x / 3);
-            const int code = before(0, x, y);
+    for (int y = 0; y < row_count(0); y++)
+        for (int x = 0; x < row_bytes(0); x++) {
+            const double light =
+                light_at(x % 3, y * fixture.image.width + x / 3);
+            const int code = byte_before(0, x, y);
 
-            assert_code(code + 255 * change(code / 255.0, light),
-                        *sample(0, x, y), within);
+            assert_code(code + 255 * code_change(code / 255.0, light),
+                        *sample_at(0, x, y), within);
         }
 }
 
 static void check_grey(double within)
 {
-    const struct coding c = coding();
+    const struct coding c = image_coding();
 
-    for (int y = 0; y < down(0); y++)
-        for (int x = 0; x < across(0); x++) {
+    for (int y = 0; y < row_count(0); y++)
+        for (int x = 0; x < row_bytes(0); x++) {
             const double weight[3] = {0.2126, 0.7152, 0.0722};
-            const double v = (before(0, x, y) - c.black) / c.y_steps;
+            const double v = (byte_before(0, x, y) - c.black) / c.y_steps;
             double light = 0;
 
             for (int i = 0; i < 3; i++)
-                light += weight[i] * lit(i, y * fixture.image.width + x);
-            assert_code(before(0, x, y) + c.y_steps * change(v, light),
-                        *sample(0, x, y), within);
+                light += weight[i] * light_at(i, y * fixture.image.width + x);
+            assert_code(byte_before(0, x, y) +
+                            c.y_steps * code_change(v, light),
+                        *sample_at(0, x, y), within);
         }
 }
 
@@ -300,7 +303,7 @@ static const int sizes[][2] = {{1, 1}, {3, 1}, {1, 3}, {7, 5}, {33, 18}};
 
 enum { N_SIZES = sizeof sizes / sizeof *sizes };
 
-/* Fills in light of all magnitudes, a third of it below 0. */
+/* Fills in random light of all magnitudes, a third of it negative. */
 static void fill_light(void)
 {
     for (int i = 0; i < 3; i++)
@@ -313,7 +316,7 @@ static void fill_light(void)
         }
 }
 
-/* Sets curve, range and matrix of the picture by the bits of K. */
+/* Sets transfer curve, range and matrix of the image by the bits of K. */
 static void set_coding(int k)
 {
     fixture.image.transfer = k & 1 ? GLINT_TONE_BT709 : GLINT_TONE_SRGB;
@@ -321,20 +324,21 @@ static void set_coding(int k)
     fixture.image.matrix = k & 4 ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
 }
 
-/* Checks random pictures whose chroma is up to CHROMA codes from neutral. */
+/* Checks random images whose chroma differs by up to CHROMA codes from
+ * neutral. */
 static void check_random(int chroma, double within)
 {
     for (int f = 0; f < 5; f++)
         for (int s = 0; s < N_SIZES; s++)
             for (int k = 0; k < 16; k++) {
-                set_up(formats[f], sizes[s][0], sizes[s][1], k & 8);
+                make_image(formats[f], sizes[s][0], sizes[s][1], k & 8);
                 set_coding(k);
                 if (formats[f] == GLINT_RGB24)
                     fixture.image.range = GLINT_RANGE_FULL;
-                fill(0, 0, 255);
+                fill_random(0, 0, 255);
                 if (glint_image_planes(formats[f]) == 3) {
-                    fill(1, 128 - chroma, 127 + chroma);
-                    fill(2, 128 - chroma, 127 + chroma);
+                    fill_random(1, 128 - chroma, 127 + chroma);
+                    fill_random(2, 128 - chroma, 127 + chroma);
                 }
                 fill_light();
                 add_light(0);
@@ -348,7 +352,7 @@ TEST(light_adds_up)
         check_random(40, 0.65);
 }
 
-/* All codes must do, also those of colours far outside the RGB cube. */
+/* Checks all codes, including colours far outside the RGB cube. */
 TEST(wild_codes)
 {
     for (int round = 0; round < 4; round++)
@@ -359,10 +363,10 @@ static void check_untouched(int dither)
 {
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 16; k++) {
-            set_up(formats[f], 33, 18, k & 8);
+            make_image(formats[f], 33, 18, k & 8);
             set_coding(k);
             for (int i = 0; i < glint_image_planes(formats[f]); i++)
-                fill(i, 0, 255);
+                fill_random(i, 0, 255);
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 33 * 18; j++)
                     fixture.light_q20[i][j] = -rng_below(&seed, 3);
@@ -378,13 +382,14 @@ TEST(untouched_pixels_stay)
     check_untouched(1);
 }
 
-/* Light that is too faint to move a code by half must change nothing. */
+/* Checks that light too faint to change a code by half a code changes
+ * nothing. */
 TEST(faint_light_changes_nothing)
 {
     for (int f = 0; f < 5; f++) {
-        set_up(formats[f], 33, 18, 0);
+        make_image(formats[f], 33, 18, 0);
         for (int i = 0; i < glint_image_planes(formats[f]); i++)
-            fill(i, 128, 128);
+            fill_random(i, 128, 128);
         for (int i = 0; i < 3; i++)
             for (int k = 0; k < 33 * 18; k += 4)
                 fixture.light_q20[i][k] = 1500; /* 0.4 code at 128 */
@@ -398,87 +403,90 @@ TEST(white_saturates)
 {
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 16; k++) {
-            set_up(formats[f], 7, 5, k & 8);
+            make_image(formats[f], 7, 5, k & 8);
             set_coding(k);
-            fill(0, 20, 230);
+            fill_random(0, 20, 230);
             for (int i = 1; i < glint_image_planes(formats[f]); i++)
-                fill(i, 128, 128);
+                fill_random(i, 128, 128);
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 7 * 5; j++)
                     fixture.light_q20[i][j] = INT32_MAX >> (j / 4);
             add_light(0);
             for (int i = 0; i < glint_image_planes(formats[f]); i++)
-                for (int y = 0; y < down(i); y++)
-                    for (int x = 0; x < across(i); x++)
-                        assert_int_equal(*sample(i, x, y), i > 0 ? 128
-                                                           : (k & 2) && f > 0
-                                                               ? 235
-                                                               : 255);
+                for (int y = 0; y < row_count(i); y++)
+                    for (int x = 0; x < row_bytes(i); x++)
+                        assert_int_equal(*sample_at(i, x, y), i > 0 ? 128
+                                                              : (k & 2) && f > 0
+                                                                  ? 235
+                                                                  : 255);
         }
 }
 
-/* sRGB by hand: code 128 has a light of 226346 / 2^20; two and a half times
- * that is code 194, four times is 239, and a quarter of white is 137. */
+/* Checks sRGB codes computed by hand: code 128 has light 226346 / 2^20; 2.5
+ * times that is code 194, 4 times is 239, and a quarter of white is 137. */
 TEST(codes_by_hand)
 {
-    set_up(GLINT_RGB24, 1, 1, 0);
-    memset(sample(0, 0, 0), 128, 3);
+    make_image(GLINT_RGB24, 1, 1, 0);
+    memset(sample_at(0, 0, 0), 128, 3);
     fixture.light_q20[0][0] = 3 * 226346 / 2;
     fixture.light_q20[1][0] = 3 * 226346;
     fixture.light_q20[2][0] = WHITE_Q20 / 4 - 226346;
     add_light(0);
-    assert_int_equal(*sample(0, 0, 0), 194);
-    assert_int_equal(*sample(0, 1, 0), 239);
-    assert_int_equal(*sample(0, 2, 0), 137);
+    assert_int_equal(*sample_at(0, 0, 0), 194);
+    assert_int_equal(*sample_at(0, 1, 0), 239);
+    assert_int_equal(*sample_at(0, 2, 0), 137);
 }
 
-/* A lit pixel of four must move their chroma sample by a quarter, and one that
- * is alone in the corner of an odd picture by all of it. */
+/* Checks that one lit pixel of four changes their chroma sample by a
+ * quarter, and that a single pixel in the corner of an image with odd sides
+ * changes it completely. */
 TEST(chroma_is_the_mean_of_those_that_exist)
 {
-    set_up(GLINT_I420, 3, 3, 0);
+    make_image(GLINT_I420, 3, 3, 0);
     for (int i = 0; i < 3; i++)
-        fill(i, i ? 128 : 0, i ? 128 : 0);
+        fill_random(i, i ? 128 : 0, i ? 128 : 0);
     fixture.light_q20[2][0] = WHITE_Q20;
     fixture.light_q20[2][8] = WHITE_Q20;
     add_light(0);
-    assert_int_equal(*sample(0, 0, 0), 29); /* 0.114 * 255 */
-    assert_int_equal(*sample(0, 1, 0), 0);
-    assert_int_equal(*sample(0, 2, 2), 29);
-    assert_int_equal(*sample(1, 0, 0), 160); /* 128 + 127.5 / 4 */
-    assert_int_equal(*sample(1, 1, 0), 128);
-    assert_int_equal(*sample(1, 1, 1), 255); /* 128 + 127.5 */
-    assert_int_equal(*sample(2, 1, 1), 107); /* 128 - 0.114 * 127.5 / 0.701 */
+    assert_int_equal(*sample_at(0, 0, 0), 29); /* 0.114 * 255 */
+    assert_int_equal(*sample_at(0, 1, 0), 0);
+    assert_int_equal(*sample_at(0, 2, 2), 29);
+    assert_int_equal(*sample_at(1, 0, 0), 160); /* 128 + 127.5 / 4 */
+    assert_int_equal(*sample_at(1, 1, 0), 128);
+    assert_int_equal(*sample_at(1, 1, 1), 255); /* 128 + 127.5 */
+    assert_int_equal(*sample_at(2, 1, 1),
+                     107); /* 128 - 0.114 * 127.5 / 0.701 */
 }
 
-/* With dither, the mean of an even picture must be right within 0.1 code. */
+/* Checks that with dither the mean of a uniform image is right within 0.1
+ * code. */
 TEST(dither_has_the_right_mean)
 {
     for (int light = 0; light < 9000; light += 97) {
         int total = 0;
         double want;
 
-        set_up(GLINT_RGB24, 8, 8, 0);
-        fill(0, 200, 200);
+        make_image(GLINT_RGB24, 8, 8, 0);
+        fill_random(0, 200, 200);
         for (int k = 0; k < 64; k++)
             fixture.light_q20[0][k] = light;
         add_light(1);
         for (int k = 0; k < 64; k++) {
-            total += *sample(0, 3 * (k % 8), k / 8);
-            assert_int_equal(*sample(0, 3 * (k % 8) + 1, k / 8), 200);
+            total += *sample_at(0, 3 * (k % 8), k / 8);
+            assert_int_equal(*sample_at(0, 3 * (k % 8) + 1, k / 8), 200);
         }
-        want = 200 + 255 * change(200 / 255.0, lit(0, 0));
+        want = 200 + 255 * code_change(200 / 255.0, light_at(0, 0));
         assert_true(fabs(total / 64.0 - want) <= 0.1);
     }
 }
 
-/* The pattern must have each of 64 thresholds once, and neighbours far
- * apart. */
+/* Checks that the dither pattern has each of 64 thresholds once, with
+ * neighbours far apart. */
 TEST(dither_pattern)
 {
     int seen[64] = {0};
 
-    set_up(GLINT_GREY, 8, 8, 0);
+    make_image(GLINT_GREY, 8, 8, 0);
     glint_resolve_init(&resolve, &fixture.image, 1, 0);
     for (int k = 0; k < 64; k++)
         seen[(resolve.round_q7[k / 8][k % 8] - 1) / 2]++;
@@ -494,13 +502,13 @@ TEST(dither_in_ycc_stays_within_a_code)
 {
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 16; k++) {
-            set_up(formats[f], 33, 18, k & 8);
+            make_image(formats[f], 33, 18, k & 8);
             set_coding(k);
             if (formats[f] == GLINT_RGB24)
                 fixture.image.range = GLINT_RANGE_FULL;
-            fill(0, 0, 255);
+            fill_random(0, 0, 255);
             for (int i = 1; i < glint_image_planes(formats[f]); i++)
-                fill(i, 100, 156);
+                fill_random(i, 100, 156);
             fill_light();
             add_light(1);
             check_picture(1.15);
@@ -509,7 +517,7 @@ TEST(dither_in_ycc_stays_within_a_code)
 
 TEST(linear_adds_and_saturates)
 {
-    static int32_t px_q20[2][9]; /* three pixels a row, the third unused */
+    static int32_t px_q20[2][9]; /* three pixels per row, the third unused */
     const int32_t light_q20[3][2][2] = {{{5, INT32_MAX}, {-7, 1}},
                                         {{-9, INT32_MIN}, {1 << 20, 2}},
                                         {{0, INT32_MAX}, {INT32_MAX - 9, 3}}};
@@ -532,7 +540,7 @@ TEST(linear_adds_and_saturates)
     assert_memory_equal(px_q20, want_q20, sizeof px_q20);
 }
 
-/* Pairs of formats that hold the same codes at other places. */
+/* Pairs of formats that store the same codes at different positions. */
 static const enum glint_pixel_format twins[][2] = {
     {GLINT_I420, GLINT_NV12},     {GLINT_I420, GLINT_NV21},
     {GLINT_I422, GLINT_YUYV},     {GLINT_I422, GLINT_UYVY},
@@ -559,9 +567,9 @@ TEST(layouts_agree)
         for (int s = 0; s < N_SIZES; s++) {
             struct glint_image twin, back;
 
-            set_up(twins[t][0], sizes[s][0], sizes[s][1], 0);
+            make_image(twins[t][0], sizes[s][0], sizes[s][1], 0);
             for (int i = 0; i < glint_image_planes(twins[t][0]); i++)
-                fill(i, 0, 255);
+                fill_random(i, 0, 255);
             fill_light();
             twin = back = fixture.image;
             twin.format = twins[t][1];
@@ -588,8 +596,8 @@ TEST(layouts_agree)
         }
 }
 
-/* A row of packed pixels must be the same in one stretch, in which vectors end
- * anywhere, and in stretches of eight. */
+/* Checks that a row of packed pixels, drawn in one span (where SIMD vectors
+ * end anywhere), equals one drawn in spans of eight. */
 TEST(long_stretches_are_short_ones)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
@@ -623,7 +631,7 @@ TEST(long_stretches_are_short_ones)
         }
 }
 
-/* Makes the picture even over 2 x 2 pixels, where light of quads is exact. */
+/* Makes the image uniform in each 2 x 2 pixels, where shared light is exact. */
 static void make_even(void)
 {
     const struct glint_image *image = &fixture.image;
@@ -667,9 +675,9 @@ TEST(quads_of_even_pictures)
 
     for (size_t f = 0; f < sizeof every / sizeof *every; f++)
         for (int size = 0; size < 40; size++) {
-            set_up(every[f], 1 + size, 1 + (size * 7) % 40, 0);
+            make_image(every[f], 1 + size, 1 + (size * 7) % 40, 0);
             for (int i = 0; i < glint_image_planes(every[f]); i++)
-                fill(i, 0, 255);
+                fill_random(i, 0, 255);
             make_even();
             fill_light();
             for (int i = 0; i < 3; i++)
@@ -690,48 +698,49 @@ TEST(quads_of_even_pictures)
         }
 }
 
-/* Where the four pixels differ, their change falls towards white: no light may
- * make one darker or whiter than white, or change their order, and much light
- * must make all four white. */
+/* Checks 2 x 2 pixels that differ: shared light changes bright pixels less;
+ * none becomes darker or exceeds white, their order is preserved, and strong
+ * light makes all four white. */
 TEST(quads_of_edges)
 {
     static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};
 
     for (int strength = 0; strength <= 24; strength++) {
-        set_up(GLINT_YUYV, 32, 2, 0);
+        make_image(GLINT_YUYV, 32, 2, 0);
         fixture.image.range = GLINT_RANGE_LIMITED;
         for (int x = 0; x < 64; x++)
             for (int y = 0; y < 2; y++)
-                *sample(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
+                *sample_at(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
         for (int i = 0; i < 3 * 64; i++)
             fixture.light_q20[i / 64][i % 64] = 1 << strength >> 4;
         add_quads(&fixture.image, 0, 0);
         for (int x = 0; x < 64; x += 2)
             for (int y = 0; y < 2; y++) {
-                assert_in_range(*sample(0, x, y), luma[y][x / 2 % 2], 235);
-                assert_int_equal(*sample(0, x + 1, y), 128);
+                assert_in_range(*sample_at(0, x, y), luma[y][x / 2 % 2], 235);
+                assert_int_equal(*sample_at(0, x + 1, y), 128);
                 if (strength == 24)
-                    assert_int_equal(*sample(0, x, y), 235);
+                    assert_int_equal(*sample_at(0, x, y), 235);
             }
-        assert_true(*sample(0, 0, 0) <= *sample(0, 0, 1));
+        assert_true(*sample_at(0, 0, 0) <= *sample_at(0, 0, 1));
     }
 }
 
-/* Returns how far light of quads is from light pixel by pixel, codes RMS, over
- * pictures whose pixels differ by up to DIFFER codes. */
-static double quads_off(int differ)
+/* Returns the RMS difference, codes, between light shared by 2 x 2 pixels
+ * and light per pixel, over images whose pixels differ by up to DIFFER
+ * codes. */
+static double quads_rms(int differ)
 {
     static uint8_t want[PLANE_BYTES];
     double sum2 = 0;
     int n = 0;
 
     for (int turn = 0; turn < 50; turn++) {
-        set_up(GLINT_YUYV, 32, 2, 0);
-        fill(0, 0, differ);
+        make_image(GLINT_YUYV, 32, 2, 0);
+        fill_random(0, 0, differ);
         for (int x = 0; x < 64; x++)
             for (int y = 0; y < 2; y++)
-                *sample(0, x, y) =
-                    (uint8_t)(*sample(0, x, y) + (x % 2 ? 120 : 20 + 3 * turn));
+                *sample_at(0, x, y) = (uint8_t)(*sample_at(0, x, y) +
+                                                (x % 2 ? 120 : 20 + 3 * turn));
         for (int i = 0; i < 3 * 64; i++)
             fixture.light_q20[i / 64][i % 64] = 3000 << turn % 8;
         memcpy(fixture.before, fixture.plane, sizeof fixture.before);
@@ -741,8 +750,8 @@ static double quads_off(int differ)
         add_quads(&fixture.image, 0, 0);
         for (int x = 0; x < 64; x += 2)
             for (int y = 0; y < 2; y++, n++) {
-                const int off =
-                    *sample(0, x, y) - want[sample(0, x, y) - fixture.plane[0]];
+                const int off = *sample_at(0, x, y) -
+                                want[sample_at(0, x, y) - fixture.plane[0]];
 
                 sum2 += off * off;
             }
@@ -752,13 +761,13 @@ static double quads_off(int differ)
 
 TEST(quads_are_near)
 {
-    assert_true(quads_off(0) < 1e-9);
-    assert_true(quads_off(8) < 0.5);
-    assert_true(quads_off(40) < 1.5);
+    assert_true(quads_rms(0) < 1e-9);
+    assert_true(quads_rms(8) < 0.5);
+    assert_true(quads_rms(40) < 1.5);
 }
 
-/* A stretch of quads must be as many short ones, whatever remains at its
- * end. */
+/* Checks that a span of 2 x 2 pixels equals several short ones, for any
+ * remainder at its end. */
 TEST(long_quads_are_short_ones)
 {
     static const enum glint_pixel_format some[] = {GLINT_YUYV, GLINT_UYVY,
@@ -799,8 +808,8 @@ TEST(long_quads_are_short_ones)
         }
 }
 
-/* All codes of RGB565 must stay without light, and have the largest green under
- * much green light. */
+/* Checks that all codes of RGB565 are unchanged without light, and reach the
+ * max green under strong green light. */
 TEST(writes_565)
 {
     static uint8_t mem[2 * 32 * 32], before_mem[2 * 32 * 32];
@@ -825,7 +834,7 @@ TEST(writes_565)
     }
 }
 
-/* The bytes of fixed pictures must be the same on every machine. */
+/* Checks that fixed images have the same bytes on every machine. */
 TEST(same_on_every_machine)
 {
     uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */
@@ -833,10 +842,10 @@ TEST(same_on_every_machine)
     seed = 12345;
     for (int f = 0; f < 5; f++)
         for (int k = 0; k < 8; k++) {
-            set_up(formats[f], 33, 18, 0);
+            make_image(formats[f], 33, 18, 0);
             set_coding(k);
             for (int i = 0; i < glint_image_planes(formats[f]); i++)
-                fill(i, 0, 255);
+                fill_random(i, 0, 255);
             fill_light();
             add_light(k & 1);
             for (size_t i = 0; i < sizeof fixture.plane; i++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Codes that are sampled at a few places of pictures of every format.
+ * Tests sampling the codes of an image of any format at a few positions.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@ static void check_near(int code, int wanted, int most)
     assert_true(abs(code - wanted) <= most);
 }
 
-/* Sets row Y to CODE, without colour. */
+/* Sets row Y to the grey CODE. */
 static void set_row(const struct glint_image *image, int y, int code)
 {
     const int n = (int)glint_image_row_bytes(image->format, 0, image->width);
@@ -36,7 +36,7 @@ static void set_row(const struct glint_image *image, int y, int code)
                    (size_t)glint_image_plane_height(image->format, p, HEIGHT));
 }
 
-/* Checks samples of a picture of three parts, from the top: black, grey,
+/* Checks samples of an image with three parts, from the top: black, grey,
  * bright. */
 static void check_format(enum glint_pixel_format format, enum glint_range range)
 {
@@ -66,8 +66,8 @@ TEST(formats)
     check_format(GLINT_GREY, GLINT_RANGE_LIMITED);
 }
 
-/* Checks the sample of three pixels, of which the middle one is orange and has
- * the N bytes BYTES. */
+/* Checks the sample of three pixels, of which the middle one is orange,
+ * stored as BYTES[N]. */
 static void check_orange(enum glint_pixel_format format, const uint8_t *bytes,
                          size_t n)
 {
@@ -95,8 +95,8 @@ TEST(colours)
     check_orange(GLINT_RGB565, packed, 2);
 }
 
-/* A picture smaller than the samples must give its pixel everywhere; a linear
- * one has no codes and must give 0. */
+/* Checks that an image smaller than the number of samples returns its pixel
+ * everywhere, and that a linear image, which has no codes, returns 0. */
 TEST(sizes)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 1, 1);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Every variant of a kernel must give the bits of its C definition, and touch
- * nothing but its arrays. GLINT_BENCH=1 times it, too. The program needs
- * nothing but the kernels, so that it runs in an emulator.
+ * Tests that every variant of a kernel gives the bits of its C definition and
+ * writes only to its arrays. With GLINT_BENCH=1 the kernels are timed as well.
+ * The program needs only the kernels, so that it runs in an emulator.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,7 +33,7 @@ enum { N = 64, PAGE = 4096, ROUNDS = 20000 };
 
 static uint32_t seed = 99;
 
-static uint32_t draw(void)
+static uint32_t random_bits(void)
 {
     return rng_xorshift(&seed);
 }
@@ -41,8 +41,8 @@ static uint32_t draw(void)
 static void *blocks[400];
 static int n_blocks;
 
-/* Returns BYTES bytes that end at a page which traps. */
-static void *fenced(size_t bytes)
+/* Returns BYTES bytes whose end is at the border of an inaccessible page. */
+static void *allocate_fenced(size_t bytes)
 {
     void *mem;
 
@@ -89,8 +89,8 @@ static double now_ns(void)
     return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
 
-/* Prints the least time of many rounds, for C and for the variant, where
- * GLINT_BENCH is set. */
+/* If GLINT_BENCH is set, prints the min time of many rounds for C and for
+ * the variant. */
 #define BENCH(what, name, of_c, of_variant)                                \
     do {                                                                   \
         double best[2] = {1e9, 1e9};                                       \
@@ -111,10 +111,10 @@ static double now_ns(void)
                name, N, best[0] / 20, best[1] / 20, best[0] / best[1]);    \
     } while (0)
 
-/* Returns light that is often 0, often the largest, and else of any size. */
-static uint16_t draw_light(void)
+/* Returns random light: often 0, often the max, else of any magnitude. */
+static uint16_t random_light(void)
 {
-    const uint32_t x = draw();
+    const uint32_t x = random_bits();
 
     if (x % 5 < 2)
         return x % 5 ? 65535 : 0;
@@ -129,21 +129,21 @@ struct rows {
 
 static void make_rows(struct rows *r)
 {
-    r->luma = fenced(N);
-    r->cb = fenced(N);
-    r->cr = fenced(N);
+    r->luma = allocate_fenced(N);
+    r->cb = allocate_fenced(N);
+    r->cr = allocate_fenced(N);
     for (int c = 0; c < 3; c++) {
-        r->light[c] = fenced(N * sizeof(uint16_t));
-        r->change[c] = fenced(N * sizeof(int16_t));
+        r->light[c] = allocate_fenced(N * sizeof(uint16_t));
+        r->change[c] = allocate_fenced(N * sizeof(int16_t));
     }
 }
 
-static void draw_mix(struct glint_mix *mix)
+static void random_mix(struct glint_mix *mix)
 {
-    const struct glint_image image = {.matrix = (enum glint_matrix)(draw() & 1),
-                                      .range = (enum glint_range)(draw() & 1),
-                                      .transfer =
-                                          (enum glint_tone)(draw() & 1)};
+    const struct glint_image image = {
+        .matrix = (enum glint_matrix)(random_bits() & 1),
+        .range = (enum glint_range)(random_bits() & 1),
+        .transfer = (enum glint_tone)(random_bits() & 1)};
 
     glint_mix_init(mix, &image);
 }
@@ -166,17 +166,18 @@ static void check_luma(const struct glint_kernels *k, const char *name)
     make_rows(&want);
     make_rows(&got);
     for (int turn = 0; turn < ROUNDS; turn++) {
-        const int n = GLINT_LANES * (1 + (int)(draw() % (N / GLINT_LANES)));
+        const int n =
+            GLINT_LANES * (1 + (int)(random_bits() % (N / GLINT_LANES)));
 
-        draw_mix(&mix);
+        random_mix(&mix);
         for (int i = 0; i < 8; i++)
-            round[i] = (int16_t)(draw() & 127);
+            round[i] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < N; i++) {
-            want.luma[i] = got.luma[i] = (uint8_t)draw();
-            want.cb[i] = got.cb[i] = (uint8_t)draw();
-            want.cr[i] = got.cr[i] = (uint8_t)draw();
+            want.luma[i] = got.luma[i] = (uint8_t)random_bits();
+            want.cb[i] = got.cb[i] = (uint8_t)random_bits();
+            want.cr[i] = got.cr[i] = (uint8_t)random_bits();
             for (int c = 0; c < 3; c++) {
-                want.light[c][i] = got.light[c][i] = draw_light();
+                want.light[c][i] = got.light[c][i] = random_light();
                 want.change[c][i] = got.change[c][i] = 77;
             }
         }
@@ -198,11 +199,11 @@ struct pairs {
 
 static void make_pairs(struct pairs *p)
 {
-    p->luma = fenced(N);
-    p->chroma = fenced(N);
+    p->luma = allocate_fenced(N);
+    p->chroma = allocate_fenced(N);
     for (int c = 0; c < 3; c++) {
-        p->light[c] = fenced(N * sizeof(uint16_t));
-        p->mean[c] = fenced(N * sizeof(int16_t));
+        p->light[c] = allocate_fenced(N * sizeof(uint16_t));
+        p->mean[c] = allocate_fenced(N * sizeof(int16_t));
     }
 }
 
@@ -226,19 +227,21 @@ static void check_pairs(const struct glint_kernels *k, const char *name)
     make_pairs(&want);
     make_pairs(&got);
     for (int turn = 0; turn < ROUNDS; turn++) {
-        const int n = GLINT_LANES * (1 + (int)(draw() % (N / GLINT_LANES)));
-        const enum glint_pair_step step = (enum glint_pair_step)(draw() % 3);
+        const int n =
+            GLINT_LANES * (1 + (int)(random_bits() % (N / GLINT_LANES)));
+        const enum glint_pair_step step =
+            (enum glint_pair_step)(random_bits() % 3);
 
-        draw_mix(&mix);
+        random_mix(&mix);
         for (int i = 0; i < 16; i++)
-            round[i] = (int16_t)(draw() & 127);
+            round[i] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < N; i++) {
-            want.luma[i] = got.luma[i] = (uint8_t)draw();
-            want.chroma[i] = got.chroma[i] = (uint8_t)draw();
+            want.luma[i] = got.luma[i] = (uint8_t)random_bits();
+            want.chroma[i] = got.chroma[i] = (uint8_t)random_bits();
             for (int c = 0; c < 3; c++) {
-                want.light[c][i] = got.light[c][i] = draw_light();
+                want.light[c][i] = got.light[c][i] = random_light();
                 want.mean[c][i] = got.mean[c][i] =
-                    (int16_t)(draw() % (GLINT_WHITE_Q15 + 1));
+                    (int16_t)(random_bits() % (GLINT_WHITE_Q15 + 1));
             }
         }
         add_pairs(plain, &want, n, step, &mix, round);
@@ -262,28 +265,31 @@ static void add_packed(const struct glint_kernels *k, uint8_t *pixels,
     k->add_packed(pixels, rgb, n, luma_at, mix, round, round + 8);
 }
 
-/* Checks packed pixels that begin at odd addresses, with dark stretches among
- * them. */
+/* Checks packed pixels at odd addresses, with dark spans among them. */
 static void check_packed(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
-    uint8_t *want = fenced(2 * N + 1), *got = fenced(2 * N + 1);
-    uint16_t *light[3] = {fenced(2 * N), fenced(2 * N), fenced(2 * N)};
+    uint8_t *want = allocate_fenced(2 * N + 1),
+            *got = allocate_fenced(2 * N + 1);
+    uint16_t *light[3] = {allocate_fenced(2 * N), allocate_fenced(2 * N),
+                          allocate_fenced(2 * N)};
     struct glint_mix mix;
     int16_t round[16];
 
     for (int turn = 0; turn < ROUNDS; turn++) {
-        const int n = GLINT_LANES * (1 + (int)(draw() % (N / GLINT_LANES)));
-        const int luma_at = (int)(draw() & 1), at = (int)(draw() & 1);
-        const int dark = (int)(draw() % N);
+        const int n =
+            GLINT_LANES * (1 + (int)(random_bits() % (N / GLINT_LANES)));
+        const int luma_at = (int)(random_bits() & 1),
+                  at = (int)(random_bits() & 1);
+        const int dark = (int)(random_bits() % N);
 
-        draw_mix(&mix);
+        random_mix(&mix);
         for (int i = 0; i < 16; i++)
-            round[i] = (int16_t)(draw() & 127);
+            round[i] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < 2 * N + 1; i++)
-            want[i] = got[i] = (uint8_t)draw();
+            want[i] = got[i] = (uint8_t)random_bits();
         for (int i = 0; i < 3 * N; i++)
-            light[i / N][i % N] = i % N > dark ? draw_light() : 0;
+            light[i / N][i % N] = i % N > dark ? random_light() : 0;
         add_packed(plain, want + at, light, n, luma_at, &mix, round);
         add_packed(k, got + at, light, n, luma_at, &mix, round);
         EXPECT_SAME(got, want, 2 * N + 1);
@@ -292,7 +298,7 @@ static void check_packed(const struct glint_kernels *k, const char *name)
           add_packed(k, got, light, N, 0, &mix, round));
 }
 
-/* Two rows of luma and of chroma; rows of packed pixels are in luma. */
+/* Two rows of luma and of chroma; packed pixels are in luma. */
 struct quads {
     uint8_t *luma[2], *chroma[2];
 };
@@ -312,40 +318,42 @@ static void add_quads(const struct glint_quad_kernels *k,
         k->add(rows->luma, rows->chroma, rgb, n, mix, r, r_chroma);
 }
 
-/* Checks quads with dark stretches among them, whose two rows may be one row,
- * or share their chroma. */
+/* Checks blocks of 2 x 2 pixels with dark spans among them; the two rows may
+ * be the same row or share their chroma. */
 static void check_quads(const struct glint_quad_kernels *k, const char *name)
 {
     const struct glint_quad_kernels *plain = &quad_kernels_c;
     uint8_t *want[4], *got[4];
-    uint16_t *light[3] = {fenced(N), fenced(N), fenced(N)};
+    uint16_t *light[3] = {allocate_fenced(N), allocate_fenced(N),
+                          allocate_fenced(N)};
     struct quads a, b;
     struct glint_mix mix;
     int16_t round[4][8];
 
     for (int i = 0; i < 4; i++) {
-        want[i] = fenced(2 * N);
-        got[i] = fenced(2 * N);
+        want[i] = allocate_fenced(2 * N);
+        got[i] = allocate_fenced(2 * N);
     }
     for (int turn = 0; turn < ROUNDS; turn++) {
-        const int n =
-            2 * GLINT_LANES * (1 + (int)(draw() % (N / (2 * GLINT_LANES))));
-        const int packed = (int)(draw() % 3), one_row = (int)(draw() % 2);
-        const int one_chroma = one_row || draw() % 2;
-        const int dark = (int)(draw() % (N / 2));
+        const int n = 2 * GLINT_LANES *
+                      (1 + (int)(random_bits() % (N / (2 * GLINT_LANES))));
+        const int packed = (int)(random_bits() % 3),
+                  one_row = (int)(random_bits() % 2);
+        const int one_chroma = one_row || random_bits() % 2;
+        const int dark = (int)(random_bits() % (N / 2));
 
-        draw_mix(&mix);
+        random_mix(&mix);
         for (int i = 0; i < 32; i++)
-            round[i / 8][i % 8] = (int16_t)(draw() & 127);
+            round[i / 8][i % 8] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < 8 && one_row; i++)
             round[1][i] = round[0][i];
         for (int i = 0; i < 8 && one_chroma; i++)
             round[3][i] = round[2][i];
         for (int i = 0; i < 4 * 2 * N; i++)
-            want[i % 4][i / 4] = got[i % 4][i / 4] = (uint8_t)draw();
+            want[i % 4][i / 4] = got[i % 4][i / 4] = (uint8_t)random_bits();
         for (int i = 0; i < 3 * N / 2; i++)
             light[i / (N / 2)][i % (N / 2)] =
-                i % (N / 2) > dark ? draw_light() : 0;
+                i % (N / 2) > dark ? random_light() : 0;
         a = (struct quads){{want[0], want[!one_row]},
                            {want[2], want[2 + !one_chroma]}};
         b = (struct quads){{got[0], got[!one_row]},
@@ -359,13 +367,13 @@ static void check_quads(const struct glint_quad_kernels *k, const char *name)
           add_quads(k, &b, light, N, 1, &mix, round));
 }
 
-/* Checks every code under every light. */
+/* Checks every code with every light. */
 static void check_code(const struct glint_kernels *k, const char *name)
 {
     const int16_t round[8] = {64, 0, 127, 1, 63, 65, 100, 30};
     const struct glint_kernels *plain = &kernels_c;
-    uint8_t *want = fenced(N), *got = fenced(N);
-    uint16_t *light = fenced(N * sizeof *light);
+    uint8_t *want = allocate_fenced(N), *got = allocate_fenced(N);
+    uint16_t *light = allocate_fenced(N * sizeof *light);
 
     for (int transfer = 0; transfer < 2; transfer++)
         for (int code = 0; code < 256; code++)
@@ -390,22 +398,25 @@ static void check_code(const struct glint_kernels *k, const char *name)
 static void check_sum(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
-    uint32_t *want = fenced(N * sizeof *want), *got = fenced(N * sizeof *got);
-    uint16_t *light[2] = {fenced(N * sizeof(uint16_t)),
-                          fenced(N * sizeof(uint16_t))};
+    uint32_t *want = allocate_fenced(N * sizeof *want),
+             *got = allocate_fenced(N * sizeof *got);
+    uint16_t *light[2] = {allocate_fenced(N * sizeof(uint16_t)),
+                          allocate_fenced(N * sizeof(uint16_t))};
     uint32_t carry[2];
 
     for (int turn = 0; turn < ROUNDS; turn++) {
-        const int n = GLINT_LANES * (1 + (int)(draw() % (N / GLINT_LANES)));
-        const int shift = (int)(draw() % 32);
-        const int more = 2 + (int)(draw() % 14);
+        const int n =
+            GLINT_LANES * (1 + (int)(random_bits() % (N / GLINT_LANES)));
+        const int shift = (int)(random_bits() % 32);
+        const int more = 2 + (int)(random_bits() % 14);
 
-        carry[0] = carry[1] =
-            draw() % 9 ? draw() >> (draw() % 32) : INT32_MAX - draw() % 300;
+        carry[0] = carry[1] = random_bits() % 9
+                                  ? random_bits() >> (random_bits() % 32)
+                                  : INT32_MAX - random_bits() % 300;
         for (int i = 0; i < N; i++) {
-            const int quiet = (turn >> i / 8 & 1) || draw() % 3;
+            const int quiet = (turn >> i / 8 & 1) || random_bits() % 3;
 
-            want[i] = got[i] = quiet ? 0 : draw() >> shift;
+            want[i] = got[i] = quiet ? 0 : random_bits() >> shift;
             light[0][i] = light[1][i] = 7;
         }
         plain->run_sum(want, &carry[0], light[0], n, more);
@@ -418,23 +429,25 @@ static void check_sum(const struct glint_kernels *k, const char *name)
           k->run_sum(got, &carry[1], light[1], N, 8));
 }
 
-/* Checks polynomials whose coefficients have magnitudes that sum to less than
- * 2^30, as the bake proves. */
+/* Checks polynomials whose coefficients' magnitudes sum to less than 2^30,
+ * which the bake guarantees. */
 static void check_horner(const struct glint_horner *k, const char *name)
 {
     const struct glint_horner *plain = glint_horner_of(0);
-    int32_t *c = fenced(160 * sizeof *c), *x = fenced(N * sizeof *x);
-    int32_t *want = fenced(N * sizeof *want), *got = fenced(N * sizeof *got);
+    int32_t *c = allocate_fenced(160 * sizeof *c),
+            *x = allocate_fenced(N * sizeof *x);
+    int32_t *want = allocate_fenced(N * sizeof *want),
+            *got = allocate_fenced(N * sizeof *got);
 
     for (int turn = 0; turn < ROUNDS; turn++) {
-        const int degree = (int)(draw() % 10);
-        const int n = 8 * (1 + (int)(draw() % (N / 8)));
+        const int degree = (int)(random_bits() % 10);
+        const int n = 8 * (1 + (int)(random_bits() % (N / 8)));
         const int32_t most = 1 << 26;
 
         for (int i = 0; i < 160; i++)
-            c[i] = (int32_t)(draw() % (2 * (uint32_t)most)) - most;
+            c[i] = (int32_t)(random_bits() % (2 * (uint32_t)most)) - most;
         for (int i = 0; i < N; i++) {
-            x[i] = (int32_t)(draw() % (2U << 30)) - (1 << 30);
+            x[i] = (int32_t)(random_bits() % (2U << 30)) - (1 << 30);
             want[i] = got[i] = 7;
         }
         plain->along(want, c, degree, x, n);
@@ -450,10 +463,10 @@ static void check_horner(const struct glint_horner *k, const char *name)
           k->across(got, c, 32, 4, x[0], 16));
 }
 
-/* Returns a number of any size below MOST in magnitude, often MOST - 1. */
-static int32_t draw_below(int64_t most)
+/* Returns a random number of magnitude below MOST, often MOST - 1. */
+static int32_t random_below(int64_t most)
 {
-    const uint32_t x = draw();
+    const uint32_t x = random_bits();
     const int64_t size = x % 7 == 0 ? most - 1 : (x >> 3) % most >> x % 31;
 
     return (int32_t)(x & 4 ? -size : size);
@@ -463,24 +476,26 @@ static void check_turn(glint_turn_fn *turn, const char *name)
 {
     const int64_t most = INT64_C(1) << 30;
     const size_t bytes = GLINT_TURNED * sizeof(int32_t);
-    int32_t *x = fenced(bytes), *y = fenced(bytes);
-    int32_t(*out[2])[GLINT_TURNED] = {fenced(4 * bytes), fenced(4 * bytes)};
-    int32_t(*lost[2])[GLINT_TURNED] = {fenced(2 * bytes), fenced(2 * bytes)};
+    int32_t *x = allocate_fenced(bytes), *y = allocate_fenced(bytes);
+    int32_t(*out[2])[GLINT_TURNED] = {allocate_fenced(4 * bytes),
+                                      allocate_fenced(4 * bytes)};
+    int32_t(*lost[2])[GLINT_TURNED] = {allocate_fenced(2 * bytes),
+                                       allocate_fenced(2 * bytes)};
     struct glint_turn t = {0, 0, 1, 1};
     int n_lost = 0, n_kept = 0;
 
     for (int round = 0; round < 5 * ROUNDS; round++) {
-        /* Every second round gives results about as large as may be. */
-        const int near = (int)(draw() % 62) + 1;
+        /* Every second round gives results close to the max. */
+        const int near = (int)(random_bits() % 62) + 1;
 
-        t = (struct glint_turn){draw_below(2 * most), draw_below(2 * most),
+        t = (struct glint_turn){random_below(2 * most), random_below(2 * most),
                                 round % 2 ? near : 28 + near % 8,
-                                1 + abs(draw_below(most))};
+                                1 + abs(random_below(most))};
         for (int i = 0; i < GLINT_TURNED; i++) {
-            x[i] = draw_below(most);
-            y[i] = draw_below(most);
+            x[i] = random_below(most);
+            y[i] = random_below(most);
             for (int k = 0; k < 2; k++)
-                lost[0][k][i] = lost[1][k][i] = draw() % 4 ? 0 : -1;
+                lost[0][k][i] = lost[1][k][i] = random_bits() % 4 ? 0 : -1;
         }
         glint_turn_c(&t, x, y, out[0], lost[0]);
         turn(&t, x, y, out[1], lost[1]);
@@ -496,28 +511,30 @@ static void check_turn(glint_turn_fn *turn, const char *name)
           turn(&t, x, y, out[1], lost[1]));
 }
 
-/* Taps and values are as large as a baked translucent medium may have them:
- * sums are below 2^31 in any order. */
+/* Taps and values have the max of a baked translucent medium: sums are below
+ * 2^31 in any order. */
 static void check_convolve(glint_convolve_fn *convolve, const char *name)
 {
     enum { TAPS = 32, VALUES = N + 2 * TAPS };
-    int32_t *value = fenced(VALUES * sizeof *value);
-    int32_t *tap = fenced(TAPS * sizeof *tap);
-    int32_t *got = fenced(N * sizeof *got), *want = fenced(N * sizeof *want);
+    int32_t *value = allocate_fenced(VALUES * sizeof *value);
+    int32_t *tap = allocate_fenced(TAPS * sizeof *tap);
+    int32_t *got = allocate_fenced(N * sizeof *got),
+            *want = allocate_fenced(N * sizeof *want);
 
     for (int turn = 0; turn < ROUNDS; turn++) {
-        const int n_taps = 1 + (int)(draw() % TAPS), n = 32 * (1 + turn % 2);
+        const int n_taps = 1 + (int)(random_bits() % TAPS),
+                  n = 32 * (1 + turn % 2);
         const ptrdiff_t stride = 1 + turn % 2;
 
         for (int i = 0; i < VALUES; i++)
-            value[i] = glint_pair(draw_below(32768), draw_below(32768));
+            value[i] = glint_pair(random_below(32768), random_below(32768));
         for (int k = 0; k < n_taps; k++)
-            tap[k] = glint_pair(draw_below(65536 / (2 * n_taps) < 32768
-                                               ? 65536 / (2 * n_taps)
-                                               : 32768),
-                                draw_below(1024));
+            tap[k] = glint_pair(random_below(65536 / (2 * n_taps) < 32768
+                                                 ? 65536 / (2 * n_taps)
+                                                 : 32768),
+                                random_below(1024));
         for (int i = 0; i < N; i++)
-            got[i] = want[i] = draw_below(1 << 20);
+            got[i] = want[i] = random_below(1 << 20);
         glint_convolve_c(want, value, stride, tap, n_taps, n);
         convolve(got, value, stride, tap, n_taps, n);
         EXPECT_SAME(got, want, N * sizeof *got);
@@ -545,7 +562,8 @@ static void test_same_bits(void)
     }
 }
 
-/* Without light a code must stay, and more light must never make it darker. */
+/* Checks that a code is unchanged without light, and that more light never
+ * makes it darker. */
 static void test_codes_of_c(void)
 {
     const int16_t round[8] = {64, 64, 64, 64, 64, 64, 64, 64};

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Every variant of the kernel for brushed metal must give the bits of its C
- * definition, whatever lobes, levels and texels are, and read no texel that is
- * not there: an array of texels ends at a page that traps. GLINT_BENCH=1 times
- * it, too. The program needs nothing but the kernels, so that it runs in an
- * emulator. */
+ * Tests that every variant of the kernel for brushed metal gives the bits of
+ * its C definition for random lobes, levels and texels, and reads no texel out
+ * of range: the array of texels ends at an inaccessible page. With
+ * GLINT_BENCH=1 the kernels are timed as well. The program needs only the
+ * kernels, so that it runs in an emulator.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,18 +31,19 @@ enum { SIDE_LOG2 = 6, CODES = 1 << 14, PAGE = 4096, LOBES = 3000, PLACES = 8 };
 
 static uint32_t seed = 77;
 
-static int32_t below(int32_t n)
+static int32_t random_below(int32_t n)
 {
     return (int32_t)(rng_xorshift(&seed) % (uint32_t)n);
 }
 
-static double unit_double(void)
+static double random_unit(void)
 {
-    return below(1 << 24) / (double)(1 << 24);
+    return random_below(1 << 24) / (double)(1 << 24);
 }
 
-/* Returns 4 CODES bytes of texels that end at a page which traps. */
-static uint8_t *texels_of(void)
+/* Returns 4 CODES bytes of texels whose end is at the border of an
+ * inaccessible page. */
+static uint8_t *allocate_texels(void)
 {
     void *mem;
     uint8_t *at;
@@ -52,11 +54,12 @@ static uint8_t *texels_of(void)
     return at;
 }
 
-/* Levels of Gaussians or mips; the last code is the last texel of one. */
-static void draw_texels(struct glint_texels *t, uint8_t *code)
+/* Makes random levels of Gaussians or mipmaps; the last code is the last
+ * texel of a level. */
+static void random_texels(struct glint_texels *t, uint8_t *code)
 {
     uint32_t used = 0;
-    const int is_mip = below(2);
+    const int is_mip = random_below(2);
 
     t->code = (const uint32_t *)(const void *)code;
     t->last = SIDE_LOG2;
@@ -76,16 +79,16 @@ static void draw_texels(struct glint_texels *t, uint8_t *code)
     }
 }
 
-static void draw_lobe(struct glint_ward_lobe *l)
+static void random_lobe(struct glint_ward_lobe *l)
 {
-    const double alpha = pow(10, -3 * unit_double());
+    const double alpha = pow(10, -3 * random_unit());
 
     memset(l, 0, sizeof *l);
-    l->n = 1 + below(GLINT_WARD_SAMPLES);
-    l->norm = (enum glint_ward_norm)below(2);
+    l->n = 1 + random_below(GLINT_WARD_SAMPLES);
+    l->norm = (enum glint_ward_norm)random_below(2);
     for (int k = 0; k < GLINT_WARD_SAMPLES; k++) {
-        const double x = alpha * 4 * (unit_double() - .5);
-        const double y = alpha * 4 * (unit_double() - .5);
+        const double x = alpha * 4 * (random_unit() - .5);
+        const double y = alpha * 4 * (random_unit() - .5);
         const double over = 0x1p14 / sqrt(1 + x * x + y * y);
 
         l->half_q14[0][k] = (int32_t)lrint(x * over);
@@ -93,20 +96,20 @@ static void draw_lobe(struct glint_ward_lobe *l)
         l->half_q14[2][k] = k < l->n ? (int32_t)lrint(over) : -16384;
         l->factor_q14[k] =
             (int32_t)((int64_t)l->half_q14[2][k] * l->half_q14[2][k] >> 14);
-        l->span_q14[k] = 16384 + below(16384);
-        l->span_log2[k] = below(20) - 3;
+        l->span_q14[k] = 16384 + random_below(16384);
+        l->span_log2[k] = random_below(20) - 3;
     }
 }
 
-/* A random turn, and an eye that is often at a grazing angle. */
-static void draw_place(struct glint_ward_place *p)
+/* Makes a random rotation, and a view direction that is often grazing. */
+static void random_place(struct glint_ward_place *p)
 {
-    const double no = pow(unit_double(), below(3) ? 1 : 8) + 0x1p-13;
-    const double across = sqrt(fmax(1 - no * no, 0)), turn = 7 * unit_double();
+    const double no = pow(random_unit(), random_below(3) ? 1 : 8) + 0x1p-13;
+    const double across = sqrt(fmax(1 - no * no, 0)), turn = 7 * random_unit();
     double q[4], length = 0, m[3][3];
 
     for (int k = 0; k < 4; k++) {
-        q[k] = unit_double() - .5;
+        q[k] = random_unit() - .5;
         length += q[k] * q[k];
     }
     for (int k = 0; k < 4; k++)
@@ -123,8 +126,8 @@ static void draw_place(struct glint_ward_place *p)
     p->out_q14[0] = (int32_t)lrint(0x1p14 * across * cos(turn));
     p->out_q14[1] = (int32_t)lrint(0x1p14 * across * sin(turn));
     p->out_q14[2] = (int32_t)fmax(0x1p14 * no, 1);
-    p->root_q14 = 16384 + below(16385);
-    p->root_log2 = below(8) - 1;
+    p->root_q14 = 16384 + random_below(16385);
+    p->root_log2 = random_below(8) - 1;
 }
 
 static double now_ns(void)
@@ -135,15 +138,15 @@ static double now_ns(void)
     return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
 
-/* Prints the least time of many rounds of 8 samples, in C and by SUM. */
-static void time_it(const char *name, glint_ward_sum_fn *sum,
-                    struct glint_ward_lobe *l, const struct glint_texels *t)
+/* Prints the min time of many rounds of 8 samples, in C and by SUM. */
+static void print_time(const char *name, glint_ward_sum_fn *sum,
+                       struct glint_ward_lobe *l, const struct glint_texels *t)
 {
     struct glint_ward_place p;
     double best[2] = {1e9, 1e9};
     uint64_t rgb[3];
 
-    draw_place(&p);
+    random_place(&p);
     p.out_q14[0] = p.out_q14[1] = 0;
     p.out_q14[2] = 1 << 14;
     l->n = 8;
@@ -160,22 +163,22 @@ static void time_it(const char *name, glint_ward_sum_fn *sum,
            best[1], best[0] / best[1]);
 }
 
-static void check(const char *name, glint_ward_sum_fn *sum)
+static void check_variant(const char *name, glint_ward_sum_fn *sum)
 {
-    uint8_t *const code = texels_of();
+    uint8_t *const code = allocate_texels();
     struct glint_texels texels;
     struct glint_ward_lobe lobe;
     int n_lit = 0;
 
     for (int i = 0; i < LOBES; i++) {
         if (i % 100 == 0)
-            draw_texels(&texels, code);
-        draw_lobe(&lobe);
+            random_texels(&texels, code);
+        random_lobe(&lobe);
         for (int k = 0; k < PLACES; k++) {
             struct glint_ward_place place;
             uint64_t want[3], got[3];
 
-            draw_place(&place);
+            random_place(&place);
             glint_ward_sum_c(&lobe, &texels, &place, want);
             sum(&lobe, &texels, &place, got);
             EXPECT(memcmp(want, got, sizeof want) == 0);
@@ -185,21 +188,21 @@ static void check(const char *name, glint_ward_sum_fn *sum)
         }
     }
     EXPECT(n_lit > LOBES * PLACES / 2);
-    draw_texels(&texels, code);
+    random_texels(&texels, code);
     if (getenv("GLINT_BENCH"))
-        time_it(name, sum, &lobe, &texels);
+        print_time(name, sum, &lobe, &texels);
     EXPECT(mprotect(code + 4 * CODES, PAGE, PROT_READ | PROT_WRITE) == 0);
     free(code);
 }
 
 int main(void)
 {
-    check("c", glint_ward_sum_of(0));
+    check_variant("c", glint_ward_sum_of(0));
     for (unsigned set = 1; set; set <<= 1)
         if (set & glint_system_sets())
-            check(set == GLINT_SET_SSE41  ? "sse41"
-                  : set == GLINT_SET_AVX2 ? "avx2"
-                                          : "neon",
-                  glint_ward_sum_of(set));
+            check_variant(set == GLINT_SET_SSE41  ? "sse41"
+                          : set == GLINT_SET_AVX2 ? "avx2"
+                                                  : "neon",
+                          glint_ward_sum_of(set));
     return 0;
 }

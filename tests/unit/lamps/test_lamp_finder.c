@@ -668,7 +668,8 @@ TEST(joining_can_change_the_order)
     free(image.plane[0]);
 }
 
-/* Of 4096 lights the finder keeps the 2048 brightest and must give 1024. */
+/* Checks that of 4096 lights the finder stores the 2048 brightest and
+ * returns 1024. */
 TEST(more_lights_than_can_be_held)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 256, 256);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Regions of every shape against a flood fill, and the colours of lamps in
- * every format.
+ * Tests connected regions of every shape against a flood fill, and the colours
+ * of lamps in every format.
  */
 #include "glint/lamps.h"
 
@@ -29,8 +29,8 @@ static void assert_one_region(const struct glint_image *image)
     free(image->plane[0]);
 }
 
-/* A pixel must touch those at its corners, on both sides and across the blocks
- * in which runs are found, and none farther away. */
+/* Checks that a pixel is connected to those at its corners, on both sides
+ * and across the blocks in which runs are found, and to none further away. */
 TEST(corners)
 {
     for (int x = 4; x < 68; x++)
@@ -56,7 +56,8 @@ TEST(u_shape)
     assert_one_region(&image);
 }
 
-/* A spiral, its walls 1 pixel wide and 1 apart, must be one region. */
+/* Checks that a spiral with walls 1 pixel wide and 1 pixel apart is one
+ * region. */
 TEST(spiral)
 {
     static const int step[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
@@ -78,8 +79,8 @@ TEST(spiral)
     assert_one_region(&image);
 }
 
-/* As many runs as a row can have must be one region: a checkerboard, which is
- * joined by corners alone, and a comb, which is joined by its last row. */
+/* Checks rows with the max number of runs: a checkerboard, connected only by
+ * corners, and a comb, connected by its last row, are one region each. */
 TEST(checkerboard_and_comb)
 {
     for (int width = 254; width <= 255; width++) {
@@ -96,8 +97,8 @@ TEST(checkerboard_and_comb)
     }
 }
 
-/* Clears the region at (X, Y) and returns its area. */
-static int flood(const struct glint_image *image, int x, int y)
+/* Clears the region at (X, Y) and returns its area, pixels. */
+static int clear_region(const struct glint_image *image, int x, int y)
 {
     static int stack[64 * 64 * 8][2];
     int n = 0, area = 0;
@@ -131,7 +132,7 @@ static void check_against_flood(int width, int height, int percent)
         of_area[finder_spot[i].area]--;
     for (int i = 0; i < width * height; i++)
         if (image.plane[0][i]) {
-            of_area[flood(&image, i % width, i / width)]++;
+            of_area[clear_region(&image, i % width, i / width)]++;
             regions++;
         }
     assert_int_equal(regions, n);
@@ -169,8 +170,8 @@ static void fill_rgb(const struct glint_image *image, int x0, int y0, int x1,
             canvas_set_rgb(image, x, y, r, g, b);
 }
 
-/* The codes (240, 200, 120) are linear (0.8714, 0.5776, 0.1878), of luminance
- * 0.6119. */
+/* Checks an unclipped colour: codes (240, 200, 120) are linear (0.8714,
+ * 0.5776, 0.1878), luminance 0.6119. */
 TEST(colour_unclipped)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
@@ -183,8 +184,8 @@ TEST(colour_unclipped)
     free(image.plane[0]);
 }
 
-/* A core that is clipped to white must have the colour of its rim; without a
- * rim it must be white. */
+/* Checks that a core clipped to white gets the colour of its rim, and
+ * without a rim is white. */
 TEST(colour_of_the_rim)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 60, 40);
@@ -194,13 +195,15 @@ TEST(colour_of_the_rim)
     fill_rgb(&image, 10, 10, 20, 20, 255, 255, 255);
     fill_rgb(&image, 30, 10, 39, 19, 255, 255, 255);
     assert_int_equal(finder_find(&cfg, &image), 2);
-    assert_true(finder_spot[0].rgb_q15[0] > 45000); /* The rim has 1.42. */
-    assert_true(finder_spot[0].rgb_q15[2] < 13000); /* The rim has 0.31. */
+    /* the rim's is 1.42 in Q15: 46531 */
+    assert_true(finder_spot[0].rgb_q15[0] > 45000);
+    /* the rim's is 0.31 in Q15: 10158 */
+    assert_true(finder_spot[0].rgb_q15[2] < 13000);
     assert_colour(1, 1, 1, 1);
     free(image.plane[0]);
 }
 
-/* Where a channel is clipped everywhere, the colour must be the mean. */
+/* Checks that the colour is the mean if one channel is clipped everywhere. */
 TEST(colour_partly_clipped)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
@@ -212,8 +215,8 @@ TEST(colour_partly_clipped)
     free(image.plane[0]);
 }
 
-/* In limited range 235 is white, and code 200 of 255 is 16 + 219 * 200 / 255 =
- * 187.8. */
+/* Checks YCbCr formats in limited range, where 235 is white and code 200 of
+ * 255 becomes 16 + 219 * 200 / 255 = 187.8. */
 TEST(ycc_formats)
 {
     static const enum glint_pixel_format formats[3] = {GLINT_I420, GLINT_I422,
@@ -225,8 +228,8 @@ TEST(ycc_formats)
 
         image.range = GLINT_RANGE_LIMITED;
         image.transfer = GLINT_TONE_BT709;
-        /* Codes C of 199.5 and 249.5 have this light:
-         * ((C / 255 + 0.099) / 1.099)^(1 / 0.45). */
+        /* light of codes 199.5 and 249.5: ((C / 255 + 0.099) / 1.099)^(1 /
+         * 0.45) */
         cfg.threshold_low_q8 = (int32_t)floor(256 * log2(0.6124) + 0.5);
         cfg.threshold_high_q8 = (int32_t)floor(256 * log2(0.9569) + 0.5);
         canvas_fill_grey(&image, 0, 0, 41, 31, 16);
@@ -234,7 +237,8 @@ TEST(ycc_formats)
             memset(image.plane[i], 128,
                    glint_image_row_bytes(formats[f], i, 41) *
                        (size_t)glint_image_plane_height(formats[f], i, 31));
-        canvas_fill_grey(&image, 36, 26, 41, 31, 187); /* 199.1: too dark */
+        /* 199.1 of 255: too dark */
+        canvas_fill_grey(&image, 36, 26, 41, 31, 187);
         canvas_fill_grey(&image, 38, 28, 41, 31, 188);
         canvas_fill_grey(&image, 39, 29, 41, 31, 235);
         assert_int_equal(finder_find(&cfg, &image), 1);
@@ -248,7 +252,8 @@ TEST(ycc_formats)
     }
 }
 
-/* BT.601 limited Y, Cb, Cr 169, 90, 166 is R'G'B' 238.8, 162.1, 101.5. */
+/* Checks the colour of BT.601 limited Y, Cb, Cr = 169, 90, 166, which is
+ * R'G'B' 238.8, 162.1, 101.5. */
 TEST(ycc_colour)
 {
     struct glint_image image = canvas_new(GLINT_I444, 20, 20);

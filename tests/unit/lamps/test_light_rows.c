@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Short cuts of the lamp finder against the long way: the light of runs as
- * differences of sums against pixel by pixel, and scores without a look around
- * against scores with one.
+ * Tests two optimisations of the lamp finder: the light of runs as differences
+ * of sums against pixel-by-pixel sums, and scores without the surroundings
+ * against full scores.
  */
 #include "support/region_pixels.h"
 #include "support/rng.h"
@@ -28,17 +28,17 @@ struct fixture {
     void *mem;
 };
 
-/* Sets up a picture of random codes, many of which repeat the pixel before. */
+/* Sets up an image of random codes, many of which repeat the previous pixel. */
 static void set_up(struct fixture *f, enum glint_pixel_format format)
 {
     struct glint_arena arena = glint_arena_measure();
     const size_t bytes = glint_image_bytes(format, WIDTH, HEIGHT);
     const int dark =
-        4 * rng_below(&seed, 2); /* bits: 0, or 4 for dark pictures */
+        4 * rng_below(&seed, 2); /* bits: 0, or 4 for dark images */
     uint8_t *codes = malloc(bytes);
-    const size_t pixel = /* bytes of a pixel, or of two */
+    const size_t pixel = /* bytes per pixel, or per two pixels */
         format == GLINT_RGB24 || format == GLINT_BGR24 ? 3 : 4;
-    int alike = 0; /* bytes that still repeat */
+    int alike = 0; /* number of bytes that still repeat */
 
     assert_non_null(codes);
     for (size_t i = 0; i < bytes; i++, alike--) {
@@ -70,9 +70,9 @@ static void tear_down(struct fixture *f)
     free(f->mem);
 }
 
-/* Adds what glint_row_light_add() adds, pixel by pixel. */
-static void add_plainly(const struct fixture *f, struct glint_region *region,
-                        int x0, int x1, int y)
+/* The reference of glint_row_light_add(): adds the pixels one by one. */
+static void add_by_pixel(const struct fixture *f, struct glint_region *region,
+                         int x0, int x1, int y)
 {
     const int32_t clipped_q20 = f->bright.curve->decode_q20[BRIGHT_CLIPPED];
 
@@ -94,7 +94,7 @@ static void add_plainly(const struct fixture *f, struct glint_region *region,
     }
 }
 
-/* Checks some runs in two stretches of a row, which may overlap. */
+/* Checks some runs in two spans of a row, which may overlap. */
 static void check_row(struct fixture *f, int y)
 {
     const int from = rng_below(&seed, 20), to = from + rng_below(&seed, 20);
@@ -115,14 +115,13 @@ static void check_row(struct fixture *f, int y)
 
         if (x0 >= x1)
             continue;
-        /* The first run is the whole stretch, the other three are parts of
-         * it. */
+        /* The first run is the whole span; the other three are parts of it. */
         for (int j = 0; j < 4; j++) {
             const int begin = j ? x0 + rng_below(&seed, x1 - x0) : x0;
             const int end = j ? begin + 1 + rng_below(&seed, x1 - begin) : x1;
 
             glint_row_light_add(&f->row, &sum, begin, end, WIDTH, y + 1000);
-            add_plainly(f, &plain, begin, end, y + 1000);
+            add_by_pixel(f, &plain, begin, end, y + 1000);
         }
     }
     assert_memory_equal(&sum, &plain, sizeof sum);
@@ -140,8 +139,8 @@ TEST(light_of_runs)
     }
 }
 
-/* Returns a random region in the picture, of any light, that fills its box or
- * not. */
+/* Returns a random region in the image, with any light and any fill of its
+ * box. */
 static struct glint_candidate draw_candidate(void)
 {
     const int x0 = rng_below(&seed, WIDTH - 1),
@@ -149,8 +148,8 @@ static struct glint_candidate draw_candidate(void)
     const int x1 = x0 + 1 + rng_below(&seed, WIDTH - x0);
     const int y1 = y0 + 1 + rng_below(&seed, HEIGHT - y0);
     struct glint_candidate c = {.sum = {.x0 = x0, .y0 = y0}};
-    const int hidden = 10 + rng_below(&seed, 11); /* bits of light below
-                                                   * white */
+    /* bits of light below white */
+    const int hidden = 10 + rng_below(&seed, 11);
     const int32_t rgb_q20[3] = {(1 << 20) - rng_below(&seed, 1 << hidden),
                                 (1 << 20) - rng_below(&seed, 1 << hidden),
                                 (1 << 20) - rng_below(&seed, 1 << hidden)};
@@ -160,7 +159,7 @@ static struct glint_candidate draw_candidate(void)
         glint_region_add_run(&c.sum, x0, x1, y);
         region_add_pixels(&c.sum, &light, x0, x1, y);
     }
-    if (rng_below(&seed, 2)) { /* Some fill most of their box, as lamps do. */
+    if (rng_below(&seed, 2)) { /* some fill most of their box, as lamps do */
         c.sum.area -= rng_below(&seed, c.sum.area) / 8;
         c.sum.n_clipped = c.sum.area - rng_below(&seed, c.sum.area);
     } else
@@ -168,8 +167,8 @@ static struct glint_candidate draw_candidate(void)
     return c;
 }
 
-/* Where the full score is -SCORE_DOUBT or more, the brief one must be equal;
- * else it must lie between the full one and -SCORE_DOUBT. */
+/* Checks that the brief score equals the full one if that is -SCORE_DOUBT or
+ * more, and otherwise lies between it and -SCORE_DOUBT. */
 TEST(brief_scores)
 {
     int n_kept = 0, n_brief = 0;

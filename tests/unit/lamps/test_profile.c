@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Power, colour and extent of lamps that are clipped to white, from the profile
- * of the light around them.
+ * Tests the estimation of power, colour and extent of lamps clipped to white
+ * from the light profile around them.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -22,8 +22,8 @@ static uint32_t seed = 1;
 
 /* --------------------------------------------------------------- by hand */
 
-/* Returns an ordinary lamp in the middle of the picture. */
-static struct power_lamp lamp_of(enum power_shape shape, double radius)
+/* Returns an ordinary lamp in the centre of the image. */
+static struct power_lamp make_lamp(enum power_shape shape, double radius)
 {
     return (struct power_lamp){.shape = shape,
                                .x = W / 2 + 0.3,
@@ -49,9 +49,8 @@ static void measure(const struct glint_image *image, int n)
     free(mem);
 }
 
-/* Finds all that is bright in IMAGE, measures it, and returns how many spots
- * there are. */
-static int look(const struct glint_image *image)
+/* Finds and measures all bright spots of IMAGE. Returns their number. */
+static int find_spots(const struct glint_image *image)
 {
     struct glint_lamp_finder_config cfg;
     struct glint_lamp_finder *finder;
@@ -75,26 +74,26 @@ static int look(const struct glint_image *image)
     return n;
 }
 
-static struct glint_image picture_of(uint8_t *px, int width, int height)
+static struct glint_image make_image(uint8_t *px, int width, int height)
 {
     return glint_image_over(px, GLINT_RGB24, width, height);
 }
 
-/* Draws the light in light[] at POWER over BLACK, with noise of SIGMA codes,
- * and finds it; returns how many spots there are. */
-static int expose(const struct power_lamp *lamp, double power, double black,
-                  double sigma)
+/* Draws light[] times POWER over BLACK with noise of SIGMA codes, and finds
+ * the spots. Returns their number. */
+static int draw_and_find(const struct power_lamp *lamp, double power,
+                         double black, double sigma)
 {
     const struct power_picture settings = {W, H, rgb};
-    const struct glint_image image = picture_of(codes, W, H);
+    const struct glint_image image = make_image(codes, W, H);
 
     for (int i = 0; i < 3 * W * H; i++)
         rgb[i] = black + power * lamp->rgb[i % 3] * light[i / 3];
     power_expose(codes, &settings, 1, sigma, &seed);
-    return look(&image);
+    return find_spots(&image);
 }
 
-static double power(void)
+static double power_of_spot(void)
 {
     return (double)spot[0].power_q16 / 65536;
 }
@@ -135,66 +134,67 @@ TEST(memory)
     free(mem);
 }
 
-/* A lamp that is not clipped must have its flux for a power: 13 and 45 white
- * pixels, blurred by bell curves of 1.6 and 3 pixels. */
+/* Checks that the power of an unclipped lamp is its flux: 13 and 45 white
+ * pixels, blurred by Gaussians of 1.6 and 3 pixels. */
 TEST(unclipped_is_the_flux)
 {
-    struct power_lamp lamp = lamp_of(POWER_DISC, 0.4);
+    struct power_lamp lamp = make_lamp(POWER_DISC, 0.4);
 
     lamp.glare = 0;
     lamp.sigma = 1.6;
     power_draw(light, W, H, &lamp);
-    assert_int_equal(expose(&lamp, 13, 0, 0), 1);
-    print_message("13 white pixels unclipped: %.2f\n", power());
-    assert_true(power() > 0.85 * 13 && power() < 1.1 * 13);
+    assert_int_equal(draw_and_find(&lamp, 13, 0, 0), 1);
+    print_message("13 white pixels unclipped: %.2f\n", power_of_spot());
+    assert_true(power_of_spot() > 0.85 * 13 && power_of_spot() < 1.1 * 13);
     lamp.sigma = 3;
     power_draw(light, W, H, &lamp);
-    assert_int_equal(expose(&lamp, 45, 0, 0), 1);
-    print_message("45 white pixels unclipped: %.2f\n", power());
-    assert_true(power() > 0.85 * 45 && power() < 1.1 * 45);
+    assert_int_equal(draw_and_find(&lamp, 45, 0, 0), 1);
+    print_message("45 white pixels unclipped: %.2f\n", power_of_spot());
+    assert_true(power_of_spot() > 0.85 * 45 && power_of_spot() < 1.1 * 45);
 }
 
-/* A tube 36 pixels long, turned clockwise by 30 degrees, must have a longer RMS
- * semi-axis of 18 / sqrt(3); a disc must have two of half its radius. */
+/* Checks that a tube 36 pixels long, rotated clockwise by 30 degrees, has a
+ * longer RMS semi-axis of 18 / sqrt(3), and that a disc has two of half its
+ * radius. */
 TEST(extent)
 {
-    struct power_lamp lamp = lamp_of(POWER_TUBE, 18);
+    struct power_lamp lamp = make_lamp(POWER_TUBE, 18);
 
     lamp.glare = 0.002;
     lamp.angle = 3.14159265 / 6;
     power_draw(light, W, H, &lamp);
-    assert_int_equal(expose(&lamp, 2000, 0.002, 0), 1);
+    assert_int_equal(draw_and_find(&lamp, 2000, 0.002, 0), 1);
     assert_true(abs(spot[0].axis_q8[0] - 2660) < 200);
     assert_true(spot[0].axis_q8[1] < 550);
     assert_true(abs(spot[0].cos_q15 - 28378) < 300);
     assert_true(abs(spot[0].sin_q15 - 16384) < 500);
-    lamp = lamp_of(POWER_DISC, 12);
+    lamp = make_lamp(POWER_DISC, 12);
     lamp.glare = 0;
     power_draw(light, W, H, &lamp);
-    assert_int_equal(expose(&lamp, 2000, 0.002, 0), 1);
+    assert_int_equal(draw_and_find(&lamp, 2000, 0.002, 0), 1);
     print_message("disc: axes %d and %d\n", spot[0].axis_q8[0],
                   spot[0].axis_q8[1]);
     assert_true(abs(spot[0].axis_q8[0] - 6 * 256) < 200);
     assert_true(abs(spot[0].axis_q8[1] - 6 * 256) < 200);
 }
 
-/* A lamp two pixels wide with the light of 16384 white ones has a core of
- * clipped glare some pixels wide; its extent must not be that of the core. */
+/* Checks that the extent of a lamp two pixels wide with the light of 16384
+ * white pixels excludes its core of clipped glare, some pixels wide. */
 TEST(glare_is_no_extent)
 {
-    struct power_lamp lamp = lamp_of(POWER_DISC, 1);
+    struct power_lamp lamp = make_lamp(POWER_DISC, 1);
 
     lamp.glare = 0.1;
     power_draw(light, W, H, &lamp);
-    assert_int_equal(expose(&lamp, 16384, 0.002, 0), 1);
+    assert_int_equal(draw_and_find(&lamp, 16384, 0.002, 0), 1);
     print_message("glare: axes %d of a core of %d pixels, size %d\n",
                   spot[0].axis_q8[0], spot[0].n_clipped, spot[0].size_q8);
     assert_true(spot[0].n_clipped > 20);
     assert_true(spot[0].axis_q8[0] < spot[0].size_q8 / 3);
 }
 
-/* Sets light[] to 4 up to RADIUS; beyond it the light begins at RIM and falls
- * as 1 / r^FALL. */
+/* Sets light[] to 4 inside RADIUS; outside it starts at RIM and falls as 1 /
+ * r^FALL. */
 static void draw_core(double radius, double rim, double fall)
 {
     for (int y = 0; y < H; y++)
@@ -205,30 +205,31 @@ static void draw_core(double radius, double rim, double fall)
         }
 }
 
-/* Sodium light, clipped to yellow and white, must have the colour of its
- * fringe: 1.99, 0.79, 0.04 at luminance 1. */
+/* Checks that sodium light, clipped to yellow and white, gets the colour of
+ * its fringe: 1.99, 0.79, 0.04 at luminance 1. */
 TEST(colour_is_that_of_the_fringe)
 {
-    struct power_lamp lamp = lamp_of(POWER_DISC, 3);
+    struct power_lamp lamp = make_lamp(POWER_DISC, 3);
 
     lamp.rgb[0] = 1.99;
     lamp.rgb[1] = 0.79;
     lamp.rgb[2] = 0.04;
     power_draw(light, W, H, &lamp);
     for (double p = 50; p < 20000; p *= 4) {
-        assert_int_equal(expose(&lamp, p, 0.01, 1), 1);
+        assert_int_equal(draw_and_find(&lamp, p, 0.01, 1), 1);
         print_message("power %5.0f: %.2f %.2f %.2f, %.0f\n", p,
                       spot[0].rgb_q15[0] / 32768.0,
                       spot[0].rgb_q15[1] / 32768.0,
-                      spot[0].rgb_q15[2] / 32768.0, power());
+                      spot[0].rgb_q15[2] / 32768.0, power_of_spot());
         assert_true(abs(spot[0].rgb_q15[0] - 65200) < 13000);
         assert_true(abs(spot[0].rgb_q15[1] - 25900) < 6000);
         assert_true(spot[0].rgb_q15[2] < 6000);
     }
 }
 
-/* Lamps of 2^4 .. 2^14 white pixels, several sizes and shapes: no power may be
- * off by more than 4.5 stops, and half of them must be within one. */
+/* Checks lamps of 2^4 .. 2^14 white pixels in several sizes and shapes: the
+ * error of each power is at most 4.5 stops, and half of them are within one
+ * stop. */
 TEST(power_of_clipped_lamps)
 {
     int n = 0, n_near = 0;
@@ -236,15 +237,15 @@ TEST(power_of_clipped_lamps)
     for (int shape = 0; shape < POWER_SHAPES; shape++)
         for (double radius = 1; radius < 12; radius *= 2) {
             const struct power_lamp lamp =
-                lamp_of((enum power_shape)shape, radius);
+                make_lamp((enum power_shape)shape, radius);
 
             power_draw(light, W, H, &lamp);
             for (int ev = 4; ev <= 14; ev += 2) {
                 double stops;
 
-                if (expose(&lamp, exp2(ev), 0.01, 1.5) != 1)
+                if (draw_and_find(&lamp, exp2(ev), 0.01, 1.5) != 1)
                     continue;
-                stops = log2(power()) - ev;
+                stops = log2(power_of_spot()) - ev;
                 assert_true(fabs(stops) < 4.5);
                 n_near += fabs(stops) < 1;
                 n++;
@@ -254,26 +255,26 @@ TEST(power_of_clipped_lamps)
     assert_true(n > 40 && 2 * n_near > n);
 }
 
-/* While exposure rises by 1/32 of a stop at a time, from where nothing is
- * clipped to where all is, each step must raise the power by less than 0.4
- * stops and lower it by less than 0.1. */
+/* Checks, while the exposure rises by 1/32 stop per step from no clipping to
+ * complete clipping, that each step raises the power by less than 0.4 stops
+ * or lowers it by less than 0.1. */
 TEST(power_rises_smoothly)
 {
     for (int shape = 0; shape < POWER_SHAPES; shape++)
         for (int radius = 1; radius <= 9; radius += 4) {
             const struct power_lamp lamp =
-                lamp_of((enum power_shape)shape, radius);
+                make_lamp((enum power_shape)shape, radius);
             double last = 0, most = 0, least = 1;
 
             power_draw(light, W, H, &lamp);
             for (double ev = 3 + radius / 3; ev < 12; ev += 1 / 32.0) {
-                if (expose(&lamp, exp2(ev), 0.01, 0) != 1)
+                if (draw_and_find(&lamp, exp2(ev), 0.01, 0) != 1)
                     continue;
                 if (last > 0) {
-                    most = fmax(most, log2(power() / last));
-                    least = fmin(least, log2(power() / last));
+                    most = fmax(most, log2(power_of_spot() / last));
+                    least = fmin(least, log2(power_of_spot() / last));
                 }
-                last = power();
+                last = power_of_spot();
             }
             print_message("shape %d of %d: steps of %+.3f to %+.3f stops\n",
                           shape, radius, least, most);
@@ -281,13 +282,13 @@ TEST(power_rises_smoothly)
         }
 }
 
-/* While a sun comes in over the left border, half a pixel at a time, each step
- * must raise its power by less than 0.1 of the whole, and lower it by less than
- * 0.13. */
+/* Checks, while a sun enters over the left border by half a pixel per step,
+ * that each step raises its power by less than 0.1 of the total or lowers it
+ * by less than 0.13. */
 TEST(a_sun_that_enters)
 {
     enum { OUT = 48, WIDE = W + OUT };
-    struct power_lamp lamp = lamp_of(POWER_DISC, 6);
+    struct power_lamp lamp = make_lamp(POWER_DISC, 6);
     static double wide[WIDE * H];
     const double full = 4000;
     double last = 0, most = 0, least = 0;
@@ -297,31 +298,31 @@ TEST(a_sun_that_enters)
         power_draw(wide, WIDE, H, &lamp);
         for (int i = 0; i < W * H; i++)
             light[i] = wide[i / W * WIDE + i % W + OUT];
-        if (expose(&lamp, full, 0.05, 0) < 1)
+        if (draw_and_find(&lamp, full, 0.05, 0) < 1)
             continue;
-        most = fmax(most, (power() - last) / full);
-        least = fmin(least, (power() - last) / full);
-        last = power();
+        most = fmax(most, (power_of_spot() - last) / full);
+        least = fmin(least, (power_of_spot() - last) / full);
+        last = power_of_spot();
     }
     print_message("entering: steps of %+.3f to %+.3f of it, then %.0f\n", least,
                   most, last);
     assert_true(most < 0.1 && least > -0.13);
 }
 
-/* Noise of 3 codes must scatter the power by less than a tenth. */
+/* Checks that noise of 3 codes changes the power by less than 10 %. */
 TEST(noise)
 {
-    const struct power_lamp lamp = lamp_of(POWER_DISC, 4);
+    const struct power_lamp lamp = make_lamp(POWER_DISC, 4);
     double sum = 0, sum2 = 0, still;
     const int n = 40;
 
     power_draw(light, W, H, &lamp);
-    expose(&lamp, 600, 0.03, 0);
-    still = power();
+    draw_and_find(&lamp, 600, 0.03, 0);
+    still = power_of_spot();
     for (int i = 0; i < n; i++) {
-        expose(&lamp, 600, 0.03, 3);
-        sum += power() / n;
-        sum2 += power() * power() / n;
+        draw_and_find(&lamp, 600, 0.03, 3);
+        sum += power_of_spot() / n;
+        sum2 += power_of_spot() * power_of_spot() / n;
     }
     print_message("noise: %.0f becomes %.0f +- %.0f\n", still, sum,
                   sqrt(fmax(sum2 - sum * sum, 0)));
@@ -329,39 +330,39 @@ TEST(noise)
     assert_true(sum2 - sum * sum < 0.01 * sum * sum);
 }
 
-/* Two lamps side by side must have the power of one that is alone, not twice as
- * much. */
+/* Checks that each of two adjacent lamps has the power of a single one, not
+ * twice as much. */
 TEST(neighbours)
 {
-    struct power_lamp lamp = lamp_of(POWER_DISC, 3);
+    struct power_lamp lamp = make_lamp(POWER_DISC, 3);
     static double other[W * H];
     double alone;
 
     lamp.x = 60;
     power_draw(light, W, H, &lamp);
-    expose(&lamp, 500, 0.01, 0);
-    alone = power();
+    draw_and_find(&lamp, 500, 0.01, 0);
+    alone = power_of_spot();
     lamp.x = 100;
     power_draw(other, W, H, &lamp);
     for (int i = 0; i < W * H; i++)
         light[i] += other[i];
-    assert_int_equal(expose(&lamp, 500, 0.01, 0), 2);
+    assert_int_equal(draw_and_find(&lamp, 500, 0.01, 0), 2);
     for (int i = 0; i < 2; i++)
         assert_true(fabs(log2((double)spot[i].power_q16 / 65536 / alone)) <
                     0.7);
 }
 
-/* A white lamp must have nearly the same power in all formats: within 0.1
- * stops, but within one in RGB565. */
+/* Checks that a white lamp has nearly the same power in all formats: within
+ * 0.1 stops, in RGB565 within one. */
 TEST(formats)
 {
     static uint8_t px[4 * W * H];
-    const struct power_lamp lamp = lamp_of(POWER_DISC, 4);
+    const struct power_lamp lamp = make_lamp(POWER_DISC, 4);
     double expected;
 
     power_draw(light, W, H, &lamp);
-    expose(&lamp, 600, 0.05, 0);
-    expected = power();
+    draw_and_find(&lamp, 600, 0.05, 0);
+    expected = power_of_spot();
     for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++) {
         struct glint_image image =
             glint_image_over(px, (enum glint_pixel_format)f, W, H);
@@ -394,8 +395,8 @@ TEST(formats)
                 row[x] = (uint8_t)code;
             }
         }
-        assert_int_equal(look(&image), 1);
-        assert_true(fabs(log2(power() / expected)) <
+        assert_int_equal(find_spots(&image), 1);
+        assert_true(fabs(log2(power_of_spot() / expected)) <
                     (f == GLINT_RGB565 ? 1 : 0.1));
     }
 }
@@ -410,8 +411,8 @@ TEST(white_pictures)
     memset(white, 255, sizeof white);
     for (int i = 0; i < 4; i++) {
         const struct glint_image image =
-            picture_of(white, sides[i][0], sides[i][1]);
-        const int n = look(&image);
+            make_image(white, sides[i][0], sides[i][1]);
+        const int n = find_spots(&image);
 
         assert_true(n <= 1);
         for (int k = 0; k < n; k++) {
@@ -424,21 +425,21 @@ TEST(white_pictures)
 
 TEST(a_lamp_of_one_pixel)
 {
-    const struct glint_image image = picture_of(codes, W, H);
+    const struct glint_image image = make_image(codes, W, H);
 
     memset(codes, 0, sizeof codes);
     memset(codes + 3 * (50 * W + 40), 255, 3);
-    assert_int_equal(look(&image), 1);
-    assert_true(power() >= 1 && power() < 64);
+    assert_int_equal(find_spots(&image), 1);
+    assert_true(power_of_spot() >= 1 && power_of_spot() < 64);
     assert_int_equal(spot[0].axis_q8[0], 0);
     assert_int_equal(spot[0].axis_q8[1], 0);
 }
 
-/* Whatever the spots say, and in any picture, results must be in bounds. */
+/* Checks that results are within their limits, for any spots and images. */
 TEST(any_spots)
 {
     static const int32_t any[] = {INT32_MIN, -1, 0, 1, 256, 40000, INT32_MAX};
-    struct glint_image image = picture_of(codes, W, H);
+    struct glint_image image = make_image(codes, W, H);
 
     for (int round = 0; round < 60; round++) {
         for (int i = 0; i < 3 * W * H; i++)
@@ -467,37 +468,37 @@ TEST(any_spots)
     }
 }
 
-/* The face of a large lamp that lights what is around it to half of white must
- * be as wide as it is, 18 pixels, or up to twice as wide with that light; the
- * glare of a point that clips as far must not. */
+/* Checks the width of a large lamp that lights its surroundings to half of
+ * white: 18 pixels, or up to twice as much with that light. The glare of a
+ * point that clips as far has a smaller extent. */
 TEST(face_in_its_own_light)
 {
-    const struct power_lamp lamp = lamp_of(POWER_DISC, 36);
+    const struct power_lamp lamp = make_lamp(POWER_DISC, 36);
 
     for (double rim = 0.05; rim < 0.57; rim += 0.05) {
         draw_core(36, rim, 0.5);
-        assert_int_equal(expose(&lamp, 1, 0, 0), 1);
+        assert_int_equal(draw_and_find(&lamp, 1, 0, 0), 1);
         for (int k = 0; k < 2; k++)
             assert_in_range(spot[0].axis_q8[k], 17 * 256, 36 * 256);
     }
     for (double fall = 1; fall < 2.6; fall += 0.25) {
         draw_core(36, 1, fall);
-        assert_int_equal(expose(&lamp, 1, 0, 0), 1);
+        assert_int_equal(draw_and_find(&lamp, 1, 0, 0), 1);
         assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
     }
 }
 
-/* A ring that lights what is around it has a dark middle. The light missing
- * there is not missing at a rim, and must not make the lamp wider. */
+/* Checks that a ring which lights its surroundings is not widened by its
+ * dark middle, as light missing there is not missing at a rim. */
 TEST(ring_is_no_face)
 {
-    const struct power_lamp lamp = lamp_of(POWER_DISC, 50);
+    const struct power_lamp lamp = make_lamp(POWER_DISC, 50);
 
     draw_core(50, 0.49, 0.1);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)
             if (hypot(x + 0.5 - W / 2.0, y + 0.5 - H / 2.0) < 30)
                 light[y * W + x] = 0.49;
-    assert_int_equal(expose(&lamp, 1, 0, 0), 1);
+    assert_int_equal(draw_and_find(&lamp, 1, 0, 0), 1);
     assert_in_range(spot[0].axis_q8[0], 0, 6 * 256);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which bright regions are lamps, in drawn pictures: coloured lamps in three
- * formats, underexposed nights, lamps before walls and in haze; and paper,
- * text, snow, skies and noise, which have none.
+ * Tests which bright regions of drawn images count as lamps: coloured lamps in
+ * three formats, underexposed nights, lamps in front of walls and in haze; and
+ * paper, text, snow, skies and noise, which have none.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -17,13 +17,14 @@ enum { MOST = 64 };
 
 struct settings {
     int width, height;
-    double *light; /* linear, three a pixel */
+    double *light; /* linear light, three values per pixel */
 };
 
 static struct glint_spot spot[MOST];
 static uint32_t seed;
-static int n_before; /* frames that find() shows first, as in a video */
-static int n_video;  /* lamps found in the last of these frames */
+/* number of frames that find() passes before the image, as in a video */
+static int n_before;
+static int n_video; /* number of lamps in the last of these frames */
 
 static struct settings new_settings(int width, int height, double light)
 {
@@ -37,8 +38,8 @@ static struct settings new_settings(int width, int height, double light)
     return s;
 }
 
-/* Adds a lamp at (X, Y) whose face is LIGHT and whose light falls by a factor
- * of e every FALL beyond RADIUS; all lengths are fractions of the width. */
+/* Adds a lamp at (X, Y) with a face of LIGHT, whose light falls by a factor
+ * e per FALL outside RADIUS; all lengths are fractions of the width. */
 static void add_lamp(const struct settings *s, double x, double y,
                      double radius, double fall, const double light[3])
 {
@@ -53,7 +54,7 @@ static void add_lamp(const struct settings *s, double x, double y,
         }
 }
 
-/* Fills a box, given by fractions of the width, with even LIGHT. */
+/* Fills a box, in fractions of the width, with uniform LIGHT. */
 static void fill_box(const struct settings *s, double x0, double y0, double x1,
                      double y1, double light)
 {
@@ -63,7 +64,7 @@ static void fill_box(const struct settings *s, double x0, double y0, double x1,
                 s->light[3 * (j * s->width + i) + c] = light;
 }
 
-static double code_of(double light)
+static double to_code(double light)
 {
     const double held = fmin(fmax(light, 0), 1);
 
@@ -71,44 +72,44 @@ static double code_of(double light)
                                     : 1.055 * pow(held, 1 / 2.4) - 0.055);
 }
 
-static int held(double code)
+static int clamp_code(double code)
 {
     return (int)fmax(0, fmin(255, floor(code + 0.5)));
 }
 
-/* Sets YCC to the codes RGB in full-range BT.601. */
-static void ycc_of(const double rgb[3], double ycc[3])
+/* Converts the codes RGB to full-range BT.601 codes YCC. */
+static void to_ycc(const double rgb[3], double ycc[3])
 {
     ycc[0] = 0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2];
     ycc[1] = 128 + (rgb[2] - ycc[0]) / 1.772;
     ycc[2] = 128 + (rgb[0] - ycc[0]) / 1.402;
 }
 
-static void put(const struct glint_image *image, int x, int y,
-                const double rgb[3])
+static void write_pixel(const struct glint_image *image, int x, int y,
+                        const double rgb[3])
 {
     uint8_t *const row = image->plane[0] + y * image->stride_bytes[0];
     double ycc[3];
 
-    ycc_of(rgb, ycc);
+    to_ycc(rgb, ycc);
     if (image->format == GLINT_RGB24) {
         for (int c = 0; c < 3; c++)
-            row[3 * x + c] = (uint8_t)held(rgb[c]);
+            row[3 * x + c] = (uint8_t)clamp_code(rgb[c]);
     } else if (image->format == GLINT_YUYV) {
-        row[2 * x] = (uint8_t)held(ycc[0]);
-        row[2 * x + 1] = (uint8_t)held(ycc[1 + x % 2]);
+        row[2 * x] = (uint8_t)clamp_code(ycc[0]);
+        row[2 * x + 1] = (uint8_t)clamp_code(ycc[1 + x % 2]);
     } else {
-        row[x] = (uint8_t)held(ycc[0]);
+        row[x] = (uint8_t)clamp_code(ycc[0]);
         for (int i = 1; i < 3; i++)
             image->plane[i][y * image->stride_bytes[i] + x] =
-                (uint8_t)held(ycc[i]);
+                (uint8_t)clamp_code(ycc[i]);
     }
 }
 
-/* Returns how many lamps are found in S as a picture of FORMAT with SIGMA codes
- * of noise. */
-static int find(const struct settings *s, enum glint_pixel_format format,
-                double sigma)
+/* Draws S as an image of FORMAT with noise of SIGMA codes. Returns the
+ * number of lamps found. */
+static int find_lamps(const struct settings *s, enum glint_pixel_format format,
+                      double sigma)
 {
     struct glint_image image = {
         .format = format, .width = s->width, .height = s->height};
@@ -127,8 +128,8 @@ static int find(const struct settings *s, enum glint_pixel_format format,
             double rgb[3];
 
             for (int c = 0; c < 3; c++)
-                rgb[c] = code_of(s->light[3 * (y * s->width + x) + c]) + noise;
-            put(&image, x, y, rgb);
+                rgb[c] = to_code(s->light[3 * (y * s->width + x) + c]) + noise;
+            write_pixel(&image, x, y, rgb);
         }
     glint_lamp_finder_defaults(&cfg, s->width, s->height);
     assert_int_equal(posix_memalign(&mem, 64, glint_lamp_finder_bytes(&cfg)),
@@ -158,14 +159,15 @@ static void assert_at(const struct settings *s, double x, double y)
 static void assert_none(struct settings *s)
 {
     for (double sigma = 0; sigma < 3; sigma += 1.5)
-        assert_int_equal(find(s, GLINT_RGB24, sigma), 0);
+        assert_int_equal(find_lamps(s, GLINT_RGB24, sigma), 0);
     free(s->light);
 }
 
 /* -------------------------------------------------------------------- lamps */
 
-/* A lamp of any colour must be found, and nothing else. Most clip one channel
- * or two, and by luma only the yellow and the white one come near white. */
+/* Checks that a lamp of any colour is found, and nothing else. Most of them
+ * clip one or two channels; only the yellow and the white lamp have a luma
+ * near white. */
 TEST(lamps_of_every_colour)
 {
     static const double colours[][3] = {
@@ -179,14 +181,15 @@ TEST(lamps_of_every_colour)
 
         add_lamp(&s, 0.3, 0.35, 0.015, 0.01, colours[i]);
         for (int f = 0; f < 3; f++) {
-            assert_int_equal(find(&s, formats[f], 1), 1);
+            assert_int_equal(find_lamps(&s, formats[f], 1), 1);
             assert_at(&s, 0.3, 0.35);
         }
         free(s.light);
     }
 }
 
-/* Two lamps of 0.1 to 0.4 of white must be found where nothing clips. */
+/* Checks that two lamps of 0.1 to 0.4 of white are found in an image without
+ * clipping. */
 TEST(underexposed_night)
 {
     static const double colour[3] = {0.25, 0.22, 0.15};
@@ -198,7 +201,7 @@ TEST(underexposed_night)
 
         add_lamp(&s, 0.3, 0.35, 0.02, 0.01, light);
         add_lamp(&s, 0.8, 0.15, 0.02, 0.01, light);
-        assert_int_equal(find(&s, GLINT_RGB24, 1), 2);
+        assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 2);
         assert_at(&s, 0.3, 0.35);
         assert_at(&s, 0.8, 0.15);
         free(s.light);
@@ -211,13 +214,13 @@ TEST(lamp_before_a_bright_wall)
     struct settings s = new_settings(400, 260, 0.35);
 
     add_lamp(&s, 0.4, 0.3, 0.03, 0.02, white);
-    assert_int_equal(find(&s, GLINT_RGB24, 1), 1);
+    assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 1);
     assert_at(&s, 0.4, 0.3);
     free(s.light);
 }
 
-/* The sun must be found where the sky is brighter than the glow of any lamp,
- * and red clips far around it. */
+/* Checks that the sun is found in a sky brighter than the glow of any lamp,
+ * with red clipped far around the sun. */
 TEST(sun_in_haze)
 {
     static const double sun[3] = {3, 3, 3}, haze[3] = {0.8, 0.35, 0.1};
@@ -225,12 +228,13 @@ TEST(sun_in_haze)
 
     add_lamp(&s, 0.5, 0.25, 0.04, 0.02, sun);
     add_lamp(&s, 0.5, 0.25, 0.04, 0.2, haze);
-    assert_int_equal(find(&s, GLINT_RGB24, 1), 1);
+    assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 1);
     assert_at(&s, 0.5, 0.25);
     free(s.light);
 }
 
-/* The same scene must have the same lamps at widths of 320 to 2000 pixels. */
+/* Checks that the same scene has the same lamps at widths of 320 to 2000
+ * pixels. */
 TEST(every_resolution)
 {
     static const double lamp[3] = {4, 3, 1.5};
@@ -241,7 +245,7 @@ TEST(every_resolution)
         add_lamp(&s, 0.2, 0.2, 0.008, 0.006, lamp);
         add_lamp(&s, 0.5, 0.4, 0.012, 0.008, lamp);
         add_lamp(&s, 0.8, 0.3, 0.03, 0.01, lamp);
-        assert_int_equal(find(&s, GLINT_RGB24, 1), 3);
+        assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 3);
         assert_at(&s, 0.2, 0.2);
         assert_at(&s, 0.5, 0.4);
         assert_at(&s, 0.8, 0.3);
@@ -282,8 +286,8 @@ TEST(paper_and_text)
     assert_none(&desk);
 }
 
-/* Draws the eight bars of a test pattern into the first ROWS rows: white, then
- * yellow to black of codes of 75 % (0.52 in linear light). */
+/* Draws the eight bars of a test pattern into the first ROWS rows: white,
+ * then yellow to black at codes of 75 % (0.52 in linear light). */
 static void draw_bars(const struct settings *s, int rows)
 {
     for (int y = 0; y < rows; y++)
@@ -298,8 +302,8 @@ static void draw_bars(const struct settings *s, int rows)
         }
 }
 
-/* The white bar of a test pattern must be no lamp, nor a white box below the
- * bars; a round lamp in place of the box must be one. */
+/* Checks that neither the white bar of a test pattern nor a white box below
+ * the bars is a lamp, but a round lamp in place of the box is. */
 TEST(test_patterns)
 {
     static const double white[3] = {1, 1, 1};
@@ -314,9 +318,9 @@ TEST(test_patterns)
         draw_bars(&lamp, lamp.height / 2);
         fill_box(&box, 0.8, 0.375, 0.85, 0.425, 1);
         add_lamp(&lamp, 0.825, 0.4, 0.025, 0.003, white);
-        assert_int_equal(find(&bars, GLINT_RGB24, 0), 0);
-        assert_int_equal(find(&box, GLINT_RGB24, 0), 0);
-        assert_int_equal(find(&lamp, GLINT_RGB24, 0), 1);
+        assert_int_equal(find_lamps(&bars, GLINT_RGB24, 0), 0);
+        assert_int_equal(find_lamps(&box, GLINT_RGB24, 0), 0);
+        assert_int_equal(find_lamps(&lamp, GLINT_RGB24, 0), 1);
         assert_at(&lamp, 0.825, 0.4);
         free(bars.light);
         free(box.light);
@@ -324,7 +328,7 @@ TEST(test_patterns)
     }
 }
 
-/* Grains of every brightness, many of them white, must give no lamp. */
+/* Checks that grains of every brightness, many of them white, give no lamp. */
 TEST(snow)
 {
     struct settings s = new_settings(600, 400, 0.7);
@@ -337,8 +341,8 @@ TEST(snow)
     assert_none(&s);
 }
 
-/* A sky from blue to white at the horizon, over dark ground, and an even sky
- * must give no lamp. */
+/* Checks that a sky from blue to white at the horizon over dark ground, and
+ * a uniform sky, give no lamp. */
 TEST(skies)
 {
     struct settings s = new_settings(600, 400, 0.03);
@@ -356,21 +360,21 @@ TEST(skies)
     assert_none(&overcast);
 }
 
-/* With the lens cap on, noise of up to 9 codes must give no lamp. */
+/* Checks that noise of up to 9 codes with the lens cap on gives no lamp. */
 TEST(noise_in_the_dark)
 {
     struct settings s = new_settings(600, 400, 0.001);
 
     for (double sigma = 0; sigma < 10; sigma += 3)
-        assert_int_equal(find(&s, GLINT_RGB24, sigma), 0);
+        assert_int_equal(find_lamps(&s, GLINT_RGB24, sigma), 0);
     free(s.light);
 }
 
 /* ----------------------------------------------------------------- company */
 
-/* Returns a candidate of SCORE_Q8 and LEVEL in a box of 4 x 4 pixels at X. It
- * lies within candidates of lower levels at the same X. */
-static struct glint_candidate one_at(int x, int level, int32_t score_q8)
+/* Returns a candidate with score SCORE_Q8 and level LEVEL in a box of 4 x 4
+ * pixels at X. It lies inside candidates of lower levels at the same X. */
+static struct glint_candidate make_candidate(int x, int level, int32_t score_q8)
 {
     return (struct glint_candidate){
         .sum = {.first = x, .x0 = x, .y0 = 0, .x1 = x + 4, .y1 = 4},
@@ -380,7 +384,7 @@ static struct glint_candidate one_at(int x, int level, int32_t score_q8)
 
 enum { ALONE = 40 };
 
-static int32_t least_of(struct glint_candidate *candidate, int n)
+static int32_t find_limit(struct glint_candidate *candidate, int n)
 {
     const struct glint_level level[2] = {{.low = 1}, {.low = 2}};
     const struct glint_score score = {.level = level, .alone_q8 = ALONE};
@@ -392,44 +396,46 @@ static int32_t least_of(struct glint_candidate *candidate, int n)
     return least_q8;
 }
 
-/* Only two sure lamps may lower the limit for others: not one, nor a lamp and
- * its own core, nor one lamp and a faint one. */
+/* Checks that only two sure lamps lower the limit for others, neither one
+ * lamp, nor a lamp and its own core, nor a lamp and a faint one. */
 TEST(company)
 {
-    struct glint_candidate c[4] = {one_at(0, 0, -50), one_at(10, 0, 80),
-                                   one_at(20, 0, -300), one_at(30, 0, -1)};
+    struct glint_candidate c[4] = {
+        make_candidate(0, 0, -50), make_candidate(10, 0, 80),
+        make_candidate(20, 0, -300), make_candidate(30, 0, -1)};
 
-    assert_int_equal(least_of(c, 4), 0);
-    c[3] = one_at(10, 1, 60);
-    assert_int_equal(least_of(c, 4), 0);
-    c[3] = one_at(30, 0, 60);
+    assert_int_equal(find_limit(c, 4), 0);
+    c[3] = make_candidate(10, 1, 60);
+    assert_int_equal(find_limit(c, 4), 0);
+    c[3] = make_candidate(30, 0, 60);
     c[3].faint = 1;
-    assert_int_equal(least_of(c, 4), 0);
+    assert_int_equal(find_limit(c, 4), 0);
     c[3].faint = 0;
-    assert_int_equal(least_of(c, 4), -SCORE_COMPANY);
+    assert_int_equal(find_limit(c, 4), -SCORE_COMPANY);
 }
 
-/* Where no lamp is sure, the best candidate must pass a little below the limit,
- * but not if it is faint, nor the second best, nor one beside a sure lamp. */
+/* Checks that if no lamp is sure, the best candidate passes slightly below
+ * the limit, unless it is faint; the second best does not, nor one next to a
+ * sure lamp. */
 TEST(best_one_alone)
 {
     struct glint_candidate c[4] = {
-        one_at(0, 0, -300), one_at(10, 0, -ALONE - 1), one_at(20, 0, -ALONE),
-        one_at(30, 0, -ALONE + 1)};
+        make_candidate(0, 0, -300), make_candidate(10, 0, -ALONE - 1),
+        make_candidate(20, 0, -ALONE), make_candidate(30, 0, -ALONE + 1)};
 
-    assert_int_equal(least_of(c, 2), 0);
-    assert_int_equal(least_of(c, 3), -ALONE);
-    assert_int_equal(least_of(c, 4), -ALONE + 1);
+    assert_int_equal(find_limit(c, 2), 0);
+    assert_int_equal(find_limit(c, 3), -ALONE);
+    assert_int_equal(find_limit(c, 4), -ALONE + 1);
     c[3].faint = 1;
-    assert_int_equal(least_of(c, 4), -ALONE);
-    c[3] = one_at(30, 0, 0);
-    assert_int_equal(least_of(c, 4), 0);
-    assert_int_equal(least_of(c, 0), 0);
+    assert_int_equal(find_limit(c, 4), -ALONE);
+    c[3] = make_candidate(30, 0, 0);
+    assert_int_equal(find_limit(c, 4), 0);
+    assert_int_equal(find_limit(c, 0), 0);
 }
 
-/* As the wall behind a lamp becomes brighter, a single picture must show the
- * lamp longer than a video does; a video before that picture must not
- * matter. */
+/* Checks, while the wall behind a lamp becomes brighter, that a still image
+ * shows the lamp longer than a video, and that a video before the image does
+ * not matter. */
 TEST(video_needs_more)
 {
     static const double white[3] = {4, 4, 4};
@@ -440,9 +446,9 @@ TEST(video_needs_more)
 
         add_lamp(&s, 0.4, 0.3, 0.03, 0.02, white);
         n_before = 0;
-        n_alone += find(&s, GLINT_RGB24, 0);
+        n_alone += find_lamps(&s, GLINT_RGB24, 0);
         n_before = 1;
-        n_after += find(&s, GLINT_RGB24, 0);
+        n_after += find_lamps(&s, GLINT_RGB24, 0);
         n_of_video += n_video;
         free(s.light);
     }
@@ -451,8 +457,8 @@ TEST(video_needs_more)
     assert_in_range(n_of_video, 1, n_alone - 1);
 }
 
-/* A region whose measures are all those of a lamp but one must be doubted for
- * that one. */
+/* Checks that a region which differs from a lamp in a single measure is
+ * doubted for that measure. */
 TEST(doubt)
 {
     static const struct {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The checks of the model file, rule by rule.
+ * Tests the checks of a model file, one by one.
  */
 #include <stdint.h>
 #include <stdio.h>
@@ -12,8 +12,8 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* Returns why a model is refused; NULL: it is accepted. */
-static const char *reason_of(const void *data, size_t bytes)
+/* Opens the model DATA. Returns the error, or NULL if it is valid. */
+static const char *open_error(const void *data, size_t bytes)
 {
     struct glint_lens lens = {0};
     const char *reason = NULL;
@@ -24,7 +24,7 @@ static const char *reason_of(const void *data, size_t bytes)
         return NULL;
     }
     assert_non_null(reason);
-    assert_null(lens.header); /* left alone */
+    assert_null(lens.header); /* unchanged after an error */
     return reason;
 }
 
@@ -47,7 +47,8 @@ TEST(accepted)
 
 /* ------------------------------------------------------------------- damage */
 
-/* Each cut copy has memory of exactly its size, so that an overrun shows. */
+/* Checks truncated copies; each has memory of exactly its size, so that an
+ * overread is detected. */
 TEST(truncated)
 {
     struct model_image m = model_auto();
@@ -58,10 +59,10 @@ TEST(truncated)
             bytes < 8 ? "this is not a glint model" : "the model is truncated";
 
         memcpy(copy, m.data, bytes);
-        assert_string_equal(reason_of(copy, bytes), expected);
+        assert_string_equal(open_error(copy, bytes), expected);
         free(copy);
     }
-    assert_string_equal(reason_of(m.data, m.bytes + 4),
+    assert_string_equal(open_error(m.data, m.bytes + 4),
                         "the model continues after its end");
     free(m.data);
 }
@@ -70,10 +71,10 @@ static void check_flips(struct model_image m)
 {
     for (size_t bit = 0; bit < 8 * (size_t)m.bytes; bit++) {
         m.data[bit / 8] ^= (unsigned char)(1 << bit % 8);
-        assert_non_null(reason_of(m.data, m.bytes));
+        assert_non_null(open_error(m.data, m.bytes));
         m.data[bit / 8] ^= (unsigned char)(1 << bit % 8);
     }
-    assert_null(reason_of(m.data, m.bytes));
+    assert_null(open_error(m.data, m.bytes));
     free(m.data);
 }
 
@@ -95,23 +96,23 @@ TEST(not_a_model)
     bytes = fread(text, 1, sizeof text, file);
     fclose(file);
     memcpy(copy, text, bytes);
-    assert_string_equal(reason_of(copy, bytes), "this is not a glint model");
+    assert_string_equal(open_error(copy, bytes), "this is no glint model");
     free(copy);
     memmove(m.data + 2, m.data, m.bytes);
-    assert_string_equal(reason_of(m.data + 2, m.bytes),
+    assert_string_equal(open_error(m.data + 2, m.bytes),
                         "the model is not aligned to 4 bytes");
     memmove(m.data, m.data + 2, m.bytes);
     word[1] = GLINT_MODEL_VERSION + 1;
-    assert_string_equal(reason_of(m.data, m.bytes),
+    assert_string_equal(open_error(m.data, m.bytes),
                         "the model was made by a newer glint");
-    assert_string_equal(reason_of(m.data, 8),
+    assert_string_equal(open_error(m.data, 8),
                         "the model was made by a newer glint");
     word[1] = GLINT_MODEL_VERSION - 1;
-    assert_string_equal(reason_of(m.data, m.bytes),
+    assert_string_equal(open_error(m.data, m.bytes),
                         "the model was made by an older glint: bake it again");
     word[1] = 0;
-    assert_string_equal(reason_of(m.data, m.bytes),
-                        "the model's version is unknown");
+    assert_string_equal(open_error(m.data, m.bytes),
+                        "no glint ever made models of this version");
     free(m.data);
 }
 
@@ -119,8 +120,8 @@ TEST(not_a_model)
 
 enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX };
 
-/* Bytes that are changed, and the reason that must be reported; NULL: nothing.
- * Outputs are those of system 0, terms and coefficients those of output 0. */
+/* Bytes to change, and the error expected; NULL: none. Outputs are those of
+ * system 0, terms and coefficients those of output 0. */
 struct rule {
     enum table table;
     size_t at, bytes;
@@ -222,7 +223,7 @@ static const struct rule auto_rules[] = {
     {GHOST_(0, n_systems), 5, no_systems},
     {GHOST_(0, first_system), UINT32_MAX, no_systems},
     {GHOST_(2, n_systems), UINT32_MAX, no_systems},
-    {GHOST_(1, first_system), UINT32_MAX, NULL}, /* Ghost 1 has no systems. */
+    {GHOST_(1, first_system), UINT32_MAX, NULL}, /* ghost 1 has no systems */
     {GHOST_(2, first_system), 1, shared},
     {GHOST_(0, n_systems), 1, NULL},
     {SYSTEM_(0, sine_lo_q30), -1, bad_angles},
@@ -306,7 +307,7 @@ static const struct rule auto_rules[] = {
 
 /* clang-format on */
 
-static size_t place_of(const struct model_image *m, enum table t)
+static size_t find_offset(const struct model_image *m, enum table t)
 {
     const struct glint_model_header *h = model_header(m);
     const struct glint_model_system *s = (const void *)(m->data + h->system_at);
@@ -322,9 +323,9 @@ static void check_rule(struct model_image m, const struct rule *r,
 {
     const char *reason;
 
-    memcpy(m.data + place_of(&m, r->table) + r->at, &r->value, r->bytes);
+    memcpy(m.data + find_offset(&m, r->table) + r->at, &r->value, r->bytes);
     model_seal(&m);
-    reason = reason_of(m.data, m.bytes);
+    reason = open_error(m.data, m.bytes);
     if (reason != r->reason &&
         (!reason || !r->reason || strcmp(reason, r->reason) != 0))
         fail_msg("rule %d: '%s', not '%s'", (int)number,
@@ -345,7 +346,7 @@ TEST(endless_name)
 
     memset(model_header(&m)->name, 'x', 64);
     model_seal(&m);
-    assert_string_equal(reason_of(m.data, m.bytes), "the name does not end");
+    assert_string_equal(open_error(m.data, m.bytes), "the name does not end");
     free(m.data);
 }
 
@@ -355,11 +356,12 @@ TEST(no_ghosts)
 
     model_header(&m)->n_ghosts = model_header(&m)->n_systems = 0;
     model_seal(&m);
-    assert_null(reason_of(m.data, m.bytes));
+    assert_null(open_error(m.data, m.bytes));
     free(m.data);
 }
 
-/* Many systems with the same tables would take quadratic time to check. */
+/* Checks that systems which share too many tables are rejected, as checking
+ * them would take quadratic time. */
 TEST(shared_tables)
 {
     enum { N = 1000 };
@@ -376,7 +378,7 @@ TEST(shared_tables)
         s[k].sine_hi_q30 = 1000 * (k + 1);
     }
     model_end(&m, &ghost, 1, s, N);
-    assert_string_equal(reason_of(m.data, m.bytes),
+    assert_string_equal(open_error(m.data, m.bytes),
                         "systems share too many tables");
     free(m.data);
 }
@@ -400,8 +402,8 @@ static void check_corpus(const char *path, struct model_image m)
     free(m.data);
 }
 
-/* Models that the fuzzer starts from must have today's layout;
- * GLINT_GOLDEN_UPDATE=1 writes them again. */
+/* Checks that the models in the fuzzer's corpus have the present layout;
+ * GLINT_GOLDEN_UPDATE=1 rewrites them. */
 TEST(corpus)
 {
     check_corpus("tests/fuzz/corpus/model/auto", model_auto());

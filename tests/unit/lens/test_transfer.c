@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rays through models, and the vertices they become: integers that are worked
- * out by hand.
+ * Tests the evaluation of a model's polynomials for rays, and of vertices,
+ * against integers computed by hand.
  */
 #include <stdint.h>
 #include <stdlib.h>
@@ -18,8 +18,8 @@
 
 enum { ONE = MODEL_ONE_Q30 };
 
-static struct glint_outputs ray(const struct glint_transfer *t, int32_t u,
-                                int32_t v)
+static struct glint_outputs trace_ray(const struct glint_transfer *t, int32_t u,
+                                      int32_t v)
 {
     struct glint_outputs out;
 
@@ -27,7 +27,8 @@ static struct glint_outputs ray(const struct glint_transfer *t, int32_t u,
     return out;
 }
 
-/* Rays of the first range of angles: s is -1 .. 1 over sines of 0 .. 1/4. */
+/* Checks rays of the first range of angles: s is -1 .. 1 over sines of 0 ..
+ * 1/4. */
 TEST(rays)
 {
     struct model_image m = model_auto();
@@ -38,40 +39,41 @@ TEST(rays)
     /* s = -1, w = -1: sensor x is 0.25 + 0.5 u + 0.125 v^2 */
     assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24),
                      1);
-    out = ray(&t, 0, 0);
+    out = trace_ray(&t, 0, 0);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 1 << 26);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 0);
     assert_int_equal(out.at[GLINT_OUT_ENERGY], 1 << 27); /* 0.5 - 0.25 */
     assert_int_equal(out.at[GLINT_OUT_BARREL_0], 1 << 27);
     assert_int_equal(out.at[GLINT_OUT_BARREL_1], 0);
     assert_int_equal(out.at[GLINT_OUT_RADIUS], 0);
-    out = ray(&t, ONE, ONE);
+    out = trace_ray(&t, ONE, ONE);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 234881024); /* 0.875 mm */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 201326592); /* 0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], 268435456);   /* 0.5 */
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 201326592);   /* 0.375 */
-    assert_int_equal(out.at[GLINT_OUT_BARREL_0], 268435456); /* 1: at the rim */
-    out = ray(&t, -ONE, ONE / 2);
+    /* 1: at the rim of the barrel */
+    assert_int_equal(out.at[GLINT_OUT_BARREL_0], 268435456);
+    out = trace_ray(&t, -ONE, ONE / 2);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], -58720256); /* -0.21875 mm */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 33554432);  /* 0.125 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], -268435456);
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 125829120); /* 0.234375 */
     /* s = 0, w = 1 */
     glint_transfer_init(&t, &lens, 0, ONE / 8, MODEL_WAVE_HI_Q24);
-    out = ray(&t, ONE, -ONE);
+    out = trace_ray(&t, ONE, -ONE);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592);  /* 0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -201326592); /* -0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_ENERGY], 3 << 27);
     free(m.data);
 }
 
-/* An energy is its polynomial, the square of it or the square of the square,
- * and counts 2^head times: half of the most must give a half, a quarter or a
- * sixteenth, and what is below 0 must give 0. */
+/* Checks the decoding of energies. An energy is the polynomial, its square
+ * or its fourth power, times 2^head: half of the max polynomial must give
+ * 1/2, 1/4 or 1/16, and negative values 0. */
 TEST(roots)
 {
     const int32_t half = (1 << 28) / 2; /* half of 2^(29 - head), head 1 */
-    /* The polynomial is 2^-8, so that energies are 2^-8, 2^-16 and 2^-32. */
+    /* The polynomial is 2^-8, so energies are 2^-8, 2^-16 and 2^-32. */
     static const int scale[3] = {-8 - 28, -16 - 27, -32 - 25};
 
     for (int roots = 0; roots <= 2; roots++)
@@ -94,16 +96,16 @@ TEST(roots)
             lens = model_open(&m);
             assert_int_equal(
                 glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24), 1);
-            assert_int_equal(ray(&t, 0, 0).at[GLINT_OUT_ENERGY],
+            assert_int_equal(trace_ray(&t, 0, 0).at[GLINT_OUT_ENERGY],
                              sign < 0 ? 0 : (1 << 29) >> (1 << roots));
             assert_int_equal(t.exponent[GLINT_OUT_ENERGY], scale[roots]);
             free(m.data);
         }
 }
 
-/* Stores the last coefficients of output O as int16, in the same place. */
-static void narrow(struct model_image *m, struct glint_model_output *o, int n,
-                   int shift)
+/* Converts the last N coefficients of output O to int16, in the same place. */
+static void convert_to_16bit(struct model_image *m,
+                             struct glint_model_output *o, int n, int shift)
 {
     int32_t *const coef = (void *)(m->data + o->coef_at);
     int32_t last[2];
@@ -120,8 +122,8 @@ static void narrow(struct model_image *m, struct glint_model_output *o, int n,
     o->narrow_shift = (uint8_t)shift;
 }
 
-/* Coefficients of 16 bits must give the rays of the same ones of 32. */
-TEST(narrow)
+/* Checks that 16-bit coefficients give the same rays as 32-bit ones. */
+TEST(convert_to_16bit)
 {
     struct model_image wide = model_auto(), m = model_auto();
     const struct glint_lens lens = model_open(&wide);
@@ -134,7 +136,8 @@ TEST(narrow)
                                                   lens.system->output_at) +
             k;
 
-        narrow(&m, o, o->n_terms > 1 ? 2 : 1, o->n_terms > 2 ? 13 : 14);
+        convert_to_16bit(&m, o, o->n_terms > 1 ? 2 : 1,
+                         o->n_terms > 2 ? 13 : 14);
     }
     model_seal(&m);
     narrowed = model_open(&m);
@@ -142,8 +145,10 @@ TEST(narrow)
     glint_transfer_init(&t[1], &narrowed, 0, ONE / 7,
                         MODEL_WAVE_LO_Q24 + 12345);
     for (int k = -3; k <= 3; k++) {
-        const struct glint_outputs a = ray(&t[0], ONE / 3 * k, ONE / 5 * k);
-        const struct glint_outputs b = ray(&t[1], ONE / 3 * k, ONE / 5 * k);
+        const struct glint_outputs a =
+            trace_ray(&t[0], ONE / 3 * k, ONE / 5 * k);
+        const struct glint_outputs b =
+            trace_ray(&t[1], ONE / 3 * k, ONE / 5 * k);
 
         for (int i = 0; i < GLINT_OUT_KINDS; i++)
             if (t[0].outputs >> i & 1)
@@ -153,7 +158,8 @@ TEST(narrow)
     free(m.data);
 }
 
-/* A transfer must take system and box by the ranges of angles and bands. */
+/* Checks that a transfer uses the system and box of the range of angles and
+ * band of wavelengths. */
 TEST(init)
 {
     struct model_image m = model_auto();
@@ -181,8 +187,8 @@ TEST(init)
     assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 2, middle), 1);
     assert_ptr_equal(t.system, &lens.system[1]);
     /* s = 1, w = 0, coefficients halved */
-    assert_int_equal(ray(&t, ONE, ONE).at[GLINT_OUT_SENSOR_X], 5 << 24);
-    assert_int_equal(ray(&t, 0, 0).at[GLINT_OUT_ENERGY], 1 << 27);
+    assert_int_equal(trace_ray(&t, ONE, ONE).at[GLINT_OUT_SENSOR_X], 5 << 24);
+    assert_int_equal(trace_ray(&t, 0, 0).at[GLINT_OUT_ENERGY], 1 << 27);
     assert_int_equal(t.box[0], 3 << 19); /* 1.5 mm */
     assert_int_equal(t.box[1], 3 << 20);
     assert_int_equal(t.box[2], 3 << 20);
@@ -190,8 +196,9 @@ TEST(init)
     free(m.data);
 }
 
-/* The half width, (s - 1/32)^2 - 1/2048, is above 0 at all places that the
- * check of a model looks at, and below 0 between two. */
+/* Checks a half width of (s - 1/32)^2 - 1/2048, which is positive at all
+ * positions that the check of a model tests, and negative between two of
+ * them. */
 TEST(half_size_below_0)
 {
     struct model_image m = model_auto();
@@ -217,8 +224,8 @@ TEST(half_size_below_0)
     free(m.data);
 }
 
-/* Sets coefficients of the first system so that the sums of magnitudes are the
- * largest allowed. SEED gives sizes and signs. */
+/* Sets the coefficients of the first system to random values with the
+ * largest sums of magnitudes allowed. SEED gives sizes and signs. */
 static void fill_up(struct model_image *m, uint32_t *seed)
 {
     const struct glint_model_header *h = model_header(m);
@@ -241,7 +248,8 @@ static void fill_up(struct model_image *m, uint32_t *seed)
     model_seal(m);
 }
 
-/* No output may leave its range; CONFIG=qcheck looks at every step. */
+/* Checks that no output leaves its range; CONFIG=qcheck checks every step as
+ * well. */
 TEST(extremes)
 {
     struct model_image m = model_auto();
@@ -261,7 +269,7 @@ TEST(extremes)
         lens = model_open(&m);
         assert_int_equal(glint_transfer_init(&t, &lens, 0, sine_q30, wave_q24),
                          1);
-        out = ray(&t, u_q30, v_q30);
+        out = trace_ray(&t, u_q30, v_q30);
         for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
             assert_in_range((int64_t)out.at[kind] + 2 * (int64_t)ONE,
                             (uint64_t)ONE - 8, 3 * (uint64_t)ONE + 8);
@@ -271,8 +279,9 @@ TEST(extremes)
 
 /* ----------------------------------------------------------------- vertices */
 
-/* Returns a place of 64 pixels a millimetre about (1000, 500). */
-static struct glint_place upright(void)
+/* Returns a place at 64 pixels per mm with its origin at pixel (1000, 500),
+ * without rotation. */
+static struct glint_place make_place(void)
 {
     const struct glint_place place = {.cos_q30 = ONE,
                                       .pixels_per_mm = {1 << 30, -24},
@@ -286,7 +295,7 @@ TEST(grid)
 {
     struct model_image m = model_auto();
     const struct glint_lens lens = model_open(&m);
-    struct glint_place place = upright();
+    struct glint_place place = make_place();
     static struct glint_transfer t;
     struct glint_vertex v[9], turned[9];
 
@@ -300,10 +309,10 @@ TEST(grid)
     assert_int_equal(v[8].barrel_q16[0], 65536);
     assert_int_equal(v[8].barrel_q16[1], 0);
     assert_int_equal(v[8].energy_q16, 49152);
-    /* u = -1, v = 1: sensor (-0.125, 0.25) mm; v rises from row to row */
+    /* u = -1, v = 1: sensor (-0.125, 0.25) mm; v increases from row to row */
     assert_int_equal(v[6].x_q8, (1000 - 8) << 8);
     assert_int_equal(v[6].y_q8, (500 - 16) << 8);
-    /* The first row is the last one mirrored in the plane of the light. */
+    /* The first row is the last one mirrored at the plane of the light. */
     for (int i = 0; i < 3; i++) {
         assert_int_equal(v[i].x_q8, v[6 + i].x_q8);
         assert_int_equal(v[i].y_q8 - (500 << 8), (500 << 8) - v[6 + i].y_q8);
@@ -324,15 +333,15 @@ TEST(grid)
     free(m.data);
 }
 
-/* Rows of an annular grid lie between the inner rim and the edge of the box, on
- * both sides of the middle. Their vertices must be those of a finer grid of the
- * whole box. */
+/* Checks that the rows of an annular grid lie between the inner rim and the
+ * edge of the box, on both sides of the middle, and that their vertices
+ * equal those of a finer grid of the whole box. */
 TEST(hollow_grid)
 {
     enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };
     struct model_image m = model_auto();
     const struct glint_lens lens = model_open(&m);
-    const struct glint_place place = upright();
+    const struct glint_place place = make_place();
     static struct glint_transfer t;
     static struct glint_vertex whole[NODES][NODES], shell[SHELL + 1][SHELL + 1];
 
@@ -362,15 +371,16 @@ TEST(lost)
 {
     struct model_image m = model_auto();
     const struct glint_lens lens = model_open(&m);
-    struct glint_place place = upright();
+    struct glint_place place = make_place();
     static struct glint_transfer t;
     struct glint_vertex v[4];
 
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
-    place.pixels_per_mm.exponent = -10; /* 2^20 pixels a millimetre */
+    place.pixels_per_mm.exponent = -10; /* 2^20 pixels per mm */
     glint_transfer_grid(&t, &place, 1, v);
     assert_true(v[1].energy_q16 < 0 && v[3].energy_q16 < 0);
-    assert_true(v[0].energy_q16 > 0 && v[2].energy_q16 > 0); /* 0.25 mm off */
+    /* 0.25 mm off the centre */
+    assert_true(v[0].energy_q16 > 0 && v[2].energy_q16 > 0);
     for (int e = -200; e <= 200; e++) {
         place.pixels_per_mm.exponent = e;
         glint_transfer_grid(&t, &place, 1, v);

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * The mix of two positions of a zoom, of models whose polynomials can be mixed
- * by hand: barrels find their like, others open towards the side that lacks
- * them, and energies are in proportion in the coordinates of their roots. */
+ * Tests the interpolation of two positions of a zoom lens, with models whose
+ * polynomials can be interpolated by hand: barrels are matched to similar ones,
+ * others open gradually towards the position that lacks them, and energies are
+ * interpolated in the coordinates of their roots.
+ */
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -17,7 +19,8 @@ enum { ONE = MODEL_ONE_Q30, MOST = 3, EXPONENT = -28 };
 
 #define P(u, v) MODEL_POWER(u, v, 0, 0)
 
-/* A barrel: its value in the middle, and what it gains with u and v^2. */
+/* A barrel's polynomial: its value in the middle, and the coefficients of u
+ * and v^2. */
 struct barrel {
     double middle, u, v2;
 };
@@ -27,24 +30,26 @@ static int32_t q28(double x)
     return (int32_t)lrint(ldexp(x, 28));
 }
 
-/* Heads of both positions, and roots, of energies. */
+/* Heads (scale bits) of the energies at both positions, and their number of
+ * roots. */
 static uint8_t head[2], roots;
 
-/* Where boxes lie, in units of 2^-20. */
+/* centre of the boxes, units of 2^-20 */
 static int32_t box_middle;
 
-/* Where rays pass the stop: u 0 and 1, v 1. */
+/* Polynomial of the ray's position in the stop: constant, coefficients of u
+ * and v. */
 struct stop {
     double middle, u, v;
 };
 static const struct stop usual = {0, 0.5, 0.5};
 static struct stop stop = {0, 0.5, 0.5};
 
-/* Returns a system with N barrels; sensor x is SENSOR u, mm, and energy is
- * ENERGY, squared if there are roots. */
-static struct glint_model_system put(struct model_image *m, double sensor,
-                                     double energy, uint8_t head_bits,
-                                     const struct barrel *barrel, uint32_t n)
+/* Makes a system with N barrels; sensor x is SENSOR u, mm; energy is ENERGY,
+ * squared if there are roots. */
+static struct glint_model_system
+make_system(struct model_image *m, double sensor, double energy,
+            uint8_t head_bits, const struct barrel *barrel, uint32_t n)
 {
     const int32_t box[3] = {box_middle, 1 << 22, 1 << 22};
     struct model_polynomial p[5 + MOST] = {
@@ -79,7 +84,7 @@ static struct glint_model_system put(struct model_image *m, double sensor,
     return s;
 }
 
-/* Opens a model of that system at M. */
+/* Writes a model with that system to M and opens it. */
 static struct glint_lens open_position(struct model_image *m, double sensor,
                                        double energy, uint8_t head_bits,
                                        const struct barrel *barrel, uint32_t n)
@@ -88,16 +93,16 @@ static struct glint_lens open_position(struct model_image *m, double sensor,
     struct glint_model_system s;
 
     model_begin(m, GLINT_BASIS_AUTO, "position");
-    s = put(m, sensor, energy, head_bits, barrel, n);
+    s = make_system(m, sensor, energy, head_bits, barrel, n);
     model_end(m, &ghost, 1, &s, 1);
     return model_open(m);
 }
 
 static struct glint_transfer mixed;
 
-/* Mixes models A and B at PART. */
-static void mix_models(const struct glint_lens *a, const struct glint_lens *b,
-                       double part)
+/* Interpolates models A and B at the fraction PART of the way. */
+static void interpolate_models(const struct glint_lens *a,
+                               const struct glint_lens *b, double part)
 {
     assert_int_equal(glint_transfer_init(&mixed, a, 0, 0, MODEL_WAVE_LO_Q24),
                      1);
@@ -106,9 +111,10 @@ static void mix_models(const struct glint_lens *a, const struct glint_lens *b,
                      1);
 }
 
-/* Mixes A and B, of N_A and N_B barrels, at PART. */
-static void mix(const struct barrel *a, uint32_t n_a, const struct barrel *b,
-                uint32_t n_b, double part)
+/* Interpolates between the barrels A[N_A] and B[N_B] at PART. */
+static void interpolate_barrels(const struct barrel *a, uint32_t n_a,
+                                const struct barrel *b, uint32_t n_b,
+                                double part)
 {
     struct model_image at[2];
     const struct glint_lens first =
@@ -116,7 +122,7 @@ static void mix(const struct barrel *a, uint32_t n_a, const struct barrel *b,
     const struct glint_lens second =
         open_position(&at[1], 0.25, 0.5, head[1], b, n_b);
 
-    mix_models(&first, &second, part);
+    interpolate_models(&first, &second, part);
     free(at[0].data);
     free(at[1].data);
 }
@@ -130,8 +136,8 @@ static double output_at(int kind, double u, double v)
     return ldexp(out.at[kind], mixed.exponent[kind]);
 }
 
-/* Asserts that output KIND is X at U and V. */
-static void is(int kind, double u, double v, double x)
+/* Checks that output KIND is X at (U, V). */
+static void check_output(int kind, double u, double v, double x)
 {
     const double got = output_at(kind, u, v);
 
@@ -139,12 +145,12 @@ static void is(int kind, double u, double v, double x)
         fail_msg("output %d at %g, %g is %.9f, not %.9f", kind, u, v, got, x);
 }
 
-static void is_barrel(int kind, struct barrel b)
+static void check_barrel(int kind, struct barrel b)
 {
     assert_true(mixed.outputs >> (GLINT_OUT_BARREL_0 + kind) & 1);
-    is(GLINT_OUT_BARREL_0 + kind, 0, 0, b.middle);
-    is(GLINT_OUT_BARREL_0 + kind, 1, 0, b.middle + b.u);
-    is(GLINT_OUT_BARREL_0 + kind, 0, 1, b.middle + b.v2);
+    check_output(GLINT_OUT_BARREL_0 + kind, 0, 0, b.middle);
+    check_output(GLINT_OUT_BARREL_0 + kind, 1, 0, b.middle + b.u);
+    check_output(GLINT_OUT_BARREL_0 + kind, 0, 1, b.middle + b.v2);
 }
 
 static const struct barrel right = {0.3, 0.5, 0.1}, left = {0.3, -0.5, 0.1};
@@ -157,14 +163,14 @@ TEST(outputs_are_in_proportion)
     for (int k = 1; k < 4; k++) {
         const double part = 0.25 * k;
 
-        mix(NULL, 0, NULL, 0, part);
-        is(GLINT_OUT_SENSOR_X, 1, 0.5, 0.5 - 0.25 * part);
-        is(GLINT_OUT_SENSOR_Y, 1, 0.5, 0.25);
-        is(GLINT_OUT_ENERGY, 1, 0.5, 0.25 + 0.25 * part);
+        interpolate_barrels(NULL, 0, NULL, 0, part);
+        check_output(GLINT_OUT_SENSOR_X, 1, 0.5, 0.5 - 0.25 * part);
+        check_output(GLINT_OUT_SENSOR_Y, 1, 0.5, 0.25);
+        check_output(GLINT_OUT_ENERGY, 1, 0.5, 0.25 + 0.25 * part);
     }
 }
 
-/* Barrels go with their like, in whatever order they stand. */
+/* Checks that each barrel is matched to the most similar one, in any order. */
 TEST(barrels_find_their_like)
 {
     const struct barrel a[] = {right, left};
@@ -172,51 +178,55 @@ TEST(barrels_find_their_like)
     const struct barrel turned[] = {more_left, more_right};
 
     for (int k = 0; k < 2; k++) {
-        mix(a, 2, k ? turned : same, 2, 0.25);
-        is_barrel(0, (struct barrel){0.31, 0.51, 0.1});
-        is_barrel(1, (struct barrel){0.31, -0.52, 0.11});
+        interpolate_barrels(a, 2, k ? turned : same, 2, 0.25);
+        check_barrel(0, (struct barrel){0.31, 0.51, 0.1});
+        check_barrel(1, (struct barrel){0.31, -0.52, 0.11});
         assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 2) & 1);
     }
 }
 
-/* A barrel that the first position lacks is whole from a quarter of the way on,
- * and opens to 1/2 before. */
+/* Checks that a barrel missing at the first position is complete from a
+ * quarter of the way on, and opens to 1/2 before that. */
 TEST(barrels_that_come)
 {
     const struct barrel a[] = {right}, b[] = {more_right, high};
     const struct barrel twice[] = {more_right, more_right};
     const struct barrel other[] = {left};
 
-    mix(a, 1, b, 2, 0.5);
-    is_barrel(0, (struct barrel){0.32, 0.52, 0.1});
-    is_barrel(1, high);
-    mix(a, 1, b, 2, 0.125);
-    is_barrel(1, (struct barrel){0.35, 0, 0.6});
-    mix(a, 1, twice, 2, 0.5);
-    is_barrel(0, (struct barrel){0.32, 0.52, 0.1});
-    is_barrel(1, (struct barrel){0.32, 0.52, 0.1}); /* from behind its like */
-    mix(a, 1, other, 1, 0.5); /* the only one is not like it */
-    is_barrel(0, right);
-    is_barrel(1, left);
+    interpolate_barrels(a, 1, b, 2, 0.5);
+    check_barrel(0, (struct barrel){0.32, 0.52, 0.1});
+    check_barrel(1, high);
+    interpolate_barrels(a, 1, b, 2, 0.125);
+    check_barrel(1, (struct barrel){0.35, 0, 0.6});
+    interpolate_barrels(a, 1, twice, 2, 0.5);
+    check_barrel(0, (struct barrel){0.32, 0.52, 0.1});
+    /* starts as the most similar barrel */
+    check_barrel(1, (struct barrel){0.32, 0.52, 0.1});
+    interpolate_barrels(a, 1, other, 1,
+                        0.5); /* the only other barrel is not similar */
+    check_barrel(0, right);
+    check_barrel(1, left);
 }
 
-/* One that the second lacks opens behind three quarters of the way. */
+/* Checks that a barrel missing at the second position opens after three
+ * quarters of the way. */
 TEST(barrels_that_go)
 {
     const struct barrel a[] = {high, right}, b[] = {more_right};
 
-    mix(a, 2, b, 1, 0.5);
-    is_barrel(0, high);
-    is_barrel(1, (struct barrel){0.32, 0.52, 0.1});
-    mix(a, 2, b, 1, 0.875);
-    is_barrel(0, (struct barrel){0.35, 0, 0.6});
+    interpolate_barrels(a, 2, b, 1, 0.5);
+    check_barrel(0, high);
+    check_barrel(1, (struct barrel){0.32, 0.52, 0.1});
+    interpolate_barrels(a, 2, b, 1, 0.875);
+    check_barrel(0, (struct barrel){0.35, 0, 0.6});
 }
 
-/* Mixes a position without barrels, whose rays pass the stop as OURS says, and
- * one with barrel B, where THEIRS does, at PART; if TURNED the other way
- * round. */
-static void mix_stops(const struct stop *ours, const struct stop *theirs,
-                      struct barrel b, double part, bool turned)
+/* Interpolates at PART between a position without barrels, whose rays pass
+ * the stop as in OURS, and one with barrel B, whose rays pass it as in
+ * THEIRS; in the opposite order if TURNED. */
+static void interpolate_stops(const struct stop *ours,
+                              const struct stop *theirs, struct barrel b,
+                              double part, bool turned)
 {
     struct model_image at[2];
     struct glint_lens none, one;
@@ -227,61 +237,64 @@ static void mix_stops(const struct stop *ours, const struct stop *theirs,
     one = open_position(&at[1], 0.5, 0.25, 0, &b, 1);
     stop = usual;
     if (turned)
-        mix_models(&one, &none, 1 - part);
+        interpolate_models(&one, &none, 1 - part);
     else
-        mix_models(&none, &one, part);
+        interpolate_models(&none, &one, part);
     free(at[0].data);
     free(at[1].data);
 }
 
-static void stays(struct stop ours, struct stop theirs, struct barrel b,
-                  struct barrel expected)
+static void check_clipping(struct stop ours, struct stop theirs,
+                           struct barrel b, struct barrel expected)
 {
     for (int k = 0; k < 4; k++) {
-        if (k == 2) { /* the stop may be upside down */
+        if (k == 2) { /* the stop may be inverted */
             ours = (struct stop){-ours.middle, -ours.u, -ours.v};
             theirs = (struct stop){-theirs.middle, -theirs.u, -theirs.v};
         }
-        mix_stops(&ours, &theirs, b, 0.5, k & 1);
-        is_barrel(0, expected);
+        interpolate_stops(&ours, &theirs, b, 0.5, k & 1);
+        check_barrel(0, expected);
     }
 }
 
-/* A barrel that one position lacks cuts of the stop what it cut at the other,
- * or of the box, if that is less, or the stop moves by more than half a box. */
+/* Checks that a barrel missing at one position clips as much of the stop as
+ * at the other position, or of the box if that is less or the stop moves by
+ * more than half a box. */
 TEST(barrels_stay_in_the_stop)
 {
     const struct stop wide = {-0.1, 0.8, 0.8}, aside = {0.3, 0.5, 0.5};
     const struct barrel r = {0.9, 0.5, 0}, l = {0.9, -0.5, 0};
     const struct barrel up = {0.4, 0, 0.5};
 
-    stays(usual, wide, r, (struct barrel){0.93125, 0.40625, 0});
-    stays(wide, usual, r, r);
-    stays(wide, usual, l, l);
-    stays(aside, usual, r, r);
-    stays(aside, usual, l, (struct barrel){0.75, -0.5, 0});
-    stays(usual, wide, up, (struct barrel){0.4, 0, 0.3125});
-    stays(wide, usual, up, up);
-    stays(usual, (struct stop){0, 0, 0}, l, l);
-    stays((struct stop){0, -0.2, 0.5}, (struct stop){0, 1.6, 0.5}, r, r);
+    check_clipping(usual, wide, r, (struct barrel){0.93125, 0.40625, 0});
+    check_clipping(wide, usual, r, r);
+    check_clipping(wide, usual, l, l);
+    check_clipping(aside, usual, r, r);
+    check_clipping(aside, usual, l, (struct barrel){0.75, -0.5, 0});
+    check_clipping(usual, wide, up, (struct barrel){0.4, 0, 0.3125});
+    check_clipping(wide, usual, up, up);
+    check_clipping(usual, (struct stop){0, 0, 0}, l, l);
+    check_clipping((struct stop){0, -0.2, 0.5}, (struct stop){0, 1.6, 0.5}, r,
+                   r);
 }
 
-/* The two that differ least go together, whichever comes first; what is left
- * over comes out from behind its like. */
+/* Checks that the two most similar barrels are matched, in either order, and
+ * that a remaining one starts as the most similar barrel. */
 TEST(barrels_find_the_nearest)
 {
     const struct barrel one[] = {right};
     const struct barrel two[] = {{0.3, 0.5, 0.5}, more_right};
 
-    mix(one, 1, two, 2, 0.25);
-    is_barrel(0, (struct barrel){0.31, 0.51, 0.1});
-    is_barrel(1, (struct barrel){0.3, 0.5, 0.2});
-    mix(two, 2, one, 1, 0.25);
-    is_barrel(0, (struct barrel){0.3, 0.5, 0.4});
-    is_barrel(1, (struct barrel){0.33, 0.53, 0.1});
+    interpolate_barrels(one, 1, two, 2, 0.25);
+    check_barrel(0, (struct barrel){0.31, 0.51, 0.1});
+    check_barrel(1, (struct barrel){0.3, 0.5, 0.2});
+    interpolate_barrels(two, 2, one, 1, 0.25);
+    check_barrel(0, (struct barrel){0.3, 0.5, 0.4});
+    check_barrel(1, (struct barrel){0.33, 0.53, 0.1});
 }
 
-/* The mix has room under the smaller of both heads alone. */
+/* Checks that interpolated energies fit only under the smaller of both
+ * heads. */
 TEST(energies_have_heads_and_roots)
 {
     const double value = 0.375;
@@ -290,19 +303,20 @@ TEST(energies_have_heads_and_roots)
         roots = (uint8_t)(k / 3);
         head[0] = (uint8_t)(k % 3 ? 3 : 0);
         head[1] = (uint8_t)(k % 3 == 1 ? 1 : 2);
-        mix(NULL, 0, NULL, 0, 0.5);
-        is(GLINT_OUT_ENERGY, 0, 0, roots ? value * value : value);
+        interpolate_barrels(NULL, 0, NULL, 0, 0.5);
+        check_output(GLINT_OUT_ENERGY, 0, 0, roots ? value * value : value);
         glint_blend_fade(&mixed, ONE / 4);
-        is(GLINT_OUT_ENERGY, 0, 0, (roots ? value * value : value) / 4);
+        check_output(GLINT_OUT_ENERGY, 0, 0,
+                     (roots ? value * value : value) / 4);
     }
     roots = head[0] = head[1] = 0;
 }
 
 /* -------------------------------------------------------------------- boxes */
 
-/* Opens a model at M whose box lies at MIDDLE, with the half sides HALF and
- * RISE, mm, and whose sensor x and y are those of the place in the pupil times
- * SLOPE. Its barrel is a circle of 4 mm on the pupil. */
+/* Writes a model to M and opens it. Its box is centred at MIDDLE with the
+ * half sides HALF and RISE, mm; its sensor x and y are the pupil coordinates
+ * times SLOPE; its barrel is a circle of 4 mm in the pupil. */
 static struct glint_lens open_box(struct model_image *m, double middle,
                                   double half, double rise, double slope)
 {
@@ -328,15 +342,15 @@ static struct glint_lens open_box(struct model_image *m, double middle,
     struct glint_model_system s;
 
     model_begin(m, GLINT_BASIS_AUTO, "box");
-    s = put(m, 0, 0, 0, NULL, 0);
+    s = make_system(m, 0, 0, 0, NULL, 0);
     s.box_at = model_put(m, box, sizeof box);
     model_outputs(m, &s, p, 6, 0);
     model_end(m, &ghost, 1, &s, 1);
     return model_open(m);
 }
 
-/* Straight lines over places in the pupil are in proportion at each place, even
- * where boxes lie and reach elsewhere. */
+/* Checks that linear functions of the pupil position are interpolated at
+ * each position, even if the boxes differ in position and size. */
 TEST(boxes_move)
 {
     struct model_image at[2];
@@ -346,20 +360,22 @@ TEST(boxes_move)
     for (int k = 1; k < 4; k++) {
         const double part = 0.25 * k, slope = 0.125 - 0.0625 * part;
 
-        mix_models(&a, &b, part);
+        interpolate_models(&a, &b, part);
         for (int i = -2; i <= 2; i++) {
-            is(GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
-               slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
-            is(GLINT_OUT_SENSOR_Y, 0.5 * i, 0.5, slope * 0.5 * (3 + part));
+            check_output(GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
+                         slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
+            check_output(GLINT_OUT_SENSOR_Y, 0.5 * i, 0.5,
+                         slope * 0.5 * (3 + part));
         }
     }
     free(at[0].data);
     free(at[1].data);
 }
 
-/* Asserts that the first barrel is that circle at U and V, which lie at X and Y
- * mm, as nearly as boxes that differ so much can be mixed. */
-static void is_circle(double u, double v, double x, double y)
+/* Checks that the first barrel is that circle at (U, V), which is the pupil
+ * position (X, Y) mm, as closely as boxes this different can be
+ * interpolated. */
+static void check_circle(double u, double v, double x, double y)
 {
     const double got = output_at(GLINT_OUT_BARREL_0, u, v);
 
@@ -367,7 +383,7 @@ static void is_circle(double u, double v, double x, double y)
         fail_msg("the barrel is %g at %g, %g mm", got, x, y);
 }
 
-/* And so it is where it goes along with its box. */
+/* Checks that a barrel moves with its box. */
 TEST(barrels_go_along_with_boxes)
 {
     const struct barrel a = {0.3, 0.5, 0.1}, b = {0.3, 0.9, 0.1};
@@ -375,18 +391,19 @@ TEST(barrels_go_along_with_boxes)
     const struct glint_lens first = open_position(&at[0], 0.5, 0.25, 0, &a, 1);
     struct glint_lens second;
 
-    box_middle = 1 << 22; /* half a box on */
+    box_middle = 1 << 22; /* shifted by half a box */
     second = open_position(&at[1], 0.5, 0.25, 0, &b, 1);
     box_middle = 0;
-    mix_models(&first, &second, 0.5);
+    interpolate_models(&first, &second, 0.5);
     assert_true(mixed.outputs >> GLINT_OUT_BARREL_0 & 1);
     assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
     free(at[0].data);
     free(at[1].data);
 }
 
-/* A barrel is the same where boxes are so different that its polynomials are;
- * that of a box far away is another. */
+/* Checks that barrels with equal shape in the pupil are matched even if
+ * their boxes, and so their polynomials, differ much; one in a distant box
+ * is not. */
 TEST(barrels_are_the_same_on_the_pupil)
 {
     struct model_image at[3];
@@ -394,21 +411,21 @@ TEST(barrels_are_the_same_on_the_pupil)
     const struct glint_lens b = open_box(&at[1], 1, 6.5, 3, 0);
     const struct glint_lens c = open_box(&at[2], 7, 0.5, 2, 0);
 
-    for (int k = 0; k < 2; k++) { /* either may be the first */
-        mix_models(k ? &b : &a, k ? &a : &b, 0.5);
+    for (int k = 0; k < 2; k++) { /* either may come first */
+        interpolate_models(k ? &b : &a, k ? &a : &b, 0.5);
         assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
-        is_circle(1, 0, 0.5 + 5.25, 0);
-        is_circle(-1, 0, 0.5 - 5.25, 0);
-        is_circle(0, 1, 0.5, 2.5);
+        check_circle(1, 0, 0.5 + 5.25, 0);
+        check_circle(-1, 0, 0.5 - 5.25, 0);
+        check_circle(0, 1, 0.5, 2.5);
     }
-    mix_models(&a, &c, 0.5);
+    interpolate_models(&a, &c, 0.5);
     assert_true(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
     for (int k = 0; k < 3; k++)
         free(at[k].data);
 }
 
-/* Opens a model at M of a box that no lens has, in units of 2^EXPONENT, with
- * one barrel. */
+/* Writes a model to M and opens it; its BOX is unrealistic, in units of
+ * 2^EXPONENT, with one barrel. */
 static struct glint_lens open_coarse(struct model_image *m,
                                      const int32_t box[3], int16_t exponent,
                                      const struct model_polynomial *barrel)
@@ -424,7 +441,7 @@ static struct glint_lens open_coarse(struct model_image *m,
 
     p[5] = *barrel;
     model_begin(m, GLINT_BASIS_AUTO, "coarse");
-    s = put(m, 0, 0, 0, NULL, 0);
+    s = make_system(m, 0, 0, 0, NULL, 0);
     s.box_at = model_put(m, box, 3 * sizeof *box);
     s.box_exponent = exponent;
     model_outputs(m, &s, p, 6, 0);
@@ -432,8 +449,8 @@ static struct glint_lens open_coarse(struct model_image *m,
     return model_open(m);
 }
 
-/* The other box is half a unit of this one, so that roundings move its places
- * by more than it is wide; barrels are looked at in it all the same. */
+/* Checks a box half a unit wide, in which rounding moves positions by more
+ * than its width: barrels are still evaluated inside it. */
 TEST(places_stay_in_both_boxes)
 {
     static const int32_t wide[3] = {0, 5, 5};
@@ -450,7 +467,7 @@ TEST(places_stay_in_both_boxes)
     const struct glint_lens first = open_coarse(&at[0], wide, 0, &a);
     const struct glint_lens second = open_coarse(&at[1], narrow, -20, &b);
 
-    mix_models(&first, &second, 0.5);
+    interpolate_models(&first, &second, 0.5);
     assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
     free(at[0].data);
     free(at[1].data);
@@ -460,8 +477,8 @@ TEST(places_stay_in_both_boxes)
 
 enum { WHOLE = 2 };
 
-/* A ghost or a part of one: its pair of surfaces, sensor x = SENSOR u, 0 if it
- * is dark, and the annulus of its box. */
+/* A ghost or a part of its pupil: its pair of surfaces, sensor x = SENSOR u
+ * (0: dark), and the annulus of its box. */
 struct part {
     int i, j;
     double sensor;
@@ -473,7 +490,8 @@ static bool is_dark(double sensor)
     return !(sensor < 0 || sensor > 0);
 }
 
-/* Opens a model of the N ghosts and parts at M; energies are 1/4. */
+/* Writes a model of N ghosts and parts to M and opens it; all energies are
+ * 1/4. */
 static struct glint_lens open_parts(struct model_image *m,
                                     const struct part *part, uint32_t n)
 {
@@ -489,7 +507,7 @@ static struct glint_lens open_parts(struct model_image *m,
                                        n_systems, !is_dark(part[k].sensor)};
         if (is_dark(part[k].sensor))
             continue;
-        s[n_systems] = put(m, part[k].sensor, 0.25, 0, NULL, 0);
+        s[n_systems] = make_system(m, part[k].sensor, 0.25, 0, NULL, 0);
         s[n_systems++].annulus = (uint8_t)part[k].annulus;
     }
     model_end(m, ghost, n, s, n_systems);
@@ -498,14 +516,14 @@ static struct glint_lens open_parts(struct model_image *m,
 
 static struct glint_zoom_lens zoom;
 
-/* What is seen of a ghost at PART of the way: sensor x = SENSOR u and ENERGY,
- * or if SENSOR is 0 that it is dark. */
+/* Expected ghost at the fraction PART of the way: sensor x = SENSOR u and
+ * ENERGY, or dark if SENSOR is 0. */
 struct sight {
     int ghost;
     double part, sensor, energy;
 };
 
-static void shows(const struct sight *sight, size_t n)
+static void check_ghosts(const struct sight *sight, size_t n)
 {
     for (const struct sight *s = sight; s < sight + n; s++) {
         glint_zoom_set(&zoom, (int32_t)ldexp(s->part, 30));
@@ -515,15 +533,15 @@ static void shows(const struct sight *sight, size_t n)
                      is_dark(s->sensor) ? "not dark" : "dark");
         if (is_dark(s->sensor))
             continue;
-        is(GLINT_OUT_SENSOR_X, 1, 0, s->sensor);
-        is(GLINT_OUT_ENERGY, 0, 0, s->energy);
+        check_output(GLINT_OUT_SENSOR_X, 1, 0, s->sensor);
+        check_output(GLINT_OUT_ENERGY, 0, 0, s->energy);
     }
 }
 
-#define SHOWS(sights) shows(sights, sizeof(sights) / sizeof *(sights))
+#define SHOWS(sights) check_ghosts(sights, sizeof(sights) / sizeof *(sights))
 
-/* How far along the way a position is, its ghosts and parts, and where their
- * boxes lie. */
+/* A zoom position: its fraction of the way, its ghosts and parts, and the
+ * centre of their boxes. */
 struct position {
     double along;
     const struct part *part;
@@ -533,8 +551,8 @@ struct position {
 
 enum { MOST_POSITIONS = 3 };
 
-static void join(struct model_image at[MOST_POSITIONS],
-                 const struct position *position, int n)
+static void open_zoom(struct model_image at[MOST_POSITIONS],
+                      const struct position *position, int n)
 {
     int32_t along_q30[MOST_POSITIONS];
     struct glint_lens lens[MOST_POSITIONS];
@@ -550,13 +568,13 @@ static void join(struct model_image at[MOST_POSITIONS],
         fail_msg("%s", reason);
 }
 
-static void forget(const struct model_image *at, int n)
+static void free_models(const struct model_image *at, int n)
 {
     for (int k = 0; k < n; k++)
         free(at[k].data);
 }
 
-/* Where one side is dark, the other fades. */
+/* Checks that a ghost that is dark at one position fades towards it. */
 TEST(ghosts_fade)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
@@ -572,12 +590,13 @@ TEST(ghosts_fade)
                                           {1, 1, 0.75, 0.25}};
     struct model_image at[MOST_POSITIONS];
 
-    join(at, both, 2);
+    open_zoom(at, both, 2);
     SHOWS(sights);
-    forget(at, 2);
+    free_models(at, 2);
 }
 
-/* Where two positions show how it continues, it does so into the dark one. */
+/* Checks that a ghost continues (is extrapolated) into the dark position if
+ * two positions define its motion. */
 TEST(ghosts_go_on)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
@@ -594,13 +613,14 @@ TEST(ghosts_go_on)
                                           {1, 0, 0, 0}};
     struct model_image at[MOST_POSITIONS];
 
-    join(at, all, 3);
+    open_zoom(at, all, 3);
     SHOWS(sights);
-    forget(at, 3);
+    free_models(at, 3);
 }
 
-/* It does not where that would be for more than the way between both, nor with
- * parts, whose number may change, nor where boxes lie too far apart. */
+/* Checks that a ghost is not extrapolated over more than the distance of
+ * both positions, nor with parts, whose number may change, nor if boxes are
+ * too far apart. */
 TEST(ghosts_that_cannot_go_on)
 {
     static const struct part a[] = {
@@ -618,14 +638,15 @@ TEST(ghosts_that_cannot_go_on)
     for (int t = 0; t < 3; t++) {
         struct model_image at[MOST_POSITIONS];
 
-        join(at, all[t], 3);
-        shows(&half[t], 1);
-        forget(at, 3);
+        open_zoom(at, all[t], 3);
+        check_ghosts(&half[t], 1);
+        free_models(at, 3);
     }
 }
 
-/* Sums of magnitudes stay below 2^30, which vectors and heads rely on, also
- * where a ghost moves to three times the largest that a model may have. */
+/* Checks that sums of magnitudes stay below 2^30, as vectors and heads
+ * require, even if extrapolation moves a ghost to three times the max of a
+ * model. */
 TEST(going_on_stays_small)
 {
     static const struct part a[] = {{0, 1, -3.9, 0}, {0, 2, 0.5, 0}};
@@ -637,7 +658,7 @@ TEST(going_on_stays_small)
         {0, 0.96875, 3 * 3.9 - 2 * 3.9 / 16, 0.25}};
     struct model_image at[MOST_POSITIONS];
 
-    join(at, all, 3);
+    open_zoom(at, all, 3);
     SHOWS(sights);
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
         int64_t sum = 0;
@@ -647,11 +668,12 @@ TEST(going_on_stays_small)
                 sum += llabs((long long)mixed.table[kind][y][x]);
         assert_true(!(mixed.outputs >> kind & 1) || sum < ONE);
     }
-    forget(at, 3);
+    free_models(at, 3);
 }
 
-/* Where both divide the pupil otherwise, the nearer one is drawn; parts are
- * mixed with those of the same ghost, wherever these stand. */
+/* Checks that if two positions divide a pupil differently, the nearer one is
+ * drawn, and that parts are interpolated with those of the same ghost, in
+ * any order. */
 TEST(parts_go_with_their_ghost)
 {
     static const struct part a[] = {
@@ -665,11 +687,11 @@ TEST(parts_go_with_their_ghost)
         {3, 0.75, 0.75, 0.25}};
     struct model_image at[MOST_POSITIONS];
 
-    join(at, both, 2);
+    open_zoom(at, both, 2);
     assert_int_equal(zoom.header.n_ghosts, 4);
     assert_int_equal(zoom.header.n_parts, 2);
     SHOWS(sights);
-    forget(at, 2);
+    free_models(at, 2);
 }
 
 static double between(double a, double b)
@@ -677,17 +699,18 @@ static double between(double a, double b)
     return 0.75 * a + 0.25 * b;
 }
 
-/* Numbers of the whole lens go from one to the other, each its own way. */
+/* Checks that the numbers of the whole lens are interpolated, each by its
+ * own rule. */
 TEST(numbers_are_in_proportion)
 {
     static const struct part part[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}};
     static const struct position both[] = {{0, part, 2, 0}, {1, part, 2, 0}};
-    static const double by[2] = {1, 96}; /* of another exponent, too */
+    static const double by[2] = {1, 96}; /* also with different exponents */
     struct model_image at[MOST_POSITIONS];
     const struct glint_model_header *const z = &zoom.header;
     const char *reason = "";
 
-    join(at, both, 2);
+    open_zoom(at, both, 2);
     for (int k = 0; k < 2; k++) {
         struct glint_model_header *const h = model_header(&at[k]);
 
@@ -719,5 +742,5 @@ TEST(numbers_are_in_proportion)
         assert_true(glint_real_value(z->stopped_flux[1][i]) ==
                     -(i + 30) * between(96, 1));
     }
-    forget(at, 2);
+    free_models(at, 2);
 }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * A zoom of two lenses, baked at three positions: at these it is the model of
- * that position, between them its rays land where exact ones do, and files that
- * are not zooms are rejected. */
+ * Tests a zoom of two lenses, baked at three positions: at these it equals the
+ * model of that position, between them its rays land where exact rays do, and
+ * files that are not zooms are rejected.
+ */
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -78,7 +79,7 @@ TEST_CLOSE
 
 static const int32_t middle_q24 = (int32_t)(1e6 / (532. * 532.) * (1 << 24));
 
-/* Gives the same bits at a position as its own model. */
+/* Checks that the zoom at a position equals its model bit by bit. */
 TEST(positions)
 {
     static struct glint_transfer a, b;
@@ -111,13 +112,13 @@ TEST(positions)
     }
 }
 
-/* How far rays of the zoom that pass the stop are off exact ones, root mean
- * squares: pixels of a film 1920 wide, and fractions of their energies. */
+/* RMS errors of the zoom's rays that pass the stop against exact rays:
+ * pixels of an image 1920 wide, and relative energy. */
 struct off {
     double pixels, energies;
 };
 
-static struct off off_at(double along)
+static struct off measure_error(double along)
 {
     static struct glint_transfer t;
     static struct glint_prescription at;
@@ -178,21 +179,22 @@ static struct off off_at(double along)
 TEST(between)
 {
     for (int k = 0; k <= 4; k++) {
-        const struct off off = off_at(0.25 * k);
+        const struct off off = measure_error(0.25 * k);
 
         print_message("at %g: %.3f pixels, %.4f of the energy\n", 0.25 * k,
                       off.pixels, off.energies);
         assert_true(off.pixels < (k % 2 ? 8 : 0.1));
         assert_true(off.energies < 0.01);
     }
-    assert_true(off_at(0.48).pixels < 1 && off_at(0.52).pixels < 1);
+    assert_true(measure_error(0.48).pixels < 1 &&
+                measure_error(0.52).pixels < 1);
 }
 
 /* --------------------------------------------------------------- some ghosts
  */
 
-/* Checks that ghost G of A and of B is the same at half the way and beyond. */
-static void check_alike(struct glint_zoom_lens *a, struct glint_zoom_lens *b,
+/* Checks that ghost G of A and of B is equal half-way and beyond. */
+static void check_equal(struct glint_zoom_lens *a, struct glint_zoom_lens *b,
                         int g)
 {
     static struct glint_transfer from, to;
@@ -212,8 +214,8 @@ static void check_alike(struct glint_zoom_lens *a, struct glint_zoom_lens *b,
     }
 }
 
-/* Of a position that has one ghost, that one is mixed of three positions, and
- * the others of two. */
+/* Checks that if only one ghost is baked at the middle position, that ghost
+ * is interpolated between three positions, the others between two. */
 TEST(some)
 {
     static struct glint_zoom_lens some, two;
@@ -244,8 +246,8 @@ TEST(some)
     assert_ok(glint_bake_zoom(pair, 2, &of_two, &n_two, &error));
     assert_ok(glint_zoom_open(&some, of_some, n_some, &reason));
     assert_ok(glint_zoom_open(&two, of_two, n_two, &reason));
-    check_alike(&some, &two, 0);
-    check_alike(&some, &zoom, 1);
+    check_equal(&some, &two, 0);
+    check_equal(&some, &zoom, 1);
     free(three[1].data);
     free(of_some);
     free(of_two);

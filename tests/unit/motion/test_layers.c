@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shells and lines of recorded motion, pixel by pixel, against their definition
- * in double; and what is nearer hides them. */
+ * Tests shells and lines of recorded motion, pixel by pixel, against their
+ * definition in double precision, and that nearer objects occlude them.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -13,11 +14,11 @@
 
 enum { WIDTH = MOVING_WIDTH, HEIGHT = MOVING_HEIGHT, SAMPLES = 4 };
 
-/* Returns the cosine between ray and normal where the ray of place (X, Y), q8
- * from the middle, enters a ball of RADIUS at C, camera coordinates; -1: it
- * misses the ball. */
-static double cosine_at(const struct glint_scene *s, const int32_t c[3],
-                        double radius, double x_q8, double y_q8)
+/* Returns the cosine between ray and normal where the ray through (X, Y), Q8
+ * pixels from the image centre, enters a ball of RADIUS at C in camera
+ * coordinates; -1: it misses the ball. */
+static double compute_cosine(const struct glint_scene *s, const int32_t c[3],
+                             double radius, double x_q8, double y_q8)
 {
     const double per_tan = (double)s->view.per_tan_q8;
     const double d[3] = {x_q8 / per_tan, -y_q8 / per_tan, 1};
@@ -32,9 +33,9 @@ static double cosine_at(const struct glint_scene *s, const int32_t c[3],
     return square > 1 || along <= 0 ? -1 : sqrt(1 - square);
 }
 
-/* Returns the fraction of pixel (X, Y) that shell L covers. */
-static double shell_at(const struct glint_scene *s,
-                       const struct glint_motion_layer *l, int x, int y)
+/* Returns the coverage of pixel (X, Y) by shell L, 0 .. 1. */
+static double shell_coverage(const struct glint_scene *s,
+                             const struct glint_motion_layer *l, int x, int y)
 {
     const double share =
         1 - s->material[l->material].pass_q15 / (double)GLINT_SCENE_ONE_Q15;
@@ -44,15 +45,16 @@ static double shell_at(const struct glint_scene *s,
 
     glint_view_seen(&s->view, l->ball->at, c);
     for (int k = 0; k < SAMPLES; k++)
-        hits += cosine_at(s, c, l->ball->radius, x_q8 + glint_sample(s, k, 0),
-                          y_q8 + glint_sample(s, k, 1)) >= 0;
+        hits +=
+            compute_cosine(s, c, l->ball->radius, x_q8 + glint_sample(s, k, 0),
+                           y_q8 + glint_sample(s, k, 1)) >= 0;
     return share * hits / SAMPLES *
-           (1 - fmax(0, cosine_at(s, c, l->ball->radius, x_q8, y_q8)) / 2);
+           (1 - fmax(0, compute_cosine(s, c, l->ball->radius, x_q8, y_q8)) / 2);
 }
 
-/* Returns the fraction of pixel (X, Y) that line L covers. */
-static double line_at(const struct glint_scene *s,
-                      const struct glint_motion_layer *l, int x, int y)
+/* Returns the coverage of pixel (X, Y) by line L, 0 .. 1. */
+static double line_coverage(const struct glint_scene *s,
+                            const struct glint_motion_layer *l, int x, int y)
 {
     const double dx = (glint_place(s, x, 0) - l->x_q8) / 256.;
     const double dy = (glint_place(s, y, 1) - l->y_q8) / 256.;
@@ -67,8 +69,8 @@ static double line_at(const struct glint_scene *s,
            fmax(0, fmin(fmin(1, 2 * half), half + .5 - across));
 }
 
-/* Draws shells, lines and box alone, and compares. */
-static void compare(struct moving *d)
+/* Draws only shells, lines and box, and compares them with their definition. */
+static void compare_layers(struct moving *d)
 {
     const struct glint_scene *s = d->frame.scene;
     const struct glint_motion_state *m = s->motion;
@@ -82,8 +84,8 @@ static void compare(struct moving *d)
 
             for (int i = 0; i < m->n_layers; i++) {
                 const struct glint_motion_layer *l = &m->layer[i];
-                const double a =
-                    l->ball ? shell_at(s, l, x, y) : line_at(s, l, x, y);
+                const double a = l->ball ? shell_coverage(s, l, x, y)
+                                         : line_coverage(s, l, x, y);
 
                 for (int c = 0; c < 3; c++)
                     rgb[c] += a * (s->material[l->material].rgb_q15[c] /
@@ -96,7 +98,7 @@ static void compare(struct moving *d)
                     fabs(rgb[c] -
                          ldexp(d->light_q20[3 * (y * WIDTH + x) + c], -20)));
         }
-    /* each layer is rounded to 256ths, the mean of a rim to a sample */
+    /* each layer is rounded to 1/256, the mean of a rim to one sample */
     if (worst > (m->n_layers + 2) / 256.)
         fail_msg("%d layers, off by %.4f", m->n_layers, worst);
 }
@@ -124,14 +126,14 @@ TEST(layers_are_as_defined)
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_BODY, 0);
             glint_scene_show_kind(d->frame.scene, GLINT_KIND_SENSORS, 0);
-            compare(d);
+            compare_layers(d);
             moving_close(d);
         }
 }
 
-/* A food that no sensor sees stands before one that is seen, in its shell or
- * before it: where it is, there is no shell. */
-TEST(nearer_things_hide_layers)
+/* Checks a food that no sensor detects, inside or in front of the shell of
+ * one that is detected: where it is visible, the shell is hidden. */
+TEST(nearer_objects_hide_layers)
 {
     double food[3][3] = {{5, 0, 0}, {5, 3, 3}, {0, -9, 9}};
     const int middle = 3 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
@@ -154,7 +156,7 @@ TEST(nearer_things_hide_layers)
         assert_int_equal(d->frame.scene->motion->n_layers, 1);
         if (i)
             assert_memory_equal(with[0], with[1], sizeof with[0]);
-        else /* the shell is so wide that the food is in it */
+        else /* the shell is so wide that the food is inside it */
             assert_memory_not_equal(with[0], with[1], sizeof with[0]);
         moving_close(d);
     }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where a body is that sees foods: rows D1 to D6 of recorded motion, on the
- * four motions of tests/support/tracks. */
+ * Tests the localisation of a body by the foods that it observes: rows D1 to D6
+ * of recorded motion, on the four motions of tests/support/tracks.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -15,15 +16,19 @@
 enum { FRAMES = 20000, SEED = 163635 };
 
 struct errors {
-    double first, last; /* rms of the first and the last tenth */
+    /* RMS error of the first and of the last tenth of the track */
+    double first, last;
     double worst;
-    double correlation; /* of the error with the mean distance of foods */
-    int n;              /* frames until it could not continue */
+    /* correlation of the error with the mean distance of foods */
+    double correlation;
+    int n; /* number of frames until localisation failed */
 };
 
-/* Localises a track of FRAMES frames by FOUR or else by ALL. */
-static struct errors errors_of(const struct track_options *options,
-                               struct glint_localiser *all, struct four *four)
+/* Localises the body on a track, by FOUR foods if not NULL, else by ALL
+ * foods. */
+static struct errors measure_errors(const struct track_options *options,
+                                    struct glint_localiser *all,
+                                    struct four *four)
 {
     struct errors e = {.n = 0};
     struct track track;
@@ -65,39 +70,39 @@ static struct errors errors_of(const struct track_options *options,
     return e;
 }
 
-static struct errors errors_of_four(const struct track_options *options,
-                                    enum four_fit fit,
-                                    enum four_arithmetic arithmetic)
+static struct errors measure_four(const struct track_options *options,
+                                  enum four_fit fit,
+                                  enum four_arithmetic arithmetic)
 {
     struct four four;
 
     four_init(&four, fit, arithmetic);
-    return errors_of(options, NULL, &four);
+    return measure_errors(options, NULL, &four);
 }
 
-static struct errors errors_of_all(const struct track_options *options,
-                                   bool average)
+static struct errors measure_all(const struct track_options *options,
+                                 bool average)
 {
     struct glint_localiser all;
 
     glint_localiser_init(&all, average);
-    return errors_of(options, &all, NULL);
+    return measure_errors(options, &all, NULL);
 }
 
-static struct track_options track_of(int motion, int reset_every, int digits)
+static struct track_options make_track(int motion, int reset_every, int digits)
 {
     return (struct track_options){
         motion, FRAMES, 5, reset_every, digits, (uint32_t)(SEED + motion)};
 }
 
-/* Row D1: weights in four foods miss by some 1e-6 in float32, and do not grow.
- */
+/* Row D1: errors with weights of four foods are about 1e-6 in float32 and do
+ * not grow. */
 TEST(row_d1_four_foods_do_not_drift)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
-        const struct track_options o = track_of(m, 0, 0);
-        const struct errors f = errors_of_four(&o, FOUR_FIRST, FOUR_FLOAT32);
-        const struct errors d = errors_of_four(&o, FOUR_FIRST, FOUR_DOUBLE);
+        const struct track_options o = make_track(m, 0, 0);
+        const struct errors f = measure_four(&o, FOUR_FIRST, FOUR_FLOAT32);
+        const struct errors d = measure_four(&o, FOUR_FIRST, FOUR_DOUBLE);
 
         print_message("  motion %d: float32 %.1e, double %.1e\n", m, f.last,
                       d.last);
@@ -108,13 +113,13 @@ TEST(row_d1_four_foods_do_not_drift)
     }
 }
 
-/* Row D2: the chain of motions from frame to frame drifts. */
+/* Row D2: chaining motions from frame to frame drifts. */
 TEST(row_d2_the_chain_drifts)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
-        const struct track_options o = track_of(m, 0, 0);
-        const struct errors c = errors_of_four(&o, FOUR_CHAIN, FOUR_FLOAT32);
-        const struct errors f = errors_of_four(&o, FOUR_FIRST, FOUR_FLOAT32);
+        const struct track_options o = make_track(m, 0, 0);
+        const struct errors c = measure_four(&o, FOUR_CHAIN, FOUR_FLOAT32);
+        const struct errors f = measure_four(&o, FOUR_FIRST, FOUR_FLOAT32);
 
         print_message("  motion %d: %.1e, then %.1e\n", m, c.first, c.last);
         assert_int_equal(c.n, FRAMES);
@@ -124,16 +129,17 @@ TEST(row_d2_the_chain_drifts)
     }
 }
 
-/* Row D5: foods end and others appear: rigid fits and means over lives keep the
- * error below 1e-4, where the published solve loses three orders more. */
+/* Row D5: foods end and others appear. Rigid fits and averages over a food's
+ * lifetime keep the error below 1e-4; the published solution has a thousand
+ * times more. */
 TEST(row_d5_resets)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
-        const struct track_options o = track_of(m, 200, 6);
-        const struct errors life = errors_of_all(&o, true);
-        const struct errors all = errors_of_all(&o, false);
-        const struct errors four = errors_of_four(&o, FOUR_FIRST, FOUR_DOUBLE);
-        const struct errors best = errors_of_four(&o, FOUR_BEST, FOUR_DOUBLE);
+        const struct track_options o = make_track(m, 200, 6);
+        const struct errors life = measure_all(&o, true);
+        const struct errors all = measure_all(&o, false);
+        const struct errors four = measure_four(&o, FOUR_FIRST, FOUR_DOUBLE);
+        const struct errors best = measure_four(&o, FOUR_BEST, FOUR_DOUBLE);
 
         print_message("  motion %d: life mean %.1e, all %.1e, first4 %.1e, "
                       "best4 %.1e\n",
@@ -145,22 +151,23 @@ TEST(row_d5_resets)
     }
 }
 
-/* Row D6: errors and mean distances of foods go together, weakly. */
+/* Row D6: errors correlate weakly with mean distances of foods. */
 TEST(row_d6_distance_of_foods)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
-        const struct track_options o = track_of(m, 0, 0);
-        const struct errors e = errors_of_four(&o, FOUR_FIRST, FOUR_FLOAT32);
+        const struct track_options o = make_track(m, 0, 0);
+        const struct errors e = measure_four(&o, FOUR_FIRST, FOUR_FLOAT32);
 
         print_message("  motion %d: %.2f\n", m, e.correlation);
         assert_true(e.correlation > .1 && e.correlation < .7);
     }
 }
 
-/* Two foods that vanish at once leave three; of four foods one may go. */
+/* Checks that two of five foods may vanish at once, leaving three, and one
+ * of four. */
 TEST(two_may_vanish_at_once)
 {
-    struct track_options o = track_of(0, 0, 0);
+    struct track_options o = make_track(0, 0, 0);
     struct glint_localiser l;
     struct four four;
     struct glint_located located;
@@ -189,8 +196,8 @@ TEST(two_may_vanish_at_once)
         "four foods"));
 }
 
-/* Foods on a line, or in a plane for four, are refused at 2^-20 of the bound.
- */
+/* Checks that collinear foods, or coplanar foods for the method of four, are
+ * rejected within 2^-20 of the limit. */
 TEST(flat_bases_are_refused)
 {
     const double line[4][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}};
@@ -221,7 +228,7 @@ TEST(flat_bases_are_refused)
     }
 }
 
-/* float32 by rounding doubles has the bits of float. */
+/* Checks that float32, emulated by rounding doubles, has the bits of float. */
 TEST(rounded_doubles_are_floats)
 {
     uint32_t seed = 3;

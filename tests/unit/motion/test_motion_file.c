@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The file of a motion: any frame by few blocks, the same in memory and by
- * blocks, and damage that is found. */
+ * Tests the file of a motion: any frame is read with few blocks, reading from
+ * memory and by blocks is the same, and damage is detected.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -26,9 +27,9 @@ struct baked {
 static struct glint_rigid truth[FRAMES];
 static double true_food[FRAMES][FOODS][3];
 
-/* Bakes a track, scaled by SCALE. */
-static void bake(struct baked *baked, int n_frames, int reset_every,
-                 double scale)
+/* Bakes a track whose positions are multiplied by SCALE. */
+static void bake_track(struct baked *baked, int n_frames, int reset_every,
+                       double scale)
 {
     const struct track_options o = {3, n_frames, FOODS, reset_every, 0, 5};
     const struct glint_motion_body body = {
@@ -84,7 +85,7 @@ TEST(poses_are_the_true_ones)
     struct baked baked;
     double at = 0, turn = 0;
 
-    bake(&baked, FRAMES, 50, 1);
+    bake_track(&baked, FRAMES, 50, 1);
     for (uint32_t k = 0; k < FRAMES; k++) {
         struct glint_motion_frame f;
         double same = 0, square = 0, off = 0;
@@ -116,8 +117,8 @@ TEST(poses_are_the_true_ones)
     free(baked.data);
 }
 
-/* Read by blocks, a frame is that of memory, and takes as many blocks at the
- * end as at the beginning. */
+/* Checks that a frame read by blocks equals that in memory, and that frames
+ * at the end need as few blocks as those at the beginning. */
 TEST(any_frame_by_few_blocks)
 {
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
@@ -131,7 +132,7 @@ TEST(any_frame_by_few_blocks)
 
     memset(&f, 0, sizeof f);
     memset(&g, 0, sizeof g);
-    bake(&baked, FRAMES, 50, 1);
+    bake_track(&baked, FRAMES, 50, 1);
     blocks.ctx = &baked;
     blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
     assert_ok(glint_motion_over(&streamed, &blocks, buffer, &reason));
@@ -142,15 +143,16 @@ TEST(any_frame_by_few_blocks)
         assert_ok(glint_motion_frame(&streamed, k, &f));
         assert_ok(glint_motion_frame(&baked.motion, k, &g));
         assert_memory_equal(&f, &g, sizeof f);
-        assert_true(baked.reads <= 4); /* poses, index, events, intensities */
+        /* blocks of poses, index, events, intensities */
+        assert_true(baked.reads <= 4);
     }
     assert_int_equal(glint_motion_frame(&streamed, FRAMES, &f),
                      GLINT_E_ARGUMENT);
     free(baked.data);
 }
 
-/* A byte that changes anywhere is found: at once in memory, when its block is
- * read by blocks. */
+/* Checks that a changed byte is detected: in memory when opening, by blocks
+ * when its block is read. */
 TEST(damage_is_found)
 {
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
@@ -162,7 +164,7 @@ TEST(damage_is_found)
     const char *reason;
     uint32_t seed = 2;
 
-    bake(&baked, 1000, 50, 1);
+    bake_track(&baked, 1000, 50, 1);
     blocks.ctx = &baked;
     blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
     for (int i = 0; i < 300; i++) {
@@ -182,7 +184,8 @@ TEST(damage_is_found)
 
             found = glint_motion_frame(&streamed, k, &f) != GLINT_OK;
         }
-        /* but the checksum of the whole, which is not requested */
+        /* except the checksum of the whole file, which is not checked when
+         * reading by blocks */
         assert_true(found || (at >= 12 && at < 16 && at < header));
         baked.data[at] = was;
     }
@@ -194,9 +197,9 @@ TEST(damage_is_found)
     free(baked.data);
 }
 
-/* Blocks read one by one: a name that would do harm on a terminal is refused as
- * it is of a whole file, and of a frame whose block cannot be read nothing is
- * taken on trust, whichever block it is. */
+/* Checks reading by blocks: a name with control characters is rejected as in
+ * a whole file, and a frame with an unreadable block returns an error,
+ * whichever block it is. */
 TEST(blocks_are_not_trusted)
 {
     static uint8_t buffer[GLINT_MOTION_BLOCK] __attribute__((aligned(8)));
@@ -208,7 +211,7 @@ TEST(blocks_are_not_trusted)
     const char *reason[2];
     uint32_t *end;
 
-    bake(&baked, 1000, 50, 1);
+    bake_track(&baked, 1000, 50, 1);
     blocks.n_blocks = (uint32_t)(baked.bytes / GLINT_MOTION_BLOCK);
     assert_ok(glint_motion_over(&motion, &blocks, buffer, &reason[0]));
     header = (void *)baked.data;
@@ -245,7 +248,8 @@ TEST(blocks_are_not_trusted)
     free(baked.data);
 }
 
-/* Whatever words a file holds, sealed, it is refused or can be read. */
+/* Checks that a file with random words and a valid checksum is rejected or
+ * can be read. */
 TEST(hostile_words_do_no_harm)
 {
     struct baked baked;
@@ -253,13 +257,13 @@ TEST(hostile_words_do_no_harm)
     uint32_t seed = 4;
     int opened = 0;
 
-    bake(&baked, 300, 50, 1);
+    bake_track(&baked, 300, 50, 1);
     copy = malloc(baked.bytes);
     assert_non_null(copy);
     for (int i = 0; i < 3000; i++) {
         struct glint_motion motion;
         const char *reason;
-        /* Every second fault is in the header. */
+        /* Every second change is in the header. */
         const size_t at =
             4 * (size_t)rng_below(&seed, i % 2 ? 46 : (int)baked.bytes / 4);
         uint32_t word = rng_bits(&seed) >> rng_below(&seed, 32);
@@ -282,7 +286,7 @@ TEST(hostile_words_do_no_harm)
     free(baked.data);
 }
 
-/* Sizes from 1e-6 to 1e6. */
+/* Checks sizes from 1e-6 to 1e6. */
 TEST(units_follow_the_size)
 {
     for (int power = -6; power <= 4; power++) {
@@ -290,7 +294,7 @@ TEST(units_follow_the_size)
         double worst = 0;
         struct baked baked;
 
-        bake(&baked, 200, 50, scale);
+        bake_track(&baked, 200, 50, scale);
         for (uint32_t k = 0; k < 200; k++) {
             struct glint_motion_frame f;
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Recordings in JSON: both spellings, what is tolerated, and what is refused
- * with which line. */
+ * Tests recordings in JSON: both sets of key names, tolerated deviations, and
+ * errors with their line numbers.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -14,7 +15,7 @@
 
 struct text {
     const char *at;
-    size_t left, most; /* of one read */
+    size_t left, most; /* bytes left; max bytes per read */
 };
 
 static long read_text(void *ctx, char *to, size_t n)
@@ -37,9 +38,9 @@ struct baked {
     struct glint_error error;
 };
 
-/* Bakes TEXT, which comes in pieces of MOST bytes. */
-static enum glint_status bake(const char *text, size_t most,
-                              struct baked *baked)
+/* Bakes TEXT, which is read in pieces of at most MOST bytes. */
+static enum glint_status bake_text(const char *text, size_t most,
+                                   struct baked *baked)
 {
     struct text t = {text, strlen(text), most};
     struct glint_motion_baker *baker;
@@ -62,8 +63,8 @@ static enum glint_status bake(const char *text, size_t most,
     return status;
 }
 
-/* A recording of two frames in other words; STRUCTURE and FRAMES in its places.
- */
+/* A recording of two frames with the alternative key names; %s are STRUCTURE
+ * and FRAMES. */
 #define BODY                                                                 \
     "\"structure\": {\"size\": .5e0, \"sensors\": [{\"theta\": 0, \"phi\": " \
     "0}], \"angleofview\": 60}"
@@ -76,11 +77,11 @@ static enum glint_status bake(const char *text, size_t most,
 #define RUN(frames) "{" BODY_0 ", \"frames\": [" frames "]}"
 #define FRAME       "{\"foods\": " FOODS("2") "}"
 
-static void refused(const char *text, const char *why)
+static void expect_error(const char *text, const char *why)
 {
     struct baked baked;
 
-    assert_int_equal(bake(text, 1 << 20, &baked), GLINT_E_LENS);
+    assert_int_equal(bake_text(text, 1 << 20, &baked), GLINT_E_LENS);
     if (!strstr(baked.error.text, why))
         fail_msg("'%s' does not say '%s'", baked.error.text, why);
     assert_null(baked.data);
@@ -88,59 +89,61 @@ static void refused(const char *text, const char *why)
 
 TEST(bad_recordings_are_refused)
 {
-    refused("", "run.json:1:1: the text ends within the recording");
-    refused("[]", "run.json:1:1: '{' is expected here");
-    refused("{" BODY ", \"frames\": [" FRAME "]}", "invalid token");
-    refused("{\"frames\": [" FRAME "]}", "there is no structure");
-    refused("{" BODY_0 ", \"frames\": []}", "there are no frames");
-    refused("{" BODY_0 "}", "there are no frames");
-    refused("{" BODY_0 ", \"frames\": 3}", "'[' is expected");
-    refused(RUN("{}"), "frame 0: the frame has no array 'foods'");
-    refused(RUN("3"), "frame 0: the frame is not a JSON object");
-    refused(RUN(FRAME ",\n {\"foods\": 5}"), "run.json:2:2: frame 1: ");
-    refused(RUN(FRAME ", {\"foods\": " FOODS("NaN") "}"), "invalid token");
-    refused(RUN(FRAME ", {\"foods\": " FOODS("1e999") "}"), "overflow");
-    refused(RUN(FRAME ", {\"foods\": " FOODS("1e7") "}"), "not within +-1e6");
-    refused(RUN(FRAME ", {\"foods\": " FOODS("\"2\"") "}"),
-            "'x' of food 0 is not a number");
-    refused(RUN(FRAME ", {\"foods\": [{\"x\": 1, \"z\": 2}]}"),
-            "frame 1: food 0 has no 'y'");
-    refused(RUN("{\"foods\": [{\"x\":1,\"y\":0,\"z\":0}]}"),
-            "fewer than three foods");
-    refused(RUN(FRAME ", {\"foods\": [{\"x\":1,\"y\":0,\"z\":0},{\"x\":1,"
-                      "\"y\":1,\"z\":0},{\"x\":1,\"y\":0,\"z\":1}]}"),
-            "the number of foods differs");
-    refused(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
-                "2") "}, {\"frame_num\": 6, \"foods\": " FOODS("2") "}"),
-            "frame 1: frames are missing: 6 follows 4");
-    refused(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
-                "2") "}, {\"frame_num\": 4, \"foods\": " FOODS("2") "}"),
-            "out of order: 4 follows 4");
-    refused(RUN("{\"frame_num\": -1, \"foods\": " FOODS("2") "}"),
-            "'frame_num' is not a whole number");
-    refused(RUN("{\"rv\": [1, 2], \"foods\": " FOODS("2") "}"),
-            "'rv' needs three numbers");
-    refused(RUN("{\"foods\": " FOODS("2")), "']' closes what '{' opened");
-    refused("{" BODY_0 ", \"frames\": [" FRAME ", {\"foods\": [{\"x\": 1",
-            "the text ends within frame 1");
-    refused("{" BODY_0 ", " BODY_0 "}", "a second 'structure'");
-    refused(RUN(FRAME) " {", "text follows the end of the recording");
-    refused("{\"structure\": {\"size\": -1, \"angleofview\": 60}}",
-            "the size of the body");
-    refused("{\"structure\": {\"size\": 1, \"angleofview\": 0}}",
-            "the angle of view");
-    refused("{\"structure\": {\"size\": 1}}",
-            "the structure has no 'angleofview'");
-    refused("{\"structure\": {\"angleofview\": 1, \"size\": 1, \"sensors\": "
-            "[{\"theta\": 1}]}}",
-            "a sensor has no 'phi'");
-    refused("{\"a\": [1, 2}", "'}' closes what '[' opened");
-    refused("{\"a\": \"b\nc\"}", "a string must end on its line");
-    refused("{\"a\" 1}", "':' is expected");
-    refused("{\"a\": , }", "a value is expected");
+    expect_error("", "run.json:1:1: the text ends within the recording");
+    expect_error("[]", "run.json:1:1: '{' is expected here");
+    expect_error("{" BODY ", \"frames\": [" FRAME "]}", "invalid token");
+    expect_error("{\"frames\": [" FRAME "]}", "there is no structure");
+    expect_error("{" BODY_0 ", \"frames\": []}", "there are no frames");
+    expect_error("{" BODY_0 "}", "there are no frames");
+    expect_error("{" BODY_0 ", \"frames\": 3}", "'[' is expected");
+    expect_error(RUN("{}"), "frame 0: it has no array 'foods'");
+    expect_error(RUN("3"), "frame 0: it is no object");
+    expect_error(RUN(FRAME ",\n {\"foods\": 5}"), "run.json:2:2: frame 1: ");
+    expect_error(RUN(FRAME ", {\"foods\": " FOODS("NaN") "}"), "invalid token");
+    expect_error(RUN(FRAME ", {\"foods\": " FOODS("1e999") "}"), "overflow");
+    expect_error(RUN(FRAME ", {\"foods\": " FOODS("1e7") "}"),
+                 "not within +-1e6");
+    expect_error(RUN(FRAME ", {\"foods\": " FOODS("\"2\"") "}"),
+                 "'x' of food 0 is no number");
+    expect_error(RUN(FRAME ", {\"foods\": [{\"x\": 1, \"z\": 2}]}"),
+                 "frame 1: food 0 has no 'y'");
+    expect_error(RUN("{\"foods\": [{\"x\":1,\"y\":0,\"z\":0}]}"),
+                 "fewer than three foods");
+    expect_error(RUN(FRAME ", {\"foods\": [{\"x\":1,\"y\":0,\"z\":0},{\"x\":1,"
+                           "\"y\":1,\"z\":0},{\"x\":1,\"y\":0,\"z\":1}]}"),
+                 "another number of foods");
+    expect_error(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
+                     "2") "}, {\"frame_num\": 6, \"foods\": " FOODS("2") "}"),
+                 "frame 1: frames are missing: 6 follows 4");
+    expect_error(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
+                     "2") "}, {\"frame_num\": 4, \"foods\": " FOODS("2") "}"),
+                 "out of order: 4 follows 4");
+    expect_error(RUN("{\"frame_num\": -1, \"foods\": " FOODS("2") "}"),
+                 "'frame_num' is no whole number");
+    expect_error(RUN("{\"rv\": [1, 2], \"foods\": " FOODS("2") "}"),
+                 "'rv' takes three numbers");
+    expect_error(RUN("{\"foods\": " FOODS("2")), "']' closes what '{' opened");
+    expect_error("{" BODY_0 ", \"frames\": [" FRAME ", {\"foods\": [{\"x\": 1",
+                 "the text ends within frame 1");
+    expect_error("{" BODY_0 ", " BODY_0 "}", "a second 'structure'");
+    expect_error(RUN(FRAME) " {", "the recording has ended before this");
+    expect_error("{\"structure\": {\"size\": -1, \"angleofview\": 60}}",
+                 "the size of the body");
+    expect_error("{\"structure\": {\"size\": 1, \"angleofview\": 0}}",
+                 "the angle of view");
+    expect_error("{\"structure\": {\"size\": 1}}",
+                 "the structure has no 'angleofview'");
+    expect_error(
+        "{\"structure\": {\"angleofview\": 1, \"size\": 1, \"sensors\": "
+        "[{\"theta\": 1}]}}",
+        "a sensor has no 'phi'");
+    expect_error("{\"a\": [1, 2}", "'}' closes what '[' opened");
+    expect_error("{\"a\": \"b\nc\"}", "a string ends on its line");
+    expect_error("{\"a\" 1}", "':' is expected");
+    expect_error("{\"a\": , }", "a value is expected");
 }
 
-/* Collinear foods, and three that vanish at once. */
+/* Checks collinear foods, and three that vanish at once. */
 TEST(what_cannot_be_localised_is_refused)
 {
 #define LINE                                                             \
@@ -152,18 +155,18 @@ TEST(what_cannot_be_localised_is_refused)
     "},{\"x\":1,\"y\":1,\"z\":1}]}"
     struct baked baked;
 
-    refused(RUN(LINE ", " LINE),
-            "frame 1: the foods with known positions lie on a line");
-    refused(RUN(FRAME ", " GONE("true", "1")),
-            "frame 1: fewer than three foods have known positions");
-    assert_ok(bake(RUN(FRAME ", " GONE("true", "false")), 9, &baked));
+    expect_error(RUN(LINE ", " LINE),
+                 "frame 1: the foods that are known lie on a line");
+    expect_error(RUN(FRAME ", " GONE("true", "1")),
+                 "frame 1: fewer than three foods are known");
+    assert_ok(bake_text(RUN(FRAME ", " GONE("true", "false")), 9, &baked));
     assert_int_equal(baked.report.n_resets, 1);
     free(baked.data);
 }
 
-/* Unknown keys, also deep ones, commas that trail, any order, pieces of any
- * size, brackets and escapes in strings. */
-TEST(what_is_tolerated)
+/* Checks unknown keys (also nested), trailing commas, any order, pieces of
+ * any size, and brackets and escapes in strings. */
+TEST(tolerated_deviations)
 {
     static const char text[] =
         "\n{\"made by\": \"a \\\" ] tool, }\", \"notes\": [1, {\"x\": [[], "
@@ -173,8 +176,8 @@ TEST(what_is_tolerated)
                                                " ,\n],\n" BODY_0 ",\n}\n";
     struct baked whole, bits;
 
-    assert_ok(bake(text, 1 << 20, &whole));
-    assert_ok(bake(text, 1, &bits));
+    assert_ok(bake_text(text, 1 << 20, &whole));
+    assert_ok(bake_text(text, 1, &bits));
     assert_int_equal(whole.bytes, bits.bytes);
     assert_memory_equal(whole.data, bits.data, whole.bytes);
     assert_int_equal(whole.motion.header.n_frames, 2);
@@ -185,7 +188,7 @@ TEST(what_is_tolerated)
     free(bits.data);
 }
 
-static char *written(const struct track_options *o, bool is_second)
+static char *write_recording(const struct track_options *o, bool is_second)
 {
     FILE *file = tmpfile();
     char *text;
@@ -203,18 +206,19 @@ static char *written(const struct track_options *o, bool is_second)
     return text;
 }
 
-/* Both spellings say the same; `reset` in the first frame means nothing; row
- * D11: what rv and tv sum up to. */
-TEST(both_spellings)
+/* Checks that both sets of key names give the same motion, that `reset` in
+ * the first frame has no effect, and row D11: the sums of rv and tv. */
+TEST(both_sets_of_keys)
 {
     const struct track_options o = {2, 500, 5, 60, 6, 11};
-    char *first = written(&o, false), *second = written(&o, true);
+    char *first = write_recording(&o, false),
+         *second = write_recording(&o, true);
     char *reset = strstr(first, "false");
     struct baked a, b;
 
     memcpy(reset, "true ", 5);
-    assert_ok(bake(first, 4096, &a));
-    assert_ok(bake(second, 4096, &b));
+    assert_ok(bake_text(first, 4096, &a));
+    assert_ok(bake_text(second, 4096, &b));
     assert_int_equal(a.motion.header.n_frames, 500);
     assert_int_equal(a.motion.header.n_events, b.motion.header.n_events);
     assert_int_equal(a.report.n_resets, 8);
@@ -240,12 +244,13 @@ TEST(both_spellings)
     free(second);
 }
 
-/* A food that moves without a reset is reported as a residual. */
-TEST(a_food_that_moves_is_told)
+/* Checks that a food that moves without a reset is reported as a residual. */
+TEST(moving_food_is_reported)
 {
     struct baked baked;
 
-    assert_ok(bake(RUN(FRAME ", {\"foods\": " FOODS("2.1") "}"), 4096, &baked));
+    assert_ok(
+        bake_text(RUN(FRAME ", {\"foods\": " FOODS("2.1") "}"), 4096, &baked));
     assert_int_equal(baked.report.bad_frames, 1);
     assert_int_equal(baked.report.residual_frame, 1);
     assert_true(baked.report.residual > .02 && baked.report.residual < .1);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Recorded motion in scenes: rows D7 to D10. */
+ * Tests recorded motion in scenes: rows D7 to D10.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -30,7 +31,7 @@ enum {
 #define RUN \
     "motion run x size .6 sensors .2 foods .5 shells 1.8 lines .06 box 1 "
 
-static uint64_t hash_of(const struct moving *d)
+static uint64_t hash_image(const struct moving *d)
 {
     uint64_t hash = UINT64_C(14695981039346656037);
 
@@ -42,8 +43,8 @@ static uint64_t hash_of(const struct moving *d)
 /* -------------------------------------------------------------------- row D8
  */
 
-/* A frame is the same after any other, by play, step and jumps both ways, and
- * for all sizes of tiles. */
+/* Row D8: a frame is the same whether it is reached by playing, stepping or
+ * jumping forth and back, for all tile sizes. */
 TEST(row_d8_seek_is_play)
 {
     enum { N = 40 };
@@ -57,7 +58,7 @@ TEST(row_d8_seek_is_play)
     for (int k = 0; k < N; k++) {
         glint_scene_seek(d->frame.scene, (uint32_t)k);
         moving_draw(d);
-        played[k] = hash_of(d);
+        played[k] = hash_image(d);
         assert_true(k == 0 || played[k] != played[k - 1]);
     }
     for (int i = 0; i < 200; i++) {
@@ -65,18 +66,18 @@ TEST(row_d8_seek_is_play)
 
         glint_scene_seek(d->frame.scene, k);
         moving_draw(d);
-        assert_true(hash_of(d) == played[k]);
+        assert_true(hash_image(d) == played[k]);
     }
     glint_scene_seek(d->frame.scene, 1u << 31);
     moving_draw(d);
-    assert_true(hash_of(d) == played[N - 1]);
+    assert_true(hash_image(d) == played[N - 1]);
     moving_close(d);
     for (int log2 = 3; log2 <= 6; log2++) {
         d = moving_open(LOOK RUN, log2, 4);
         for (uint32_t k = 0; k < N; k += 13) {
             glint_scene_seek(d->frame.scene, k);
             moving_draw(d);
-            assert_true(hash_of(d) == played[k]);
+            assert_true(hash_image(d) == played[k]);
         }
         moving_close(d);
     }
@@ -85,8 +86,8 @@ TEST(row_d8_seek_is_play)
 /* -------------------------------------------------------------------- row D7
  */
 
-/* Sets AT to where the unit quaternion Q takes V. */
-static void turned(const double q[4], const double v[3], double at[3])
+/* Sets AT to V rotated by the unit quaternion Q. */
+static void rotate(const double q[4], const double v[3], double at[3])
 {
     const double c[3] = {q[2] * v[2] - q[3] * v[1], q[3] * v[0] - q[1] * v[2],
                          q[1] * v[1] - q[2] * v[0]};
@@ -96,10 +97,10 @@ static void turned(const double q[4], const double v[3], double at[3])
     at[2] = v[2] + 2 * (q[0] * c[2] + q[1] * c[1] - q[2] * c[0]);
 }
 
-/* Returns by how much food F of FRAME is within the angle of sensor S, in
- * radians, by the formula of the row. */
-static double margin_of(const struct glint_motion_frame *frame, double size,
-                        int s, int f)
+/* Returns by how much food F of FRAME is inside the angle of sensor S,
+ * radians, by the formula of row D7. */
+static double compute_margin(const struct glint_motion_frame *frame,
+                             double size, int s, int f)
 {
     const double axis[3] = {sin(moving_body.theta[s]) * cos(moving_body.phi[s]),
                             sin(moving_body.theta[s]) * sin(moving_body.phi[s]),
@@ -110,7 +111,7 @@ static double margin_of(const struct glint_motion_frame *frame, double size,
         length += pow(frame->pose.turn_q14[k], 2);
     for (int k = 0; k < 4; k++)
         q[k] = frame->pose.turn_q14[k] / sqrt(length);
-    turned(q, axis, to);
+    rotate(q, axis, to);
     for (int k = 0; k < 3; k++) {
         const double d = ldexp(frame->food[f][k], -24) -
                          ldexp(frame->pose.at[k], -24) - size * to[k];
@@ -121,8 +122,9 @@ static double margin_of(const struct glint_motion_frame *frame, double size,
     return moving_angle_deg() * GLINT_PI / 360 - acos(dot / sqrt(square));
 }
 
-/* 10 000 frames of random steps, turns and foods, six sensors and five foods
- * each, by angle and by intensity too: the same as by brute force. */
+/* Row D7: in 10 000 frames of random steps, rotations and foods, with six
+ * sensors and five foods, detection by angle, and by angle and intensity,
+ * equals brute force. */
 TEST(row_d7_detection_is_brute_force)
 {
     enum { N = 10000 };
@@ -140,7 +142,7 @@ TEST(row_d7_detection_is_brute_force)
             glint_scene_seek(d[i]->frame.scene, k);
         for (int f = 0; f < FOODS; f++)
             for (int s = 0; s < SENSORS; s++) {
-                const double margin = margin_of(frame, .6, s, f);
+                const double margin = compute_margin(frame, .6, s, f);
                 const int bright = frame->intensity[f][s] > 76; /* .3 * 255 */
                 const int got[2] = {
                     (int)(glint_scene_seen_by(d[0]->frame.scene, (uint32_t)f) >>
@@ -150,7 +152,7 @@ TEST(row_d7_detection_is_brute_force)
                               s &
                           1)};
 
-                if (fabs(margin) < 1e-6) { /* places are rounded to steps */
+                if (fabs(margin) < 1e-6) { /* positions are rounded to steps */
                     close++;
                     continue;
                 }
@@ -167,7 +169,8 @@ TEST(row_d7_detection_is_brute_force)
     moving_close(d[1]);
 }
 
-/* The comparison by squares is that of whole numbers, also for wide angles. */
+/* Checks that the comparison of angles by squares equals that in exact
+ * integers, also for wide angles. */
 TEST(angles_are_compared_exactly)
 {
     uint32_t seed = 5;
@@ -208,8 +211,9 @@ TEST(angles_are_compared_exactly)
     "material light ward diffuse .5 .5 .5 specular .2 .2 .2 alpha .1 .1\n" \
     "sphere a at 0 8 0 radius 1 material dark\n"
 
-/* A line that cannot be obeyed leaves the camera in its sensor, or free, and
- * looks as they were; the one that comes next is obeyed. */
+/* Checks that a control line which fails leaves camera and appearances
+ * unchanged (camera in a sensor, or free), and that the next line is
+ * executed. */
 TEST(lines_that_fail_change_nothing)
 {
     static const struct control_line bright = {
@@ -230,7 +234,7 @@ TEST(lines_that_fail_change_nothing)
         control_parse(before[i], "f:1", &line, &error);
         assert_ok(steer_take(&steer, d->frame.scene, &line, "", &error));
         moving_draw(d);
-        hash = hash_of(d);
+        hash = hash_image(d);
         was = steer;
         control_parse("distance 9e5", "f:2", &line, &error);
         assert_int_equal(steer_take(&steer, d->frame.scene, &line, "", &error),
@@ -240,10 +244,10 @@ TEST(lines_that_fail_change_nothing)
             steer_take(&steer, d->frame.scene, &bright, "", &error),
             GLINT_E_FORMAT);
         moving_draw(d);
-        assert_true(hash_of(d) == hash);
+        assert_true(hash_image(d) == hash);
         steer_apply(&steer, d->frame.scene);
         moving_draw(d);
-        assert_true(hash_of(d) == hash);
+        assert_true(hash_image(d) == hash);
     }
     control_parse("orbit 30 20", "f:3", &line, &error);
     assert_ok(steer_take(&steer, d->frame.scene, &line, "", &error));
@@ -254,9 +258,9 @@ TEST(lines_that_fail_change_nothing)
 /* -------------------------------------------------------------------- row D9
  */
 
-/* Returns the mean place across of what is more red than blue, -1 if nothing
- * is. */
-static double middle_of_foods(const struct moving *d, int *n)
+/* Returns the mean column of pixels that are more red than blue, -1 if there
+ * are none. Sets *N to their number. */
+static double mean_column(const struct moving *d, int *n)
 {
     double sum = 0;
 
@@ -272,11 +276,11 @@ static double middle_of_foods(const struct moving *d, int *n)
     return *n ? sum / *n : -1;
 }
 
-/* A camera in a sensor sees what is ahead of it in the middle, as wide as the
- * sensor sees; outside it all is as before. */
+/* Row D9: a camera in a sensor has the object ahead in the centre and the
+ * sensor's field of view; leaving it restores the previous image. */
 TEST(row_d9_a_camera_in_a_sensor)
 {
-    /* ahead of sensor 0, 20 degrees up its side, behind it; and one more */
+    /* ahead of sensor 0, 20 degrees to its side, behind it, and another */
     double food[4][3] = {{6, 0, 0}, {0, 6, 0}, {0, -3, 7}, {-9, 1, 2}};
     uint64_t outside;
     struct moving *d;
@@ -285,13 +289,13 @@ TEST(row_d9_a_camera_in_a_sensor)
     moving_of_foods(food, 4, 60);
     d = moving_open(LOOK RUN, 5, 4);
     moving_draw(d);
-    outside = hash_of(d);
+    outside = hash_image(d);
     for (int k = 0; k < 2; k++) { /* food k is ahead of sensor k */
         assert_ok(glint_scene_enter(d->frame.scene, k));
         glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
         moving_draw(d);
-        assert_true(fabs(middle_of_foods(d, &n) - (WIDTH - 1) / 2.) < .5);
-        /* radius .5 at 6 - .6, in a picture 2 tan 30 wide */
+        assert_true(fabs(mean_column(d, &n) - (WIDTH - 1) / 2.) < .5);
+        /* radius .5 at a distance of 6 - .6, in an image 2 tan 30 wide */
         assert_true(fabs(sqrt(n / GLINT_PI) -
                          .5 / 5.4 * WIDTH / (2 * tan(GLINT_PI / 6))) < 1);
     }
@@ -300,7 +304,7 @@ TEST(row_d9_a_camera_in_a_sensor)
     assert_ok(glint_scene_enter(d->frame.scene, -1));
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 1);
     moving_draw(d);
-    assert_true(hash_of(d) == outside);
+    assert_true(hash_image(d) == outside);
     moving_close(d);
     d = moving_open(
         "camera sensor 2\nlight sun direction .3 .8 .6 colour 5e4 5e4 "
@@ -308,16 +312,16 @@ TEST(row_d9_a_camera_in_a_sensor)
         5, 4);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
     moving_draw(d);
-    assert_true(fabs(middle_of_foods(d, &n) - (WIDTH - 1) / 2.) < .5);
+    assert_true(fabs(mean_column(d, &n) - (WIDTH - 1) / 2.) < .5);
     moving_close(d);
 }
 
 /* ------------------------------------------------------------------- row D10
  */
 
-/* Three foods that one sensor sees each, two that all see, and two that two
- * see. */
-TEST(row_d10_who_sees_what)
+/* Row D10: three foods that one sensor each detects, two that all detect,
+ * and two that two detect. */
+TEST(row_d10_detections)
 {
     double three[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
     double corner[4][3] = {{5, 5, 0}, {-5, 5, 0}, {5, -5, 7}, {3, 3, -8}};
@@ -343,7 +347,8 @@ TEST(row_d10_who_sees_what)
     moving_close(d);
 }
 
-/* Each kind is in the picture, can be hidden and comes back, and has a size. */
+/* Checks that each type of object is visible, can be hidden and shown again,
+ * and can be resized. */
 TEST(kinds_are_hidden_and_sized)
 {
     double food[4][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}, {-5, -4, 6}};
@@ -353,21 +358,21 @@ TEST(kinds_are_hidden_and_sized)
     moving_of_foods(food, 4, 50);
     d = moving_open(LOOK RUN, 5, 4);
     moving_draw(d);
-    whole = hash_of(d);
+    whole = hash_image(d);
     for (int kind = 0; kind < GLINT_KINDS; kind++) {
         const int32_t steps = 1 << d->model.header->unit_log2;
 
         glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 0);
         moving_draw(d);
-        assert_true(hash_of(d) != whole);
+        assert_true(hash_image(d) != whole);
         glint_scene_show_kind(d->frame.scene, (enum glint_scene_kind)kind, 1);
         moving_draw(d);
-        assert_true(hash_of(d) == whole);
+        assert_true(hash_image(d) == whole);
         assert_ok(glint_scene_size_kind(d->frame.scene,
                                         (enum glint_scene_kind)kind, steps));
         moving_draw(d);
-        assert_true(hash_of(d) != whole);
-        whole = hash_of(d);
+        assert_true(hash_image(d) != whole);
+        whole = hash_image(d);
         assert_int_equal(glint_scene_size_kind(d->frame.scene,
                                                (enum glint_scene_kind)kind, 0),
                          GLINT_E_ARGUMENT);
@@ -375,8 +380,9 @@ TEST(kinds_are_hidden_and_sized)
     moving_close(d);
 }
 
-/* A shell over black has the fraction of light that its material does not let
- * pass, half of that in the middle; a food in it is seen through it. */
+/* Checks that a shell over black has the fraction of light that its material
+ * does not transmit, half of it in the middle, and that a food inside is
+ * visible through it. */
 TEST(shells_let_light_pass)
 {
     double food[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
@@ -390,7 +396,7 @@ TEST(shells_let_light_pass)
                     "motion run x size .6 foods .5 shells 4\n",
                     5, 4);
     moving_draw(d);
-    /* the food's red, 1, behind a quarter of the shell */
+    /* the food's red of 1 behind a shell of coverage 1/4 */
     assert_true(abs(d->light_q20[middle] - (3 << 18)) < 1 << 14);
     assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
@@ -403,8 +409,9 @@ TEST(shells_let_light_pass)
     moving_close(d);
 }
 
-/* Lines that leave the widest of pictures continue until all of their width is
- * outside: an edge of the box, 200 pixels wide, leaves it aslant. */
+/* Checks that lines leaving the widest image are drawn until their whole
+ * width is off-screen: an edge of the box, 200 pixels wide, leaves it
+ * obliquely. */
 TEST(wide_lines_leave_wide_pictures)
 {
     enum { WIDE = 8192, LOW = 16 };
@@ -412,7 +419,7 @@ TEST(wide_lines_leave_wide_pictures)
     static const struct tool tool = {.name = "test"};
     const struct scene_dials dials = {
         .width = WIDE, .height = LOW, .edge_samples = 1, .shadow_points = 1};
-    const int32_t half = 759250125; /* of the root of two */
+    const int32_t half = 759250125; /* sqrt(1/2), Q30 */
     const int32_t axis_q30[3][3] = {
         {half, half, 0}, {-half, half, 0}, {0, 0, -(1 << 30)}};
     double food[3][3] = {{40, 0, 0}, {-40, 5, 0}, {0, -5, -5}};
@@ -448,7 +455,7 @@ TEST(wide_lines_leave_wide_pictures)
     moving_close(d);
 }
 
-/* Lamps ride on the body: the lens gets their places. */
+/* Checks that lamps move with the body, by the positions passed to the lens. */
 TEST(lamps_ride_on_the_body)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
@@ -468,7 +475,7 @@ TEST(lamps_ride_on_the_body)
         moving_draw(d);
         for (int i = 0; i < 4; i++)
             q[i] = ldexp(m->frame.pose.turn_q14[i], -14);
-        turned(q, y, up);
+        rotate(q, y, up);
         for (int i = 0; i < 3; i++)
             at[i] = ldexp(m->frame.pose.at[i], -24) + up[i];
         assert_int_equal(glint_scene_lights(d->frame.scene, lamp), 1);
@@ -481,7 +488,7 @@ TEST(lamps_ride_on_the_body)
 
 /* ------------------------------------------------------------------ hostile */
 
-TEST(a_part_that_is_absent_is_named)
+TEST(missing_module_is_named)
 {
     struct glint_scene_parts parts;
     struct moving *d;
@@ -495,8 +502,9 @@ TEST(a_part_that_is_absent_is_named)
     moving_close(d);
 }
 
-/* Cameras anywhere, also within shells and lines, and objects from a step to a
- * quarter of the space: nothing wraps (CONFIG=qcheck), nothing is endless. */
+/* Checks cameras anywhere, also inside shells and lines, and objects from
+ * one step to a quarter of the space: no overflow (CONFIG=qcheck), no
+ * endless loop. */
 TEST(extremes_of_places_and_sizes)
 {
     struct moving *d;
@@ -514,7 +522,7 @@ TEST(extremes_of_places_and_sizes)
             at[k] = ((int32_t)rng_bits(&seed) >> 4) >> shift;
             axis_q30[k][(k + turn) % 3] = 1 << 30;
         }
-        if (i % 4 == 1) /* in a food, or in the body */
+        if (i % 4 == 1) /* inside a food, or in the body */
             memcpy(at, s->motion->food_at[i % FOODS], sizeof at);
         assert_ok(glint_scene_set_camera(s, at, (const int32_t(*)[3])axis_q30));
         glint_scene_size_kind(s, (enum glint_scene_kind)rng_below(&seed, 6),

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pieces of light of lenses that are not round: halves cover what they are
- * halves of; the variable whose powers weigh most is returned; parts get the
- * least number that is free.
+ * Tests the pieces into which the lights of lenses without rotational symmetry
+ * are divided: halves cover the whole piece; the variable with the largest
+ * high-order terms is chosen for halving; parts get the smallest free number.
  */
 #include <math.h>
 
@@ -10,18 +10,19 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* A ray of a piece: where it enters, from where, its place in the band. */
+/* The ray of a piece: its start, its direction and its position in the
+ * wavelength band. */
 struct entry {
     double x_mm, y_mm, direction[2], w;
 };
 
-static double between(double lo, double hi, double x)
+static double interpolate(double lo, double hi, double x)
 {
     return 0.5 * (lo + hi) + 0.5 * x * (hi - lo);
 }
 
-static struct entry entry_of(const struct glint_skew_piece *p,
-                             const double x[GLINT_VARIABLES])
+static struct entry find_entry(const struct glint_skew_piece *p,
+                               const double x[GLINT_VARIABLES])
 {
     const struct glint_zone *z = &p->zone;
 
@@ -29,9 +30,9 @@ static struct entry entry_of(const struct glint_skew_piece *p,
                               x[GLINT_U] * glint_zone_side(z, z->half_x, x),
                           glint_zone_side(z, z->middle_y, x) +
                               x[GLINT_V] * glint_zone_side(z, z->half_y, x),
-                          {between(z->lo, z->hi, x[GLINT_S]),
-                           between(z->y_lo, z->y_hi, x[GLINT_P])},
-                          between(p->w0, p->w1, x[GLINT_W])};
+                          {interpolate(z->lo, z->hi, x[GLINT_S]),
+                           interpolate(z->y_lo, z->y_hi, x[GLINT_P])},
+                          interpolate(p->w0, p->w1, x[GLINT_W])};
 }
 
 static void assert_same(const struct entry *a, const struct entry *b)
@@ -43,13 +44,13 @@ static void assert_same(const struct entry *a, const struct entry *b)
     assert_true(fabs(a->w - b->w) < 1e-14);
 }
 
-static void fill(uint32_t *seed, double side[GLINT_BOX_TERMS])
+static void fill_random(uint32_t *seed, double side[GLINT_BOX_TERMS])
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++)
         side[k] = 2 * rng_unit(seed) - 1;
 }
 
-static struct glint_skew_piece any_piece(uint32_t *seed)
+static struct glint_skew_piece random_piece(uint32_t *seed)
 {
     struct glint_skew_piece p = {.zone = {.lo = -0.1,
                                           .hi = 0.3,
@@ -60,10 +61,10 @@ static struct glint_skew_piece any_piece(uint32_t *seed)
                                  .w1 = 0.5,
                                  .depth = 3};
 
-    fill(seed, p.zone.middle);
-    fill(seed, p.zone.middle_y);
-    fill(seed, p.zone.half_x);
-    fill(seed, p.zone.half_y);
+    fill_random(seed, p.zone.middle);
+    fill_random(seed, p.zone.middle_y);
+    fill_random(seed, p.zone.half_x);
+    fill_random(seed, p.zone.half_y);
     return p;
 }
 
@@ -72,7 +73,7 @@ TEST(halves)
     uint32_t seed = 5;
 
     for (int k = 0; k < 1000; k++) {
-        const struct glint_skew_piece p = any_piece(&seed);
+        const struct glint_skew_piece p = random_piece(&seed);
         const int variable = k % GLINT_VARIABLES;
         double whole[GLINT_VARIABLES], half[GLINT_VARIABLES];
         struct glint_skew_piece piece[2];
@@ -84,8 +85,8 @@ TEST(halves)
         if (whole[variable] < 0)
             half[variable] = -half[variable];
         glint_piece_halve(&p, variable, &piece[0], &piece[1]);
-        a = entry_of(&p, whole);
-        b = entry_of(&piece[whole[variable] > 0], half);
+        a = find_entry(&p, whole);
+        b = find_entry(&piece[whole[variable] > 0], half);
         assert_same(&a, &b);
         for (int i = 0; i < 2; i++) {
             assert_int_equal(piece[i].depth, 4);
@@ -95,7 +96,7 @@ TEST(halves)
     }
 }
 
-/* Sets an output with a term of power POWER of VARIABLE. */
+/* Sets output O to one term: power POWER of VARIABLE. */
 static void set_output(struct glint_fitted_output *o, double *coef,
                        enum glint_channel kind, int variable, int power,
                        bool met)
@@ -122,7 +123,7 @@ TEST(shares)
     assert_true(share[GLINT_V] == 2 * 0.875);
     assert_true(share[GLINT_S] == 0 && share[GLINT_W] == 0);
 
-    /* Where all met their tolerances, all count. */
+    /* If all outputs met their tolerances, all count. */
     system.output[1].met = true;
     glint_piece_shares(&system, share);
     assert_true(share[GLINT_V] == 2 * 0.875 && share[GLINT_S] == 2 * 0.5);
@@ -131,7 +132,7 @@ TEST(shares)
 
 TEST(numbers)
 {
-    /* Two parts of one patch, and a third system beside them. */
+    /* two parts of one patch, and a third system next to them */
     struct glint_fitted_system has[] = {
         {.part = 1, .sine_hi = 0.1, .y_hi = 0.1, .wave_hi = 6},
         {.part = 0, .sine_hi = 0.1, .y_hi = 0.1, .wave_hi = 6},

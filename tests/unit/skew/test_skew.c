@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models of lenses that are not round: lights from all sides, of which a model
- * has a quarter or a half, and rays at colours that were not fitted must land
- * where exact rays do; rows of rays must agree with single ones.
+ * Tests models of lenses without rotational symmetry: rays of lights from all
+ * sides (the model stores a quarter or a half of them) and at wavelengths that
+ * were not fitted land where exact rays do, and rows of rays equal single rays.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -27,9 +27,10 @@ static struct glint_lens model;
 static struct glint_setup setup;
 static unsigned char *data;
 
-/* Bakes a doublet behind two surfaces, with FIRST behind the first, and BEFORE
- * and AFTER around both. */
-static void bake(const char *before, const char *first, const char *after)
+/* Bakes a doublet behind two additional surfaces: BEFORE, the first surface,
+ * FIRST, the second, AFTER. */
+static void bake_doublet(const char *before, const char *first,
+                         const char *after)
 {
     static const double rgb_nm[] = {650, 532, 450};
     struct glint_bake_options options;
@@ -60,21 +61,22 @@ static void bake(const char *before, const char *first, const char *after)
     assert_true(report.intruders * 100 <= report.rays);
 }
 
-static void forget(void)
+static void free_model(void)
 {
     free(data);
     data = NULL;
 }
 
-/* A bundle of the model, the exact path, and errors so far. */
+/* A bundle of the model, the exact path, and the errors so far. */
 struct meter {
     struct glint_transfer t;
     struct glint_path path;
     double direction[3];
-    int n;             /* number of rays that get through */
-    int through, lost; /* exact rays, and those that no bundle has */
+    int n; /* number of compared rays that pass */
+    /* exact rays that pass, and those that no bundle covers */
+    int through, lost;
     double places2, stops2, energies2;
-    double off; /* pixels that a vertex lies beside its ray, the largest */
+    double off; /* max distance between a vertex and its ray, pixels */
 };
 
 static const struct glint_place place = {.cos_q30 = ONE,
@@ -83,21 +85,23 @@ static const struct glint_place place = {.cos_q30 = ONE,
                                          .middle_x_q8 = 960 << 8,
                                          .middle_y_q8 = 540 << 8};
 
-static double value(const struct meter *m, const struct glint_outputs *o,
-                    int kind)
+static double to_double(const struct meter *m, const struct glint_outputs *o,
+                        int kind)
 {
     return ldexp(o->at[kind], m->t.exponent[kind]);
 }
 
-/* Returns how far V lies beside where the ray (X, Y) lands, pixels. */
-static double beside(const struct glint_vertex *v, double x_mm, double y_mm)
+/* Returns the distance between V and the landing position of the ray (X, Y),
+ * pixels. */
+static double vertex_distance(const struct glint_vertex *v, double x_mm,
+                              double y_mm)
 {
     return hypot(v->x_q8 / 256.0 - 960 - 53 * x_mm,
                  540 - v->y_q8 / 256.0 - 53 * y_mm);
 }
 
-static bool gets_through(const struct meter *m, double x_mm, double y_mm,
-                         struct glint_ray *ray)
+static bool is_passed(const struct meter *m, double x_mm, double y_mm,
+                      struct glint_ray *ray)
 {
     return glint_trace(&m->path, x_mm, y_mm, m->direction, ray, NULL) ==
                GLINT_RAY_OK &&
@@ -107,9 +111,9 @@ static bool gets_through(const struct meter *m, double x_mm, double y_mm,
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= 23;
 }
 
-/* Counts the rays of a grid over the front that get through, and those of them
- * beside the box or, without a bundle, all. */
-static void survey(struct meter *m, bool has_bundle)
+/* Counts the rays of a grid over the front that pass, and those of them
+ * outside the box; without a bundle all count as outside. */
+static void count_rays(struct meter *m, bool has_bundle)
 {
     const double x = m->t.sign, y = m->t.side ? -m->t.sign : m->t.sign;
     const double unit = ldexp(1, m->t.box_exponent);
@@ -118,7 +122,7 @@ static void survey(struct meter *m, bool has_bundle)
         const double at[2] = {(k % 49 - 24) / 2., (k / 49 - 24) / 2.};
         struct glint_ray ray;
 
-        if (!gets_through(m, at[0], at[1], &ray))
+        if (!is_passed(m, at[0], at[1], &ray))
             continue;
         m->through++;
         m->lost += !has_bundle ||
@@ -127,9 +131,10 @@ static void survey(struct meter *m, bool has_bundle)
     }
 }
 
-/* Compares ray (I, J) of a grid. The model's frame is the lens's, mirrored by
- * the signs X and Y. */
-static void compare(struct meter *m, int i, int j, const struct glint_vertex *v)
+/* Compares ray (I, J) of a grid. The model's coordinates are those of the
+ * lens, mirrored by the signs X and Y. */
+static void compare_ray(struct meter *m, int i, int j,
+                        const struct glint_vertex *v)
 {
     const double x = m->t.sign, y = m->t.side ? -m->t.sign : m->t.sign;
     const double u = 2.0 * i / CELLS - 1, w = 2.0 * j / CELLS - 1;
@@ -138,20 +143,21 @@ static void compare(struct meter *m, int i, int j, const struct glint_vertex *v)
     struct glint_outputs o;
     struct glint_ray ray;
 
-    if (!gets_through(m, x * unit * (m->t.box[0] + u * m->t.box[1]),
-                      y * unit * (m->t.box[3] + w * m->t.box[2]), &ray))
+    if (!is_passed(m, x * unit * (m->t.box[0] + u * m->t.box[1]),
+                   y * unit * (m->t.box[3] + w * m->t.box[2]), &ray))
         return;
     glint_transfer_ray(&m->t, (int32_t)lrint(u * 0x1p30),
                        (int32_t)lrint(w * 0x1p30), &o);
     m->places2 +=
-        pow(x * value(m, &o, GLINT_OUT_SENSOR_X) - ray.sensor_x_mm, 2) +
-        pow(y * value(m, &o, GLINT_OUT_SENSOR_Y) - ray.sensor_y_mm, 2);
+        pow(x * to_double(m, &o, GLINT_OUT_SENSOR_X) - ray.sensor_x_mm, 2) +
+        pow(y * to_double(m, &o, GLINT_OUT_SENSOR_Y) - ray.sensor_y_mm, 2);
     m->stops2 +=
-        pow(x * value(m, &o, GLINT_OUT_STOP_X) - ray.stop_x_mm / stop, 2) +
-        pow(y * value(m, &o, GLINT_OUT_STOP_Y) - ray.stop_y_mm / stop, 2);
-    m->energies2 += pow(value(m, &o, GLINT_OUT_ENERGY) / ray.energy - 1, 2);
-    m->off = fmax(m->off, beside(v, x * value(m, &o, GLINT_OUT_SENSOR_X),
-                                 y * value(m, &o, GLINT_OUT_SENSOR_Y)));
+        pow(x * to_double(m, &o, GLINT_OUT_STOP_X) - ray.stop_x_mm / stop, 2) +
+        pow(y * to_double(m, &o, GLINT_OUT_STOP_Y) - ray.stop_y_mm / stop, 2);
+    m->energies2 += pow(to_double(m, &o, GLINT_OUT_ENERGY) / ray.energy - 1, 2);
+    m->off = fmax(m->off,
+                  vertex_distance(v, x * to_double(m, &o, GLINT_OUT_SENSOR_X),
+                                  y * to_double(m, &o, GLINT_OUT_SENSOR_Y)));
     m->n++;
 }
 
@@ -161,7 +167,7 @@ static void compare_all(struct meter *m)
     static struct glint_vertex vertex[NODES * NODES];
     uint32_t seed = 7;
 
-    /* A part has a box of its own, and is not a ghost of the table. */
+    /* A part has its own box and is not a ghost of the table. */
     assert_int_equal(model.header->n_parts, 0);
     for (int k = 0; k < BUNDLES; k++) {
         const int ghost = rng_below(&seed, (int)model.header->n_ghosts);
@@ -181,18 +187,18 @@ static void compare_all(struct meter *m)
         is_lit = glint_transfer_init_at(
             &m->t, &model, ghost, (int32_t)lrint(sin(theta) * 0x1p30), azimuth,
             (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
-        survey(m, is_lit);
+        count_rays(m, is_lit);
         if (!is_lit)
             continue;
         at.cos_q30 = m->t.sign * ONE;
         glint_transfer_grid(&m->t, &at, CELLS, vertex);
         for (int j = 0; j < NODES; j++)
             for (int i = 0; i < NODES; i++)
-                compare(m, i, j, &vertex[j * NODES + i]);
+                compare_ray(m, i, j, &vertex[j * NODES + i]);
     }
 }
 
-static void check(void)
+static void check_errors(void)
 {
     static struct meter m;
     double pixels, radii, share;
@@ -216,25 +222,25 @@ static void check(void)
 
 TEST(cylinder)
 {
-    bake("", "shape cylinder x\n", "");
+    bake_doublet("", "shape cylinder x\n", "");
     assert_int_equal(model.header->basis,
                      GLINT_BASIS_LENS + GLINT_MIRRORS_X + GLINT_MIRRORS_Y);
-    check();
-    forget();
+    check_errors();
+    free_model();
 }
 
 TEST(toric_aside)
 {
-    bake("group decentre 0.6 0\n", "shape toric y 300\n", "end\n");
+    bake_doublet("group decentre 0.6 0\n", "shape toric y 300\n", "end\n");
     assert_int_equal(model.header->basis, GLINT_BASIS_LENS + GLINT_MIRRORS_Y);
-    check();
-    forget();
+    check_errors();
+    free_model();
 }
 
 TEST(tilted)
 {
-    bake("group decentre 0 0.4 tilt 2 1\n", "", "end\n");
+    bake_doublet("group decentre 0 0.4 tilt 2 1\n", "", "end\n");
     assert_int_equal(model.header->basis, GLINT_BASIS_LENS);
-    check();
-    forget();
+    check_errors();
+    free_model();
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pattern of a stop with round blades: at both ends of roundness it is that
- * of the polygon and of the circle, far out it is what is left of the exact
- * pattern without fringes, it has as many fans as lines before, turns with the
- * blades, and a soft edge makes an end to it. A lamp's extent blurs it.
+ * Tests the diffraction pattern of a stop with round blades: at both ends of
+ * roundness it equals that of the polygon and of the circle; far out it
+ * approximates the exact pattern without fringes; it has as many fans as lines
+ * for straight blades; it rotates with the blades; a soft edge limits it, and a
+ * lamp's extent blurs it.
  */
 #include "engine/star/psf.h"
 
@@ -15,10 +16,10 @@
 #include "support/stars/canvas.h"
 #include "support/test.h"
 
-/* Returns |F|^2 / A^2, times q^3 over (q = AT)^3, in the mean from 0.8 to 1.2
- * AT. */
-static double mean_of(double (*f)(const struct glint_arcs *, double, double),
-                      const struct glint_arcs *arcs, double at, double phi)
+/* Returns the mean of |F|^2 / A^2 times q^3 / AT^3 for q from 0.8 to 1.2 AT. */
+static double mean_pattern(double (*f)(const struct glint_arcs *, double,
+                                       double),
+                           const struct glint_arcs *arcs, double at, double phi)
 {
     enum { N = 400 };
     double sum = 0;
@@ -31,13 +32,13 @@ static double mean_of(double (*f)(const struct glint_arcs *, double, double),
     return sum;
 }
 
-static double of_circle(const struct glint_arcs *arcs, double x, double y)
+static double circle_pattern(const struct glint_arcs *arcs, double x, double y)
 {
     (void)arcs;
     return glint_psf_transform(0, 0, x, y);
 }
 
-static double of_polygon(const struct glint_arcs *arcs, double x, double y)
+static double polygon_pattern(const struct glint_arcs *arcs, double x, double y)
 {
     return glint_psf_transform(arcs->n, arcs->rotation_deg, x, y);
 }
@@ -53,17 +54,18 @@ TEST(ends)
             double one, other;
 
             glint_arcs_init(&arcs, blades[i], 10, 0.9999);
-            one = mean_of(glint_arcs_transform, &arcs, at, phi);
-            other = mean_of(of_circle, &arcs, at, phi);
+            one = mean_pattern(glint_arcs_transform, &arcs, at, phi);
+            other = mean_pattern(circle_pattern, &arcs, at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
             glint_arcs_init(&arcs, blades[i], 10, 1e-3);
-            one = mean_of(glint_arcs_transform, &arcs, at, phi);
-            other = mean_of(of_polygon, &arcs, at, phi);
+            one = mean_pattern(glint_arcs_transform, &arcs, at, phi);
+            other = mean_pattern(polygon_pattern, &arcs, at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
         }
 }
 
-/* Where both ways to add up an arc meet, at q = 5, there must be no step. */
+/* Checks that the two methods of summing an arc agree at q = 5, where they
+ * are switched. */
 TEST(no_step)
 {
     struct glint_arcs arcs;
@@ -82,8 +84,8 @@ TEST(no_step)
         }
 }
 
-/* The sums over a circle, where fans and what is between them both count, must
- * agree, and single directions roughly. */
+/* Checks the sum over a circle, including fans and the light between them,
+ * exactly, and single directions roughly. */
 TEST(far)
 {
     enum { PHIS = 48 };
@@ -95,8 +97,9 @@ TEST(far)
         glint_arcs_init(&arcs, 5 + k % 4, 10, 0.05 + 0.3 * (k / 4 % 3));
         for (int i = 0; i < PHIS; i++) {
             const double phi = 2 * GLINT_PI * i / PHIS, at = k < 12 ? 12 : 60;
-            const double one = mean_of(glint_arcs_transform, &arcs, at, phi);
-            const double other = mean_of(glint_arcs_far, &arcs, at, phi);
+            const double one =
+                mean_pattern(glint_arcs_transform, &arcs, at, phi);
+            const double other = mean_pattern(glint_arcs_far, &arcs, at, phi);
 
             assert_true(other > 0.3 * one && other < 3 * one);
             exact += one;
@@ -106,9 +109,9 @@ TEST(far)
     }
 }
 
-/* Returns the number of places on a circle of R pixels that are brighter than
- * both neighbours and than the mean. */
-static int peaks(const struct glint_psf *p, double r)
+/* Returns the number of positions on a circle of R pixels that are brighter
+ * than both neighbours and the mean. */
+static int count_peaks(const struct glint_psf *p, double r)
 {
     enum { N = 720 };
     double light[N], mean = 0;
@@ -127,7 +130,8 @@ static int peaks(const struct glint_psf *p, double r)
     return n;
 }
 
-/* 5, 6 and 8 blades must give 10, 6 and 8 fans, which turn with the blades. */
+/* Checks that 5, 6 and 8 blades give 10, 6 and 8 fans, which rotate with the
+ * blades. */
 TEST(fans)
 {
     static const int blades[3] = {5, 6, 8}, fans[3] = {10, 6, 8};
@@ -138,11 +142,11 @@ TEST(fans)
 
         assert_ok(glint_psf_init_iris(&one, blades[i], 20, 1, 0.2, 0));
         assert_ok(glint_psf_init_iris(&turned, blades[i], 21, 1, 0.2, 0));
-        assert_int_equal(peaks(&one, 200), fans[i]);
+        assert_int_equal(count_peaks(&one, 200), fans[i]);
         for (int k = 0; k < 90; k++) {
             const double phi = k * GLINT_PI / 180, turn = GLINT_PI / 180;
 
-            /* y runs down here */
+            /* y points down here */
             glint_psf_light(&one, 40 * cos(phi), 40 * sin(phi), a);
             glint_psf_light(&turned, 40 * cos(phi - turn), 40 * sin(phi - turn),
                             b);
@@ -153,7 +157,8 @@ TEST(fans)
     }
 }
 
-/* A soft edge must leave the middle as it is and take the light far out. */
+/* Checks that a soft edge preserves the centre and removes the light far
+ * out. */
 TEST(soft)
 {
     struct glint_psf hard, soft;
@@ -173,8 +178,8 @@ TEST(soft)
     glint_psf_finish(&soft);
 }
 
-static struct glint_star_tables *tables_of(int n_blades, double round,
-                                           double soft)
+static struct glint_star_tables *make_tables(int n_blades, double round,
+                                             double soft)
 {
     const struct glint_star_optics o = {.n_blades = n_blades,
                                         .f_number = 2 / 0.55,
@@ -187,12 +192,12 @@ static struct glint_star_tables *tables_of(int n_blades, double round,
     return t;
 }
 
-/* Returns the width in pixels, at half its brightness, of the spike that a lamp
- * of RADIUS pixels throws up, 100 pixels from it. */
+/* Returns the full width at half maximum, pixels, of the upward spike of a
+ * lamp of RADIUS pixels, 100 pixels from it. */
 static int spike_width(double round, double soft, double radius)
 {
     enum { SIDE = 255, ROW = 27 };
-    struct glint_star_tables *t = tables_of(6, round, soft);
+    struct glint_star_tables *t = make_tables(6, round, soft);
     struct glint_star_light lamp = star_canvas_light(127.5, 127.5, 20);
     int32_t *linear_q20 = malloc(3 * SIDE * SIDE * sizeof *linear_q20);
     const int32_t *row = linear_q20 + 3 * SIDE * ROW;
@@ -212,8 +217,8 @@ static int spike_width(double round, double soft, double radius)
     return n;
 }
 
-/* A lamp's extent must make fans wider as it does lines, and next to straight
- * blades there must be no step. */
+/* Checks that a lamp's extent widens fans as it widens lines, and that
+ * almost straight blades give almost the same as straight ones. */
 TEST(wide_lamp)
 {
     for (int radius = 4; radius <= 16; radius *= 2) {
@@ -228,13 +233,13 @@ TEST(wide_lamp)
     }
 }
 
-/* Blades of curvature 1 must have a circle's tables, and those close to it a
- * halo as even. */
+/* Checks that blades of curvature 1 have the tables of a circle, and those
+ * close to it a halo as even. */
 TEST(to_circle)
 {
-    struct glint_star_tables *circle = tables_of(0, 0, 0);
-    struct glint_star_tables *one = tables_of(6, 1, 0);
-    struct glint_star_tables *near = tables_of(6, 0.97, 0);
+    struct glint_star_tables *circle = make_tables(0, 0, 0);
+    struct glint_star_tables *one = make_tables(6, 1, 0);
+    struct glint_star_tables *near = make_tables(6, 0.97, 0);
 
     assert_int_equal(glint_star_tables_bytes(one),
                      glint_star_tables_bytes(circle));
@@ -247,7 +252,7 @@ TEST(to_circle)
             least = near->halo[i][k][1] < least ? near->halo[i][k][1] : least;
             most = near->halo[i][k][1] > most ? near->halo[i][k][1] : most;
         }
-        /* a third, as log2 in _q11 */
+        /* a third, as log2 in Q11 */
         assert_true(most - least < 1024);
     }
     glint_star_tables_free(circle);

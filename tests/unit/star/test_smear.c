@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stars of a stop with dust or a mask in it: against direct summation over the
- * stop; all light; the same bits whatever tiles and workers; a white mask as no
- * mask; a black one without light.
+ * Tests starbursts of a stop with dust or a mask: against direct summation over
+ * the stop; total light; the same bits for any tiles and workers; a white mask
+ * equals no mask; a black one has no light.
  */
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +22,7 @@ enum { SIDE = 301, FINE = 150, WAVES = 13, POINTS = 3 };
 static int32_t linear[3 * SIDE * SIDE], again[3 * SIDE * SIDE];
 static double amplitude[2 * FINE][2 * FINE], all_light;
 
-/* A stop of eight blades with what lies in it. */
+/* A stop of eight blades with its dirt. */
 struct stop {
     struct glint_setup setup;
     struct glint_dirt *dirt;
@@ -58,7 +58,7 @@ static void close_stop(struct stop *s)
     glint_dirt_free(s->dirt);
 }
 
-static void draw(const struct stop *s, double power_log2, int32_t *to)
+static void draw_star(const struct stop *s, double power_log2, int32_t *to)
 {
     struct star_canvas canvas;
     const struct glint_star_light light =
@@ -72,7 +72,7 @@ static void draw(const struct stop *s, double power_log2, int32_t *to)
 
 /* ------------------------------------------------------------------ direct */
 
-/* Sets the amplitudes of the stop, and the integral of their squares. */
+/* Sets the amplitudes of the stop and the integral of their squares. */
 static void set_amplitudes(const struct stop *s)
 {
     all_light = 0;
@@ -95,8 +95,8 @@ static void set_amplitudes(const struct stop *s)
         }
 }
 
-/* Returns |G(q)|^2. */
-static double transform(double qx, double qy)
+/* Returns the power spectrum |G(q)|^2 of the stop's amplitudes. */
+static double power_spectrum(double qx, double qy)
 {
     const double step = -2 * GLINT_PI / FINE;
     double re = 0, im = 0;
@@ -121,8 +121,9 @@ static double transform(double qx, double qy)
     return (re * re + im * im) / pow(FINE, 4);
 }
 
-/* Returns the green light of the pixel about (X, Y) from the light, y down. */
-static double direct(double x, double y, double airy_px)
+/* Returns the green light of the pixel at (X, Y) from the light, y down, by
+ * direct summation. */
+static double sum_direct(double x, double y, double airy_px)
 {
     double sum = 0, weights = 0;
 
@@ -138,14 +139,14 @@ static double direct(double x, double y, double airy_px)
             const double at_x = x + (k % POINTS + 0.5) / POINTS - 0.5;
             const double at_y = y + (row + 0.5) / POINTS - 0.5;
 
-            sum += rgb[1] * transform(at_x / (2 * a), -at_y / (2 * a)) /
+            sum += rgb[1] * power_spectrum(at_x / (2 * a), -at_y / (2 * a)) /
                    (4 * a * a * all_light * POINTS * POINTS);
         }
     }
     return sum / weights;
 }
 
-static double code(double light)
+static double to_code(double light)
 {
     const double held = fmin(fmax(light, 0), 1);
 
@@ -153,8 +154,8 @@ static double code(double light)
                                     : 1.055 * pow(held, 1 / 2.4) - 0.055);
 }
 
-/* Stars must be those of direct summation, near the light and farther out. */
-TEST(direct)
+/* Checks stars against direct summation, near the light and further out. */
+TEST(sum_direct)
 {
     const struct glint_iris iris = {.dust = 0.1, .dust_seed = 4};
     const double airy_px = 1, power_log2 = 9;
@@ -164,22 +165,23 @@ TEST(direct)
 
     open_stop(&s, &iris, airy_px);
     set_amplitudes(&s);
-    draw(&s, power_log2, linear);
+    draw_star(&s, power_log2, linear);
     for (int k = 0; k < n; k++) {
         const double r = 6 * exp2(k * 2.5 / n), phi = 2.4 * k;
         const int x = (int)(150.3 + r * cos(phi));
         const int y = (int)(150.6 + r * sin(phi));
-        const double light = exp2(power_log2) *
-                             direct(x + 0.5 - 150.3, y + 0.5 - 150.6, airy_px);
+        const double light =
+            exp2(power_log2) *
+            sum_direct(x + 0.5 - 150.3, y + 0.5 - 150.6, airy_px);
         const double off =
-            code(linear[3 * (y * SIDE + x) + 1] * 0x1p-20) - code(light);
+            to_code(linear[3 * (y * SIDE + x) + 1] * 0x1p-20) - to_code(light);
 
         squares += off * off / n;
         most = fmax(most, fabs(off));
         if (getenv("SHOW"))
             fprintf(stderr, "r %.1f: %.2f, direct %.2f\n", r,
-                    code(linear[3 * (y * SIDE + x) + 1] * 0x1p-20),
-                    code(light));
+                    to_code(linear[3 * (y * SIDE + x) + 1] * 0x1p-20),
+                    to_code(light));
     }
     printf("smear: %.1f dB against direct summation, %.1f codes at most\n",
            10 * log10(255 * 255 / squares), most);
@@ -187,7 +189,7 @@ TEST(direct)
     close_stop(&s);
 }
 
-/* All light must be there, whatever the size of the pattern. */
+/* Checks the total light, for any size of the pattern. */
 TEST(energy)
 {
     const struct glint_iris iris = {.dust = 0.2, .dust_seed = 7};
@@ -199,11 +201,11 @@ TEST(energy)
         double sum = 0, beyond;
 
         open_stop(&s, &iris, airy_px);
-        draw(&s, 10, linear);
+        draw_star(&s, 10, linear);
         for (int i = 1; i < 3 * SIDE * SIDE; i += 3)
             sum += linear[i] * 0x1p-30;
         assert_ok(glint_psf_init(&psf, 8, 10, airy_px));
-        /* the picture is a square as large as a circle of this radius */
+        /* the image has the area of a circle of this radius */
         beyond = s.smear.clear * glint_psf_beyond(&psf, 0.564 * SIDE, 1) +
                  glint_smear_beyond(&s.smear, &psf, airy_px, 0.564 * SIDE, 1);
         printf("smear: %.4f of the light, %.4f of it beyond the picture\n",
@@ -214,7 +216,7 @@ TEST(energy)
     }
 }
 
-/* Tiles and workers must change no bit. */
+/* Checks that tiles and workers do not change the image, bit by bit. */
 TEST(same_bits)
 {
     const struct glint_iris iris = {.dust = 0.05, .dust_seed = 3};
@@ -235,7 +237,8 @@ TEST(same_bits)
     close_stop(&s);
 }
 
-/* A white mask must be no mask, and a black one have no smear. */
+/* Checks that a white mask equals no mask, and that a black one gives no
+ * smear. */
 TEST(white_and_black)
 {
     uint8_t mask[4] = {255, 255, 255, 255};
@@ -253,8 +256,8 @@ TEST(white_and_black)
     close_stop(&s);
 }
 
-/* A mask that leaves a hole must give the pattern of that: its first dark ring
- * is wider as the hole is smaller. */
+/* Checks that a mask with a hole gives the pattern of the hole: the smaller
+ * the hole, the wider the first dark ring. */
 TEST(hole)
 {
     enum { N = 128 };
@@ -268,7 +271,7 @@ TEST(hole)
         mask[i] = hypot(i % N - 63.5, i / N - 63.5) < N / 8.0 ? 255 : 0;
     open_stop(&s, &iris, 3);
     assert_true(s.smear.clear < 1e-6);
-    draw(&s, 12, linear);
+    draw_star(&s, 12, linear);
     for (int r = 4; r < 25; r++) {
         const double light =
             star_canvas_green(linear, SIDE, 150.3 + r, 150.6) * r * r;

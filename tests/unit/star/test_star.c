@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The starburst: tables against direct summation in doubles, and what is drawn
- * of them in motion and in rotation.
+ * Tests the starburst: tables against direct summation in double precision, and
+ * drawing in motion and rotation.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -21,8 +21,8 @@
 
 enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
 
-/* Draws N lights into LINEAR_Q20, linear light, down to FAINTEST. Returns how
- * many pixels were reported to get some. */
+/* Draws N lights into LINEAR_Q20, linear light, down to a light of FAINTEST.
+ * Returns the reported number of lit pixels. */
 static double draw_down_to(const struct glint_star_tables *t,
                            const struct glint_star_light *lights, int n,
                            struct glint_real faintest, int32_t *linear_q20)
@@ -47,9 +47,9 @@ static void draw_linear(const struct glint_star_tables *t,
 static int32_t linear_q20[N];
 static uint8_t codes[N];
 
-/* Returns the sum of channel C over all pixels as a fraction of a light of
+/* Returns the sum of channel C over all pixels, divided by the light of
  * power 2^10. */
-static double sum_of(const int32_t *q20, int c)
+static double sum_channel(const int32_t *q20, int c)
 {
     double sum = 0;
 
@@ -58,14 +58,14 @@ static double sum_of(const int32_t *q20, int c)
     return sum;
 }
 
-static double at(double x, double y)
+static double light_at(double x, double y)
 {
     return star_canvas_green(linear_q20, WIDTH, x, y);
 }
 
 /* ------------------------------------------------------------------- shape */
 
-/* Returns how many peaks above twice the mean there are on a circle of RADIUS
+/* Returns the number of peaks above twice the mean on a circle of RADIUS
  * pixels. */
 static int count_spikes(double radius)
 {
@@ -76,7 +76,7 @@ static int count_spikes(double radius)
     for (int i = 0; i < STEPS; i++) {
         const double a = 2 * GLINT_PI * (i + 0.5) / STEPS;
 
-        ring[i] = at(48.5 + radius * cos(a), 41.5 + radius * sin(a));
+        ring[i] = light_at(48.5 + radius * cos(a), 41.5 + radius * sin(a));
         mean += ring[i] / STEPS;
     }
     for (int i = 0; i < 2 * STEPS; i++) {
@@ -103,8 +103,8 @@ TEST(spikes)
     }
 }
 
-/* The first dark ring of a round stop must be at 1.21967 times wavelength times
- * f-number. */
+/* Checks that the first dark ring of a round stop is at 1.21967 times
+ * wavelength times f-number. */
 TEST(ring)
 {
     double dark = 0, least = 1;
@@ -118,8 +118,8 @@ TEST(ring)
     assert_true(fabs(dark / 1.21967 - 1) < 1e-3);
 }
 
-/* In a picture, whose light has all wavelengths, the dark ring must be that of
- * 550 nm, measured in green. */
+/* Checks that in an image, which sums all wavelengths, the dark ring is that
+ * of 550 nm, measured in green. */
 TEST(drawn_ring)
 {
     struct glint_star_tables *t = star_canvas_tables(0, 0, 5);
@@ -133,7 +133,7 @@ TEST(drawn_ring)
         for (int i = 0; i < 64; i++) {
             const double a = 2 * GLINT_PI * i / 64;
 
-            here += at(48.5 + r * cos(a), 41.5 + r * sin(a)) / 64;
+            here += light_at(48.5 + r * cos(a), 41.5 + r * sin(a)) / 64;
         }
         dark = here < least ? r : dark;
         least = fmin(least, here);
@@ -143,7 +143,7 @@ TEST(drawn_ring)
     glint_star_tables_free(t);
 }
 
-/* Light in the picture and beyond it must add up to all light. */
+/* Checks that the light inside and outside the image sums to the total. */
 TEST(energy)
 {
     static const int blades[] = {0, 3, 5, 8, 64};
@@ -158,11 +158,11 @@ TEST(energy)
         assert_ok(glint_psf_init(&psf, blades[i % 5], 5, airy_px[i / 5]));
         draw_linear(t, &light, 1, linear_q20);
         for (int c = 0; c < 3; c++) {
-            /* About as much light falls beyond the sides of the picture as
-             * beyond a circle of 48 pixels. */
+            /* The light outside the image's sides is about that outside a
+             * circle of 48 pixels. */
             const double beyond = glint_psf_beyond(&psf, 48, c);
 
-            assert_true(fabs(sum_of(linear_q20, c) + beyond - 1) < 0.01);
+            assert_true(fabs(sum_channel(linear_q20, c) + beyond - 1) < 0.01);
         }
         glint_psf_finish(&psf);
         glint_star_tables_free(t);
@@ -173,8 +173,8 @@ TEST(energy)
 
 enum { WAVES = 48 };
 
-/* Sets RGB to the light of a pixel at (X, Y) from the light, summed over
- * POINTS^2 points in it. */
+/* Sets RGB to the light of a pixel at (X, Y) from the light, averaged over
+ * POINTS^2 points. */
 static void sum_pixel(int n_blades, double rotation_deg, double airy_px,
                       double x, double y, int points, double rgb[3])
 {
@@ -205,7 +205,7 @@ static void sum_pixel(int n_blades, double rotation_deg, double airy_px,
     }
 }
 
-static uint8_t code_of(double light)
+static uint8_t to_code(double light)
 {
     const double held = fmin(fmax(light, 0), 1);
 
@@ -214,8 +214,8 @@ static uint8_t code_of(double light)
                                      : 1.055 * pow(held, 1 / 2.4) - 0.055));
 }
 
-/* Light of DIRECT's pixels of a stop, of which every second one, as of a
- * chessboard, is summed: the others stay 0. */
+/* Direct summation is done for every second pixel, in a chessboard pattern;
+ * the others stay 0. */
 static bool is_summed(int i)
 {
     return (i % WIDTH + i / WIDTH) % 2 == 0;
@@ -235,8 +235,8 @@ static void sum_picture(int n_blades, double rotation_deg, double airy_px,
     }
 }
 
-/* Pictures must have at least 50 dB for three stops and three powers. In one so
- * small all pixels are near the light; in a picture of 1080p the same errors
+/* Checks that images of three stops at three powers have at least 50 dB. All
+ * pixels of so small an image are near the light; in 1080p the same errors
  * would give 24 dB more. */
 TEST(direct)
 {
@@ -266,7 +266,7 @@ TEST(direct)
         star_canvas_draw(&c, t, &light, 1, least, GLINT_RGB24, codes);
         for (int i = 0; i < N; i++)
             square += is_summed(i / 3)
-                          ? pow(codes[i] - code_of(direct[i / 3][i % 3] *
+                          ? pow(codes[i] - to_code(direct[i / 3][i % 3] *
                                                    exp2(power_log2[p])),
                                 2)
                           : 0;
@@ -280,25 +280,25 @@ TEST(direct)
     free(direct);
 }
 
-/* Returns the light along a line across the spike, 30 px right of the light,
- * and sets *WIDTH to how many pixels of it are at least half as bright as its
- * middle. */
-static double across_spike(double *width)
+/* Returns the total light along a line across the spike, 30 px right of the
+ * light. Sets *WIDTH to the number of its pixels that are at least half as
+ * bright as its middle. */
+static double measure_spike(double *width)
 {
     double sum = 0;
 
     *width = 0;
     for (int i = -140; i <= 140; i++) {
-        const double light = at(60.5, 41.5 + 0.1 * i);
+        const double light = light_at(60.5, 41.5 + 0.1 * i);
 
         sum += light * 0.1;
-        *width += light > 0.5 * at(60.5, 41.5) ? 0.1 : 0;
+        *width += light > 0.5 * light_at(60.5, 41.5) ? 0.1 : 0;
     }
     return sum;
 }
 
-/* A lamp that the picture shows as a disc must throw a spike as wide as the
- * disc, with as much light as that of a point. */
+/* Checks that a lamp that is a disc has a spike as wide as the disc, with as
+ * much light as that of a point. */
 TEST(extent)
 {
     struct glint_star_tables *t = star_canvas_tables(4, 45, 0.5);
@@ -308,7 +308,7 @@ TEST(extent)
     for (int i = 0; i < 2; i++) {
         light.radius_q8 = i * 4 * 256;
         draw_linear(t, &light, 1, linear_q20);
-        sum[i] = across_spike(&width[i]);
+        sum[i] = measure_spike(&width[i]);
     }
     print_message("a spike is %.1f px wide, of a disc %.1f, with %.3f times "
                   "the light\n",
@@ -319,9 +319,10 @@ TEST(extent)
     glint_star_tables_free(t);
 }
 
-/* Returns the largest fraction by which what was drawn of a light of 2^25 at
- * PLACE differs from what tables give there. */
-static double most_off(const struct glint_star_tables *t, const double place[2])
+/* Returns the max relative difference between the drawn light of power 2^25
+ * at PLACE and its tables. */
+static double max_difference(const struct glint_star_tables *t,
+                             const double place[2])
 {
     double most = 0;
 
@@ -340,8 +341,8 @@ static double most_off(const struct glint_star_tables *t, const double place[2])
     return most;
 }
 
-/* Far from the light pixels of a row are not computed one by one, but must be
- * within 3 % of what tables give. */
+/* Checks that far from the light, where the pixels of a row are
+ * interpolated, they are within 3 % of the tables. */
 TEST(far)
 {
     static const double place[][2] = {
@@ -356,7 +357,7 @@ TEST(far)
                 star_canvas_light(place[i][0], place[i][1], 25);
 
             draw_linear(t, &light, 1, linear_q20);
-            most = fmax(most, most_off(t, place[i]));
+            most = fmax(most, max_difference(t, place[i]));
         }
         glint_star_tables_free(t);
     }
@@ -373,9 +374,9 @@ static int count_lit(void)
     return n;
 }
 
-/* The number of pixels that a star will draw is predicted before it is drawn.
- * It must be 0.75 to 1.2 times those that get light for a round stop, and 1 to
- * 2 times for six blades, as pixels of spikes count once more. */
+/* Checks the predicted number of pixels of a star: 0.75 to 1.2 times the lit
+ * pixels for a round stop, and 1 to 2 times for six blades, as pixels of
+ * spikes are counted twice. */
 TEST(pixels)
 {
     static const double place[][2] = {{48, 41}, {0, 0}, {-20, 60}};
@@ -403,8 +404,8 @@ TEST(pixels)
 
 /* ------------------------------------------------------------------ motion */
 
-/* While a light moves by 0.05 pixels a frame, neither the sum of light nor any
- * pixel may jump. */
+/* Checks, while a light moves by 0.05 pixels per frame, that neither the
+ * total light nor any pixel jumps. */
 TEST(motion)
 {
     struct glint_star_tables *t = star_canvas_tables(7, 3, 0.2);
@@ -417,7 +418,7 @@ TEST(motion)
         double sum;
 
         draw_linear(t, &light, 1, linear_q20);
-        sum = sum_of(linear_q20, 1);
+        sum = sum_channel(linear_q20, 1);
         least = fmin(least, sum);
         most = fmax(most, sum);
         for (int i = 0; i < N; i++) {
@@ -431,8 +432,8 @@ TEST(motion)
                   "of the brightest at most\n",
                   least, most, jump / peak);
     assert_true(most - least < 0.002);
-    /* The middle of the star is 0.3 px wide: a sixth of it may go from a pixel
-     * to the next one. */
+    /* The core of the star is 0.3 px wide: a sixth of it may move from one
+     * pixel to the next. */
     assert_true(jump / peak < 0.16);
     glint_star_tables_free(t);
 }
@@ -447,7 +448,7 @@ static double spike_angle(double angle_deg)
         double light = 0;
 
         for (double r = 20; r < 36; r += 0.25)
-            light += at(48.5 + r * cos(a), 41.5 - r * sin(a));
+            light += light_at(48.5 + r * cos(a), 41.5 - r * sin(a));
         sum += light;
         turn += d * light;
     }

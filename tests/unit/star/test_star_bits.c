@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The starburst in integers: the same bits whatever tiles, workers, order and
- * machine, and what it is clamped to at extremes. Tables are of any stop, by
- * integers, so that no libm has a say.
+ * Tests the starburst in integers: the same bits for any tiles, workers, order
+ * and machine, and clamping of extreme values. Tables are random and made in
+ * integers, so that they do not depend on libm.
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -23,15 +23,15 @@ static struct star_any any;
 
 static const struct glint_real all = {0, 0};
 
-/* Light of an eighth of a code near black, 1 / 26357. */
+/* light of an eighth of a code near black, 1 / 26357 */
 static const struct glint_real eighth = {0x4f8f7a00, -45};
 
 /* ------------------------------------------------------------------ bits */
 
-/* Draws N_LIGHTS of LIGHTS in tiles of 2^TILE_LOG2. */
-static void draw(const struct glint_star_light *lights, int n_lights,
-                 int tile_log2, int n_workers, uint32_t order,
-                 enum glint_pixel_format format, void *mem)
+/* Draws N_LIGHTS of LIGHTS in tiles of 2^TILE_LOG2 pixels. */
+static void draw_stars(const struct glint_star_light *lights, int n_lights,
+                       int tile_log2, int n_workers, uint32_t order,
+                       enum glint_pixel_format format, void *mem)
 {
     struct star_canvas c;
 
@@ -41,7 +41,8 @@ static void draw(const struct glint_star_light *lights, int n_lights,
     star_canvas_close(&c);
 }
 
-/* Workers, tiles and the order of jobs must not change a bit of codes. */
+/* Checks that workers, tiles and the order of jobs do not change codes, bit
+ * by bit. */
 TEST(same_bits)
 {
     uint32_t seed = 7;
@@ -54,15 +55,16 @@ TEST(same_bits)
         for (int k = 0; k < n; k++)
             lights[k] = star_any_light(WIDTH, HEIGHT, &seed);
         for (int k = 0; k < 5; k++) {
-            draw(lights, n, k ? 2 + k : 6, k ? 1 + k % MAX_WORKERS : 1,
-                 rng_bits(&seed), GLINT_RGB24, k ? others : codes);
+            draw_stars(lights, n, k ? 2 + k : 6, k ? 1 + k % MAX_WORKERS : 1,
+                       rng_bits(&seed), GLINT_RGB24, k ? others : codes);
             if (k)
                 assert_memory_equal(codes, others, N);
         }
     }
 }
 
-/* In linear light, too, tiles must not change a bit; far lights among them. */
+/* Checks that tiles do not change linear light, bit by bit, including
+ * distant lights. */
 TEST(same_light)
 {
     uint32_t seed = 99;
@@ -76,21 +78,21 @@ TEST(same_light)
             light.x_q8 = rng_below(&seed, 60000) - 20000;
             light.y_q8 = rng_below(&seed, 60000) - 20000;
         }
-        draw(&light, 1, 6, 1, 1, GLINT_LINEAR_Q20, linear_q20);
+        draw_stars(&light, 1, 6, 1, 1, GLINT_LINEAR_Q20, linear_q20);
         for (int tile_log2 = 3; tile_log2 < 6; tile_log2++) {
-            draw(&light, 1, tile_log2, 1, 1, GLINT_LINEAR_Q20, other_q20);
+            draw_stars(&light, 1, tile_log2, 1, 1, GLINT_LINEAR_Q20, other_q20);
             assert_memory_equal(linear_q20, other_q20, sizeof other_q20);
         }
     }
 }
 
-static uint64_t hash(uint64_t h, uint64_t x)
+static uint64_t hash_word(uint64_t h, uint64_t x)
 {
     return (h ^ x) * UINT64_C(1099511628211); /* FNV-1a, by words */
 }
 
-/* Every machine must draw the same: codes and linear light of 40 stars have
- * this hash. */
+/* Checks that every machine draws the same: codes and linear light of 40
+ * stars have this hash. */
 TEST(same_machines)
 {
     const uint64_t want = UINT64_C(0x22829f9dca1d9529);
@@ -104,10 +106,10 @@ TEST(same_machines)
 
         star_any(&any, &seed);
         light = star_any_light(WIDTH, HEIGHT, &seed);
-        draw(&light, 1, 5, 1, 1, GLINT_LINEAR_Q20, linear_q20);
-        draw(&light, 1, 5, 1, 1, GLINT_RGB24, codes);
+        draw_stars(&light, 1, 5, 1, 1, GLINT_LINEAR_Q20, linear_q20);
+        draw_stars(&light, 1, 5, 1, 1, GLINT_RGB24, codes);
         for (int k = 0; k < N; k++) {
-            h = hash(hash(h, (uint32_t)linear_q20[k]), codes[k]);
+            h = hash_word(hash_word(h, (uint32_t)linear_q20[k]), codes[k]);
             is_lit |= codes[k] > 0;
         }
         n_lit += is_lit;
@@ -121,9 +123,9 @@ TEST(same_machines)
 
 /* -------------------------------------------------------------- extremes */
 
-/* Twice the power must nowhere give less light, but for a code of rounding,
- * from what cannot be seen to what saturates, with the light on a pixel's
- * middle, on its corner, on the picture's border, and 1000 px away from it on
+/* Checks that twice the power nowhere gives less light, except by rounding
+ * of one code, from invisible to saturated: with the light at a pixel's
+ * centre, at its corner, on the image's border, and 1000 px off-screen on
  * two sides. */
 TEST(powers)
 {
@@ -163,8 +165,8 @@ TEST(powers)
     }
 }
 
-/* Lights that are not lights must be left out without a trace: without power or
- * colour, or farther away than is drawn. */
+/* Checks that invalid lights draw nothing: without power or colour, or
+ * further away than the limit. */
 TEST(none)
 {
     struct glint_star_light light[4];
@@ -178,7 +180,7 @@ TEST(none)
     light[1].rgb_q14[0] = light[1].rgb_q14[1] = light[1].rgb_q14[2] = 0;
     light[2].x_q8 = 1 << 25;
     light[3].y_q8 = -(1 << 25);
-    draw(light, 4, 5, 1, 1, GLINT_LINEAR_Q20, linear_q20);
+    draw_stars(light, 4, 5, 1, 1, GLINT_LINEAR_Q20, linear_q20);
     for (int k = 0; k < N; k++)
         assert_int_equal(linear_q20[k], 0);
 }

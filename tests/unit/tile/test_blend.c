@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light and cover of passes against the definition in linear light: in every
- * coding, at full and half resolution, with two passes in either order.
+ * Tests light and coverage of passes against their definition in linear light:
+ * in every format, at full and half resolution, with two passes in either
+ * order.
  */
 #include <math.h>
 #include <string.h>
@@ -15,20 +16,20 @@ enum { WIDTH = 91, HEIGHT = 53, N = WIDTH * HEIGHT, GREY_CODE = 120 };
 static int32_t light_q20[3 * N];
 static uint8_t *const px = (uint8_t *)light_q20;
 
-/* A pass of stripes, of which some hide, some shine and some do both. */
+/* A pass of stripes; some cover, some emit light, some do both. */
 struct stripes {
     int step, light_q16[3];
     int linear;
     struct glint_box tile;
-    int even; /* stripes that rows of even numbers are further */
+    int even; /* offset of the stripes in rows of even numbers */
 };
 
-static int cover_of(const struct stripes *s, int x, int y)
+static int compute_cover(const struct stripes *s, int x, int y)
 {
     return (x / s->step + (y % 2 ? 0 : s->even)) % 5 * 64;
 }
 
-static int light_of(const struct stripes *s, int x, int y, int channel)
+static int compute_light(const struct stripes *s, int x, int y, int channel)
 {
     return (x / 5 + y / 3) % 3 ? s->light_q16[channel] : 0;
 }
@@ -40,7 +41,7 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     return *(struct stripes *const *)self;
 }
 
-static int go_on(void *state, struct glint_box tile)
+static int set_tile(void *state, struct glint_box tile)
 {
     struct stripes *s = state;
 
@@ -48,7 +49,8 @@ static int go_on(void *state, struct glint_box tile)
     return 1;
 }
 
-static enum glint_given give(void *state, const struct glint_pass_rows *rows)
+static enum glint_given set_rows(void *state,
+                                 const struct glint_pass_rows *rows)
 {
     const struct stripes *s = state;
 
@@ -56,20 +58,20 @@ static enum glint_given give(void *state, const struct glint_pass_rows *rows)
         for (int i = 0; i < s->tile.x1 - s->tile.x0; i++) {
             const int x = s->tile.x0 + i, y = rows->y + row;
 
-            rows->cover->cover_q8[row][i] = (uint16_t)cover_of(s, x, y);
+            rows->cover->cover_q8[row][i] = (uint16_t)compute_cover(s, x, y);
             for (int c = 0; c < 3; c++)
                 if (s->linear)
-                    rows->light_q20[c][i] = 16 * light_of(s, x, y, c);
+                    rows->light_q20[c][i] = 16 * compute_light(s, x, y, c);
                 else
                     rows->light->rgb_q16[c][row][i] =
-                        (uint16_t)light_of(s, x, y, c);
+                        (uint16_t)compute_light(s, x, y, c);
         }
     return s->step < WIDTH ? GLINT_GIVES_COVER : GLINT_GIVES_LIGHT;
 }
 
 /* Draws the N_PASSES passes of S onto IMAGE. */
-static void draw(const struct glint_image *image, int half, struct stripes *s,
-                 int n_passes)
+static void draw_passes(const struct glint_image *image, int half,
+                        struct stripes *s, int n_passes)
 {
     static struct glint_resolve resolve;
     static struct glint_light_rows light;
@@ -94,42 +96,42 @@ static void draw(const struct glint_image *image, int half, struct stripes *s,
     glint_resolve_init(&resolve, image, 0, glint_sets_here());
     for (int i = 0; i < n_passes; i++) {
         s[i].linear = image->format == GLINT_LINEAR_Q20;
-        pass[i] = (struct glint_pass){&self[i], begin_row, go_on, give};
+        pass[i] = (struct glint_pass){&self[i], begin_row, set_tile, set_rows};
     }
     for (int row = 0; row < glint_tiles_down(&tiles); row++)
         glint_tile_rows(&tiles, pass, n_passes, row, 0, &scratch);
 }
 
-static double linear_of(double code)
+static double to_linear(double code)
 {
     const double x = code / 255;
 
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
-static double code_of(double x)
+static double to_code(double x)
 {
     return 255 * (x <= 0.0031308 ? 12.92 * x
                                  : 1.055 * pow(fmin(1, x), 1 / 2.4) - 0.055);
 }
 
-/* Returns what a channel of pixel (X, Y) must then have, linear light. */
-static double want_of(const struct stripes *s, int n_passes, int half, int x,
-                      int y, int channel)
+/* Returns the expected linear light of a channel of pixel (X, Y). */
+static double expected_light(const struct stripes *s, int n_passes, int half,
+                             int x, int y, int channel)
 {
-    double light = linear_of(GREY_CODE);
+    double light = to_linear(GREY_CODE);
 
     x >>= half;
     y >>= half;
     for (int i = 0; i < n_passes; i++, s++) {
         if (s->step < WIDTH)
-            light *= 1 - cover_of(s, x, y) / 256.;
-        light += fmin(1, light_of(s, x, y, channel) / 65535.);
+            light *= 1 - compute_cover(s, x, y) / 256.;
+        light += fmin(1, compute_light(s, x, y, channel) / 65535.);
     }
     return light;
 }
 
-/* Returns a picture of one grey. */
+/* Returns an image of uniform grey. */
 static struct glint_image grey_image(enum glint_pixel_format format)
 {
     struct glint_image image = glint_image_over(px, format, WIDTH, HEIGHT);
@@ -143,28 +145,29 @@ static struct glint_image grey_image(enum glint_pixel_format format)
     for (int i = 0; i < 4 * N && format == GLINT_YUYV; i++)
         px[i] = i % 2 ? 128 : GREY_CODE;
     for (int i = 0; i < 3 * N && format == GLINT_LINEAR_Q20; i++)
-        light_q20[i] = (int32_t)(linear_of(GREY_CODE) * 0x1p20);
+        light_q20[i] = (int32_t)(to_linear(GREY_CODE) * 0x1p20);
     return image;
 }
 
-static struct stripes grey(int step, int light_q16)
+static struct stripes make_grey_stripes(int step, int light_q16)
 {
     return (struct stripes){step, {light_q16, light_q16, light_q16}, 0, {0}, 0};
 }
 
-/* Checks that the first sample of each pixel, STEP bytes apart, is within OFF
- * of what it must be. */
+/* Checks that the first sample of each pixel, STEP bytes apart, is within
+ * OFF of the expected value. */
 static void check_codes(enum glint_pixel_format format, int step, int half,
                         struct stripes *s, int n_passes, double off)
 {
     const struct glint_image image = grey_image(format);
     double sum = 0;
 
-    draw(&image, half, s, n_passes);
+    draw_passes(&image, half, s, n_passes);
     for (int i = 0; i < N; i++) {
         const int x = i % WIDTH, y = i / WIDTH;
-        const double want = code_of(want_of(s, n_passes, half, x, y, 0)) -
-                            px[y * image.stride_bytes[0] + step * x];
+        const double want =
+            to_code(expected_light(s, n_passes, half, x, y, 0)) -
+            px[y * image.stride_bytes[0] + step * x];
 
         assert_true(fabs(want) < off);
         sum += want;
@@ -176,8 +179,8 @@ TEST(codes)
 {
     for (int half = 0; half < 2; half++)
         for (int i = 0; i < 4; i++) {
-            struct stripes s[2] = {grey(i % 2 ? 7 : WIDTH, 9000),
-                                   grey(i / 2 ? 4 : WIDTH, 21000)};
+            struct stripes s[2] = {make_grey_stripes(i % 2 ? 7 : WIDTH, 9000),
+                                   make_grey_stripes(i / 2 ? 4 : WIDTH, 21000)};
 
             for (int n = 1; n <= 2; n++) {
                 check_codes(GLINT_RGB24, 3, half, s, n, 1.0);
@@ -191,10 +194,11 @@ TEST(codes)
         }
 }
 
-/* Of two rows, one is hidden wholly where nothing of the other is. */
+/* Checks two rows, of which one is completely covered where the other is not
+ * covered. */
 TEST(rows)
 {
-    struct stripes s = grey(64, 9000);
+    struct stripes s = make_grey_stripes(64, 9000);
 
     s.even = 4;
     check_codes(GLINT_RGB24, 3, 0, &s, 1, 1.0);
@@ -210,23 +214,24 @@ TEST(linear)
             {i % 2 ? 7 : WIDTH, {900, 8000, 65535}, 0, {0}, 0},
             {i / 2 % 2 ? 4 : WIDTH, {70, 50, 30}, 0, {0}, 0}};
 
-        draw(&image, i / 4, s, 2);
+        draw_passes(&image, i / 4, s, 2);
         for (int k = 0; k < 3 * N; k++) {
-            const double want =
-                want_of(s, 2, i / 4, k / 3 % WIDTH, k / 3 / WIDTH, k % 3) *
-                0x1p20;
+            const double want = expected_light(s, 2, i / 4, k / 3 % WIDTH,
+                                               k / 3 / WIDTH, k % 3) *
+                                0x1p20;
 
-            assert_true(fabs(light_q20[k] - want) < 20); /* 65535 and not
-                                                          * 65536 */
+            /* as the max is 65535, not 65536 */
+            assert_true(fabs(light_q20[k] - want) < 20);
         }
     }
 }
 
-/* A pixel that is hidden wholly must keep no colour, and shared chroma must be
- * the mean. */
+/* Checks that a completely covered pixel keeps no colour, and that shared
+ * chroma is the mean. */
 TEST(chroma)
 {
-    struct stripes s = grey(2, 0); /* cover 0, 1/4, 1/2, 3/4, 1 by pairs */
+    struct stripes s =
+        make_grey_stripes(2, 0); /* cover 0, 1/4, 1/2, 3/4, 1 by pairs */
     struct glint_image image = {
         .format = GLINT_I420, .width = WIDTH, .height = HEIGHT};
 
@@ -235,7 +240,7 @@ TEST(chroma)
             px[i] = (uint8_t)(i < N ? 120 : 150);
         glint_image_place(&image, px);
         s.step = 2 - odd;
-        draw(&image, 0, &s, 1);
+        draw_passes(&image, 0, &s, 1);
         for (int i = 0; i < 46; i++) {
             const int code = image.plane[1][i];
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * A second pass beside the flare, small enough to read: a flat triangle that
- * sets pixels and is the light of the flare drawn over it. Its cover is
- * computed here from 4 x 4 points of each pixel.
+ * Tests a second pass in addition to the flare, as a minimal example: a flat
+ * triangle that sets pixels and is the light of the flare drawn over it. Its
+ * coverage is computed from 4 x 4 points of each pixel.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -20,12 +20,12 @@ enum { MAX_WORKERS = 3, N_FORMATS = 9 };
 
 struct triangle {
     int on, half, linear;
-    int corner[3][2]; /* pixels, counter-clockwise where y runs down */
+    int corner[3][2]; /* pixels, counter-clockwise with y down */
     int light_q16[3];
     struct on_row *at; /* [worker] */
 };
 
-/* The state of a worker on a row of tiles. */
+/* State of a worker on a row of tiles. */
 struct on_row {
     const struct triangle *triangle;
     struct glint_box row, tile;
@@ -44,8 +44,8 @@ static int is_inside(const struct triangle *t, int x_q3, int y_q3)
     return in;
 }
 
-/* Returns the cover of pixel (X, Y), _q8. */
-static int cover_of(const struct triangle *t, int x, int y)
+/* Returns the coverage of pixel (X, Y), Q8. */
+static int compute_cover(const struct triangle *t, int x, int y)
 {
     int n = 0;
 
@@ -64,11 +64,11 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     return &t->at[worker];
 }
 
-static int go_on(void *state, struct glint_box tile)
+static int set_tile(void *state, struct glint_box tile)
 {
     struct on_row *r = state;
 
-    /* Tiles come from left to right, and none is left out. */
+    /* Tiles are passed from left to right, without gaps. */
     assert_int_equal(tile.x0, r->tile.x1);
     assert_int_equal(tile.y0, r->row.y0);
     assert_int_equal(tile.y1, r->row.y1);
@@ -85,7 +85,7 @@ static enum glint_given set_rows(void *state, const struct glint_pass_rows *out)
     assert_true(out->n == 1 || (out->n == 2 && out->y % 2 == 0));
     for (int i = 0; i < out->n * (r->tile.x1 - r->tile.x0); i++) {
         const int row = i % out->n, x = i / out->n;
-        const int cover_q8 = cover_of(t, r->tile.x0 + x, out->y + row);
+        const int cover_q8 = compute_cover(t, r->tile.x0 + x, out->y + row);
 
         any |= cover_q8;
         out->cover->cover_q8[row][x] = (uint16_t)cover_q8;
@@ -99,9 +99,9 @@ static enum glint_given set_rows(void *state, const struct glint_pass_rows *out)
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-/* Returns the triangle as the light that the flare is drawn for: its colour,
- * and as power an eighth of its area in pixels. */
-static struct glint_light light_of(const struct triangle *t)
+/* Returns the triangle as the light of the flare: its colour; its power is
+ * an eighth of its area in pixels. */
+static struct glint_light make_light(const struct triangle *t)
 {
     const int(*p)[2] = t->corner;
     const int area2 = (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]) -
@@ -118,7 +118,7 @@ struct glint_frame {
     struct glint_image image;
     struct triangle triangle;
     struct glint_flare_config cfg;
-    /* ALONE 1: the flare is drawn by glint_flare_draw(), without the pass */
+    /* alone 1: the flare is drawn by glint_flare_draw(), without the pass */
     int half, n_workers, n_lights, alone;
     uint32_t order;
 };
@@ -142,27 +142,28 @@ static void draw_passes(struct glint_frame *f, struct glint_flare *flare)
 {
     static struct glint_blend_rows rows[MAX_WORKERS];
     struct on_row at[MAX_WORKERS];
-    const struct glint_pass pass = {&f->triangle, begin_row, go_on, set_rows};
+    const struct glint_pass pass = {&f->triangle, begin_row, set_tile,
+                                    set_rows};
     const struct glint_flare_under under = {&pass, 1, &glint_blend, rows};
 
-    memset(rows, 0xa5, sizeof rows); /* Dirty rows show what is left unset. */
+    memset(rows, 0xa5, sizeof rows); /* dirty rows reveal what is left unset */
     f->triangle.half = f->half;
     f->triangle.linear = f->image.format == GLINT_LINEAR_Q20;
     f->triangle.at = at;
     glint_flare_draw_over(flare, &f->image, &under);
 }
 
-/* Returns byte I of the picture before it is drawn on. */
-static uint8_t ground_of(int i)
+/* Returns byte I of the image before drawing. */
+static uint8_t ground_byte(int i)
 {
     return (uint8_t)(40 + i * 7 / 2 % 90);
 }
 
-static void draw(struct glint_frame f, uint8_t *px)
+static void draw_frame(struct glint_frame f, uint8_t *px)
 {
     const struct glint_wave wave = {
         MODEL_WAVE_LO_Q24, {16384, 12000, 5000}, real_of(1, 0)};
-    const struct glint_light light = light_of(&f.triangle);
+    const struct glint_light light = make_light(&f.triangle);
     struct model_image m = model_auto();
     struct glint_lens lens;
     const struct glint_flare_frame planned = {.lens = &lens,
@@ -179,9 +180,11 @@ static void draw(struct glint_frame f, uint8_t *px)
     struct shuffle shuffle;
     void *mem;
 
-    for (int i = 0; i < BYTES; i++) /* every fourth 0: light below white */
-        px[i] =
-            f.image.format == GLINT_LINEAR_Q20 && i % 4 == 3 ? 0 : ground_of(i);
+    /* every fourth byte 0: light below white */
+    for (int i = 0; i < BYTES; i++)
+        px[i] = f.image.format == GLINT_LINEAR_Q20 && i % 4 == 3
+                    ? 0
+                    : ground_byte(i);
     glint_image_place(&f.image, px);
     shuffle_init(&shuffle, f.n_workers, f.order);
     lens = model_open(&m);
@@ -200,7 +203,7 @@ static void draw(struct glint_frame f, uint8_t *px)
     free(m.data);
 }
 
-/* Linear light with 2^20 = 1, or codes. */
+/* linear light in Q20, or codes */
 static int32_t one_q20[BYTES / 4], other_q20[BYTES / 4];
 static uint8_t *const one = (uint8_t *)one_q20, *const other =
                                                     (uint8_t *)other_q20;
@@ -209,7 +212,8 @@ static const enum glint_pixel_format formats[N_FORMATS] = {
     GLINT_RGB24, GLINT_I420, GLINT_NV12,       GLINT_YUYV,  GLINT_I422,
     GLINT_I444,  GLINT_GREY, GLINT_LINEAR_Q20, GLINT_RGB565};
 
-/* Workers, tiles, the order of jobs and kernels must not change a bit. */
+/* Checks that workers, tiles, the order of jobs and kernels do not change
+ * the image, bit by bit. */
 TEST(same_bits)
 {
     uint32_t seed = 5;
@@ -219,20 +223,20 @@ TEST(same_bits)
 
         f.image.format = formats[i / 2];
         f.half = i % 2;
-        draw(f, one);
+        draw_frame(f, one);
         for (int k = 0; k < 9; k++) {
             f.cfg.tile_log2 = 3 + k % 4;
             f.n_workers = 1 + k % MAX_WORKERS;
             f.order = rng_xorshift(&seed);
             f.cfg.sets = rng_xorshift(&seed) & glint_sets_here();
-            draw(f, other);
+            draw_frame(f, other);
             assert_memory_equal(one, other, BYTES);
         }
     }
 }
 
-/* With the triangle off, the picture must be that of the flare alone; with it
- * on, another one. */
+/* Checks that without the triangle the image is that of the flare alone, and
+ * with it a different one. */
 TEST(off)
 {
     for (int i = 0; i < 2 * N_FORMATS; i++) {
@@ -241,29 +245,30 @@ TEST(off)
         f.image.format = formats[i / 2];
         f.half = i % 2;
         f.alone = 1;
-        draw(f, one);
+        draw_frame(f, one);
         f.alone = 0;
-        draw(f, other);
+        draw_frame(f, other);
         assert_memory_not_equal(one, other, BYTES);
         f.triangle.on = 0;
-        draw(f, other);
+        draw_frame(f, other);
         assert_memory_equal(one, other, BYTES);
     }
 }
 
-/* On any ground, pixels that the triangle covers wholly must be its own, and
- * those that it does not cover must stay; the flare must lie over both. */
+/* Checks on any background that completely covered pixels have the
+ * triangle's colour and uncovered ones are unchanged, and that the flare is
+ * added to both. */
 TEST(sets)
 {
     struct glint_frame f = first;
     int n_set = 0, n_kept = 0, n_lit = 0;
 
-    draw(f, other);
+    draw_frame(f, other);
     f.n_lights = 0;
-    draw(f, one);
+    draw_frame(f, one);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i += 3) {
         const int cover_q8 =
-            cover_of(&f.triangle, i / 3 % WIDTH, i / 3 / WIDTH);
+            compute_cover(&f.triangle, i / 3 % WIDTH, i / 3 / WIDTH);
 
         n_set += cover_q8 == GLINT_COVER_ALL;
         n_kept += cover_q8 == 0;
@@ -272,8 +277,8 @@ TEST(sets)
             assert_true(one[i] == 255 && one[i + 1] == 169 &&
                         one[i + 2] == 104);
         else if (cover_q8 == 0)
-            assert_true(one[i] == ground_of(i) &&
-                        one[i + 1] == ground_of(i + 1));
+            assert_true(one[i] == ground_byte(i) &&
+                        one[i + 1] == ground_byte(i + 1));
         assert_true(other[i] >= one[i]);
     }
     assert_true(n_set > 1000 && n_kept > 1000 && n_lit > 100);

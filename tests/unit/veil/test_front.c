@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What lies on the front element: its light is the haze of the fraction that a
- * pixel looks through, as sums over the stop have it; the same bits whatever
- * tiles and workers; and nothing where nothing lies there.
+ * Tests dirt on the front element: its light is the haze times the fraction of
+ * dirt that a pixel's rays pass, as sums over the stop; the same bits for any
+ * tiles and workers; none without dirt.
  */
 #include <math.h>
 #include <stdint.h>
@@ -20,7 +20,7 @@ enum { WIDTH = 131, HEIGHT = 75 };
 
 static const struct glint_real one = {1 << 30, -30};
 
-/* An octagonal stop behind a front of 20 mm. */
+/* An octagonal stop behind a front element of 20 mm. */
 static const struct glint_front_optics optics = {.tangent = 1. / WIDTH,
                                                  .z = 1.4,
                                                  .radius = 0.12,
@@ -28,7 +28,7 @@ static const struct glint_front_optics optics = {.tangent = 1. / WIDTH,
                                                  .height = HEIGHT,
                                                  .n_blades = 8};
 
-static struct glint_front_dirt *dirt_of(const struct glint_front *front)
+static struct glint_front_dirt *make_dirt(const struct glint_front *front)
 {
     struct glint_front_dirt *dirt;
     struct glint_error error;
@@ -37,8 +37,8 @@ static struct glint_front_dirt *dirt_of(const struct glint_front *front)
     return dirt;
 }
 
-static struct glint_front_table *table_of(const struct glint_front_dirt *dirt,
-                                          const struct glint_setup *setup)
+static struct glint_front_table *make_table(const struct glint_front_dirt *dirt,
+                                            const struct glint_setup *setup)
 {
     struct glint_front_table *table;
 
@@ -52,8 +52,8 @@ TEST(table)
 {
     static const struct glint_setup setup = {.n_blades = 8};
     struct glint_front_dirt *dirt =
-        dirt_of(&(struct glint_front){.dust = 0.05, .dust_seed = 3});
-    struct glint_front_table *t = table_of(dirt, &setup);
+        make_dirt(&(struct glint_front){.dust = 0.05, .dust_seed = 3});
+    struct glint_front_table *t = make_table(dirt, &setup);
     double worst = 0;
 
     assert_int_equal(t->front.n_x, GLINT_VEIL_FRONT_NODES(WIDTH));
@@ -74,16 +74,16 @@ TEST(table)
     glint_front_free(dirt);
 }
 
-/* A mask that covers a half of the front to the left, as seen from the sensor
- * with x right, covers the right half of the picture: its light comes from
- * there. Up in the mask is up on the front. */
+/* Checks that a mask over the left half of the front (seen from the sensor,
+ * x right) covers the right half of the image, whose light comes from there,
+ * and that up in the mask is up on the front. */
 TEST(mask)
 {
     static const uint8_t left[4] = {0, 255, 0, 255}, high[4] = {0, 0, 255, 255};
     static const struct glint_setup setup = {.n_blades = 8};
 
     for (int k = 0; k < 2; k++) {
-        struct glint_front_dirt *dirt = dirt_of(&(struct glint_front){
+        struct glint_front_dirt *dirt = make_dirt(&(struct glint_front){
             .mask = k ? high : left, .mask_width = 2, .mask_height = 2});
         const double low =
             glint_front_covered(dirt, &optics, &setup, WIDTH / 2 - (k ? 0 : 30),
@@ -113,13 +113,13 @@ TEST(refuses)
                          GLINT_E_ARGUMENT);
         assert_null(dirt);
     }
-    assert_null(dirt_of(&(struct glint_front){0}));
+    assert_null(make_dirt(&(struct glint_front){0}));
     glint_front_free(NULL);
 }
 
 /* ---------------------------------------------------------------- the light */
 
-/* A table of any parts, and the spread of a fraction over all cells alike. */
+/* A random table of fractions, and haze of the same light in all cells. */
 struct scene {
     struct bare_flare bare;
     struct glint_veil *veil;
@@ -152,10 +152,10 @@ static void close_scene(struct scene *s)
     free(s->mem);
 }
 
-/* Draws onto MEM what a front spreads evenly of a lamp: LIGHT of white where
- * it is covered most. */
-static void draw(struct scene *s, double light, enum glint_pixel_format format,
-                 void *mem)
+/* Draws onto MEM the haze of a lamp, which is uniform: LIGHT, 1 = white,
+ * where the dirt is densest. */
+static void draw_haze(struct scene *s, double light,
+                      enum glint_pixel_format format, void *mem)
 {
     const int32_t rgb_q14[3] = {16384, 16384, 16384};
     struct glint_image image = glint_image_over(mem, format, WIDTH, HEIGHT);
@@ -183,7 +183,8 @@ static void draw(struct scene *s, double light, enum glint_pixel_format format,
     glint_veil_draw_alone(s->veil, s->bare.flare, &image);
 }
 
-/* Linear pictures get light times part, which is straight between nodes. */
+/* Checks that linear images get light times fraction, interpolated linearly
+ * between nodes. */
 TEST(light)
 {
     static int32_t linear_q20[3 * WIDTH * HEIGHT];
@@ -191,7 +192,7 @@ TEST(light)
     double worst = 0;
 
     open_scene(&s, 5, 1, 1);
-    draw(&s, 0.25, GLINT_LINEAR_Q20, linear_q20);
+    draw_haze(&s, 0.25, GLINT_LINEAR_Q20, linear_q20);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             const uint16_t *at = s.part_q16 + y / 4 * s.front.n_x + x / 4;
@@ -210,9 +211,9 @@ TEST(light)
     close_scene(&s);
 }
 
-/* In codes: tiles, workers and order change no bit, of dim light and of such
- * as is more than white where it is covered most; more light is nowhere darker,
- * and every machine draws the same. */
+/* Checks codes: tiles, workers and order do not change them bit by bit, for
+ * dim light and for light above white; more light is nowhere darker; every
+ * machine draws the same. */
 TEST(bits)
 {
     const uint64_t want = UINT64_C(0x5b5e6baa4b36eb8a);
@@ -228,10 +229,10 @@ TEST(bits)
         memset(first, 0, sizeof first);
         memset(other, 0, sizeof other);
         open_scene(&s, 6, 1, 1);
-        draw(&s, light, GLINT_RGB24, first);
+        draw_haze(&s, light, GLINT_RGB24, first);
         close_scene(&s);
         open_scene(&s, 3 + k % 3, 1 + k % 3, 7 + (uint32_t)k);
-        draw(&s, light, GLINT_RGB24, other);
+        draw_haze(&s, light, GLINT_RGB24, other);
         close_scene(&s);
         assert_memory_equal(first, other, sizeof first);
         for (size_t i = 0; i < sizeof first; i++) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Veiling glare: how much light it has and where, the index that ISO 9358
- * measures, the same bits whatever workers, tiles and order, and no steps as a
- * lamp moves.
+ * Tests veiling glare: amount and distribution of light, the index measured by
+ * ISO 9358, the same bits for any workers, tiles and order, and continuity
+ * while a lamp moves.
  */
 #include <math.h>
 #include <stdint.h>
@@ -53,8 +53,8 @@ static void close_canvas(struct canvas *c)
     free(c->mem);
 }
 
-/* Sets TABLE to a Gaussian of SIGMA cells over N cells. */
-static void gaussian(int32_t *table_q30, int n, double sigma)
+/* Sets TABLE[N] to a Gaussian of SIGMA cells. */
+static void set_gaussian(int32_t *table_q30, int n, double sigma)
 {
     double at[GLINT_VEIL_CELLS + 1], sum = 0;
     int32_t rest = 1 << 30;
@@ -72,32 +72,32 @@ static void gaussian(int32_t *table_q30, int n, double sigma)
     table_q30[0] = rest;
 }
 
-/* Makes a spread of SIGMA pixels with SHARE of all light. */
-static struct glint_veil_spread spread_of(const struct canvas *c, double sigma,
-                                          double share)
+/* Makes a spread of SIGMA pixels with the fraction SHARE of all light. */
+static struct glint_veil_spread make_spread(const struct canvas *c,
+                                            double sigma, double share)
 {
     struct glint_veil_spread s;
 
-    gaussian(s.across_q30, c->cells[0], sigma * c->cells[0] / c->width);
-    gaussian(s.down_q30, c->cells[1], sigma * c->cells[1] / c->height);
+    set_gaussian(s.across_q30, c->cells[0], sigma * c->cells[0] / c->width);
+    set_gaussian(s.down_q30, c->cells[1], sigma * c->cells[1] / c->height);
     s.share =
         glint_real_of(share * c->cells[0] * c->cells[1] / c->width / c->height);
     return s;
 }
 
-/* Sets IMAGE to a picture in MEM. */
-static struct glint_image picture_of(const struct canvas *c,
+/* Returns an image with its pixels in MEM. */
+static struct glint_image make_image(const struct canvas *c,
                                      enum glint_pixel_format format, void *mem)
 {
     return glint_image_over(mem, format, c->width, c->height);
 }
 
-/* Draws the veil onto black, linear; returns the sum of its light, white times
- * pixels, of channel CHANNEL. */
+/* Draws the veil onto black in linear light. Returns the sum of channel
+ * CHANNEL, white x pixels. */
 static double draw_linear(struct canvas *c, int channel)
 {
     const struct glint_image image =
-        picture_of(c, GLINT_LINEAR_Q20, linear_q20);
+        make_image(c, GLINT_LINEAR_Q20, linear_q20);
     double sum = 0;
 
     memset(linear_q20, 0, 12 * (size_t)c->width * (size_t)c->height);
@@ -107,7 +107,7 @@ static double draw_linear(struct canvas *c, int channel)
     return sum;
 }
 
-static void look_at_nothing(struct canvas *c)
+static void clear_light(struct canvas *c)
 {
     glint_veil_look(c->veil, NULL, one, &c->bare.shuffle.workers);
 }
@@ -122,8 +122,8 @@ static void add_lamp(struct canvas *c, double x, double y, double power)
 
 /* ------------------------------------------------------------------- light */
 
-/* Whatever the size of the picture and wherever the lamp, the veil has the
- * fraction of its light that it is given, within a thousandth. */
+/* Checks that for any image size and lamp position the veil has the
+ * specified fraction of the light, within 0.1 %. */
 TEST(energy)
 {
     static const int size[][2] = {{163, 121}, {64, 36}, {97, 3},  {1, 1},
@@ -137,11 +137,11 @@ TEST(energy)
             const double x = 0.5 * (i % 3), y = 0.5 * (i / 3);
 
             open_canvas(&c, size[k][0], size[k][1], 5, 1, 1);
-            s = spread_of(&c, sigma[i % 3], 0.03);
-            look_at_nothing(&c);
+            s = make_spread(&c, sigma[i % 3], 0.03);
+            clear_light(&c);
             add_lamp(&c, x * c.width, y * c.height, 500);
             glint_veil_spread(c.veil, &s, 1);
-            /* the middle of three columns is not where weights are exact */
+            /* weights are not exact at the middle of three columns */
             assert_true(fabs(draw_linear(&c, 0) / 15 - 1) < 1e-3);
             assert_true(fabs(draw_linear(&c, 1) / 7.5 - 1) < 1e-3);
             assert_true(draw_linear(&c, 2) == 0);
@@ -149,8 +149,8 @@ TEST(energy)
         }
 }
 
-/* Far from borders and wider than cells, a lamp's veil must be the Gaussian it
- * was asked to be, widened by what lies between cells. */
+/* Checks that far from borders and wider than cells a lamp's veil is the
+ * specified Gaussian, widened by the interpolation between cells. */
 TEST(shape)
 {
     struct canvas c;
@@ -159,14 +159,14 @@ TEST(shape)
     const double sigma = 14;
 
     open_canvas(&c, 160, 120, 6, 2, 1);
-    s = spread_of(&c, sigma, 1);
-    look_at_nothing(&c);
+    s = make_spread(&c, sigma, 1);
+    clear_light(&c);
     add_lamp(&c, 81.3, 60.2, 4096);
     glint_veil_spread(c.veil, &s, 1);
     draw_linear(&c, 0);
     for (int y = 30; y < 90; y++)
         for (int x = 40; x < 120; x++) {
-            /* a spline of second order adds a quarter of a cell squared, twice;
+            /* a quadratic spline adds a quarter of a squared cell, twice;
              * cells are 4 pixels */
             const double v = sigma * sigma + 0.5 * 16;
             const double r2 = pow(x + 0.5 - 81.3, 2) + pow(y + 0.5 - 60.2, 2);
@@ -181,9 +181,9 @@ TEST(shape)
     close_canvas(&c);
 }
 
-/* On uniform white a veil is uniform; a black spot in it has the veiling glare
- * index of ISO 9358: with share V / (1 - V), V of what white has. Of each
- * format. */
+/* Checks, in each format, that on uniform white the veil is uniform, and
+ * that a black spot in it has the veiling glare index of ISO 9358: with the
+ * share V / (1 - V), V of the white light. */
 TEST(index)
 {
     static uint8_t codes[4 * MAX_WIDTH * MAX_HEIGHT];
@@ -197,7 +197,7 @@ TEST(index)
         if (f == GLINT_LINEAR_Q20)
             continue;
         open_canvas(&c, 162, 121, 5, 2, 3);
-        image = picture_of(&c, (enum glint_pixel_format)f, codes);
+        image = make_image(&c, (enum glint_pixel_format)f, codes);
         for (int p = 0; p < glint_image_planes(image.format); p++)
             memset(image.plane[p], p ? 128 : 255,
                    (size_t)image.stride_bytes[p] *
@@ -208,7 +208,7 @@ TEST(index)
             else if (f == GLINT_UYVY)
                 codes[2 * i] = 128;
         }
-        s = spread_of(&c, 20, 0.05 / 0.95);
+        s = make_spread(&c, 20, 0.05 / 0.95);
         glint_veil_look(c.veil, &image, one, &c.bare.shuffle.workers);
         glint_veil_spread(c.veil, &s, 1);
         draw_linear(&c, 1);
@@ -222,8 +222,8 @@ TEST(index)
     }
 }
 
-/* Light of a picture must be where it is in it, of its colour, in linear
- * light. */
+/* Checks that the veil of an image has the position and colour of the
+ * image's light, in linear light. */
 TEST(picture)
 {
     static uint8_t codes[3 * MAX_WIDTH * MAX_HEIGHT];
@@ -233,14 +233,14 @@ TEST(picture)
     double sum[3] = {0}, at[2] = {0};
 
     open_canvas(&c, 161, 121, 5, 1, 1);
-    image = picture_of(&c, GLINT_RGB24, codes);
+    image = make_image(&c, GLINT_RGB24, codes);
     memset(codes, 0, sizeof codes);
     for (int y = 20; y < 40; y++)
         for (int x = 100; x < 130; x++) {
             codes[3 * (161 * y + x)] = 255;
             codes[3 * (161 * y + x) + 1] = 188; /* half of white */
         }
-    s = spread_of(&c, 6, 0.1);
+    s = make_spread(&c, 6, 0.1);
     glint_veil_look(c.veil, &image, glint_real_of(2), &c.bare.shuffle.workers);
     glint_veil_spread(c.veil, &s, 1);
     draw_linear(&c, 0);
@@ -250,7 +250,7 @@ TEST(picture)
         at[0] += linear_q20[3 * i] * 0x1p-20 * (i % 161 + 0.5);
         at[1] += linear_q20[3 * i] * 0x1p-20 * (i / 161 + 0.5);
     }
-    /* cells of four pixels have three to five */
+    /* cells of four pixels cover three to five */
     assert_true(fabs(sum[0] / (600 * 0.2) - 1) < 0.03);
     assert_true(fabs(sum[1] / sum[0] - 0.5029) < 2e-3); /* sRGB 188 */
     assert_true(sum[2] == 0);
@@ -261,8 +261,8 @@ TEST(picture)
 
 /* ------------------------------------------------------------------ flicker */
 
-/* A lamp that moves by 0.05 px must leave the veil's light as it is, and no
- * pixel may change by more than the Gaussian's own slope makes it. */
+/* Checks that a lamp that moves by 0.05 px does not change the veil's total
+ * light, and that no pixel changes by more than the Gaussian's slope allows. */
 TEST(steady)
 {
     static int32_t before_q20[MAX_N];
@@ -271,11 +271,11 @@ TEST(steady)
     double least = 1e9, most = 0, jump = 0, peak = 0;
 
     open_canvas(&c, 160, 90, 5, 1, 1);
-    s = spread_of(&c, 8, 0.1);
+    s = make_spread(&c, 8, 0.1);
     for (int i = 0; i < 200; i++) {
         double sum;
 
-        look_at_nothing(&c);
+        clear_light(&c);
         add_lamp(&c, 60 + 0.05 * i, 40 + 0.02 * i, 3000);
         glint_veil_spread(c.veil, &s, 1);
         sum = draw_linear(&c, 0);
@@ -291,16 +291,16 @@ TEST(steady)
     print_message("light %.5f to %.5f of 300, steps of %.5f of the peak\n",
                   least, most, jump / peak);
     assert_true(most / least < 1.0005);
-    /* the steepest slope of a Gaussian is 0.61 of its peak over sigma */
+    /* the max slope of a Gaussian is 0.61 of its peak / sigma */
     assert_true(jump / peak < 1.2 * 0.61 * hypot(0.05, 0.02) / 8);
     close_canvas(&c);
 }
 
 /* --------------------------------------------------------------------- bits */
 
-/* Fills a spread with any numbers, without floating point. */
-static void any_spread(struct glint_veil_spread *s, const struct canvas *c,
-                       uint32_t *seed)
+/* Sets a spread to random numbers, without floating point. */
+static void random_spread(struct glint_veil_spread *s, const struct canvas *c,
+                          uint32_t *seed)
 {
     int32_t *const table[2] = {s->across_q30, s->down_q30};
 
@@ -317,10 +317,10 @@ static void any_spread(struct glint_veil_spread *s, const struct canvas *c,
                                    -38 - rng_below(seed, 4)};
 }
 
-/* Draws the veil of a random picture, whose seed is SEED, onto it. */
-static void draw_any(uint32_t seed, int tile_log2, int n_workers,
-                     uint32_t order, enum glint_pixel_format format,
-                     uint8_t *mem)
+/* Draws the veil of a random image (seed SEED) onto it. */
+static void draw_random(uint32_t seed, int tile_log2, int n_workers,
+                        uint32_t order, enum glint_pixel_format format,
+                        uint8_t *mem)
 {
     struct canvas c;
     struct glint_image image;
@@ -329,7 +329,7 @@ static void draw_any(uint32_t seed, int tile_log2, int n_workers,
     const int32_t rgb_q14[3] = {16384, 9000, 3};
 
     open_canvas(&c, 130, 75, tile_log2, n_workers, order);
-    image = picture_of(&c, format, mem);
+    image = make_image(&c, format, mem);
     for (size_t i = 0; i < bytes; i++)
         mem[i] = (uint8_t)(rng_below(&seed, 256) *
                            (format == GLINT_LINEAR_Q20 && i % 4 == 3 ? 0 : 1));
@@ -339,14 +339,14 @@ static void draw_any(uint32_t seed, int tile_log2, int n_workers,
                         rng_below(&seed, 75 * 256),
                         (struct glint_real){1 << 30, -30 + 3 * i}, rgb_q14);
     for (int i = 0; i < 2; i++)
-        any_spread(&s[i], &c, &seed);
+        random_spread(&s[i], &c, &seed);
     glint_veil_spread(c.veil, s, 2);
     glint_veil_draw(c.veil, NULL, c.bare.flare, &image);
     close_canvas(&c);
 }
 
-/* Workers, tiles and the order of jobs must not change a bit, of any format;
- * and every machine must draw the same. */
+/* Checks that workers, tiles and the order of jobs do not change the image
+ * bit by bit, in any format, and that every machine draws the same. */
 TEST(same_bits)
 {
     const uint64_t want = UINT64_C(0x8c34ca68742ff06b);
@@ -357,10 +357,10 @@ TEST(same_bits)
         const enum glint_pixel_format format = (enum glint_pixel_format)f;
         const size_t bytes = glint_image_bytes(format, 130, 75);
 
-        draw_any(7 + (uint32_t)f, 6, 1, 1, format, first);
+        draw_random(7 + (uint32_t)f, 6, 1, 1, format, first);
         for (int k = 0; k < 4; k++) {
-            draw_any(7 + (uint32_t)f, 3 + k % 4, 1 + k % MAX_WORKERS,
-                     100 + (uint32_t)k, format, other);
+            draw_random(7 + (uint32_t)f, 3 + k % 4, 1 + k % MAX_WORKERS,
+                        100 + (uint32_t)k, format, other);
             assert_memory_equal(first, other, bytes);
         }
         for (size_t i = 0; i < bytes; i++)
@@ -373,8 +373,8 @@ TEST(same_bits)
 
 /* ----------------------------------------------------------------- extremes */
 
-/* Lamps of any power at and beyond the borders: more power is nowhere less
- * light, and what lies outside is left out. */
+/* Checks lamps of any power at and outside the borders: more power is
+ * nowhere less light, and lamps outside the limit are skipped. */
 TEST(extremes)
 {
     static const double place[][2] = {{0, 0},     {160, 90}, {80.5, 45},
@@ -383,14 +383,14 @@ TEST(extremes)
     struct glint_veil_spread s;
 
     open_canvas(&c, 160, 90, 5, 1, 1);
-    s = spread_of(&c, 8, 0.9);
+    s = make_spread(&c, 8, 0.9);
     for (int k = 0; k < 6; k++) {
         double before = -1;
 
         for (int p = -20; p <= 60; p += 5) {
             double sum;
 
-            look_at_nothing(&c);
+            clear_light(&c);
             add_lamp(&c, place[k][0], place[k][1], ldexp(1, p));
             glint_veil_spread(c.veil, &s, 1);
             sum = draw_linear(&c, 0);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * A ghost beside the same one at a nearby position of a zoom: ranges and boxes
- * hold what is seen at either, and models have what is cut at either. */
+ * Tests a ghost baked together with the same ghost at a nearby zoom position:
+ * ranges and boxes contain what is visible at either position, and models
+ * include the barrels that clip at either.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -16,11 +18,12 @@
 enum {
     MAX_DEG = 9,
     GHOSTS = 7,
-    CUT = 3,  /* a ghost with no light at more than 7 degrees */
-    UNCUT = 2 /* one that no barrel cuts */
+    CUT = 3,  /* a ghost without light above 7 degrees */
+    UNCUT = 2 /* a ghost that no barrel clips */
 };
 
-/* The second group moves by 12 mm, and what it cuts with it: its end first. */
+/* The second group moves by 12 mm, and so do its barrels; end position
+ * first. */
 static const char table[] = "name t\n"
                             "f-number 8\n"
                             "film 24 16\n"
@@ -74,8 +77,8 @@ static bool is_in(double (*range)[2], int n, double lo, double hi)
     return false;
 }
 
-/* Every range of either is in one of both, which begins and ends where one of
- * either does. */
+/* Checks that every range of either position is inside a range of both,
+ * which begins and ends where one of either does. */
 TEST(ranges)
 {
     int wider = 0;
@@ -108,7 +111,7 @@ TEST(ranges)
     assert_true(wider > 0);
 }
 
-/* A range that touches others is joined to them, and stands in order. */
+/* Checks that touching ranges are joined, and that ranges are sorted. */
 TEST(joined)
 {
     static const struct {
@@ -146,8 +149,8 @@ TEST(joined)
     assert_true(full[0][0] == 0 && full[0][1] == 0.1);
 }
 
-/* Returns the number of the ray of RAYS at the place of ray I of OF; -1: there
- * is none. */
+/* Returns the index in RAYS of the ray with the position of ray I of OF; -1:
+ * none. */
 static int find_ray(const struct glint_zone_rays *rays,
                     const struct glint_zone_rays *of, int i)
 {
@@ -160,13 +163,13 @@ static int find_ray(const struct glint_zone_rays *rays,
     return -1;
 }
 
-static double farther(const struct glint_zone_rays *rays, int i)
+static double ray_margin(const struct glint_zone_rays *rays, int i)
 {
     return fmax(rays->at[RAY_EXCESS][i], rays->at[RAY_FIELD][i]);
 }
 
-/* Each ray lands where it does alone, and is as far out as at the position at
- * which that is least. */
+/* Checks that each ray lands where it does at a single position, with the
+ * margin of the position where it is smaller. */
 TEST(rays)
 {
     static struct glint_visible_profile profile;
@@ -188,7 +191,7 @@ TEST(rays)
         if (a < 0 || b < 0)
             continue;
         assert_true(of[2].at[RAY_SENSOR_X][i] == of[0].at[RAY_SENSOR_X][a]);
-        if (farther(&of[0], a) < farther(&of[1], b)) {
+        if (ray_margin(&of[0], a) < ray_margin(&of[1], b)) {
             assert_true(of[2].at[RAY_EXCESS][i] == of[0].at[RAY_EXCESS][a] &&
                         of[2].at[RAY_FIELD][i] == of[0].at[RAY_FIELD][a]);
             own++;
@@ -201,7 +204,8 @@ TEST(rays)
     assert_true(own > 100 && beside > 100);
 }
 
-/* Boxes of both hold those of either, and are no wider. */
+/* Checks that boxes of both positions contain those of either, and are no
+ * wider. */
 TEST(boxes)
 {
     static struct glint_visible_profile of[3];
@@ -229,8 +233,8 @@ TEST(boxes)
     assert_true(moved > 0);
 }
 
-/* Returns the number of rays that GHOST of the model DATA lets through at
- * DEGREES in green; -1: it has no polynomials there. */
+/* Returns the number of green rays that pass GHOST of the model DATA at
+ * DEGREES; -1: it has no polynomials there. */
 static int count_rays(const unsigned char *data, size_t bytes, int ghost,
                       double degrees)
 {
@@ -265,8 +269,8 @@ static int count_rays(const unsigned char *data, size_t bytes, int ghost,
     return n;
 }
 
-/* A barrel that cuts at the other position alone is chosen: the rear one, which
- * is a fifth as wide there. */
+/* Checks that a barrel which clips only at the other position is chosen: the
+ * rear one, a fifth as wide there. */
 TEST(barrels)
 {
     static const double rgb_nm[] = {650, 532, 450};
@@ -296,8 +300,9 @@ TEST(barrels)
     assert_int_equal(n[1], 1);
 }
 
-/* Where the ghost is seen at the other position alone, a model with that beside
- * it has its polynomials, and its barrels stop all light. */
+/* Checks that if a ghost is visible only at the other position, the model
+ * baked with that position has its polynomials, and its barrels block all
+ * light. */
 TEST(models)
 {
     const bool ghosts[GHOSTS] = {[CUT] = true};
@@ -325,7 +330,7 @@ TEST(models)
         free(data[k]);
 }
 
-/* Another lens is not a position of this one. */
+/* Checks that a different lens is rejected as a position. */
 TEST(refused)
 {
     struct glint_prescription other = at[1];

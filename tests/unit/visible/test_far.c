@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights beyond 60 degrees: which lenses have the rules for them, and barrels
- * that light of a fisheye grazes. */
+ * Tests lights beyond 60 degrees: which lenses get the special rules for them,
+ * and barrels that the light of a fisheye grazes.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -43,10 +44,10 @@ TEST(reach)
     assert_false(visible.far);
 }
 
-/* Makes ZONE of GHOST for lights DEG off the axis, and finds its barrels, by
- * the rules for FAR lights or not. */
-static void choose(int ghost, const double deg[2], bool far,
-                   struct glint_zone_rays *rays)
+/* Makes zone DEG of GHOST and finds its barrels, by the rules for FAR lights
+ * or the normal ones. */
+static void find_barrels(int ghost, const double deg[2], bool far,
+                         struct glint_zone_rays *rays)
 {
     static struct glint_visible_profile profile;
     static glint_zone_sampling sampling;
@@ -63,39 +64,40 @@ static void choose(int ghost, const double deg[2], bool far,
 enum { GRAZED = 61 };
 static const double grazed_deg[2] = {82.85, 83.25};
 
-/* Rays of this ghost pass the second surface, nearly a half sphere, within
- * 0.003 of its rim, and are lost beyond: it stops a part of the light, though
- * no ray gets past by 1e-3. */
+/* Checks a ghost whose rays pass the second surface, almost a hemisphere,
+ * within 0.003 of its rim and are invalid outside: its barrel blocks a part
+ * of the light, though no ray passes outside by 1e-3. */
 TEST(grazed_barrel)
 {
     static struct glint_zone_rays rays;
 
-    choose(GRAZED, grazed_deg, true, &rays);
+    find_barrels(GRAZED, grazed_deg, true, &rays);
     assert_int_equal(rays.n_barrels, 1);
     assert_int_equal(visible.path[0].event[rays.barrel[0]].surface, 1);
-    choose(GRAZED, grazed_deg, false, &rays);
+    find_barrels(GRAZED, grazed_deg, false, &rays);
     assert_int_equal(rays.n_barrels, 0);
     assert_true(rays.missed_cut > 1e-4);
 }
 
-/* The barrel that stops most of the rays that get through the glass comes
- * first, though others stop more of all. Where a ray misses a surface it is
- * outside that, which a barrel there can tell: four stop all. */
+/* Checks that the barrel that blocks most of the rays passing the glass is
+ * chosen first, even if others block more rays in total. A ray that misses a
+ * surface is outside it, so a barrel there can block it: four barrels block
+ * all. */
 TEST(first_barrel)
 {
     static struct glint_zone_rays rays;
     static const double deg[2] = {80, 84};
 
-    choose(24, deg, true, &rays);
+    find_barrels(24, deg, true, &rays);
     assert_int_equal(visible.path[0].event[rays.barrel[0]].surface, 1);
     assert_true(rays.missed_cut <= 1e-3);
-    choose(24, deg, false, &rays);
+    find_barrels(24, deg, false, &rays);
     assert_int_equal(visible.path[0].event[rays.barrel[0]].surface, 8);
 }
 
 /* --------------------------------------------------------------------- fits */
 
-/* The tolerances of bake for a film 36 mm wide. */
+/* tolerances of a bake for a film 36 mm wide */
 static struct glint_brightness brightness;
 static const struct glint_tolerance tolerance = {.sensor_mm = 7.5e-4,
                                                  .faint_sensor_mm = 1.3e-3,
@@ -112,10 +114,10 @@ static const struct glint_tolerance tolerance = {.sensor_mm = 7.5e-4,
                                                  .brightness = &brightness};
 static struct glint_zone_buffers buffers;
 
-/* Fits the zone of the grazed barrel. STOPPED: one in so many of its rays
- * counts as stopped by what the fit does not know; 0: none. */
-static void fit(bool far, int stopped, struct glint_fitted_system *system,
-                struct glint_zone_errors *errors)
+/* Fits the zone of the grazed barrel. STOPPED: one in this many rays counts
+ * as blocked by something that the fit does not know; 0: none. */
+static void fit_zone(bool far, int stopped, struct glint_fitted_system *system,
+                     struct glint_zone_errors *errors)
 {
     struct glint_zone_task task = {.zone = &zone,
                                    .visible = &visible,
@@ -126,8 +128,9 @@ static void fit(bool far, int stopped, struct glint_fitted_system *system,
 
     glint_brightness_angles(&brightness, 85);
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
-        brightness.level[k] = 1e-9; /* which this ghost is far above */
-    choose(GRAZED, grazed_deg, true, &buffers.rays);
+        /* much less than this ghost's brightness */
+        brightness.level[k] = 1e-9;
+    find_barrels(GRAZED, grazed_deg, true, &buffers.rays);
     visible.far = far;
     glint_zone_trace(&zone, &visible, &buffers.rays, &buffers.energies);
     for (int i = 0; stopped && i < buffers.rays.n; i += stopped)
@@ -137,15 +140,14 @@ static void fit(bool far, int stopped, struct glint_fitted_system *system,
     assert_ok(glint_zone_fit(&task, &aim, &buffers, system, errors));
 }
 
-static void drop(struct glint_fitted_system *system)
+static void free_system(struct glint_fitted_system *system)
 {
     while (system->n_outputs > 0)
         free(system->output[--system->n_outputs].coef);
 }
 
-/* Returns how far the fit of the barrel is off, root mean square over rays that
- * graze it. */
-static double barrel_off(const struct glint_fitted_system *system)
+/* Returns the RMS error of the barrel's fit over rays that graze it. */
+static double barrel_error(const struct glint_fitted_system *system)
 {
     const struct glint_fitted_output *o =
         &system->output[system->n_outputs - 1];
@@ -171,36 +173,38 @@ static double barrel_off(const struct glint_fitted_system *system)
     return sqrt(sum / n);
 }
 
-/* Within 0.003 of its rim lies all of the ghost: the barrel is fitted to less
- * than a hundredth of that, and of other lights, where it hardly shows, not. */
+/* Checks that the grazed barrel is fitted to less than a hundredth of 0.003
+ * of its rim, in which the whole ghost lies, and that for other lights,
+ * where it matters little, it is not. */
 TEST(fit_of_grazed_barrel)
 {
     struct glint_fitted_system system;
     struct glint_zone_errors errors;
 
     for (int far = 0; far < 2; far++) {
-        fit(far, 0, &system, &errors);
-        assert_true((barrel_off(&system) < 1e-5) == far);
-        drop(&system);
+        fit_zone(far, 0, &system, &errors);
+        assert_true((barrel_error(&system) < 1e-5) == far);
+        free_system(&system);
     }
 }
 
-/* Of lights so far off, rays that get through though they should not are errors
- * of outlines: a tenth of those that are seen is five times what is allowed. */
+/* Checks that for lights this far off the axis, rays that pass although they
+ * should not count as errors of outlines: a tenth of the visible rays is
+ * five times the tolerance. */
 TEST(leaks)
 {
     struct glint_fitted_system system;
     struct glint_zone_errors errors;
 
-    fit(true, 0, &system, &errors);
+    fit_zone(true, 0, &system, &errors);
     assert_true(errors.outlines < 1);
-    drop(&system);
-    fit(true, 10, &system, &errors);
+    free_system(&system);
+    fit_zone(true, 10, &system, &errors);
     assert_near(errors.outlines, 5.5, 0.5);
-    drop(&system);
-    fit(false, 10, &system, &errors);
+    free_system(&system);
+    fit_zone(false, 10, &system, &errors);
     assert_true(errors.outlines < 1);
-    drop(&system);
+    free_system(&system);
 }
 
 TEST_OPEN

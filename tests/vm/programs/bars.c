@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * bars [/dev/fbN] - draws eight colour bars over ramps of red, green and blue,
+ * bars [/dev/fbN] - draws eight colour bars over ramps of red, green and blue
  *     by the bit fields that the driver reports.
- * bars LAYOUT WxH - writes, as PPM and without a device, the picture that a
- *     panel of LAYOUT (r5g6b5, x8r8g8b8 ...) must then show.
+ * bars LAYOUT WxH - writes a PPM of the image that a panel of LAYOUT (r5g6b5,
+ *     x8r8g8b8 ...) must then show; needs no device.
  */
 #include <linux/fb.h>
 #include <sys/mman.h>
@@ -11,10 +11,10 @@
 #include "device.h"
 #include "layout.h"
 
-/* Returns channel C at (X, Y), 0 .. 255. Bars go from white to black by falling
- * luma. */
-static uint32_t colour(unsigned x, unsigned y, unsigned width, unsigned height,
-                       unsigned c)
+/* Returns channel C at (X, Y), 0 .. 255. Bars range from white to black by
+ * decreasing luma. */
+static uint32_t colour_at(unsigned x, unsigned y, unsigned width,
+                          unsigned height, unsigned c)
 {
     static const unsigned bit[3] = {2, 4, 1};
     unsigned top = height * 3 / 4;
@@ -31,13 +31,13 @@ static void put_pixel(uint8_t *dst, const struct fb_var_screeninfo *var,
     if (var->transp.length)
         pixel = ((1u << var->transp.length) - 1) << var->transp.offset;
     for (unsigned c = 0; c < 3; c++)
-        pixel |= colour(x, y, var->xres, var->yres, c) >>
+        pixel |= colour_at(x, y, var->xres, var->yres, c) >>
                  (8 - field[c]->length) << field[c]->offset;
     for (unsigned i = 0; i < var->bits_per_pixel / 8; i++)
         dst[i] = (uint8_t)(pixel >> 8 * i);
 }
 
-static void draw(const char *path)
+static void draw_bars(const char *path)
 {
     struct fb_var_screeninfo var;
     struct fb_fix_screeninfo fix;
@@ -61,7 +61,7 @@ static void draw(const char *path)
                       &var, x, y);
 }
 
-static void expect(const char *name, const char *size)
+static void write_expected(const char *name, const char *size)
 {
     struct layout layout;
     unsigned width, height;
@@ -73,15 +73,15 @@ static void expect(const char *name, const char *size)
         for (unsigned x = 0; x < width; x++)
             for (unsigned c = 0; c < 3; c++)
                 putchar(shown(&layout, c,
-                              colour(x, y, width, height, c) >>
+                              colour_at(x, y, width, height, c) >>
                                   (8 - layout.length[c])));
 }
 
 int main(int argc, char **argv)
 {
     if (argc == 3)
-        expect(argv[1], argv[2]);
+        write_expected(argv[1], argv[2]);
     else
-        draw(argc == 2 ? argv[1] : "/dev/fb0");
+        draw_bars(argc == 2 ? argv[1] : "/dev/fb0");
     return 0;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * device.h - what the guest's tools share: words of the command line, and
- * ioctls that end the program when they fail.
+ * device.h - shared by the guest's programs: parsing of the command line, and
+ * ioctls that end the program on failure.
  */
 #ifndef GLINT_VM_DEVICE_H
 #define GLINT_VM_DEVICE_H
@@ -40,7 +40,8 @@ __attribute__((unused)) static int try_ioctl(int fd, unsigned long request,
     return rc;
 }
 
-/* Ends the program if the request fails, with NAME in the message. */
+/* Calls ioctl(); on failure ends the program with a message that contains
+ * NAME. */
 __attribute__((unused)) static void must_ioctl(int fd, unsigned long request,
                                                void *arg, const char *name)
 {
@@ -70,7 +71,7 @@ __attribute__((unused)) static void size_of(const char *word, uint32_t *width,
         die("%s: not WxH", word);
 }
 
-/* Returns the whole file in memory that the caller frees. */
+/* Returns the contents of the file, which the caller frees. */
 __attribute__((unused)) static uint8_t *read_file(const char *path,
                                                   size_t *n_bytes)
 {
@@ -92,9 +93,9 @@ __attribute__((unused)) static uint8_t *read_file(const char *path,
     return bytes;
 }
 
-/* Returns the bytes of a tightly packed frame, as files hold it, or 0 for
- * compressed formats. The sizeimage of v4l2loopback is no such number: it is
- * rounded up to pages. */
+/* Returns the bytes of a tightly packed frame, as in files, or 0 for
+ * compressed formats. Not the sizeimage of v4l2loopback, which is rounded up
+ * to pages. */
 __attribute__((unused)) static size_t
 packed_bytes(uint32_t fourcc, uint32_t width, uint32_t height)
 {
@@ -112,8 +113,8 @@ packed_bytes(uint32_t fourcc, uint32_t width, uint32_t height)
     die("%.4s: no such format here", (const char *)&fourcc);
 }
 
-/* Sets the format of a single-planar device, which must take it unchanged;
- * returns its sizeimage. */
+/* Sets the format of a single-planar device and checks that it was accepted
+ * unchanged. Returns its sizeimage. */
 __attribute__((unused)) static uint32_t set_format(int fd, uint32_t type,
                                                    uint32_t fourcc,
                                                    uint32_t width,

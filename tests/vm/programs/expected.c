@@ -20,7 +20,7 @@ static void die(const char *why)
     exit(2);
 }
 
-static struct glint_pixel_layout pixels_of(const struct layout *l)
+static struct glint_pixel_layout to_pixel_layout(const struct layout *l)
 {
     struct glint_pixel_layout p = {
         .bytes = (int)l->n_bytes,
@@ -31,8 +31,8 @@ static struct glint_pixel_layout pixels_of(const struct layout *l)
     return p;
 }
 
-/* Writes a pixel with 8 bits a channel, as the emulator's screenshot has it. */
-static void put_pixel(const struct layout *l, const uint8_t *at, FILE *file)
+/* Writes a pixel with 8 bits per channel, like the emulator's screenshot. */
+static void write_pixel(const struct layout *l, const uint8_t *at, FILE *file)
 {
     uint32_t word = 0;
 
@@ -43,7 +43,7 @@ static void put_pixel(const struct layout *l, const uint8_t *at, FILE *file)
              file);
 }
 
-static void put_yuyv(const struct glint_image *frame, FILE *file)
+static void write_yuyv(const struct glint_image *frame, FILE *file)
 {
     for (int y = 0; y < frame->height; y++) {
         const uint8_t *row[3];
@@ -57,14 +57,14 @@ static void put_yuyv(const struct glint_image *frame, FILE *file)
     }
 }
 
-static void put_panel(const struct glint_image *frame, int w, int h,
-                      const struct layout *layout, enum glint_panel_fit fit,
-                      FILE *file)
+static void write_panel(const struct glint_image *frame, int w, int h,
+                        const struct layout *layout, enum glint_panel_fit fit,
+                        FILE *file)
 {
     const ptrdiff_t stride = (ptrdiff_t)layout->n_bytes * w;
     const struct glint_panel_config cfg = {.width = w,
                                            .height = h,
-                                           .layout = pixels_of(layout),
+                                           .layout = to_pixel_layout(layout),
                                            .image_width = frame->width,
                                            .image_height = frame->height,
                                            .fit = fit};
@@ -80,7 +80,7 @@ static void put_panel(const struct glint_image *frame, int w, int h,
     glint_panel_draw(&panel, frame, mem, stride);
     fprintf(file, "P6\n%d %d\n255\n", w, h);
     for (size_t i = 0; i < (size_t)w * (size_t)h; i++)
-        put_pixel(layout, mem + i * layout->n_bytes, file);
+        write_pixel(layout, mem + i * layout->n_bytes, file);
     free(mem);
     glint_panel_close(&panel);
 }
@@ -113,10 +113,10 @@ int main(int argc, char **argv)
     if (!file)
         die("cannot write");
     if (yuyv)
-        put_yuyv(frame, file);
+        write_yuyv(frame, file);
     else
-        put_panel(frame, w, h, &layout,
-                  centre ? GLINT_PANEL_CENTRE : GLINT_PANEL_FIT, file);
+        write_panel(frame, w, h, &layout,
+                    centre ? GLINT_PANEL_CENTRE : GLINT_PANEL_FIT, file);
     glint_y4m_reader_close(&in);
     return fclose(file) == 0 ? 0 : 1;
 }

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
  * feed [-c CAMERA] [-n COUNT] [-r FPS] [-t] DEVICE FOURCC WxH FILE... - writes
- * the frames of files, in a loop, to a video output, so that what a camera
- * delivers is known bit for bit. With -t the frames are declared to have
- * BT.709's transfer curve, as y4m video does.
+ * the frames of files, in a loop, to a video output, so that a camera's frames
+ * are known bit by bit. -t: the frames are declared to have BT.709's transfer
+ * curve, like y4m video.
  *
- * DEVICE is vivid's output, whose HDMI socket is then wired to CAMERA's HDMI
- * input (same timings and format on both, no text painted over), or a node of
- * v4l2loopback. An uncompressed file holds one or more frames; a file of MJPG
- * or JPEG is one frame, of any bytes. Without -r, vivid's timings set the
- * pace. When the device has taken more frames than it has buffers, /tmp/fed is
- * made.
+ * DEVICE is vivid's output, whose HDMI socket is then connected to CAMERA's
+ * HDMI input (same timings and format on both, no text overlay), or a node of
+ * v4l2loopback. An uncompressed file contains one or more frames; a file of
+ * MJPG or JPEG is one frame, of any bytes. Without -r, vivid's timings set the
+ * frame rate. When the device has accepted more frames than it has buffers, the
+ * file /tmp/fed is created.
  */
 #include <sys/mman.h>
 
@@ -25,11 +25,12 @@ struct frame {
 
 struct feed {
     int fd;
-    size_t image_bytes;  /* room in a buffer */
-    size_t packed_bytes; /* a frame in a file; 0: compressed, the file is one */
+    size_t image_bytes; /* size of a buffer */
+    /* bytes per frame in a file; 0: compressed, one frame per file */
+    size_t packed_bytes;
     struct frame *frame;
     int n_frames;
-    uint32_t n_buffers; /* 0: frames are passed by write() */
+    uint32_t n_buffers; /* 0: frames are written by write() */
     uint8_t *memory[N_BUFFERS];
 };
 
@@ -52,14 +53,14 @@ static void add_file(struct feed *feed, const char *path)
     if (feed->packed_bytes && (n_bytes == 0 || n_bytes % step != 0))
         die("%s: %zu bytes are no whole frames of %zu", path, n_bytes, step);
     size_t at = 0;
-    do { /* an empty file is an empty frame, too */
+    do { /* an empty file is one empty frame */
         add_frame(feed, bytes + at, step);
         at += step;
     } while (at < n_bytes);
 }
 
-/* Declares BT.709's curve. S_FMT with size and pixels alone would forget it, so
- * this comes last. */
+/* Declares BT.709's curve. Must be last, as S_FMT with only size and format
+ * would reset it. */
 static void set_curve(int fd)
 {
     struct v4l2_format format = {.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
@@ -69,8 +70,8 @@ static void set_curve(int fd)
     must_ioctl(fd, VIDIOC_S_FMT, &format, "VIDIOC_S_FMT");
 }
 
-/* Returns the output that takes DV timings, which is HDMI; -1: none, as with
- * v4l2loopback. */
+/* Returns the output that accepts DV timings, which is HDMI; -1: none, as
+ * with v4l2loopback. */
 static int hdmi_output(int fd)
 {
     struct v4l2_output output = {.index = 0};
@@ -95,8 +96,8 @@ static double timings_fps(const struct v4l2_bt_timings *bt)
     return (double)bt->pixelclock / pixels;
 }
 
-/* Returns the progressive timings of a size whose rate is nearest to FPS, or to
- * 60 where FPS is 0. */
+/* Returns the progressive timings of a size whose rate is nearest to FPS, or
+ * to 60 if FPS is 0. */
 static struct v4l2_dv_timings find_timings(int fd, uint32_t width,
                                            uint32_t height, double fps)
 {
@@ -152,7 +153,7 @@ static void wire_hdmi(int out, int socket, const char *camera, uint32_t fourcc,
     close(in);
 }
 
-static void pace(struct timespec *next, double fps)
+static void wait_for_frame(struct timespec *next, double fps)
 {
     long step = (long)(1e9 / fps);
     next->tv_nsec += step;
@@ -162,7 +163,7 @@ static void pace(struct timespec *next, double fps)
         ;
 }
 
-static void take_buffers(struct feed *feed)
+static void request_buffers(struct feed *feed)
 {
     struct v4l2_requestbuffers request = {.count = N_BUFFERS,
                                           .type = V4L2_BUF_TYPE_VIDEO_OUTPUT,
@@ -180,7 +181,7 @@ static void take_buffers(struct feed *feed)
     }
 }
 
-/* Returns a buffer that the device does not use; blocks until there is one. */
+/* Returns a buffer that the device does not use; waits until there is one. */
 static uint32_t free_buffer(const struct feed *feed, long i)
 {
     if (i < (long)feed->n_buffers)
@@ -214,7 +215,7 @@ static void queue_frame(const struct feed *feed, const struct frame *frame,
         must_ioctl(feed->fd, VIDIOC_STREAMON, &type, "VIDIOC_STREAMON");
 }
 
-static void run(const struct feed *feed, long count, double fps)
+static void write_frames(const struct feed *feed, long count, double fps)
 {
     struct timespec next;
     clock_gettime(CLOCK_MONOTONIC, &next);
@@ -227,7 +228,7 @@ static void run(const struct feed *feed, long count, double fps)
         if (i == N_BUFFERS)
             close(open("/tmp/fed", O_CREAT | O_WRONLY, 0644));
         if (fps > 0.0)
-            pace(&next, fps);
+            wait_for_frame(&next, fps);
     }
 }
 
@@ -275,7 +276,7 @@ int main(int argc, char **argv)
     for (char **path = word + 3; *path; path++)
         add_file(&feed, *path);
     if (socket >= 0)
-        take_buffers(&feed);
-    run(&feed, count, fps);
+        request_buffers(&feed);
+    write_frames(&feed, count, fps);
     return 0;
 }

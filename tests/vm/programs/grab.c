@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * grab [-s SKIP] DEVICE FOURCC WxH COUNT OUT [REFERENCE] - reads frames of a
- * camera, and writes them to a file only when all are there, so that none is
- * lost meanwhile. Says for each frame which one of REFERENCE (frames of this
- * size) it is, bit for bit, and fails if it is none of them.
+ * camera, and writes them to a file only after the last, so that none is lost
+ * meanwhile. Prints for each frame which frame of REFERENCE (a file of frames
+ * of this size) it equals bit by bit, and fails if there is none.
  */
 #include <poll.h>
 #include <sys/mman.h>
@@ -19,7 +19,7 @@ struct camera {
     size_t length[N_BUFFERS];
 };
 
-static void queue(const struct camera *camera, uint32_t index)
+static void queue_buffer(const struct camera *camera, uint32_t index)
 {
     struct v4l2_buffer buffer = {.index = index,
                                  .type = V4L2_BUF_TYPE_VIDEO_CAPTURE,
@@ -27,7 +27,7 @@ static void queue(const struct camera *camera, uint32_t index)
     must_ioctl(camera->fd, VIDIOC_QBUF, &buffer, "VIDIOC_QBUF");
 }
 
-static void start(struct camera *camera)
+static void start_camera(struct camera *camera)
 {
     struct v4l2_requestbuffers request = {.count = N_BUFFERS,
                                           .type = V4L2_BUF_TYPE_VIDEO_CAPTURE,
@@ -42,13 +42,13 @@ static void start(struct camera *camera)
                                  camera->fd, (off_t)buffer.m.offset);
         if (camera->memory[i] == MAP_FAILED)
             die("mmap: %s", strerror(errno));
-        queue(camera, i);
+        queue_buffer(camera, i);
     }
     int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     must_ioctl(camera->fd, VIDIOC_STREAMON, &type, "VIDIOC_STREAMON");
 }
 
-/* Copies the next frame to DST [image_bytes]; returns its bytes. */
+/* Copies the next frame to DST[image_bytes]. Returns its number of bytes. */
 static size_t next_frame(const struct camera *camera, uint8_t *dst)
 {
     struct pollfd ready = {.fd = camera->fd, .events = POLLIN};
@@ -63,7 +63,7 @@ static size_t next_frame(const struct camera *camera, uint8_t *dst)
     memcpy(dst, camera->memory[buffer.index], n_bytes);
     printf("sequence %u, %zu bytes%s", buffer.sequence, n_bytes,
            buffer.flags & V4L2_BUF_FLAG_ERROR ? ", ERROR" : "");
-    queue(camera, buffer.index);
+    queue_buffer(camera, buffer.index);
     return n_bytes;
 }
 
@@ -72,8 +72,8 @@ struct reference {
     size_t n_bytes;
 };
 
-static int find(const struct reference *reference, const uint8_t *frame,
-                size_t n_bytes)
+static int find_frame(const struct reference *reference, const uint8_t *frame,
+                      size_t n_bytes)
 {
     for (size_t at = 0; at + n_bytes <= reference->n_bytes; at += n_bytes)
         if (memcmp(reference->bytes + at, frame, n_bytes) == 0)
@@ -81,8 +81,8 @@ static int find(const struct reference *reference, const uint8_t *frame,
     return -1;
 }
 
-static int grab(const struct camera *camera, int skip, int count, FILE *out,
-                const struct reference *reference)
+static int grab_frames(const struct camera *camera, int skip, int count,
+                       FILE *out, const struct reference *reference)
 {
     int n_strange = 0;
     uint8_t *frames = malloc((size_t)count * camera->image_bytes);
@@ -93,7 +93,7 @@ static int grab(const struct camera *camera, int skip, int count, FILE *out,
         uint8_t *dst = frames + n_bytes;
         size_t n = next_frame(camera, dst);
         if (i >= 0) {
-            int found = reference->bytes ? find(reference, dst, n) : 0;
+            int found = reference->bytes ? find_frame(reference, dst, n) : 0;
             if (reference->bytes)
                 printf(", frame %d", found);
             n_strange += found < 0;
@@ -127,8 +127,8 @@ int main(int argc, char **argv)
     FILE *out = fopen(word[4], "wb");
     if (!out)
         die("%s: %s", word[4], strerror(errno));
-    start(&camera);
-    int n_strange = grab(&camera, skip, count, out, &reference);
+    start_camera(&camera);
+    int n_strange = grab_frames(&camera, skip, count, out, &reference);
     printf("%d frames, %d not of the reference\n", count, n_strange);
     return n_strange > 0;
 }

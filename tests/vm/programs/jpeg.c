@@ -16,7 +16,7 @@
 #include "video/y4m.h"
 
 #define MAX_SIDE 2048
-/* a JPEG file to be decoded must be shorter, bytes */
+/* limit of a JPEG file's size, bytes */
 #define MAX_BYTES (1 << 20)
 
 static void die(const char *why)
@@ -25,7 +25,7 @@ static void die(const char *why)
     exit(2);
 }
 
-static uint8_t full(uint8_t code)
+static uint8_t to_full_range(uint8_t code)
 {
     const int value = ((code - 16) * 255 + 109) / 219;
 
@@ -33,13 +33,13 @@ static uint8_t full(uint8_t code)
 }
 
 /* Compresses a row of LUMA with grey chroma. */
-static void put_row(struct jpeg_compress_struct *j, const uint8_t *luma)
+static void write_row(struct jpeg_compress_struct *j, const uint8_t *luma)
 {
     static uint8_t ycc[3 * MAX_SIDE];
     JSAMPROW row = ycc;
 
     for (size_t x = 0; x < j->image_width; x++) {
-        ycc[3 * x] = full(luma[x]);
+        ycc[3 * x] = to_full_range(luma[x]);
         ycc[3 * x + 1] = ycc[3 * x + 2] = 128;
     }
     jpeg_write_scanlines(j, &row, 1);
@@ -62,7 +62,7 @@ static void compress(const struct glint_image *image, FILE *file)
     j.comp_info[0].v_samp_factor = 1;
     jpeg_start_compress(&j, TRUE);
     for (int y = 0; y < image->height; y++)
-        put_row(&j, image->plane[0] + y * image->stride_bytes[0]);
+        write_row(&j, image->plane[0] + y * image->stride_bytes[0]);
     jpeg_finish_compress(&j);
     jpeg_destroy_compress(&j);
 }

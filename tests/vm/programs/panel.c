@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * panel LAYOUT WxH RAW NAME - writes NAME.ppm and NAME.png from the memory of a
- * framebuffer, for emulators that have no panel to take a picture of.
+ * framebuffer, for emulators without a display to take a screenshot of.
  */
 #include <stdint.h>
 #include <stdio.h>
@@ -56,7 +56,7 @@ struct png {
     uint32_t crc, s1, s2; /* CRC-32 of the chunk; the two sums of Adler-32 */
 };
 
-static void put_bytes(struct png *png, const uint8_t *bytes, size_t n)
+static void write_bytes(struct png *png, const uint8_t *bytes, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         png->crc ^= bytes[i];
@@ -66,50 +66,50 @@ static void put_bytes(struct png *png, const uint8_t *bytes, size_t n)
     fwrite(bytes, 1, n, png->file);
 }
 
-static void put_u32(struct png *png, uint32_t value)
+static void write_be32(struct png *png, uint32_t value)
 {
     uint8_t bytes[4] = {(uint8_t)(value >> 24), (uint8_t)(value >> 16),
                         (uint8_t)(value >> 8), (uint8_t)value};
-    put_bytes(png, bytes, 4);
+    write_bytes(png, bytes, 4);
 }
 
 static void begin_chunk(struct png *png, const char *type, uint32_t n_bytes)
 {
-    put_u32(png, n_bytes);
+    write_be32(png, n_bytes);
     png->crc = 0xffffffffu;
-    put_bytes(png, (const uint8_t *)type, 4);
+    write_bytes(png, (const uint8_t *)type, 4);
 }
 
 static void end_chunk(struct png *png)
 {
-    put_u32(png, ~png->crc);
+    write_be32(png, ~png->crc);
 }
 
-static void put_summed(struct png *png, const uint8_t *bytes, size_t n)
+static void write_with_checksum(struct png *png, const uint8_t *bytes, size_t n)
 {
-    put_bytes(png, bytes, n);
+    write_bytes(png, bytes, n);
     for (size_t i = 0; i < n; i++) {
         png->s1 = (png->s1 + bytes[i]) % 65521;
         png->s2 = (png->s2 + png->s1) % 65521;
     }
 }
 
-static void put_rows(struct png *png, const struct picture *picture)
+static void write_rows(struct png *png, const struct picture *picture)
 {
     static const uint8_t zlib[2] = {0x78, 0x01}, no_filter = 0;
     uint32_t n = picture->width * 3, block = n + 1;
     begin_chunk(png, "IDAT", picture->height * (block + 5) + 6);
-    put_bytes(png, zlib, 2);
+    write_bytes(png, zlib, 2);
     png->s1 = 1;
     for (unsigned y = 0; y < picture->height; y++) {
         uint8_t head[5] = {y + 1 == picture->height, (uint8_t)block,
                            (uint8_t)(block >> 8), (uint8_t)~block,
                            (uint8_t)(~block >> 8)};
-        put_bytes(png, head, 5);
-        put_summed(png, &no_filter, 1);
-        put_summed(png, picture->rgb + (size_t)y * n, n);
+        write_bytes(png, head, 5);
+        write_with_checksum(png, &no_filter, 1);
+        write_with_checksum(png, picture->rgb + (size_t)y * n, n);
     }
-    put_u32(png, png->s2 << 16 | png->s1);
+    write_be32(png, png->s2 << 16 | png->s1);
     end_chunk(png);
 }
 
@@ -119,11 +119,11 @@ static void write_png(const char *name, const struct picture *picture)
     struct png png = {.file = open_named(name, ".png")};
     fwrite("\x89PNG\r\n\x1a\n", 1, 8, png.file);
     begin_chunk(&png, "IHDR", 13);
-    put_u32(&png, picture->width);
-    put_u32(&png, picture->height);
-    put_bytes(&png, rgb8, 5);
+    write_be32(&png, picture->width);
+    write_be32(&png, picture->height);
+    write_bytes(&png, rgb8, 5);
     end_chunk(&png);
-    put_rows(&png, picture);
+    write_rows(&png, picture);
     begin_chunk(&png, "IEND", 0);
     end_chunk(&png);
     fclose(png.file);

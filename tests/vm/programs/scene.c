@@ -2,10 +2,10 @@
  *
  * scene [-n FRAMES] [-m DX,DY] [-s SIGMA] YUYV|NV12|y4m WxH OUT [X,Y,R]...
  *
- * Writes a night with lamps at X, Y (pixels) of radius R, that move by DX, DY
- * each frame, under noise of SIGMA codes, above a strip of colour bars: frames
- * as a camera would send them, the same on every run. y4m has the samples of
- * YUYV.
+ * Writes frames of a night scene in the format of a camera: lamps at X, Y
+ * (pixels) of radius R, which move by (DX, DY) pixels per frame, with noise of
+ * SIGMA codes, above a strip of colour bars. The frames are the same in every
+ * run. y4m has the samples of YUYV.
  */
 #include <math.h>
 #include <stdint.h>
@@ -30,8 +30,8 @@ static void die(const char *why)
     exit(2);
 }
 
-/* Returns nearly normal noise of standard deviation 1. */
-static double noise(void)
+/* Returns nearly Gaussian noise of standard deviation 1. */
+static double random_noise(void)
 {
     static uint32_t seed = 7;
     double sum = -6;
@@ -42,7 +42,7 @@ static double noise(void)
 }
 
 /* Returns the luma at (X, Y), 16 .. 235: lamps are white with a glow around
- * them, the sky is brighter below. */
+ * them; the sky is brighter at the bottom. */
 static uint8_t luma_at(const struct scene *s, int frame, int x, int y)
 {
     double v = 24 + 24.0 * y / s->height;
@@ -56,7 +56,7 @@ static uint8_t luma_at(const struct scene *s, int frame, int x, int y)
             230 * fmax(0, fmin(1, r + 0.5 - d)) + 60 * exp(-fmax(0, d - r) / r);
     }
     if (s->sigma > 0)
-        v += s->sigma * noise();
+        v += s->sigma * random_noise();
     return (uint8_t)fmax(16, fmin(235, floor(v + 0.5)));
 }
 
@@ -70,7 +70,7 @@ static const uint8_t *bar_at(const struct scene *s, int x)
     return bar[8 * x / s->width];
 }
 
-/* Returns whether row Y is in the lowest sixth, which bars fill. */
+/* Returns whether row Y is in the lowest sixth, which contains the bars. */
 static int is_bar(const struct scene *s, int y)
 {
     return y >= s->height - s->height / 6;
@@ -81,7 +81,7 @@ static uint8_t chroma_at(const struct scene *s, int x, int y, int which)
     return is_bar(s, y) ? bar_at(s, x)[which] : 128;
 }
 
-static void put_yuyv(const struct scene *s, const uint8_t *luma, FILE *file)
+static void write_yuyv(const struct scene *s, const uint8_t *luma, FILE *file)
 {
     for (int y = 0; y < s->height; y++)
         for (int x = 0; x < s->width; x++) {
@@ -90,10 +90,10 @@ static void put_yuyv(const struct scene *s, const uint8_t *luma, FILE *file)
         }
 }
 
-/* Writes luma, then chroma: NV12 interleaved and halved both ways, else two
- * planes that are halved across. */
-static void put_planes(const struct scene *s, const uint8_t *luma, int nv12,
-                       FILE *file)
+/* Writes luma, then chroma: for NV12 interleaved and at half resolution in
+ * both directions, else two planes at half the width. */
+static void write_planes(const struct scene *s, const uint8_t *luma, int nv12,
+                         FILE *file)
 {
     fwrite(luma, 1, (size_t)s->width * (size_t)s->height, file);
     if (nv12)
@@ -107,16 +107,16 @@ static void put_planes(const struct scene *s, const uint8_t *luma, int nv12,
                     putc(chroma_at(s, x, y, which), file);
 }
 
-static void put_frame(const struct scene *s, const char *format,
-                      const uint8_t *luma, FILE *file)
+static void write_frame(const struct scene *s, const char *format,
+                        const uint8_t *luma, FILE *file)
 {
     if (strcmp(format, "YUYV") == 0) {
-        put_yuyv(s, luma, file);
+        write_yuyv(s, luma, file);
         return;
     }
     if (strcmp(format, "y4m") == 0)
         fputs("FRAME\n", file);
-    put_planes(s, luma, strcmp(format, "NV12") == 0, file);
+    write_planes(s, luma, strcmp(format, "NV12") == 0, file);
 }
 
 int main(int argc, char **argv)
@@ -157,7 +157,7 @@ int main(int argc, char **argv)
             for (int x = 0; x < s.width; x++)
                 luma[y * s.width + x] =
                     is_bar(&s, y) ? bar_at(&s, x)[0] : luma_at(&s, f, x, y);
-        put_frame(&s, format, luma, file);
+        write_frame(&s, format, luma, file);
     }
     free(luma);
     return fclose(file) == 0 ? 0 : 1;

@@ -14,8 +14,8 @@
 
 enum { WIDE = 288, DIMMED = 5 };
 
-/* A ghost on a sheet is exposed so that its brightest hundredth has this light,
- * 1 = white. */
+/* light to which the brightest 1 % of a ghost's pixels on a sheet are
+ * exposed, 1 = white */
 static const double shown = 0.7;
 
 static bool is_muted(const struct ghost_list *l, int ghost)
@@ -69,10 +69,10 @@ enum glint_status ghost_list_write(const struct ghost_list *l, const char *path,
 /* --------------------------------------------------------------------- sheet
  */
 
-/* Sets LIGHT, [height][width][3] of a thumbnail, to the means of the ghost that
- * was drawn last. */
-static void reduce(const struct glint_explain *e, int width, int height,
-                   float *light)
+/* Reduces the ghost drawn last to LIGHT[height][width][3] of a thumbnail, by
+ * means of pixels. */
+static void reduce_ghost(const struct glint_explain *e, int width, int height,
+                         float *light)
 {
     const int w = e->view->width, h = e->view->height;
 
@@ -94,16 +94,16 @@ static void reduce(const struct glint_explain *e, int width, int height,
         }
 }
 
-static int rising(const void *a, const void *b)
+static int compare_floats(const void *a, const void *b)
 {
     const float x = *(const float *)a, y = *(const float *)b;
 
     return (x > y) - (x < y);
 }
 
-/* Returns the factor by which LIGHT[N] is displayed; ROOM is scratch of the
+/* Returns the display exposure of LIGHT[N]; ROOM is scratch memory of the
  * same size. */
-static double exposure_of(const float *light, size_t n, float *room)
+static double find_exposure(const float *light, size_t n, float *room)
 {
     size_t lit = 0;
 
@@ -112,13 +112,14 @@ static double exposure_of(const float *light, size_t n, float *room)
             room[lit++] = light[i];
     if (lit == 0)
         return 0;
-    qsort(room, lit, sizeof *room, rising);
+    qsort(room, lit, sizeof *room, compare_floats);
     return shown / (double)room[lit - 1 - lit / 100];
 }
 
-/* Draws LIGHT times SCALE over SMALL, dimmed, onto TO. */
-static void put(const struct glint_image *to, const struct glint_image *small,
-                const float *light, double scale)
+/* Draws LIGHT times SCALE over the dimmed image SMALL into TO. */
+static void draw_thumbnail(const struct glint_image *to,
+                           const struct glint_image *small, const float *light,
+                           double scale)
 {
     for (int y = 0; y < to->height; y++) {
         uint8_t *px = to->plane[0] + y * to->stride_bytes[0];
@@ -134,9 +135,9 @@ static void put(const struct glint_image *to, const struct glint_image *small,
     }
 }
 
-static void put_ghost(const struct ghost_list *l, const struct sheet *sheet,
-                      int k, int ghost, const struct glint_image *small,
-                      float *light)
+static void draw_ghost(const struct ghost_list *l, const struct sheet *sheet,
+                       int k, int ghost, const struct glint_image *small,
+                       float *light)
 {
     const size_t n = 3 * (size_t)small->width * (size_t)small->height;
     const struct glint_image to = sheet_picture(sheet, k);
@@ -144,8 +145,8 @@ static void put_ghost(const struct ghost_list *l, const struct sheet *sheet,
     char text[64];
 
     glint_explain_draw(l->explain, ghost);
-    reduce(l->explain, small->width, small->height, light);
-    put(&to, small, light, exposure_of(light, n, light + n));
+    reduce_ghost(l->explain, small->width, small->height, light);
+    draw_thumbnail(&to, small, light, find_exposure(light, n, light + n));
     snprintf(text, sizeof text, "%d  %d-%d  %.1f%%", ghost, g->i, g->j,
              100 * l->explain->ghost[ghost].share);
     sheet_caption(sheet, k, text);
@@ -170,7 +171,7 @@ static enum glint_status draw_sheet(const struct ghost_list *l,
     for (int i = 0; i < l->explain->n_ghosts && status == GLINT_OK && k < all;
          i++)
         if (glint_explain_drawn(&l->explain->ghost[l->ghosts[i]]) > 0)
-            put_ghost(l, sheet, k++, l->ghosts[i], small, light);
+            draw_ghost(l, sheet, k++, l->ghosts[i], small, light);
     free(light);
     return status;
 }

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * ghost_sheet.h - the single ghosts of a frame: as a file of ghost_file.h to
- * edit, and as a contact sheet. */
+ * ghost_sheet.h - lists the single ghosts of a frame: in an editable file
+ * (ghost_file.h), and as a contact sheet of images.
+ */
 #ifndef GLINT_TOOLS_DESK_GHOST_SHEET_H
 #define GLINT_TOOLS_DESK_GHOST_SHEET_H
 
 #include "glint/explain.h"
 
-/* The ghosts of a frame, in the order to list them, and the picture below. */
+/* The ghosts of a frame in the order of the list, and the image that they
+ * are drawn over. */
 struct ghost_list {
     struct glint_explain *explain;
     const char *lens;
@@ -16,13 +18,14 @@ struct ghost_list {
     const struct glint_image *picture;
 };
 
-/* Writes to PATH all ghosts that are drawn or muted, with their fraction of the
- * light. Errors: GLINT_E_OUTPUT, GLINT_E_CLOSED. */
+/* Writes to PATH all ghosts that are drawn or muted, each with its fraction
+ * of the total light. Errors: GLINT_E_OUTPUT, GLINT_E_CLOSED. */
 enum glint_status ghost_list_write(const struct ghost_list *list,
                                    const char *path, struct glint_error *error);
 
-/* Saves to PATH a sheet of the first drawn ghosts, each over the dimmed picture
- * and exposed so that it is visible. Errors: GLINT_E_MEMORY, GLINT_E_OUTPUT. */
+/* Saves to PATH a contact sheet of the first drawn ghosts, each over the
+ * dimmed image and exposed to be visible. Errors: GLINT_E_MEMORY,
+ * GLINT_E_OUTPUT. */
 enum glint_status ghost_list_sheet(const struct ghost_list *list,
                                    const char *path, struct glint_error *error);
 

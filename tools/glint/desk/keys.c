@@ -9,7 +9,8 @@
 
 enum { MAX_BYTES = 1 << 26 };
 
-/* Columns without limits are options of these names, which have them. */
+/* Columns without limits are engine options of the same name and have their
+ * limits. */
 static const struct text_column columns[KEYS_COLUMNS] = {
     [KEYS_FRAME] = {"frame", 0, TEXT_MAX_FRAME,
                     "frame must be a whole number from 0"},
@@ -26,15 +27,15 @@ static const struct text_column columns[KEYS_COLUMNS] = {
     [KEYS_ZOOM] = {.name = "zoom"},
 };
 
-/* A file being read. */
+/* State of reading a file. */
 struct reading {
     struct keys *keys;
-    int column[KEYS_COLUMNS], n_columns; /* of the fields of a row; 0: the
-                                            heading was not read yet */
-    char range[160]; /* cause if the value of an option is out of range */
+    /* columns of the fields of a row; 0: no heading read yet */
+    int column[KEYS_COLUMNS], n_columns;
+    char range[160]; /* error message for an option's value out of range */
 };
 
-/* Reads FIELD of column C. Returns NULL or the cause of a failure. */
+/* Parses FIELD of column C. Returns NULL or an error message. */
 static const char *read_value(struct reading *r, int c, const char *field,
                               double *value)
 {
@@ -53,7 +54,7 @@ static const char *read_value(struct reading *r, int c, const char *field,
                       "expected a number, or nothing, in each column", value);
 }
 
-static const char *add(struct keys *keys, int column, struct key_value key)
+static const char *add_key(struct keys *keys, int column, struct key_value key)
 {
     struct key_value *const more =
         text_grow(keys->key[column], keys->n[column], sizeof *more);
@@ -77,8 +78,8 @@ static const char *check_heading(unsigned seen)
     return NULL;
 }
 
-static const char *take_heading(struct reading *r, struct text_lines *lines,
-                                char *line)
+static const char *parse_heading(struct reading *r, struct text_lines *lines,
+                                 char *line)
 {
     char *name[KEYS_COLUMNS];
     const int n = text_fields(line, name, KEYS_COLUMNS);
@@ -102,8 +103,8 @@ static const char *take_heading(struct reading *r, struct text_lines *lines,
     return n > KEYS_COLUMNS ? "a column appears twice" : check_heading(seen);
 }
 
-static const char *take_row(struct reading *r, struct text_lines *lines,
-                            char *line)
+static const char *parse_row(struct reading *r, struct text_lines *lines,
+                             char *line)
 {
     struct keys *const keys = r->keys;
     struct key_value key = {-1, lines->number, 0};
@@ -132,16 +133,16 @@ static const char *take_row(struct reading *r, struct text_lines *lines,
         return "frames must rise from line to line";
     for (int c = 0; c < KEYS_COLUMNS && !cause; c++) {
         key.value = value[c];
-        cause = given[c] ? add(keys, c, key) : NULL;
+        cause = given[c] ? add_key(keys, c, key) : NULL;
     }
     return cause;
 }
 
-static const char *take_line(void *ctx, struct text_lines *lines, char *line)
+static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
 {
     struct reading *const r = ctx;
 
-    return (r->n_columns ? take_row : take_heading)(r, lines, line);
+    return (r->n_columns ? parse_row : parse_heading)(r, lines, line);
 }
 
 enum glint_status keys_parse(struct keys *keys, const char *name,
@@ -155,7 +156,7 @@ enum glint_status keys_parse(struct keys *keys, const char *name,
 
     *keys = (struct keys){.n = {0}};
     if (status == GLINT_OK)
-        status = text_lines_each(&lines, take_line, &r, error);
+        status = text_lines_each(&lines, parse_line, &r, error);
     if (status == GLINT_OK && keys->n[KEYS_FRAME] == 0)
         status = glint_error_report(error, GLINT_E_FORMAT, name,
                                     "has no key frames");

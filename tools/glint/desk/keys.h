@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * keys.h - options that change during a video, by key frames in a CSV file.
+ * keys.h - key frames: options that change during a video, in a CSV file.
  *
  *     frame,strength,f-number,x,y,ev
  *     0,0.5,4,100,80,14
  *     50,,11,600,80,
  *     75,0,,,,
  *
- * The heading names the columns, in any order: frame; exposure, strength, gain,
- * starburst, f-number and zoom, with values of the options of these names; turn
- * and round, the rotation in degrees and the roundness of --stop's blades; and
- * x, y, ev, a lamp as by --light-at. An empty field sets no key. Between two
- * keys of a column values are interpolated linearly; before the first key and
- * after the last they are constant. */
+ * The heading names the columns, in any order: frame; the options exposure,
+ * strength, gain, starburst, f-number and zoom; turn and round, the rotation in
+ * degrees and the roundness of --stop's blades; and x, y, ev, a lamp as for
+ * --light-at. An empty field sets no key. Between two keys of a column values
+ * are interpolated linearly; before the first key and after the last they are
+ * constant.
+ */
 #ifndef GLINT_TOOLS_DESK_KEYS_H
 #define GLINT_TOOLS_DESK_KEYS_H
 
@@ -33,16 +34,16 @@ enum key_column {
     KEYS_X,
     KEYS_Y,
     KEYS_EV,
-    KEYS_ZOOM, /* value as of model_file_zoom() */
+    KEYS_ZOOM, /* value as in model_file_zoom() */
     KEYS_COLUMNS
 };
 
 struct key_value {
-    int frame, line; /* line: in the file, from 1 */
+    int frame, line; /* line: in the file, counted from 1 */
     double value;
 };
 
-/* The keys of each column, with rising frames. */
+/* the keys of each column, sorted by frame */
 struct keys {
     struct key_value *key[KEYS_COLUMNS];
     int n[KEYS_COLUMNS];

@@ -13,20 +13,20 @@
 
 enum { POINTS = 61, LEAST_PX = 2 };
 
-/* A hidden lamp keeps this fraction of its level, as lists of lamps do not
- * accept 0. */
+/* fraction of its level that a hidden lamp keeps, as lists of lamps do not
+ * accept 0 */
 static const double least_level = 1e-6;
 
 /* ------------------------------------------------------------------- reading
  */
 
-static bool is_there(const char *name)
+static bool file_exists(const char *name)
 {
     return access(name, F_OK) == 0;
 }
 
-/* Loads the picture of frame FRAME of a pattern, whose first picture has the
- * number 0 or 1. */
+/* Loads the image of frame FRAME of a numbered sequence, whose first number
+ * is 0 or 1. */
 static enum glint_status load_numbered(struct occlusion *o, int frame,
                                        struct glint_error *error)
 {
@@ -37,8 +37,8 @@ static enum glint_status load_numbered(struct occlusion *o, int frame,
     if (!numbered_name(name, o->file, 0))
         return glint_error_report(error, GLINT_E_FORMAT, o->file,
                                   "is too long a name");
-    numbered_name(name, o->file, frame + !is_there(name));
-    if (o->frame >= 0 && !is_there(name)) {
+    numbered_name(name, o->file, frame + !file_exists(name));
+    if (o->frame >= 0 && !file_exists(name)) {
         o->is_over = true;
         return GLINT_OK;
     }
@@ -109,9 +109,9 @@ void occlusion_close(struct occlusion *o)
     o->is_video = false;
 }
 
-/* Moves to the mask of FRAME. On a read error prints a warning and uses the
+/* Loads the mask of FRAME. On a read error prints a warning and uses the
  * last mask from then on. */
-static void go_to(struct occlusion *o, int frame)
+static void load_mask(struct occlusion *o, int frame)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -131,7 +131,7 @@ static void go_to(struct occlusion *o, int frame)
 /* -------------------------------------------------------------------- shares
  */
 
-/* Returns the mask at pixel (X, Y) of its own, which is moved into it. */
+/* Returns the mask, 0 .. 1, at its pixel (X, Y), clamped to its borders. */
 static double mask_at(const struct occlusion *o, int x, int y)
 {
     const struct glint_image *m = &o->image;
@@ -146,8 +146,8 @@ static double mask_at(const struct occlusion *o, int x, int y)
     return fmin(fmax((code - o->black) / (o->white - o->black), 0), 1);
 }
 
-/* Returns the mask at (X, Y) of a picture of VIEW's size, between the middles
- * of four of its pixels; 1 off-screen. */
+/* Returns the mask at (X, Y) of an image of VIEW's size, interpolated
+ * bilinearly; 1 off-screen. */
 static double mask_between(const struct occlusion *o,
                            const struct glint_view *view, double x, double y)
 {
@@ -166,11 +166,12 @@ static double mask_between(const struct occlusion *o,
 }
 
 /* Returns the mean of the mask over the disc of LAMP. */
-static double share_of(const struct occlusion *o, const struct glint_view *view,
-                       double focal_mm, const struct glint_lamp *lamp)
+static double mean_mask(const struct occlusion *o,
+                        const struct glint_view *view, double focal_mm,
+                        const struct glint_lamp *lamp)
 {
     const double pixel = glint_view_pixel_tangent(view, focal_mm);
-    /* A million pixels across, any lamp is large and has all POINTS. */
+    /* At this pixel size any lamp is large and gets all POINTS. */
     const struct glint_area_rule rule = {1e6 / pixel, POINTS, 1, 1};
     struct glint_lamp disc = *lamp;
     struct glint_area area;
@@ -191,10 +192,10 @@ static double share_of(const struct occlusion *o, const struct glint_view *view,
     return fmin(sum, 1);
 }
 
-/* Returns the fraction of its light that a lamp at (X, Y) keeps, pixels of a
- * picture of WIDTH x HEIGHT beyond which lamps fade within FADE_PX. */
-static double fade_outside(double x, double y, int width, int height,
-                           double fade_px)
+/* Returns the fraction of light of a lamp at (X, Y), pixels, in an image of
+ * WIDTH x HEIGHT: off-screen lamps fade within FADE_PX. */
+static double off_screen_fade(double x, double y, int width, int height,
+                              double fade_px)
 {
     const double dx = fmax(fmax(-x, x - width), 0);
     const double dy = fmax(fmax(-y, y - height), 0);
@@ -210,15 +211,15 @@ void occlusion_apply(struct occlusion *o, int frame,
     if (!o->file && !(o->fade_px > 0))
         return;
     if (o->file)
-        go_to(o, frame);
+        load_mask(o, frame);
     for (int i = 0; i < n; i++) {
         struct glint_lamp *const lamp = &lamps[i].lamp;
         double x, y, share = 1;
 
         glint_view_to_pixel(view, focal_mm, lamp, &x, &y);
         if (o->image.plane[0])
-            share = share_of(o, view, focal_mm, lamp);
-        share *= fade_outside(x, y, view->width, view->height, o->fade_px);
+            share = mean_mask(o, view, focal_mm, lamp);
+        share *= off_screen_fade(x, y, view->width, view->height, o->fade_px);
         lamp->power *= share;
         lamps[i].level = fmax(lamps[i].level * share, least_level);
     }

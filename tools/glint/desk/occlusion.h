@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * occlusion.h - hides lamps: by a mask, which is white where light passes, and
- * by the distance of off-screen lamps from the picture.
+ * occlusion.h - dims lamps: by a mask, which is white where light passes, and
+ * by the distance of off-screen lamps from the image.
  *
  *     occlusion_open(&o, &error);                          once
  *     occlusion_apply(&o, frame, &view, focal_mm, lamps, n);
  *     occlusion_close(&o);
  *
- * A mask is a picture, a pattern of numbered pictures or a y4m video. It is
- * stretched to the size of the picture. The fraction of light that passes grows
+ * A mask is an image, a numbered sequence of images or a y4m video. It is
+ * stretched to the size of the image. The fraction of light that passes grows
  * linearly from 0 at code 0 to 1 at white. Off-screen the mask hides nothing. A
  * lamp is scaled by the mean of the mask over its disc, whose radius is at
- * least 2 pixels. */
+ * least 2 pixels.
+ */
 #ifndef GLINT_TOOLS_DESK_OCCLUSION_H
 #define GLINT_TOOLS_DESK_OCCLUSION_H
 
@@ -20,18 +21,18 @@
 #include "video/y4m.h"
 
 struct occlusion {
-    const char *file; /* mask, or NULL */
-    /* Distance from the picture, pixels, at which a lamp has faded out; 0:
-     * lamps do not fade. */
+    const char *file; /* file of the mask, or NULL */
+    /* distance from the image at which a lamp has faded out, pixels; 0: no
+     * fading */
     double fade_px;
 
     /* Private. */
-    struct glint_image image; /* mask of the frame; its planes are NULL without
-                                 a mask */
-    double black, white;      /* codes of no light and all light */
+    /* mask of the current frame; planes are NULL if there is no mask */
+    struct glint_image image;
+    double black, white; /* codes for no light and all light */
     bool is_video, is_numbered, is_over;
     struct glint_y4m_reader video;
-    long frame; /* frame number of IMAGE, or -1 */
+    long frame; /* frame of IMAGE, or -1 */
 };
 
 /* Opens the mask of O, whose file and fade_px must be set. Errors are as of
@@ -39,9 +40,9 @@ struct occlusion {
 enum glint_status occlusion_open(struct occlusion *o,
                                  struct glint_error *error);
 
-/* Scales powers and levels of N LAMPS by the visible fraction of each lamp in
- * FRAME. FRAME must rise from call to call. After the end of the mask its last
- * frame is used. A read error is reported once. */
+/* Scales power and level of each of N LAMPS by its visible fraction in
+ * FRAME. FRAME must increase from call to call. After the end of the mask
+ * its last frame is used. A read error is reported once. */
 void occlusion_apply(struct occlusion *o, int frame,
                      const struct glint_view *view, double focal_mm,
                      struct glint_engine_lamp *lamps, int n);

@@ -8,14 +8,14 @@
 
 enum { SMALL = 320, MOST = 24 };
 
-/* Labels drawn so far, as boxes x0, y0, x1, y1. */
+/* Bounding boxes x0, y0, x1, y1 of the labels drawn so far. */
 struct labels {
     struct paint paint;
     int n, box[MOST][4];
 };
 
-/* Sets X and Y to the brightest pixel of the ghost that was drawn last; returns
- * false if it has no light. */
+/* Sets X and Y to the brightest pixel of the ghost drawn last. Returns false
+ * if the ghost has no light. */
 static bool find_brightest(const struct glint_explain *e, int *x, int *y)
 {
     const int width = e->view->width, height = e->view->height;
@@ -44,8 +44,8 @@ static bool is_free(const struct labels *l, const int box[4])
     return true;
 }
 
-/* Writes NUMBER at (X, Y), or in the first free place below. */
-static void put(struct labels *l, int number, int x, int y)
+/* Writes NUMBER at (X, Y), or at the first free position below. */
+static void draw_label(struct labels *l, int number, int x, int y)
 {
     struct paint *const p = &l->paint;
     const int high = 9 * p->line;
@@ -96,8 +96,9 @@ enum glint_status preview_number(struct glint_engine *engine,
             continue;
         glint_explain_draw(&e, ghosts[i]);
         if (find_brightest(&e, &x, &y))
-            put(&l, ghosts[i], (int)((int64_t)x * image->width / e.view->width),
-                (int)((int64_t)y * image->height / e.view->height));
+            draw_label(&l, ghosts[i],
+                       (int)((int64_t)x * image->width / e.view->width),
+                       (int)((int64_t)y * image->height / e.view->height));
     }
     glint_explain_close(&e);
     return status;

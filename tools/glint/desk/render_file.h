@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * The files that glint render writes: linear light if the format has floats,
- * else sRGB codes. */
+ * Writes the output of glint render: linear light if the file format stores
+ * floats, else sRGB codes.
+ */
 #ifndef GLINT_TOOLS_DESK_RENDER_FILE_H
 #define GLINT_TOOLS_DESK_RENDER_FILE_H
 
 #include "glint/measure.h"
 #include "options/tool.h"
 
-/* Checks early whether PATH can be written. Sets IS_LINEAR to whether its
- * format has floats. Returns EXIT_OK, or EXIT_OUTPUT after printing the
- * reason. */
+/* Checks before rendering whether PATH can be written. Sets *IS_LINEAR to
+ * whether its format stores floats. Returns EXIT_OK, or EXIT_OUTPUT after
+ * printing the reason. */
 int render_file_check(const struct tool *tool, const char *path,
                       bool *is_linear);
 
@@ -20,7 +21,7 @@ int render_file_check(const struct tool *tool, const char *path,
 int render_file_save(const struct tool *tool, const char *path, bool is_linear,
                      const struct glint_float_image *image, double exposure);
 
-/* Prints a line that WHAT was written to PATH, unless --quiet or --json. */
+/* Prints that WHAT was written to PATH, unless --quiet or --json. */
 void render_file_say(const struct tool *tool, const char *path, int width,
                      int height, const char *what, double seconds);
 

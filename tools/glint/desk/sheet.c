@@ -13,17 +13,18 @@ enum { GAP = 8, GROUND = 32 };
 
 /* ----------------------------------------------------------------- captions */
 
-static int line_of(int width)
+static int stroke_width(int width)
 {
     return width >= 960 ? 3 : width >= 200 ? 2 : 1;
 }
 
-/* Returns how many bytes of TEXT go into a row below a picture of that WIDTH:
- * whole words, but of a word that is wider than the row a part. */
-static size_t row_of(int width, const char *text)
+/* Returns the number of bytes of TEXT in the next row of a caption below an
+ * image of WIDTH: whole words, or a part of a word that is wider than the
+ * row. */
+static size_t row_length(int width, const char *text)
 {
-    const int line = line_of(width);
-    /* letters are 4 lines wide, with their gap, margins 2 */
+    const int line = stroke_width(width);
+    /* letters with their gap are 4 strokes wide, margins 2 */
     const int fit = (width - 3 * line) / (4 * line);
     const size_t room = fit > 1 ? (size_t)fit : 1;
     size_t n = strlen(text);
@@ -35,7 +36,7 @@ static size_t row_of(int width, const char *text)
     return n > 0 ? n : room;
 }
 
-static const char *past_blanks(const char *text)
+static const char *skip_blanks(const char *text)
 {
     return text + strspn(text, " ");
 }
@@ -44,8 +45,8 @@ int sheet_caption_lines(int width, const char *text)
 {
     int rows = 0;
 
-    for (text = past_blanks(text); *text; rows++)
-        text = past_blanks(text + row_of(width, text));
+    for (text = skip_blanks(text); *text; rows++)
+        text = skip_blanks(text + row_length(width, text));
     return rows;
 }
 
@@ -63,13 +64,13 @@ void sheet_caption(const struct sheet *s, int k, const char *text)
     below.plane[0] += s->height * below.stride_bytes[0];
     below.height = caption_height(s);
     paint_colour(&p, 224, 224, 224);
-    text = past_blanks(text);
+    text = skip_blanks(text);
     for (int i = 0; i < s->rows && *text; i++) {
-        const size_t n = row_of(s->width, text);
+        const size_t n = row_length(s->width, text);
 
         snprintf(row, sizeof row, "%.*s", (int)n, text);
         paint_text(&p, 2 * s->line, (2 + 7 * i) * s->line, row);
-        text = past_blanks(text + n);
+        text = skip_blanks(text + n);
     }
 }
 
@@ -82,13 +83,13 @@ enum glint_status sheet_open(struct sheet *s, int n, int width, int height,
     size_t bytes;
 
     *s = (struct sheet){.width = width, .height = height, .rows = rows};
-    /* about as wide as high, but a row of pictures no wider than 2400 */
+    /* about square, but rows at most 2400 pixels wide */
     s->columns = (int)ceil(sqrt(n * (double)(height + 20) / width));
     while (s->columns > 1 && s->columns * (width + GAP) > 2400)
         s->columns--;
     while (s->columns < n && s->columns * (width + GAP) < 700)
         s->columns++;
-    s->line = line_of(width);
+    s->line = stroke_width(width);
     rows = (n + s->columns - 1) / s->columns;
     s->image = (struct glint_image){
         .format = GLINT_RGB24,
@@ -129,16 +130,17 @@ void sheet_close(struct sheet *s)
 
 /* ----------------------------------------------------------------- reducing */
 
-static double light_of(double code)
+static double to_light(double code)
 {
     const double x = code / 255;
 
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
-/* Sets PX to the mean light of BIG from (X0, Y0) up to (X1, Y1). */
-static void mean_of(const struct glint_image *big, const double light[256],
-                    const int x[2], const int y[2], uint8_t *px)
+/* Sets PX to the mean of the light of BIG over columns X[0] .. X[1] - 1 and
+ * rows Y[0] .. Y[1] - 1. */
+static void mean_pixel(const struct glint_image *big, const double light[256],
+                       const int x[2], const int y[2], uint8_t *px)
 {
     const double n = (double)(x[1] - x[0]) * (y[1] - y[0]);
     double sum[3] = {0, 0, 0};
@@ -169,7 +171,7 @@ enum glint_status sheet_reduce(struct glint_image *small,
         (struct glint_image){.format = GLINT_RGB24, .width = w, .height = h};
     glint_image_place(small, mem);
     for (int i = 0; i < 256; i++)
-        light[i] = light_of(i);
+        light[i] = to_light(i);
     for (int j = 0; j < h; j++)
         for (int i = 0; i < w; i++) {
             const int x[2] = {(int)((int64_t)i * big->width / w),
@@ -177,8 +179,8 @@ enum glint_status sheet_reduce(struct glint_image *small,
             const int y[2] = {(int)((int64_t)j * big->height / h),
                               (int)((int64_t)(j + 1) * big->height / h)};
 
-            mean_of(big, light, x, y,
-                    mem + 3 * ((size_t)j * (size_t)w + (size_t)i));
+            mean_pixel(big, light, x, y,
+                       mem + 3 * ((size_t)j * (size_t)w + (size_t)i));
         }
     return GLINT_OK;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * sheet.h - contact sheets: pictures of one size in rows, each with a caption.
+ * sheet.h - contact sheets: images of equal size in rows, each with a caption.
  *
  *     sheet_open(&sheet, n, 320, 240, sheet_caption_lines(320, "TEXT"));
  *     image = sheet_picture(&sheet, k);       to draw on
@@ -16,24 +16,25 @@
 
 struct sheet {
     struct glint_image image; /* GLINT_RGB24, dark grey between pictures */
-    int width, height;        /* pixels of each picture */
+    int width, height;        /* size of each image, pixels */
     int columns, line;        /* line: stroke width of letters, pixels */
-    int rows;                 /* lines of text in a caption */
+    int rows;                 /* lines of text per caption */
 };
 
-/* Returns how many lines of text TEXT needs below a picture of WIDTH pixels. */
+/* Returns the number of lines that TEXT needs below an image of WIDTH
+ * pixels. */
 int sheet_caption_lines(int width, const char *text);
 
-/* Makes a sheet of N black pictures of WIDTH x HEIGHT, with captions of ROWS
- * lines of text. Returns GLINT_E_MEMORY on failure. */
+/* Makes a sheet of N black images of WIDTH x HEIGHT, with captions of ROWS
+ * lines. Returns GLINT_E_MEMORY on failure. */
 enum glint_status sheet_open(struct sheet *sheet, int n, int width, int height,
                              int rows);
 
-/* Returns picture K, which points into the memory of the sheet. */
+/* Returns image K, which points into the memory of the sheet. */
 struct glint_image sheet_picture(const struct sheet *sheet, int k);
 
-/* Writes TEXT below picture K, with line breaks between words; text that does
- * not fit is cut off. */
+/* Writes TEXT below image K, with line breaks between words; text that does
+ * not fit is truncated. */
 void sheet_caption(const struct sheet *sheet, int k, const char *text);
 
 void sheet_close(struct sheet *sheet);

@@ -4,8 +4,9 @@
 #include <stddef.h>
 #include <string.h>
 
-/* How strong a flare comes out is the same for all lenses and coatings at one
- * strength, so that styles differ by shapes, colours and where ghosts lie. */
+/* Styles differ by shapes, colours and positions of ghosts, not by
+ * brightness: at one --strength the automatic exposure makes all lenses and
+ * coatings equally bright. */
 const struct style styles[] = {
     {"natural", "a zoom of today, as overlay draws it", {{NULL, NULL}}},
     {"clean",

@@ -4,12 +4,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_CHARS = 48, ABOUT = 22 /* column of what it does */ };
+enum { NAME_CHARS = 48, ABOUT = 22 /* column of the description */ };
 
-/* Most common options, shown for commands whose help is longer than a
+/* Most common options, printed for commands whose help is longer than a
  * screen. */
 static const struct {
-    const char *command, *options; /* names with a blank before and behind */
+    /* names, each with a blank before and after */
+    const char *command, *options;
 } usual[] = {
     {"overlay", " output lens light-at strength layer style scene f-number "
                 "starburst quality "},
@@ -37,9 +38,9 @@ static size_t line_length(const char *line)
     return line[n] ? n + 1 : n;
 }
 
-/* Sets NAME to the long option that LINE of a help begins with, as "  --name"
- * or "  -x, --name". Returns false if it begins with none. */
-static bool option_at(const char *line, char name[NAME_CHARS])
+/* Sets NAME to the long option with which LINE of a help text begins, as "
+ * --name" or "  -x, --name". Returns false if there is none. */
+static bool parse_option_name(const char *line, char name[NAME_CHARS])
 {
     size_t n;
 
@@ -58,12 +59,12 @@ static bool option_at(const char *line, char name[NAME_CHARS])
     return true;
 }
 
-static bool is_more(const char *line)
+static bool is_continuation(const char *line)
 {
     return strncmp(line, "          ", 10) == 0;
 }
 
-static int lines_of(const char *text)
+static int count_lines(const char *text)
 {
     int n = 0;
 
@@ -80,19 +81,19 @@ static bool is_usual(const char *options, const char *name)
     return strstr(options, word) != NULL;
 }
 
-/* Prints of TEXT the lines of OPTIONS, and if INTRO the lines above the first
- * option. */
+/* Prints those lines of TEXT that describe OPTIONS; if INTRO also the lines
+ * above the first option. */
 static void print_usual(const char *text, const char *options, bool intro)
 {
     char name[NAME_CHARS];
     bool shown = intro;
 
     for (; *text; text += line_length(text)) {
-        if (option_at(text, name))
+        if (parse_option_name(text, name))
             shown = is_usual(options, name);
-        else if (!intro && !is_more(text))
+        else if (!intro && !is_continuation(text))
             shown = false;
-        if (option_at(text, name))
+        if (parse_option_name(text, name))
             intro = false;
         if (shown)
             fwrite(text, 1, line_length(text), stdout);
@@ -108,7 +109,7 @@ void help_screen(const struct help *help)
         if (strcmp(usual[i].command, help->command) == 0)
             options = usual[i].options;
     for (int i = 0; i < HELP_PARTS; i++)
-        lines += help->part[i] ? lines_of(help->part[i]) : 0;
+        lines += help->part[i] ? count_lines(help->part[i]) : 0;
     if (!options || lines <= HELP_SCREEN) {
         help_all(help);
         return;
@@ -121,7 +122,7 @@ void help_screen(const struct help *help)
 
 /* ------------------------------------------------------------------ options */
 
-/* Prints the first line of the help on option NAME in TEXT. */
+/* Prints the first line of the description of option NAME in TEXT. */
 static bool print_about(const char *text, const char *name)
 {
     char at[NAME_CHARS];
@@ -129,7 +130,7 @@ static bool print_about(const char *text, const char *name)
     for (; *text; text += line_length(text)) {
         size_t n = strcspn(text, "\n"), from = ABOUT;
 
-        if (!option_at(text, at) || strcmp(at, name) != 0)
+        if (!parse_option_name(text, at) || strcmp(at, name) != 0)
             continue;
         while (from < n && (text[from - 1] != ' ' || text[from] == ' '))
             from++;

@@ -9,11 +9,12 @@
 #include <stdbool.h>
 
 enum {
-    HELP_SCREEN = 42, /* max lines of a help text that is not shortened */
+    HELP_SCREEN = 42, /* a help text with more lines is shortened */
     HELP_PARTS = 3
 };
 
-/* The help of COMMAND: the concatenation of PART; NULL parts are skipped. */
+/* The help text of COMMAND: the concatenation of PART; NULL parts are
+ * skipped. */
 struct help {
     const char *command;
     const char *part[HELP_PARTS];
@@ -24,8 +25,9 @@ struct help {
 void help_all(const struct help *help);
 void help_screen(const struct help *help);
 
-/* Prints a line for each of OPTIONS, an array for getopt_long(): the name, "="
- * if the option has a value, a tab, and the first line of its text in HELP. */
+/* Prints a line for each of OPTIONS, an array for getopt_long(): the name,
+ * "=" if the option has a value, a tab, and the first line of its
+ * description in HELP. */
 void help_options(const struct help *help, const struct option *options);
 
 #endif

@@ -8,11 +8,11 @@
 #include "glint/options.h"
 
 static const struct {
-    const char *command; /* NULL: any */
+    const char *command; /* NULL: any command */
     const char *option, *takes;
 } table[] = {
-    /* An option that takes something else in one command comes before the row
-     * for any command, as the first row that fits is taken. */
+    /* A row for one command must precede the row of the same option for any
+     * command, as the first match is used. */
     {"bake", "max-angle", "degrees, 1 to 89"},
     {"bake", "lights", "a whole number, 0 to 16"},
     {"bake", "positions", "a whole number, 2 to 64"},
@@ -113,8 +113,8 @@ const char *values_of(const char *command, const char *option)
     return of_engine;
 }
 
-/* Returns where the item of a list that begins at TEXT ends: before ", ", "; ",
- * " or " or the end. */
+/* Returns the end of the list item at TEXT: the position of ", ", "; ", " or
+ * ", or the end of the text. */
 static const char *item_end(const char *text)
 {
     while (*text && strncmp(text, ", ", 2) != 0 &&
@@ -123,7 +123,7 @@ static const char *item_end(const char *text)
     return text;
 }
 
-/* Returns whether an item that begins at TEXT is a range of numbers. */
+/* Returns whether the item at TEXT is a range of numbers. */
 static bool is_range(const char *text)
 {
     const char *const to = strstr(text, " to ");
@@ -133,8 +133,8 @@ static bool is_range(const char *text)
            strncmp(text, "above ", 6) == 0 || strncmp(text, "from ", 5) == 0;
 }
 
-/* Returns whether the item at TEXT of LENGTH is a word to type: no range, no
- * placeholder and no unit, which a range follows. */
+/* Returns whether the item TEXT[LENGTH] is a literal word: not a range, a
+ * placeholder, or a unit (which a range follows). */
 static bool is_word(const char *text, size_t length)
 {
     const char *const end = text + length;

@@ -4,7 +4,8 @@
  * for completion in shells.
  *
  * One table in values.c serves all commands. A new option with a value needs a
- * line there, or an exception in tests/cli/doors. */
+ * row there, or an exception in tests/cli/doors.
+ */
 #ifndef GLINT_TOOLS_HELP_VALUES_H
 #define GLINT_TOOLS_HELP_VALUES_H
 

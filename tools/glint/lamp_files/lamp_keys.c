@@ -23,11 +23,12 @@ uint32_t lamp_id_of(const char *text)
 
 struct key {
     int row, frame;
-    uint64_t lamp; /* the lamp's id, plus 2^32, or its place among the lamps of
-                      the frame that have no id */
+    /* the lamp's id, or 2^32 plus its index among the lamps of the frame
+     * without id */
+    uint64_t lamp;
 };
 
-static int by_frame(const void *a, const void *b)
+static int compare_frames(const void *a, const void *b)
 {
     const struct key *x = a, *y = b;
 
@@ -36,17 +37,17 @@ static int by_frame(const void *a, const void *b)
     return (x->row > y->row) - (x->row < y->row);
 }
 
-static int by_lamp(const void *a, const void *b)
+static int compare_lamps(const void *a, const void *b)
 {
     const struct key *x = a, *y = b;
 
     if (x->lamp != y->lamp)
         return x->lamp < y->lamp ? -1 : 1;
-    return by_frame(a, b);
+    return compare_frames(a, b);
 }
 
-/* Sets the lamp of each key; keys are in order of frames. */
-static void tell_apart(struct key *key, int n, const struct lamp_list *list)
+/* Sets the lamp of each key; keys are sorted by frame. */
+static void identify_lamps(struct key *key, int n, const struct lamp_list *list)
 {
     int place = 0;
 
@@ -68,9 +69,9 @@ enum glint_status lamp_keys_link(struct lamp_list *list)
     for (int i = 0; i < list->n; i++)
         if (list->row[i].frame >= 0)
             key[n++] = (struct key){i, list->row[i].frame, 0};
-    qsort(key, (size_t)n, sizeof *key, by_frame);
-    tell_apart(key, n, list);
-    qsort(key, (size_t)n, sizeof *key, by_lamp);
+    qsort(key, (size_t)n, sizeof *key, compare_frames);
+    identify_lamps(key, n, list);
+    qsort(key, (size_t)n, sizeof *key, compare_lamps);
     for (int i = 0; i + 1 < n; i++)
         if (key[i].lamp == key[i + 1].lamp)
             list->row[key[i].row].next = key[i + 1].row;
@@ -78,7 +79,7 @@ enum glint_status lamp_keys_link(struct lamp_list *list)
     return GLINT_OK;
 }
 
-static double between(double a, double b, double t)
+static double interpolate(double a, double b, double t)
 {
     return a + (b - a) * t;
 }
@@ -96,24 +97,24 @@ bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
     if (!b || a->frame > frame || b->frame <= frame)
         return false;
     t = (double)(frame - a->frame) / (b->frame - a->frame);
-    row->x = between(a->x, b->x, t);
-    row->y = between(a->y, b->y, t);
-    row->size = between(a->size, b->size, t);
-    row->shape = between(a->shape, b->shape, t);
+    row->x = interpolate(a->x, b->x, t);
+    row->y = interpolate(a->y, b->y, t);
+    row->size = interpolate(a->size, b->size, t);
+    row->shape = interpolate(a->shape, b->shape, t);
     row->turn = a->turn + t * remainder(b->turn - a->turn, 180);
-    row->level = between(a->level, b->level, t);
-    row->seen = between(a->seen, b->seen, t);
+    row->level = interpolate(a->level, b->level, t);
+    row->seen = interpolate(a->seen, b->seen, t);
     row->power = a->power > 0 && b->power > 0
-                     ? exp2(between(log2(a->power), log2(b->power), t))
-                     : between(a->power, b->power, t);
+                     ? exp2(interpolate(log2(a->power), log2(b->power), t))
+                     : interpolate(a->power, b->power, t);
     for (int c = 0; c < 3; c++)
-        row->rgb[c] = between(a->rgb[c], b->rgb[c], t);
+        row->rgb[c] = interpolate(a->rgb[c], b->rgb[c], t);
     return true;
 }
 
-/* Lists the ids of the lamps at FRAME. Returns how many. */
-static int ids_of(const struct lamp_list *list, int frame,
-                  uint32_t id[GLINT_ENGINE_MAX_LAMPS])
+/* Lists the ids of the lamps at FRAME. Returns their number. */
+static int list_ids(const struct lamp_list *list, int frame,
+                    uint32_t id[GLINT_ENGINE_MAX_LAMPS])
 {
     struct lamp_row row;
     int n = 0;
@@ -127,8 +128,8 @@ static int ids_of(const struct lamp_list *list, int frame,
 bool lamp_keys_is_cut(const struct lamp_list *list, int frame)
 {
     uint32_t now[GLINT_ENGINE_MAX_LAMPS], before[GLINT_ENGINE_MAX_LAMPS];
-    const int n = ids_of(list, frame, now);
-    const int m = n && frame > 0 ? ids_of(list, frame - 1, before) : 0;
+    const int n = list_ids(list, frame, now);
+    const int m = n && frame > 0 ? list_ids(list, frame - 1, before) : 0;
 
     for (int i = 0; i < n; i++)
         for (int k = 0; k < m; k++)

@@ -3,16 +3,16 @@
  * lamp_keys.h - lists of lamps with ids, and interpolation of lamps between key
  * frames.
  *
- * A heading that has "id" among its names gives the columns of a CSV in any
- * order: frame,id,x,y,power. An id is any text without commas. Without ids,
- * lamps are identified by their order within a frame. Columns "shape" (minor
- * over major axis), "turn" (degrees of the major axis) and "level" (fraction of
- * the power that a lamp coming or going has) are 1, 0 and 1 if missing; "seen"
- * (pixels, see struct lamp_row) is 0.
+ * A heading that contains "id" names the columns of a CSV in any order:
+ * frame,id,x,y,power. An id is any text without commas. Without ids, lamps are
+ * identified by their order within a frame. Columns "shape" (minor / major
+ * axis), "turn" (degrees of the major axis) and "level" (fraction of the power
+ * of a lamp that fades in or out) are 1, 0 and 1 if missing; "seen" (pixels,
+ * see struct lamp_row) is 0.
  *
- * With interpolation a lamp exists from its first frame to its last. Power
- * changes by equal stops from each row to the next, or evenly if one of the two
- * is 0; all other values change evenly.
+ * With interpolation a lamp exists from its first frame to its last. Between
+ * rows the power changes by equal stops per frame, or linearly if one of the
+ * two is 0; all other values change linearly.
  */
 #ifndef GLINT_TOOLS_LAMP_FILES_LAMP_KEYS_H
 #define GLINT_TOOLS_LAMP_FILES_LAMP_KEYS_H
@@ -22,25 +22,25 @@
 
 #include "lamp_files/lamp_list.h"
 
-/* Returns a number other than 0 for the id TEXT. A 32-bit number is returned as
- * it is, so that a saved list has the ids of its source; any other text becomes
- * a hash of at least LAMP_ID_TEXT. */
+/* Returns a nonzero number for the id TEXT. A 32-bit number is returned
+ * unchanged, so that a saved list has the ids of its source; any other text
+ * becomes a hash of at least LAMP_ID_TEXT. */
 #define LAMP_ID_TEXT (UINT32_C(1) << 31)
 uint32_t lamp_id_of(const char *text);
 
-/* Links the rows of each lamp in order of frames, by member next. Returns
- * GLINT_E_MEMORY on failure. */
+/* Links the rows of each lamp in order of frames, by their member next.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status lamp_keys_link(struct lamp_list *list);
 
-/* Sets ROW to the lamp of row I at FRAME. Returns false if row I does not
- * apply: it is neither for FRAME nor for every frame, and FRAME is not between
- * it and the next row of its lamp. */
+/* Sets ROW to the lamp of row I at FRAME. Returns false unless row I is for
+ * FRAME or for every frame, or FRAME is between it and the next row of its
+ * lamp. */
 bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
                   struct lamp_row *row);
 
-/* Returns whether FRAME and the frame before both have lamps with ids, but no
- * id in common, as after a cut. Compares at most GLINT_ENGINE_MAX_LAMPS lamps
- * of each. */
+/* Returns whether FRAME and the previous frame both have lamps with ids, but
+ * no id in common, as after a cut. Compares at most GLINT_ENGINE_MAX_LAMPS
+ * lamps of each. */
 bool lamp_keys_is_cut(const struct lamp_list *list, int frame);
 
 #endif

@@ -21,7 +21,7 @@ enum {
     BLUE,
     SIZE,
     ID,
-    KEYS, /* of JSON; a plain list ends before ID */
+    KEYS, /* number of JSON keys; plain lists have the columns before ID */
     SHAPE = KEYS,
     TURN,
     LEVEL,
@@ -52,14 +52,14 @@ static const struct text_column columns[COLUMNS] = {
 
 static const char plain[] = "expected 4, 7 or 8 numbers separated by commas";
 
-/* A list being read. */
+/* State of reading a list. */
 struct reading {
     struct lamp_list *list;
-    int n, column[COLUMNS]; /* of a row; N is 0 without a heading that has an
-                               id: a plain list */
+    /* columns of a row; n is 0 for a plain list, whose heading has no id */
+    int n, column[COLUMNS];
 };
 
-static struct lamp_row row_of(const double *v)
+static struct lamp_row make_row(const double *v)
 {
     return (struct lamp_row){.frame = (int)v[FRAME],
                              .x = v[X],
@@ -75,10 +75,10 @@ static struct lamp_row row_of(const double *v)
                              .next = -1};
 }
 
-/* Reads the fields that are there into V, which holds defaults. OTHER is the
- * cause if one is not a number. */
-static const char *take_fields(char *const field[COLUMNS], bool is_object,
-                               const char *other, double *v)
+/* Parses the fields that are not NULL into V, which contains the defaults.
+ * Returns OTHER if one is not a number. */
+static const char *parse_fields(char *const field[COLUMNS], bool is_object,
+                                const char *other, double *v)
 {
     const char *cause = NULL;
 
@@ -105,8 +105,9 @@ static const char *take_fields(char *const field[COLUMNS], bool is_object,
     return glint_lamp_power_is_valid(v[POWER], v + RED) ? NULL : POWERS;
 }
 
-/* Reads LINE, "frame,x,y,power[,r,g,b[,size]]" or as a heading says. */
-static const char *take_row(const struct reading *r, char *line, double *v)
+/* Parses LINE: "frame,x,y,power[,r,g,b[,size]]", or by the columns of the
+ * heading. */
+static const char *parse_row(const struct reading *r, char *line, double *v)
 {
     char *row[COLUMNS], *field[COLUMNS] = {NULL};
     const int n = text_fields(line, row, r->n ? r->n : ID);
@@ -117,12 +118,12 @@ static const char *take_row(const struct reading *r, char *line, double *v)
                         : plain;
     for (int i = 0; i < n; i++)
         field[r->n ? r->column[i] : i] = row[i];
-    return take_fields(
+    return parse_fields(
         field, false,
         r->n ? "expected numbers, as many as the heading has names" : plain, v);
 }
 
-static const char *take_object(struct text_lines *lines, char *line, double *v)
+static const char *parse_object(struct text_lines *lines, char *line, double *v)
 {
     char *field[COLUMNS] = {NULL};
     const char *const cause = text_object(lines, line, columns, KEYS, field);
@@ -131,11 +132,11 @@ static const char *take_object(struct text_lines *lines, char *line, double *v)
         return cause;
     if (!field[X] || !field[Y] || !field[POWER])
         return "x, y and power are needed";
-    return take_fields(field, true, "a value is not a number", v);
+    return parse_fields(field, true, "a value is not a number", v);
 }
 
-/* Sets the columns by the names in LINE if "id" is among them. */
-static const char *take_heading(struct reading *r, char *line)
+/* Sets the columns from the names in LINE if "id" is among them. */
+static const char *parse_heading(struct reading *r, char *line)
 {
     char *name[COLUMNS];
     const int n = text_fields(line, name, COLUMNS);
@@ -168,7 +169,7 @@ enum glint_status lamp_list_add(struct lamp_list *list,
     return GLINT_OK;
 }
 
-static const char *take_line(void *ctx, struct text_lines *lines, char *line)
+static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
 {
     double v[COLUMNS] = {-1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 0, 1};
     struct reading *const r = ctx;
@@ -176,13 +177,13 @@ static const char *take_line(void *ctx, struct text_lines *lines, char *line)
     struct lamp_row row;
 
     if (lines->number == 1 && strncmp(line, "frame", 5) == 0)
-        return take_heading(r, line);
-    cause = *line == '{' ? take_object(lines, line, v) : take_row(r, line, v);
+        return parse_heading(r, line);
+    cause = *line == '{' ? parse_object(lines, line, v) : parse_row(r, line, v);
     if (cause)
         return cause;
     if (r->list->n == LAMP_LIST_MAX_ROWS)
         return "more than 1048576 lights";
-    row = row_of(v);
+    row = make_row(v);
     return lamp_list_add(r->list, &row) == GLINT_OK ? NULL : text_no_memory;
 }
 
@@ -197,7 +198,7 @@ enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
 
     *list = (struct lamp_list){NULL, 0};
     if (status == GLINT_OK)
-        status = text_lines_each(&lines, take_line, &r, error);
+        status = text_lines_each(&lines, parse_line, &r, error);
     if (status != GLINT_OK)
         lamp_list_free(list);
     return status;
@@ -215,7 +216,7 @@ void lamp_list_free(struct lamp_list *list)
     *list = (struct lamp_list){NULL, 0};
 }
 
-/* Sets the extent of LAMP by R: a disc if its shape is 1, else an ellipse.
+/* Sets the extent of LAMP from R: a disc if its shape is 1, else an ellipse.
  * TANGENT is the tangent of a pixel's angle. */
 static void set_shape(struct glint_lamp *lamp, const struct lamp_row *r,
                       double tangent)

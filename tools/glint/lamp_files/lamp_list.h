@@ -10,20 +10,22 @@
 
 enum { LAMP_LIST_MAX_ROWS = 1 << 20 };
 
-/* One line of a list. X and Y are pixels from the top left corner, and may be
- * off-screen. */
+/* One line of a list. X and Y are pixels from the top left corner; they may
+ * be off-screen. */
 struct lamp_row {
     int frame; /* -1: every frame */
     double x, y, power, rgb[3];
     double size;  /* RMS radius, pixels; 0: a point */
     double shape; /* minor axis / major axis, 0 .. 1 */
-    double turn;  /* degrees of the major axis from +x; 90 is up */
-    double level; /* fraction of the power that a lamp coming or going has */
-    double seen;  /* pixels: RMS radius of lamp and glare in a picture that
-                     clips the lamp; 0: not clipped */
-    uint32_t id;  /* 0: no id */
-    int next;     /* index of the lamp's next row, set by lamp_keys_link(), or
-                     -1 */
+    double turn;  /* direction of the major axis, degrees from +x; 90 is up */
+    /* fraction of its power while the lamp fades in or out, else 1 */
+    double level;
+    /* RMS radius of lamp and glare in an image that clips the lamp, pixels;
+     * 0: not clipped */
+    double seen;
+    uint32_t id; /* 0: no id */
+    int next;    /* index of the lamp's next row, set by lamp_keys_link(), or
+                    -1 */
 };
 
 struct lamp_list {
@@ -32,14 +34,13 @@ struct lamp_list {
 };
 
 /* Reads PATH: CSV "frame,x,y,power[,r,g,b[,size]]" with an optional heading,
- * which may have an "id" (see lamp_keys.h), or JSON lines with these keys. A
- * frame that is "*" or missing means every frame. At most LAMP_LIST_MAX_ROWS
- * rows. ERROR names file, line and cause. */
+ * which may contain "id" (see lamp_keys.h), or JSON lines with these keys. A
+ * frame that is "*" or missing means every frame. Reads at most
+ * LAMP_LIST_MAX_ROWS rows. ERROR names file, line and cause. */
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
                                  struct glint_error *error);
 
-/* Parses TEXT[BYTES] as lamp_list_read() parses a file. NAME is used in
- * errors. */
+/* Parses TEXT[BYTES] in the same way; NAME is the file's name in errors. */
 enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
                                   size_t bytes, const char *name,
                                   struct glint_error *error);
@@ -49,10 +50,10 @@ void lamp_list_free(struct lamp_list *list);
 enum glint_status lamp_list_add(struct lamp_list *list,
                                 const struct lamp_row *row);
 
-/* Sets LAMPS to the lamps of FRAME, at most MAX; in a linked list also lamps
- * interpolated between an earlier and a later row. Returns their number. Lamps
- * without an id get ids by their index in LAMPS, above all ids of the list that
- * are below LAMP_ID_TEXT. */
+/* Sets LAMPS to the lamps of FRAME, at most MAX; in a linked list including
+ * lamps interpolated between an earlier and a later row. Returns their
+ * number. Lamps without an id get ids by their index in LAMPS, above all ids
+ * of the list that are below LAMP_ID_TEXT. */
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
                     struct glint_engine_lamp *lamps, int max);

@@ -6,8 +6,9 @@
  *     lamp_save_row(&save, &row);                       each lamp of a frame
  *     lamp_save_finish(&save, &error);                  or lamp_save_abort
  *
- * Numbers are written with all digits, so that they read back exactly. The file
- * appears only when it is complete. */
+ * Numbers are written with all digits, so that reading restores them exactly.
+ * The file appears only when it is complete.
+ */
 #ifndef GLINT_TOOLS_LAMP_FILES_LAMP_SAVE_H
 #define GLINT_TOOLS_LAMP_FILES_LAMP_SAVE_H
 
@@ -17,19 +18,19 @@
 struct lamp_save {
     bool is_open;
     struct glint_output out;
-    enum glint_status status; /* first failure to write, or GLINT_OK */
+    enum glint_status status; /* first write error, or GLINT_OK */
     struct glint_error error;
 };
 
 enum glint_status lamp_save_open(struct lamp_save *save, const char *path,
                                  struct glint_error *error);
 
-/* Writes ROW. Skips lamps more than a million pixels away, which lists do not
- * allow. lamp_save_finish() reports failures. */
+/* Writes ROW. Skips lamps more than a million pixels away, which lists do
+ * not allow. Errors are reported by lamp_save_finish(). */
 void lamp_save_row(struct lamp_save *save, const struct lamp_row *row);
 
 /* Completes the list and renames the file to its path, or returns the first
- * failure to write. Does nothing if SAVE is closed. */
+ * write error. Does nothing if SAVE is closed. */
 enum glint_status lamp_save_finish(struct lamp_save *save,
                                    struct glint_error *error);
 void lamp_save_abort(struct lamp_save *save);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Millimetres of the lens: z runs along the axis from the front vertex, x up in
- * the plane of the section.
+ * Draws the cross section of a lens. Coordinates are mm: z along the axis from
+ * the front vertex, x up in the plane of the section.
  */
 #include "lens_pages/drawing.h"
 
@@ -9,7 +9,7 @@
 
 #include "glint/glint.h"
 
-/* A path, and its light at one angle. */
+/* A path through the lens for light at one angle, and its pupil. */
 struct fan {
     struct glint_path path;
     struct glint_pupil pupil;
@@ -17,8 +17,8 @@ struct fan {
     double stop_radius_mm;
 };
 
-/* Rays start in rings about the pupil's middle, six more in each than in the
- * one within. */
+/* Rays start in rings around the centre of the pupil; each ring has six more
+ * rays than the next inner one. */
 enum {
     SPOT_COLOURS = 3,
     SPOT_RINGS = 16,
@@ -29,33 +29,34 @@ struct spots {
     int n;
     double at[SPOT_COLOURS * SPOT_RAYS][2]; /* mm */
     int colour[SPOT_COLOURS * SPOT_RAYS];
-    double middle[2]; /* their mean, mm */
-    double rms_mm;    /* root mean square distance from it */
-    double radius_mm; /* largest */
+    double middle[2]; /* centroid, mm */
+    double rms_mm;    /* RMS distance from the centroid */
+    double radius_mm; /* max distance from the centroid */
 };
 
 enum { DRAWING_FIELDS = 3 };
 
 #define FIGURE_MARGIN_PX 24.0
 
-#define FIGURE_NM 587.5618 /* of rays: the d line */
+#define FIGURE_NM 587.5618 /* wavelength of rays: the d line */
 
 struct figure {
     const struct lens_drawing *drawing;
     FILE *file;
-    double z0, z1, x1;   /* range of the section: z0 .. z1, -x1 .. x1, mm */
+    double z0, z1, x1;   /* extent of the section: z0 .. z1, -x1 .. x1, mm */
     double scale;        /* pixels per millimetre */
     double left, middle; /* position of z = 0 and of x = 0, pixels */
-    double height_px;    /* of the section */
+    double height_px;    /* height of the section */
     double vertex[GLINT_MAX_SURFACES], stop_z, sensor_z;
-    double film_mm; /* half of the picture as it is shown, in the plane */
-    double widen;   /* its width / its width on the sensor */
+    /* half the image's size in the section's plane, as displayed */
+    double film_mm;
+    double widen; /* displayed width / width on the sensor */
     int shown;
 };
 
-/* Prepares FAN for light at THETA_DEG in the plane at PHI_DEG, which is the x-z
- * plane of its rays; GHOST is NULL for the direct path. Returns false if
- * nothing gets through. */
+/* Prepares FAN for light at THETA_DEG in the plane at azimuth PHI_DEG, which
+ * is the x-z plane of its rays. GHOST is NULL for the direct path. Returns
+ * false if no light passes. */
 static bool fan_init(struct fan *fan, const struct glint_prescription *lens,
                      const struct glint_ghost *ghost, double nm, double phi_deg,
                      double theta_deg)
@@ -82,8 +83,8 @@ static double fan_start_mm(const struct fan *fan, double u)
     return 0.5 * (p->x0_mm + p->x1_mm) + 0.5 * u * (p->x1_mm - p->x0_mm);
 }
 
-/* Traces the ray that starts at U, V of the pupil, -1 .. 1 each. HITS is as of
- * glint_trace(). Returns whether it passes. */
+/* Traces the ray that starts at (U, V) of the pupil, -1 .. 1 each. HITS: see
+ * glint_trace(). Returns whether the ray passes. */
 static bool fan_ray(const struct fan *fan, double u, double v,
                     struct glint_ray *ray, double (*hits)[2])
 {
@@ -127,8 +128,8 @@ static bool fan_edges(const struct fan *fan, double u[2])
 
 static const double spot_nm[SPOT_COLOURS] = {450, 546, 650};
 
-/* Adds the rays of one ring that pass. The pupil's box is a square of -1 .. 1
- * here, and its corners are as far as the outermost ring. */
+/* Adds those rays of one ring that pass. The pupil's box is the square -1 ..
+ * 1; its corners lie on the outermost ring. */
 static void gather_ring(struct spots *s, const struct fan *fan, int colour,
                         int ring)
 {
@@ -149,7 +150,7 @@ static void gather_ring(struct spots *s, const struct fan *fan, int colour,
     }
 }
 
-static void measure(struct spots *s)
+static void measure_spots(struct spots *s)
 {
     double sum[2] = {0, 0}, square = 0;
 
@@ -169,8 +170,8 @@ static void measure(struct spots *s)
     s->rms_mm = s->n ? sqrt(square / s->n) : 0;
 }
 
-/* Fills S with the rays that light at THETA_DEG in the plane at PHI_DEG
- * sends through LENS, evenly over its pupil. */
+/* Fills S with the rays that light at THETA_DEG, in the plane at PHI_DEG,
+ * sends through LENS, evenly distributed over its pupil. */
 static void spots_gather(struct spots *s, const struct glint_prescription *lens,
                          double phi_deg, double theta_deg)
 {
@@ -181,22 +182,22 @@ static void spots_gather(struct spots *s, const struct glint_prescription *lens,
         if (fan_init(&fan, lens, NULL, spot_nm[c], phi_deg, theta_deg))
             for (int ring = 0; ring <= SPOT_RINGS; ring++)
                 gather_ring(s, &fan, c, ring);
-    measure(s);
+    measure_spots(s);
 }
 
-/* Fraction of the film's end at which the outermost field is, so that rays end
- * within it. */
+/* position of the outermost field, as a fraction of the film's half size:
+ * rays end inside it */
 #define FIELD_ENDS 0.995
 
 static const char *const field_colour[DRAWING_FIELDS] = {"#1f5fa8", "#2f8a3c",
                                                          "#c0392b"};
 
-static double px(const struct figure *f, double z)
+static double x_px(const struct figure *f, double z)
 {
     return f->left + f->scale * z;
 }
 
-static double py(const struct figure *f, double x)
+static double y_px(const struct figure *f, double x)
 {
     return f->middle - f->scale * x;
 }
@@ -210,8 +211,8 @@ static double round_up(double value)
     return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
 }
 
-/* Returns the distance from the centre at which light of THETA_DEG is imaged,
- * or below 0 if no light arrives. */
+/* Returns the distance from the centre at which light at THETA_DEG is
+ * imaged, mm, or a negative value if no light arrives. */
 static double image_height_mm(const struct figure *f, double theta_deg)
 {
     double hits[GLINT_MAX_EVENTS + 1][2];
@@ -225,10 +226,10 @@ static double image_height_mm(const struct figure *f, double theta_deg)
     return fabs(ray.sensor_x_mm);
 }
 
-/* Returns the angle, in degrees, of the light that the lens images at HEIGHT_MM
- * from the picture's centre, by rays through the middle of the pupil, or the
- * widest angle that passes the lens if no light reaches that height. */
-static double angle_of(const struct figure *f, double height_mm)
+/* Returns the angle of the light that the lens images at HEIGHT_MM from the
+ * centre, degrees, by rays through the centre of the pupil. If no light
+ * reaches that height, returns the widest angle that passes. */
+static double find_angle(const struct figure *f, double height_mm)
 {
     double low = 0, high = 89;
 
@@ -249,7 +250,7 @@ static double field_deg(const struct figure *f, int field)
 {
     static const double share[DRAWING_FIELDS] = {0, 0.7, 1};
 
-    return angle_of(f, FIELD_ENDS * share[field] * f->film_mm);
+    return find_angle(f, FIELD_ENDS * share[field] * f->film_mm);
 }
 
 enum { PROFILE = 24 };
@@ -272,7 +273,8 @@ static void rim_point(const struct figure *f, int k, double x, double at[3])
     at[2] += f->vertex[k];
 }
 
-/* Sets AT to z and x of the place that HIT, as of glint_trace(), is. */
+/* Sets AT to z and x of the point HIT on surface or stop EVENT; see
+ * glint_trace() for HIT. */
 static void find_meeting(const struct figure *f,
                          const struct glint_event *event, const double hit[2],
                          double at[2])
@@ -283,7 +285,8 @@ static void find_meeting(const struct figure *f,
     if (event->kind == GLINT_STOP)
         at[0] = f->stop_z;
     else {
-        /* A hit of a shaped surface is in its own frame, as X and Y are. */
+        /* Hits of aspheric surfaces are in the surface's own coordinates, as
+         * X and Y are. */
         if (!glint_surface_point(&lens->surface[event->surface],
                                  event->shaped ? f->drawing->plane_deg : 0,
                                  hit[0], hit[1], point))
@@ -311,8 +314,8 @@ static void place_vertices(struct figure *f)
     f->sensor_z = z;
 }
 
-/* Sets what of the picture lies in the section's plane: all of its diagonal,
- * unless the lens tells its planes apart. */
+/* Sets the extent of the image in the section's plane: its whole diagonal,
+ * unless the lens is not rotationally symmetric. */
 static void set_film(struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
@@ -327,8 +330,8 @@ static void set_film(struct figure *f)
             : 0.5 * (along_x ? lens->film_width_mm : lens->film_height_mm);
 }
 
-/* Sets places and scale of F, whose drawing and file are set. */
-static void begin(struct figure *f)
+/* Sets positions and scale of F, whose drawing and file are set. */
+static void begin_figure(struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
     const double width = f->drawing->width_px - 2 * FIGURE_MARGIN_PX;
@@ -349,7 +352,7 @@ static void begin(struct figure *f)
     f->z0 = least - 0.16 * length;
     f->z1 = f->sensor_z + 0.02 * length;
     f->scale = fmin(width / (f->z1 - f->z0), HEIGHT_PX / (2 * f->x1));
-    /* What is left of the width shows more of the way to the lens. */
+    /* the remaining width shows more of the space in front of the lens */
     f->z0 = fmax(f->z1 - width / f->scale, least - 0.6 * length);
     f->height_px = 2 * f->x1 * f->scale;
     f->left = 0.5 * (f->drawing->width_px - f->scale * (f->z1 - f->z0)) -
@@ -360,8 +363,8 @@ static void begin(struct figure *f)
 
 /* ---------------------------------------------------------------- the lens */
 
-/* Writes the points of surface K from its lower to its upper rim; from the
- * upper one if SENSE is -1. */
+/* Writes the points of surface K from its lower to its upper rim; in the
+ * opposite order if SENSE is -1. */
 static void write_profile(const struct figure *f, int k, int sense)
 {
     const double semi = f->drawing->lens->surface[k].semi_mm;
@@ -369,12 +372,12 @@ static void write_profile(const struct figure *f, int k, int sense)
 
     for (int i = -PROFILE; i <= PROFILE; i++) {
         rim_point(f, k, sense * semi * i / PROFILE, at);
-        fprintf(f->file, "%.2f,%.2f ", px(f, at[2]), py(f, at[0]));
+        fprintf(f->file, "%.2f,%.2f ", x_px(f, at[2]), y_px(f, at[0]));
     }
 }
 
-/* Writes the edge of the glass between surfaces K and K + 1, at the upper side
- * or the lower: out to the wider of the two, and along. */
+/* Writes the edge of the glass between surfaces K and K + 1 on one SIDE: out
+ * to the wider of both rims, then parallel to the axis. */
 static void write_edge(const struct figure *f, int k, int side)
 {
     const struct glint_surface *s = &f->drawing->lens->surface[k];
@@ -384,11 +387,11 @@ static void write_edge(const struct figure *f, int k, int side)
     rim_point(f, k + 1, side * s[1].semi_mm, b);
     out = side * fmax(side * a[0], side * b[0]);
     if (side > 0)
-        fprintf(f->file, "%.2f,%.2f %.2f,%.2f ", px(f, a[2]), py(f, out),
-                px(f, b[2]), py(f, out));
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f ", x_px(f, a[2]), y_px(f, out),
+                x_px(f, b[2]), y_px(f, out));
     else
-        fprintf(f->file, "%.2f,%.2f %.2f,%.2f", px(f, b[2]), py(f, out),
-                px(f, a[2]), py(f, out));
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f", x_px(f, b[2]), y_px(f, out),
+                x_px(f, a[2]), y_px(f, out));
 }
 
 /* Draws the glass behind surface K, darker for a higher index. */
@@ -411,7 +414,7 @@ static void draw_glass(const struct figure *f, int k)
             s->nd, s->vd);
 }
 
-/* Draws the barrel that holds the glass from surface FIRST to LAST. */
+/* Draws the barrel around the glass from surface FIRST to LAST. */
 static void draw_barrel(const struct figure *f, int first, int last)
 {
     const struct glint_prescription *lens = f->drawing->lens;
@@ -430,7 +433,7 @@ static void draw_barrel(const struct figure *f, int first, int last)
                 "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.1f\" "
                 "fill=\"url(#hatch-%s)\" stroke=\"#777\" "
                 "stroke-width=\"0.5\"/>\n",
-                px(f, a), side ? py(f, semi[1]) - wall : py(f, -semi[0]),
+                x_px(f, a), side ? y_px(f, semi[1]) - wall : y_px(f, -semi[0]),
                 f->scale * (b - a), wall, lens->name);
 }
 
@@ -459,8 +462,8 @@ static void draw_stop(const struct figure *f, double radius)
         fprintf(f->file,
                 "<path d=\"M%.2f %.2f V%.2f M%.2f %.2f h6\" stroke=\"#111\" "
                 "stroke-width=\"2.2\" fill=\"none\"/>\n",
-                px(f, f->stop_z), py(f, side * radius), py(f, side * end),
-                px(f, f->stop_z) - 3, py(f, side * radius));
+                x_px(f, f->stop_z), y_px(f, side * radius), y_px(f, side * end),
+                x_px(f, f->stop_z) - 3, y_px(f, side * radius));
 }
 
 /* Writes the number of surface K above its rim. */
@@ -472,7 +475,7 @@ static void draw_number(const struct figure *f, int k)
     fprintf(f->file,
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
             "fill=\"#a2640c\">%d</text>\n",
-            px(f, at[2]), py(f, at[0]) - 7, k);
+            x_px(f, at[2]), y_px(f, at[0]) - 7, k);
 }
 
 static void draw_axis_and_sensor(const struct figure *f)
@@ -484,18 +487,18 @@ static void draw_axis_and_sensor(const struct figure *f)
             "stroke-dasharray=\"12 3 2 3\"/>\n"
             "<path d=\"M%.2f %.2f V%.2f\" stroke=\"#111\" "
             "stroke-width=\"2\"/>\n",
-            px(f, f->z0), py(f, 0), px(f, f->z1), px(f, f->sensor_z),
-            py(f, film), py(f, -film));
+            x_px(f, f->z0), y_px(f, 0), x_px(f, f->z1), x_px(f, f->sensor_z),
+            y_px(f, film), y_px(f, -film));
 }
 
 enum { SPOT_PX = 170 };
-#define BELOW_PX  40.0 /* from the section to the boxes */
-#define LEGEND_PX 48.0 /* below them */
+#define BELOW_PX  40.0 /* distance from the section to the spot diagrams */
+#define LEGEND_PX 48.0 /* space below them */
 
 static const char *const spot_colour[SPOT_COLOURS] = {"#2a52d0", "#2f9a3c",
                                                       "#d0342a"};
 
-/* Height of the boxes with legend and gap, pixels. */
+/* Returns the height of the spot diagrams with legend and gap, pixels. */
 static double spots_px(const struct figure *f)
 {
     return f->drawing->spots ? BELOW_PX + SPOT_PX + LEGEND_PX : 0;
@@ -558,7 +561,7 @@ static void draw_one(const struct figure *f, const struct spots *s, int field,
             unit(half_mm));
 }
 
-/* Draws the legend of colours, to the right below the boxes. */
+/* Draws the legend of colours, bottom right below the spot diagrams. */
 static void draw_legend(const struct figure *f)
 {
     const double y = top_px(f) + SPOT_PX + 34;
@@ -574,7 +577,7 @@ static void draw_legend(const struct figure *f)
     }
 }
 
-/* Writes a spot diagram for each field below the section. */
+/* Draws a spot diagram for each field below the section. */
 static void draw_spots(const struct figure *f)
 {
     struct spots s;
@@ -615,21 +618,21 @@ static void draw_ray(struct figure *f, const struct fan *fan, double x,
     fprintf(f->file,
             "<path fill=\"none\" stroke=\"%s\" stroke-width=\"0.7\" "
             "stroke-linejoin=\"round\" d=\"M%.2f %.2f ",
-            colour, px(f, back), py(f, x + slope * back));
+            colour, x_px(f, back), y_px(f, x + slope * back));
     for (int e = 0; e < fan->path.n_events; e++) {
         const bool stop = fan->path.event[e].kind == GLINT_STOP;
         double at[2];
 
-        /* A stop behind the front vertex is met before the glass by the line
-         * of the light, not by the light. */
+        /* A stop behind the front vertex but in front of the glass edge is
+         * crossed by the extended line of the ray, not by the ray itself. */
         if (stop && f->drawing->lens->stop_after == 0 &&
             f->drawing->lens->stop_thickness_mm < 0)
             continue;
         find_meeting(f, &fan->path.event[e], hits[e], at);
-        fprintf(f->file, "L%.2f %.2f ", px(f, at[0]), py(f, at[1]));
+        fprintf(f->file, "L%.2f %.2f ", x_px(f, at[0]), y_px(f, at[1]));
     }
-    fprintf(f->file, "L%.2f %.2f\"/>\n", px(f, f->sensor_z),
-            py(f, ray->sensor_x_mm / f->widen));
+    fprintf(f->file, "L%.2f %.2f\"/>\n", x_px(f, f->sensor_z),
+            y_px(f, ray->sensor_x_mm / f->widen));
     f->shown++;
 }
 
@@ -749,13 +752,13 @@ static void open_svg(const struct figure *f)
             "width=\"%.1f\" height=\"%.1f\"/></clipPath></defs>\n"
             "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
             width, height, width, height, f->drawing->lens->name,
-            f->drawing->lens->name, px(f, f->z0),
+            f->drawing->lens->name, x_px(f, f->z0),
             f->middle - 0.5 * f->height_px, f->scale * (f->z1 - f->z0),
             f->height_px);
 }
 
-/* Draws the rays to the sensor, or of the ghost; PATH receives its path as
- * text. */
+/* Draws the rays to the sensor or along the ghost. PATH receives the ghost's
+ * path as text. */
 static void draw_light(struct figure *f, char *path, size_t bytes)
 {
     const struct lens_drawing *d = f->drawing;
@@ -768,7 +771,7 @@ static void draw_light(struct figure *f, char *path, size_t bytes)
     }
     glint_ghost_list(d->lens, ghost, GLINT_MAX_GHOSTS);
     if (theta < 0)
-        theta = angle_of(f, 0.5 * f->film_mm);
+        theta = find_angle(f, 0.5 * f->film_mm);
     draw_ghost(f, &ghost[d->ghost], theta);
     snprintf(path, bytes, "; ghost %d, surfaces %d and %d, light at %.3g°",
              d->ghost, ghost[d->ghost].i, ghost[d->ghost].j, theta);
@@ -783,7 +786,7 @@ int lens_drawing_write(const struct lens_drawing *drawing, FILE *file)
     char path[96] = "";
 
     glint_optics_of(drawing->lens, &optics);
-    begin(&f);
+    begin_figure(&f);
     open_svg(&f);
     draw_axis_and_sensor(&f);
     draw_glasses(&f);

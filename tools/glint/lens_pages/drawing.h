@@ -14,10 +14,10 @@ enum { DRAWING_MAX_RAYS = 41 };
 
 struct lens_drawing {
     const struct glint_prescription *lens;
-    int ghost;        /* number of the ghost whose path is drawn; -1: rays to
-                         the sensor */
-    double angle_deg; /* angle of the light of a ghost; below 0: half the
-                         field */
+    /* number of the ghost whose path is drawn; -1: draws rays to the sensor */
+    int ghost;
+    /* angle of the light of a ghost, degrees; below 0: half the field */
+    double angle_deg;
     double plane_deg; /* plane of the section: angle about the axis from x to y,
                          0 or 90 */
     int rays;         /* rays per fan, 1 .. DRAWING_MAX_RAYS */

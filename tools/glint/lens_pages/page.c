@@ -14,10 +14,10 @@
 
 enum { LINE_CHARS = 200, PATH_CHARS = 1024 };
 
-/* Copies the cell at *AT, which is after a '|', to CELL without the blanks
- * about it, and moves *AT behind the next '|'. Returns false if there is none
- * or it is too long. */
-static bool take_cell(const char **at, char *cell, size_t bytes)
+/* Copies the cell at *AT, which follows a '|', to CELL without blanks at its
+ * ends, and moves *AT after the next '|'. Returns false if there is no '|'
+ * or the cell is too long. */
+static bool read_cell(const char **at, char *cell, size_t bytes)
 {
     const char *from = *at + strspn(*at, " "), *end = strchr(*at, '|');
     size_t n;
@@ -37,17 +37,17 @@ static bool take_cell(const char **at, char *cell, size_t bytes)
     return true;
 }
 
-static bool take_row(const char *line, const char *name,
+static bool read_row(const char *line, const char *name,
                      struct measured *measured)
 {
     char lens[64];
 
-    return *line++ == '|' && take_cell(&line, lens, sizeof lens) &&
+    return *line++ == '|' && read_cell(&line, lens, sizeof lens) &&
            strcmp(lens, name) == 0 &&
-           take_cell(&line, measured->f_number, sizeof measured->f_number) &&
-           take_cell(&line, measured->seconds, sizeof measured->seconds) &&
-           take_cell(&line, measured->kb, sizeof measured->kb) &&
-           take_cell(&line, measured->ms, sizeof measured->ms);
+           read_cell(&line, measured->f_number, sizeof measured->f_number) &&
+           read_cell(&line, measured->seconds, sizeof measured->seconds) &&
+           read_cell(&line, measured->kb, sizeof measured->kb) &&
+           read_cell(&line, measured->ms, sizeof measured->ms);
 }
 
 bool measured_find(const char *name, struct measured *measured)
@@ -62,7 +62,7 @@ bool measured_find(const char *name, struct measured *measured)
         FILE *file = *path ? fopen(strcat(path, file_name), "r") : NULL;
 
         while (file && !found && fgets(line, sizeof line, file))
-            found = take_row(line, name, measured);
+            found = read_row(line, name, measured);
         if (file)
             fclose(file);
     }
@@ -73,13 +73,13 @@ enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };
 
 static const double share[ANGLES] = {0.25, 0.5, 0.8};
 
-/* Ghosts are exposed like pictures of ghosts alone, but at most so many times
- * the exposure of the star: with faint ghosts the star would fill the picture.
- * */
+/* Max exposure of ghosts relative to that of the starburst. Ghosts are
+ * exposed like images of ghosts alone; with faint ghosts the starburst would
+ * otherwise fill the image. */
 #define BRIGHTER 40.0
 
-/* Returns the angle at SHARE of the half diagonal, by f tan T, which places
- * lamps in pictures. */
+/* Returns the angle at the fraction AT of the half diagonal by the pinhole
+ * projection (f tan), which positions lamps in images. */
 static double angle_deg(const struct opened_lens *lens, double at)
 {
     const double half =
@@ -88,9 +88,10 @@ static double angle_deg(const struct opened_lens *lens, double at)
     return atan(at * half / lens->setup.optics.focal_mm) * 180 / GLINT_PI;
 }
 
-static enum glint_status draw(struct glint_engine *engine, double theta_deg,
-                              struct glint_float_image *image, float *star,
-                              FILE *file)
+static enum glint_status draw_flare(struct glint_engine *engine,
+                                    double theta_deg,
+                                    struct glint_float_image *image,
+                                    float *star, FILE *file)
 {
     const struct glint_lamp lamp = {
         .theta_deg = theta_deg, .phi_deg = 33, .power = 1, .rgb = {1, 1, 1}};
@@ -123,8 +124,9 @@ static enum glint_status draw(struct glint_engine *engine, double theta_deg,
     return GLINT_OK;
 }
 
-static int draw_all(const struct tool *tool, const struct opened_lens *lens,
-                    const struct settings *s, FILE *file)
+static int draw_thumbnails(const struct tool *tool,
+                           const struct opened_lens *lens,
+                           const struct settings *s, FILE *file)
 {
     const double tall =
         ceil(WIDE * lens->table.film_height_mm / lens->table.film_width_mm);
@@ -146,7 +148,8 @@ static int draw_all(const struct tool *tool, const struct opened_lens *lens,
     if (image.rgb && star)
         status = glint_engine_create(&engine, &cfg, &error);
     for (int i = 0; i < ANGLES && status == GLINT_OK; i++)
-        status = draw(engine, angle_deg(lens, share[i]), &image, star, file);
+        status =
+            draw_flare(engine, angle_deg(lens, share[i]), &image, star, file);
     glint_engine_destroy(engine);
     free(star);
     free(image.rgb);
@@ -165,13 +168,13 @@ int thumbnails_write(const struct tool *tool, const struct settings *settings,
     code = opened_lens_open(tool, lens, settings, name);
     *model_bytes = lens->model.bytes;
     if (code == EXIT_OK)
-        code = draw_all(tool, lens, settings, file);
+        code = draw_thumbnails(tool, lens, settings, file);
     opened_lens_close(lens);
     free(lens);
     return code;
 }
 
-/* Width of a section in units of its own, which the page scales to a card. */
+/* width of a section in its own units; the page scales it to a card */
 #define SECTION_PX 560
 
 static const char style[] =
@@ -200,7 +203,7 @@ static const char head[] =
     "<option value=\"ghosts\">by ghosts</select> <output id=\"n\"></output>"
     "</p></header>\n<main>\n";
 
-/* A card is found by words of its text, but not by glasses of its section. */
+/* The search matches the text of a card, but not glass names in its section. */
 static const char script[] =
     "<script>\n"
     "const at=id=>document.getElementById(id),main=document.querySelector("
@@ -223,7 +226,7 @@ void page_begin(FILE *file)
     fputs(head, file);
 }
 
-/* Writes the data by which a photographer chooses a lens. */
+/* Writes the data that matter to a photographer who chooses a lens. */
 static void print_numbers(FILE *file, const struct page_card *card)
 {
     const struct glint_prescription *lens = card->lens;

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * page.h - an HTML page of lenses with a card each: data, section and flares.
- * If the browser runs scripts, the page can search and sort. */
+ * page.h - writes an HTML page of lenses with one card each: data, section and
+ * flares. If scripts are enabled, the page can search and sort.
+ */
 #ifndef GLINT_TOOLS_LENS_FIGURES_PAGE_H
 #define GLINT_TOOLS_LENS_FIGURES_PAGE_H
 
 #include "model/settings.h"
 
-/* Cells of a row of figures.md, which is in the folder of the tables. */
+/* cells of a lens's row in figures.md, which is in the folder of the lens
+ * tables */
 struct measured {
     char f_number[24]; /* f-number of the bake */
     char seconds[24];  /* processor time of the bake; "over N" if it was
@@ -29,11 +31,11 @@ struct page_card {
 /* Reads the row of lens NAME. Returns false if there is none. */
 bool measured_find(const char *name, struct measured *measured);
 
-/* Writes to FILE three <img>: the flare of a lamp at 0.25, 0.5 and 0.8 of the
- * distance to the film's corner. SETTINGS must be the defaults. NAME is the
- * lens; if its model is not baked, rays are exact. MODEL_BYTES receives the
- * size of the model, 0 if there is none. Returns an exit code, after printing
- * the reason on failure. */
+/* Writes to FILE three <img>: the flare of a lamp at 0.25, 0.5 and 0.8 of
+ * the distance to the film's corner. SETTINGS must be the defaults. NAME is
+ * the lens; rays are exact if its model is not baked. MODEL_BYTES receives
+ * the size of the model, 0 if there is none. Returns an exit code, after
+ * printing the reason on failure. */
 int thumbnails_write(const struct tool *tool, const struct settings *settings,
                      const char *name, FILE *file, size_t *model_bytes);
 

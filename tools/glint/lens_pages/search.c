@@ -10,7 +10,7 @@
 #include "model/table_file.h"
 #include "options/suggest.h"
 
-static bool holds(const char *text, const char *word)
+static bool contains_word(const char *text, const char *word)
 {
     const size_t n = strlen(word);
 
@@ -20,36 +20,38 @@ static bool holds(const char *text, const char *word)
     return false;
 }
 
-static bool has(const char *name, const struct glint_prescription *lens,
-                const char *word)
+static bool lens_has_word(const char *name,
+                          const struct glint_prescription *lens,
+                          const char *word)
 {
-    return holds(name, word) || holds(lens->source, word) ||
-           holds(lens->character, word);
+    return contains_word(name, word) || contains_word(lens->source, word) ||
+           contains_word(lens->character, word);
 }
 
 bool lens_has_words(const char *name, const struct glint_prescription *lens,
                     char **words, int n)
 {
     for (int i = 0; i < n; i++)
-        if (!has(name, lens, words[i]))
+        if (!lens_has_word(name, lens, words[i]))
             return false;
     return true;
 }
 
-/* Fields that are searched, by priority: of two equally near words that of a
- * name is preferred to one of a sentence. */
+/* Searched fields by priority: of two equally similar words one from a name
+ * is preferred to one from a sentence. */
 enum { OF_NAME, OF_SOURCE, OF_CHARACTER, N_PLACES };
 
 struct search {
     const struct tool *tool;
-    struct glint_prescription *lens; /* room for a table */
+    struct glint_prescription *lens; /* buffer for a table */
     const char *word;
     char small[SUGGEST_CHARS]; /* the word in small letters */
     struct suggest near[N_PLACES];
-    bool found; /* a lens has the word */
+    bool found; /* some lens has the word */
 };
 
-/* Offers words of TEXT, of four letters or digits and more, and TEXT whole. */
+/* Offers each word of TEXT with at least four letters or digits, and the
+ * whole TEXT. */
 static void offer_words(struct suggest *suggest, const char *text)
 {
     char small[SUGGEST_CHARS];
@@ -71,13 +73,13 @@ static void offer_words(struct suggest *suggest, const char *text)
     }
 }
 
-static bool look(void *ctx, const char *name)
+static bool search_lens(void *ctx, const char *name)
 {
     struct search *s = ctx;
 
     if (tool_lens(s->tool, name, s->lens) != EXIT_OK)
         return true;
-    s->found = has(name, s->lens, s->word);
+    s->found = lens_has_word(name, s->lens, s->word);
     offer_words(&s->near[OF_NAME], name);
     offer_words(&s->near[OF_SOURCE], s->lens->source);
     offer_words(&s->near[OF_CHARACTER], s->lens->character);
@@ -85,7 +87,7 @@ static bool look(void *ctx, const char *name)
 }
 
 /* Returns the most similar known word, or NULL. */
-static const char *meant(const struct search *s)
+static const char *find_similar(const struct search *s)
 {
     const struct suggest *best = &s->near[0];
 
@@ -111,10 +113,10 @@ int lens_words_missed(const struct tool *tool, char **words, int n)
             *c = (char)tolower((unsigned char)*c);
         for (int k = 0; k < N_PLACES; k++)
             suggest_begin(&s.near[k], s.small);
-        lens_files_each(look, &s);
+        lens_files_each(search_lens, &s);
     }
     free(s.lens);
-    best = meant(&s);
+    best = find_similar(&s);
     if (s.found)
         fprintf(stderr, "glint lenses: no lens has all of these words in its "
                         "name, source or character\n");
@@ -132,7 +134,7 @@ struct wanted {
     bool found;
 };
 
-static bool compare(void *ctx, const char *name)
+static bool compare_name(void *ctx, const char *name)
 {
     struct wanted *w = ctx;
 
@@ -148,7 +150,7 @@ int lens_names_check(const char *const *names, int n)
         const char *best;
 
         suggest_begin(&w.near, w.name);
-        lens_files_each(compare, &w);
+        lens_files_each(compare_name, &w);
         if (w.found)
             continue;
         best = suggest_best(&w.near);

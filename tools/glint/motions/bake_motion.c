@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake of motions: localises what a body recorded. */
+ * glint bake of motions: computes the path of a body from a recording of the
+ * foods that it observed.
+ */
 #include "model/bake_line.h"
 #include "motions/motion_file.h"
 #include "options/command_line.h"

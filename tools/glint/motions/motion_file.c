@@ -23,13 +23,13 @@ bool motion_file_is_baked(const char *argument)
     return tool_begins_as(argument, GLINT_MOTION_MAGIC);
 }
 
-/* A recording while it is read, and the key of what was read. */
+/* State of reading a recording, and the hash of its contents. */
 struct reading {
     struct glint_input in;
     uint64_t key;
 };
 
-static long read_some(void *ctx, char *to, size_t n)
+static long read_bytes(void *ctx, char *to, size_t n)
 {
     struct reading *reading = ctx;
     const ptrdiff_t some = glint_input_some(&reading->in, to, n);
@@ -39,8 +39,9 @@ static long read_some(void *ctx, char *to, size_t n)
     return (long)some;
 }
 
-static enum glint_status bake(const char *path, struct motion_file *file,
-                              struct glint_error *error)
+static enum glint_status bake_recording(const char *path,
+                                        struct motion_file *file,
+                                        struct glint_error *error)
 {
     struct reading reading = {.key = TOOL_KEY_BEGIN};
     struct glint_motion_baker *baker = glint_motion_baker_open();
@@ -52,7 +53,7 @@ static enum glint_status bake(const char *path, struct motion_file *file,
         status = glint_input_open(&reading.in, path, error);
     if (status == GLINT_OK) {
         tool_scene_name(path, name);
-        status = glint_recording_read(baker, path, read_some, &reading, error);
+        status = glint_recording_read(baker, path, read_bytes, &reading, error);
         glint_input_close(&reading.in);
         if (status == GLINT_OK)
             status =
@@ -82,11 +83,11 @@ enum glint_status motion_file_read(const char *path, const char *written,
 
     *file = (struct motion_file){.data = NULL};
     if (status == GLINT_OK && motion_file_is_source(path)) {
-        status = bake(path, file, error);
+        status = bake_recording(path, file, error);
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
-        file->data = data; /* malloc aligns it */
+        file->data = data; /* malloc() aligns it */
     }
     if (status != GLINT_OK ||
         glint_motion_open(&file->motion, file->data, file->bytes, &reason) ==
@@ -129,7 +130,7 @@ void motion_file_close(struct motion_file *file)
 
 /* -------------------------------------------------------------------- poses */
 
-/* Writes line K to TEXT[BYTES]; returns its length. */
+/* Writes line K to TEXT[BYTES]. Returns its length. */
 static int print_pose(struct motion_file *file, uint32_t k, char *text,
                       size_t bytes)
 {
@@ -137,7 +138,7 @@ static int print_pose(struct motion_file *file, uint32_t k, char *text,
     struct glint_motion_frame f;
 
     if (glint_motion_frame(&file->motion, k, &f) != GLINT_OK)
-        return 0; /* of a file in memory there are all */
+        return 0; /* not possible: a file in memory has all poses */
     return snprintf(
         text, bytes, "%u,%.9g,%.9g,%.9g,%.6f,%.6f,%.6f,%.6f\n", k,
         step * f.pose.at[0], step * f.pose.at[1], step * f.pose.at[2],

@@ -8,21 +8,21 @@
 #include "options/tool.h"
 
 struct motion_file {
-    void *data; /* malloc'ed; MOTION points into it */
+    void *data; /* owned; MOTION points into it */
     size_t bytes;
     struct glint_motion motion;
     struct glint_motion_report report; /* of the bake, if is_baked_now */
     bool is_baked_now;
 };
 
-/* Return whether ARGUMENT is a recording, NAME.json, or a file that begins as
- * baked motions do. */
+/* Return whether ARGUMENT is a recording, NAME.json, or a file that begins
+ * with the magic number of baked motions. */
 bool motion_file_is_source(const char *argument);
 bool motion_file_is_baked(const char *argument);
 
-/* Open PATH: bake it if it is a recording, or read it if it is baked. They
- * reject PATH if it is the output file WRITTEN. motion_file_open() prints the
- * reason of a failure and returns an exit code. */
+/* Open PATH: bake a recording, or read a baked file. They reject PATH if it
+ * is the output file WRITTEN. motion_file_open() prints the reason of a
+ * failure and returns an exit code. */
 enum glint_status motion_file_read(const char *path, const char *written,
                                    struct motion_file *file,
                                    struct glint_error *error);

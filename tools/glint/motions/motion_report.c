@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is in a baked motion, in words and in numbers. */
+ * Prints the contents of a baked motion as text or JSON.
+ */
 #include <math.h>
 
 #include "glint/view.h"
@@ -8,11 +9,12 @@
 #include "options/json_writer.h"
 
 struct counts {
-    size_t header, sensors, events, index, poses, intensities; /* bytes */
-    double step;                                               /* units */
+    /* bytes of each section */
+    size_t header, sensors, events, index, poses, intensities;
+    double step; /* resolution of positions, units */
 };
 
-static struct counts count(const struct motion_file *file)
+static struct counts count_contents(const struct motion_file *file)
 {
     const struct glint_motion_header *h = &file->motion.header;
     const size_t block = GLINT_MOTION_BLOCK;
@@ -98,7 +100,7 @@ static void print_text(const struct motion_file *file, const struct counts *n)
 
 void motion_file_print(const struct tool *tool, struct motion_file *file)
 {
-    const struct counts n = count(file);
+    const struct counts n = count_contents(file);
 
     (tool->json ? print_json : print_text)(file, &n);
 }

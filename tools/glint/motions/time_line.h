@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a time line of a recorded motion on pictures of any 8-bit format. */
+ * Draws the time line of a recorded motion on images of any 8-bit format.
+ */
 #ifndef GLINT_TOOLS_MOTIONS_TIME_LINE_H
 #define GLINT_TOOLS_MOTIONS_TIME_LINE_H
 
@@ -8,7 +9,7 @@
 #include "glint/scene/motion.h"
 
 /* Draws along the lower edge of IMAGE the position of FRAME in MOTION, marks
- * where foods were replaced, and the frame's number. */
+ * at the frames where foods were replaced, and the frame's number. */
 void time_line_draw(const struct glint_image *image,
                     struct glint_motion *motion, int frame);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake of translucent media: writes how light spreads below a
- * surface as the run time takes it.
+ * glint bake of translucent media: bakes how light spreads below a surface into
+ * the format of the run time.
  */
 #include "model/bake_line.h"
 #include "options/command_line.h"
@@ -25,12 +25,12 @@ static const char help[] =
     "                      factored: a sum of terms, 3 bytes each\n"
     "                      albedo: one kernel, 3 bytes\n";
 
-/* Options of the command line; -1 if not given. */
+/* Options of the command line; -1: not given. */
 struct line {
     int model;
 };
 
-static void over(void *ctx, struct glint_stone_text *t)
+static void override_text(void *ctx, struct glint_stone_text *t)
 {
     const struct line *l = ctx;
 
@@ -42,7 +42,7 @@ static void over(void *ctx, struct glint_stone_text *t)
     }
 }
 
-static int take(struct tool *tool, void *line, int c, const char *name)
+static int parse_option(struct tool *tool, void *line, int c, const char *name)
 {
     static const char *const models[] = {"clustered", "factored", "albedo",
                                          NULL};
@@ -72,12 +72,12 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
     enum glint_status status;
     int code;
 
-    code = bake_line_begin(tool, help, argc, argv, options, take, &line,
+    code = bake_line_begin(tool, help, argc, argv, options, parse_option, &line,
                            "takes one stone");
     if (code >= 0)
         return code;
-    status =
-        stone_file_read(tool, argv[optind], over, &line, true, &file, &error);
+    status = stone_file_read(tool, argv[optind], override_text, &line, true,
+                             &file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,

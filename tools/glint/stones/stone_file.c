@@ -12,7 +12,8 @@
 #include "model/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 26)
-/* Version of the bake: increase it if the same text bakes to another result. */
+/* version of the bake: to be increased if the same text bakes to another
+ * result */
 #define RECIPE UINT64_C(2)
 
 bool stone_file_is_text(const char *argument)
@@ -25,12 +26,12 @@ bool stone_file_is_baked(const char *argument)
     return tool_begins_as(argument, GLINT_TRANSLUCENT_MAGIC);
 }
 
-/* A text, and what it names, while it is read. */
+/* State of reading a text and the files that it names. */
 struct source {
     struct glint_stone_text text;
-    double *mask;                  /* malloc'ed */
-    struct glint_float_image rows; /* malloc'ed */
-    long long held;                /* numbers of rows that became 0 */
+    double *mask;                  /* owned */
+    struct glint_float_image rows; /* owned pixels */
+    long long held; /* count of values in the rows that were clamped to 0 */
     uint64_t key;
 };
 
@@ -42,8 +43,8 @@ static void close_source(struct source *s)
 
 /* ------------------------------------------------------------------ reading */
 
-/* Sets MASK to the means of IMAGE's codes, 1 = white, over each texel. */
-static void shrink(const struct glint_image *image, int side, double *mask)
+/* Sets MASK to the mean code of IMAGE over each texel, 1 = white. */
+static void reduce_mask(const struct glint_image *image, int side, double *mask)
 {
     for (int i = 0; i < side * side; i++) {
         const int x0 = i % side * image->width / side;
@@ -82,7 +83,7 @@ static enum glint_status read_mask(const struct tool *tool, const char *path,
         return status;
     mask = malloc(n * sizeof *mask);
     if (mask) {
-        shrink(&image, side, mask);
+        reduce_mask(&image, side, mask);
         tool_key_mix(&s->key, mask, n * sizeof *mask);
     }
     free(image.plane[0]);
@@ -137,11 +138,11 @@ read_source(const struct tool *tool, const char *path,
 
 /* ------------------------------------------------------------------- baking */
 
-/* Sets *DB to how near what STONE makes of lamps, shadows and a
- * ramp is to what ROWS make of them, PSNR. GLINT_E_MEMORY. */
-static enum glint_status near_rows(const struct glint_scatter_rows *rows,
-                                   const struct glint_translucent *stone,
-                                   double *db)
+/* Sets *DB to the PSNR of STONE against ROWS under lamps, shadows and a
+ * ramp. Returns GLINT_E_MEMORY if there is no memory. */
+static enum glint_status measure_psnr(const struct glint_scatter_rows *rows,
+                                      const struct glint_translucent *stone,
+                                      double *db)
 {
     const size_t n = 3 * (size_t)rows->side * (size_t)rows->side;
     double *light = malloc(3 * n * sizeof *light);
@@ -198,12 +199,12 @@ static enum glint_status fit_rows(struct glint_scatter_rows *rows,
     }
     file->errors.fit_db = fit.error.light_db;
     if (status == GLINT_OK)
-        status = near_rows(rows, &file->stone, &file->errors.baked_db);
+        status = measure_psnr(rows, &file->stone, &file->errors.baked_db);
     glint_scatter_fit_close(&fit);
     return status;
 }
 
-/* Computes what S describes, or takes its measured rows. */
+/* Simulates the medium that S describes, or uses its measured rows. */
 static enum glint_status make_rows(struct source *s,
                                    const struct glint_watch *watch,
                                    struct glint_scatter_rows *rows,
@@ -218,16 +219,17 @@ static enum glint_status make_rows(struct source *s,
                : glint_scatter_compute(stone, watch, rows, error);
 }
 
-static enum glint_status bake(const struct tool *tool, struct source *s,
-                              const char *name, struct stone_file *file,
-                              struct glint_error *error)
+static enum glint_status bake_source(const struct tool *tool, struct source *s,
+                                     const char *name, struct stone_file *file,
+                                     struct glint_error *error)
 {
     struct tool_progress progress;
     const struct glint_watch watch = {.progress = tool_progress_show,
                                       .ctx = &progress};
     struct glint_scatter_rows rows = {.side = 0};
     const clock_t began = clock();
-    /* fraction of the time before the fit, as measured; pictures are read */
+    /* fraction of the time spent before the fit, as measured; pictures of
+     * rows are only read */
     const double before = s->rows.rgb ? .05 : .8;
     enum glint_status status;
 
@@ -253,7 +255,7 @@ static enum glint_status bake(const struct tool *tool, struct source *s,
 /* -------------------------------------------------------------------- cache */
 
 /* Opens the cached translucent medium. Returns false if there is none. */
-static bool load(const char *path, uint64_t key, struct stone_file *file)
+static bool load_cached(const char *path, uint64_t key, struct stone_file *file)
 {
     struct glint_error error;
 
@@ -268,8 +270,8 @@ static bool load(const char *path, uint64_t key, struct stone_file *file)
     return false;
 }
 
-static void keep(const struct tool *tool, char *path,
-                 const struct stone_file *file)
+static void write_cached(const struct tool *tool, char *path,
+                         const struct stone_file *file)
 {
     struct glint_error error = {""};
 
@@ -294,10 +296,10 @@ read_text(const struct tool *tool, const char *path,
     has_cache = cache_file_folder(kept, sizeof kept) &&
                 cache_file_name(kept, sizeof kept, name, source.key, "stone");
     if (status == GLINT_OK &&
-        (anew || !has_cache || !load(kept, source.key, file))) {
-        status = bake(tool, &source, name, file, error);
+        (anew || !has_cache || !load_cached(kept, source.key, file))) {
+        status = bake_source(tool, &source, name, file, error);
         if (status == GLINT_OK && has_cache)
-            keep(tool, kept, file);
+            write_cached(tool, kept, file);
     }
     close_source(&source);
     return status;
@@ -319,7 +321,7 @@ stone_file_read(const struct tool *tool, const char *path,
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
-        file->data = data; /* malloc aligns it */
+        file->data = data; /* malloc() aligns it */
         if (status == GLINT_OK) {
             struct glint_error cause;
 

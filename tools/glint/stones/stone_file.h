@@ -1,39 +1,41 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens translucent media: bakes a text or reads a baked file. The bake of a
- * text is cached, as models of lenses are. */
+ * Opens translucent media: bakes a text or reads a baked file. Baked texts are
+ * cached like models of lenses.
+ */
 #ifndef GLINT_TOOLS_STONES_STONE_FILE_H
 #define GLINT_TOOLS_STONES_STONE_FILE_H
 
 #include "glint/scene/stone_bake.h"
 #include "options/tool.h"
 
-/* Errors of a translucent medium compared with its full measured rows, under
- * lamps, shadows and a ramp. */
+/* PSNR of a translucent medium against all of its rows (measured or
+ * simulated), under lamps, shadows and a ramp: of the fit, and of the baked
+ * integers. */
 struct stone_errors {
     double fit_db, baked_db;
     double kernel_loss;
     int tap_bits;
-    double seconds; /* processor time of the bake */
+    double seconds; /* CPU time of the bake */
 };
 
 struct stone_file {
-    void *data; /* malloc'ed; STONE points into it */
+    void *data; /* owned; STONE points into it */
     size_t bytes;
     struct glint_translucent stone;
     bool is_baked_now;
     struct stone_errors errors; /* of the bake, if is_baked_now */
 };
 
-/* Return whether ARGUMENT is the text of a translucent medium, or a file that
- * begins as baked translucent media do. */
+/* Return whether ARGUMENT is the text of a translucent medium, or a file
+ * that begins with the magic number of baked media. */
 bool stone_file_is_text(const char *argument);
 bool stone_file_is_baked(const char *argument);
 
-/* Opens the text or baked file PATH. Rejects it if PATH, or a file that the
- * text names, is the output file of TOOL. OVER, unless NULL, is called to
- * override values of the text. If ANEW, bakes the text even if it is cached. On
- * failure the reason is in ERROR. */
+/* Opens the text or baked file PATH. Rejects PATH, or a file that the text
+ * names, if it is the output file of TOOL. OVER, unless NULL, is called to
+ * override values of the text. ANEW: bakes the text even if it is cached.
+ * ERROR: the reason of a failure. */
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,
                 void (*over)(void *ctx, struct glint_stone_text *), void *ctx,

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is in a baked translucent medium, in words and in numbers. */
+ * Prints the contents of a baked translucent medium as text or JSON.
+ */
 #include "options/json_writer.h"
 #include "stones/stone_file.h"
 
 struct counts {
-    size_t codes, clusters, taps, all; /* bytes */
-    double each;                       /* bytes of a texel, but for the taps */
+    size_t codes, clusters, taps, all; /* bytes of each section */
+    double each;                       /* bytes per texel, without the taps */
 };
 
-static struct counts count(const struct stone_file *file)
+static struct counts count_contents(const struct stone_file *file)
 {
     const struct glint_translucent_header *h = file->stone.header;
     const size_t texels = (size_t)1 << 2 * h->side_log2;
@@ -26,7 +27,7 @@ static struct counts count(const struct stone_file *file)
     return n;
 }
 
-static const char *model_of(const struct glint_translucent_header *h)
+static const char *model_name(const struct glint_translucent_header *h)
 {
     static const char *const name[] = {"clustered", "factored", "albedo"};
 
@@ -41,7 +42,7 @@ static void print_json(const struct stone_file *file, const struct counts *n)
     json_write(&json,
                "{name: %s, stone: {model: %s, size: %d, texel_mm: %g, "
                "kernel: %u, planes: %u, rank: %u, index: %.5g",
-               h->name, model_of(h), 1 << h->side_log2, h->texel_um / 1000.,
+               h->name, model_name(h), 1 << h->side_log2, h->texel_um / 1000.,
                h->kernel, h->n_planes, h->rank, h->index_q16 / 65536.);
     if (file->is_baked_now)
         json_write(&json,
@@ -64,7 +65,7 @@ static void print_text(const struct stone_file *file, const struct counts *n)
     printf("%s, a translucent stone of %dx%d texels of %g mm, index %.4g\n\n",
            h->name, side, side, h->texel_um / 1000., h->index_q16 / 65536.);
     printf("model        %s, %u plane%s of rank %u, kernels of %ux%u\n",
-           model_of(h), h->n_planes, h->n_planes > 1 ? "s" : "", h->rank,
+           model_name(h), h->n_planes, h->n_planes > 1 ? "s" : "", h->rank,
            h->kernel, h->kernel);
     if (file->is_baked_now) {
         printf("to the rows  %.1f dB, of the fit %.1f dB\n",
@@ -82,7 +83,7 @@ static void print_text(const struct stone_file *file, const struct counts *n)
 
 void stone_file_print(const struct tool *tool, const struct stone_file *file)
 {
-    const struct counts n = count(file);
+    const struct counts n = count_contents(file);
 
     (tool->json ? print_json : print_text)(file, &n);
 }

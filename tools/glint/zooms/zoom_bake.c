@@ -8,30 +8,31 @@
 #include "zooms/zoom_error.h"
 
 enum {
-    DEPTH = 4, /* max times that a step is halved */
-    LAST = 2,  /* the finest step, half-way of which is only measured */
-    /* Places: positions, and what lies half-way between the finest. */
+    DEPTH = 4, /* max number of times that a step is halved */
+    LAST = 2,  /* step at which the middle is only measured, not baked */
+    /* number of places: positions, and the middles of the finest steps */
     PLACES = 2 * GLINT_MAX_ZOOM_MODELS - 1
 };
 
-/* Errors at the angles that are measured are brought to so many dB less than
- * what is requested, as others have more. */
+/* The error at the measured angles is reduced to this many dB below the
+ * requested error, as other angles may have more. */
 #define MARGIN_DB 2
-/* Fraction of what is requested: a ghost whose largest error was less is not
+/* Fraction of the requested error: a ghost whose max error is smaller is not
  * measured again in the halves of its step. */
 #define SMALL 1e-3
-/* Angles that are measured lie elsewhere at each place: multiples of this fill
- * 0 to 1 evenly. */
+/* Each place measures different angles: multiples of this number, modulo 1,
+ * fill 0 to 1 evenly. */
 #define GOLDEN 0.6180339887
 
 struct place {
-    struct glint_bake_model model; /* no data: nothing is baked there */
-    bool *ghosts;                  /* that are baked there, [n_ghosts] */
-    struct zoom_error left; /* in the step that begins here, of ghosts that are
-                               good enough */
-    struct zoom_error *before; /* of each ghost, half-way in the step that the
-                                  one that begins here is half of */
-    bool is_half;              /* there was such a step */
+    struct glint_bake_model model; /* no data: no ghost is baked there */
+    bool *ghosts;                  /* ghosts baked there, [n_ghosts] */
+    /* total error, in the step that begins here, of the ghosts that need no
+     * bake */
+    struct zoom_error left;
+    /* error of each ghost in the middle of the step of twice the length */
+    struct zoom_error *before;
+    bool is_half; /* such a step was measured */
 };
 
 struct run {
@@ -39,9 +40,10 @@ struct run {
     const struct zoom_bake *bake;
     struct zoom_baked *baked;
     struct glint_error *error;
-    struct tool_progress progress;  /* of all positions, or of one half-way */
-    struct glint_prescription lens; /* at the place in work */
-    struct glint_prescription beside[2]; /* a finest step before and after */
+    struct tool_progress progress;  /* of all positions, or of one middle */
+    struct glint_prescription lens; /* the lens at the current place */
+    /* the lens one finest step before and after */
+    struct glint_prescription beside[2];
     int n_ghosts, n_places, step;
     double start;
     struct place place[PLACES];
@@ -49,7 +51,7 @@ struct run {
     struct glint_zoom_lens zoom;
 };
 
-/* Sets LENS to the lens of RUN zoomed to PLACE. */
+/* Sets LENS to the lens of RUN, zoomed to PLACE. */
 static enum glint_status move_to(const struct run *run, int place,
                                  struct glint_prescription *lens)
 {
@@ -66,10 +68,10 @@ static enum glint_status move_to(const struct run *run, int place,
     return status;
 }
 
-/* Sets what lies a finest step before and after PLACE, for OPTIONS, also for
- * ghosts that will stay in coarser steps. Nothing does of even positions alone,
- * which are so far apart that ghosts differ too much, nor of lenses that are
- * not round. */
+/* Sets run->beside to the lens one finest step before and after PLACE, and
+ * OPTIONS to use it, also for ghosts that will need only coarser steps. Not
+ * used without added positions, as even positions are so far apart that
+ * ghosts differ too much, nor for lenses without rotational symmetry. */
 static enum glint_status set_beside(struct run *run, int place,
                                     struct glint_bake_options *options)
 {
@@ -85,7 +87,7 @@ static enum glint_status set_beside(struct run *run, int place,
     return status;
 }
 
-/* Bakes the ghosts of PLACE, all if WHOLE. */
+/* Bakes the chosen ghosts of PLACE, all ghosts if WHOLE. */
 static enum glint_status bake_place(struct run *run, int place, bool whole)
 {
     struct place *const p = &run->place[place];
@@ -111,8 +113,9 @@ static enum glint_status bake_place(struct run *run, int place, bool whole)
     return status;
 }
 
-/* Joins all baked ghosts into one model, which replaces the previous model. */
-static enum glint_status join(struct run *run)
+/* Combines all baked ghosts into one zoom model, which replaces the previous
+ * one. */
+static enum glint_status combine_models(struct run *run)
 {
     struct glint_bake_model model[GLINT_MAX_ZOOM_MODELS];
     struct zoom_baked *const baked = run->baked;
@@ -136,17 +139,19 @@ static enum glint_status join(struct run *run)
                                     "%s", reason);
 }
 
-/* Returns the max error of all ghosts together. */
-static double most_error(const struct run *run)
+/* Returns the max mean squared error allowed for all ghosts together. */
+static double max_error(const struct run *run)
 {
     return pow(10, -0.1 * (run->bake->halfway_db + MARGIN_DB));
 }
 
-/* Chooses ghosts to be baked at TO until all others are exact enough, none in
- * the finest step, and leaves in LEFT what these leave. Returns how many. */
-static int choose(struct run *run, struct place *to, struct zoom_error *left)
+/* Chooses ghosts to bake at TO until the error of all others is small
+ * enough; none in the finest step. Sets LEFT to the total error of the
+ * others. Returns the number chosen. */
+static int choose_ghosts(struct run *run, struct place *to,
+                         struct zoom_error *left)
 {
-    const double most = most_error(run);
+    const double most = max_error(run);
     int n = 0;
 
     for (int g = 0; g < run->n_ghosts; g++)
@@ -174,7 +179,7 @@ static int choose(struct run *run, struct place *to, struct zoom_error *left)
     }
 }
 
-static double largest(const struct zoom_error *error)
+static double max_angle_error(const struct zoom_error *error)
 {
     double worst = 0;
 
@@ -183,11 +188,12 @@ static double largest(const struct zoom_error *error)
     return worst;
 }
 
-/* Notes how exact the zoom is where it is set, with what is LEFT there. */
-static void note(struct run *run, const struct zoom_error *left, int n_added)
+/* Records the error LEFT at the present position of the zoom. */
+static void record_error(struct run *run, const struct zoom_error *left,
+                         int n_added)
 {
     struct zoom_baked *const baked = run->baked;
-    const double db = fmin(99, -10 * log10(fmax(largest(left), 1e-10)));
+    const double db = fmin(99, -10 * log10(fmax(max_angle_error(left), 1e-10)));
 
     if (baked->least_db <= 0 || db < baked->least_db) {
         baked->least_db = db;
@@ -200,17 +206,18 @@ static void note(struct run *run, const struct zoom_error *left, int n_added)
                 n_added == 1 ? "" : "s", tool_seconds() - run->start);
 }
 
-/* Requests the errors half-way of the step from FROM to TO, but for small ones.
- * Returns whether any ghost has both ends. */
-static bool ask(struct run *run, int from, int to)
+/* Marks the errors in the middle of the step from FROM to TO as wanted,
+ * except for ghosts with small errors. Returns whether any ghost is baked at
+ * both ends. */
+static bool mark_wanted(struct run *run, int from, int to)
 {
     const struct place *const p = &run->place[from];
     bool any = false;
 
     for (int g = 0; g < run->n_ghosts; g++) {
         const bool has = p->ghosts[g] && run->place[to].ghosts[g];
-        const bool small =
-            p->is_half && largest(&p->before[g]) < SMALL * most_error(run);
+        const bool small = p->is_half && max_angle_error(&p->before[g]) <
+                                             SMALL * max_error(run);
 
         any |= has;
         for (int a = 0; a < ZOOM_ANGLES; a++)
@@ -219,9 +226,9 @@ static bool ask(struct run *run, int from, int to)
     return any;
 }
 
-/* Keeps the error of each ghost at MIDDLE, half-way in the step that begins at
- * FROM, for the halves of the step. */
-static void keep_errors(struct run *run, int from, int middle)
+/* Stores the error of each ghost at MIDDLE, the middle of the step that
+ * begins at FROM, for both halves of the step. */
+static void store_errors(struct run *run, int from, int middle)
 {
     struct place *const p = &run->place[from], *const m = &run->place[middle];
 
@@ -230,9 +237,9 @@ static void keep_errors(struct run *run, int from, int middle)
     p->is_half = m->is_half = true;
 }
 
-/* Measures half-way between FROM and the next place of the step, and bakes
- * there what has to be. */
-static enum glint_status halve(struct run *run, int from)
+/* Measures the middle between FROM and the next place of the step, and bakes
+ * there the ghosts that need it. */
+static enum glint_status halve_step(struct run *run, int from)
 {
     const int middle = from + run->step / 2, to = from + run->step;
     struct place *const p = &run->place[middle];
@@ -241,7 +248,7 @@ static enum glint_status halve(struct run *run, int from)
     int n;
 
     p->left = left;
-    if (!ask(run, from, to))
+    if (!mark_wanted(run, from, to))
         return GLINT_OK;
     glint_zoom_set(&run->zoom,
                    (int32_t)lrint(middle / (run->n_places - 1.0) * 0x1p30));
@@ -253,17 +260,17 @@ static enum glint_status halve(struct run *run, int from)
                                     run->n_ghosts, run->ghost, run->error);
     if (status != GLINT_OK)
         return status;
-    keep_errors(run, from, middle);
-    n = choose(run, p, &left);
+    store_errors(run, from, middle);
+    n = choose_ghosts(run, p, &left);
     p->left = run->place[from].left = left;
-    note(run, &left, n);
+    record_error(run, &left, n);
     if (n == 0)
         return GLINT_OK;
     tool_progress_start(&run->progress, run->tool, "bake");
     return bake_place(run, middle, false);
 }
 
-/* Bakes the even positions; how long all take is reported at the first. */
+/* Bakes the even positions. Their total time is estimated from the first. */
 static enum glint_status bake_even(struct run *run)
 {
     struct tool_progress *const p = &run->progress;
@@ -286,25 +293,25 @@ static enum glint_status bake_even(struct run *run)
     return status;
 }
 
-/* Bakes the even positions, and halves steps between them. */
+/* Bakes the even positions and halves the steps between them. */
 static enum glint_status bake_all(struct run *run)
 {
     enum glint_status status = bake_even(run);
 
     if (status == GLINT_OK)
-        status = join(run);
+        status = combine_models(run);
     for (; run->step >= LAST && run->bake->halfway_db > 0 && status == GLINT_OK;
          run->step /= 2) {
         for (int k = 0; k + 1 < run->n_places && status == GLINT_OK;
              k += run->step)
-            status = halve(run, k);
+            status = halve_step(run, k);
         if (status == GLINT_OK)
-            status = join(run);
+            status = combine_models(run);
     }
     return status;
 }
 
-static bool reserve(struct run *run)
+static bool allocate_run(struct run *run)
 {
     const size_t n = (size_t)run->n_ghosts + 1;
 
@@ -339,7 +346,7 @@ enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
         run->step /= 2;
     run->n_places = n * run->step + 1;
     run->n_ghosts = glint_ghost_list(bake->lens, NULL, 0);
-    if (reserve(run))
+    if (allocate_run(run))
         status = move_to(run, 0, &run->lens);
     if (status == GLINT_OK)
         status = bake_all(run);

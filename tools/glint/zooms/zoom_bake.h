@@ -2,37 +2,38 @@
  *
  * Bakes a zoom lens at several positions into one model.
  *
- *   in   a table of several positions, how many to bake at least
- *   out  a model of all ghosts at these, evenly along the zoom, and of those
- *        ghosts that need it half-way between, again and again until pictures
- *        there are exact enough */
+ * Input: a table of several positions, and the min number of positions to bake.
+ * Output: a model of all ghosts at these positions, evenly spaced along the
+ * zoom, and of those ghosts that need it in the middles between positions,
+ * repeatedly halved until images there are exact enough.
+ */
 #ifndef GLINT_TOOLS_ZOOMS_ZOOM_BAKE_H
 #define GLINT_TOOLS_ZOOMS_ZOOM_BAKE_H
 
 #include "glint/bake.h"
 #include "options/tool.h"
 
-/* Default min PSNR, dB, of pictures half-way between positions, compared with
- * exact rays. */
+/* Default min PSNR of images half-way between positions against exact rays,
+ * dB. */
 #define ZOOM_BAKE_DB 45
 
 struct zoom_bake {
     const struct glint_prescription *lens;    /* as read from its table */
     const struct glint_bake_options *options; /* without ghosts */
-    double focus_m, f_number;                 /* 0: the table's */
-    int positions;                            /* 2 or more */
-    double halfway_db;                        /* min PSNR, dB; 0: no position is
-                                                 added */
+    double focus_m, f_number;                 /* 0: that of the table */
+    int positions; /* number of even positions, at least 2 */
+    /* min PSNR half-way between positions, dB; 0: adds no positions */
+    double halfway_db;
 };
 
-/* A baked model, whose data the caller frees, and its properties. */
+/* A baked zoom model and its properties. The caller frees the data. */
 struct zoom_baked {
     unsigned char *data;
     size_t bytes;
-    int n_models; /* number of positions of any ghost */
-    int n_bakes;  /* number of ghosts baked, over all positions */
-    /* Min PSNR, dB, of pictures half-way between positions, and the focal
-     * length, mm, at which it occurs; 0 if not measured. */
+    int n_models; /* number of positions that have any ghost */
+    int n_bakes;  /* number of ghosts baked, summed over positions */
+    /* min PSNR of images half-way between positions, dB, and the focal
+     * length at which it occurs, mm; 0: not measured */
     double least_db, least_mm;
 };
 

@@ -10,40 +10,39 @@
 #include "glint/glint.h"
 #include "glint/transfer.h"
 
-/* Pictures are so many pixels wide: a fourth of 1080p's, whose outlines are as
- * far off in fractions of the picture. */
+/* Size of images, pixels: a quarter of 1080p's width. Offsets of outlines,
+ * as fractions of the image, are the same. */
 enum { WIDE = 480, MOST_HIGH = 480 };
 
-/* Lights come from angles up to this times the half diagonal of what the lens
- * sees. */
+/* Max angle of lights: that of this factor times the half diagonal of the
+ * field. */
 #define BEYOND 1.5
 
-/* A degree about the axis at which light falls in no symmetry of the film. */
+/* azimuth of lights, degrees: on no symmetry axis of the film */
 #define AZIMUTH_DEG 33
 
-/* Wavelength of all pictures, nm; three wavelengths would take twice as long.
+/* Wavelength of all images, nm; three wavelengths would take twice as long.
  * Near the middle of the visible band coatings leave ghosts too faint to
  * measure. */
 #define WAVE_NM 450
 
-/* Min fraction of white at which a ghost is visible: a third of the first
- * code. */
+/* min light of a visible ghost, 1 = white: a third of the first code */
 #define FAINT 1e-4
 
-enum { EACH = 4 }; /* of the angles is measured at first */
+enum { EACH = 4 }; /* one in EACH angles is measured in the first pass */
 
 /* State of a ghost at an angle, as bits. */
 enum {
     MEASURED = 1,
-    IN_MODEL = 2, /* visible in the model's picture */
-    IN_EXACT = 4, /* visible in the picture of exact rays */
+    IN_MODEL = 2, /* visible in the image by the model */
+    IN_EXACT = 4, /* visible in the image by exact rays */
     IN_RANGE = 8, /* the model has rays of it, visible or not */
-    WANTED = 16   /* is to be measured now */
+    WANTED = 16   /* to be measured in the present pass */
 };
 enum { SEEN = IN_MODEL | IN_EXACT };
 
-/* What all angles share. Each is a job of its own, as frames are too small to
- * be shared out. */
+/* Data shared by all angles. Each angle is one job, as its frames are too
+ * small to be split. */
 struct measuring {
     const struct glint_setup *setup;
     const struct glint_zoom_lens *zoom;
@@ -63,16 +62,17 @@ static double angle_deg(const struct measuring *m, int angle)
 
 /* ----------------------------------------------------------------- pictures */
 
-/* Pictures of one light: all as the zoom has it, and one ghost of that and of
- * exact rays, which are grey, as they have one wavelength. */
+/* Images of one light: all ghosts by the zoom model, and one ghost by the
+ * model and by exact rays; grey, as there is one wavelength. */
 struct pictures {
     struct glint_engine *model, *exact;
     struct glint_float_image all, mixed, traced;
     double exposure;
 };
 
-/* Sets ERROR to the mean squared error if the ghost alone was mixed. Returns in
- * which pictures it is seen. */
+/* Sets ERROR to the mean squared error of the whole image if only this ghost
+ * were interpolated and all others exact. Returns the images in which the
+ * ghost is visible. */
 static int find_error(const struct pictures *p, double *error)
 {
     const size_t n = (size_t)p->all.width * (size_t)p->all.height;
@@ -98,10 +98,10 @@ static int find_error(const struct pictures *p, double *error)
     return seen;
 }
 
-/* Draws GHOST, or all ghosts if GHOST is below 0. */
-static enum glint_status draw(struct glint_engine *engine,
-                              const struct glint_lamp *lamp, int ghost,
-                              struct glint_float_image *image)
+/* Draws GHOST, or all ghosts if GHOST < 0. */
+static enum glint_status draw_ghosts(struct glint_engine *engine,
+                                     const struct glint_lamp *lamp, int ghost,
+                                     struct glint_float_image *image)
 {
     struct glint_engine_report report;
 
@@ -110,7 +110,7 @@ static enum glint_status draw(struct glint_engine *engine,
                                image->rgb, &report);
 }
 
-/* Sets the errors of ghosts that are wanted at ANGLE. */
+/* Measures the wanted ghosts at ANGLE. */
 static enum glint_status measure_angle(const struct measuring *m,
                                        struct pictures *p, int angle)
 {
@@ -118,15 +118,15 @@ static enum glint_status measure_angle(const struct measuring *m,
                                     .phi_deg = AZIMUTH_DEG,
                                     .power = 1,
                                     .rgb = {1, 1, 1}};
-    enum glint_status status = draw(p->model, &lamp, -1, &p->all);
+    enum glint_status status = draw_ghosts(p->model, &lamp, -1, &p->all);
 
     p->exposure = glint_measure_exposure(&p->all);
     for (int g = 0; g < m->n && status == GLINT_OK; g++) {
         if (!(m->known[g][angle] & WANTED))
             continue;
-        status = draw(p->model, &lamp, g, &p->mixed);
+        status = draw_ghosts(p->model, &lamp, g, &p->mixed);
         if (status == GLINT_OK)
-            status = draw(p->exact, &lamp, g, &p->traced);
+            status = draw_ghosts(p->exact, &lamp, g, &p->traced);
         m->known[g][angle] =
             (unsigned char)((m->known[g][angle] & IN_RANGE) | MEASURED |
                             find_error(p, &m->error[g].of[angle]));
@@ -134,8 +134,8 @@ static enum glint_status measure_angle(const struct measuring *m,
     return status;
 }
 
-static bool take_image(struct glint_float_image *image,
-                       const struct glint_view *view)
+static bool allocate_image(struct glint_float_image *image,
+                           const struct glint_view *view)
 {
     image->width = view->width;
     image->height = view->height;
@@ -155,7 +155,7 @@ static enum glint_status open_engines(const struct measuring *m,
     cfg.sets = 0;
     cfg.camera.setup = m->setup;
     cfg.camera.sensor_width_mm = m->view.sensor_width_mm;
-    cfg.camera.sensor_height_mm = /* more than enough for that width */
+    cfg.camera.sensor_height_mm = /* larger than needed for that width */
         2 * m->view.sensor_width_mm * m->view.height / m->view.width;
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
@@ -179,9 +179,9 @@ static void angle_job(void *ctx, int angle, int worker)
         any |= m->known[g][angle] & WANTED;
     if (!any)
         return;
-    m->status[angle] = take_image(&p.all, &m->view) &&
-                               take_image(&p.mixed, &m->view) &&
-                               take_image(&p.traced, &m->view)
+    m->status[angle] = allocate_image(&p.all, &m->view) &&
+                               allocate_image(&p.mixed, &m->view) &&
+                               allocate_image(&p.traced, &m->view)
                            ? open_engines(m, &p)
                            : GLINT_E_MEMORY;
     if (m->status[angle] == GLINT_OK)
@@ -195,7 +195,7 @@ static void angle_job(void *ctx, int angle, int worker)
 
 /* ------------------------------------------------------------------- angles */
 
-/* Notes at which angles the model has rays of the ghosts that are requested. */
+/* Records the angles at which the model has rays of the requested ghosts. */
 static bool find_ranges(struct measuring *m)
 {
     struct glint_transfer *const transfer = malloc(sizeof *transfer);
@@ -215,9 +215,9 @@ static bool find_ranges(struct measuring *m)
     return has_room;
 }
 
-/* Returns whether a ghost, of which KNOWN is known, is to be measured at ANGLE,
- * between two that have been: it is seen at one alone, or in one picture alone,
- * or has rays here and at neither. */
+/* Returns whether a ghost with the states KNOWN must be measured at ANGLE,
+ * between two measured angles: it is visible at only one of them, or in only
+ * one image, or has rays here but at neither of them. */
 static bool is_wanted(const unsigned char known[ZOOM_ANGLES], int angle,
                       int step)
 {
@@ -231,9 +231,9 @@ static bool is_wanted(const unsigned char known[ZOOM_ANGLES], int angle,
            (known[angle] & ~(before | after) & IN_RANGE);
 }
 
-/* Wants each STEP-th angle of the ghosts that are requested; of those between
- * angles that have been measured only some. */
-static void want(struct measuring *m, int step)
+/* Marks each STEP-th angle of the requested ghosts as wanted; between
+ * measured angles only those of is_wanted(). */
+static void mark_wanted(struct measuring *m, int step)
 {
     for (int g = 0; g < m->n; g++)
         for (int a = 0; a < ZOOM_ANGLES; a += step)
@@ -243,9 +243,9 @@ static void want(struct measuring *m, int step)
                 m->known[g][a] |= WANTED;
 }
 
-/* Sets entries of ERROR, of which KNOWN is known, that were not measured. */
-static void fill(const unsigned char known[ZOOM_ANGLES],
-                 struct zoom_error *error)
+/* Interpolates the entries of ERROR that KNOWN does not mark as measured. */
+static void interpolate_errors(const unsigned char known[ZOOM_ANGLES],
+                               struct zoom_error *error)
 {
     int before = 0, after = 0;
 
@@ -264,9 +264,9 @@ static void fill(const unsigned char known[ZOOM_ANGLES],
     }
 }
 
-/* Returns the max angle of the measured lights for LENS, at most MAX_DEG,
+/* Returns the max angle of measured lights for LENS, at most MAX_DEG,
  * degrees. */
-static double most_deg(const struct glint_prescription *lens, double max_deg)
+static double max_angle(const struct glint_prescription *lens, double max_deg)
 {
     const double corner_mm =
         0.5 * hypot(lens->film_width_mm, lens->film_height_mm);
@@ -277,21 +277,21 @@ static double most_deg(const struct glint_prescription *lens, double max_deg)
                              atan(corner_mm / fabs(optics.focal_mm)));
 }
 
-/* Measures at angles whose spacing is halved from pass to pass. */
+/* Measures angles in passes, each with half the spacing of the previous one. */
 static enum glint_status measure_all(struct measuring *m,
                                      struct glint_workers *workers)
 {
     enum glint_status status = find_ranges(m) ? GLINT_OK : GLINT_E_MEMORY;
 
     for (int step = EACH; step > 0 && status == GLINT_OK; step /= 2) {
-        want(m, step);
+        mark_wanted(m, step);
         glint_workers_run(workers, ZOOM_ANGLES, angle_job, m);
         for (int k = 0; k < ZOOM_ANGLES && status == GLINT_OK; k++)
             status = m->status[k];
     }
     for (int g = 0; g < m->n && status == GLINT_OK; g++)
         if (m->known[g][0] & MEASURED)
-            fill(m->known[g], &m->error[g]);
+            interpolate_errors(m->known[g], &m->error[g]);
     return status;
 }
 
@@ -310,7 +310,7 @@ enum glint_status zoom_error_measure(const struct tool *tool,
         .zoom = zoom,
         .view = glint_view_fit(WIDE, (int)fmin(fmax(high, 8), MOST_HIGH),
                                lens->film_width_mm, lens->film_height_mm),
-        .max_deg = most_deg(lens, max_deg),
+        .max_deg = max_angle(lens, max_deg),
         .shift = shift,
         .n = n,
         .error = error,
