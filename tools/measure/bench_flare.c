@@ -84,8 +84,8 @@ static const struct bench_variation all[] = {
     {.lights = 1, .angle = 75}, /* outside the field of baked models */
 };
 
-/* Sets the exposure of T from its own flare. A light far off-screen uses the
- * exposure of the same light in the image. */
+/* Sets the exposure of T from the flare of lights 12 degrees off the axis,
+ * even if the lights of the case are elsewhere, such as far off-screen. */
 static enum glint_status expose(struct flare_case *t,
                                 const struct bench_variation *v)
 {

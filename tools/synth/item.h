@@ -3,9 +3,9 @@
  * item.h - an item of a data set for flare removal: all numbers that define its
  * images.
  *
- * synth_item_draw(&item, &ranges, seed, number);   random, but reproducible
- * synth_item_print(&text, &item, &result);         as a line of a manifest
- * synth_item_read(&item, line, &error);            reads that line
+ *     synth_item_draw(&item, &ranges, seed, number);   random, but reproducible
+ *     synth_item_print(&text, &item, &result);         as a line of a manifest
+ *     synth_item_read(&item, line, &error);            reads that line
  *
  * Each number depends only on the seed, the item's number and its own name, so
  * adding a member changes no other. Numbers are rounded to 1e-6, which the line

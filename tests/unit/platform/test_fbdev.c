@@ -314,8 +314,8 @@ TEST(no_pages)
     assert_int_equal(fb.n_pages, 1);
     fb.sink.close(&fb.sink);
 
-    reset_two_pages(); /* The first panning request succeeds, later ones fail.
-                        */
+    /* The first panning request succeeds, later ones fail. */
+    reset_two_pages();
     open_sink(&fb, NULL);
     draw_image(&fb, make_grey_image(8, 6, 9));
     fake_fb->can_pan = false;

@@ -632,8 +632,8 @@ TEST(lens_agrees)
     free(image.data);
 }
 
-/* Checks that the visible fraction of a sun falls to 0 behind a ball and
- * returns. */
+/* Checks that the visible fraction of a sun falls to 0 in steps while it
+ * sets behind a ball. */
 TEST(hidden_light)
 {
     const struct glint_scene_config cfg = defaults();

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests the pieces into which the lights of lenses without rotational symmetry
- * are divided: halves cover the whole piece; the variable with the largest
- * high-order terms is chosen for halving; parts get the smallest free number.
+ * are divided: the halves of a piece cover the piece; high powers are weighed
+ * per variable, to choose the one to halve; parts get the smallest free number.
  */
 #include <math.h>
 

@@ -168,8 +168,8 @@ static double ray_margin(const struct glint_zone_rays *rays, int i)
     return fmax(rays->at[RAY_EXCESS][i], rays->at[RAY_FIELD][i]);
 }
 
-/* Checks that each ray lands where it does at a single position, with the
- * margin of the position where it is smaller. */
+/* Checks that each ray lands where it does at a single position, and that
+ * its excess over the rims is the smaller one of both positions. */
 TEST(rays)
 {
     static struct glint_visible_profile profile;

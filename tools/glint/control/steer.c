@@ -633,7 +633,7 @@ static enum glint_status change_appearance(struct steer *s,
 /* -------------------------------------------------------------------- objects
  */
 
-/* Returns the first object that has a material, or -1. */
+/* Returns the first visible object that is not a shadow catcher, or -1. */
 static int first_object(const struct steer *s)
 {
     for (int i = 0; i < n_objects(s); i++)

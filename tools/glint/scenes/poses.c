@@ -53,9 +53,8 @@ static int find_object(const struct glint_scene_model *m, const char *name,
     return -2;
 }
 
-/* Sets TO to the unit vector of X[N], Q30, with z in the handedness of the
- * scene; for a quaternion of a mirrored scene negates x and y. Returns false
- * if the length is 0. */
+/* Sets TO to the unit vector of X[N], Q30. In right-handed scenes negates z,
+ * or x and y of a quaternion (N = 4). Returns false if the length is 0. */
 static bool set_unit(const struct glint_scene_model *m, const double *x, int n,
                      int32_t *to)
 {
