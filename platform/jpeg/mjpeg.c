@@ -258,9 +258,10 @@ static enum glint_pixel_format choose_format(struct glint_mjpeg *d)
         if (across == 2 * c[1].h_samp_factor && down == 2 * c[1].v_samp_factor)
             return GLINT_I420;
     }
-    snprintf(text, sizeof text, "subsampling %dx%d,%dx%d,%dx%d is not handled",
-             across, down, c[1].h_samp_factor, c[1].v_samp_factor,
-             c[2].h_samp_factor, c[2].v_samp_factor);
+    snprintf(text, sizeof text,
+             "chroma subsampling %dx%d,%dx%d,%dx%d is not supported", across,
+             down, c[1].h_samp_factor, c[1].v_samp_factor, c[2].h_samp_factor,
+             c[2].v_samp_factor);
     reject_frame(d, text);
     return GLINT_GREY;
 }
@@ -281,11 +282,11 @@ static void check_header(struct glint_mjpeg *d)
                                   d->max_height));
     if (j->jpeg_color_space != JCS_YCbCr &&
         j->jpeg_color_space != JCS_GRAYSCALE)
-        reject_frame(d, "colours are neither Y, Cb, Cr nor grey");
+        reject_frame(d, "the components are neither Y, Cb, Cr nor grey");
     if (j->arith_code)
-        reject_frame(d, "arithmetic coding is not handled");
+        reject_frame(d, "arithmetic coding is not supported");
     if (jpeg_has_multiple_scans(&d->jpeg))
-        reject_frame(d, "frames in several scans are not handled");
+        reject_frame(d, "progressive frames (several scans) are not supported");
 }
 
 static void start_decoding(struct glint_mjpeg *d, struct glint_image *image)

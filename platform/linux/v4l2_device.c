@@ -256,15 +256,16 @@ static enum glint_status adopt_format(struct glint_v4l2_device *d,
     for (int i = 0; i < f->n_blocks; i++)
         f->block_bytes[i] = pix->bytes[i];
     if (!f->is_jpeg && !glint_fourcc_to_format(pix->fourcc, &f->pixels))
-        return glint_error_report(error, GLINT_E_UNSUPPORTED, d->path,
-                                  "delivers %s, which glint does not read; "
-                                  "--list-formats shows what there is",
-                                  name);
+        return glint_error_report(
+            error, GLINT_E_UNSUPPORTED, d->path,
+            "delivers pixel format %s, which glint does not support; "
+            "--list-formats lists the formats of this camera",
+            name);
     if (!f->is_jpeg && !set_planes(f, pix))
-        return glint_error_report(error, GLINT_E_DEVICE, d->path,
-                                  "%ux%u %s does not fit the %u bytes that the "
-                                  "driver says it has",
-                                  pix->width, pix->height, name, pix->bytes[0]);
+        return glint_error_report(
+            error, GLINT_E_DEVICE, d->path,
+            "%ux%u %s needs more bytes than the %u that the driver reports",
+            pix->width, pix->height, name, pix->bytes[0]);
     set_colour(d, &pix->colour);
     return GLINT_OK;
 }

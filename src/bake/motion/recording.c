@@ -153,7 +153,7 @@ static bool consume_string(struct recording *r, char *name)
         return false;
     while (r->c != '"') {
         if (r->c >= 0 && r->c < ' ')
-            return fail_at_byte(r, "a string ends on its line, with '\"'");
+            return fail_at_byte(r, "a string must end on its line, with '\"'");
         if (name && n + 1 < NAME_BYTES && r->c >= 0)
             name[n++] = (char)r->c;
         if ((r->c == '\\' && !consume_byte(r)) || !consume_byte(r))
@@ -260,7 +260,7 @@ static bool read_number(const struct recording *r, const json_t *object,
         return fail_in_piece(r, 1, 1, "%s has no '%s'", what, name);
     *x = json_number_value(value);
     return json_is_number(value) ||
-           fail_in_piece(r, 1, 1, "'%s' of %s is no number", name, what);
+           fail_in_piece(r, 1, 1, "'%s' of %s is not a number", name, what);
 }
 
 /* Sets V to the vector NAME of OBJECT; to zeros if there is no such member. */
@@ -272,7 +272,7 @@ static bool read_vector(const struct recording *r, const json_t *object,
     for (size_t k = 0; k < 3; k++) {
         v[k] = json_number_value(json_array_get(value, k));
         if (value && !json_is_number(json_array_get(value, k)))
-            return fail_in_piece(r, 1, 1, "'%s' takes three numbers", name);
+            return fail_in_piece(r, 1, 1, "'%s' needs three numbers", name);
     }
     return true;
 }
@@ -287,13 +287,13 @@ static bool read_body(const struct recording *r, const json_t *object)
     struct glint_error cause;
 
     if (!json_is_object(object))
-        return fail_in_piece(r, 1, 1, "the structure is no object");
+        return fail_in_piece(r, 1, 1, "the structure is not a JSON object");
     if (!read_number(r, object, "size", "meret", "the structure", &body.size) ||
         !read_number(r, object, "angleofview", "latoszog", "the structure",
                      &body.angle_deg))
         return false;
     if (sensors && !json_is_array(sensors))
-        return fail_in_piece(r, 1, 1, "'sensors' is no array");
+        return fail_in_piece(r, 1, 1, "'sensors' is not an array");
     if (json_array_size(sensors) > GLINT_MOTION_MAX_SENSORS)
         return fail_in_piece(r, 1, 1, "more than %d sensors",
                              GLINT_MOTION_MAX_SENSORS);
@@ -335,7 +335,7 @@ static bool read_intensities(const struct recording *r, const json_t *food,
             json_is_array(value) ? json_array_get(value, k) : value;
 
         if (!json_is_number(one) && !json_is_boolean(one))
-            return fail_in_piece(r, 1, 1, "an intensity is no number");
+            return fail_in_piece(r, 1, 1, "an intensity is not a number");
         s->intensity[i][k] =
             json_is_number(one) ? json_number_value(one) : json_is_true(one);
     }
@@ -367,14 +367,14 @@ static bool read_frame(const struct recording *r, const json_t *object,
 
     *s = (struct glint_motion_sight){.number = -1};
     if (!json_is_object(object))
-        return fail_in_piece(r, 1, 1, "it is no object");
+        return fail_in_piece(r, 1, 1, "the frame is not a JSON object");
     if (of && (!json_is_integer(of) || json_integer_value(of) < 0))
         return fail_in_piece(r, 1, 1,
-                             "'frame_num' is no whole number from 0 on");
+                             "'frame_num' is not a whole number from 0");
     if (of)
         s->number = json_integer_value(of);
     if (!json_is_array(foods))
-        return fail_in_piece(r, 1, 1, "it has no array 'foods'");
+        return fail_in_piece(r, 1, 1, "the frame has no array 'foods'");
     if (json_array_size(foods) > GLINT_MOTION_MAX_FOODS)
         return fail_in_piece(r, 1, 1, "more than %d foods",
                              GLINT_MOTION_MAX_FOODS);
@@ -500,7 +500,7 @@ static bool read_all(struct recording *r)
     load_byte(r);
     if (!consume_space(r))
         return false;
-    return r->c < 0 || fail_at_byte(r, "the recording has ended before this");
+    return r->c < 0 || fail_at_byte(r, "text follows the end of the recording");
 }
 
 enum glint_status glint_recording_read(struct glint_motion_baker *baker,

@@ -82,7 +82,7 @@ bool glint_describe_environment(struct glint_describer *d)
     glint_describe_file(&word, name);
     if (!d->files->environment)
         return glint_text_fail(&d->text, word.place,
-                               "no environment is read here");
+                               "environments cannot be read here");
     e = append_environment(d, name, word.place);
     if (!e)
         return false;
@@ -132,9 +132,9 @@ bool glint_describe_around(struct glint_describer *d)
 
     if (!s->n_environments)
         return s->background != GLINT_BEHIND_ENVIRONMENT ||
-               glint_text_fail(&d->text, d->background,
-                               "background environment needs a line "
-                               "'environment FILE'");
+               glint_text_fail(
+                   &d->text, d->background,
+                   "'background environment' needs a line 'environment FILE'");
     /* Ends with the first environment in E. */
     for (int k = s->n_environments; k--;) {
         if (glint_environment_open(&e, s->environment[k].data,

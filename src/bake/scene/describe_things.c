@@ -165,10 +165,9 @@ bool glint_describe_triangle(struct glint_describer *d)
         return glint_text_fail(&d->text, clause[1].place,
                                "a material with a texture needs 'uv'");
     if (repeats_too_often(&t))
-        return glint_text_fail(&d->text, clause[0].place,
-                               "a texture repeats at most %g times over a "
-                               "triangle",
-                               REPEATS);
+        return glint_text_fail(
+            &d->text, clause[0].place,
+            "a texture may repeat at most %g times over a triangle", REPEATS);
     to = allocate_triangles(d, 1, clause[1].place);
     if (!to)
         return false;
@@ -260,10 +259,11 @@ static bool append_mesh(struct glint_describer *d,
                                    "the mesh have no texture coordinates (vt)",
                                    s->material[t->material].name);
         if (repeats_too_often(t))
-            return glint_text_fail(&d->text, place,
-                                   "a texture repeats at most %g times over a "
-                                   "triangle, and more on the mesh",
-                                   REPEATS);
+            return glint_text_fail(
+                &d->text, place,
+                "a texture may repeat at most %g times over a triangle, but "
+                "repeats more often on this mesh",
+                REPEATS);
         for (int k = 0; k < 3; k++) {
             if (t->has_normals && !glint_describe_unit(t->normal[k]))
                 t->has_normals = false;

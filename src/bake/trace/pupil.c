@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds the part of the pupil through which the visible rays of a ghost enter.
+ * Finds the part of the pupil that a ghost's visible rays come through.
  *
- * A grid of rays over the front element selects the cells that may contain a
- * visible ray. A cell is judged by the bounding box of its corners' stop
- * positions and by their relative radii, with a margin for the nonlinearity
- * between corners. A finer grid then covers the selected cells, until they no
- * longer shrink. If no cell is selected, the light's plane is searched for a
- * spot. Limits: a visible part narrower than 1/64 of the front element, where
- * rays are more nonlinear than the margin allows, can be missed if it is
- * elongated or lies off that plane.
- */
+ * A grid over the front element keeps the cells that may hold a visible ray,
+ * judged by the box of their corners' stop positions and by their relative
+ * radii, both with a margin for what bends between corners; then a finer grid
+ * covers the cells that were kept, until they no longer shrink. If nothing is
+ * found, the light's plane is searched for a spot. Limits: a visible part that
+ * is smaller than a 64th of the front element, and whose surroundings bend by
+ * more than the margin, can be missed if it is long or lies off that plane. */
 #include "glint/trace.h"
 
 #include <math.h>
@@ -22,27 +20,27 @@
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8, TURNS = 16 };
 
-/* Cells of later rounds, which cover a smaller area, so that a coarser grid
- * is sufficient. */
+/* Cells of later rounds, which cover less and get by with a coarser grid. */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
 struct search {
     struct glint_openings openings;
-    int across, down; /* number of cells in this round */
+    struct glint_path places; /* the path of openings, without energies */
+    int across, down;         /* number of cells of this round */
     struct glint_ray ray[DOWN + 1][ACROSS + 1];
     enum glint_ray_status status[DOWN + 1][ACROSS + 1];
     struct glint_pupil grid;         /* what the grid covers */
     bool kept[DOWN + 1][ACROSS + 1]; /* corners of cells that are kept */
 };
 
-static double compute_column_x(const struct search *s,
-                               const struct glint_pupil *p, int i)
+static double column_x(const struct search *s, const struct glint_pupil *p,
+                       int i)
 {
     return p->x0_mm + (p->x1_mm - p->x0_mm) * i / s->across;
 }
 
-static double compute_row_y(const struct search *s, const struct glint_pupil *p,
-                            double j)
+static double row_y(const struct search *s, const struct glint_pupil *p,
+                    double j)
 {
     return p->y0_mm + (p->y1_mm - p->y0_mm) * j / s->down;
 }
@@ -58,15 +56,12 @@ static void sample_row(struct search *s, const struct glint_pupil *p,
                                   row_y(s, p, j),
                                   {d[0], d[1], d[2]}};
 
-    for (int j = 0; j <= s->down; j++) {
-        row.y_mm = compute_row_y(s, p, j);
-        glint_trace_row(s->openings.path, &row, s->ray[j], s->status[j], NULL);
-    }
+    glint_trace_row(path, &row, s->ray[j], s->status[j], NULL);
 }
 
 struct bounds {
     int n;
-    /* ranges of: stop x and y, relative radius, sensor x and y */
+    /* Ranges of stop x and y, relative radius, sensor x and y. */
     double low[5], high[5];
 };
 
@@ -82,13 +77,13 @@ static void bounds_add(struct bounds *b, const struct glint_ray *ray)
     b->n++;
 }
 
-static double distance_to_zero(double low, double high)
+static double from_zero(double low, double high)
 {
     return low > 0 ? low : high < 0 ? -high : 0;
 }
 
-/* Returns whether a cell may contain a visible ray. B are the bounds of its
- * valid corners; if some are invalid, the margin is doubled. */
+/* Returns whether a cell may hold a ray that gets through. A cell with lost
+ * corners is judged by the others, with twice the margin. */
 static bool may_pass(const struct search *s, const struct bounds *b)
 {
     const double more = b->n == 4 ? 0.5 : 1;
@@ -103,17 +98,15 @@ static bool may_pass(const struct search *s, const struct bounds *b)
         high[k] = b->high[k] + grow;
     }
     return low[2] <= 1 &&
-           hypot(distance_to_zero(low[0], high[0]),
-                 distance_to_zero(low[1], high[1])) <= s->openings.stop_mm &&
-           hypot(distance_to_zero(low[3], high[3]),
-                 distance_to_zero(low[4], high[4])) <= s->openings.field_mm;
+           hypot(from_zero(low[0], high[0]), from_zero(low[1], high[1])) <=
+               s->openings.stop_mm &&
+           hypot(from_zero(low[3], high[3]), from_zero(low[4], high[4])) <=
+               s->openings.field_mm;
 }
 
-/* Adds cell (I, J) to the selected ones: extends BOX by its position, FOUND
- * by its energy and its light on the sensor. */
-static void select_cell(const struct search *s, int i, int j,
-                        const struct bounds *cell, struct bounds *box,
-                        struct glint_pupil *found)
+/* Adds one cell to those that are kept: its place and where its light lands. */
+static void keep(struct search *s, int i, int j, const struct bounds *cell,
+                 struct bounds *box, struct glint_pupil *found)
 {
     const int at[4] = {i, i + 1, j, j + 1};
     double *sensor = found->sensor_mm;
@@ -135,16 +128,16 @@ static void select_cell(const struct search *s, int i, int j,
         s->kept[j + (k >> 1)][i + (k & 1)] = true;
 }
 
-/* Extends the range of light on the sensor by its mirror image. */
+/* Adds the mirror image of the light on the sensor. */
 static void mirror_sensor(struct glint_pupil *p)
 {
     p->sensor_mm[3] = fmax(fabs(p->sensor_mm[2]), fabs(p->sensor_mm[3]));
     p->sensor_mm[2] = -p->sensor_mm[3];
 }
 
-/* Shrinks P to the cells that may contain visible rays. Returns whether
- * there are any. */
-static bool shrink_to_visible(struct search *s, struct glint_pupil *p)
+/* Shrinks P to the cells that may let a ray through; returns whether there are
+ * any. */
+static bool shrink(struct search *s, struct glint_pupil *p)
 {
     struct glint_pupil found = *p;
     struct bounds box = {.n = 0};
@@ -161,26 +154,26 @@ static bool shrink_to_visible(struct search *s, struct glint_pupil *p)
                 if (s->status[j + (k >> 1)][i + (k & 1)] == GLINT_RAY_OK)
                     bounds_add(&cell, &s->ray[j + (k >> 1)][i + (k & 1)]);
             if (may_pass(s, &cell))
-                select_cell(s, i, j, &cell, &box, &found);
+                keep(s, i, j, &cell, &box, &found);
         }
     if (box.n == 0)
         return false;
-    found.x0_mm = compute_column_x(s, p, (int)box.low[0]);
-    found.x1_mm = compute_column_x(s, p, (int)box.high[0]);
-    found.y1_mm = compute_row_y(s, p, box.high[2]);
+    found.x0_mm = column_x(s, p, (int)box.low[0]);
+    found.x1_mm = column_x(s, p, (int)box.high[0]);
+    found.y1_mm = row_y(s, p, box.high[2]);
     if (s->openings.path->round)
         mirror_sensor(&found);
     else
-        found.y0_mm = compute_row_y(s, p, box.low[2]);
+        found.y0_mm = row_y(s, p, box.low[2]);
     *p = found;
     return true;
 }
 
-/* Returns the max sag of the front surface. Rays cross the vertex plane
- * beside the point where they meet the curved surface, by up to this sag
- * times the tangent of their angle. */
-static double compute_max_sag(const struct glint_path *path,
-                              const struct glint_event *front)
+/* Returns the part of the vertex plane at which rays can enter. A slanted ray
+ * crosses this plane beside the place where it meets the curved surface, by up
+ * to the sag at the rim times its tangent. */
+static double sag_of(const struct glint_path *path,
+                     const struct glint_event *front)
 {
     const double h = front->semi_mm, c = front->curvature;
     double slope[2], most = 0;
@@ -195,9 +188,10 @@ static double compute_max_sag(const struct glint_path *path,
     return most;
 }
 
-/* Returns the max displacement of the front surface by decentre and tilt. */
-static double compute_displacement(const struct glint_path *path,
-                                   const struct glint_event *front)
+/* Returns how far aside and askew a front of the lens may lie: its own decentre
+ * and what its tilt moves of the rim. */
+static double off_axis(const struct glint_path *path,
+                       const struct glint_event *front)
 {
     const struct glint_form *f = &path->form[front->surface];
 
@@ -206,13 +200,12 @@ static double compute_displacement(const struct glint_path *path,
                : 0;
 }
 
-static struct glint_pupil compute_front_box(const struct glint_path *path,
-                                            const struct glint_event *front,
-                                            const double direction[3])
+static struct glint_pupil whole_front(const struct glint_path *path,
+                                      const struct glint_event *front,
+                                      const double direction[3])
 {
-    const double off = compute_displacement(path, front),
-                 h = front->semi_mm + off;
-    const double deep = fabs(compute_max_sag(path, front)) + off;
+    const double off = off_axis(path, front), h = front->semi_mm + off;
+    const double deep = fabs(sag_of(path, front)) + off;
     const double x = h + deep * fabs(direction[0] / direction[2]);
     const double y = h + deep * fabs(direction[1] / direction[2]);
 
@@ -223,15 +216,31 @@ static struct glint_pupil compute_front_box(const struct glint_path *path,
                                 .mirrored = path->round};
 }
 
-static double compute_area(const struct glint_pupil *p)
+/* Returns the largest energy at the corners that the last grid kept. */
+static double energy_of(struct search *s)
+{
+    double most = 0;
+
+    for (int j = 0; j <= s->down; j++) {
+        if (!memchr(s->kept[j], true, sizeof s->kept[j]))
+            continue;
+        sample_row(s, &s->grid, s->openings.path, j);
+        for (int i = 0; i <= s->across; i++)
+            if (s->kept[j][i] && s->status[j][i] == GLINT_RAY_OK)
+                most = fmax(most, s->ray[j][i].energy);
+    }
+    return most;
+}
+
+static double extent(const struct glint_pupil *p)
 {
     return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
 }
 
-/* Returns BOX, extended on each side by half of its size and by a fraction
- * of the front, as boxes may be very thin. */
-static struct glint_pupil extend_box(const struct glint_pupil *box,
-                                     const struct glint_pupil *front)
+/* Returns BOX grown by half of its size on each side, and by a part of the
+ * whole front, as boxes may be slivers. */
+static struct glint_pupil surroundings(const struct glint_pupil *box,
+                                       const struct glint_pupil *front)
 {
     const double more =
         0.5 * (box->x1_mm - box->x0_mm) + 0.01 * (front->x1_mm - front->x0_mm);
@@ -247,20 +256,20 @@ static struct glint_pupil extend_box(const struct glint_pupil *box,
         .mirrored = front->mirrored};
 }
 
-/* Shrinks P by repeated grids; the first has ACROSS x DOWN cells. Returns
- * whether there are visible rays. */
-static bool shrink_by_rounds(struct search *s, struct glint_pupil *p,
-                             int across, int down)
+/* Shrinks P by rounds of grids, the first of ACROSS x DOWN cells; returns
+ * whether anything gets through. */
+static bool shrink_on(struct search *s, struct glint_pupil *p, int across,
+                      int down)
 {
     bool found = true;
 
     for (int round = 0; round < ROUNDS && found; round++) {
-        const double before = compute_area(p);
+        const double before = extent(p);
 
         s->across = round ? NEXT_ACROSS : across;
         s->down = round ? NEXT_DOWN : down;
-        found = shrink_to_visible(s, p);
-        if (round > 0 && compute_area(p) > 0.8 * before)
+        found = shrink(s, p);
+        if (round > 0 && extent(p) > 0.8 * before)
             break;
     }
     /* Places decide what is kept: only the last grid's energies are needed. */
@@ -269,8 +278,8 @@ static bool shrink_by_rounds(struct search *s, struct glint_pupil *p,
     return found;
 }
 
-/* Finds a spot of visible rays smaller than a cell of the first grid,
- * centred on the light's plane. */
+/* Finds a spot that is smaller than a cell of the first grid; the light's plane
+ * goes through its middle. */
 static bool find_spot(struct search *s, const struct glint_pupil *front,
                       struct glint_pupil *p)
 {
@@ -284,23 +293,22 @@ static bool find_spot(struct search *s, const struct glint_pupil *front,
                               .y1_mm = x[1] - x[0],
                               .mirrored = front->mirrored};
     glint_spot_grow(&s->openings, p);
-    return shrink_by_rounds(s, p, NEXT_ACROSS, NEXT_DOWN);
+    return shrink_on(s, p, NEXT_ACROSS, NEXT_DOWN);
 }
 
-/* Finds the pupil inside P, or else a spot inside FRONT. */
-static bool find_pupil(struct search *s, const struct glint_pupil *front,
-                       struct glint_pupil *p, bool near)
+/* Finds the pupil on P, or a spot of FRONT. */
+static bool find(struct search *s, const struct glint_pupil *front,
+                 struct glint_pupil *p, bool near)
 {
     struct glint_pupil wider;
 
-    if (!shrink_by_rounds(s, p, near ? NEXT_ACROSS : ACROSS,
-                          near ? NEXT_DOWN : DOWN))
+    if (!shrink_on(s, p, near ? NEXT_ACROSS : ACROSS, near ? NEXT_DOWN : DOWN))
         return find_spot(s, front, p);
-    /* Where rays are more nonlinear than the margin of cells allows, some
-     * visible rays enter outside the selected cells. */
+    /* Where light bends more than cells allow for, some of it enters beside
+     * those that were kept. */
     wider = *p;
     if (glint_spot_grow(&s->openings, &wider) &&
-        shrink_by_rounds(s, &wider, NEXT_ACROSS, NEXT_DOWN))
+        shrink_on(s, &wider, NEXT_ACROSS, NEXT_DOWN))
         *p = wider;
     return true;
 }
@@ -330,7 +338,7 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
                               const double direction[3], double stop_radius_mm,
                               double field_mm, const struct glint_pupil *near)
 {
-    struct search s; /* 110 KB; see GLINT_BAKE_STACK_BYTES */
+    struct search s; /* 150 KB: the offline half has the stack for it */
     struct glint_pupil whole, p;
     const struct glint_event *front = NULL;
     bool found;
@@ -345,9 +353,11 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
         .direction = {direction[0], direction[1], direction[2]},
         .stop_mm = stop_radius_mm,
         .field_mm = field_mm};
-    whole = compute_front_box(path, front, direction);
-    p = near ? extend_box(near, &whole) : whole;
-    found = find_pupil(&s, &whole, &p, near);
+    s.places = *path;
+    s.places.places_only = true;
+    whole = whole_front(path, front, direction);
+    p = near ? surroundings(near, &whole) : whole;
+    found = find(&s, &whole, &p, near);
     if (found)
         *pupil = p;
     return found;

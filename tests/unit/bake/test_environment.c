@@ -580,7 +580,7 @@ TEST(text)
     assert_true(o.side_log2 == 7 && o.turn_deg == -90 && o.scale == .5 &&
                 o.max_lights == 3 && o.light_deg == 2.5 && o.light_above == 20);
     check_wrong_text("size 128\n",
-                     "n.environment:2:1: there is no picture: source FILE");
+                     "n.environment:2:1: the line 'source FILE' is missing");
     check_wrong_text("source\n",
                      "n.environment:1:7: the name of the picture is missing");
     check_wrong_text("source x\nsize 100\n",
@@ -589,7 +589,8 @@ TEST(text)
     check_wrong_text("source x\nturn 400\n", "turn");
     check_wrong_text("source x\nlights 17\n", "lights");
     check_wrong_text("source x\nlights 3 radios 2\n", "did you mean 'radius'?");
-    check_wrong_text("source x\nsize 64 64\n", "'64' is more than size takes");
+    check_wrong_text("source x\nsize 64 64\n",
+                     "'64' is one value too many for size");
     check_wrong_text("source x\nsource y\n",
                      "2:1: a second source; the first is on line 1");
     check_wrong_text("sources x\n",

@@ -375,8 +375,8 @@ static const struct {
     {8, "stop 5 8\nstop 5 8",
      "x.lens:9:1: a second stop; the first is on line 8"},
     {8, "stop 5", "x.lens:8:7: semi-diameter is missing"},
-    {8, "stop 5 8 circle 9", "x.lens:8:17: '9' is more than stop takes"},
-    {8, "stop 5 8 9", "x.lens:8:10: '9' stands where only circle may follow"},
+    {8, "stop 5 8 circle 9", "x.lens:8:17: '9' is one value too many for stop"},
+    {8, "stop 5 8 9", "x.lens:8:10: unexpected '9'; expected circle"},
     /* mistakes that are detected only in the complete lens */
     {6, "surface 50 2.3 12 N-BK7",
      "x.lens:6:12: overlaps the next element by 0.06066 mm at 10.8 mm from "
@@ -505,7 +505,7 @@ TEST(power)
 {
     expect_whole_lens_error("stop 1 20\nsurface flat 3 9 1.5 60\n"
                             "surface flat 9 9 air\n",
-                            "x.lens:7:1: the lens has no power");
+                            "x.lens:7:1: the lens has no refractive power");
     /* With R1 - R2 = d (n - 1) / n, which these decimals satisfy exactly,
      * the lens is afocal. */
     expect_whole_lens_error("stop 1 20\nsurface 40 60 9 1.5 60\n"

@@ -233,7 +233,7 @@ TEST(text)
                   "t.lens:5:15: thickness 'x'");
     check_refused("f-number 10\n" FRONT "4//6" BACK, "thickness");
     check_refused("f-number 10/11/12\n" FRONT "4/6" BACK,
-                  "thickness has 2 positions, but what stands above has 3");
+                  "thickness has 2 positions, but the lines above have 3");
     check_refused("f-number 10/11\n" FRONT "4" BACK, "no thickness changes");
     check_refused("f-number 10\n" FRONT "4/4" BACK,
                   "focal lengths must only rise or only fall");

@@ -47,8 +47,8 @@ static int log_option(void *ctx, const struct option *option, const char *value)
     if (option->val == 'D')
         return EXIT_OK;
     if (option->val == 'g' && !tool_integer(value, 4, 1024, &c->grid))
-        return tool_usage(&c->tool, "--%s: '%s' is not valid",
-                          option->name, value);
+        return tool_usage(&c->tool, "--%s: '%s' is not valid", option->name,
+                          value);
     return -1;
 }
 
@@ -242,8 +242,7 @@ TEST(bad_value)
     assert_int_equal(config_parse(&config, "x.ini",
                                   BYTES("lens=a\ngrid=3\nlens=b\n"), &error),
                      EXIT_INPUT);
-    expect_message(
-        "glint live: x.ini:2: --grid: '3' is not something it takes\n");
+    expect_message("glint live: x.ini:2: --grid: '3' is not valid\n");
     assert_string_equal(error.text, "");
     assert_string_equal(command.log, "lens=a;grid=3;");
     assert_null(command.tool.where);
@@ -279,9 +278,8 @@ TEST(unknown_section)
 
     capture_stderr();
     assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
-    expect_message(
-        "glint live: x.ini:4: no section is called [camra]; its lines "
-        "count all the same\n");
+    expect_message("glint live: x.ini:4: the section [camra] is unknown; its "
+                   "lines are used all the same\n");
     assert_string_equal(command.log, "lens=a;grid=5;light=1,2;lens=b;lens=c;");
     config_free(&config);
     config = make_config();
@@ -343,8 +341,7 @@ TEST(reload)
     second = make_config();
     capture_stderr();
     assert_int_equal(config_read(&second, scratch_file), EXIT_INPUT);
-    snprintf(want, sizeof want,
-             "glint live: %s:2: --grid: 'x' is not valid\n",
+    snprintf(want, sizeof want, "glint live: %s:2: --grid: 'x' is not valid\n",
              scratch_file);
     expect_message(want);
     assert_null(second.values);
