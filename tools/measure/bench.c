@@ -15,7 +15,7 @@ static const enum glint_pixel_format formats[] = {GLINT_YUYV,     GLINT_I420,
 
 /* ------------------------------------------------------------------- cases */
 
-static struct canvas *canvas_of(struct bench *b, int width, int height)
+static struct canvas *find_canvas(struct bench *b, int width, int height)
 {
     struct canvas *c = &b->canvas[b->n_canvases];
 
@@ -33,8 +33,8 @@ static struct canvas *canvas_of(struct bench *b, int width, int height)
 struct bench_case *bench_add(struct bench *b, const char *name,
                              const struct bench_variation *v)
 {
-    struct canvas *const canvas = canvas_of(b, v->width ? v->width : b->width,
-                                            v->height ? v->height : b->height);
+    struct canvas *const canvas = find_canvas(
+        b, v->width ? v->width : b->width, v->height ? v->height : b->height);
     struct bench_case *c;
 
     if (!canvas || b->n_cases == BENCH_CASES ||
@@ -91,7 +91,7 @@ double bench_ms(const struct bench *b, const struct bench_case *c, int stage)
 }
 
 /* Returns the median time of the memory floor, ms. */
-static double floor_ms_of(const struct bench *b, const struct bench_case *c)
+static double median_floor_ms(const struct bench *b, const struct bench_case *c)
 {
     return canvas_median(c->canvas->floor_ms, b->rounds);
 }
@@ -110,7 +110,7 @@ static void print_table(const struct bench *b)
     const int whole = s->n_stages - 1;
 
     printf("floor %.3f ms (%dx%d %s, %d rounds); stages are ratios to it\n",
-           floor_ms_of(b, b->cases[0]), b->cases[0]->canvas->image.width,
+           median_floor_ms(b, b->cases[0]), b->cases[0]->canvas->image.width,
            b->cases[0]->canvas->image.height, bench_format[b->word], b->rounds);
     printf("%s %8s %7s ", s->heads, "ms", "ratio");
     for (int k = 0; k < whole; k++)
@@ -118,7 +118,7 @@ static void print_table(const struct bench *b)
     printf("  %s\n", s->tail);
     for (int i = 0; i < b->n_cases; i++) {
         const struct bench_case *const c = b->cases[i];
-        const double floor_ms = floor_ms_of(b, c);
+        const double floor_ms = median_floor_ms(b, c);
 
         s->print_case(b, c);
         printf(" %8.3f %7.1f ", bench_ms(b, c, whole),
@@ -147,7 +147,7 @@ void bench_json_times(struct json_writer *json, const struct bench *b,
     const int whole = s->n_stages - 1;
     const double ms = bench_ms(b, c, whole);
 
-    json_write(json, "ms: %.4f, ratio: %.3f", ms, ms / floor_ms_of(b, c));
+    json_write(json, "ms: %.4f, ratio: %.3f", ms, ms / median_floor_ms(b, c));
     for (int k = 0; k < whole; k++)
         json_write(json, "%s_ms: %.4f", s->stage[k], bench_ms(b, c, k));
 }
@@ -159,7 +159,7 @@ static void print_json(const struct bench *b)
     json_write(&json,
                "{floor_ms: %.5f, rounds: %d, version: %s, machine: %s, "
                "cases: [",
-               floor_ms_of(b, b->cases[0]), b->rounds, GLINT_VERSION,
+               median_floor_ms(b, b->cases[0]), b->rounds, GLINT_VERSION,
                canvas_machine());
     for (int i = 0; i < b->n_cases; i++) {
         json_write(&json, "\n{%s: %s", b->subject->word, b->cases[i]->name);

@@ -86,8 +86,8 @@ static const struct bench_variation all[] = {
 
 /* Sets the exposure of T from the flare of lights 12 degrees off the axis,
  * even if the lights of the case are elsewhere, such as far off-screen. */
-static enum glint_status expose(struct flare_case *t,
-                                const struct bench_variation *v)
+static enum glint_status set_exposure(struct flare_case *t,
+                                      const struct bench_variation *v)
 {
     enum glint_status status = GLINT_OK;
 
@@ -129,7 +129,7 @@ static int add_case(struct bench *b, const struct opened_lens *lens,
     }
     status = glint_engine_create(&t->engine, &cfg, &error);
     if (status == GLINT_OK)
-        status = expose(t, v);
+        status = set_exposure(t, v);
     return status == GLINT_OK ? EXIT_OK
                               : tool_fail(b->tool, status, error.text);
 }
@@ -226,7 +226,7 @@ static void close_flares(struct bench *b)
 
 /* ------------------------------------------------------------------ output */
 
-static const char *raster_of(const struct flare_case *t)
+static const char *raster_name(const struct flare_case *t)
 {
     return t->is_star ? "star" : "edges";
 }
@@ -237,7 +237,7 @@ static void print_case(const struct bench *b, const struct bench_case *c)
 
     (void)b;
     printf("%-22s %4dx%-4d %5d %2d %-5s %-5s", c->name, c->canvas->image.width,
-           c->canvas->image.height, t->n_lamps, c->threads, raster_of(t),
+           c->canvas->image.height, t->n_lamps, c->threads, raster_name(t),
            c->kernels);
 }
 
@@ -261,7 +261,7 @@ static void write_json(struct json_writer *to, const struct bench *b,
     json_write(to,
                "lights: %d, threads: %d, raster: %s, kernels: %s, "
                "quality: %.3f",
-               t->n_lamps, c->threads, raster_of(t), c->kernels,
+               t->n_lamps, c->threads, raster_name(t), c->kernels,
                r->quality >= 0 ? r->quality : b->base.options.quality);
     bench_json_times(to, b, c);
     json_write(to,

@@ -276,7 +276,7 @@ static void close_scene(struct bench *b)
 
 /* ------------------------------------------------------------------ output */
 
-static const char *shading_of(const struct scene_case *t)
+static const char *shading_name(const struct scene_case *t)
 {
     return t->frame.cfg.half_shading ? "half" : "full";
 }
@@ -288,7 +288,7 @@ static void print_case(const struct bench *b, const struct bench_case *c)
 
     (void)b;
     printf("%-16.16s %4dx%-4d %5d %6d %-7s %2d %-5s", c->name, cfg->width,
-           cfg->height, cfg->edge_samples, cfg->shadow_points, shading_of(t),
+           cfg->height, cfg->edge_samples, cfg->shadow_points, shading_name(t),
            c->threads, c->kernels);
 }
 
@@ -312,8 +312,8 @@ static void write_json(struct json_writer *to, const struct bench *b,
     json_write(to,
                "edge_samples: %d, shadow_points: %d, shading: %s, threads: %d, "
                "kernels: %s",
-               cfg->edge_samples, cfg->shadow_points, shading_of(t), c->threads,
-               c->kernels);
+               cfg->edge_samples, cfg->shadow_points, shading_name(t),
+               c->threads, c->kernels);
     bench_json_times(to, b, c);
     json_write(to,
                "whole_ms: %.4f, instructions: %.0f, covered_px: %d, "

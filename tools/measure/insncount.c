@@ -61,7 +61,7 @@ static const char *idle = "";
 static int stage = ASLEEP, n_frames, n_skipped;
 static uint64_t spent[MAX_MARKS];
 
-static int stage_of(const char *function)
+static int find_stage(const char *function)
 {
     if (strcmp(function, idle) == 0)
         return ASLEEP;
@@ -89,7 +89,7 @@ static void run_block(unsigned cpu, void *ctx)
 
 /* Prints the mean instructions of each stage. Several functions may have the
  * same stage name. */
-static void report(uint64_t id, void *ctx)
+static void print_stages(uint64_t id, void *ctx)
 {
     const int n = n_frames > n_skipped ? n_frames - n_skipped : 1;
     char line[256];
@@ -136,7 +136,7 @@ static void translate_block(uint64_t id, struct qemu_plugin_tb *tb)
     if (!b)
         abort();
     b->n = (int)qemu_plugin_tb_n_insns(tb);
-    b->stage = stage_of(name ? name : "?");
+    b->stage = find_stage(name ? name : "?");
     qemu_plugin_register_vcpu_tb_exec_cb(tb, run_block, 0, b);
 }
 
@@ -164,6 +164,6 @@ EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
             return -1;
     }
     qemu_plugin_register_vcpu_tb_trans_cb(id, translate_block);
-    qemu_plugin_register_atexit_cb(id, report, NULL);
+    qemu_plugin_register_atexit_cb(id, print_stages, NULL);
     return 0;
 }

@@ -151,7 +151,8 @@ struct sweep_mean *sweep_means(const struct sweep *s, int *n)
 
 /* ----------------------------------------------------------------- quality */
 
-static bool same_pixels(const struct sweep_mean *a, const struct sweep_mean *b)
+static bool has_same_pixels(const struct sweep_mean *a,
+                            const struct sweep_mean *b)
 {
     for (int d = 0; d < n_sweep_parameters; d++)
         if (strcmp(sweep_parameter[d].name, "half") == 0)
@@ -181,7 +182,7 @@ double sweep_above(const struct sweep_mean *mean, int n, int i)
             continue;
         if (m->cost <= cost)
             best = fmax(best, m->psnr_db);
-        else if (last && last->cost <= cost && same_pixels(last, m))
+        else if (last && last->cost <= cost && has_same_pixels(last, m))
             best = fmax(best, interpolate_psnr(last, m, cost));
         last = m;
     }

@@ -115,8 +115,8 @@ static bool append_count(char json[TEXT], double instructions)
 }
 
 /* Measures ROW to JSON; counts instructions if they are a metric. */
-static int measure(const struct recipe *r, const struct recipe_row *row,
-                   const char *self, char json[TEXT])
+static int measure_one(const struct recipe *r, const struct recipe_row *row,
+                       const char *self, char json[TEXT])
 {
     static char counted[TEXT];
     int code = run_row(r, row, self, false, json);
@@ -284,7 +284,7 @@ static void copy_cell(const char *line, int number, char cell[256])
     snprintf(cell, 256, "%.*s", (int)length, line);
 }
 
-static bool same_keys(const struct recipe *r, const char *a, const char *b)
+static bool has_same_keys(const struct recipe *r, const char *a, const char *b)
 {
     char cell[2][256];
 
@@ -337,7 +337,7 @@ static void print_table(const struct recipe *r, const struct table *t)
 static void put_line(const struct recipe *r, struct table *t, char *line)
 {
     for (int i = 0; i < t->n && line; i++)
-        if (same_keys(r, t->line[i], line)) {
+        if (has_same_keys(r, t->line[i], line)) {
             t->line[i] = line;
             return;
         }
@@ -388,7 +388,7 @@ static bool compare_row(const struct recipe *r, const struct recipe_row *row,
     bool fine = true;
 
     for (int i = 0; i < t->n; i++) {
-        if (!line || !same_keys(r, t->line[i], line))
+        if (!line || !has_same_keys(r, t->line[i], line))
             continue;
         for (int k = 0; k < r->n_columns; k++) {
             copy_cell(t->line[i], k, cell);
@@ -442,7 +442,7 @@ static int measure_recipe(struct recipe *r, const char *self, bool quick)
     for (int i = 0; i < r->n_rows && code == EXIT_OK; i++) {
         if (quick && !is_quick(r, &r->row[i]))
             continue;
-        code = measure(r, &r->row[i], self, json);
+        code = measure_one(r, &r->row[i], self, json);
         if (code > EXIT_OK)
             break;
         append_csv(r, &r->row[i], json);

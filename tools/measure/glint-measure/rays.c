@@ -60,7 +60,7 @@ static int find_bin(double error)
     return bin < BINS ? bin : BINS - 1;
 }
 
-static void tally_add(struct tally *t, const double error[], double light)
+static void add_ray(struct tally *t, const double error[], double light)
 {
     t->rays++;
     t->light += light;
@@ -72,7 +72,7 @@ static void tally_add(struct tally *t, const double error[], double light)
             error[kind] * error[kind] * (kind == GLINT_OUT_ENERGY ? light : 1);
 }
 
-static void tally_add_lost(struct tally *t, double light)
+static void add_uncovered_ray(struct tally *t, double light)
 {
     t->rays++;
     t->lost++;
@@ -83,7 +83,8 @@ static void tally_add_lost(struct tally *t, double light)
 }
 
 /* Adds WEIGHT times FROM to T. */
-static void tally_join(struct tally *t, const struct tally *from, double weight)
+static void merge_tally(struct tally *t, const struct tally *from,
+                        double weight)
 {
     t->rays += weight * from->rays;
     t->lost += weight * from->lost;
@@ -99,7 +100,7 @@ static void tally_join(struct tally *t, const struct tally *from, double weight)
 
 /* Returns the 99th percentile of the N errors counted in BIN, rounded up to the
  * end of its bin. */
-static double p99_of(const double bin[BINS], double n)
+static double compute_p99(const double bin[BINS], double n)
 {
     double above = 0;
     int k = BINS;
@@ -111,10 +112,10 @@ static double p99_of(const double bin[BINS], double n)
 
 static double sensor_p99(const struct tally *t)
 {
-    return p99_of(t->sensor, t->rays);
+    return compute_p99(t->sensor, t->rays);
 }
 
-static double rms_of(const struct tally *t, int kind)
+static double compute_rms(const struct tally *t, int kind)
 {
     const double n =
         kind == GLINT_OUT_ENERGY ? t->light - t->light_lost : t->rays - t->lost;
@@ -124,7 +125,8 @@ static double rms_of(const struct tally *t, int kind)
 
 static double stop_rms(const struct tally *t)
 {
-    return hypot(rms_of(t, GLINT_OUT_STOP_X), rms_of(t, GLINT_OUT_STOP_Y));
+    return hypot(compute_rms(t, GLINT_OUT_STOP_X),
+                 compute_rms(t, GLINT_OUT_STOP_Y));
 }
 
 static bool misses_target(const struct tally *t)
@@ -160,8 +162,8 @@ static void find_parts(const struct task *t, int ghost, double angle_deg,
 
 /* Sets AT to the outputs of the model for the ray from (X, Y). Returns false if
  * no polynomial covers (X, Y). */
-static bool model_ray(const struct parts *parts, double x_mm, double y_mm,
-                      double at[GLINT_OUT_KINDS])
+static bool evaluate_model(const struct parts *parts, double x_mm, double y_mm,
+                           double at[GLINT_OUT_KINDS])
 {
     for (int k = 0; k < parts->n; k++) {
         const struct glint_transfer *p = &parts->part[k];
@@ -196,8 +198,8 @@ static void compare_ray(const struct task *t, const struct parts *parts,
     const double stop = t->optics.stop_radius_mm;
     double at[GLINT_OUT_KINDS] = {0};
 
-    if (!model_ray(parts, x_mm, y_mm, at)) {
-        tally_add_lost(tally, light);
+    if (!evaluate_model(parts, x_mm, y_mm, at)) {
+        add_uncovered_ray(tally, light);
         return;
     }
     at[GLINT_OUT_SENSOR_X] = px * (at[GLINT_OUT_SENSOR_X] - ray->sensor_x_mm);
@@ -205,7 +207,7 @@ static void compare_ray(const struct task *t, const struct parts *parts,
     at[GLINT_OUT_STOP_X] -= ray->stop_x_mm / stop;
     at[GLINT_OUT_STOP_Y] -= ray->stop_y_mm / stop;
     at[GLINT_OUT_ENERGY] = at[GLINT_OUT_ENERGY] / ray->energy - 1;
-    tally_add(tally, at, light);
+    add_ray(tally, at, light);
 }
 
 static void compare_bundle(const struct task *t, int ghost, double angle_deg,
@@ -261,7 +263,7 @@ static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
 
         for (int w = 0; w < t->row->n_nm; w++)
             compare_bundle(t, ghost, t->angle[k], t->row->nm[w], &here);
-        tally_join(sum, &here, 1);
+        merge_tally(sum, &here, 1);
         angles[0] += here.rays > 0;
         angles[1] += misses_target(&here);
         light[k].all += here.light;
@@ -271,12 +273,13 @@ static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
 
 static void write_rms(struct figure_row *row, const struct tally *t)
 {
-    json_write(&row->json,
-               "stop_x_rms: %.6g, stop_y_rms: %.6g, sensor_x_rms: %.6g, "
-               "sensor_y_rms: %.6g, energy_rms: %.6g",
-               rms_of(t, GLINT_OUT_STOP_X), rms_of(t, GLINT_OUT_STOP_Y),
-               rms_of(t, GLINT_OUT_SENSOR_X), rms_of(t, GLINT_OUT_SENSOR_Y),
-               rms_of(t, GLINT_OUT_ENERGY));
+    json_write(
+        &row->json,
+        "stop_x_rms: %.6g, stop_y_rms: %.6g, sensor_x_rms: %.6g, "
+        "sensor_y_rms: %.6g, energy_rms: %.6g",
+        compute_rms(t, GLINT_OUT_STOP_X), compute_rms(t, GLINT_OUT_STOP_Y),
+        compute_rms(t, GLINT_OUT_SENSOR_X), compute_rms(t, GLINT_OUT_SENSOR_Y),
+        compute_rms(t, GLINT_OUT_ENERGY));
 }
 
 static void compare_all(struct figure_row *row, const struct task *t)
@@ -294,8 +297,8 @@ static void compare_all(struct figure_row *row, const struct task *t)
             continue;
         ghosts++;
         missing += misses_target(&sum);
-        tally_join(&all, &sum, 1);
-        tally_join(&equally, &sum, 1 / sum.rays);
+        merge_tally(&all, &sum, 1);
+        merge_tally(&equally, &sum, 1 / sum.rays);
     }
     for (int k = 0; k < t->n_angles; k++)
         lost = fmax(lost, light[k].lost / fmax(1e-30, light[k].all));
@@ -306,8 +309,8 @@ static void compare_all(struct figure_row *row, const struct task *t)
                "ghosts_seen: %d, ghosts_miss: %d, angles_seen: %d, "
                "angles_miss: %d",
                all.rays, sensor_p99(&all), sensor_p99(&equally), stop_rms(&all),
-               stop_rms(&equally), p99_of(all.energy, all.rays),
-               p99_of(equally.energy, equally.rays),
+               stop_rms(&equally), compute_p99(all.energy, all.rays),
+               compute_p99(equally.energy, equally.rays),
                all.lost / fmax(1, all.rays), lost, ghosts, missing, angles[0],
                angles[1]);
     write_rms(row, &all);

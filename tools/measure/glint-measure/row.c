@@ -277,8 +277,8 @@ static enum glint_status make_engine(struct figure_row *r, struct frame *f,
     return glint_engine_create(&f->engine, &cfg, error);
 }
 
-static enum glint_status draw(struct figure_row *r, struct frame *f,
-                              bool is_last)
+static enum glint_status draw_frame(struct figure_row *r, struct frame *f,
+                                    bool is_last)
 {
     struct glint_image layer = {
         .format = GLINT_RGB24, .width = r->width, .height = r->height};
@@ -310,7 +310,7 @@ static enum glint_status draw_rounds(struct figure_row *r, struct frame *f)
          i++) {
         const double from = cpu_seconds();
 
-        status = draw(r, f, i + 1 == r->rounds);
+        status = draw_frame(r, f, i + 1 == r->rounds);
         if (i < 0)
             continue;
         f->cpu_ms = fmin(f->cpu_ms, 1e3 * (cpu_seconds() - from));
@@ -372,7 +372,7 @@ static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
     if (code == EXIT_OK && status == GLINT_OK)
         status = make_engine(other, &g, &error);
     if (code == EXIT_OK && status == GLINT_OK)
-        status = draw(other, &g, false);
+        status = draw_frame(other, &g, false);
     if (code == EXIT_OK && status == GLINT_OK) {
         f->exact_codes = g.codes;
         g.codes = NULL;
@@ -387,7 +387,7 @@ static enum glint_status draw_reference(struct figure_row *r, struct frame *f)
 
 /* Sets the exposure and draws the image to compare with: the reference row,
  * or exact rays. */
-static enum glint_status expose(struct figure_row *r, struct frame *f)
+static enum glint_status set_exposure(struct figure_row *r, struct frame *f)
 {
     enum glint_status status = GLINT_OK;
 
@@ -408,7 +408,7 @@ static enum glint_status expose(struct figure_row *r, struct frame *f)
     return f->exact_codes ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-static enum glint_status compare(struct figure_row *r, struct frame *f)
+static enum glint_status compare_frames(struct figure_row *r, struct frame *f)
 {
     if (!has_metric(r, ROW_PICTURE))
         return GLINT_OK;
@@ -446,11 +446,11 @@ static int measure_frame(struct figure_row *r)
     if (status == GLINT_OK)
         status = make_engine(r, &f, &error);
     if (status == GLINT_OK)
-        status = expose(r, &f);
+        status = set_exposure(r, &f);
     if (status == GLINT_OK)
         status = draw_rounds(r, &f);
     if (status == GLINT_OK)
-        status = compare(r, &f);
+        status = compare_frames(r, &f);
     if (status == GLINT_OK)
         write_frame(r, &f);
     free_frame(&f);
