@@ -375,7 +375,7 @@ struct thin_ray {
     double height[IMPORT_SURFACES]; /* height at each surface */
 };
 
-static double curvature(const struct imported_surface *s)
+static double compute_curvature(const struct imported_surface *s)
 {
     return s->radius == 0 ? 0 : 1 / s->radius;
 }
@@ -384,7 +384,7 @@ static double curvature(const struct imported_surface *s)
  * computed. */
 static double paraxial_curvature(const struct imported_surface *s)
 {
-    return s->shape.bend == GLINT_BEND_X ? 0 : curvature(s);
+    return s->shape.bend == GLINT_BEND_X ? 0 : compute_curvature(s);
 }
 
 /* Traces RAY through all surfaces. */
@@ -447,7 +447,7 @@ static bool drop_dummies(struct imported *lens)
  * equator returns the sag at the equator. */
 static double compute_sag(const struct imported_surface *s, double h)
 {
-    const double c = curvature(s);
+    const double c = compute_curvature(s);
     const double root = 1 - (1 + s->shape.conic) * c * c * h * h;
     double terms = 0;
 
@@ -822,10 +822,10 @@ static bool complete_lens(struct imported *lens)
             lens, 0,
             "the system is afocal; glint needs a lens that forms an image");
     if (!(f > 0))
-        return imported_fail(
-            lens, 0,
-            "focal length is %.6g mm; glint needs a lens that forms an image",
-            f * lens->unit_mm);
+        return imported_fail(lens, 0,
+                             "focal length is %.6g mm; glint takes lenses "
+                             "that form an image",
+                             f * lens->unit_mm);
     set_film(lens, f);
     if (!set_pupil(lens, f))
         return false;

@@ -232,7 +232,7 @@ static bool parse_head(struct seq *q)
 }
 
 /* Converts the first word to upper case. */
-static void capitalise(struct lines *l)
+static void capitalise_command(struct lines *l)
 {
     for (char *c = l->text + (l->word[0] - l->text); *c; c++)
         if (*c >= 'a' && *c <= 'z')
@@ -269,7 +269,7 @@ static bool parse_command(struct seq *q)
     struct imported_surface *const current = q->s;
     bool good;
 
-    capitalise(&q->lines);
+    capitalise_command(&q->lines);
     if (lines_is(l, "S") || lines_is(l, "SO") || lines_is(l, "SI"))
         return start_surface(q);
     if (!select_surface(q))
