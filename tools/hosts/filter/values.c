@@ -33,7 +33,7 @@ static const struct row rows[FILTER_MAX] = {
 
 /* Returns the type in hosts. A number without a default, such as the
  * f-number, is a text: "" means the lens's value. */
-static enum filter_type type_of(const struct glint_option *option)
+static enum filter_type find_type(const struct glint_option *option)
 {
     if (option->type == GLINT_OPTION_FLAG)
         return FILTER_SWITCH;
@@ -63,7 +63,7 @@ bool filter_parameter(int index, struct filter_parameter *p)
     if (!option)
         return true;
     p->help = option->help;
-    p->type = type_of(option);
+    p->type = find_type(option);
     p->low = option->low;
     p->high = row->high > 0 ? row->high : option->high;
     p->initial = option->initial;
@@ -102,7 +102,7 @@ void filter_values_copy(struct filter_values *to,
         to->text[i] = from->text[i] ? strdup(from->text[i]) : NULL;
 }
 
-static bool same_text(const char *a, const char *b)
+static bool is_same_text(const char *a, const char *b)
 {
     return strcmp(a ? a : "", b ? b : "") == 0;
 }
@@ -115,7 +115,7 @@ bool filter_values_serve(const struct filter_values *a,
     for (int i = 0; filter_parameter(i, &p); i++)
         if (!p.is_live &&
             (a->number[i] < b->number[i] || a->number[i] > b->number[i] ||
-             !same_text(a->text[i], b->text[i])))
+             !is_same_text(a->text[i], b->text[i])))
             return false;
     return true;
 }

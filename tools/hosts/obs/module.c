@@ -296,7 +296,7 @@ static void warn_once(struct flare *f, const char *text)
 
 /* Disables the filter in the source, which its user sees, and closes the
  * failed filter, so that it is opened again when the user enables it. */
-static void disable(struct flare *f)
+static void disable_filter(struct flare *f)
 {
     blog(LOG_ERROR, "glint: the filter is disabled: %s",
          filter_cause(f->filter));
@@ -362,7 +362,7 @@ static struct obs_source_frame *filter_video(void *ctx,
     if (filter_draw(f->filter, &image, elapsed_us(f, frame->timestamp)))
         f->last_ns = frame->timestamp;
     else
-        disable(f);
+        disable_filter(f);
     return frame;
 }
 

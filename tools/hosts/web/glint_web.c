@@ -46,16 +46,16 @@ static struct {
 } web;
 
 /* Records the reason of a failure. Returns 0. */
-static int fail(const char *reason)
+static int set_error(const char *reason)
 {
     snprintf(web.error.text, sizeof web.error.text, "%s", reason);
     return 0;
 }
 
-static int check(enum glint_status status)
+static int check_status(enum glint_status status)
 {
     if (status != GLINT_OK && !web.error.text[0])
-        fail(glint_status_text(status));
+        set_error(glint_status_text(status));
     return status == GLINT_OK;
 }
 
@@ -98,7 +98,7 @@ int web_set(const char *name, const char *text)
     }
     copy = strdup(text);
     if (!copy)
-        return fail("no memory");
+        return set_error("no memory");
     if (glint_options_set_text(&web.options, name, copy, &why) != GLINT_OK) {
         snprintf(web.error.text, sizeof web.error.text, "%s is %.160s, not %s",
                  name, why.text, text);
@@ -140,7 +140,7 @@ static int apply_coating(void)
     if (strcmp(text, "table") == 0)
         return 1;
     if (strcmp(text, "mixed") != 0) {
-        if (!check(glint_coatings_parse(coating, &n, text, &web.error)))
+        if (!check_status(glint_coatings_parse(coating, &n, text, &web.error)))
             return 0;
         glint_prescription_coat(&web.table, coating, n);
     } else if (web.table.n_mixed) {
@@ -165,7 +165,7 @@ static int move_groups(void)
         status = glint_prescription_zoom(&web.table, along, &web.error);
     if (status == GLINT_OK && o->focus > 0)
         status = glint_prescription_focus(&web.table, o->focus, &web.error);
-    return check(status);
+    return check_status(status);
 }
 
 /* Returns the bake options of the model, those of glint overlay; for a model
@@ -207,10 +207,10 @@ const char *web_open(double widest)
     while (from->name && strcmp(from->name, o->lens) != 0)
         from++;
     if (!from->name)
-        return fail("there is no such lens"), NULL;
-    if (!check(glint_prescription_parse(&web.table, from->text,
-                                        strlen(from->text), from->name,
-                                        &web.error)) ||
+        return set_error("there is no such lens"), NULL;
+    if (!check_status(glint_prescription_parse(&web.table, from->text,
+                                               strlen(from->text), from->name,
+                                               &web.error)) ||
         !move_groups() || !apply_coating())
         return NULL;
     web.is_model = widest > 0;
@@ -219,8 +219,8 @@ const char *web_open(double widest)
     else if (o->f_number > 0 &&
              (o->rays == GLINT_RAYS_EXACT || o->f_number < web.table.f_number))
         f = o->f_number;
-    if (f > 0 &&
-        !check(glint_prescription_set_f_number(&web.table, f, &web.error)))
+    if (f > 0 && !check_status(glint_prescription_set_f_number(&web.table, f,
+                                                               &web.error)))
         return NULL;
     b = bake_options();
     snprintf(web.name, sizeof web.name, "%s-%016llx.glint", web.table.name,
@@ -243,7 +243,7 @@ int web_model(void *data, size_t bytes)
     free(web.data);
     web.data = NULL;
     web.bytes = 0;
-    return fail(reason);
+    return set_error(reason);
 }
 
 int web_bake(void)
@@ -254,10 +254,10 @@ int web_bake(void)
     size_t bytes;
 
     if (!web.is_open)
-        return fail("no lens is open");
+        return set_error("no lens is open");
     web.error.text[0] = '\0';
-    return check(glint_bake(&web.table, &b, &data, &bytes, &report,
-                            &web.error)) &&
+    return check_status(glint_bake(&web.table, &b, &data, &bytes, &report,
+                                   &web.error)) &&
            web_model(data, bytes);
 }
 
@@ -288,11 +288,11 @@ static int set_up(struct glint_engine_camera *camera, bool exact)
         camera->waves =
             (struct glint_waves){GLINT_WAVES_COUNT, EXACT_WAVES, {0}};
     n = glint_waves_list(&camera->waves, nm);
-    return (!exact || check(glint_setup_init(
+    return (!exact || check_status(glint_setup_init(
                           &web.setup, &web.table, camera->n_blades,
                           camera->blade_rotation_deg, nm, n, &web.error))) &&
-           check(glint_engine_setup(&web.setup, exact ? NULL : &web.lens,
-                                    camera, &web.dirt, &web.error));
+           check_status(glint_engine_setup(&web.setup, exact ? NULL : &web.lens,
+                                           camera, &web.dirt, &web.error));
 }
 
 /* Cache of the responses (brightness of the flare) of recent lenses and
@@ -342,11 +342,11 @@ int web_size(int width, int height)
     web.error.text[0] = '\0';
     close_engine();
     if (!web.is_open || (!exact && !web.data))
-        return fail("there is no model of the lens");
+        return set_error("there is no model of the lens");
     web.projection = (struct glint_projection){0, {0}};
     if (o->projection == GLINT_PROJECTION_LENS &&
-        !check(glint_projection_of(&web.projection, &web.table, &miss_deg,
-                                   &web.error)))
+        !check_status(glint_projection_of(&web.projection, &web.table,
+                                          &miss_deg, &web.error)))
         return 0;
     glint_engine_defaults(&cfg, width, height);
     cfg.camera.iris.roundness = PHOTO_ROUNDNESS;
@@ -365,7 +365,7 @@ int web_size(int width, int height)
     cfg.cache = &cache;
     web.width = width;
     web.height = height;
-    return check(glint_engine_create(&web.engine, &cfg, &web.error));
+    return check_status(glint_engine_create(&web.engine, &cfg, &web.error));
 }
 
 static struct glint_image make_image(uint8_t *pixels)
@@ -469,9 +469,9 @@ int web_draw(uint8_t *pixels, int n, int quick)
     struct glint_image image;
 
     if (!web.engine)
-        return fail("there is no engine");
+        return set_error("there is no engine");
     if (n < WEB_FOUND || n > GLINT_ENGINE_MAX_LAMPS)
-        return fail("not 0 to 1024 lamps");
+        return set_error("not 0 to 1024 lamps");
     web.error.text[0] = '\0';
     image = make_image(pixels);
     if (n == WEB_FOUND) {
@@ -480,7 +480,7 @@ int web_draw(uint8_t *pixels, int n, int quick)
     } else
         for (int i = 0; i < n; i++) {
             if (!is_row(web.row[i]))
-                return fail("a lamp is out of range");
+                return set_error("a lamp is out of range");
             web.lamp[i] = make_lamp(web.row[i], (uint32_t)i + 1);
         }
     glint_engine_configure(&cfg, &web.options);
@@ -488,5 +488,6 @@ int web_draw(uint8_t *pixels, int n, int quick)
     glint_engine_elapsed(web.engine, quick ? QUICK_US : 0);
     if (quick)
         glint_engine_mark_cut(web.engine);
-    return check(glint_engine_draw(web.engine, web.lamp, n, &image, &report));
+    return check_status(
+        glint_engine_draw(web.engine, web.lamp, n, &image, &report));
 }
