@@ -21,7 +21,7 @@ bool tool_is_file_name(const char *argument)
     return is_file;
 }
 
-static uint32_t magic_of(const unsigned char *b)
+static uint32_t read_magic(const unsigned char *b)
 {
     return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 |
            (uint32_t)b[3] << 24;
@@ -44,7 +44,8 @@ bool tool_is_model(const char *path)
     if (fread(b, 1, sizeof b, file) < sizeof b)
         b[0] = 0;
     fclose(file);
-    return magic_of(b) == GLINT_MODEL_MAGIC || magic_of(b) == GLINT_ZOOM_MAGIC;
+    return read_magic(b) == GLINT_MODEL_MAGIC ||
+           read_magic(b) == GLINT_ZOOM_MAGIC;
 }
 
 /* Opens the model in MODEL->data. */
@@ -53,7 +54,7 @@ static enum glint_status open_data(struct model_file *model,
 {
     enum glint_status status;
 
-    if (model->bytes < 4 || magic_of(model->data) != GLINT_ZOOM_MAGIC)
+    if (model->bytes < 4 || read_magic(model->data) != GLINT_ZOOM_MAGIC)
         return glint_lens_open(&model->lens, model->data, model->bytes, reason);
     *reason = "no memory";
     model->zoom = malloc(sizeof *model->zoom);
@@ -87,7 +88,7 @@ int tool_model(const struct tool *tool, const char *path,
     return status == GLINT_E_MEMORY ? EXIT_RUNTIME : EXIT_LENS;
 }
 
-static double focal_at(struct glint_zoom_lens *z, int32_t along_q30)
+static double focal_length_at(struct glint_zoom_lens *z, int32_t along_q30)
 {
     glint_zoom_set(z, along_q30);
     return model_real_of(z->header.focal_mm);
@@ -110,7 +111,8 @@ enum glint_status model_file_zoom(struct model_file *model, double zoom,
     const double slack = 1.002;
     struct glint_zoom_lens *const z = model->zoom;
     const int32_t before_q30 = z->now_q30;
-    const double first = focal_at(z, 0), last = focal_at(z, whole_q30);
+    const double first = focal_length_at(z, 0),
+                 last = focal_length_at(z, whole_q30);
     int32_t low = 0, high = whole_q30;
 
     glint_zoom_set(z, before_q30);
@@ -128,7 +130,7 @@ enum glint_status model_file_zoom(struct model_file *model, double zoom,
     while (high - low > 1) {
         const int32_t middle = low + (high - low) / 2;
 
-        if ((focal_at(z, middle) < zoom) == (last > first))
+        if ((focal_length_at(z, middle) < zoom) == (last > first))
             low = middle;
         else
             high = middle;

@@ -53,7 +53,7 @@ model_outputs_of(const struct glint_lens *lens,
 
 /* Returns the number of 32-bit words that the bounding box of system S
  * occupies. */
-static size_t box_words(const struct glint_model_system *s)
+static size_t count_box_words(const struct glint_model_system *s)
 {
     size_t n = 0;
 
@@ -70,7 +70,7 @@ size_t model_span_bytes(const struct glint_lens *lens, struct model_span span)
         const struct glint_model_system *s = &lens->system[k];
         const struct glint_model_output *o = model_outputs_of(lens, s);
 
-        sum += sizeof *s + s->n_outputs * sizeof *o + 4 * box_words(s);
+        sum += sizeof *s + s->n_outputs * sizeof *o + 4 * count_box_words(s);
         for (uint32_t m = 0; m < s->n_outputs; m++)
             sum += 4 * (size_t)o[m].n_terms + (o[m].n_terms + 1U) / 2 * 4 -
                    2 * (o[m].n_narrow & ~1U);
@@ -93,7 +93,7 @@ void model_span_angles(const struct glint_lens *lens, struct model_span span,
     range_deg[1] = model_degrees(hi_q30);
 }
 
-static double error_of(uint16_t stored)
+static double decode_error(uint16_t stored)
 {
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
@@ -101,15 +101,15 @@ static double error_of(uint16_t stored)
 static void add_errors(struct model_errors *e,
                        const struct glint_model_output *o, double unit)
 {
-    const double rms = error_of(o->rms);
+    const double rms = decode_error(o->rms);
     const double step = ldexp(unit, o->exponent);
 
     e->n++;
     e->terms += (o->n_terms - e->terms) / e->n;
     e->mean2 += (rms * rms - e->mean2) / e->n;
-    e->p50 += (error_of(o->p50) - e->p50) / e->n;
-    e->p99 = fmax(e->p99, error_of(o->p99));
-    e->max = fmax(e->max, error_of(o->max));
+    e->p50 += (decode_error(o->p50) - e->p50) / e->n;
+    e->p99 = fmax(e->p99, decode_error(o->p99));
+    e->max = fmax(e->max, decode_error(o->max));
     e->bound = fmax(e->bound, o->bound * step);
     e->rounding = fmax(e->rounding, ldexp(o->rounding_q8 * step, -8));
 }
