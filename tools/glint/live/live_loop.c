@@ -254,15 +254,15 @@ static int handle_device_loss(struct live *l, const char *what,
     return -1;
 }
 
-static int lose_camera(struct live *l, enum glint_status status,
-                       const char *why)
+static int handle_camera_loss(struct live *l, enum glint_status status,
+                              const char *why)
 {
     live_input_close(&l->in);
     return handle_device_loss(l, "camera", status, why);
 }
 
-static int lose_output(struct live *l, enum glint_status status,
-                       const char *why)
+static int handle_output_loss(struct live *l, enum glint_status status,
+                              const char *why)
 {
     struct glint_error unsaid;
 
@@ -341,7 +341,7 @@ static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
     adapt_quality(l, at_us[3] - at_us[0],
                   l->n_shown ? frame->n_dropped + frame->n_late : 0);
     l->n_shown++;
-    return status == GLINT_OK ? -1 : lose_output(l, status, error.text);
+    return status == GLINT_OK ? -1 : handle_output_loss(l, status, error.text);
 }
 
 /* ---------------------------------------------------------------- the loop */
@@ -369,7 +369,7 @@ static int restart_input(struct live *l)
     if (code != EXIT_OK)
         return code;
     status = start_input(l, &error);
-    return status == GLINT_OK ? -1 : lose_camera(l, status, error.text);
+    return status == GLINT_OK ? -1 : handle_camera_loss(l, status, error.text);
 }
 
 /* Gets a frame from the input and shows it, if there is one. Returns -1 to
@@ -384,7 +384,7 @@ static int process_frame(struct live *l)
     int code = -1;
 
     if (status != GLINT_OK)
-        return lose_camera(l, status, error.text);
+        return handle_camera_loss(l, status, error.text);
     report_signal(l);
     if (!frame.image.plane[0]) {
         record_frame(l, &frame, NULL);
