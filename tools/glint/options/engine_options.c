@@ -94,7 +94,7 @@ static void find_default(const struct glint_options *defaults, int i,
 
 /* Returns the text with which a range from LOW begins; START is the buffer
  * for it. */
-static const char *range_start(double low, char start[32])
+static const char *format_range_start(double low, char start[32])
 {
     if (low > 0 && low < 1e-5)
         return "above 0, up to ";
@@ -116,8 +116,8 @@ static void write_limits(struct page *page,
 
     find_default(defaults, i, &value, &text);
     if (is_number && row->high < INT_MAX)
-        snprintf(range, sizeof range, "%s%.10g", range_start(row->low, start),
-                 row->high);
+        snprintf(range, sizeof range, "%s%.10g",
+                 format_range_start(row->low, start), row->high);
     snprintf(all, sizeof all, "%s", range);
     if (!strstr(row->help, "default")) {
         const char *const comma = *range ? ", " : "";

@@ -149,7 +149,7 @@ char *text_lines_raw(struct text_lines *lines)
 }
 
 /* Returns TEXT without leading and trailing blanks. */
-static char *trim(char *text)
+static char *trim_blanks(char *text)
 {
     char *end = text + strlen(text);
 
@@ -164,7 +164,7 @@ char *text_lines_next(struct text_lines *lines)
     char *line;
 
     while ((line = text_lines_raw(lines))) {
-        line = trim(line);
+        line = trim_blanks(line);
         if (*line && *line != '#')
             return line;
     }
@@ -223,7 +223,7 @@ int text_fields(char *line, char **field, int max)
         line = end ? end + 1 : NULL;
         if (n == max)
             return n + 1;
-        field[n] = trim(from);
+        field[n] = trim_blanks(from);
     }
     return n;
 }
