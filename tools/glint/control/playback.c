@@ -9,7 +9,7 @@ void playback_init(struct playback *playback)
 }
 
 /* Jumps to frame AT, clamped to the valid frames; the next picture shows it. */
-static void jump(struct playback *p, double at)
+static void jump_to_frame(struct playback *p, double at)
 {
     p->at = fmax(0, fmin(at, p->last));
     p->has_shown = false;
@@ -20,10 +20,11 @@ bool playback_take(struct playback *playback, const struct control_line *line)
     switch (line->verb) {
     case CONTROL_STEP:
         playback->is_paused = true;
-        jump(playback, floor(playback->at) + (line->n ? line->v[0] : 1));
+        jump_to_frame(playback,
+                      floor(playback->at) + (line->n ? line->v[0] : 1));
         return true;
     case CONTROL_JUMP:
-        jump(playback, line->v[0]);
+        jump_to_frame(playback, line->v[0]);
         return true;
     case CONTROL_PLAY:
         playback->is_paused = false;
@@ -35,7 +36,7 @@ bool playback_take(struct playback *playback, const struct control_line *line)
         return true;
     case CONTROL_STOP:
         playback->is_paused = true;
-        jump(playback, 0);
+        jump_to_frame(playback, 0);
         return true;
     default:
         return false;

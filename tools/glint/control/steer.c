@@ -15,14 +15,14 @@
 #define LEAST_SCALE 1e-6
 #define MOST_SCALE  1e6
 
-static int n_environments(const struct steer *s)
+static int count_environments(const struct steer *s)
 {
     return (int)s->model.header->n_environments;
 }
 
 static void open_environments(struct steer *steer)
 {
-    for (int i = 0; i < n_environments(steer); i++) {
+    for (int i = 0; i < count_environments(steer); i++) {
         const struct glint_scene_environment *const e =
             &steer->model.environment[i];
 
@@ -40,14 +40,14 @@ static enum glint_status check_environment(const struct steer *steer,
 {
     struct suggest suggest;
 
-    if (n_environments(steer) == 0)
+    if (count_environments(steer) == 0)
         return control_fail(error, where, line->column,
                             "the scene has no environment");
     if (line->verb != CONTROL_MAP ||
         glint_scene_find_environment(&steer->model, line->name[0]) >= 0)
         return GLINT_OK;
     suggest_begin(&suggest, line->name[0]);
-    for (int i = 0; i < n_environments(steer); i++) {
+    for (int i = 0; i < count_environments(steer); i++) {
         const char *const name = steer->model.environment[i].name;
 
         suggest_try(&suggest, name, strlen(name));
@@ -89,8 +89,8 @@ static enum glint_status change_environment(struct steer *steer,
     else if (line->verb == CONTROL_MAP)
         steer->shown =
             glint_scene_find_environment(&steer->model, line->name[0]);
-    else if (n_environments(steer) > 0)
-        steer->shown = (steer->shown + 1) % n_environments(steer);
+    else if (count_environments(steer) > 0)
+        steer->shown = (steer->shown + 1) % count_environments(steer);
     return show_environment(steer, scene);
 }
 
@@ -112,8 +112,8 @@ static bool find_kind(const struct steer *steer, const char *name,
     return false;
 }
 
-static bool names_kind(const struct steer *s, const struct control_line *line,
-                       enum glint_scene_kind *kind)
+static bool is_kind_name(const struct steer *s, const struct control_line *line,
+                         enum glint_scene_kind *kind)
 {
     return (line->verb == CONTROL_SHOW || line->verb == CONTROL_HIDE ||
             line->verb == CONTROL_SIZE) &&
@@ -309,12 +309,12 @@ static void apply_motion(const struct steer *steer, struct glint_scene *scene)
 /* ------------------------------------------------------------------- opening
  */
 
-static int n_objects(const struct steer *s)
+static int count_objects(const struct steer *s)
 {
     return (int)s->model.header->n_objects;
 }
 
-static int n_materials(const struct steer *s)
+static int count_materials(const struct steer *s)
 {
     return (int)s->model.header->n_materials;
 }
@@ -352,11 +352,11 @@ enum glint_status steer_open(struct steer *steer,
         return GLINT_E_MEMORY;
     }
     open_environments(steer);
-    for (int i = 0; i < n_objects(steer); i++)
+    for (int i = 0; i < count_objects(steer); i++)
         steer->thing[i] = (struct steer_thing){!model->object[i].hidden,
                                                (int)model->object[i].material,
                                                model->object[i].radius};
-    for (int i = 0; i < n_materials(steer); i++)
+    for (int i = 0; i < count_materials(steer); i++)
         set_look(model, i, &steer->look[i]);
     return GLINT_OK;
 }
@@ -373,7 +373,7 @@ void steer_close(struct steer *steer)
  */
 
 /* Returns the name of object or material I. */
-static const char *name_of(const struct steer *s, bool is_material, int i)
+static const char *find_name(const struct steer *s, bool is_material, int i)
 {
     return is_material ? s->model.material[i].name : s->model.object[i].name;
 }
@@ -385,7 +385,7 @@ static enum glint_status find_index(const struct steer *s,
                                     struct glint_error *error, int *index)
 {
     const char *const name = line->name[k];
-    const int n = is_material ? n_materials(s) : n_objects(s);
+    const int n = is_material ? count_materials(s) : count_objects(s);
     struct suggest suggest;
 
     *index = is_material ? glint_scene_find_material(&s->model, name)
@@ -394,7 +394,7 @@ static enum glint_status find_index(const struct steer *s,
         return GLINT_OK;
     suggest_begin(&suggest, name);
     for (int i = 0; i < n; i++) {
-        const char *const known = name_of(s, is_material, i);
+        const char *const known = find_name(s, is_material, i);
 
         suggest_try(&suggest, known, strlen(known));
     }
@@ -453,7 +453,7 @@ enum glint_status steer_check(const struct steer *steer,
     default:
         break;
     }
-    if (names_kind(steer, line, &kind))
+    if (is_kind_name(steer, line, &kind))
         return GLINT_OK;
     status = find_indices(steer, line, where, error, index);
     if (status != GLINT_OK)
@@ -494,7 +494,7 @@ static void begin_orbit(struct steer *s)
     double mean[3] = {0, 0, 0}, ahead[3], distance = 0;
     int n = 0;
 
-    for (int i = 0; i < n_objects(s); i++) {
+    for (int i = 0; i < count_objects(s); i++) {
         const struct glint_scene_object *const o = &s->model.object[i];
 
         if (o->kind == GLINT_OBJECT_PLANE || o->hidden)
@@ -606,7 +606,7 @@ static enum glint_status change_appearance(struct steer *s,
                                            int index)
 {
     const bool all = !*line->name[0];
-    const int end = all ? n_materials(s) : index + 1;
+    const int end = all ? count_materials(s) : index + 1;
     enum glint_status status = GLINT_OK;
     int i = all ? 0 : index;
 
@@ -636,7 +636,7 @@ static enum glint_status change_appearance(struct steer *s,
 /* Returns the first visible object that is not a shadow catcher, or -1. */
 static int first_object(const struct steer *s)
 {
-    for (int i = 0; i < n_objects(s); i++)
+    for (int i = 0; i < count_objects(s); i++)
         if (s->thing[i].is_shown && s->model.object[i].catcher_q15 == 0)
             return i;
     return -1;
@@ -654,7 +654,7 @@ static enum glint_status change_material(struct steer *s,
     if (i < 0)
         return GLINT_OK;
     if (line->is_change)
-        material = s->thing[i].material + 1 < n_materials(s)
+        material = s->thing[i].material + 1 < count_materials(s)
                        ? s->thing[i].material + 1
                        : 0;
     status = glint_scene_set_material(scene, i, material);
@@ -706,7 +706,7 @@ static enum glint_status execute_line(struct steer *s,
     default:
         break;
     }
-    if (names_kind(s, line, &kind))
+    if (is_kind_name(s, line, &kind))
         return change_kind(s, scene, line, kind);
     status = find_indices(s, line, where, error, index);
     if (status != GLINT_OK)
@@ -752,7 +752,7 @@ enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
 
 void steer_apply(const struct steer *steer, struct glint_scene *scene)
 {
-    for (int i = 0; i < n_objects(steer); i++) {
+    for (int i = 0; i < count_objects(steer); i++) {
         const struct steer_thing *const t = &steer->thing[i];
 
         glint_scene_show(scene, i, t->is_shown);
@@ -760,9 +760,9 @@ void steer_apply(const struct steer *steer, struct glint_scene *scene)
         if (t->radius)
             glint_scene_set_radius(scene, i, t->radius);
     }
-    for (int i = 0; i < n_materials(steer); i++)
+    for (int i = 0; i < count_materials(steer); i++)
         glint_scene_set_look(scene, i, &steer->look[i]);
-    if (n_environments(steer) > 0)
+    if (count_environments(steer) > 0)
         show_environment(steer, scene);
     apply_motion(steer, scene);
     if (steer->orbit.is_there)
