@@ -188,7 +188,7 @@ static struct counts count_contents(const struct environment_file *file)
     return n;
 }
 
-static double degrees(int32_t sine_q30)
+static double to_degrees(int32_t sine_q30)
 {
     return 180 / GLINT_PI * asin(ldexp(sine_q30, -30));
 }
@@ -219,7 +219,7 @@ static void print_json(const struct environment_file *file,
                    "{toward: [%.6f, %.6f, %.6f], radius_deg: %.4f, "
                    "rgb: [%.6g, %.6g, %.6g]}",
                    ldexp(l->toward_q30[0], -30), ldexp(l->toward_q30[1], -30),
-                   ldexp(l->toward_q30[2], -30), degrees(l->radius_q30),
+                   ldexp(l->toward_q30[2], -30), to_degrees(l->radius_q30),
                    glint_real_value(l->rgb[0]), glint_real_value(l->rgb[1]),
                    glint_real_value(l->rgb[2]));
     }
@@ -265,7 +265,7 @@ static void print_text(const struct environment_file *file,
                "facing it gets %.4g "
                "%.4g %.4g\n",
                ldexp(l->toward_q30[0], -30), ldexp(l->toward_q30[1], -30),
-               ldexp(l->toward_q30[2], -30), degrees(l->radius_q30),
+               ldexp(l->toward_q30[2], -30), to_degrees(l->radius_q30),
                glint_real_value(l->rgb[0]), glint_real_value(l->rgb[1]),
                glint_real_value(l->rgb[2]));
     }

@@ -140,8 +140,8 @@ static const char *split_line(struct text_lines *lines, char *line,
                                          : "qw, qx, qy and qz belong together";
 }
 
-static const char *parse(const struct poses *p, struct text_lines *lines,
-                         char *line, struct pose *pose)
+static const char *parse_pose(const struct poses *p, struct text_lines *lines,
+                              char *line, struct pose *pose)
 {
     const bool is_object = *line == '{';
     double v[COLUMNS] = {-1};
@@ -189,7 +189,7 @@ static int compare_frames(const void *a, const void *b)
 
 /* Inserts POSE: at the end for a file, for a pipe after the poses of its
  * frame. */
-static const char *insert(struct poses *p, const struct pose *pose)
+static const char *insert_pose(struct poses *p, const struct pose *pose)
 {
     struct pose *more;
     int i = p->n;
@@ -220,8 +220,8 @@ static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
 
     if (lines->number == 1 && strncmp(line, "frame", 5) == 0)
         return check_heading(line);
-    cause = parse(p, lines, line, &pose);
-    return cause ? cause : insert(p, &pose);
+    cause = parse_pose(p, lines, line, &pose);
+    return cause ? cause : insert_pose(p, &pose);
 }
 
 /* --------------------------------------------------------------------- file */
