@@ -509,12 +509,12 @@ static double top_px(const struct figure *f)
     return f->middle + 0.5 * f->height_px + BELOW_PX;
 }
 
-static double per_mm(double mm)
+static double length_factor(double mm)
 {
     return mm < 1 ? 1e3 : 1;
 }
 
-static const char *unit(double mm)
+static const char *length_unit(double mm)
 {
     return mm < 1 ? "µm" : "mm";
 }
@@ -556,9 +556,9 @@ static void draw_one(const struct figure *f, const struct spots *s, int field,
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
             "fill=\"#444\">side %.4g %s</text>\n",
             cx, cy - 0.5 * SPOT_PX - 7, field_colour[field], theta,
-            per_mm(s->rms_mm) * s->rms_mm, unit(s->rms_mm), cx,
-            cy + 0.5 * SPOT_PX + 15, per_mm(half_mm) * 2 * half_mm,
-            unit(half_mm));
+            length_factor(s->rms_mm) * s->rms_mm, length_unit(s->rms_mm), cx,
+            cy + 0.5 * SPOT_PX + 15, length_factor(half_mm) * 2 * half_mm,
+            length_unit(half_mm));
 }
 
 /* Draws the legend of colours, bottom right below the spot diagrams. */
