@@ -114,7 +114,8 @@ static int parse_option(struct tool *tool, struct bake *b, int c,
     return ok ? -1 : tool_refuse(tool, name, optarg);
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct bake *b)
 {
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
@@ -295,7 +296,7 @@ static int bake_lens(struct tool *tool, int argc, char **argv)
 
     tool->help = help;
     glint_bake_defaults(&b.options);
-    code = parse(tool, argc, argv, &b);
+    code = parse_options(tool, argc, argv, &b);
     if (code >= 0)
         return code;
     code = tool_start(tool);

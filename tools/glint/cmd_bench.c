@@ -29,7 +29,7 @@ static int parse_option(struct bench *b, int c)
     }
 }
 
-static int parse(struct bench *b, int argc, char **argv)
+static int parse_options(struct bench *b, int argc, char **argv)
 {
     const struct option *const options = engine_getopt(
         b->tool, b->subject->groups, &b->base.options, b->subject->own);
@@ -79,7 +79,7 @@ int cmd_bench(int argc, char **argv)
     b->width = 1920;
     b->height = 1080;
     settings_defaults(&b->base);
-    code = parse(b, argc, argv);
+    code = parse_options(b, argc, argv);
     if (code < 0)
         code = tool_start(&tool);
     if (code == EXIT_OK && tool.workers)

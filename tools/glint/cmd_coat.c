@@ -75,7 +75,7 @@ static struct reflected compute_reflectance(const struct coat *c, double nm,
 }
 
 /* Returns wavelength K of the table, K = 0 .. STEPS, nm. */
-static double nm_at(const struct coat *c, int k)
+static double wavelength_nm(const struct coat *c, int k)
 {
     return c->band_nm[0] + (c->band_nm[1] - c->band_nm[0]) * k / STEPS;
 }
@@ -89,12 +89,12 @@ static void print_text(const struct coat *c)
         printf("  %5g deg", c->angle_deg[a]);
     printf("\n");
     for (int k = 0; k <= STEPS; k += 2) {
-        printf("%8.1f", nm_at(c, k));
+        printf("%8.1f", wavelength_nm(c, k));
         for (int a = 0; a < c->n_angles; a++)
-            printf(
-                "  %7.3f %%",
-                100 *
-                    compute_reflectance(c, nm_at(c, k), c->angle_deg[a]).both);
+            printf("  %7.3f %%",
+                   100 * compute_reflectance(c, wavelength_nm(c, k),
+                                             c->angle_deg[a])
+                             .both);
         printf("\n");
     }
 }
@@ -112,10 +112,10 @@ static void print_json(const struct coat *c)
     for (int k = 0; k <= STEPS; k++)
         for (int a = 0; a < c->n_angles; a++) {
             const struct reflected r =
-                compute_reflectance(c, nm_at(c, k), c->angle_deg[a]);
+                compute_reflectance(c, wavelength_nm(c, k), c->angle_deg[a]);
 
             json_write(&json, "{nm: %g, deg: %g, s: %.9g, p: %.9g}",
-                       nm_at(c, k), c->angle_deg[a], r.s, r.p);
+                       wavelength_nm(c, k), c->angle_deg[a], r.s, r.p);
         }
     json_write(&json, "]}\n");
 }
@@ -214,7 +214,7 @@ static void write_plot(const struct coat *c, FILE *file)
     plot_close(file);
 }
 
-static int save(const struct tool *tool, const struct coat *c)
+static int save_plot(const struct tool *tool, const struct coat *c)
 {
     char *text = NULL;
     size_t bytes = 0;
@@ -255,7 +255,8 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     return good ? -1 : -2;
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct coat *o)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct coat *o)
 {
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
@@ -344,7 +345,7 @@ int cmd_coat(int argc, char **argv)
                      .n_angles = 5,
                      .angle_deg = {0, 15, 30, 45, 60},
                      .band_nm = {380, 780}};
-    int code = parse(&tool, argc, argv, &c);
+    int code = parse_options(&tool, argc, argv, &c);
 
     if (code >= 0)
         return code;
@@ -356,5 +357,5 @@ int cmd_coat(int argc, char **argv)
         print_json(&c);
     else if (!tool.quiet)
         print_text(&c);
-    return c.output ? save(&tool, &c) : EXIT_OK;
+    return c.output ? save_plot(&tool, &c) : EXIT_OK;
 }

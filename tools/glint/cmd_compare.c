@@ -84,8 +84,8 @@ static bool has_floats(const char *name)
     return glint_picture_is_float(name) || strcmp(name, "-") == 0;
 }
 
-static double exposure_for(const struct asked *a,
-                           const struct glint_float_image *reference)
+static double choose_exposure(const struct asked *a,
+                              const struct glint_float_image *reference)
 {
     const bool codes = !has_floats(a->name[0]) && !has_floats(a->name[1]);
 
@@ -94,10 +94,10 @@ static double exposure_for(const struct asked *a,
     return codes && !a->is_auto ? 1 : glint_measure_exposure(reference);
 }
 
-static int measure(const struct tool *tool, const struct asked *a,
-                   struct glint_float_image image[2])
+static int measure_images(const struct tool *tool, const struct asked *a,
+                          struct glint_float_image image[2])
 {
-    const double exposure = exposure_for(a, &image[0]);
+    const double exposure = choose_exposure(a, &image[0]);
     const bool identical = is_identical(image);
     struct glint_measure m;
 
@@ -110,7 +110,7 @@ static int measure(const struct tool *tool, const struct asked *a,
     return EXIT_OK;
 }
 
-static int compare(const struct tool *tool, const struct asked *a)
+static int compare_files(const struct tool *tool, const struct asked *a)
 {
     struct glint_float_image image[2] = {{0, 0, NULL}, {0, 0, NULL}};
     struct glint_error error = {""};
@@ -131,7 +131,7 @@ static int compare(const struct tool *tool, const struct asked *a)
         code = EXIT_INPUT;
     }
     if (code == EXIT_OK)
-        code = measure(tool, a, image);
+        code = measure_images(tool, a, image);
     free(image[0].rgb);
     free(image[1].rgb);
     return code;
@@ -172,5 +172,5 @@ int cmd_compare(int argc, char **argv)
         return code;
     a.name[0] = argv[optind];
     a.name[1] = argv[optind + 1];
-    return compare(&tool, &a);
+    return compare_files(&tool, &a);
 }

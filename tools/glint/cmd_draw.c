@@ -74,7 +74,8 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     return good ? -1 : -2;
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct draw *o)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct draw *o)
 {
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
@@ -108,7 +109,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct draw *o)
     return code == EXIT_OK ? -1 : code;
 }
 
-static int save(const struct tool *tool, const struct draw *o)
+static int save_drawing(const struct tool *tool, const struct draw *o)
 {
     char *text = NULL;
     size_t bytes = 0;
@@ -125,7 +126,7 @@ static int save(const struct tool *tool, const struct draw *o)
     return EXIT_OK;
 }
 
-static int draw(struct tool *tool, struct draw *o, const char *name)
+static int draw_lens(struct tool *tool, struct draw *o, const char *name)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -142,9 +143,9 @@ static int draw(struct tool *tool, struct draw *o, const char *name)
     o->drawing.focus_m = o->zoom.focus_m;
     n = glint_ghost_list(&o->lens, NULL, 0);
     if (o->drawing.ghost >= n)
-        return tool_usage(tool, "%s has %d ghosts, numbered 0 .. %d",
-                          o->lens.name, n, n - 1);
-    return save(tool, o);
+        return tool_usage(tool, "%s has %d ghosts, 0 .. %d", o->lens.name, n,
+                          n - 1);
+    return save_drawing(tool, o);
 }
 
 int cmd_draw(int argc, char **argv)
@@ -154,12 +155,12 @@ int cmd_draw(int argc, char **argv)
     int code;
 
     lens_drawing_defaults(&o.drawing, &o.lens);
-    code = parse(&tool, argc, argv, &o);
+    code = parse_options(&tool, argc, argv, &o);
     if (code >= 0)
         return code;
     code = tool_start(&tool);
     if (code == EXIT_OK)
-        code = draw(&tool, &o, argv[optind]);
+        code = draw_lens(&tool, &o, argv[optind]);
     tool_finish(&tool);
     return code;
 }

@@ -107,7 +107,7 @@ static bool parse_option(struct explain_command *c, int option,
     return false;
 }
 
-static int check(struct tool *tool, const struct explain_command *c)
+static int check_options(struct tool *tool, const struct explain_command *c)
 {
     const struct settings *s = &c->drawing.line.settings;
 
@@ -133,8 +133,8 @@ static int check(struct tool *tool, const struct explain_command *c)
     return -1;
 }
 
-static int parse(struct tool *tool, int argc, char **argv,
-                 struct explain_command *c)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct explain_command *c)
 {
     const struct option *const options =
         engine_getopt(tool, ENGINE_ALL, &c->drawing.line.settings.options, own);
@@ -163,12 +163,12 @@ static int parse(struct tool *tool, int argc, char **argv,
     if (code >= 0)
         return code;
     c->input = argv[optind]; /* NULL if there is no argument */
-    return check(tool, c);
+    return check_options(tool, c);
 }
 
 /* ------------------------------------------------------------------- frame */
 
-static int load(struct tool *tool, struct explain_command *c)
+static int load_input(struct tool *tool, struct explain_command *c)
 {
     struct glint_error error = {""};
     enum glint_status status;
@@ -231,9 +231,10 @@ static enum glint_status draw_linear(struct explain_command *c)
 /* ------------------------------------------------------------------ result */
 
 /* Saves the image of SCENE, or that of the flare if SCENE is NULL. */
-static int save(struct tool *tool, const struct explain_command *c,
-                struct glint_explain *e, const struct explain_title *title,
-                const struct explained_scene *scene)
+static int save_picture(struct tool *tool, const struct explain_command *c,
+                        struct glint_explain *e,
+                        const struct explain_title *title,
+                        const struct explained_scene *scene)
 {
     struct glint_error error = {""};
     struct glint_image marked = {.plane = {NULL}};
@@ -290,7 +291,7 @@ static int print_scene(struct tool *tool, const struct explain_command *c,
         printf(flare ? "\n" : "");
     }
     if (c->output)
-        code = save(tool, c, NULL, NULL, &scene);
+        code = save_picture(tool, c, NULL, NULL, &scene);
     explained_scene_close(&scene);
     return code;
 }
@@ -330,7 +331,7 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
         overlay_say_none(drawing, false, stderr);
     }
     if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
-        code = save(tool, c, &e, &title, NULL);
+        code = save_picture(tool, c, &e, &title, NULL);
     if (code == EXIT_OK && (c->ghosts || c->sheet))
         code = save_ghosts(tool, c, &e);
     glint_explain_close(&e);
@@ -364,7 +365,7 @@ static int check_apart(const struct tool *tool, const struct explain_command *c)
     return apart_check(tool, &files);
 }
 
-static int run(struct tool *tool, struct explain_command *c)
+static int explain_frame(struct tool *tool, struct explain_command *c)
 {
     const bool linear =
         c->picture == LINEAR || (c->picture == AUTO && c->width &&
@@ -380,7 +381,7 @@ static int run(struct tool *tool, struct explain_command *c)
     if (code == EXIT_OK)
         code = drawing_open(tool, &c->drawing);
     if (code == EXIT_OK)
-        code = load(tool, c);
+        code = load_input(tool, c);
     if (code == EXIT_OK)
         code = drawing_size(tool, &c->drawing, c->image.width, c->image.height);
     if (code != EXIT_OK)
@@ -407,11 +408,11 @@ int cmd_explain(int argc, char **argv)
     drawing_line_defaults(&c->drawing.line);
     c->drawing.line.is_still = true;
     c->top = 20;
-    code = parse(&tool, argc, argv, c);
+    code = parse_options(&tool, argc, argv, c);
     if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = run(&tool, c);
+            code = explain_frame(&tool, c);
         tool_finish(&tool);
     }
     drawing_close(&c->drawing);

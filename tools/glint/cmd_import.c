@@ -100,7 +100,8 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     return good ? -1 : -2;
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct import *o)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct import *o)
 {
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
@@ -205,8 +206,8 @@ static void print_json(const struct imported *lens,
     json_write(&json, "]}\n");
 }
 
-static int save(const struct tool *tool, const struct import *o,
-                const char *text, size_t bytes)
+static int save_table(const struct tool *tool, const struct import *o,
+                      const char *text, size_t bytes)
 {
     struct glint_prescription read;
     struct glint_error error = {""};
@@ -254,7 +255,7 @@ static int import_file(struct tool *tool, struct import *o, const char *path)
         fprintf(stderr, "glint import: %s\n", o->lens.error);
         return EXIT_INPUT;
     }
-    code = save(tool, o, text, bytes);
+    code = save_table(tool, o, text, bytes);
     free(text);
     return code;
 }
@@ -267,7 +268,7 @@ int cmd_import(int argc, char **argv)
 
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    code = parse(&tool, argc, argv, o);
+    code = parse_options(&tool, argc, argv, o);
     if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)

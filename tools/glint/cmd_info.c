@@ -226,7 +226,8 @@ struct asked {
     const char *poses; /* file of poses to print; NULL: none */
 };
 
-static int parse(struct tool *tool, int argc, char **argv, struct asked *asked)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct asked *asked)
 {
     static const struct option options[] = {
         {"f-number", required_argument, NULL, 'f'},
@@ -303,7 +304,7 @@ static int print_non_lens(const struct tool *tool, const char *path, bool stop,
     if (is_motion)
         return print_motion(tool, path, poses);
     if (poses)
-        return tool_usage(tool, "--poses needs a motion");
+        return tool_usage(tool, "--poses are of a motion");
     return is_scene    ? print_scene(tool, path)
            : is_around ? print_environment(tool, path)
            : is_stone  ? print_medium(tool, path)
@@ -341,7 +342,7 @@ int cmd_info(int argc, char **argv)
     struct tool tool = {.name = "info", .help = help};
     struct asked asked = {.coating = {.kind = COATING_TABLE}};
     struct info *info;
-    int code = parse(&tool, argc, argv, &asked);
+    int code = parse_options(&tool, argc, argv, &asked);
 
     if (code >= 0)
         return code;

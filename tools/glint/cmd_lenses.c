@@ -409,7 +409,7 @@ static int run_list(struct lenses *l)
     return l->code;
 }
 
-static int parse(struct lenses *l, int argc, char **argv)
+static int parse_options(struct lenses *l, int argc, char **argv)
 {
     static const struct option options[] = {
         {"models", required_argument, NULL, 'm'},
@@ -461,7 +461,7 @@ int cmd_lenses(int argc, char **argv)
 {
     struct tool tool = {.name = "lenses", .help = help, .help_end = help_end};
     struct lenses l = {.tool = &tool, .json = {.to = stdout}};
-    int code = parse(&l, argc, argv);
+    int code = parse_options(&l, argc, argv);
 
     if (code < 0) {
         code = tool_start(&tool);

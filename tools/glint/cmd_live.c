@@ -317,8 +317,8 @@ static int check_apart(const struct tool *tool, const struct live_options *o,
 /* Reads options into INTO: first from the file of --config, then from the
  * command line, which overrides the file. CONFIG owns the strings of the
  * file. Returns -1 or an exit code. */
-static int parse(struct line *line, struct config *config,
-                 struct live_options *into)
+static int parse_options(struct line *line, struct config *config,
+                         struct live_options *into)
 {
     const char *path;
     int code;
@@ -339,14 +339,15 @@ static int parse(struct line *line, struct config *config,
     return code < 0 ? check_apart(line->tool, into, path) : code;
 }
 
-static int reread(void *ctx, struct tool *tool, struct live_options *into)
+static int reread_options(void *ctx, struct tool *tool,
+                          struct live_options *into)
 {
     struct line *line = ctx;
 
     (void)tool;
     /* Open drawings have no pointers to the strings of AGAIN. */
     config_free(&line->again);
-    return parse(line, &line->again, into);
+    return parse_options(line, &line->again, into);
 }
 
 static int list_cameras(struct tool *tool, const struct live_options *o)
@@ -379,13 +380,13 @@ int cmd_live(int argc, char **argv)
                             &o->drawing.line.settings.options, own);
     line.config.options = options;
     line.again = line.config;
-    code = parse(&line, &line.config, o);
+    code = parse_options(&line, &line.config, o);
     if (code < 0 && (o->list_devices || o->list_formats))
         code = list_cameras(&tool, o);
     else if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = live_run(&tool, o, reread, &line);
+            code = live_run(&tool, o, reread_options, &line);
         tool_finish(&tool);
     }
     drawing_close(&o->drawing);

@@ -236,8 +236,9 @@ static int check_line(const struct tool *tool, int argc, char **argv,
 /* Parses the command line and moves its inputs to ARGV[optind] on. OUTPUT:
  * the output file; NULL: as given by -o; if that is a folder, it is stored
  * in *FOLDER. */
-static int parse(struct tool *tool, int argc, char **argv, struct overlay *o,
-                 const char *output, const char **folder)
+static int parse_inputs(struct tool *tool, int argc, char **argv,
+                        struct overlay *o, const char *output,
+                        const char **folder)
 {
     const struct option *const options =
         engine_getopt(tool, ENGINE_ALL, &o->drawing.line.settings.options, own);
@@ -418,7 +419,7 @@ static void draw_nothing(struct settings *s, bool is_zoomed)
     GLINT_OPTION_GIVEN(o, exposure) = true;
 }
 
-static int run(struct tool *tool, struct overlay *o)
+static int overlay_input(struct tool *tool, struct overlay *o)
 {
     int code = check_output(tool, o);
 
@@ -515,14 +516,14 @@ static int overlay_line(int argc, char **argv, const char *output)
     drawing_line_defaults(&o->drawing.line);
     o->start_number = o->transfer = -1;
     o->last = o->warm_up = INT_MAX;
-    code = parse(&tool, argc, argv, o, output, &folder);
+    code = parse_inputs(&tool, argc, argv, o, output, &folder);
     if (code < 0 && folder)
         code = overlay_folder(&tool, argv, optind, argc - optind, folder,
                               &o->drawing.line.settings.options);
     else if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = run(&tool, o);
+            code = overlay_input(&tool, o);
         tool_finish(&tool);
     }
     overlay_y4m_close(o);

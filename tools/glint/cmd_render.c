@@ -102,7 +102,8 @@ static int parse_option(struct tool *tool, struct render *r, int c)
     }
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct render *r)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct render *r)
 {
     static const struct option own[] = {
         {"output", required_argument, NULL, 'o'},
@@ -302,7 +303,7 @@ static int check_apart(const struct tool *tool, const struct render *r,
     return apart_check(tool, &files);
 }
 
-static int run(struct tool *tool, struct render *r, const char *lens)
+static int render_lens(struct tool *tool, struct render *r, const char *lens)
 {
     int code = check_apart(tool, r, lens);
     double start;
@@ -354,11 +355,11 @@ int cmd_render(int argc, char **argv)
     r->json.to = stdout;
     r->width = 960;
     r->height = 540;
-    code = parse(&tool, argc, argv, r);
+    code = parse_options(&tool, argc, argv, r);
     if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = run(&tool, r, argv[optind]);
+            code = render_lens(&tool, r, argv[optind]);
         tool_finish(&tool);
     }
     opened_lens_close(&r->lens);

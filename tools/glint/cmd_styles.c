@@ -49,8 +49,8 @@ struct styles_command {
 };
 
 /* Parses the command line into C; options of glint overlay go to DRAWING. */
-static int parse(struct tool *tool, struct styles_command *c,
-                 struct drawing *drawing)
+static int parse_options(struct tool *tool, struct styles_command *c,
+                         struct drawing *drawing)
 {
     const struct option *const options =
         engine_getopt(tool, ENGINE_ALL, &drawing->line.settings.options, own);
@@ -101,7 +101,7 @@ static enum glint_status load_photograph(struct glint_image *image,
     return status;
 }
 
-static int load(struct tool *tool, struct styles_command *c)
+static int load_input(struct tool *tool, struct styles_command *c)
 {
     struct glint_error error = {""};
     const enum glint_status status =
@@ -196,7 +196,7 @@ static int draw_styles(struct tool *tool, struct styles_command *c,
     drawing_line_defaults(&drawing->line);
     code = drawing_line_style(tool, &drawing->line, style->name);
     if (code < 0)
-        code = parse(tool, c, drawing);
+        code = parse_options(tool, c, drawing);
     if (code < 0)
         code = drawing_open_lens(tool, drawing);
     if (code == EXIT_OK)
@@ -215,7 +215,7 @@ static int draw_sheet(struct tool *tool, struct styles_command *c)
 
     while (styles[n].name)
         n++;
-    code = load(tool, c);
+    code = load_input(tool, c);
     for (int k = 0; k < n && code == EXIT_OK; k++) {
         if (!tool->quiet)
             fprintf(stderr, "glint styles: %s\n", styles[k].name);
@@ -265,7 +265,7 @@ static int check_apart(const struct tool *tool, const struct styles_command *c,
 }
 
 /* Checks the command line before a lens is baked. */
-static int check(struct tool *tool, struct styles_command *c)
+static int check_options(struct tool *tool, struct styles_command *c)
 {
     struct drawing *const drawing = calloc(1, sizeof *drawing);
     int code;
@@ -273,7 +273,7 @@ static int check(struct tool *tool, struct styles_command *c)
     if (!drawing)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     drawing_line_defaults(&drawing->line);
-    code = parse(tool, c, drawing);
+    code = parse_options(tool, c, drawing);
     if (code < 0 && drawing->line.style)
         code =
             tool_usage(tool, "draws every style and does not accept --style");
@@ -293,7 +293,7 @@ int cmd_styles(int argc, char **argv)
     struct tool tool = {
         .name = "styles", .help = help, .help_end = COMMON_HELP};
     struct styles_command c = {.argc = argc, .argv = argv, .width = 640};
-    int code = check(&tool, &c);
+    int code = check_options(&tool, &c);
 
     if (code >= 0)
         return code;

@@ -116,7 +116,8 @@ static const struct file files[] = {{"sweep.csv", sweep_write_csv},
                                     {"table.md", sweep_names},
                                     {"index.html", sweep_write_page}};
 
-static int save(const struct sweep *s, const char *folder, const struct file *f)
+static int save_file(const struct sweep *s, const char *folder,
+                     const struct file *f)
 {
     char *text = NULL, path[PATH_MAX];
     size_t bytes = 0;
@@ -133,7 +134,7 @@ static int save_all(const struct sweep *s, const char *folder)
     int code = EXIT_OK;
 
     for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
-        code = save(s, folder, &files[i]);
+        code = save_file(s, folder, &files[i]);
     if (code == EXIT_OK && s->tool->json)
         sweep_write_json(s, stdout);
     else if (code == EXIT_OK && !s->tool->quiet)
@@ -155,7 +156,7 @@ static void print_case(const struct sweep *s, int c)
                 k->n_lamps, k->n_lamps > 1 ? "s" : "", k->angle, k->n);
 }
 
-static int measure(struct sweep *s)
+static int measure_cases(struct sweep *s)
 {
     struct tool_progress progress;
     int code = EXIT_OK;
@@ -169,7 +170,7 @@ static int measure(struct sweep *s)
     return code;
 }
 
-static int run(struct sweep *s, const struct asked *a)
+static int run_sweep(struct sweep *s, const struct asked *a)
 {
     char path[PATH_MAX];
     int code;
@@ -191,7 +192,7 @@ static int run(struct sweep *s, const struct asked *a)
     if (sweep_plan(s) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     s->counter = glint_instructions_open();
-    code = measure(s);
+    code = measure_cases(s);
     glint_instructions_close(s->counter);
     if (code != EXIT_OK)
         return code;
@@ -271,8 +272,8 @@ static int parse_option(struct sweep *s, struct asked *a, int c)
     }
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
-                 struct asked *a)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct sweep *s, struct asked *a)
 {
     int c, at = 0, code;
 
@@ -338,12 +339,12 @@ int cmd_sweep(int argc, char **argv)
     s->tool = &tool;
     s->counter = -1;
     settings_defaults(&s->base);
-    code = parse(&tool, argc, argv, s, &asked);
+    code = parse_options(&tool, argc, argv, s, &asked);
     if (code < 0)
         code = tool_start(&tool);
     if (code == EXIT_OK && tool.workers && asked.folder) {
         set_defaults(s, &asked);
-        code = run(s, &asked);
+        code = run_sweep(s, &asked);
     }
     close_sweep(s);
     tool_finish(&tool);

@@ -660,7 +660,8 @@ static int set_type(const struct tool *tool, struct synth *s)
                       *error.text ? error.text : "no type of picture");
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct synth *s)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct synth *s)
 {
     int code = tool_take(tool, argc, argv, "o:" TOOL_COMMON_SHORT, options,
                          parse_option, s);
@@ -867,7 +868,7 @@ int cmd_synth(int argc, char **argv)
                                  .coating = "mixed"};
     synth_ranges_defaults(&s->ranges);
     parse_lenses(s, default_lenses);
-    code = parse(&tool, argc, argv, s);
+    code = parse_options(&tool, argc, argv, s);
     if (code < 0) {
         code = synth_backgrounds_open(&tool, &s->backgrounds, argv + optind,
                                       argc - optind);

@@ -49,7 +49,8 @@ struct options {
     double angle_deg, wavelength_nm;
 };
 
-static int parse(struct tool *tool, int argc, char **argv, struct options *o)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct options *o)
 {
     static const struct option options[] = {
         {"ghost", required_argument, NULL, 'g'},
@@ -326,8 +327,8 @@ static void print_rays(const struct tool *tool, const struct options *o,
                         "--pupil limits the grid to the entrance pupil\n");
 }
 
-static int trace(const struct tool *tool, const struct options *o,
-                 const struct glint_prescription *lens)
+static int trace_grid(const struct tool *tool, const struct options *o,
+                      const struct glint_prescription *lens)
 {
     static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
     static struct tracer tracer;
@@ -361,7 +362,7 @@ int cmd_trace(int argc, char **argv)
     static struct glint_prescription lens;
     struct tool tool = {.name = "trace", .help = help};
     struct options o = {.grid = 17, .wavelength_nm = 532};
-    int code = parse(&tool, argc, argv, &o);
+    int code = parse_options(&tool, argc, argv, &o);
 
     if (code >= 0)
         return code;
@@ -373,5 +374,5 @@ int cmd_trace(int argc, char **argv)
     if (code != EXIT_OK)
         return code;
     coating_apply(&o.coating, &lens);
-    return trace(&tool, &o, &lens);
+    return trace_grid(&tool, &o, &lens);
 }

@@ -110,7 +110,7 @@ static int print_help(const char *name)
     return command ? run_command(command, 2, argv) : report_no_command(name);
 }
 
-static int run(int argc, char **argv)
+static int run_named(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
     const struct command *command = find_command(name);
@@ -148,7 +148,7 @@ static int run_words(void *ctx)
 {
     const struct words *words = ctx;
 
-    return run(words->argc, words->argv);
+    return run_named(words->argc, words->argv);
 }
 
 /* Runs the command on a large stack, as baking needs more stack than some

@@ -79,7 +79,7 @@ enum glint_status lamp_keys_link(struct lamp_list *list)
     return GLINT_OK;
 }
 
-static double interpolate(double a, double b, double t)
+static double interpolate_linear(double a, double b, double t)
 {
     return a + (b - a) * t;
 }
@@ -97,18 +97,19 @@ bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
     if (!b || a->frame > frame || b->frame <= frame)
         return false;
     t = (double)(frame - a->frame) / (b->frame - a->frame);
-    row->x = interpolate(a->x, b->x, t);
-    row->y = interpolate(a->y, b->y, t);
-    row->size = interpolate(a->size, b->size, t);
-    row->shape = interpolate(a->shape, b->shape, t);
+    row->x = interpolate_linear(a->x, b->x, t);
+    row->y = interpolate_linear(a->y, b->y, t);
+    row->size = interpolate_linear(a->size, b->size, t);
+    row->shape = interpolate_linear(a->shape, b->shape, t);
     row->turn = a->turn + t * remainder(b->turn - a->turn, 180);
-    row->level = interpolate(a->level, b->level, t);
-    row->seen = interpolate(a->seen, b->seen, t);
-    row->power = a->power > 0 && b->power > 0
-                     ? exp2(interpolate(log2(a->power), log2(b->power), t))
-                     : interpolate(a->power, b->power, t);
+    row->level = interpolate_linear(a->level, b->level, t);
+    row->seen = interpolate_linear(a->seen, b->seen, t);
+    row->power =
+        a->power > 0 && b->power > 0
+            ? exp2(interpolate_linear(log2(a->power), log2(b->power), t))
+            : interpolate_linear(a->power, b->power, t);
     for (int c = 0; c < 3; c++)
-        row->rgb[c] = interpolate(a->rgb[c], b->rgb[c], t);
+        row->rgb[c] = interpolate_linear(a->rgb[c], b->rgb[c], t);
     return true;
 }
 
