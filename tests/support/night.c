@@ -68,7 +68,7 @@ static double light_at(const struct night *night, const struct night_lamp *lamp,
     return light;
 }
 
-static void put(struct night *night, int x, int y, double light)
+static void put_pixel(struct night *night, int x, int y, double light)
 {
     const double code =
         canvas_srgb_code(light) +
@@ -100,7 +100,7 @@ void night_draw(struct night *night, const struct night_lamp *lamp, int n)
              y < image->height && y <= cy + reach; y++)
             for (int x = cx - reach < 0 ? 0 : cx - reach;
                  x < image->width && x <= cx + reach; x++)
-                put(night, x, y, light_at(night, lamp, n, x, y));
+                put_pixel(night, x, y, light_at(night, lamp, n, x, y));
     }
 }
 

@@ -29,7 +29,7 @@ static int is_dark(int side, int x)
     return (x % side * 8 / side + x / side * 8 / side) % 2;
 }
 
-static void *allocate(size_t n, size_t bytes)
+static void *allocate_array(size_t n, size_t bytes)
 {
     void *mem = calloc(n ? n : 1, bytes);
 
@@ -44,15 +44,15 @@ static void set_fit(struct glint_scatter_fit *f, double albedo)
     const size_t k2 = (size_t)(f->kernel * f->kernel);
     const size_t texels = (size_t)(f->side * f->side);
 
-    f->h = allocate((size_t)f->kernels * 3 * k2, sizeof *f->h);
+    f->h = allocate_array((size_t)f->kernels * 3 * k2, sizeof *f->h);
     for (int j = 0; j < f->kernels; j++)
         for (int c = 0; c < 3; c++)
             set_gaussian(f->h + (size_t)(3 * j + c) * k2, f->kernel,
                          (j ? 2.5 : 5.) - .7 * c);
-    f->in = allocate(3 * texels, sizeof *f->in);
-    f->f = allocate((size_t)f->kernels * 3 * texels, sizeof *f->f);
-    f->cluster = allocate(texels, 1);
-    f->out = allocate(3 * texels, sizeof *f->out);
+    f->in = allocate_array(3 * texels, sizeof *f->in);
+    f->f = allocate_array((size_t)f->kernels * 3 * texels, sizeof *f->f);
+    f->cluster = allocate_array(texels, 1);
+    f->out = allocate_array(3 * texels, sizeof *f->out);
     for (size_t x = 0; x < texels; x++) {
         const int dark = is_dark(f->side, (int)x);
 

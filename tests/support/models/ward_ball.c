@@ -9,7 +9,7 @@
 
 static const double toward_eye[3] = {0, 0, -1};
 
-static double dot(const double a[3], const double b[3])
+static double dot_product(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -41,21 +41,22 @@ int ward_frame(int i, double frame[3][3])
 double ward_lobe(const double frame[3][3], const double view[3],
                  const double alpha[2], int norm, const double in[3])
 {
-    const double ni = dot(frame[2], in), no = dot(frame[2], view);
+    const double ni = dot_product(frame[2], in),
+                 no = dot_product(frame[2], view);
     double h[3], hn, ht, hb, slope, square, ho, weight;
 
     if (ni <= 0 || no <= 0)
         return 0;
     for (int k = 0; k < 3; k++)
         h[k] = in[k] + view[k];
-    ht = dot(h, frame[0]) / alpha[0];
-    hb = dot(h, frame[1]) / alpha[1];
-    hn = dot(h, frame[2]);
+    ht = dot_product(h, frame[0]) / alpha[0];
+    hb = dot_product(h, frame[1]) / alpha[1];
+    hn = dot_product(h, frame[2]);
     slope = (ht * ht + hb * hb) / (hn * hn);
     if (slope > 16)
         return 0;
-    square = sqrt(dot(h, h));
-    ho = dot(h, view) / square;
+    square = sqrt(dot_product(h, h));
+    ho = dot_product(h, view) / square;
     hn /= square;
     weight = norm == GLINT_WARD_BOUNDED ? ni / (ho * hn)
                                         : ho * hn * hn * hn * sqrt(ni / no);

@@ -38,8 +38,8 @@ static void set_rotation(double x, double y, double z, double angle,
 }
 
 /* Sets TO to V rotated by the inverse of Q, or by Q if FORTH. */
-static void rotate(const double q[4], const double v[3], bool forth,
-                   double to[3])
+static void rotate_vector(const double q[4], const double v[3], bool forth,
+                          double to[3])
 {
     const double s = forth ? 1 : -1;
     const double p[4] = {q[0], s * q[1], s * q[2], s * q[3]};
@@ -159,7 +159,7 @@ static void observe_foods(struct track *t, struct track_frame *f)
             square += off[k] * off[k];
         }
         f->food_distance += sqrt(square) / t->options.n_foods;
-        rotate(t->turn, off, false, f->seen[i]);
+        rotate_vector(t->turn, off, false, f->seen[i]);
         for (int k = 0; k < 3; k++)
             f->seen[i][k] = round_to(f->seen[i][k], t->options.digits);
     }
@@ -198,14 +198,14 @@ static void set_truth(const struct track *t, struct glint_rigid *pose)
 
     for (int k = 0; k < 3; k++)
         off[k] = t->at[k] - t->first_at[k];
-    rotate(t->first_turn, off, false, pose->at);
+    rotate_vector(t->first_turn, off, false, pose->at);
     multiply_quaternions(back, t->turn, q);
     for (int k = 0; k < 4; k++)
         pose->turn[k] = q[0] < 0 ? -q[k] : q[k];
     for (int i = 0; i < 3; i++) {
         const double unit[3] = {i == 0, i == 1, i == 2};
 
-        rotate(q, unit, true, axis);
+        rotate_vector(q, unit, true, axis);
         for (int k = 0; k < 3; k++)
             pose->row[k][i] = axis[k];
     }
@@ -223,7 +223,7 @@ void track_next(struct track *track, struct track_frame *frame)
         move[t->options.motion](t);
     for (int k = 0; k < 3; k++)
         off[k] = t->at[k] - before_at[k];
-    rotate(before_turn, off, false, frame->step);
+    rotate_vector(before_turn, off, false, frame->step);
     for (int k = 1; k < 4; k++)
         before_turn[k] = -before_turn[k];
     multiply_quaternions(before_turn, t->turn, spin);
