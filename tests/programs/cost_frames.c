@@ -105,7 +105,7 @@ static void set_settings(struct settings *to, const struct shape *s)
     to->tolerance = 1;
 }
 
-static void fail(const char *what)
+static void exit_with_error(const char *what)
 {
     fprintf(stderr, "cost_frames: %s\n", what);
     exit(1);
@@ -120,7 +120,7 @@ static void open_stage(struct stage *s, const struct shape *shape)
                        &s->frame) != EXIT_OK ||
         canvas_init(&s->canvas, GLINT_RGB24, shape->width, shape->height) !=
             GLINT_OK)
-        fail(shape->lens);
+        exit_with_error(shape->lens);
     canvas_lamps(s->lamp, shape->n_lamps, shape->angle);
 }
 
@@ -176,11 +176,11 @@ static void draw_frame(struct stage *s, const struct shape *shape)
     canvas_fresh(&s->canvas);
     if (glint_frame_draw(&s->frame, s->lamp, shape->n_lamps, 1,
                          &s->canvas.image, &report) != GLINT_OK)
-        fail("no memory");
+        exit_with_error("no memory");
     canvas_fresh(&s->canvas);
     if (cost_frame(&s->frame, s->lamp, shape->n_lamps, &s->canvas.image,
                    &report) != GLINT_OK)
-        fail("no memory");
+        exit_with_error("no memory");
 }
 
 static void count_lit(const struct stage *s, double *counted)
@@ -203,7 +203,7 @@ static void count_lit(const struct stage *s, double *counted)
 }
 
 /* Returns the number of pixels that the flare gives light. */
-static double lit_pixels(const struct stage *s)
+static double count_lit_pixels(const struct stage *s)
 {
     const size_t n =
         3 * (size_t)s->frame.view.width * (size_t)s->frame.view.height;
@@ -214,7 +214,7 @@ static double lit_pixels(const struct stage *s)
     double lit = 0;
 
     if (!px)
-        fail("no memory");
+        exit_with_error("no memory");
     glint_image_place(&image, px);
     glint_flare_draw(s->frame.memory.flare, &image);
     for (size_t i = 0; i < n; i += 3)
@@ -238,7 +238,7 @@ static void print_line(struct stage *s, const struct shape *shape, FILE *file)
         fprintf(file, " %g", planned.count[k]);
     fprintf(file, " |");
     count_lit(s, counted);
-    counted[GLINT_COST_LIT] = lit_pixels(s);
+    counted[GLINT_COST_LIT] = count_lit_pixels(s);
     for (int k = GLINT_COST_LIT + 1; k < GLINT_COST_KINDS; k++)
         counted[k] = planned.count[k];
     for (int k = 0; k < GLINT_COST_KINDS; k++)
@@ -256,7 +256,7 @@ int main(int argc, char **argv)
     struct stage *s = calloc(1, sizeof *s);
 
     if ((!from && !to) || !s)
-        fail("needs a FILE");
+        exit_with_error("needs a FILE");
     s->tool.name = "cost_frames";
     s->tool.quiet = true;
     for (int i = 0; i < FIT + HELD; i++) {
@@ -265,14 +265,14 @@ int main(int argc, char **argv)
 
         s->tool.name = "cost_frames";
         if (from && fscanf(from, "%*d %*s %lf%*[^\n]", &exposure) != 1)
-            fail(path);
+            exit_with_error(path);
         if (i < first)
             continue;
         open_stage(s, &shape);
         s->exposure = exposure;
         if (!from &&
             find_exposure(&s->frame, s->lamp, &s->exposure) != GLINT_OK)
-            fail("no memory");
+            exit_with_error("no memory");
         draw_frame(s, &shape);
         if (to) {
             print_line(s, &shape, to);

@@ -83,7 +83,7 @@ static bool measure_frame(struct sweep *s, double theta,
 
 /* ---------------------------------------------------------------- measures */
 
-static double block_jump(const float *a, const float *b)
+static double max_block_change(const float *a, const float *b)
 {
     double worst = 0;
 
@@ -102,7 +102,8 @@ static double block_jump(const float *a, const float *b)
     return worst;
 }
 
-static double flux_jump(const struct sweep *s, const float *a, const float *b)
+static double relative_flux_change(const struct sweep *s, const float *a,
+                                   const float *b)
 {
     double sum = 0;
 
@@ -145,8 +146,8 @@ static bool run_sweep(struct sweep *s)
         ok = measure_frame(s, theta, here);
         if (k == 0 || !ok)
             continue;
-        now = (struct sample){block_jump(here[0], before[0]),
-                              flux_jump(s, here[0], before[0]),
+        now = (struct sample){max_block_change(here[0], before[0]),
+                              relative_flux_change(s, here[0], before[0]),
                               edge_crawl(here[1], before[1])};
         s->worst.jump = fmax(s->worst.jump, now.jump);
         s->worst.flux = fmax(s->worst.flux, now.flux);
@@ -189,7 +190,7 @@ static bool check_limit(const struct sweep *s, const char *what, double worst,
     return extreme_at_most(name, worst, bound, unit);
 }
 
-static bool parse(struct sweep *s, int argc, char **argv)
+static bool parse_options(struct sweep *s, int argc, char **argv)
 {
     static const struct option names[] = {{"from", required_argument, NULL, 0},
                                           {"to", required_argument, NULL, 1},
@@ -216,7 +217,7 @@ int main(int argc, char **argv)
     static struct sweep s = {.from = 2, .to = 12, .bound = {6.7, 0.002, 12}};
     bool ok;
 
-    if (!parse(&s, argc, argv)) {
+    if (!parse_options(&s, argc, argv)) {
         fprintf(stderr, "motion LENS [--from DEG] [--to DEG] [--csv OUT] "
                         "[--jump CODES] [--flux SHARE] [--crawl CODES]\n");
         return 2;

@@ -81,9 +81,9 @@ static void add_error(struct result *r, const struct glint_located *located,
     r->sums[4] += x * y;
 }
 
-static const char *localise(const struct method *method, struct result *r,
-                            int n, const struct track_frame *f,
-                            struct glint_located *located)
+static const char *localise_track(const struct method *method, struct result *r,
+                                  int n, const struct track_frame *f,
+                                  struct glint_located *located)
 {
     const double(*const seen)[3] = (const double(*)[3])f->seen;
 
@@ -111,8 +111,8 @@ static void run_track(const struct track_options *options,
             const clock_t start = clock();
 
             for (int k = 0; k < CHUNK && !r->wrong; k++)
-                r->wrong = localise(&method[i], r, options->n_foods, &chunk[k],
-                                    &located[k]);
+                r->wrong = localise_track(&method[i], r, options->n_foods,
+                                          &chunk[k], &located[k]);
             r->seconds += (double)(clock() - start) / CLOCKS_PER_SEC;
             for (int k = 0; k < CHUNK && !r->wrong; k++) {
                 const int frame = first + k;
@@ -126,7 +126,7 @@ static void run_track(const struct track_options *options,
 }
 
 /* Returns the root mean square error of bins FIRST .. END - 1. */
-static double rms(const struct result *r, int first, int end)
+static double compute_rms(const struct result *r, int first, int end)
 {
     double square = 0;
     int count = 0;
@@ -138,7 +138,7 @@ static double rms(const struct result *r, int first, int end)
     return sqrt(square / (count ? count : 1));
 }
 
-static double correlation(const struct result *r, int n)
+static double compute_correlation(const struct result *r, int n)
 {
     const double *s = r->sums;
     const double x = s[2] - s[0] * s[0] / n, y = s[3] - s[1] * s[1] / n;
@@ -156,8 +156,9 @@ static void print_row(const struct method *method, int n, int n_frames,
             printf("| | %s | %s | | | |\n", method[i].name, r->wrong);
         else
             printf("| | %s | %.1e | %.1e | %.1e | %.2f |\n", method[i].name,
-                   rms(r, 0, BINS / 10), rms(r, BINS * 9 / 10, BINS),
-                   r->last_worst, correlation(r, n_frames));
+                   compute_rms(r, 0, BINS / 10),
+                   compute_rms(r, BINS * 9 / 10, BINS), r->last_worst,
+                   compute_correlation(r, n_frames));
     }
 }
 

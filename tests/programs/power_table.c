@@ -169,8 +169,8 @@ static void print_features(struct camera *c, int id, double power,
 
 /* Takes an image of SCENE times GAIN with noise of SIGMA codes. Every fourth
  * image, by its number K, is RGB565. */
-static void expose(struct camera *c, const struct power_picture *scene,
-                   double gain, double sigma, int k, uint32_t *seed)
+static void take_picture(struct camera *c, const struct power_picture *scene,
+                         double gain, double sigma, int k, uint32_t *seed)
 {
     uint8_t *px = c->image.plane[0], *to = c->coarse.plane[0];
 
@@ -264,7 +264,7 @@ static void print_rendered(int i)
                 scene.rgb[3 * p + j] =
                     ((double)light[p] * power * lamp.rgb[j] * gain +
                      black * (1 + slope * (p % W - W / 2) / W));
-        expose(&c, &scene, 1, noise, k, &seed);
+        take_picture(&c, &scene, 1, noise, k, &seed);
         if (measure_region(&c, &scene, 1, (int)lamp.x, (int)lamp.y, c.spot) >
                 0 &&
             c.spot->area >= 2 && c.spot->area < W * H / 5) {
@@ -359,7 +359,7 @@ static void print_view(const struct glint_float_image *p, int id, double yaw,
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = base * exp2(-k);
 
-        expose(&c, &scene, gain, random_between(0, 3, &seed), k, &seed);
+        take_picture(&c, &scene, gain, random_between(0, 3, &seed), k, &seed);
         c.n = glint_lamp_finder_find(c.finder, c.seen, c.spot, MAX_SPOTS);
         glint_profile_measure(c.profile, c.seen, c.spot, c.n);
         for (int i = 0; i < c.n; i++) {

@@ -53,7 +53,8 @@ static int parse_option(const struct tool *tool, struct exact *e, int c,
     return ok ? -1 : tool_refuse(tool, name, optarg);
 }
 
-static int parse(struct tool *tool, int argc, char **argv, struct exact *e)
+static int parse_options(struct tool *tool, int argc, char **argv,
+                         struct exact *e)
 {
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
@@ -129,7 +130,7 @@ int main(int argc, char **argv)
     struct exact e = {
         .width = 960, .height = 540, .samples = 4, .shadow_points = 4};
     struct glint_description *const scene = calloc(1, sizeof *scene);
-    int code = parse(&tool, argc, argv, &e);
+    int code = parse_options(&tool, argc, argv, &e);
 
     if (code < 0)
         code = tool_start(&tool);

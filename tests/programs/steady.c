@@ -164,21 +164,21 @@ static int set_street(struct night_lamp *lamp)
     return 5;
 }
 
-static int noise(struct night *night, int i, struct night_lamp *lamp)
+static int set_noise_scene(struct night *night, int i, struct night_lamp *lamp)
 {
     (void)i;
     night->sigma = 4;
     return set_street(lamp);
 }
 
-static int sun_alone(struct night *night, int i, struct night_lamp *lamp)
+static int set_sun_alone(struct night *night, int i, struct night_lamp *lamp)
 {
     (void)night;
     lamp[0] = (struct night_lamp){-30 + 3 * i, 90 + 0.5 * i, 14, 2000};
     return 1;
 }
 
-static int sun_enters(struct night *night, int i, struct night_lamp *lamp)
+static int set_sun_entering(struct night *night, int i, struct night_lamp *lamp)
 {
     const int n = set_street(lamp);
 
@@ -187,12 +187,12 @@ static int sun_enters(struct night *night, int i, struct night_lamp *lamp)
     return n + 1;
 }
 
-static int sun_leaves(struct night *night, int i, struct night_lamp *lamp)
+static int set_sun_leaving(struct night *night, int i, struct night_lamp *lamp)
 {
-    return sun_enters(night, FRAMES - i, lamp);
+    return set_sun_entering(night, FRAMES - i, lamp);
 }
 
-static int poles(struct night *night, int i, struct night_lamp *lamp)
+static int set_poles(struct night *night, int i, struct night_lamp *lamp)
 {
     const double at = (4 * i) % 200;
 
@@ -203,14 +203,14 @@ static int poles(struct night *night, int i, struct night_lamp *lamp)
     return 3;
 }
 
-static int pole(struct night *night, int i, struct night_lamp *lamp)
+static int set_pole(struct night *night, int i, struct night_lamp *lamp)
 {
-    poles(night, i, lamp);
+    set_poles(night, i, lamp);
     lamp[0].x = 210;
     return 1;
 }
 
-static int train(struct night *night, int i, struct night_lamp *lamp)
+static int set_train(struct night *night, int i, struct night_lamp *lamp)
 {
     const int n = set_street(lamp);
 
@@ -220,7 +220,7 @@ static int train(struct night *night, int i, struct night_lamp *lamp)
     return n;
 }
 
-static int cuts(struct night *night, int i, struct night_lamp *lamp)
+static int set_cuts(struct night *night, int i, struct night_lamp *lamp)
 {
     if (i / 40 % 2 == 0)
         return set_street(lamp);
@@ -234,14 +234,14 @@ static const struct {
     const char *name;
     lamps_fn *lamps;
 } scenes[] = {
-    {"noise", noise},
-    {"a sun enters", sun_alone},
-    {"a sun enters among lamps", sun_enters},
-    {"a sun leaves lamps", sun_leaves},
-    {"lamps behind poles", poles},
-    {"a lamp alone behind poles", pole},
-    {"lamps from a train", train},
-    {"hard cuts", cuts},
+    {"noise", set_noise_scene},
+    {"a sun enters", set_sun_alone},
+    {"a sun enters among lamps", set_sun_entering},
+    {"a sun leaves lamps", set_sun_leaving},
+    {"lamps behind poles", set_poles},
+    {"a lamp alone behind poles", set_pole},
+    {"lamps from a train", set_train},
+    {"hard cuts", set_cuts},
 };
 
 /* Returns the light of LAMP's visible pixels, white x pixels. Sets AT to

@@ -36,7 +36,7 @@ static const struct {
     {"factored-10-3", GLINT_SCATTER_FACTORED, 10, 3},
 };
 
-static void fail(const char *what)
+static void exit_with_error(const char *what)
 {
     fprintf(stderr, "stone_rows: %s\n", what);
     exit(1);
@@ -51,7 +51,7 @@ static void write_stone(const char *dir, const char *name, const void *data,
     snprintf(path, sizeof path, "%s/%s.glint", dir, name);
     file = fopen(path, "wb");
     if (!file || fwrite(data, 1, bytes, file) != bytes || fclose(file))
-        fail(path);
+        exit_with_error(path);
 }
 
 /* LIGHT: three arrays of [3][n]: incident light, the result by all rows, and
@@ -73,11 +73,11 @@ static void bake_fit(const struct glint_scatter_fit *fit,
     text.fit.rank = fit->rank;
     if (glint_stone_bake(fit, &text, name, 0, &data, &bytes, &report, &error) !=
         GLINT_OK)
-        fail(error.text);
+        exit_with_error(error.text);
     if (glint_translucent_open(&stone, data, bytes, &reason) != GLINT_OK)
-        fail(reason);
+        exit_with_error(reason);
     if (glint_stone_light(&stone, light, room) != GLINT_OK)
-        fail("out of memory");
+        exit_with_error("out of memory");
     *db = peak_psnr(room, light + n, n);
     if (dir)
         write_stone(dir, name, data, bytes);
@@ -94,7 +94,7 @@ static void fit_and_bake(struct glint_scatter_rows *rows, int stone, int model,
     double db;
 
     if (glint_scatter_fit(rows, &o, NULL, &fit) != GLINT_OK)
-        fail("no fit");
+        exit_with_error("no fit");
     /* Clusters and albedo have a rank only in the bake. */
     fit.rank = o.rank;
     bake_fit(&fit, light, room, stone ? NULL : dir, model_of[model].name, &db);
@@ -111,7 +111,7 @@ int main(int argc, char **argv)
     double *light = calloc(3 * n, sizeof *light);
 
     if (argc < 2 || !light)
-        fail("DIR");
+        exit_with_error("DIR");
     for (int i = 0; i < STONES; i++) {
         struct glint_scatter_rows rows;
         struct glint_stone stone;
@@ -123,7 +123,7 @@ int main(int argc, char **argv)
         stone.pattern = i ? GLINT_STONE_VEINS : GLINT_STONE_CHESS;
         stone.seed = 2;
         if (glint_scatter_compute(&stone, NULL, &rows, &error) != GLINT_OK)
-            fail(error.text);
+            exit_with_error(error.text);
         glint_scatter_test_light(side, light);
         glint_scatter_light_rows(&rows, light, light + n);
         for (int m = 0; m < MODELS; m++)

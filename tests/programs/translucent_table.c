@@ -73,7 +73,7 @@ static double cpu_seconds(void)
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-static void fail(const char *what)
+static void exit_with_error(const char *what)
 {
     fprintf(stderr, "translucent_table: %s\n", what);
     exit(1);
@@ -87,7 +87,7 @@ evaluate(struct glint_scatter_rows *rows,
     struct glint_scatter_judgement j, kept;
 
     if (glint_scatter_judge(rows, o, NULL, &j) != GLINT_OK)
-        fail("out of memory");
+        exit_with_error("out of memory");
     kept = j;
     glint_scatter_judgement_close(&j);
     return kept;
@@ -119,7 +119,7 @@ static void open_stone(struct table *t, int i)
         stone.material[1] =
             (struct glint_stone_material){{1.6, 1.8, 2}, {0.004, 0.007, 0.012}};
     if (glint_scatter_compute(&stone, NULL, &t->rows[i], &error) != GLINT_OK)
-        fail(error.text);
+        exit_with_error(error.text);
     t->seconds[i] = cpu_seconds() - start;
     for (int run = 0; run < RUNS; run++) {
         const struct glint_scatter_candidate o = make_candidate((enum run)run);
@@ -222,7 +222,7 @@ static void shift_rows(const struct glint_scatter_rows *rows,
     off->share = NULL;
     off->r = malloc(n * sizeof *off->r);
     if (!off->r)
-        fail("out of memory");
+        exit_with_error("out of memory");
     memcpy(off->r, rows->r, n * sizeof *off->r);
     for (size_t x = 0; x < texels; x++)
         if (rng_unit(&seed) < 0.3)
@@ -325,7 +325,7 @@ static void print_sums(struct table *t)
     double start, first, second;
 
     if (glint_scatter_fit(&t->rows[0], &options, NULL, &fit) != GLINT_OK)
-        fail("out of memory");
+        exit_with_error("out of memory");
     start = cpu_seconds();
     for (int x = 0; x < texels; x++)
         for (int d = 0; d < k2; d++) {
@@ -401,7 +401,7 @@ static double light_by_integers(struct glint_scatter_rows *rows,
         glint_stone_bake(&fit, &text, "x", 0, &data, &bytes, &report, &error) !=
             GLINT_OK ||
         glint_translucent_open(&stone, data, bytes, &reason) != GLINT_OK)
-        fail("no stone");
+        exit_with_error("no stone");
     start = cpu_seconds();
     for (int i = 0; i < 10; i++)
         glint_stone_light(&stone, light, out);
@@ -428,7 +428,7 @@ static void print_images(void)
     stone.kernel = 21;
     if (glint_scatter_compute(&stone, NULL, &rows, &error) != GLINT_OK ||
         glint_scatter_fit(&rows, &svd, NULL, &fit) != GLINT_OK)
-        fail("no rows");
+        exit_with_error("no rows");
     glint_scatter_test_light(SIDE, light);
     start = cpu_seconds();
     for (int i = 0; i < 5; i++)
