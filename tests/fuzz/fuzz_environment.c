@@ -45,7 +45,7 @@ static void open_blob(const uint8_t *data, size_t size)
     free(copy);
 }
 
-static void parse(const uint8_t *data, size_t size)
+static void check_text(const uint8_t *data, size_t size)
 {
     struct glint_environment_options o;
     char source[GLINT_ENVIRONMENT_FILE_BYTES];
@@ -62,6 +62,6 @@ static void parse(const uint8_t *data, size_t size)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     open_blob(data, size);
-    parse(data, size);
+    check_text(data, size);
     return 0;
 }

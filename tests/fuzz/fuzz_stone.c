@@ -42,7 +42,7 @@ static void open_blob(const uint8_t *data, size_t size)
     free(copy);
 }
 
-static void parse(const uint8_t *data, size_t size)
+static void check_text(const uint8_t *data, size_t size)
 {
     struct glint_stone_text t;
     struct glint_error error = {""};
@@ -59,6 +59,6 @@ static void parse(const uint8_t *data, size_t size)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     open_blob(data, size);
-    parse(data, size);
+    check_text(data, size);
     return 0;
 }
