@@ -14,7 +14,7 @@
 #include "panel/panel.h"
 #include "video/y4m.h"
 
-static void die(const char *why)
+static void exit_with_error(const char *why)
 {
     fprintf(stderr, "expected: %s\n", why);
     exit(2);
@@ -73,9 +73,9 @@ static void write_panel(const struct glint_image *frame, int w, int h,
     uint8_t *mem = malloc((size_t)stride * (size_t)h);
 
     if (!mem)
-        die("no memory");
+        exit_with_error("no memory");
     if (glint_panel_open(&panel, &cfg, &error) != GLINT_OK)
-        die(error.text);
+        exit_with_error(error.text);
     glint_panel_clear(&panel, mem, stride);
     glint_panel_draw(&panel, frame, mem, stride);
     fprintf(file, "P6\n%d %d\n255\n", w, h);
@@ -99,19 +99,19 @@ int main(int argc, char **argv)
     centre = argc > 5 && strcmp(argv[5], "centre") == 0;
     if (argc < 5 || (!yuyv && !layout_of(argv[1], &layout)) ||
         sscanf(argv[2], "%dx%d", &w, &h) != 2)
-        die("see the head of expected.c");
+        exit_with_error("see the head of expected.c");
     if (glint_y4m_reader_open(&in, argv[3], &error) != GLINT_OK)
-        die(error.text);
+        exit_with_error(error.text);
     while (glint_y4m_reader_next(&in, &next, &error) == GLINT_OK && next)
         frame = next; /* points to the same memory for each frame */
     if (!frame || *error.text)
-        die(*error.text ? error.text : "no frame");
+        exit_with_error(*error.text ? error.text : "no frame");
     if (yuyv && (frame->format != GLINT_I422 || frame->width != w ||
                  frame->height != h))
-        die("not C422 of that size");
+        exit_with_error("not C422 of that size");
     file = fopen(argv[4], "wb");
     if (!file)
-        die("cannot write");
+        exit_with_error("cannot write");
     if (yuyv)
         write_yuyv(frame, file);
     else

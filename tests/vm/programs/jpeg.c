@@ -19,7 +19,7 @@
 /* limit of a JPEG file's size, bytes */
 #define MAX_BYTES (1 << 20)
 
-static void die(const char *why)
+static void exit_with_error(const char *why)
 {
     fprintf(stderr, "jpeg: %s\n", why);
     exit(2);
@@ -45,7 +45,7 @@ static void write_row(struct jpeg_compress_struct *j, const uint8_t *luma)
     jpeg_write_scanlines(j, &row, 1);
 }
 
-static void compress(const struct glint_image *image, FILE *file)
+static void write_jpeg(const struct glint_image *image, FILE *file)
 {
     struct jpeg_compress_struct j;
     struct jpeg_error_mgr errors;
@@ -67,7 +67,7 @@ static void compress(const struct glint_image *image, FILE *file)
     jpeg_destroy_compress(&j);
 }
 
-static void encode(const char *from, const char *to)
+static void encode_file(const char *from, const char *to)
 {
     struct glint_error error = {""};
     const struct glint_image *frame = NULL;
@@ -76,16 +76,16 @@ static void encode(const char *from, const char *to)
 
     if (glint_y4m_reader_open(&in, from, &error) != GLINT_OK ||
         glint_y4m_reader_next(&in, &frame, &error) != GLINT_OK || !frame)
-        die(*error.text ? error.text : "no frame");
+        exit_with_error(*error.text ? error.text : "no frame");
     if (frame->width > MAX_SIDE)
-        die("too wide");
+        exit_with_error("too wide");
     file = fopen(to, "wb");
     if (!file)
-        die("cannot write");
-    compress(frame, file);
+        exit_with_error("cannot write");
+    write_jpeg(frame, file);
     glint_y4m_reader_close(&in);
     if (fclose(file) != 0)
-        die("cannot write");
+        exit_with_error("cannot write");
 }
 
 static size_t read_file(const char *name, uint8_t *data)
@@ -94,14 +94,14 @@ static size_t read_file(const char *name, uint8_t *data)
     size_t n;
 
     if (!file)
-        die(name);
+        exit_with_error(name);
     n = fread(data, 1, MAX_BYTES, file);
     if (n == MAX_BYTES || fclose(file) != 0)
-        die(name);
+        exit_with_error(name);
     return n;
 }
 
-static void decode(const char *to, char **from)
+static void decode_files(const char *to, char **from)
 {
     static uint8_t data[MAX_BYTES];
     struct glint_error error = {""};
@@ -128,16 +128,16 @@ static void decode(const char *to, char **from)
         status = glint_y4m_writer_commit(&out, &error);
     glint_mjpeg_close(decoder);
     if (status != GLINT_OK)
-        die(error.text);
+        exit_with_error(error.text);
 }
 
 int main(int argc, char **argv)
 {
     if (argc == 4 && strcmp(argv[1], "encode") == 0)
-        encode(argv[2], argv[3]);
+        encode_file(argv[2], argv[3]);
     else if (argc > 3 && strcmp(argv[1], "decode") == 0)
-        decode(argv[2], argv + 3);
+        decode_files(argv[2], argv + 3);
     else
-        die("see the head of jpeg.c");
+        exit_with_error("see the head of jpeg.c");
     return 0;
 }

@@ -24,7 +24,7 @@ struct scene {
     double lamp[MAX_LAMPS][3];
 };
 
-static void die(const char *why)
+static void exit_with_error(const char *why)
 {
     fprintf(stderr, "scene: %s\n", why);
     exit(2);
@@ -133,22 +133,22 @@ int main(int argc, char **argv)
         else if (c == 's')
             s.sigma = atof(optarg);
         else if (c != 'm' || sscanf(optarg, "%lf,%lf", &s.dx, &s.dy) != 2)
-            die("see the head of scene.c");
+            exit_with_error("see the head of scene.c");
     if (argc - optind < 3 ||
         sscanf(argv[optind + 1], "%dx%d", &s.width, &s.height) != 2)
-        die("see the head of scene.c");
+        exit_with_error("see the head of scene.c");
     format = argv[optind];
     name = argv[optind + 2];
     for (int i = optind + 3; i < argc && s.n_lamps < MAX_LAMPS; i++) {
         double *l = s.lamp[s.n_lamps++];
 
         if (sscanf(argv[i], "%lf,%lf,%lf", &l[0], &l[1], &l[2]) != 3)
-            die("a lamp is X,Y,R");
+            exit_with_error("a lamp is X,Y,R");
     }
     luma = malloc((size_t)s.width * (size_t)s.height);
     file = fopen(name, "wb");
     if (!luma || !file)
-        die("cannot write");
+        exit_with_error("cannot write");
     if (strcmp(format, "y4m") == 0)
         fprintf(file, "YUV4MPEG2 W%d H%d F30:1 Ip A1:1 C422\n", s.width,
                 s.height);
