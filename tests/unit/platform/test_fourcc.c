@@ -10,7 +10,7 @@
 
 #include <linux/videodev2.h>
 
-static uint32_t parse(const char *text)
+static uint32_t parse_fourcc(const char *text)
 {
     uint32_t fourcc = 0;
 
@@ -22,7 +22,7 @@ static void expect_format(const char *text, enum glint_pixel_format want)
 {
     enum glint_pixel_format format = GLINT_LINEAR_Q20;
 
-    assert_true(glint_fourcc_to_format(parse(text), &format));
+    assert_true(glint_fourcc_to_format(parse_fourcc(text), &format));
     assert_int_equal(format, want);
 }
 
@@ -59,10 +59,10 @@ TEST(words)
     assert_int_equal(glint_fourcc_of(GLINT_XRGB8888), 0x34325258);
     assert_int_equal(glint_fourcc_of(GLINT_I444), 0);
     assert_int_equal(glint_fourcc_of(GLINT_LINEAR_Q20), 0);
-    assert_int_equal(parse("MJPG"), 0x47504a4d);
-    assert_int_equal(parse("mjpeg"), 0x47504a4d);
+    assert_int_equal(parse_fourcc("MJPG"), 0x47504a4d);
+    assert_int_equal(parse_fourcc("mjpeg"), 0x47504a4d);
     /* Unknown codes are returned unchanged. */
-    assert_int_equal(parse("pRAA"), 0x41415270);
+    assert_int_equal(parse_fourcc("pRAA"), 0x41415270);
 }
 
 TEST(there_and_back)
@@ -77,7 +77,7 @@ TEST(there_and_back)
         assert_true(glint_fourcc_to_format(fourcc, &format));
         assert_int_equal(format, i);
         glint_fourcc_text(fourcc, text);
-        assert_int_equal(parse(text), fourcc);
+        assert_int_equal(parse_fourcc(text), fourcc);
     }
 }
 
@@ -87,7 +87,7 @@ TEST(refuses)
     uint32_t fourcc;
     char text[5];
 
-    assert_false(glint_fourcc_to_format(parse("MJPG"), &format));
+    assert_false(glint_fourcc_to_format(parse_fourcc("MJPG"), &format));
     assert_false(glint_fourcc_to_format(0, &format));
     assert_false(glint_fourcc_parse("", &fourcc));
     assert_false(glint_fourcc_parse("YUV", &fourcc));

@@ -120,8 +120,8 @@ TEST(copy)
     expect_file("y.ppm", BYTES("P6 1 1 255\nabc and more"));
 }
 
-static void refuse(enum glint_status status, const char *data, size_t bytes,
-                   const char *cause)
+static void check_refusal(enum glint_status status, const char *data,
+                          size_t bytes, const char *cause)
 {
     struct glint_kept kept;
 
@@ -137,16 +137,17 @@ TEST(refuses)
     struct glint_kept kept;
     char *const stated = getenv("GLINT_OIIO");
 
-    refuse(GLINT_E_FORMAT, BYTES(""), "is empty");
-    refuse(GLINT_E_FORMAT, BYTES("P6 2 2 65535 abcdef"), "ends after");
-    refuse(GLINT_E_FORMAT, BYTES("PF 2 2 x abc"), "malformed");
-    refuse(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"), "is a video");
+    check_refusal(GLINT_E_FORMAT, BYTES(""), "is empty");
+    check_refusal(GLINT_E_FORMAT, BYTES("P6 2 2 65535 abcdef"), "ends after");
+    check_refusal(GLINT_E_FORMAT, BYTES("PF 2 2 x abc"), "malformed");
+    check_refusal(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"),
+                  "is a video");
     assert_int_equal(glint_kept_open(&kept, "/nowhere/x", &error), GLINT_E_IO);
     assert_int_equal(glint_kept_check("a.y4m", &error), GLINT_E_UNSUPPORTED);
     /* A plug-in that is loaded already cannot be made unavailable. */
     if (!stated) {
         setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
-        refuse(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"), "plug-in");
+        check_refusal(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"), "plug-in");
         unsetenv("GLINT_OIIO");
     }
 }

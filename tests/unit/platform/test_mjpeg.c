@@ -91,8 +91,8 @@ static void write_planes(struct jpeg_compress_struct *j, const struct coding *c)
 
 /* Returns a frame encoded with C. TUNE, unless NULL, changes libjpeg's
  * settings before encoding. */
-static struct bytes encode(const struct coding *c,
-                           void (*tune)(struct jpeg_compress_struct *))
+static struct bytes encode_frame(const struct coding *c,
+                                 void (*tune)(struct jpeg_compress_struct *))
 {
     struct jpeg_compress_struct j;
     struct jpeg_error_mgr errors;
@@ -172,7 +172,8 @@ static struct glint_mjpeg *open_decoder(int width, int height)
 }
 
 /* Decodes frame B, checks that this succeeds, and returns the image. */
-static struct glint_image decode(struct glint_mjpeg *d, const struct bytes *b)
+static struct glint_image decode_frame(struct glint_mjpeg *d,
+                                       const struct bytes *b)
 {
     struct glint_image image;
 
@@ -256,8 +257,8 @@ static void expect_scanlines(const struct glint_image *i, const struct bytes *b)
 static void check_coding(const struct coding *c, enum glint_pixel_format format)
 {
     struct glint_mjpeg *const d = open_decoder(c->width, c->height);
-    const struct bytes b = encode(c, NULL);
-    const struct glint_image image = decode(d, &b);
+    const struct bytes b = encode_frame(c, NULL);
+    const struct glint_image image = decode_frame(d, &b);
 
     assert_int_equal(image.format, format);
     expect_planes(&image, c);
@@ -317,7 +318,7 @@ TEST(by_hand)
     memset(frame + sizeof head, 1, 64);
     memcpy(frame + sizeof head + 64, tail, sizeof tail);
     b = copy_of(frame, sizeof frame);
-    image = decode(d, &b);
+    image = decode_frame(d, &b);
     assert_int_equal(image.format, GLINT_GREY);
     for (int y = 0; y < 8; y++)
         for (int x = 0; x < 8; x++)
@@ -333,17 +334,17 @@ TEST(no_huffman_tables)
 {
     struct glint_mjpeg *const d = open_decoder(64, 48);
     struct coding own = y420;
-    struct bytes b = encode(&y422, NULL), other;
+    struct bytes b = encode_frame(&y422, NULL), other;
     struct glint_image image;
 
     own.optimised = true;
-    other = encode(&own, NULL);
+    other = encode_frame(&own, NULL);
     remove_segments(&b, 0xc4, 4);
-    image = decode(d, &b);
+    image = decode_frame(d, &b);
     expect_planes(&image, &y422);
-    image = decode(d, &other);
+    image = decode_frame(d, &other);
     expect_planes(&image, &own);
-    image = decode(d, &b); /* the tables of OTHER must not be used */
+    image = decode_frame(d, &b); /* the tables of OTHER must not be used */
     expect_planes(&image, &y422);
     free(other.data);
     free(b.data);
@@ -353,12 +354,13 @@ TEST(no_huffman_tables)
 TEST(nothing_is_kept)
 {
     struct glint_mjpeg *const d = open_decoder(64, 48);
-    struct bytes whole = encode(&y422, NULL), bare = encode(&y422, NULL);
+    struct bytes whole = encode_frame(&y422, NULL),
+                 bare = encode_frame(&y422, NULL);
 
     remove_segments(&bare, 0xdb, 2);
-    decode(d, &whole);
+    decode_frame(d, &whole);
     expect_refusal(d, &bare, GLINT_E_FORMAT, "Quantization table");
-    decode(d, &whole);
+    decode_frame(d, &whole);
     free(whole.data);
     free(bare.data);
     glint_mjpeg_close(d);
@@ -379,7 +381,7 @@ TEST(camera_habits)
     c.restart = 4;
     c.noisy = true;
     for (int habits = 1; habits < 128; habits++) {
-        struct bytes b = encode(&c, NULL);
+        struct bytes b = encode_frame(&c, NULL);
         struct glint_image image;
 
         if (habits & 1) { /* An AVI1 segment replaces JFIF. */
@@ -404,7 +406,7 @@ TEST(camera_habits)
                           sizeof filler);
         }
         b = (struct bytes){realloc(b.data, b.n), b.n};
-        image = decode(d, &b);
+        image = decode_frame(d, &b);
         expect_planes(&image, &c);
         free(b.data);
     }
@@ -421,11 +423,11 @@ TEST(sizes_change)
     small.width = 31;
     small.height = 17;
     high.height = 49;
-    b[0] = encode(&y422, NULL);
-    b[1] = encode(&small, NULL);
-    b[2] = encode(&high, NULL);
+    b[0] = encode_frame(&y422, NULL);
+    b[1] = encode_frame(&small, NULL);
+    b[2] = encode_frame(&high, NULL);
     for (int i = 0; i < 4; i++) {
-        image = decode(d, &b[i % 2]);
+        image = decode_frame(d, &b[i % 2]);
         expect_planes(&image, i % 2 ? &small : &y422);
         expect_refusal(d, &b[2], GLINT_E_UNSUPPORTED,
                        "frame of 64 x 49 pixels is larger than 64 x 48");
@@ -469,7 +471,7 @@ static void check_refusal(struct coding c,
                           const char *text)
 {
     struct glint_mjpeg *const d = open_decoder(64, 48);
-    const struct bytes b = encode(&c, tune);
+    const struct bytes b = encode_frame(&c, tune);
 
     expect_refusal(d, &b, GLINT_E_UNSUPPORTED, text);
     free(b.data);
@@ -490,7 +492,7 @@ TEST(refusals)
     check_refusal(y444, tune_progressive, "several scans");
     check_refusal(y444, tune_scans, "several scans");
     check_refusal(y420, tune_arithmetic, "arithmetic");
-    check_refusal(y444, tune_rgb, "components");
+    check_refusal(y444, tune_rgb, "colours");
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
         memcpy(c.factor, odd[i], sizeof c.factor);
         check_refusal(c, NULL, "subsampling");
@@ -503,7 +505,7 @@ TEST(refusals)
 TEST(deep_and_odd_processes)
 {
     struct glint_mjpeg *const d = open_decoder(64, 48);
-    struct bytes b = encode(&y420, NULL);
+    struct bytes b = encode_frame(&y420, NULL);
     const size_t frame = find_segment(&b, 0xc0, 0);
 
     b.data[frame + 4] = 12;
@@ -538,7 +540,7 @@ TEST(open)
 static void check_truncations(struct coding c)
 {
     struct glint_mjpeg *const d = open_decoder(c.width, c.height);
-    const struct bytes whole = encode(&c, NULL);
+    const struct bytes whole = encode_frame(&c, NULL);
     const size_t end = whole.n - 2;
 
     assert_int_equal(whole.data[end + 1], 0xd9);
@@ -555,7 +557,7 @@ static void check_truncations(struct coding c)
     }
     for (size_t n = end; n <= whole.n; n++) {
         const struct bytes b = copy_of(whole.data, n);
-        const struct glint_image image = decode(d, &b);
+        const struct glint_image image = decode_frame(d, &b);
 
         expect_planes(&image, &c);
         free(b.data);
@@ -594,7 +596,7 @@ TEST(damage)
 {
     struct coding c = {48, 32, {{2, 1}, {1, 1}, {1, 1}}, 3, 0, 1};
     struct glint_mjpeg *const d = open_decoder(48, 32);
-    const struct bytes whole = encode(&c, NULL);
+    const struct bytes whole = encode_frame(&c, NULL);
     FILE *const said = tmpfile();
     int kept, n_refused = 0;
     uint32_t seed = 1;
@@ -622,7 +624,7 @@ TEST(damage)
     fclose(said);
     /* Some damage cannot be detected. */
     assert_in_range(n_refused, 300, 2999);
-    image = decode(d, &whole);
+    image = decode_frame(d, &whole);
     expect_planes(&image, &c);
     free(whole.data);
     glint_mjpeg_close(d);
@@ -665,7 +667,7 @@ TEST(lost_interval)
 
     c.restart = 4;
     c.noisy = true;
-    b = encode(&c, NULL);
+    b = encode_frame(&c, NULL);
     from = find_segment(&b, 0xd1, 300);
     replace_bytes(&b, from, find_segment(&b, 0xd2, from) - from, "", 0);
     expect_refusal(d, &b, GLINT_E_FORMAT, "instead of RST1");
@@ -679,14 +681,14 @@ TEST(memory_is_constant)
 {
     struct glint_mjpeg *const d = open_decoder(720, 405);
     struct coding c = {720, 405, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 1};
-    const struct bytes whole = encode(&c, NULL);
+    const struct bytes whole = encode_frame(&c, NULL);
     const struct bytes half = copy_of(whole.data, whole.n / 2);
     struct mallinfo2 early = {0}, late;
 
     for (int i = 0; i < 100; i++) {
         if (i == 10)
             early = mallinfo2();
-        decode(d, &whole);
+        decode_frame(d, &whole);
         expect_refusal(d, &half, GLINT_E_FORMAT, "frame ends in row ");
     }
     late = mallinfo2();

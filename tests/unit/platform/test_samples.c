@@ -14,9 +14,9 @@
 
 /* Returns a description of WIDTH x HEIGHT pixels at MEM: three channels of
  * type SAMPLE, or four with alpha. */
-static struct glint_samples samples_of(int width, int height,
-                                       enum glint_sample sample, bool has_alpha,
-                                       void *mem)
+static struct glint_samples make_samples(int width, int height,
+                                         enum glint_sample sample,
+                                         bool has_alpha, void *mem)
 {
     const size_t bytes = glint_sample_bytes(sample);
     struct glint_samples s = {.width = width,
@@ -155,7 +155,7 @@ TEST(light_is_added)
 {
     uint16_t mem[] = {0, 1000, 65535, 32768, 32768, 32768};
     uint16_t before[6];
-    struct glint_samples s = samples_of(2, 1, GLINT_SAMPLE_U16, false, mem);
+    struct glint_samples s = make_samples(2, 1, GLINT_SAMPLE_U16, false, mem);
     float layer[6] = {0};
 
     memcpy(before, mem, sizeof mem);
@@ -173,7 +173,7 @@ TEST(light_is_added)
 TEST(floats)
 {
     float mem[] = {2, -0.25F, NAN};
-    struct glint_samples s = samples_of(1, 1, GLINT_SAMPLE_FLOAT, false, mem);
+    struct glint_samples s = make_samples(1, 1, GLINT_SAMPLE_FLOAT, false, mem);
     const float layer[] = {0.5F, 0.5F, 0.5F};
     struct glint_image proxy;
     double white;
@@ -194,7 +194,7 @@ TEST(floats)
 TEST(alpha)
 {
     uint8_t mem[] = {255, 255, 255, 0, 200, 200, 200, 255};
-    struct glint_samples s = samples_of(2, 1, GLINT_SAMPLE_U8, true, mem);
+    struct glint_samples s = make_samples(2, 1, GLINT_SAMPLE_U8, true, mem);
     const float layer[] = {1, 1, 1, 0.01F, 0.01F, 0.01F};
     struct glint_image proxy;
     double white;
@@ -229,7 +229,7 @@ TEST(cover)
     for (int premultiplied = 0; premultiplied < 2; premultiplied++) {
         float mem[8] = {0, 0, 0, 0.25F, 9, 9, 9, 0.5F}, seen[3];
         struct glint_samples s =
-            samples_of(2, 1, GLINT_SAMPLE_FLOAT, true, mem);
+            make_samples(2, 1, GLINT_SAMPLE_FLOAT, true, mem);
 
         s.is_premultiplied = premultiplied;
         mem[0] = mem[1] = mem[2] = premultiplied ? 0.05F : 0.2F;
@@ -264,7 +264,8 @@ TEST(orientations)
     for (int i = 0; i < 18; i++)
         mem[i] = (uint8_t)("abcdef"[i / 3]);
     for (int o = 1; o <= 8; o++) {
-        struct glint_samples s = samples_of(2, 3, GLINT_SAMPLE_U8, false, mem);
+        struct glint_samples s =
+            make_samples(2, 3, GLINT_SAMPLE_U8, false, mem);
         struct glint_image proxy;
         double white;
 
@@ -282,7 +283,7 @@ TEST(orientations)
 TEST(windows)
 {
     float mem[] = {1, 1, 1, 0.5F, 0.5F, 0.5F};
-    struct glint_samples s = samples_of(2, 1, GLINT_SAMPLE_FLOAT, false, mem);
+    struct glint_samples s = make_samples(2, 1, GLINT_SAMPLE_FLOAT, false, mem);
     const float layer[] = {4, 4, 4, 4, 4, 4};
     struct glint_image image;
     float rgb[3];
@@ -306,12 +307,13 @@ TEST(convert)
 {
     uint8_t mem[] = {188, 0, 255, 128}, back[4], flat[3];
     float floats[4];
-    struct glint_samples from = samples_of(1, 1, GLINT_SAMPLE_U8, true, mem);
+    struct glint_samples from = make_samples(1, 1, GLINT_SAMPLE_U8, true, mem);
     struct glint_samples to =
-        samples_of(1, 1, GLINT_SAMPLE_FLOAT, true, floats);
-    struct glint_samples again = samples_of(1, 1, GLINT_SAMPLE_U8, true, back);
+        make_samples(1, 1, GLINT_SAMPLE_FLOAT, true, floats);
+    struct glint_samples again =
+        make_samples(1, 1, GLINT_SAMPLE_U8, true, back);
     struct glint_samples opaque =
-        samples_of(1, 1, GLINT_SAMPLE_U8, false, flat);
+        make_samples(1, 1, GLINT_SAMPLE_U8, false, flat);
 
     to.is_premultiplied = true;
     glint_samples_convert(&to, &from);

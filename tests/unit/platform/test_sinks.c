@@ -25,8 +25,8 @@
 #include "support/test.h"
 
 /* Returns an image with its planes in MEM. */
-static struct glint_image image_of(enum glint_pixel_format format, int width,
-                                   int height, void *mem)
+static struct glint_image make_image(enum glint_pixel_format format, int width,
+                                     int height, void *mem)
 {
     struct glint_image image = glint_image_over(mem, format, width, height);
 
@@ -42,7 +42,7 @@ static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
                           enum glint_pixel_format planar, const char *want)
 {
     const struct glint_image image =
-        image_of(format, 3, 3, (uint8_t *)(uintptr_t)from);
+        make_image(format, 3, 3, (uint8_t *)(uintptr_t)from);
     struct glint_image to;
     struct glint_row_rgb row;
     uint8_t mem[64], work[64];
@@ -51,7 +51,7 @@ static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
     assert_int_equal(glint_planar_format(format), planar);
     assert_int_equal(strlen(want), n);
     memset(mem, '-', sizeof mem);
-    to = image_of(planar, 3, 3, mem);
+    to = make_image(planar, 3, 3, mem);
     assert_true(glint_row_rgb_bytes(3) <= sizeof work);
     glint_row_rgb_init(&row, work, 3);
     glint_planar_write(&to, &image, &row);
@@ -97,8 +97,8 @@ static void compute_reference(int ycc[3], const int rgb[3],
 static void check_colours(enum glint_matrix matrix, enum glint_range range)
 {
     uint8_t rgb[3 * 256], ycc[3 * 256], work[2048];
-    const struct glint_image from = image_of(GLINT_RGB24, 256, 1, rgb);
-    struct glint_image to = image_of(GLINT_I444, 256, 1, ycc);
+    const struct glint_image from = make_image(GLINT_RGB24, 256, 1, rgb);
+    struct glint_image to = make_image(GLINT_I444, 256, 1, ycc);
     struct glint_row_rgb row;
     long n_off = 0;
 
@@ -132,8 +132,8 @@ static void check_colours(enum glint_matrix matrix, enum glint_range range)
 static void check_last_codes(void)
 {
     uint8_t rgb[] = {0, 0, 255, 255, 0, 0}, ycc[6], work[64];
-    const struct glint_image from = image_of(GLINT_RGB24, 2, 1, rgb);
-    struct glint_image to = image_of(GLINT_I444, 2, 1, ycc);
+    const struct glint_image from = make_image(GLINT_RGB24, 2, 1, rgb);
+    struct glint_image to = make_image(GLINT_I444, 2, 1, ycc);
     struct glint_row_rgb row;
 
     to.range = GLINT_RANGE_FULL;
@@ -180,7 +180,7 @@ TEST(y4m)
         "YUV4MPEG2 W4 H2 F25:1 Ip A1:1 C422 XCOLORRANGE=FULL\n"
         "FRAME\nabcdefghABCD1234FRAME\nabcdefghABCD1234";
     struct glint_image image =
-        image_of(GLINT_YUYV, 4, 2, (void *)"aAb1cBd2eCf3gDh4");
+        make_image(GLINT_YUYV, 4, 2, (void *)"aAb1cBd2eCf3gDh4");
     struct glint_y4m_sink y4m;
     struct glint_error error;
 
@@ -204,7 +204,7 @@ TEST(y4m_formats)
                                  "XCOLORRANGE=LIMITED\nFRAME\nabcdA1";
     static const char white[] = "YUV4MPEG2 W1 H1 F30:1 Ip A1:1 C444 "
                                 "XCOLORRANGE=LIMITED\nFRAME\n\xeb\x80\x80";
-    struct glint_image image = image_of(GLINT_I420, 2, 2, (void *)"abcdA1");
+    struct glint_image image = make_image(GLINT_I420, 2, 2, (void *)"abcdA1");
     struct glint_y4m_sink y4m;
     struct glint_error error;
 
@@ -214,7 +214,7 @@ TEST(y4m_formats)
     y4m.sink.close(&y4m.sink);
     y4m.sink.close(&y4m.sink);
     expect_file(planes, sizeof planes - 1);
-    image = image_of(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
+    image = make_image(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
     image.range = GLINT_RANGE_FULL;
     glint_y4m_sink_open(&y4m, scratch_file, 30, 1);
     assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
@@ -227,7 +227,7 @@ TEST(y4m_formats)
 TEST(y4m_slow_reader)
 {
     static uint8_t mem[4096 * 3], sink_hole[65536];
-    const struct glint_image image = image_of(GLINT_GREY, 96, 128, mem);
+    const struct glint_image image = make_image(GLINT_GREY, 96, 128, mem);
     struct glint_y4m_sink y4m;
     struct glint_error error;
     char name[32];
@@ -257,7 +257,8 @@ TEST(y4m_slow_reader)
 
 TEST(y4m_refused)
 {
-    const struct glint_image image = image_of(GLINT_YUYV, 2, 1, (void *)"aAb1");
+    const struct glint_image image =
+        make_image(GLINT_YUYV, 2, 1, (void *)"aAb1");
     struct glint_y4m_sink y4m;
     struct glint_error error;
 
@@ -269,7 +270,8 @@ TEST(y4m_refused)
 
 TEST(null)
 {
-    const struct glint_image image = image_of(GLINT_YUYV, 2, 1, (void *)"aAb1");
+    const struct glint_image image =
+        make_image(GLINT_YUYV, 2, 1, (void *)"aAb1");
     struct glint_null_sink null;
     struct glint_error error;
 
@@ -367,7 +369,7 @@ static void open_sink(struct glint_v4l2_sink *out,
 
 TEST(v4l2)
 {
-    struct glint_image image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+    struct glint_image image = make_image(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
@@ -395,7 +397,7 @@ TEST(v4l2_strides)
 {
     static const uint8_t zero;
     struct glint_image image =
-        image_of(GLINT_I420, 4, 2, (void *)"abcdefghABCD");
+        make_image(GLINT_I420, 4, 2, (void *)"abcdefghABCD");
     struct glint_v4l2_sink out;
     struct glint_error error;
     char want[] = "abcd..efgh..AB.CD.";
@@ -412,7 +414,7 @@ TEST(v4l2_strides)
     out.sink.close(&out.sink);
 
     reset_node();
-    image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1..cBd2");
+    image = make_image(GLINT_YUYV, 2, 2, (void *)"aAb1..cBd2");
     image.stride_bytes[0] = 6;
     open_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
@@ -420,7 +422,7 @@ TEST(v4l2_strides)
     out.sink.close(&out.sink);
 
     reset_node();
-    image = image_of(GLINT_NV12, 2, 2, (void *)"abcdA1");
+    image = make_image(GLINT_NV12, 2, 2, (void *)"abcdA1");
     node.stride = 3;
     open_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
@@ -428,7 +430,7 @@ TEST(v4l2_strides)
     out.sink.close(&out.sink);
 
     reset_node(); /* planes that are not contiguous */
-    image = image_of(GLINT_NV12, 2, 2, (void *)"abcd..A1");
+    image = make_image(GLINT_NV12, 2, 2, (void *)"abcd..A1");
     image.plane[1] += 2;
     open_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
@@ -438,7 +440,8 @@ TEST(v4l2_strides)
 
 TEST(v4l2_no_room)
 {
-    const struct glint_image image = image_of(GLINT_GREY, 4, 1, (void *)"abcd");
+    const struct glint_image image =
+        make_image(GLINT_GREY, 4, 1, (void *)"abcd");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
@@ -462,7 +465,7 @@ TEST(v4l2_no_room)
 static void expect_refused(enum glint_status status, const char *part)
 {
     const struct glint_image image =
-        image_of(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+        make_image(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
     struct glint_error error;
 
@@ -477,7 +480,7 @@ static void expect_refused(enum glint_status status, const char *part)
 
 TEST(v4l2_refuses)
 {
-    struct glint_image image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+    struct glint_image image = make_image(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
     struct glint_error error;
 

@@ -9,7 +9,7 @@
 #include "video/y4m_divide.h"
 
 /* Returns N / D, rounded to nearest, ties away from 0; D > 0. */
-static int64_t divide(int64_t n, int64_t d)
+static int64_t divide_rounded(int64_t n, int64_t d)
 {
     return n >= 0 ? (2 * n + d) / (2 * d) : -((-2 * n + d) / (2 * d));
 }
@@ -21,7 +21,8 @@ static long count_wrong_shares(int32_t most, int up, int32_t d)
     long wrong = 0;
 
     for (int32_t k = -most; k <= most; k++)
-        wrong += y4m_share(k, factor) != divide(k * (INT64_C(1) << up), d);
+        wrong +=
+            y4m_share(k, factor) != divide_rounded(k * (INT64_C(1) << up), d);
     return wrong;
 }
 
@@ -66,7 +67,8 @@ TEST(green)
             const int64_t first = q * d - d / 2;
 
             for (int64_t n = first - 2; n <= first + 2; n++)
-                wrong += y4m_part(n, d, factor) != clamp_quotient(divide(n, d));
+                wrong += y4m_part(n, d, factor) !=
+                         clamp_quotient(divide_rounded(n, d));
         }
         wrong += y4m_part(-(INT64_C(1) << 40), d, factor) != 0;
         wrong += y4m_part(INT64_C(1) << 40, d, factor) != 1 << 20;
@@ -79,5 +81,5 @@ TEST(halves)
     for (int s = 1; s < 24; s++)
         for (int64_t n = -70000; n < 70000; n++)
             assert_true(y4m_halve(16 * n, s) ==
-                        divide(16 * n, INT64_C(1) << s));
+                        divide_rounded(16 * n, INT64_C(1) << s));
 }
