@@ -54,7 +54,7 @@ static double sum_codes(const uint8_t *picture)
     return sum;
 }
 
-static double psnr(const uint8_t *a, const uint8_t *b)
+static double compute_psnr(const uint8_t *a, const uint8_t *b)
 {
     double sum = 0;
 
@@ -78,10 +78,10 @@ TEST(light_stays)
         draw_image(codes, dim);
         assert_true(stage.drawn.stats.bundles < bundles);
         assert_true(fabs(sum_codes(dim) / sum_codes(plain) - 1) < 0.01);
-        assert_true(psnr(plain, dim) > 40);
-        assert_true(psnr(plain, dim) <= before);
+        assert_true(compute_psnr(plain, dim) > 40);
+        assert_true(compute_psnr(plain, dim) <= before);
         bundles = stage.drawn.stats.bundles;
-        before = psnr(plain, dim);
+        before = compute_psnr(plain, dim);
     }
 }
 
@@ -168,7 +168,7 @@ TEST(shared_rays)
             memcpy(last[k], now, BYTES);
         }
         assert_true(2 * bundles[1] < bundles[0]);
-        assert_true(psnr(plain, dim) > 50);
+        assert_true(compute_psnr(plain, dim) > 50);
         if (frame % 100 == 0)
             assert_true(fabs(sum_light(4) / sum_light(0) - 1) < 0.06);
     }

@@ -403,7 +403,8 @@ TEST(set_by_name)
     assert_memory_equal(set, made, BYTES);
 }
 
-static bool accepts(struct glint_options *o, const char *name, const char *text)
+static bool is_accepted(struct glint_options *o, const char *name,
+                        const char *text)
 {
     struct glint_error error = {""};
     const bool is_set =
@@ -448,11 +449,11 @@ TEST(configured_camera)
     glint_engine_destroy(engine);
 
     glint_options_defaults(&o);
-    assert_true(accepts(&o, "stop", "polygon:6,10,round:0.3,soft:0.1"));
-    assert_true(accepts(&o, "dust", "0.02,7"));
-    assert_true(accepts(&o, "front-dust", "0.05"));
-    assert_true(accepts(&o, "wavelengths", "610,470"));
-    assert_true(accepts(&o, "balance", NULL));
+    assert_true(is_accepted(&o, "stop", "polygon:6,10,round:0.3,soft:0.1"));
+    assert_true(is_accepted(&o, "dust", "0.02,7"));
+    assert_true(is_accepted(&o, "front-dust", "0.05"));
+    assert_true(is_accepted(&o, "wavelengths", "610,470"));
+    assert_true(is_accepted(&o, "balance", NULL));
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     glint_engine_configure(&cfg, &o);
     cfg.model = lens;
@@ -489,29 +490,6 @@ TEST(dust_alone)
     draw_found(engine, 0, dusty, &report);
     assert_memory_not_equal(dusty, clean, BYTES);
     glint_engine_destroy(engine);
-}
-
-/* A configuration without STOPS accepts clean, straight blades only. */
-TEST(no_stops)
-{
-    struct glint_engine_config cfg;
-    struct glint_engine *engine;
-    struct glint_error error;
-
-    for (int k = 0; k < 3; k++) {
-        glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-        cfg.model = &opened.lens.model.lens;
-        cfg.camera.iris.roundness = k == 1 ? 0.2 : 0;
-        cfg.camera.front_dirt.dust = k == 2 ? 0.02 : 0;
-        *error.text = '\0';
-        assert_int_equal(glint_engine_create(&engine, &cfg, &error),
-                         k ? GLINT_E_ARGUMENT : GLINT_OK);
-        assert_true(!k == !strstr(error.text, "camera.stops"));
-        glint_engine_destroy(engine);
-        cfg.camera.stops = &glint_engine_all_stops;
-        assert_ok(glint_engine_create(&engine, &cfg, &error));
-        glint_engine_destroy(engine);
-    }
 }
 
 /* Checks that each numeric option accepts its limits and rejects values
@@ -564,8 +542,8 @@ TEST(option_values)
         const struct glint_option *const row = glint_option(i);
 
         if (row->type == GLINT_OPTION_TEXT) {
-            assert_true(!*row->text || accepts(&o, row->name, row->text));
-            assert_true(accepts(&o, row->name, "") && !o.given[i]);
+            assert_true(!*row->text || is_accepted(&o, row->name, row->text));
+            assert_true(is_accepted(&o, row->name, "") && !o.given[i]);
             continue;
         }
         assert_true(isnan(row->initial) ||
@@ -576,16 +554,16 @@ TEST(option_values)
         assert_int_equal(glint_options_set(&o, row->name, NAN, &error),
                          GLINT_E_ARGUMENT);
         assert_true(row->type == GLINT_OPTION_FLAG ||
-                    !accepts(&o, row->name, NULL));
+                    !is_accepted(&o, row->name, NULL));
     }
     assert_string_equal(o.wavelengths, initial.wavelengths);
     assert_string_equal(o.threshold, initial.threshold);
-    assert_true(accepts(&o, "half", "yes") && o.half);
-    assert_true(accepts(&o, "half", "no") && !o.half);
-    assert_false(accepts(&o, "half", "maybe"));
-    assert_true(accepts(&o, "strength", " 1.5e0") && o.strength == 1.5);
-    assert_false(accepts(&o, "strength", "1,5"));
-    assert_false(accepts(&o, "no-such-option", "1"));
+    assert_true(is_accepted(&o, "half", "yes") && o.half);
+    assert_true(is_accepted(&o, "half", "no") && !o.half);
+    assert_false(is_accepted(&o, "half", "maybe"));
+    assert_true(is_accepted(&o, "strength", " 1.5e0") && o.strength == 1.5);
+    assert_false(is_accepted(&o, "strength", "1,5"));
+    assert_false(is_accepted(&o, "no-such-option", "1"));
     assert_int_equal(glint_option_numbers("-1.25, 3", v, 3), 2);
     assert_true(v[0] == -1.25 && v[1] == 3);
     assert_ok(glint_options_set(&o, "veil", 0.5, &error));
