@@ -189,7 +189,7 @@ TEST(identical)
 }
 
 /* Returns the chord between the directions with sines (X, Y) and (P, Q). */
-static double chord(double x, double y, double p, double q)
+static double chord_length(double x, double y, double p, double q)
 {
     const double z = sqrt(1 - x * x - y * y) - sqrt(1 - p * p - q * q);
 
@@ -208,7 +208,7 @@ TEST(near)
         const double x = random_unit(&seed) - 0.5, y = random_unit(&seed) - 0.5;
         const double dx = 2 * near * (random_unit(&seed) - 0.5);
         const double dy = 2 * near * (random_unit(&seed) - 0.5);
-        const double d = chord(x, y, x + dx, y + dy);
+        const double d = chord_length(x, y, x + dx, y + dy);
         struct glint_light b[2] = {make_light(x, y, 1),
                                    make_light(x + dx, y + dy, 3)};
         const int left = glint_lights_merge(b, 2, NEAR_Q30, 2, &apart);

@@ -243,7 +243,7 @@ static int compare_ints(const void *a, const void *b)
 /* Returns the hue step, codes, that is exceeded by only 0.1 % of all pairs
  * of neighbouring pixels: the error of the change of R - G or B - G from one
  * pixel to the next. */
-static int hue_step(const uint8_t *rgb)
+static int measure_hue_step(const uint8_t *rgb)
 {
     static int step[WIDTH * HEIGHT];
     int n = 0;
@@ -267,7 +267,7 @@ static int hue_step(const uint8_t *rgb)
     return step[n / 1000];
 }
 
-static double psnr(const uint8_t *rgb)
+static double compute_psnr(const uint8_t *rgb)
 {
     double squares = 0;
 
@@ -292,8 +292,8 @@ TEST(outlines)
     glint_frame_finish(&frame);
     draw_frame(&frame, &chosen, WIDTH, 20, picture);
     glint_frame_finish(&frame);
-    db[0] = psnr(few), db[1] = psnr(picture);
-    step[0] = hue_step(few), step[1] = hue_step(picture);
+    db[0] = compute_psnr(few), db[1] = compute_psnr(picture);
+    step[0] = measure_hue_step(few), step[1] = measure_hue_step(picture);
     print_message("three: %.1f dB, step %d; chosen: %.1f dB, step %d\n", db[0],
                   step[0], db[1], step[1]);
     assert_true(db[1] > 44 && db[1] > db[0] + 10);
