@@ -26,7 +26,7 @@ enum {
 
 static struct scene_file file;
 
-static struct glint_scene_config defaults(void)
+static struct glint_scene_config make_config(void)
 {
     struct glint_scene_config cfg;
 
@@ -124,7 +124,7 @@ TEST(any_order)
     make_scene();
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         static const int samples[4] = {4, 16, 8, 1};
-        struct glint_scene_config cfg = defaults();
+        struct glint_scene_config cfg = make_config();
         const size_t bytes =
             glint_image_bytes((enum glint_pixel_format)format, WIDTH, HEIGHT);
         uint8_t before[64];
@@ -155,7 +155,7 @@ TEST(nothing)
 {
     static uint8_t px[BYTES], before[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_I420, WIDTH, HEIGHT);
-    const struct glint_scene_config cfg = defaults();
+    const struct glint_scene_config cfg = make_config();
     struct glint_scene_stats stats;
 
     fill_image(px, BYTES);
@@ -249,7 +249,7 @@ TEST(no_leaks)
 {
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
-    struct glint_scene_config cfg = defaults();
+    struct glint_scene_config cfg = make_config();
     struct glint_scene_stats stats;
     uint32_t seed = 1;
 
@@ -278,7 +278,7 @@ TEST(no_leaks)
 /* Checks that a sample shows the first object that its ray hits. */
 TEST(samples)
 {
-    const struct glint_scene_config cfg = defaults();
+    const struct glint_scene_config cfg = make_config();
     struct glint_scene_stats stats;
     const struct glint_scene *s;
     int n = 0, other = 0;
@@ -321,7 +321,7 @@ static void draw_linear(int edge_samples, int half, int32_t *px_q20)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
-    struct glint_scene_config cfg = defaults();
+    struct glint_scene_config cfg = make_config();
     struct glint_scene_stats stats;
 
     cfg.edge_samples = edge_samples;
@@ -331,7 +331,7 @@ static void draw_linear(int edge_samples, int half, int32_t *px_q20)
 }
 
 /* Returns the root mean square difference, 1 = display white. */
-static double rms(const int32_t *a_q20, const int32_t *b_q20)
+static double compute_rms(const int32_t *a_q20, const int32_t *b_q20)
 {
     double sum = 0;
 
@@ -355,14 +355,14 @@ TEST(dials)
         double off;
 
         draw_linear(n, 0, some);
-        off = rms(some, all);
+        off = compute_rms(some, all);
         print_message("%d samples: %.1f dB\n", n, -20 * log10(off));
         assert_true(off > 0 && off < .8 * last);
         last = off;
     }
     draw_linear(16, 1, some);
-    print_message("two by two: %.1f dB\n", -20 * log10(rms(some, all)));
-    assert_true(rms(some, all) < .1);
+    print_message("two by two: %.1f dB\n", -20 * log10(compute_rms(some, all)));
+    assert_true(compute_rms(some, all) < .1);
     for (int y = 0; y < HEIGHT - 1; y += 2)
         for (int x = 0; x < WIDTH - 1; x += 2) {
             const int i = 3 * (y * WIDTH + x);
@@ -382,7 +382,7 @@ TEST(dials)
 
 TEST(capacity)
 {
-    struct glint_scene_config cfg = defaults();
+    struct glint_scene_config cfg = make_config();
     struct glint_scene_stats stats;
     const struct glint_scene_model model = (make_scene(), scene_open(&file));
 
@@ -410,7 +410,7 @@ TEST(capacity)
 
 TEST(poses)
 {
-    const struct glint_scene_config cfg = defaults();
+    const struct glint_scene_config cfg = make_config();
     const int32_t at[4] = {UNIT, 0, 9 * UNIT}, far[3] = {GLINT_SCENE_SPAN - 9};
     const int32_t turn[4] = {ONE_Q30 / 5 * 3, 0, ONE_Q30 / 5 * 4, 0};
     const int32_t axes[3][3] = {{ONE_Q30}, {0, ONE_Q30}, {0, 0, -ONE_Q30}};
@@ -461,7 +461,7 @@ TEST(shadows)
     int n = 0, other = 0, partly = 0, dark = 0;
 
     for (int points = 1; points <= 16; points *= 4) {
-        struct glint_scene_config cfg = defaults();
+        struct glint_scene_config cfg = make_config();
         struct glint_scene_stats stats;
         struct glint_scene *s;
 
@@ -503,7 +503,7 @@ TEST(confined)
     struct glint_image image = {
         .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
     const struct glint_box all = {0, 0, WIDTH, HEIGHT};
-    const struct glint_scene_config cfg = defaults();
+    const struct glint_scene_config cfg = make_config();
     uint32_t seed = 1;
     int less = 0, flat = 0;
 
@@ -557,7 +557,7 @@ static double to_double(struct glint_real x)
  * through the same pinhole in double precision. */
 TEST(lights)
 {
-    const struct glint_scene_config cfg = defaults();
+    const struct glint_scene_config cfg = make_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct glint_scene_stats stats;
     uint32_t seed = 1;
@@ -603,7 +603,7 @@ TEST(lens_agrees)
     const double f =
         glint_real_value(lens.header->focal_mm) *
         glint_real_value(glint_flare_pixels_per_mm(&lens, WIDTH, HEIGHT));
-    struct glint_scene_config cfg = defaults();
+    struct glint_scene_config cfg = make_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct glint_scene_stats stats;
     uint32_t seed = 1;
@@ -636,7 +636,7 @@ TEST(lens_agrees)
  * sets behind a ball. */
 TEST(hidden_light)
 {
-    const struct glint_scene_config cfg = defaults();
+    const struct glint_scene_config cfg = make_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     struct glint_scene_stats stats;
     int last = 16, levels = 0;
@@ -664,7 +664,7 @@ TEST(cover)
 {
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
-    const struct glint_scene_config cfg = defaults();
+    const struct glint_scene_config cfg = make_config();
     struct glint_scene_stats stats;
     struct glint_scene *s;
 
@@ -682,7 +682,7 @@ TEST(cover)
 
 static int64_t sum_cover(const struct glint_image *image)
 {
-    const struct glint_scene_config cfg = defaults();
+    const struct glint_scene_config cfg = make_config();
     struct glint_scene_stats stats;
     struct glint_scene *s = scene_start(&file, &cfg, &stats);
     int64_t sum = 0;

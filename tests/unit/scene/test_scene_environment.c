@@ -67,9 +67,9 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
 static const struct glint_description_files files = {NULL,     NULL, NULL,
                                                      bake_sky, NULL, NULL};
 
-static enum glint_status parse(const char *text,
-                               struct glint_description *scene,
-                               struct glint_error *error)
+static enum glint_status parse_text(const char *text,
+                                    struct glint_description *scene,
+                                    struct glint_error *error)
 {
     error->text[0] = '\0';
     return glint_description_parse(scene, text, strlen(text), "x.scene", &files,
@@ -139,10 +139,10 @@ TEST(clamped_ratio)
 
     assert_non_null(s);
     assert_ok(
-        parse("material m ward specular .9 .9 .9 alpha .002 .4 norm 1992\n"
-              "environment 9e5\nsphere s at 0 0 -3 radius 1 material m\n",
-              s, &error));
-    assert_non_null(strstr(s->warning, "limited to 10"));
+        parse_text("material m ward specular .9 .9 .9 alpha .002 .4 norm 1992\n"
+                   "environment 9e5\nsphere s at 0 0 -3 radius 1 material m\n",
+                   s, &error));
+    assert_non_null(strstr(s->warning, "held to a ratio of 10"));
     assert_true(fabs(s->material[0].alpha[0] - .04) < 1e-12);
     assert_true(s->material[0].norm == GLINT_DESCRIBED_1992);
     assert_true(s->n_lights > 0 &&
@@ -381,14 +381,14 @@ TEST(environment_names)
     struct glint_description description;
     struct glint_error error;
 
-    assert_int_equal(
-        parse("environment a/9e5.hdr\nenvironment 9e5\n", &description, &error),
-        GLINT_E_LENS);
+    assert_int_equal(parse_text("environment a/9e5.hdr\nenvironment 9e5\n",
+                                &description, &error),
+                     GLINT_E_LENS);
     assert_string_equal(error.text, "x.scene:2:13: a second environment '9e5'; "
                                     "files are identified by their names");
     for (int i = 0; i < 17; i++)
         sprintf(text + strlen(text), "environment sky%d\n", i);
-    assert_int_equal(parse(text, &description, &error), GLINT_E_LENS);
+    assert_int_equal(parse_text(text, &description, &error), GLINT_E_LENS);
     assert_string_equal(error.text, "x.scene:17:13: more than 16 environments");
 }
 

@@ -542,7 +542,7 @@ static int naive_hits_triangle(const struct glint_scene_ray *ray,
            (dot_q16(e2, q) ^ sign) >= 0;
 }
 
-/* Aims RAYS from inside a closed mesh at vertices, edges and the inside of
+/* Aims RAYS from inside a closed mesh at vertices, edges and the interior of
  * triangles, a third each. Returns the number of rays that hit no triangle,
  * or, for the last third, not exactly one. */
 static int count_misses(double size, int is_naive)

@@ -103,8 +103,9 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
 static const struct glint_description_files files = {
     NULL, read_mesh, NULL, bake_sky, NULL, read_stone};
 
-static enum glint_status parse(const char *text, struct glint_description *s,
-                               struct glint_error *error)
+static enum glint_status parse_text(const char *text,
+                                    struct glint_description *s,
+                                    struct glint_error *error)
 {
     error->text[0] = '\0';
     return glint_description_parse(s, text, strlen(text), "x.scene", &files,
@@ -206,7 +207,7 @@ static double compute_psnr(const int32_t *a, const int32_t *b)
 
 /* The texture repeats twice around a ball and is symmetric after half of
  * that; so a ball rotated by quarter turns must look the same, whether the
- * seam or the inside of the map is visible. */
+ * seam or the interior of the map is visible. */
 TEST(seams)
 {
     static int32_t first[3 * PIXELS], light[3 * PIXELS];
@@ -478,7 +479,7 @@ static void expect_refused(const char *text, const char *reason)
     size_t bytes;
 
     assert_non_null(s);
-    if (parse(text, s, &error) == GLINT_OK) {
+    if (parse_text(text, s, &error) == GLINT_OK) {
         if (glint_scene_bake(s, "x", 1, &data, &bytes, &report, &error) ==
             GLINT_OK) {
             snprintf(error.text, sizeof error.text, "%s", s->warning);

@@ -151,8 +151,8 @@ static double lookup_level(const struct glint_environment *e, int k,
     return sum;
 }
 
-static double lookup(const struct glint_environment *e, const double toward[3],
-                     double level, int c)
+static double lookup_levels(const struct glint_environment *e,
+                            const double toward[3], double level, int c)
 {
     const double last = e->header->n_levels - 1;
     const int k = (int)(level = fmin(fmax(level, 0), last));
@@ -222,8 +222,9 @@ static void reference_pixel(const struct glint_environment *e,
         if (ho <= 0 || ni <= 0)
             continue;
         for (int c = 0; c < 3; c++)
-            rgb[c] += fmin(ni / (ho / length), 8) / n *
-                      lookup(e, toward, log2(2 * sqrt(blur * ho) / texel), c);
+            rgb[c] +=
+                fmin(ni / (ho / length), 8) / n *
+                lookup_levels(e, toward, log2(2 * sqrt(blur * ho) / texel), c);
     }
 }
 
@@ -286,7 +287,7 @@ static void render_uniform(const struct glint_environment *e,
                           GLINT_WARD_BOUNDED, toward) *
                 2 * GLINT_PI / n;
             for (int c = 0; c < 3; c++)
-                to[i][c] += w * lookup(e, toward, level, c);
+                to[i][c] += w * lookup_levels(e, toward, level, c);
         }
     }
 }

@@ -115,7 +115,7 @@ static void widen_row(struct glint_translucent_header *h, unsigned char *data)
         find_taps(h, data)[k] = k % 2 ? 2047 : -2047;
 }
 
-static void lose_shift(struct glint_translucent_header *h, unsigned char *data)
+static void clear_shift(struct glint_translucent_header *h, unsigned char *data)
 {
     uint32_t *shift = (uint32_t *)(void *)(data + h->shift_at);
 
@@ -182,7 +182,7 @@ TEST(refused)
     } row[] = {
         {widen_column, "the columns of a plane of the stone do not fit"},
         {widen_row, "the rows of a plane of the stone do not fit"},
-        {lose_shift, "the rows of a plane of the stone do not fit"},
+        {clear_shift, "the rows of a plane of the stone do not fit"},
         {raise_shift, "the rows of a plane of the stone do not fit"},
         {raise_tap, "a tap of the stone has too many bits"},
         {raise_cluster, "a texel's cluster is out of range"},
