@@ -126,7 +126,7 @@ static double sum_around(const float *rgb, int at)
     return sum;
 }
 
-static int brightest(const float *rgb)
+static int find_brightest(const float *rgb)
 {
     int most = 0;
 
@@ -162,7 +162,7 @@ TEST(point)
 
             assert_true(stage_linear(&stage, &lamp, 1, test));
             assert_true(stage_exact(&stage, &lamp, 1, 512, exact));
-            at = brightest(exact);
+            at = find_brightest(exact);
             want = sum_around(exact, at);
             assert_true(want > 0);
             apart[which] =

@@ -29,7 +29,7 @@ TEST_OPEN
     power_of_mm = stage_power(&heliar, &lamp) / 7 / 7;
 }
 
-static void *allocate(size_t bytes)
+static void *allocate_bytes(size_t bytes)
 {
     void *p = malloc(bytes);
 
@@ -38,8 +38,8 @@ static void *allocate(size_t bytes)
 }
 
 /* Draws onto an image of FORMAT and WIDTH x HEIGHT with PX_MM pixels per mm. */
-static void draw(enum glint_pixel_format format, int width, int height,
-                 double px_mm, uint8_t *bytes)
+static void draw_lamp(enum glint_pixel_format format, int width, int height,
+                      double px_mm, uint8_t *bytes)
 {
     const struct glint_lamp lamp =
         stage_lamp(7.5, 33, power_of_mm * px_mm * px_mm);
@@ -59,12 +59,12 @@ static void draw(enum glint_pixel_format format, int width, int height,
 static int count_differing(int width, int height, const uint8_t *large,
                            int large_w, int large_h, double px_mm)
 {
-    uint8_t *small = allocate((size_t)width * (size_t)height * 3);
+    uint8_t *small = allocate_bytes((size_t)width * (size_t)height * 3);
     const int x0 = (large_w - width) / 2, y0 = (large_h - height) / 2;
     int n = 0;
 
     memset(small, 40, (size_t)width * (size_t)height * 3);
-    draw(GLINT_RGB24, width, height, px_mm, small);
+    draw_lamp(GLINT_RGB24, width, height, px_mm, small);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < 3 * width; x++)
             n += small[(size_t)y * 3 * (size_t)width + (size_t)x] !=
@@ -80,11 +80,11 @@ TEST(every_size)
                                    {65, 63}, {301, 3},   {17, 129}, {127, 65},
                                    {7, 9},   {299, 199}, {193, 1},  {1, 65}};
     enum { W = 301, H = 199 };
-    uint8_t *large = allocate(3 * W * H);
+    uint8_t *large = allocate_bytes(3 * W * H);
     int n = 0, lit = 0;
 
     memset(large, 40, 3 * W * H);
-    draw(GLINT_RGB24, W, H, 7, large);
+    draw_lamp(GLINT_RGB24, W, H, 7, large);
     for (int i = 0; i < 3 * W * H; i++)
         lit += large[i] != 40;
     assert_true(lit > W * H);
@@ -101,15 +101,15 @@ TEST(every_size)
 TEST(largest)
 {
     enum { SIDE = 8192, MIDDLE = 512 };
-    uint8_t *large = allocate((size_t)SIDE * SIDE),
-            *small = allocate(MIDDLE * MIDDLE);
+    uint8_t *large = allocate_bytes((size_t)SIDE * SIDE),
+            *small = allocate_bytes(MIDDLE * MIDDLE);
     int n = 0, corners = 0;
 
     memset(large, 0, (size_t)SIDE * SIDE);
     memset(small, 0, MIDDLE * MIDDLE);
-    draw(GLINT_GREY, SIDE, SIDE, 250, large);
+    draw_lamp(GLINT_GREY, SIDE, SIDE, 250, large);
     assert_int_equal(heliar.drawn.stats.dropped_bundles, 0);
-    draw(GLINT_GREY, MIDDLE, MIDDLE, 250, small);
+    draw_lamp(GLINT_GREY, MIDDLE, MIDDLE, 250, small);
     for (int y = 0; y < MIDDLE; y++)
         for (int x = 0; x < MIDDLE; x++)
             n += small[y * MIDDLE + x] !=
@@ -128,7 +128,8 @@ TEST(largest)
 TEST(longest)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, MIDDLE = 512 };
-    uint8_t *large = allocate(LONG * SHORT), *small = allocate(MIDDLE * SHORT);
+    uint8_t *large = allocate_bytes(LONG * SHORT),
+            *small = allocate_bytes(MIDDLE * SHORT);
     int n = 0, lit[2] = {0, 0};
 
     for (int turned = 0; turned < 2; turned++) {
@@ -137,9 +138,9 @@ TEST(longest)
 
         memset(large, 0, LONG * SHORT);
         memset(small, 0, MIDDLE * SHORT);
-        draw(GLINT_GREY, w, h, 1000, large);
+        draw_lamp(GLINT_GREY, w, h, 1000, large);
         assert_int_equal(heliar.drawn.stats.dropped_bundles, 0);
-        draw(GLINT_GREY, sw, sh, 1000, small);
+        draw_lamp(GLINT_GREY, sw, sh, 1000, small);
         for (int y = 0; y < sh; y++)
             for (int x = 0; x < sw; x++)
                 n += small[y * sw + x] !=

@@ -115,7 +115,7 @@ TEST(against_native)
         is_near);
 }
 
-static double code_of(double x)
+static double to_code(double x)
 {
     x = fmin(1, fmax(0, x));
     return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
@@ -128,7 +128,7 @@ static void set_blocks(const float *rgb, double exposure, double *mean)
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)
             mean[y / 8 * (W / 8) + x / 8] +=
-                code_of(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
+                to_code(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
 }
 
 /* Checks, while the stop closes and ghosts shrink, that the error of a block

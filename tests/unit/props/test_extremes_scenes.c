@@ -92,8 +92,8 @@ static int is_inside(const struct twin_pixel *p, int width, int height, int x,
 
 /* Draws TEXT at WIDTH x HEIGHT with both renderers and raises the errors in
  * WORST. */
-static void compare(const char *text, int width, int height,
-                    struct outcome *worst)
+static void compare_renderers(const char *text, int width, int height,
+                              struct outcome *worst)
 {
     const struct twin_view view = {width, height, 0, 1};
     const size_t n = (size_t)width * (size_t)height;
@@ -164,14 +164,14 @@ TEST(grazing)
                  "material m phong .05 .8 .15 power 16\n"
                  "plane floor at 0 0 0 normal 0 1 0 material m\nshadow on\n",
                  flat, flat);
-        compare(text, 96, 54, &worst);
+        compare_renderers(text, 96, 54, &worst);
         snprintf(text, sizeof text,
                  "camera fov %.9f at 0 0 10 toward 1 0 0\n"
                  "light sun direction 1 %.9f 0 colour 4e4 4e4 4e4\n"
                  "material m phong .05 .8 .15 power 16\n"
                  "sphere ball at 0 0 0 radius 1 material m\nshadow on\n",
                  fmax(10 * flat, .1), flat);
-        compare(text, 96, 54, &worst);
+        compare_renderers(text, 96, 54, &worst);
     }
     check_outcome("floors and balls that graze, to 1e-5", &worst);
 }
@@ -195,7 +195,7 @@ TEST(sizes)
                  -r, r, 0.1 * r, 2 * r, r, r, 2 * r);
         if (25 * r * r > 1e9 || 4 * r > 1e6)
             break;
-        compare(text, 96, 54, &worst);
+        compare_renderers(text, 96, 54, &worst);
     }
     check_outcome("sizes 1e-6 to 1e3", &worst);
 }
@@ -216,7 +216,7 @@ TEST(large)
                  "sphere moon at %.9g %.9g %.9g radius %.9g material m\n"
                  "shadow on\n",
                  r / 2, 2 * r, -r / 4, r / 2, r / 3, r / 3, r / 2, r / 5);
-        compare(text, 96, 54, &worst);
+        compare_renderers(text, 96, 54, &worst);
     }
     assert_at_least("scenes: sizes 1e3 to 5e5, against the reference", worst.db,
                     60, "dB");
@@ -235,13 +235,13 @@ TEST(powers)
                  "material m phong .0 .8 .2 power 4096\n"
                  "sphere ball at 0 0 -3 radius 1 material m\n",
                  c, c, c);
-        compare(text, 96, 54, &worst);
+        compare_renderers(text, 96, 54, &worst);
         snprintf(text, sizeof text,
                  "light sun direction 0 2 2 colour %.9g %.9g %.9g radius .01\n"
                  "material m phong 0 .8 .2 power 1\n"
                  "sphere ball at 0 0 -3 radius 1 material m\n",
                  c, c, c);
-        compare(text, 96, 54, &worst);
+        compare_renderers(text, 96, 54, &worst);
     }
     assert_at_most("scenes: lights 1e-6 to 1e9, light shown", worst.share, .05,
                    "");
@@ -273,7 +273,7 @@ TEST(behind)
         char text[400];
 
         snprintf(text, sizeof text, "%s%s", head, things[i]);
-        compare(text, 96, 54, &worst);
+        compare_renderers(text, 96, 54, &worst);
     }
     check_outcome("behind, around and across the camera", &worst);
 }
@@ -286,12 +286,13 @@ TEST(pictures)
     struct outcome worst = NOTHING_YET;
 
     for (size_t i = 0; i < sizeof size / sizeof *size; i++)
-        compare("camera fov 3 at 0 1 4 toward 0 .5 0\n"
-                "light sun direction .35 .55 .75 colour 4e4 4e4 4e4\n"
-                "material m phong .1 .7 .2 power 32\n"
-                "sphere ball at 0 .5 0 radius .5 material m\n"
-                "plane floor at 0 0 0 normal 0 1 0 material m\nshadow on\n",
-                size[i][0], size[i][1], &worst);
+        compare_renderers(
+            "camera fov 3 at 0 1 4 toward 0 .5 0\n"
+            "light sun direction .35 .55 .75 colour 4e4 4e4 4e4\n"
+            "material m phong .1 .7 .2 power 32\n"
+            "sphere ball at 0 .5 0 radius .5 material m\n"
+            "plane floor at 0 0 0 normal 0 1 0 material m\nshadow on\n",
+            size[i][0], size[i][1], &worst);
     check_outcome("one pixel to 8192 wide and 4096 high", &worst);
 }
 
@@ -321,11 +322,11 @@ TEST(surfaces)
                  "sphere side at 1.5 0 -5 radius .9 material w\n"
                  "plane floor at 0 -1 0 normal 0 1 0 material w\n",
                  materials[i]);
-        compare(text, 160, 90, &worst);
+        compare_renderers(text, 160, 90, &worst);
         /* the same from inside the ball, near its rim */
         snprintf(text + strlen(text), sizeof text - strlen(text),
                  "camera fov 90 at .9 0 -4 toward .9 0 -9\n");
-        compare(text, 160, 90, &worst);
+        compare_renderers(text, 160, 90, &worst);
     }
     assert_at_least("scenes: powers 1 to 4096, glass 1/4 to 4, also from "
                     "within, against the reference",
