@@ -25,8 +25,8 @@ static struct glint_setup *make_setup(void)
     return s;
 }
 
-static enum glint_status parse(const char *text, struct glint_tint **tints,
-                               struct glint_error *error)
+static enum glint_status parse_text(const char *text, struct glint_tint **tints,
+                                    struct glint_error *error)
 {
     struct glint_setup *s = make_setup();
     enum glint_status status;
@@ -48,9 +48,9 @@ TEST(values)
     struct glint_tint *t;
     struct glint_error error;
 
-    assert_ok(parse("# remark\nlens lens-a\n\n0 mute # gone\r\n"
-                    "\t12-2  gain 2.5 tint 1,0.5,0\n",
-                    &t, &error));
+    assert_ok(parse_text("# remark\nlens lens-a\n\n0 mute # gone\r\n"
+                         "\t12-2  gain 2.5 tint 1,0.5,0\n",
+                         &t, &error));
     assert_true(gain_of(t, 0) == 0 && gain_of(t, 1) == 2.5 &&
                 gain_of(t, 2) == 1);
     assert_int_equal(t[1].rgb_q14[0], 16384);
@@ -66,11 +66,11 @@ TEST(solo)
     struct glint_tint *t;
     struct glint_error error;
 
-    assert_ok(parse("1 solo gain 3\n2 mute\n", &t, &error));
+    assert_ok(parse_text("1 solo gain 3\n2 mute\n", &t, &error));
     assert_true(gain_of(t, 0) == 0 && gain_of(t, 1) == 3);
     assert_true(gain_of(t, 2) == 0 && gain_of(t, 3) == 3);
     free(t);
-    assert_int_equal(parse("1 mute\n2 solo\n1 solo\n", &t, &error),
+    assert_int_equal(parse_text("1 mute\n2 solo\n1 solo\n", &t, &error),
                      GLINT_E_FORMAT);
     assert_non_null(strstr(error.text, ":3: solo and mute"));
 }
@@ -83,11 +83,11 @@ TEST(lines_read_back)
     char line[200];
 
     ghost_file_line(line, sizeof line, 2, &odd);
-    assert_ok(parse(line, &t, &error));
+    assert_ok(parse_text(line, &t, &error));
     assert_memory_equal(&t[2], &odd, sizeof odd);
     free(t);
     ghost_file_line(line, sizeof line, 0, NULL);
-    assert_ok(parse(line, &t, &error));
+    assert_ok(parse_text(line, &t, &error));
     assert_true(gain_of(t, 0) == 1);
     free(t);
 }
@@ -109,7 +109,7 @@ TEST(refused)
 
         strcpy(text, "# one\n\n0 mute\n");
         strcat(text, bad[i]);
-        assert_int_equal(parse(text, &t, &error), GLINT_E_FORMAT);
+        assert_int_equal(parse_text(text, &t, &error), GLINT_E_FORMAT);
         assert_null(t);
         assert_ptr_equal(strstr(error.text, "g.txt:4: "), error.text);
     }

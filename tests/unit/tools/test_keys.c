@@ -9,8 +9,8 @@
 #include "desk/keys.h"
 #include "support/test.h"
 
-static enum glint_status parse(struct keys *keys, const char *text,
-                               struct glint_error *error)
+static enum glint_status parse_text(struct keys *keys, const char *text,
+                                    struct glint_error *error)
 {
     return keys_parse(keys, "k.csv", text, strlen(text), error);
 }
@@ -20,10 +20,10 @@ TEST(values)
     struct glint_error error = {""};
     struct keys k;
 
-    assert_ok(parse(&k,
-                    "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
-                    "20,3,,100,\n\n30,,8,,50\r\n",
-                    &error));
+    assert_ok(parse_text(&k,
+                         "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
+                         "20,3,,100,\n\n30,,8,,50\r\n",
+                         &error));
     assert_true(keys_has(&k, KEYS_GAIN) && !keys_has(&k, KEYS_STRENGTH));
     assert_true(keys_at(&k, KEYS_STRENGTH, 15, 7) == 7);
     assert_true(keys_at(&k, KEYS_GAIN, 0, 7) == 1);
@@ -53,7 +53,7 @@ TEST(many)
         at += (size_t)snprintf(text + at, sizeof text - at, "%d,%d\n", frame,
                                gain);
     }
-    assert_ok(parse(&k, text, &error));
+    assert_ok(parse_text(&k, text, &error));
     for (int i = 0; i < 999; i++) {
         assert_true(keys_at(&k, KEYS_GAIN, 3 * i, 0) == i * i);
         assert_true(keys_at(&k, KEYS_GAIN, 3 * i + 1, 0) ==
@@ -92,7 +92,7 @@ TEST(refused)
         struct glint_error error = {""};
         struct keys k;
 
-        assert_int_equal(parse(&k, bad[i][0], &error), GLINT_E_FORMAT);
+        assert_int_equal(parse_text(&k, bad[i][0], &error), GLINT_E_FORMAT);
         assert_ptr_equal(strstr(error.text, bad[i][1]), error.text);
         assert_int_equal(k.n[KEYS_FRAME], 0);
     }

@@ -173,7 +173,7 @@ static void check_setup_order(const char *line, void (*follow)(int wait),
                      asked[wait[i]] - asked_at_stream[i], i);
 }
 
-static void unplug(int wait)
+static void unplug_camera(int wait)
 {
     camera.is_gone = wait >= 20 && wait < 30;
     count_allocations(wait);
@@ -197,7 +197,7 @@ TEST(streams_last)
                      sizes[] = {4, 14, 24, 29};
 
     check_setup_order("--count 20", count_allocations, start, 1);
-    check_setup_order("--count 50 --reconnect", unplug, back, 2);
+    check_setup_order("--count 50 --reconnect", unplug_camera, back, 2);
     check_setup_order("--count 27", change_size, sizes, 4);
 }
 
@@ -293,11 +293,9 @@ TEST(bad_reloads)
     snprintf(line, sizeof line, "--count 100 --config %s", config_path);
     assert_ok(run_live(line));
     expect_no_leaks();
-    assert_int_equal(
-        count_messages("not reloaded: the previous configuration stays in use"),
-        6);
+    assert_int_equal(count_messages("not reloaded: all stays as it was"), 6);
     assert_int_equal(count_messages("live: reloaded"), 2);
-    assert_int_equal(count_messages(":2: no-such-thing is not an option"), 4);
+    assert_int_equal(count_messages(":2: there is no option no-such-thing"), 4);
 }
 
 /* ---------------------------------------------------------------- snapshot */
@@ -367,7 +365,7 @@ TEST(snapshot_waits)
 
 TEST(unplugged)
 {
-    script = unplug;
+    script = unplug_camera;
     assert_int_equal(run_live("--count 100"), EXIT_DEVICE);
     expect_no_leaks();
     assert_int_equal(count_messages("the camera is gone\n"), 1);
@@ -378,7 +376,7 @@ TEST(comes_back)
 {
     {
         fake_camera_reset();
-        script = unplug;
+        script = unplug_camera;
         assert_ok(run_live("--count 100 --reconnect"));
         expect_no_leaks();
         assert_int_equal(count_messages("waiting for the camera"), 1);

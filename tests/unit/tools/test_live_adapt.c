@@ -25,7 +25,7 @@ static struct seen {
 /* Simulates a machine that takes cost_ms[step] per frame for SECONDS. A
  * frame that takes longer than a period misses the frames that arrive
  * meanwhile. */
-static void simulate(const double *cost_ms, double seconds)
+static void simulate_machine(const double *cost_ms, double seconds)
 {
     double now_s = 0;
 
@@ -67,7 +67,7 @@ TEST(easy)
 {
     static const double cost[8] = {25, 20, 15, 10, 8, 6, 5, 4};
 
-    simulate(cost, 600);
+    simulate_machine(cost, 600);
     assert_int_equal(adapt.step, 0);
     assert_true(seen.last_change_s < 0); /* no change of step */
 }
@@ -78,11 +78,12 @@ TEST(overload)
 {
     static const double cost[8] = {80, 70, 45, 26, 20, 15, 10, 5};
 
-    simulate(cost, 3);
+    simulate_machine(cost, 3);
     assert_int_equal(adapt.step, 3);
     assert_true(seen.first_down_s > 0.2 && seen.first_down_s < 0.5);
     assert_true(seen.last_change_s < 1.5);
-    simulate(cost, 600); /* The step stays, as there is no spare time. */
+    simulate_machine(cost,
+                     600); /* The step stays, as there is no spare time. */
     assert_int_equal(adapt.step, 3);
     assert_int_equal(seen.n_down, 0);
     assert_int_equal(seen.n_missed, 0);
@@ -93,10 +94,10 @@ TEST(worst)
     static const double cost[8] = {900, 900, 900, 900, 900, 900, 900, 900};
     static const double none[8] = {0, 0, 0, 0, 0, 0, 0, 0};
 
-    simulate(cost, 600);
+    simulate_machine(cost, 600);
     assert_int_equal(adapt.step, LIVE_MAX_STEP);
     assert_int_equal(seen.n_down, LIVE_MAX_STEP);
-    simulate(none, 600);
+    simulate_machine(none, 600);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_up, LIVE_MAX_STEP);
 }
@@ -107,9 +108,9 @@ TEST(hiccup)
 {
     static const double cost[8] = {20, 15, 10, 8, 6, 5, 4, 3};
 
-    simulate(cost, 0.2);
+    simulate_machine(cost, 0.2);
     assert_false(live_adapt_note(&adapt, 30, PERIOD_MS, 0));
-    simulate(cost, 10);
+    simulate_machine(cost, 10);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_down, 0);
 }
@@ -121,9 +122,9 @@ TEST(recovers)
     static const double heavy[8] = {150, 120, 90, 70, 50, 29, 20, 10};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    simulate(heavy, 4);
+    simulate_machine(heavy, 4);
     assert_int_equal(adapt.step, 5);
-    simulate(light, 15);
+    simulate_machine(light, 15);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_down, 0);
 }
@@ -134,11 +135,11 @@ TEST(does_not_oscillate)
     static const double cost[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     int n_early;
 
-    simulate(cost, 60);
+    simulate_machine(cost, 60);
     n_early = seen.n_up;
     assert_int_equal(adapt.step, 3);
     assert_in_range(n_early, 1, 6);
-    simulate(cost, 600);
+    simulate_machine(cost, 600);
     assert_in_range(seen.n_up, 5, 12); /* once per minute */
     assert_true(seen.n_missed < seen.n_frames / 100);
 }
@@ -149,9 +150,9 @@ TEST(forgets)
     static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
-    simulate(heavy, 300);
+    simulate_machine(heavy, 300);
     /* waits at most a minute, then as short as at first */
-    simulate(light, 75);
+    simulate_machine(light, 75);
     assert_int_equal(adapt.step, 0);
 }
 

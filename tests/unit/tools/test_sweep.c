@@ -16,7 +16,8 @@
 
 /* Returns whether A dominates B: it is cheaper and not worse, or better and
  * not costlier. */
-static int dominates(const double *cost, const double *quality, int a, int b)
+static int is_dominating(const double *cost, const double *quality, int a,
+                         int b)
 {
     return cost[a] <= cost[b] && quality[a] >= quality[b] &&
            (cost[a] < cost[b] || quality[a] > quality[b]);
@@ -90,7 +91,7 @@ TEST(front_of_many)
             int is_beaten = 0, is_met = 0;
 
             for (int k = 0; k < N; k++) {
-                is_beaten |= dominates(cost, quality, k, i);
+                is_beaten |= is_dominating(cost, quality, k, i);
                 is_met |=
                     on[k] && cost[k] == cost[i] && quality[k] == quality[i];
             }

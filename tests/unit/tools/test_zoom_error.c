@@ -84,8 +84,8 @@ static void measure_up_to(double max_deg, const struct glint_prescription *lens,
         fail_msg("%s", message.text);
 }
 
-static void measure(const struct glint_prescription *lens, double along,
-                    double shift, struct zoom_error error[GHOSTS])
+static void measure_ghosts(const struct glint_prescription *lens, double along,
+                           double shift, struct zoom_error error[GHOSTS])
 {
     measure_up_to(MAX_DEG, lens, along, shift, error);
 }
@@ -101,7 +101,7 @@ static void mark_wanted(struct zoom_error error[GHOSTS])
             error[g].of[a] = g == 0 ? -1 : 2;
 }
 
-static double largest(const struct zoom_error *error)
+static double max_error(const struct zoom_error *error)
 {
     double most = 0;
 
@@ -115,7 +115,7 @@ TEST(ends_are_exact)
     struct zoom_error end[GHOSTS];
 
     mark_wanted(end);
-    measure(&at[0], 0, 0.5, end);
+    measure_ghosts(&at[0], 0, 0.5, end);
     for (int a = 0; a < ZOOM_ANGLES; a++) {
         /* 49.2 dB: a model of 50 dB against interpolated exact rays */
         assert_true(end[0].of[a] >= 0 && end[0].of[a] < 1.2e-5);
@@ -131,9 +131,9 @@ TEST(lights_are_shifted)
 
     mark_wanted(begin);
     mark_wanted(end);
-    measure(&at[2], 0.5, 0, begin);
-    measure(&at[2], 0.5, 1, end);
-    assert_true(largest(&begin[0]) > 3e-5);
+    measure_ghosts(&at[2], 0.5, 0, begin);
+    measure_ghosts(&at[2], 0.5, 1, end);
+    assert_true(max_error(&begin[0]) > 3e-5);
     for (int a = 0; a + EACH < ZOOM_ANGLES; a += EACH)
         assert_true(end[0].of[a] == begin[0].of[a + EACH]);
 }
