@@ -115,7 +115,7 @@ static int clipped_value(int luma)
     return 250 + (luma > 177 ? (luma - 177) / 15 : 0);
 }
 
-static int value_of_rgb(int r, int g, int b)
+static int compute_rgb_value(int r, int g, int b)
 {
     const int largest = r > g ? r > b ? r : b : g > b ? g : b;
 
@@ -135,21 +135,21 @@ static void brightness_range(const struct glint_image *image, int x, int y,
     switch (image->format) {
     case GLINT_RGB24:
         *least = *most =
-            value_of_rgb(row[3 * x], row[3 * x + 1], row[3 * x + 2]);
+            compute_rgb_value(row[3 * x], row[3 * x + 1], row[3 * x + 2]);
         return;
     case GLINT_BGR24:
         *least = *most =
-            value_of_rgb(row[3 * x + 2], row[3 * x + 1], row[3 * x]);
+            compute_rgb_value(row[3 * x + 2], row[3 * x + 1], row[3 * x]);
         return;
     case GLINT_XRGB8888:
         *least = *most =
-            value_of_rgb(row[4 * x + 2], row[4 * x + 1], row[4 * x]);
+            compute_rgb_value(row[4 * x + 2], row[4 * x + 1], row[4 * x]);
         return;
     case GLINT_RGB565:
         bits = row[2 * x] | row[2 * x + 1] << 8;
-        *least = *most = value_of_rgb(widen_code(bits >> 11, 5),
-                                      widen_code(bits >> 5 & 63, 6),
-                                      widen_code(bits & 31, 5));
+        *least = *most = compute_rgb_value(widen_code(bits >> 11, 5),
+                                           widen_code(bits >> 5 & 63, 6),
+                                           widen_code(bits & 31, 5));
         return;
     default:
         read_codes(image, x, y, code);

@@ -36,7 +36,7 @@ static struct power_lamp make_lamp(enum power_shape shape, double radius)
                                .rgb = {1, 1, 1}};
 }
 
-static void measure(const struct glint_image *image, int n)
+static void measure_spots(const struct glint_image *image, int n)
 {
     const size_t bytes = glint_profile_bytes();
     struct glint_profile *profile;
@@ -70,7 +70,7 @@ static int find_spots(const struct glint_image *image)
     assert_ok(glint_lamp_finder_init(&finder, &cfg, mem, bytes));
     n = glint_lamp_finder_find(finder, image, spot, MAX_SPOTS);
     free(mem);
-    measure(image, n);
+    measure_spots(image, n);
     return n;
 }
 
@@ -453,7 +453,7 @@ TEST(any_spots)
                               : any[(int)(7 * rng_unit(&seed))],
                 .size_q8 = i % 3 ? (int)(2560 * rng_unit(&seed))
                                  : any[(int)(7 * rng_unit(&seed))]};
-        measure(&image, MAX_SPOTS);
+        measure_spots(&image, MAX_SPOTS);
         for (int i = 0; i < MAX_SPOTS; i++) {
             const struct glint_spot *s = &spot[i];
             const double turn =
