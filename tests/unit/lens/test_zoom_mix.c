@@ -25,7 +25,7 @@ struct barrel {
     double middle, u, v2;
 };
 
-static int32_t q28(double x)
+static int32_t to_q28(double x)
 {
     return (int32_t)lrint(ldexp(x, 28));
 }
@@ -53,15 +53,15 @@ make_system(struct model_image *m, double sensor, double energy,
 {
     const int32_t box[3] = {box_middle, 1 << 22, 1 << 22};
     struct model_polynomial p[5 + MOST] = {
-        {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {q28(sensor)}},
+        {GLINT_OUT_SENSOR_X, 1, EXPONENT, {P(1, 0)}, {to_q28(sensor)}},
         {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {1 << 27}},
         {GLINT_OUT_STOP_X,
          2,
          EXPONENT,
          {P(0, 0), P(1, 0)},
-         {q28(stop.middle), q28(stop.u)}},
-        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {q28(stop.v)}},
-        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {q28(energy)}}};
+         {to_q28(stop.middle), to_q28(stop.u)}},
+        {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {to_q28(stop.v)}},
+        {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {to_q28(energy)}}};
     struct glint_model_system s = {.sine_hi_q30 = ONE / 2,
                                    .wave_lo_q24 = MODEL_WAVE_LO_Q24,
                                    .wave_hi_q24 = MODEL_WAVE_HI_Q24,
@@ -71,12 +71,13 @@ make_system(struct model_image *m, double sensor, double energy,
 
     s.box_at = model_put(m, box, sizeof box);
     for (uint32_t k = 0; k < n; k++)
-        p[5 + k] = (struct model_polynomial){
-            (uint8_t)(GLINT_OUT_BARREL_0 + k),
-            3,
-            EXPONENT,
-            {P(0, 0), P(1, 0), P(0, 2)},
-            {q28(barrel[k].middle), q28(barrel[k].u), q28(barrel[k].v2)}};
+        p[5 + k] = (struct model_polynomial){(uint8_t)(GLINT_OUT_BARREL_0 + k),
+                                             3,
+                                             EXPONENT,
+                                             {P(0, 0), P(1, 0), P(0, 2)},
+                                             {to_q28(barrel[k].middle),
+                                              to_q28(barrel[k].u),
+                                              to_q28(barrel[k].v2)}};
     model_outputs(m, &s, p, 5 + n, 0);
     outputs = (void *)(m->data + s.output_at);
     outputs[GLINT_OUT_ENERGY].head = head_bits;
@@ -328,8 +329,8 @@ static struct glint_lens open_box(struct model_image *m, double middle,
          2,
          EXPONENT,
          {P(0, 0), P(1, 0)},
-         {q28(middle * slope), q28(half * slope)}},
-        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {q28(rise * slope)}},
+         {to_q28(middle * slope), to_q28(half * slope)}},
+        {GLINT_OUT_SENSOR_Y, 1, EXPONENT, {P(0, 1)}, {to_q28(rise * slope)}},
         {GLINT_OUT_STOP_X, 1, EXPONENT, {P(1, 0)}, {1 << 27}},
         {GLINT_OUT_STOP_Y, 1, EXPONENT, {P(0, 1)}, {1 << 27}},
         {GLINT_OUT_ENERGY, 1, EXPONENT, {P(0, 0)}, {1 << 26}},
@@ -337,8 +338,8 @@ static struct glint_lens open_box(struct model_image *m, double middle,
          4,
          EXPONENT,
          {P(0, 0), P(1, 0), P(2, 0), P(0, 2)},
-         {q28(0.5 + middle * middle / 32), q28(middle * half / 16),
-          q28(half * half / 32), q28(rise * rise / 32)}}};
+         {to_q28(0.5 + middle * middle / 32), to_q28(middle * half / 16),
+          to_q28(half * half / 32), to_q28(rise * rise / 32)}}};
     struct glint_model_system s;
 
     model_begin(m, GLINT_BASIS_AUTO, "box");
@@ -460,9 +461,9 @@ TEST(places_stay_in_both_boxes)
                                        2,
                                        EXPONENT,
                                        {P(0, 0), P(1, 0)},
-                                       {q28(-1.6), q28(2)}};
+                                       {to_q28(-1.6), to_q28(2)}};
     const struct model_polynomial b = {
-        GLINT_OUT_BARREL_0, 1, EXPONENT - 2, {P(9, 0)}, {q28(2.4)}};
+        GLINT_OUT_BARREL_0, 1, EXPONENT - 2, {P(9, 0)}, {to_q28(2.4)}};
     struct model_image at[2];
     const struct glint_lens first = open_coarse(&at[0], wide, 0, &a);
     const struct glint_lens second = open_coarse(&at[1], narrow, -20, &b);
@@ -694,7 +695,7 @@ TEST(parts_go_with_their_ghost)
     free_models(at, 2);
 }
 
-static double between(double a, double b)
+static double interpolate_linear(double a, double b)
 {
     return 0.75 * a + 0.25 * b;
 }
@@ -729,18 +730,21 @@ TEST(numbers_are_in_proportion)
             fail_msg("%s", reason);
     }
     glint_zoom_set(&zoom, ONE / 4);
-    assert_true(glint_real_value(z->focal_mm) == between(50, 4800));
-    assert_true(glint_real_value(z->back_focal_mm) == between(3840, 40));
-    assert_true(glint_real_value(z->entrance_radius_mm) == between(7, 672));
-    assert_true(glint_real_value(z->stop_radius_mm) == between(480, 5));
-    assert_true(glint_real_value(z->f_number) == between(2, 192));
+    assert_true(glint_real_value(z->focal_mm) == interpolate_linear(50, 4800));
+    assert_true(glint_real_value(z->back_focal_mm) ==
+                interpolate_linear(3840, 40));
+    assert_true(glint_real_value(z->entrance_radius_mm) ==
+                interpolate_linear(7, 672));
+    assert_true(glint_real_value(z->stop_radius_mm) ==
+                interpolate_linear(480, 5));
+    assert_true(glint_real_value(z->f_number) == interpolate_linear(2, 192));
     for (int i = 0; i < GLINT_FLUX_TERMS; i++) {
         assert_true(glint_real_value(z->direct_flux[i]) ==
-                    (i + 1) * between(1, 96));
+                    (i + 1) * interpolate_linear(1, 96));
         assert_true(glint_real_value(z->stopped_flux[0][i]) ==
-                    (i + 20) * between(1, 96));
+                    (i + 20) * interpolate_linear(1, 96));
         assert_true(glint_real_value(z->stopped_flux[1][i]) ==
-                    -(i + 30) * between(96, 1));
+                    -(i + 30) * interpolate_linear(96, 1));
     }
     free_models(at, 2);
 }

@@ -255,7 +255,7 @@ TEST(some)
 
 /* ----------------------------------------------------------------- refusals */
 
-static void refuses(const char *cause)
+static void expect_error(const char *cause)
 {
     const char *reason = "";
 
@@ -280,27 +280,27 @@ TEST(refusals)
                      GLINT_E_LENS);
     file[bytes / 2] ^= 1;
     m[1].along_q30 = 1 << 30;
-    refuses("do not rise");
+    expect_error("do not rise");
     m[1] = kept;
     m[0].along_q30 = 1;
-    refuses("from end to end");
+    expect_error("from end to end");
     m[0].along_q30 = 0;
     m[1].at = (uint32_t)bytes;
-    refuses("outside");
+    expect_error("outside");
     m[1] = kept;
     m[1].at += 4;
-    refuses("glint model");
+    expect_error("glint model");
     m[1] = kept;
     m[1].has_at = (uint32_t)bytes;
-    refuses("list of ghosts");
+    expect_error("list of ghosts");
     m[1] = kept;
     m[0].has_at = h->model_at;
-    refuses("lacks ghosts");
+    expect_error("lacks ghosts");
     m[0].has_at = 0;
     h->n_models = 1;
-    refuses("fewer than 2");
+    expect_error("fewer than 2");
     h->n_models = 1000;
-    refuses("or too many");
+    expect_error("or too many");
     h->n_models = POSITIONS;
     glint_blob_seal(file, bytes);
     assert_ok(glint_zoom_open(&zoom, file, bytes, &reason));
