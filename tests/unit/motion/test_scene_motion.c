@@ -87,7 +87,7 @@ TEST(row_d8_seek_is_play)
  */
 
 /* Sets AT to V rotated by the unit quaternion Q. */
-static void rotate(const double q[4], const double v[3], double at[3])
+static void rotate_vector(const double q[4], const double v[3], double at[3])
 {
     const double c[3] = {q[2] * v[2] - q[3] * v[1], q[3] * v[0] - q[1] * v[2],
                          q[1] * v[1] - q[2] * v[0]};
@@ -111,7 +111,7 @@ static double compute_margin(const struct glint_motion_frame *frame,
         length += pow(frame->pose.turn_q14[k], 2);
     for (int k = 0; k < 4; k++)
         q[k] = frame->pose.turn_q14[k] / sqrt(length);
-    rotate(q, axis, to);
+    rotate_vector(q, axis, to);
     for (int k = 0; k < 3; k++) {
         const double d = ldexp(frame->food[f][k], -24) -
                          ldexp(frame->pose.at[k], -24) - size * to[k];
@@ -475,7 +475,7 @@ TEST(lamps_ride_on_the_body)
         moving_draw(d);
         for (int i = 0; i < 4; i++)
             q[i] = ldexp(m->frame.pose.turn_q14[i], -14);
-        rotate(q, y, up);
+        rotate_vector(q, y, up);
         for (int i = 0; i < 3; i++)
             at[i] = ldexp(m->frame.pose.at[i], -24) + up[i];
         assert_int_equal(glint_scene_lights(d->frame.scene, lamp), 1);
