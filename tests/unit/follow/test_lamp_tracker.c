@@ -93,21 +93,21 @@ struct moments {
     int n;
 };
 
-static void add_value(struct moments *m, double v)
+static void add_moment(struct moments *m, double v)
 {
     m->sum += v;
     m->square += v * v;
     m->n++;
 }
 
-static double deviation(const struct moments *m)
+static double standard_deviation(const struct moments *m)
 {
     const double mean = m->sum / m->n;
 
     return sqrt(fmax(m->square / m->n - mean * mean, 0));
 }
 
-static double mean(const struct moments *m)
+static double mean_value(const struct moments *m)
 {
     return m->sum / m->n;
 }
@@ -140,22 +140,24 @@ TEST(static_scene_stands_still)
                 id[i] = t->id;
             assert_int_equal(t->id, id[i]);
             assert_int_equal(t->level_q15, FULL);
-            add_value(&x[i][0], s->x_q8 / 256.0),
-                add_value(&x[i][1], t->x_q8 / 256.0);
-            add_value(&y[i][0], s->y_q8 / 256.0),
-                add_value(&y[i][1], t->y_q8 / 256.0);
-            add_value(&power[i][0], night_spot_power(s));
-            add_value(&power[i][1], night_power(t));
+            add_moment(&x[i][0], s->x_q8 / 256.0),
+                add_moment(&x[i][1], t->x_q8 / 256.0);
+            add_moment(&y[i][0], s->y_q8 / 256.0),
+                add_moment(&y[i][1], t->y_q8 / 256.0);
+            add_moment(&power[i][0], night_spot_power(s));
+            add_moment(&power[i][1], night_power(t));
             sum += night_spot_power(s);
         }
-        add_value(&total[0], sum), add_value(&total[1], night_energy(&night));
+        add_moment(&total[0], sum), add_moment(&total[1], night_energy(&night));
     }
     for (int i = 0; i < N; i++) {
         double px[2], percent[2];
 
         for (int k = 0; k < 2; k++) {
-            px[k] = hypot(deviation(&x[i][k]), deviation(&y[i][k]));
-            percent[k] = 100 * deviation(&power[i][k]) / mean(&power[i][k]);
+            px[k] = hypot(standard_deviation(&x[i][k]),
+                          standard_deviation(&y[i][k]));
+            percent[k] = 100 * standard_deviation(&power[i][k]) /
+                         mean_value(&power[i][k]);
         }
         print_message("radius %2.0f, light %.2f: %.3f px -> %.3f px; "
                       "%.2f %% -> %.2f %%\n",
@@ -165,9 +167,9 @@ TEST(static_scene_stands_still)
         assert_true(percent[1] < 0.6 * percent[0]);
     }
     print_message("flare energy: %.3f %% -> %.3f %%\n",
-                  100 * deviation(&total[0]) / mean(&total[0]),
-                  100 * deviation(&total[1]) / mean(&total[1]));
-    assert_true(deviation(&total[1]) < 0.01 * mean(&total[1]));
+                  100 * standard_deviation(&total[0]) / mean_value(&total[0]),
+                  100 * standard_deviation(&total[1]) / mean_value(&total[1]));
+    assert_true(standard_deviation(&total[1]) < 0.01 * mean_value(&total[1]));
     night_close(&night);
 }
 
@@ -204,10 +206,10 @@ static double measure_rotation(double degrees)
                   3.14159 -
               degrees;
         if (frame >= 30)
-            add_value(&turn, remainder(off, 180));
+            add_moment(&turn, remainder(off, 180));
     }
     night_close(&night);
-    return deviation(&turn);
+    return standard_deviation(&turn);
 }
 
 TEST(axes_are_steady_however_they_lie)
@@ -221,7 +223,7 @@ TEST(axes_are_steady_however_they_lie)
 /* Returns the max distance that the track of a dim lamp of 8 x 8 pixels
  * moves, pixels, while in every EVERY-th frame another of its pixels is 41
  * times as bright (code 255 against 43, linear 1 against 0.0242). */
-static double sparkle_moves(int every, uint32_t seed)
+static double measure_sparkle(int every, uint32_t seed)
 {
     double furthest = 0;
 
@@ -256,8 +258,8 @@ TEST(sparkle_moves_less_than_a_pixel)
     double always = 0, rarely = 0;
 
     for (uint32_t seed = 1; seed <= 20; seed++) {
-        always = fmax(always, sparkle_moves(1, seed));
-        rarely = fmax(rarely, sparkle_moves(7, seed));
+        always = fmax(always, measure_sparkle(1, seed));
+        rarely = fmax(rarely, measure_sparkle(7, seed));
     }
     print_message("sparkle in each picture %.2f px, in one of seven %.2f\n",
                   always, rarely);
@@ -423,10 +425,10 @@ TEST(a_moving_lamp_does_not_lag)
                 continue;
             most = fmax(most, hypot(t->x_q8 / 256.0 - lamp.x,
                                     t->y_q8 / 256.0 - lamp.y));
-            add_value(&lag, lamp.x - t->x_q8 / 256.0);
+            add_moment(&lag, lamp.x - t->x_q8 / 256.0);
         }
         print_message("%5.2f px a frame%s: behind by %.3f px, off by %.3f\n",
-                      speed, k < 9 ? "" : " in noise", mean(&lag), most);
+                      speed, k < 9 ? "" : " in noise", mean_value(&lag), most);
         assert_true(most < 0.5);
         night_close(&night);
     }
@@ -568,7 +570,7 @@ TEST(leaving_lamp_moves_on_and_fades)
 
 /* Returns the level of a lamp US microseconds after it was switched on, with
  * a frame every ELAPSED_US. */
-static double level_after(int32_t us, int32_t elapsed_us, int32_t attack_ms)
+static double measure_level(int32_t us, int32_t elapsed_us, int32_t attack_ms)
 {
     const struct night_lamp lamp[2] = {{60, 60, 5, 3}, {200, 120, 5, 3}};
     double level;
@@ -592,15 +594,15 @@ static double level_after(int32_t us, int32_t elapsed_us, int32_t attack_ms)
 TEST(rise_does_not_depend_on_the_rate)
 {
     for (int k = 1; k <= 10; k++) {
-        const double at30 = level_after(k * FPS30, FPS30, 300);
-        const double at60 = level_after(k * FPS30, FPS60, 300);
-        const double at1000 = level_after(k * FPS30, 1000, 300);
+        const double at30 = measure_level(k * FPS30, FPS30, 300);
+        const double at60 = measure_level(k * FPS30, FPS60, 300);
+        const double at1000 = measure_level(k * FPS30, 1000, 300);
 
         assert_true(fabs(at30 - at60) < 0.02 * at30);
         assert_true(fabs(at30 - at1000) < 0.02);
         assert_true(fabs(at30 - fmin(1, k * FPS30 / 300e3)) < 1e-3);
     }
-    assert_true(level_after(4 * 50000, 50000, 200) == 1);
+    assert_true(measure_level(4 * 50000, 50000, 200) == 1);
 }
 
 /* Checks that if all lamps are elsewhere in the next frame, old tracks end

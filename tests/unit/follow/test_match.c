@@ -202,7 +202,7 @@ static void place_with_ties(int n)
 }
 
 /* Shuffles the first N of THINGS, BYTES each. */
-static void shuffle(void *things, int n, size_t bytes)
+static void shuffle_items(void *things, int n, size_t bytes)
 {
     uint8_t *const at = things, kept[sizeof(struct glint_spot)];
 
@@ -240,8 +240,8 @@ TEST(order_is_no_matter)
         memset(power, 0, sizeof power);
         memset(again, 0, sizeof again);
         read_powers(power);
-        shuffle(match.seeker, n, sizeof *match.seeker);
-        shuffle(spot, n, sizeof *spot);
+        shuffle_items(match.seeker, n, sizeof *match.seeker);
+        shuffle_items(spot, n, sizeof *spot);
         glint_match_find(&match, spot, n);
         read_powers(again);
         assert_memory_equal(power, again, sizeof power);

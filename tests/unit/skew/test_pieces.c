@@ -16,7 +16,7 @@ struct entry {
     double x_mm, y_mm, direction[2], w;
 };
 
-static double interpolate(double lo, double hi, double x)
+static double interpolate_linear(double lo, double hi, double x)
 {
     return 0.5 * (lo + hi) + 0.5 * x * (hi - lo);
 }
@@ -30,9 +30,9 @@ static struct entry find_entry(const struct glint_skew_piece *p,
                               x[GLINT_U] * glint_zone_side(z, z->half_x, x),
                           glint_zone_side(z, z->middle_y, x) +
                               x[GLINT_V] * glint_zone_side(z, z->half_y, x),
-                          {interpolate(z->lo, z->hi, x[GLINT_S]),
-                           interpolate(z->y_lo, z->y_hi, x[GLINT_P])},
-                          interpolate(p->w0, p->w1, x[GLINT_W])};
+                          {interpolate_linear(z->lo, z->hi, x[GLINT_S]),
+                           interpolate_linear(z->y_lo, z->y_hi, x[GLINT_P])},
+                          interpolate_linear(p->w0, p->w1, x[GLINT_W])};
 }
 
 static void assert_same(const struct entry *a, const struct entry *b)
