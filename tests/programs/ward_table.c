@@ -84,7 +84,7 @@ static void compute_psnr(ward_picture want, ward_picture got, double db[WAYS])
     db[1] = ward_psnr(want, got);
 }
 
-/* Sets DB to the PSNR of the published rule, each at its best bias. */
+/* Sets DB to the PSNR of the published rule at the bias with the best PSNR. */
 static void find_best_bias(const struct glint_environment *e,
                            const struct glint_ward_material *material,
                            ward_picture want, ward_picture got, double db[WAYS])

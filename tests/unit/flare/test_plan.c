@@ -525,7 +525,7 @@ static double compare_faint_lights(struct fixture *f, int n)
     memset(codes, 0, sizeof codes);
     init_flare(f);
     for (int turn = 0; turn < 2; turn++) {
-        f->rays.faintest = real_of(turn ? 163 : 0, -22); /* 1/8 of a code */
+        f->rays.faintest = real_of(turn ? 163 : 0, -22); /* light of 1/8 code */
         glint_flare_plan(f->flare, &f->rays, light, n);
         glint_flare_bin(f->flare, &s);
         assert_int_equal(s.dropped_bundles, 0);

@@ -241,7 +241,7 @@ TEST(on_tile_borders)
                                        .max_refs = 10000};
         const struct glint_bundle b = {.n_cells = 1,
                                        .flux_q31 = 1 << 30,
-                                       .flux_exponent = 13, /* 4096: 64 x 64 */
+                                       .flux_exponent = 13, /* flux 64 x 64 */
                                        .rgb_q14 = {16384, 16384, 16384}};
         struct glint_image image =
             glint_image_over(pixels, GLINT_LINEAR_Q20, W, H);

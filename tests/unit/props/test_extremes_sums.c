@@ -113,7 +113,7 @@ static double draw_pile(int count, int log2, int held[2])
                                    .max_refs = 8 * count};
     const struct glint_bundle b = {.n_cells = 1,
                                    .flux_q31 = 1 << 30,
-                                   /* for 64^2 px */
+                                   /* 1 per pixel of 64 x 64 */
                                    .flux_exponent = 13 + log2,
                                    .rgb_q14 = {16384, 16384, 16384}};
     static int32_t linear[3 * SIDE * SIDE];

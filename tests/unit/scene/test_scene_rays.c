@@ -391,7 +391,7 @@ TEST(a15_sphere)
     struct glint_chord c;
     int32_t place[3], n[3];
 
-    /* both roots */
+    /* both intersections */
     assert_true(glint_ray_sphere(&ahead, centre, 2 * ONE, &c));
     assert_true(c.t[0] == 8 * ONE && c.t[1] == 12 * ONE);
     glint_chord_end(&c, &ahead, centre, 0, place, n);

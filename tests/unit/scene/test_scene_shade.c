@@ -74,7 +74,7 @@ TEST(a5_seen)
     static const int at[4][9] = {
         {0, 30, 40, 40, -30, 120, -40, -30, 120},
         {-50, 30, 124, 50, 30, 124, 0, -30, 44},
-        {-30, 0, 37, 30, 40, 117, 30, -40, 117}, /* the tutorial's blue one */
+        {-30, 0, 37, 30, 40, 117, 30, -40, 117}, /* blue triangle */
         {10, 10, 20, 20, 10, 20, 10, 20, 20}};   /* off the ray */
     static const uint32_t t[1][3] = {{0, 1, 2}};
     const struct glint_scene_ray ahead = make_ray(0, 0, 0, 0, 0, 1);

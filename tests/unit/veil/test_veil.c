@@ -28,7 +28,7 @@ struct canvas {
     int width, height, cells[2];
     struct bare_flare bare;
     struct glint_veil *veil;
-    void *mem; /* of the veil */
+    void *mem; /* memory of the veil */
 };
 
 static void open_canvas(struct canvas *c, int width, int height, int tile_log2,

@@ -384,8 +384,9 @@ static void set_row(double row[WEB_COLUMNS],
 {
     const struct glint_view *const view = glint_engine_view(web.engine);
     const double *const axis = lamp->lamp.axis;
-    const double pixels = view->width * fabs(web.setup.optics.focal_mm) /
-                          view->sensor_width_mm; /* per tangent */
+    const double pixels =
+        view->width * fabs(web.setup.optics.focal_mm) /
+        view->sensor_width_mm; /* pixels per unit of tangent */
 
     row[WEB_X] = lamp->track.x_q8 / 256.0;
     row[WEB_Y] = lamp->track.y_q8 / 256.0;
