@@ -57,8 +57,11 @@ $(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
 	$(link)
 # Programs of tests, for tables and long runs: tests/programs/NAME.c is OUT/NAME.
 PROGRAMS := $(patsubst tests/programs/%.c,$(OUT)/%,$(wildcard tests/programs/*.c))
-$(test_bins) $(PROGRAMS): libs := $(OUT)/libglint-tests.a $(reference_a) $(archives)
+hostile_models := $(OUT)/hostile_models # writes models that tests/cli/hostile draws
+$(test_bins) $(PROGRAMS) $(hostile_models): libs := $(OUT)/libglint-tests.a $(reference_a) $(archives)
 $(PROGRAMS): $(OUT)/%: $(OUT)/tests/programs/%.o $(OUT)/libglint-tests.a $(reference_a) $(libs)
+	$(link)
+$(hostile_models): $(OUT)/%: $(OUT)/tests/fuzz/%.o $(OUT)/libglint-tests.a $(reference_a) $(libs)
 	$(link)
 
 CHECK_PACKAGES := gcc libc6-dev binutils libcmocka-dev clang clang-format pkg-config \
@@ -67,7 +70,7 @@ check:
 	@tools/make/deps "unit tests, lint" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/glint-measure $(example_bins) $(embed_bins) \
-        $(PROGRAMS) $(wildcard build/glint-oiio.so build/glint-assimp.so)
+        $(PROGRAMS) $(hostile_models) $(wildcard build/glint-oiio.so build/glint-assimp.so)
 	@[ $(notdir $(CC))-$(CONFIG) != gcc-release ] || { $(MAKE) --no-print-directory PIC=yes shared frei0r && $(MAKE) --no-print-directory man check-symbols; }
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
@@ -82,7 +85,7 @@ test_script := $(if $(test_bin)$(replay_bin),,$(test_script))
 test:
 	@tools/make/deps "unit tests" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory run-test
-run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/glint-measure $(OUT)/pan $(OUT)/scene_exact $(example_bins) $(embed_bins))
+run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/glint-measure $(OUT)/pan $(OUT)/scene_exact $(hostile_models) $(example_bins) $(embed_bins))
 	@[ -n "$^" ] || { echo 'TEST is one of these, or a file in tests/cli or tests/hosts:' $(UNIT) $(notdir $(replay_bins)) >&2; exit 2; }
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run -v $(test_bin) -- $(replay_bin) -- $(test_script)
 # What a release must pass; durations stand in tests/README.md.

@@ -2,6 +2,7 @@
 #include "support/models/hostile.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,17 +22,19 @@ const char *const hostile_name[HOSTILE_FAMILIES] = {
     [HOSTILE_HUGE] = "boxes of the largest size",
     [HOSTILE_WINDOWS] = "no window of the stop",
     [HOSTILE_HEADERS] = "numbers of the header",
-    [HOSTILE_COLOURS] = "far apart by wavelength"};
+    [HOSTILE_COLOURS] = "far apart by wavelength",
+    [HOSTILE_SUMS] = "sums that rounding carries over",
+    [HOSTILE_TEXTS] = "invalid names"};
 
 /* ------------------------------------------------------------- polynomials */
 
-/* A polynomial without mixed terms: one in u, one in v, and a multiple of w. */
+/* A polynomial: the sum of one of u, one of v and a multiple of w. */
 struct polynomial {
     double u[POWERS], v[POWERS], w;
 };
 
-/* Adds SIZE times the Chebyshev polynomial of degree N, which oscillates
- * between -1 and 1, to POWER. */
+/* Adds to POWER the Chebyshev polynomial of degree N, which swings between -1
+ * and 1, times SIZE. */
 static void add_swings(double *power, int n, double size)
 {
     double last[POWERS] = {1}, here[POWERS] = {0, 1};
@@ -48,9 +51,9 @@ static void add_swings(double *power, int n, double size)
 }
 
 /* Writes P as output KIND, with coefficients in units of 2^EXPONENT. */
-static struct glint_model_output write_output(struct model_image *m, int kind,
-                                              const struct polynomial *p,
-                                              int exponent)
+static struct glint_model_output put_output(struct model_image *m, int kind,
+                                            const struct polynomial *p,
+                                            int exponent)
 {
     uint16_t power[2 * POWERS + 1];
     int32_t coef[2 * POWERS + 1];
@@ -75,9 +78,9 @@ static struct glint_model_output write_output(struct model_image *m, int kind,
     return o;
 }
 
-/* Returns the exponent with which the magnitudes of P's coefficients sum to
- * 2^28 .. 2^29 units; 0 if P is 0. */
-static int find_exponent(const struct polynomial *p)
+/* Returns the exponent with which the magnitudes of P's coefficients add up to
+ * less than 2^29 units, and to half of that or more; 0 if P is 0. */
+static int exponent_of(const struct polynomial *p)
 {
     double sum = fabs(p->w);
     int exponent;
@@ -88,26 +91,26 @@ static int find_exponent(const struct polynomial *p)
     return sum > 0 ? exponent - 29 : 0;
 }
 
-/* Writes P[N] as outputs 0 .. N - 1. Returns their offset in M. */
-static uint32_t write_outputs(struct model_image *m, const struct polynomial *p,
-                              int n)
+/* Writes P[N] as outputs of the first N kinds. Returns their offset in M. */
+static uint32_t put_outputs(struct model_image *m, const struct polynomial *p,
+                            int n)
 {
     struct glint_model_output o[GLINT_OUT_KINDS];
 
     for (int k = 0; k < n; k++) {
-        /* x and y use the larger of their exponents */
+        /* x and y share the larger exponent of the two */
         const int pair = k < GLINT_OUT_ENERGY ? k ^ 1 : k;
-        const int a = find_exponent(&p[k]), b = find_exponent(&p[pair]);
+        const int a = exponent_of(&p[k]), b = exponent_of(&p[pair]);
 
-        o[k] = write_output(m, k, &p[k], a > b ? a : b);
+        o[k] = put_output(m, k, &p[k], a > b ? a : b);
     }
     return model_put(m, o, (size_t)n * sizeof *o);
 }
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* Sets P to a ghost that fills the frame, with the whole box inside the
- * stop. */
+/* Sets P to a ghost as large as the frame, with the stop as large as its
+ * box. */
 static void set_whole(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
 {
     memset(p, 0, GLINT_OUT_KINDS * sizeof *p);
@@ -121,8 +124,8 @@ static void set_whole(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
     p[GLINT_OUT_ENERGY].u[0] = 0.5;
 }
 
-/* Sets P to a ghost that is folded: it crosses the frame up to nine times in
- * each direction and is clipped by barrels. */
+/* Sets P to a ghost that goes across the frame up to nine times each way and is
+ * cut by barrels. */
 static void set_folds(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
 {
     set_whole(p, seed);
@@ -137,9 +140,9 @@ static void set_folds(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
     }
 }
 
-static struct glint_model_system make_system(const struct model_image *m,
-                                             uint32_t outputs, int n_outputs,
-                                             uint32_t box)
+static struct glint_model_system system_of(const struct model_image *m,
+                                           uint32_t outputs, int n_outputs,
+                                           uint32_t box)
 {
     const struct glint_model_header *h = model_header(m);
 
@@ -153,10 +156,10 @@ static struct glint_model_system make_system(const struct model_image *m,
                                        .box_terms = 1};
 }
 
-/* Writes a ghost for each pair of SURFACES, the max of a lens, in VARIANTS
- * shapes. */
-static void write_pairs(struct model_image *m, enum hostile_family family,
-                        uint32_t *seed)
+/* Writes a ghost for each pair of SURFACES, the most that a lens can have, with
+ * VARIANTS shapes among them. */
+static void put_pairs(struct model_image *m, enum hostile_family family,
+                      uint32_t *seed)
 {
     enum { VARIANTS = 300 };
     static struct glint_model_ghost ghost[PAIRS];
@@ -176,27 +179,28 @@ static void write_pairs(struct model_image *m, enum hostile_family family,
         if (family == HOSTILE_COLOURS)
             p[GLINT_OUT_SENSOR_X].w = 30;
         output[k] =
-            write_outputs(m, p, folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1);
+            put_outputs(m, p, folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1);
     }
     for (uint32_t j = 1; j < SURFACES; j++)
         for (uint32_t i = 0; i < j; i++, n++) {
             ghost[n] = (struct glint_model_ghost){i, j, n, 1};
-            of[n] = make_system(m, output[n % VARIANTS],
-                                folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1,
-                                box);
+            of[n] =
+                system_of(m, output[n % VARIANTS],
+                          folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1, box);
             of[n].annulus = folds && n % 5 == 0 ? GLINT_MAX_ANNULUS : 0;
         }
     model_end(m, ghost, PAIRS, of, PAIRS);
 }
 
-/* Writes ghosts with invalid rays. NUMBER modulo 3: 0: all rays, as their
- * energy is negative; 1: stripes of rays, for the same reason; 2: rays that
- * land far off-screen. */
-static void write_invalid(struct model_image *m, int number, uint32_t *seed)
+/* Writes ghosts whose rays are invalid, by NUMBER modulo 3: 0: all of them, as
+ * their energy is negative; 1: stripes of them, for that reason; 2: those that
+ * land far outside the picture. From NUMBER 5 on there are as many ghosts as a
+ * lens can have. */
+static void put_lost(struct model_image *m, int number, uint32_t *seed)
 {
-    enum { N = 300 };
-    static struct glint_model_ghost ghost[N];
-    static struct glint_model_system of[N];
+    static struct glint_model_ghost ghost[PAIRS];
+    static struct glint_model_system of[PAIRS];
+    const uint32_t n = number < 5 ? 300 : PAIRS;
     const int32_t side[] = {0, 4 << 20, 4 << 20};
     const uint32_t box = model_put(m, side, sizeof side);
     struct polynomial p[GLINT_OUT_KINDS];
@@ -209,18 +213,18 @@ static void write_invalid(struct model_image *m, int number, uint32_t *seed)
         add_swings(p[GLINT_OUT_ENERGY].u, 9, 0.6);
     if (number % 3 == 2)
         add_swings(p[number % 2].v, 8 + number % 2, 0x1p30);
-    output = write_outputs(m, p, GLINT_OUT_ENERGY + 1);
-    for (uint32_t k = 0; k < N; k++) {
+    output = put_outputs(m, p, GLINT_OUT_ENERGY + 1);
+    for (uint32_t k = 0; k < n; k++) {
         ghost[k] = (struct glint_model_ghost){k % 63, 63, k, 1};
-        of[k] = make_system(m, output, GLINT_OUT_ENERGY + 1, box);
+        of[k] = system_of(m, output, GLINT_OUT_ENERGY + 1, box);
     }
-    model_end(m, ghost, N, of, N);
+    model_end(m, ghost, n, of, n);
 }
 
-/* Writes one ghost (two if NUMBER >= 5) with 10000 systems, each for a
- * narrow band and a small range of angles. All systems share outputs and
- * box, so the file is small. */
-static void write_systems(struct model_image *m, int number, uint32_t *seed)
+/* Writes one ghost, or two from NUMBER 5 on, with 10000 systems, each for a
+ * narrow band and a small range of angles. All systems share outputs and box,
+ * so that the file is small. */
+static void put_systems(struct model_image *m, int number, uint32_t *seed)
 {
     enum { ANGLES = 100, BANDS = 100, N = ANGLES * BANDS };
     static struct glint_model_system of[N];
@@ -236,9 +240,9 @@ static void write_systems(struct model_image *m, int number, uint32_t *seed)
     uint32_t output;
 
     set_whole(p, seed);
-    output = write_outputs(m, p, GLINT_OUT_ENERGY + 1);
+    output = put_outputs(m, p, GLINT_OUT_ENERGY + 1);
     for (int k = 0; k < N; k++) {
-        of[k] = make_system(m, output, GLINT_OUT_ENERGY + 1, box);
+        of[k] = system_of(m, output, GLINT_OUT_ENERGY + 1, box);
         of[k].sine_lo_q30 = turn * (k / BANDS);
         of[k].sine_hi_q30 = of[k].sine_lo_q30 + turn;
         of[k].wave_lo_q24 = h.wave_lo_q24 + wide * (k % BANDS);
@@ -247,21 +251,72 @@ static void write_systems(struct model_image *m, int number, uint32_t *seed)
     model_end(m, ghost, 2, of, N);
 }
 
+/* Returns the most coefficients that an output can have, on different powers of
+ * u and s, in M: at a fraction of s each is rounded, and all round up. Their
+ * magnitudes add up to 2^30 - 1, the largest sum that the check of models
+ * accepts. V is the power of v. */
+static struct glint_model_output put_sum(struct model_image *m, int kind,
+                                         int exponent, int v)
+{
+    enum { N = GLINT_MAX_MODEL_TERMS, PART = ((1 << 30) - 1) / N };
+    struct glint_model_output o = {.kind = (uint8_t)kind,
+                                   .n_terms = N,
+                                   .exponent = (int16_t)exponent,
+                                   .bound = (1 << 30) - 1};
+    uint16_t power[N];
+    int32_t coef[N];
+
+    for (int k = 0; k < N; k++) {
+        power[k] = (uint16_t)MODEL_POWER(k % POWERS, v, k / POWERS % POWERS,
+                                         k / (POWERS * POWERS));
+        coef[k] = PART;
+    }
+    coef[0] += (1 << 30) - 1 - N * PART;
+    o.term_at = model_put(m, power, sizeof power);
+    o.coef_at = model_put(m, coef, sizeof coef);
+    return o;
+}
+
+/* Writes a ghost of such outputs: all of them, or, by NUMBER, some. Barrels
+ * have exponents of which 2^30 is 1 after a shift by 31. */
+static void put_sums(struct model_image *m, int number)
+{
+    static const struct glint_model_ghost ghost[] = {{0, 1, 0, 1}};
+    const int32_t side[] = {0, 1 << 29, 1 << 29};
+    struct glint_model_output o[GLINT_OUT_KINDS];
+    struct glint_model_system s;
+
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        const int is_barrel = kind > GLINT_OUT_ENERGY;
+
+        o[kind] =
+            put_sum(m, kind,
+                    is_barrel && number % 2 == 0 ? -47
+                    : kind < GLINT_OUT_STOP_X    ? -24 - number
+                                                 : -29 - number,
+                    kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y);
+    }
+    s = system_of(m, model_put(m, o, sizeof o), GLINT_OUT_KINDS,
+                  model_put(m, side, sizeof side));
+    s.box_exponent = -26;
+    model_end(m, ghost, 1, &s, 1);
+}
+
 /* ------------------------------------------------------------------ editing */
 
-/* Returns the address of OFFSET in M, for editing a baked model in place. */
-static void *address_of(const struct model_image *m, uint32_t offset)
+/* Returns the address of OFFSET in M. Baked models are edited in place. */
+static void *at(const struct model_image *m, uint32_t offset)
 {
     return m->data + offset;
 }
 
-/* Sets the coefficients of output O to random values whose magnitudes sum to
- * just below 2^30. */
+/* Sets the coefficients of output O at random; their magnitudes add up to just
+ * below 2^30. */
 static void edit_coefficients(const struct model_image *m,
                               struct glint_model_output *o, uint32_t *seed)
 {
     const int n_wide = o->n_terms - o->n_narrow;
-    int32_t *wide = address_of(m, o->coef_at);
+    int32_t *wide = at(m, o->coef_at);
     int16_t *narrow = (int16_t *)(void *)(wide + n_wide);
     int64_t left = (INT64_C(1) << 30) - 1;
 
@@ -281,7 +336,7 @@ static void edit_coefficients(const struct model_image *m,
 static void edit_numbers(const struct model_image *m,
                          struct glint_model_system *s, uint32_t *seed)
 {
-    struct glint_model_output *o = address_of(m, s->output_at);
+    struct glint_model_output *o = at(m, s->output_at);
 
     for (int k = 0; k < s->n_outputs; k++) {
         const int kind = o[k].kind;
@@ -305,7 +360,7 @@ static void edit_box(const struct model_image *m, struct glint_model_system *s,
                      int huge, uint32_t *seed)
 {
     int n = 0;
-    int32_t *box = address_of(m, s->box_at);
+    int32_t *box = at(m, s->box_at);
 
     for (int bit = 0; bit < GLINT_BOX_TERMS; bit++)
         n += s->box_terms >> bit & 1;
@@ -317,17 +372,17 @@ static void edit_box(const struct model_image *m, struct glint_model_system *s,
         huge && rng_below(seed, 2) ? 40 - rng_below(seed, 40) : s->box_exponent;
 }
 
-/* Changes the stop positions of S. NUMBER modulo 3: 0: all rays meet in the
- * middle of the stop; 1: only the first coefficient remains, growing with
- * NUMBER, so that all rays may miss the stop; 2: the exponent is 2 NUMBER -
- * 20, so that hardly any ray passes the stop. */
+/* Changes the stop positions of S, by NUMBER modulo 3. 0: all rays meet in the
+ * middle of the stop. 1: only the first coefficient is left, larger the larger
+ * NUMBER is, so that rays may all miss the stop. 2: positions get the exponent
+ * 2 NUMBER - 20, so that hardly any ray meets the stop. */
 static void edit_stop(const struct model_image *m, struct glint_model_system *s,
                       int number)
 {
-    struct glint_model_output *o = address_of(m, s->output_at);
+    struct glint_model_output *o = at(m, s->output_at);
 
     for (int k = GLINT_OUT_STOP_X; k <= GLINT_OUT_STOP_Y; k++) {
-        int32_t *wide = address_of(m, o[k].coef_at);
+        int32_t *wide = at(m, o[k].coef_at);
 
         if (number % 3 == 2) {
             o[k].exponent = (int16_t)(-20 + 2 * number);
@@ -362,8 +417,30 @@ static void edit_header(struct glint_model_header *h, uint32_t *seed)
         h->n_parts = h->n_ghosts;
 }
 
-static void edit_model(struct model_image *m, const struct glint_lens *baked,
-                       enum hostile_family family, int number, uint32_t *seed)
+/* Gives H an invalid name, by NUMBER. */
+static void edit_name(struct glint_model_header *h, int number)
+{
+    static const char *const name[HOSTILE_EACH] = {"evil\xc2\x9b"
+                                                   "31m",
+                                                   "evil\x9b"
+                                                   "2J",
+                                                   "evil\x1b[2J",
+                                                   "two\nlines",
+                                                   "\xff\xfe",
+                                                   "",
+                                                   "a/../b",
+                                                   "tab\t",
+                                                   "\xe2\x80\xae",
+                                                   "del\x7f"};
+
+    if (number == 5)
+        memset(h->name, 'x', sizeof h->name); /* not terminated */
+    else
+        snprintf(h->name, sizeof h->name, "%s", name[number]);
+}
+
+static void edit(struct model_image *m, const struct glint_lens *baked,
+                 enum hostile_family family, int number, uint32_t *seed)
 {
     struct glint_model_header *h;
     struct glint_model_system *s;
@@ -374,24 +451,26 @@ static void edit_model(struct model_image *m, const struct glint_lens *baked,
         abort();
     memcpy(m->data, baked->header, m->bytes);
     h = model_header(m);
-    s = address_of(m, h->system_at);
+    s = at(m, h->system_at);
     for (uint32_t k = 0; k < h->n_systems; k++)
         if (family == HOSTILE_NUMBERS)
             edit_numbers(m, &s[k], seed);
         else if (family == HOSTILE_WINDOWS)
             edit_stop(m, &s[k], number);
-        else if (family != HOSTILE_HEADERS)
+        else if (family == HOSTILE_POINTS || family == HOSTILE_HUGE)
             edit_box(m, &s[k], family == HOSTILE_HUGE, seed);
     if (family == HOSTILE_HEADERS)
         edit_header(h, seed);
+    if (family == HOSTILE_TEXTS)
+        edit_name(h, number);
     model_seal(m);
 }
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Returns the number of pixel rows that the edges of FLARE cross, summed
- * over edges. */
-static double count_rows(const struct glint_flare *flare)
+/* Returns how many rows of pixels the edges of FLARE cross, summed over
+ * edges. */
+static double rows_of(const struct glint_flare *flare)
 {
     double rows = 0;
 
@@ -407,17 +486,17 @@ static double count_rows(const struct glint_flare *flare)
     return rows;
 }
 
-/* Returns the work of a frame, millions of instructions: counts of planning,
- * vertices and edges of each binning, rows and pixels, each times its cost
- * weight. */
-static double compute_work(const struct glint_frame *f,
-                           const struct glint_engine_report *r)
+/* Returns the millions of instructions that the frame took: all that its plans
+ * looked at, vertices and edges of each binning, and the rows and pixels drawn
+ * once, times their weights. */
+static double work_of(const struct glint_frame *f,
+                      const struct glint_engine_report *r)
 {
     double count[GLINT_COST_KINDS] = {
         [GLINT_COST_LOOKED_AT] = (double)r->looked,
         [GLINT_COST_BUNDLES] = (double)f->memory.flare->n_bundles * r->binned,
         [GLINT_COST_EDGES] = (double)r->stats.need_primitives * r->binned,
-        [GLINT_COST_ROWS] = count_rows(f->memory.flare),
+        [GLINT_COST_ROWS] = rows_of(f->memory.flare),
         [GLINT_COST_LIT] = (double)r->tiles * (1 << 2 * f->cfg.tile_log2)};
     double work = 0;
 
@@ -448,8 +527,8 @@ static bool make_setup(const struct hostile_scene *scene,
     return true;
 }
 
-static bool draw_scene(const struct hostile_scene *scene,
-                       struct glint_frame *frame, struct hostile_result *result)
+static bool draw(const struct hostile_scene *scene, struct glint_frame *frame,
+                 struct hostile_result *result)
 {
     enum { W = HOSTILE_WIDTH, H = HOSTILE_HEIGHT };
     struct glint_image image = {.format = scene->linear ? GLINT_LINEAR_Q20
@@ -472,7 +551,7 @@ static bool draw_scene(const struct hostile_scene *scene,
                    : report.coarsened           ? HOSTILE_COARSER
                    : report.stats.primitives    ? HOSTILE_DRAWN
                                                 : HOSTILE_EMPTY,
-        .minsn = compute_work(frame, &report),
+        .minsn = work_of(frame, &report),
         .most_minsn = frame->limits.most_minsn * frame->limits.share,
         .bytes = (double)report.arena_bytes,
         .most_bytes = (double)frame->limits.most_bytes * frame->limits.share,
@@ -502,7 +581,7 @@ bool hostile_draw(const struct hostile_scene *scene,
         NULL);
     frame.lens = &lens;
     frame.cfg.sets = glint_sets_here();
-    drawn = draw_scene(scene, &frame, result);
+    drawn = draw(scene, &frame, result);
     glint_frame_finish(&frame);
     return drawn;
 }
@@ -525,16 +604,19 @@ void hostile_make(struct hostile_scene *scene, enum hostile_family family,
         scene->lamp[i].theta_deg = 1 + 25 * rng_unit(&seed);
         scene->lamp[i].phi_deg = 360 * rng_unit(&seed);
     }
-    if (family >= HOSTILE_NUMBERS && family <= HOSTILE_HEADERS) {
-        edit_model(m, baked, family, number, &seed);
+    if ((family >= HOSTILE_NUMBERS && family <= HOSTILE_HEADERS) ||
+        family == HOSTILE_TEXTS) {
+        edit(m, baked, family, number, &seed);
         return;
     }
     model_begin(m, GLINT_BASIS_AUTO, "hostile");
     model_header(m)->n_surfaces = SURFACES;
     if (family == HOSTILE_LOST)
-        write_invalid(m, number, &seed);
+        put_lost(m, number, &seed);
     else if (family == HOSTILE_SYSTEMS)
-        write_systems(m, number, &seed);
+        put_systems(m, number, &seed);
+    else if (family == HOSTILE_SUMS)
+        put_sums(m, number);
     else
-        write_pairs(m, family, &seed);
+        put_pairs(m, family, &seed);
 }

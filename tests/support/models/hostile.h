@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Hostile models: files with valid checksums that would cost too much work or
- * memory, or overflow. Each is random within its family. Those that
- * glint_lens_open() accepts must be drawn within the limits of work and memory.
+ * Models with valid checksums whose contents would cost too much work or
+ * memory, or overflow. Each is drawn at random from its family; those that
+ * glint_lens_open() accepts must be drawn within bounds of work and memory.
  *
  *     hostile_make(&scene, HOSTILE_FOLDS, 3, &baked);
  *     glint_lens_open(&lens, scene.model.data, scene.model.bytes, &reason);
@@ -15,18 +15,21 @@
 #include "support/model_builder.h"
 
 enum hostile_family {
-    HOSTILE_WHOLE, /* 2016 ghosts, each fills the frame */
-    /* 2016 folded ghosts that cross the frame up to nine times in each
-     * direction, clipped by barrels */
+    HOSTILE_WHOLE, /* 2016 ghosts, each as large as the frame */
+    /* as many ghosts that go across the frame up to nine times each way, cut by
+     * barrels */
     HOSTILE_FOLDS,
-    HOSTILE_LOST,    /* invalid rays: all, or stripes of them */
-    HOSTILE_SYSTEMS, /* thousands of polynomial systems per ghost */
-    HOSTILE_NUMBERS, /* coefficients with the max sums, any exponents */
-    HOSTILE_POINTS,  /* bounding boxes of size 0 */
-    HOSTILE_HUGE,    /* bounding boxes of the max size, any exponents */
-    HOSTILE_WINDOWS, /* stop positions with no window, or a tiny one */
+    HOSTILE_LOST,    /* invalid rays: all, or stripes of them; more cells than
+                        an int can count */
+    HOSTILE_SYSTEMS, /* thousands of systems of one ghost */
+    HOSTILE_NUMBERS, /* coefficients at the largest sums, any exponents */
+    HOSTILE_POINTS,  /* boxes of no size */
+    HOSTILE_HUGE,    /* boxes at the largest size, any exponents */
+    HOSTILE_WINDOWS, /* stop positions that leave no window, or hardly one */
     HOSTILE_HEADERS, /* numbers of the header at the ends of their ranges */
-    HOSTILE_COLOURS, /* outlines that differ widely by wavelength */
+    HOSTILE_COLOURS, /* outlines that lie far apart by wavelength */
+    HOSTILE_SUMS,    /* rounding carries sums of coefficients past 2^30 - 1 */
+    HOSTILE_TEXTS,   /* names with bytes that terminals obey, or without end */
     HOSTILE_FAMILIES
 };
 
@@ -41,34 +44,34 @@ extern const char *const hostile_name[HOSTILE_FAMILIES];
 
 struct hostile_scene {
     struct model_image model;
-    double opening; /* radius of the stop / radius of the model's stop */
+    double opening; /* radius of the stop over that of the model's */
     struct glint_lamp lamp[HOSTILE_LAMPS];
     int n_lamps;
     bool linear; /* the picture is in linear light */
 };
 
-/* The result of drawing a scene. */
+/* What became of the frame of a scene. */
 enum hostile_outcome {
-    /* The model or its setup is invalid; there is no frame. */
-    HOSTILE_REFUSED,
-    HOSTILE_EMPTY, /* The frame shows nothing. */
+    HOSTILE_REFUSED, /* The check of models or the setup refuses the model;
+                        there is no frame. */
+    HOSTILE_EMPTY,   /* The frame shows nothing. */
     HOSTILE_DRAWN,
-    HOSTILE_COARSER, /* drawn with coarser grids, within the limit of work */
-    HOSTILE_LESS, /* drawn without some bundles, within the limit of memory */
+    HOSTILE_COARSER, /* drawn coarser, to keep within the bound of work */
+    HOSTILE_LESS,    /* drawn without some bundles, for the bound of memory */
     HOSTILE_OUTCOMES
 };
 
 struct hostile_result {
     enum hostile_outcome outcome;
-    /* work by counts, and its limit, millions of instructions */
-    double minsn, most_minsn;
-    double bytes, most_bytes; /* memory of the frame, and its limit */
+    double minsn, most_minsn; /* work by counts, and its bound: millions of
+                                 instructions */
+    double bytes, most_bytes; /* memory that drawing took, and its bound */
     int plans;
-    const char *reason; /* error message if the model is invalid */
+    const char *reason; /* why the model was refused */
 };
 
-/* Draws SCENE at 640x360 with the default limits and sets RESULT. Returns
- * false if drawing failed, which no model may cause. */
+/* Draws SCENE in 640x360 with the default bounds and sets RESULT. Returns false
+ * if drawing failed, which no model may cause. */
 bool hostile_draw(const struct hostile_scene *scene,
                   struct hostile_result *result);
 
