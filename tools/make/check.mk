@@ -92,7 +92,7 @@ run-test: $(test_bin) $(replay_bin) $(if $(test_script),$(OUT)/glint $(OUT)/glin
 check-all:
 	@set -e; for how in "" CC=clang CONFIG=asan CONFIG=tsan CONFIG=qcheck; do \
 	        $(MAKE) --no-print-directory check $$how; done; \
-	for what in demo analyze check-valgrind check-arm check-vm check-commands check-options check-files check-web check-allocations check-obs check-debian mutants; do \
+	for what in demo analyze check-valgrind check-arm check-vm check-commands check-options check-files check-web check-allocations check-growth check-obs check-debian mutants; do \
 	        $(MAKE) --no-print-directory $$what; done
 	@$(MAKE) --no-print-directory fuzz RUNS=10000
 # What other programs find in files that overlay has written.
@@ -106,6 +106,10 @@ check-files:
 # Each request for memory of each command fails once; prints a table.
 check-allocations: $(OUT)/glint
 	@GLINT=$< tests/cli/allocations --all
+# What each reader costs for an input and for twice as much; prints a table.
+check-growth: $(replay_bins)
+	@tools/make/deps "counts of instructions" valgrind
+	@OUT=$(OUT) tests/fuzz/growth $(READER)
 # Random command lines: RUNS=10000 of them from SEED=1.
 check-options: $(OUT)/glint
 	@GLINT=$< tests/fuzz/options $(or $(RUNS),10000) $(or $(SEED),1)
@@ -196,5 +200,5 @@ purity: $(libraries) $(board_o)
 	@tools/lint/purity --calls '$(board_calls)' $(NM) $(OBJDUMP) $(board_o) $(OUT)/libglint.a
 
 
-.PHONY: check run-check test run-test check-files check-allocations check-options check-all extremes mutants run-mutants check-valgrind run-valgrind golden-update \
+.PHONY: check run-check test run-test check-files check-allocations check-growth check-options check-all extremes mutants run-mutants check-valgrind run-valgrind golden-update \
         fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format lint purity
