@@ -143,8 +143,8 @@ static int draw_lens(struct tool *tool, struct draw *o, const char *name)
     o->drawing.focus_m = o->zoom.focus_m;
     n = glint_ghost_list(&o->lens, NULL, 0);
     if (o->drawing.ghost >= n)
-        return tool_usage(tool, "%s has %d ghosts, 0 .. %d", o->lens.name, n,
-                          n - 1);
+        return tool_usage(tool, "%s has %d ghosts, numbered 0 .. %d",
+                          o->lens.name, n, n - 1);
     return save_drawing(tool, o);
 }
 

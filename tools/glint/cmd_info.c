@@ -304,7 +304,7 @@ static int print_non_lens(const struct tool *tool, const char *path, bool stop,
     if (is_motion)
         return print_motion(tool, path, poses);
     if (poses)
-        return tool_usage(tool, "--poses are of a motion");
+        return tool_usage(tool, "--poses needs a motion");
     return is_scene    ? print_scene(tool, path)
            : is_around ? print_environment(tool, path)
            : is_stone  ? print_medium(tool, path)

@@ -109,5 +109,5 @@ bool import_flaresim(struct imported *lens, const char *text, size_t bytes)
     if (lens->n < 2)
         return imported_empty(lens);
     return halve_diameters(lens) &&
-           imported_note(lens, 0, "coatings are not read");
+           imported_note(lens, 0, "coatings are ignored");
 }

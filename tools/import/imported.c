@@ -822,10 +822,10 @@ static bool complete_lens(struct imported *lens)
             lens, 0,
             "the system is afocal; glint needs a lens that forms an image");
     if (!(f > 0))
-        return imported_fail(lens, 0,
-                             "focal length is %.6g mm; glint takes lenses "
-                             "that form an image",
-                             f * lens->unit_mm);
+        return imported_fail(
+            lens, 0,
+            "focal length is %.6g mm; glint needs a lens that forms an image",
+            f * lens->unit_mm);
     set_film(lens, f);
     if (!set_pupil(lens, f))
         return false;

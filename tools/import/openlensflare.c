@@ -55,8 +55,9 @@ static void XMLCALL handle_start(void *data, const char *name,
     (void)pairs;
     r->bytes = 0;
     if (r->depth++ == 0 && strcmp(name, "opticalSystem") != 0)
-        stop_on_error(r, imported_fail(r->lens, current_line(r),
-                                       "<%.40s> is no <opticalSystem>", name));
+        stop_on_error(r,
+                      imported_fail(r->lens, current_line(r),
+                                    "<%.40s> is not an <opticalSystem>", name));
     if (strcmp(name, "element") == 0) {
         r->in_element = true;
         r->line = current_line(r);
@@ -84,7 +85,7 @@ static void XMLCALL reject_doctype(void *data, const char *name,
     (void)public_id;
     (void)has_internal;
     stop_on_error(r, imported_fail(r->lens, current_line(r),
-                                   "a <!DOCTYPE>: lens files have none"));
+                                   "<!DOCTYPE> is not allowed in lens files"));
 }
 
 /* Stores the <element> that was just closed: a surface, the stop or the

@@ -216,7 +216,8 @@ static bool parse_asphere(struct optical_bench *b)
                              word_at(b, 0));
     if (b->odd > 1)
         return imported_fail(b->lens, b->lines.number,
-                             "%g odd terms: only even ones are read", b->odd);
+                             "%g odd terms: only even ones are supported",
+                             b->odd);
     if (strcasecmp(word_at(b, 1), "Infinity") == 0)
         radius = 0;
     else if (!lines_number(&b->lines, 1, "radius", &radius))
@@ -240,8 +241,8 @@ static bool parse_line(struct optical_bench *b)
     switch (b->section) {
     case NO_SECTION:
         return imported_fail(b->lens, b->lines.number,
-                             "'%.40s' is no [section] of Optical Bench's "
-                             "(polyflare's tables: --format polyflare)",
+                             "'%.40s' is not a [section] of Optical Bench (for "
+                             "tables of polyflare use --format polyflare)",
                              word_at(b, 0));
     case TITLE:
         if (strcasecmp(word_at(b, 0), "title") == 0)

@@ -33,7 +33,8 @@ static enum glint_status store_member(const struct synth_field *field,
     if (field->text_bytes) {
         text = json_string_value(value);
         if (!text || strlen(text) >= field->text_bytes)
-            return fail_member(error, field->name, "is no text, or too long");
+            return fail_member(error, field->name,
+                               "is not a text, or is too long");
         memcpy(at, text, strlen(text) + 1);
         return GLINT_OK;
     }

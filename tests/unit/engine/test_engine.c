@@ -492,6 +492,29 @@ TEST(dust_alone)
     glint_engine_destroy(engine);
 }
 
+/* A configuration without STOPS accepts clean, straight blades only. */
+TEST(no_stops)
+{
+    struct glint_engine_config cfg;
+    struct glint_engine *engine;
+    struct glint_error error;
+
+    for (int k = 0; k < 3; k++) {
+        glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+        cfg.model = &opened.lens.model.lens;
+        cfg.camera.iris.roundness = k == 1 ? 0.2 : 0;
+        cfg.camera.front_dirt.dust = k == 2 ? 0.02 : 0;
+        *error.text = '\0';
+        assert_int_equal(glint_engine_create(&engine, &cfg, &error),
+                         k ? GLINT_E_ARGUMENT : GLINT_OK);
+        assert_true(!k == !strstr(error.text, "camera.stops"));
+        glint_engine_destroy(engine);
+        cfg.camera.stops = &glint_engine_all_stops;
+        assert_ok(glint_engine_create(&engine, &cfg, &error));
+        glint_engine_destroy(engine);
+    }
+}
+
 /* Checks that each numeric option accepts its limits and rejects values
  * beyond them, and counts as given only after it was set. Of strength and
  * exposure, and of quality and error, the one set last is used. */

@@ -420,6 +420,42 @@ TEST(no_memory)
     }
 }
 
+/* An engine whose new stop fails for want of memory must draw with the old
+ * one. */
+TEST(no_memory_for_stop)
+{
+    static uint8_t want[BYTES], got[BYTES];
+    const struct glint_image image =
+        glint_image_over(got, GLINT_RGB24, WIDTH, HEIGHT);
+    struct glint_engine_lamp lamp = glint_engine_lamp_of(&lamps[0], 1);
+    struct glint_engine_config cfg;
+    struct glint_engine_report report;
+    struct glint_engine *engine;
+    struct glint_error error;
+    int n_failed = 0;
+
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.model = &opened.lens.model.lens;
+    cfg.search.max_found = 0;
+    cfg.search.more_lamps = 1;
+    assert_ok(glint_engine_create(&engine, &cfg, &error));
+    for (int k = 0;; k++) {
+        memset(got, 20, BYTES);
+        assert_ok(glint_engine_draw(engine, &lamp, 1, &image, &report));
+        if (k == 0)
+            memcpy(want, got, BYTES);
+        assert_memory_equal(want, got, BYTES);
+        n_allocations = 0;
+        fail_at = k + 1;
+        n_failed += glint_engine_stop(engine, 22, &error) == GLINT_E_MEMORY;
+        fail_at = 0;
+        if (n_failed == k)
+            break;
+    }
+    assert_true(n_failed > 0);
+    glint_engine_destroy(engine);
+}
+
 /* Checks that numbers of lamps, ghosts and wavelengths whose product
  * overflows an int are rejected before any bundle is written. */
 TEST(too_many_feeds)

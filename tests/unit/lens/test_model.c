@@ -96,7 +96,7 @@ TEST(not_a_model)
     bytes = fread(text, 1, sizeof text, file);
     fclose(file);
     memcpy(copy, text, bytes);
-    assert_string_equal(open_error(copy, bytes), "this is no glint model");
+    assert_string_equal(open_error(copy, bytes), "this is not a glint model");
     free(copy);
     memmove(m.data + 2, m.data, m.bytes);
     assert_string_equal(open_error(m.data + 2, m.bytes),
@@ -112,7 +112,7 @@ TEST(not_a_model)
                         "the model was made by an older glint: bake it again");
     word[1] = 0;
     assert_string_equal(open_error(m.data, m.bytes),
-                        "no glint ever made models of this version");
+                        "the model's version is unknown");
     free(m.data);
 }
 

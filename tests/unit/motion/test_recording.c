@@ -96,22 +96,22 @@ TEST(bad_recordings_are_refused)
     expect_error("{" BODY_0 ", \"frames\": []}", "there are no frames");
     expect_error("{" BODY_0 "}", "there are no frames");
     expect_error("{" BODY_0 ", \"frames\": 3}", "'[' is expected");
-    expect_error(RUN("{}"), "frame 0: it has no array 'foods'");
-    expect_error(RUN("3"), "frame 0: it is no object");
+    expect_error(RUN("{}"), "frame 0: the frame has no array 'foods'");
+    expect_error(RUN("3"), "frame 0: the frame is not a JSON object");
     expect_error(RUN(FRAME ",\n {\"foods\": 5}"), "run.json:2:2: frame 1: ");
     expect_error(RUN(FRAME ", {\"foods\": " FOODS("NaN") "}"), "invalid token");
     expect_error(RUN(FRAME ", {\"foods\": " FOODS("1e999") "}"), "overflow");
     expect_error(RUN(FRAME ", {\"foods\": " FOODS("1e7") "}"),
                  "not within +-1e6");
     expect_error(RUN(FRAME ", {\"foods\": " FOODS("\"2\"") "}"),
-                 "'x' of food 0 is no number");
+                 "'x' of food 0 is not a number");
     expect_error(RUN(FRAME ", {\"foods\": [{\"x\": 1, \"z\": 2}]}"),
                  "frame 1: food 0 has no 'y'");
     expect_error(RUN("{\"foods\": [{\"x\":1,\"y\":0,\"z\":0}]}"),
                  "fewer than three foods");
     expect_error(RUN(FRAME ", {\"foods\": [{\"x\":1,\"y\":0,\"z\":0},{\"x\":1,"
                            "\"y\":1,\"z\":0},{\"x\":1,\"y\":0,\"z\":1}]}"),
-                 "another number of foods");
+                 "the number of foods differs");
     expect_error(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
                      "2") "}, {\"frame_num\": 6, \"foods\": " FOODS("2") "}"),
                  "frame 1: frames are missing: 6 follows 4");
@@ -119,14 +119,14 @@ TEST(bad_recordings_are_refused)
                      "2") "}, {\"frame_num\": 4, \"foods\": " FOODS("2") "}"),
                  "out of order: 4 follows 4");
     expect_error(RUN("{\"frame_num\": -1, \"foods\": " FOODS("2") "}"),
-                 "'frame_num' is no whole number");
+                 "'frame_num' is not a whole number");
     expect_error(RUN("{\"rv\": [1, 2], \"foods\": " FOODS("2") "}"),
-                 "'rv' takes three numbers");
+                 "'rv' needs three numbers");
     expect_error(RUN("{\"foods\": " FOODS("2")), "']' closes what '{' opened");
     expect_error("{" BODY_0 ", \"frames\": [" FRAME ", {\"foods\": [{\"x\": 1",
                  "the text ends within frame 1");
     expect_error("{" BODY_0 ", " BODY_0 "}", "a second 'structure'");
-    expect_error(RUN(FRAME) " {", "the recording has ended before this");
+    expect_error(RUN(FRAME) " {", "text follows the end of the recording");
     expect_error("{\"structure\": {\"size\": -1, \"angleofview\": 60}}",
                  "the size of the body");
     expect_error("{\"structure\": {\"size\": 1, \"angleofview\": 0}}",
@@ -138,7 +138,7 @@ TEST(bad_recordings_are_refused)
         "[{\"theta\": 1}]}}",
         "a sensor has no 'phi'");
     expect_error("{\"a\": [1, 2}", "'}' closes what '[' opened");
-    expect_error("{\"a\": \"b\nc\"}", "a string ends on its line");
+    expect_error("{\"a\": \"b\nc\"}", "a string must end on its line");
     expect_error("{\"a\" 1}", "':' is expected");
     expect_error("{\"a\": , }", "a value is expected");
 }
@@ -156,9 +156,9 @@ TEST(what_cannot_be_localised_is_refused)
     struct baked baked;
 
     expect_error(RUN(LINE ", " LINE),
-                 "frame 1: the foods that are known lie on a line");
+                 "frame 1: the foods with known positions lie on a line");
     expect_error(RUN(FRAME ", " GONE("true", "1")),
-                 "frame 1: fewer than three foods are known");
+                 "frame 1: fewer than three foods have known positions");
     assert_ok(bake_text(RUN(FRAME ", " GONE("true", "false")), 9, &baked));
     assert_int_equal(baked.report.n_resets, 1);
     free(baked.data);

@@ -492,7 +492,7 @@ TEST(refusals)
     check_refusal(y444, tune_progressive, "several scans");
     check_refusal(y444, tune_scans, "several scans");
     check_refusal(y420, tune_arithmetic, "arithmetic");
-    check_refusal(y444, tune_rgb, "colours");
+    check_refusal(y444, tune_rgb, "components");
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
         memcpy(c.factor, odd[i], sizeof c.factor);
         check_refusal(c, NULL, "subsampling");

@@ -431,8 +431,8 @@ TEST(refuses)
     struct glint_output out;
 
     check_refusal("/nowhere/x.ppm",
-                  "/nowhere/x.ppm: cannot create a file beside it: "
-                  "No such file or directory");
+                  "/nowhere/x.ppm: cannot create a temporary file in its "
+                  "folder: No such file or directory");
     check_refusal("", ": No such file or directory");
     snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
     check_refusal(scratch_dir, text);

@@ -142,7 +142,7 @@ TEST(clamped_ratio)
         parse_text("material m ward specular .9 .9 .9 alpha .002 .4 norm 1992\n"
                    "environment 9e5\nsphere s at 0 0 -3 radius 1 material m\n",
                    s, &error));
-    assert_non_null(strstr(s->warning, "held to a ratio of 10"));
+    assert_non_null(strstr(s->warning, "limited to 10"));
     assert_true(fabs(s->material[0].alpha[0] - .04) < 1e-12);
     assert_true(s->material[0].norm == GLINT_DESCRIBED_1992);
     assert_true(s->n_lights > 0 &&

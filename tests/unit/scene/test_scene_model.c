@@ -196,7 +196,7 @@ TEST(meshes)
     REFUSES(mesh[0].uv_at, file.mesh[0].normal_at,
             "a vertex's u or v is out of range");
     REFUSES(mesh[0].normal_at, file.mesh[0].vertex_at,
-            "a vertex's normal is no unit vector");
+            "a vertex's normal is not a unit vector");
     make_scene();
     for (int i = 0; i < 63; i++)
         file.mesh[file.header.n_meshes++] = file.mesh[0];

@@ -242,8 +242,7 @@ TEST(bad_value)
     assert_int_equal(config_parse(&config, "x.ini",
                                   BYTES("lens=a\ngrid=3\nlens=b\n"), &error),
                      EXIT_INPUT);
-    expect_message(
-        "glint live: x.ini:2: --grid: '3' is not something it takes\n");
+    expect_message("glint live: x.ini:2: --grid: '3' is not valid\n");
     assert_string_equal(error.text, "");
     assert_string_equal(command.log, "lens=a;grid=3;");
     assert_null(command.tool.where);
@@ -279,9 +278,8 @@ TEST(unknown_section)
 
     capture_stderr();
     assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
-    expect_message(
-        "glint live: x.ini:4: no section is called [camra]; its lines "
-        "count all the same\n");
+    expect_message("glint live: x.ini:4: the section [camra] is unknown; its "
+                   "lines are used all the same\n");
     assert_string_equal(command.log, "lens=a;grid=5;light=1,2;lens=b;lens=c;");
     config_free(&config);
     config = make_config();

@@ -94,14 +94,15 @@ TEST(long_work)
     struct tool_progress p = start_progress(false, false);
 
     assert_string_equal(show_progress(&p, 1, 0), "");
-    assert_string_equal(show_progress(&p, 1, 0.02), "bake: takes about 49 s\n");
+    assert_string_equal(show_progress(&p, 1, 0.02),
+                        "bake: will take about 49 s\n");
     assert_string_equal(show_progress(&p, 2, 0.02), "");
     p = start_progress(false, false);
     p.less = "a larger --tolerance";
     p.besides = ", and reports";
     assert_string_equal(show_progress(&p, 6, 0.01),
-                        "bake: takes about 10 minutes, and reports; less with "
-                        "a larger --tolerance\n");
+                        "bake: will take about 10 minutes, and reports; less "
+                        "with a larger --tolerance\n");
 }
 
 TEST(quiet)

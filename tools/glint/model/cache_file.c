@@ -113,7 +113,7 @@ static enum glint_status remove_untrusted(const char *path,
         return GLINT_OK;
     if (!S_ISREG(st.st_mode))
         return glint_error_report(error, GLINT_E_OUTPUT, path,
-                                  "is no file; remove it");
+                                  "is not a regular file; remove it");
     /* Not reported: replacing the file fails later as well. */
     if (!is_trusted(&st))
         unlink(path);
@@ -126,11 +126,12 @@ enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
     enum glint_status status;
 
     cache_file_make_folders(path);
-    status = is_folder_trusted(path)
-                 ? remove_untrusted(path, error)
-                 : glint_error_report(error, GLINT_E_OUTPUT, path,
-                                      "is in a folder that others may write "
-                                      "to; chmod o-w makes it a cache");
+    status =
+        is_folder_trusted(path)
+            ? remove_untrusted(path, error)
+            : glint_error_report(
+                  error, GLINT_E_OUTPUT, path,
+                  "is in a folder that other users may write to; chmod o-w it");
     return status == GLINT_OK ? glint_output_save(path, GLINT_OUTPUT_BINARY,
                                                   data, bytes, error)
                               : status;

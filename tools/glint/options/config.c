@@ -106,7 +106,7 @@ static char *read_line(char *dst, int size, void *stream)
     if (!is_text(line, n))
         return fail_pass(p, "holds a control character%s", ""), NULL;
     if (n > CONFIG_LINE || n + 2 > (size_t)size)
-        return fail_pass(p, "is too long a line%s", ""), NULL;
+        return fail_pass(p, "has a line that is too long%s", ""), NULL;
     memcpy(dst, line, n);
     memcpy(dst + n, "\n", 2);
     return dst;
@@ -182,7 +182,8 @@ static int apply_entry(struct pass *p, const struct option *option,
     tool->where = NULL;
     p->value += bytes;
     if (code == EXIT_OK) /* an option such as --list-devices */
-        return fail_pass(p, "%s is for the command line", option->name);
+        return fail_pass(p, "%s is an option of the command line only",
+                         option->name);
     if (code > 0)
         p->code = code;
     return code < 0;
@@ -199,7 +200,7 @@ static int on_entry(void *ctx, const char *section, const char *name,
     note_section(p, section);
     option = find_option(p->config, name);
     if (!option)
-        return fail_pass(p, "there is no option %s for a file", name);
+        return fail_pass(p, "%s is not an option of configuration files", name);
     return p->taking ? apply_entry(p, option, value)
                      : check_entry(p, option, value);
 }
