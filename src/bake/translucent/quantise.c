@@ -32,9 +32,9 @@ struct writer {
     struct glint_draft draft;
     struct glint_translucent_header header;
     int rank, texels;
-    double *column, *row;       /* [kernels][3][rank][kernel] */
-    double *largest; /* [3][kernels]: largest factor of each plane */
-    double in[CHANNELS];        /* max of the in factors if clustered, else 1 */
+    double *column, *row; /* [kernels][3][rank][kernel] */
+    double *largest;      /* [3][kernels]: largest factor of each plane */
+    double in[CHANNELS];  /* max of the in factors if clustered, else 1 */
 };
 
 /* ----------------------------------------------------------------- kernels */
