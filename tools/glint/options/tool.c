@@ -66,8 +66,8 @@ int tool_refuse(const struct tool *tool, const char *option, const char *value)
 {
     const char *takes = values_of(tool->name, option);
 
-    return tool_usage(tool, "--%s: '%s' is not valid%s%s", option,
-                      value, takes ? "; expected " : "", takes ? takes : "");
+    return tool_usage(tool, "--%s: '%s' is not valid%s%s", option, value,
+                      takes ? "; expected " : "", takes ? takes : "");
 }
 
 int tool_fail(const struct tool *tool, enum glint_status status,
