@@ -17,7 +17,7 @@
 #include "formats/samples.h"
 
 /* Version of this interface. A plug-in of another version is refused. */
-#define GLINT_OIIO_VERSION 5
+#define GLINT_OIIO_VERSION 6
 
 /* A picture as R G B, rows without padding, the top row first, turned upright
  * if the file states an orientation. Colours are multiplied by alpha, which is
@@ -41,18 +41,21 @@ struct glint_oiio_facts {
     double gamma;          /* gamma that the file states, or 0 */
     double primaries[4][2];
     int has_primaries;
-    int cicp[2];    /* codes of primaries and transfer [ITU-T H.273], or 0, 0 */
-    int quality;    /* 1 .. 100, estimated from a JPEG's quantisation tables; 0:
-                       not known */
+    int cicp[2]; /* codes of primaries and transfer [ITU-T H.273], or 0, 0 */
+    int quality; /* 1 .. 100, estimated from a JPEG's quantisation tables; 0:
+                    not known */
+    const char *metadata; /* "Exif", "XMP", "Exif and XMP" or "" */
     char note[160]; /* lists the content that cannot be preserved; "" if there
                        is no such content */
 };
 
 struct glint_oiio_options {
-    int quality;  /* for JPEG and WebP, 1 .. 100; 0: the quality of the file, or
-                     95 */
-    int drop_icc; /* true: the ICC profile is not written, as it no longer
-                     describes the pixels */
+    int quality; /* for JPEG and WebP, 1 .. 100; 0: the quality of the file, or
+                    95 */
+    int drop_colours; /* true: ICC profile and cICP are not written, as they no
+                         longer describe the pixels */
+    char said[160];   /* output: lists what the file type does not hold of the
+                         input; "" if it holds all */
 };
 
 /* One layer of light: NAME, and RGB, [height][width][3], linear. */
@@ -98,8 +101,8 @@ struct glint_oiio {
     /* Returns whether OpenImageIO writes files of PATH's extension. */
     int (*can_write)(const char *path);
 
-    /* Returns whether PATH's extension stands for FILE's type and that type can
-     * be written with the colours of FILE; HEIF cannot. */
+    /* Returns whether PATH's extension stands for FILE's type, by the content
+     * of FILE and not by its name. */
     int (*is_same_type)(const struct glint_oiio_file *file, const char *path);
 
     /* If PIXELS is NULL, encodes FILE, whose samples may have been changed in
@@ -111,7 +114,7 @@ struct glint_oiio {
                                      const char *path,
                                      struct glint_oiio_file *file,
                                      const struct glint_samples *pixels,
-                                     const struct glint_oiio_options *options,
+                                     struct glint_oiio_options *options,
                                      struct glint_error *error);
 
     /* Encodes LAYERS in the file type of PATH's extension, several layers as

@@ -74,35 +74,39 @@ int glint_gif_frames(const char *name)
 
 enum type_alpha { ALPHA_NONE, ALPHA_STRAIGHT, ALPHA_PREMULTIPLIED };
 
+/* What a type holds besides pixels. */
+enum type_holds { HOLDS_METADATA = 1, HOLDS_ICC = 2, HOLDS_CICP = 4 };
+
 struct file_type {
     const char *extension;
     bool is_native; /* glint writes the type itself, without the plug-in */
     bool is_grey;   /* The type holds grey only. */
     enum type_alpha alpha;
     bool takes_u8, takes_u16, takes_half, takes_float;
+    unsigned holds; /* of enum type_holds */
 };
 
 /* clang-format off */
 static const struct file_type types[] = {
-    /* extension, native, grey, alpha; takes 8 bits, 16, half, float */
-    {".ppm",  true,  false, ALPHA_NONE,          true,  true,  false, false},
-    {".pnm",  true,  false, ALPHA_NONE,          true,  true,  false, false},
-    {".pgm",  true,  true,  ALPHA_NONE,          true,  true,  false, false},
-    {".pfm",  true,  false, ALPHA_NONE,          false, false, false, true},
-    {".png",  false, false, ALPHA_STRAIGHT,      true,  true,  false, false},
-    {".jpg",  false, false, ALPHA_NONE,          true,  false, false, false},
-    {".jpeg", false, false, ALPHA_NONE,          true,  false, false, false},
-    {".exr",  false, false, ALPHA_PREMULTIPLIED, false, false, true,  true},
-    {".hdr",  false, false, ALPHA_NONE,          false, false, false, true},
-    {".tif",  false, false, ALPHA_STRAIGHT,      true,  true,  true,  true},
-    {".tiff", false, false, ALPHA_STRAIGHT,      true,  true,  true,  true},
-    {".bmp",  false, false, ALPHA_NONE,          true,  false, false, false},
-    {".tga",  false, false, ALPHA_STRAIGHT,      true,  false, false, false},
-    {".webp", false, false, ALPHA_STRAIGHT,      true,  false, false, false},
-    {".heic", false, false, ALPHA_STRAIGHT,      true,  false, false, false},
-    {".heif", false, false, ALPHA_STRAIGHT,      true,  false, false, false},
-    {".avif", false, false, ALPHA_STRAIGHT,      true,  false, false, false},
-    {".jxl",  false, false, ALPHA_STRAIGHT,      true,  true,  false, false},
+    /* extension, native, grey, alpha; takes 8 bits, 16, half, float; holds metadata 1, ICC 2, cICP 4 */
+    {".ppm",  true,  false, ALPHA_NONE,          true,  true,  false, false, 0},
+    {".pnm",  true,  false, ALPHA_NONE,          true,  true,  false, false, 0},
+    {".pgm",  true,  true,  ALPHA_NONE,          true,  true,  false, false, 0},
+    {".pfm",  true,  false, ALPHA_NONE,          false, false, false, true, 0},
+    {".png",  false, false, ALPHA_STRAIGHT,      true,  true,  false, false, 7},
+    {".jpg",  false, false, ALPHA_NONE,          true,  false, false, false, 3},
+    {".jpeg", false, false, ALPHA_NONE,          true,  false, false, false, 3},
+    {".exr",  false, false, ALPHA_PREMULTIPLIED, false, false, true,  true, 1},
+    {".hdr",  false, false, ALPHA_NONE,          false, false, false, true, 0},
+    {".tif",  false, false, ALPHA_STRAIGHT,      true,  true,  true,  true, 3},
+    {".tiff", false, false, ALPHA_STRAIGHT,      true,  true,  true,  true, 3},
+    {".bmp",  false, false, ALPHA_NONE,          true,  false, false, false, 0},
+    {".tga",  false, false, ALPHA_STRAIGHT,      true,  false, false, false, 0},
+    {".webp", false, false, ALPHA_STRAIGHT,      true,  false, false, false, 3},
+    {".heic", false, false, ALPHA_STRAIGHT,      true,  true,  false, false, 7},
+    {".heif", false, false, ALPHA_STRAIGHT,      true,  true,  false, false, 7},
+    {".avif", false, false, ALPHA_STRAIGHT,      true,  true,  false, false, 7},
+    {".jxl",  false, false, ALPHA_STRAIGHT,      true,  true,  false, false, 1},
 };
 /* clang-format on */
 
@@ -633,6 +637,10 @@ static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
     else if (cicp[1] == 4 || cicp[1] == 5)
         glint_colours_set(c, GLINT_TONE_IS_GAMMA, cicp[1] == 4 ? 2.2 : 2.8,
                           "gamma");
+    else if (cicp[1] == 16)
+        glint_colours_set(c, GLINT_TONE_IS_PQ, 0, "PQ");
+    else if (cicp[1] == 18)
+        glint_colours_set(c, GLINT_TONE_IS_HLG, 0, "HLG");
     else if (cicp[1] == 1 || cicp[1] == 6 || cicp[1] == 14 || cicp[1] == 15)
         glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
     else
@@ -685,9 +693,9 @@ static void set_colours(struct glint_kept *k,
     else
         glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
     if (facts->cicp[1])
-        known = set_by_cicp(c, facts->cicp);
+        known = k->has_cicp = set_by_cicp(c, facts->cicp);
     else if (facts->icc)
-        known = glint_icc_read(c, facts->icc, facts->icc_bytes);
+        known = k->has_icc = glint_icc_read(c, facts->icc, facts->icc_bytes);
     else if (facts->gamma > 0.1 && facts->gamma < 10)
         glint_colours_set(c, GLINT_TONE_IS_GAMMA, facts->gamma, "gamma");
     else if (*facts->colour_space && !k->is_float)
@@ -720,6 +728,7 @@ static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
         return status;
     k->oiio = oiio;
     k->is_float = glint_sample_is_float(k->samples.colour[0].sample);
+    k->metadata = facts.metadata;
     if (*facts.note)
         add_note(k->note, facts.note);
     set_colours(k, &facts);
@@ -838,17 +847,23 @@ enum glint_status glint_kept_blank(struct glint_samples *blank,
     return blank->mem ? GLINT_OK : GLINT_E_MEMORY;
 }
 
+/* Returns whether samples of S hold light above white. */
+static bool is_above_white(const struct glint_samples *s)
+{
+    return glint_sample_is_float(s->colour[0].sample) ||
+           glint_tone_curve_is_hdr(&s->colours.transfer[0]);
+}
+
 static void say_losses(struct glint_kept_options *options,
                        const struct glint_samples *to,
                        const struct glint_samples *from)
 {
-    const bool was_float = glint_sample_is_float(from->colour[0].sample);
 
     if (from->has_alpha && !to->has_alpha)
         add_note(options->said,
                  "the file type has no alpha: what is seen over black is "
                  "written");
-    if (was_float && !glint_sample_is_float(to->colour[0].sample))
+    if (is_above_white(from) && !is_above_white(to))
         add_note(options->said,
                  to->colour[0].sample == GLINT_SAMPLE_U8
                      ? "light above white is clipped, and 8 bits are left"
@@ -878,11 +893,26 @@ static enum glint_sample sample_for(const struct file_type *type,
     return type->takes_u8 ? GLINT_SAMPLE_U8 : GLINT_SAMPLE_FLOAT;
 }
 
+/* Returns whether a file of TYPE holds samples TO in the colours of K, by its
+ * ICC profile or cICP. */
+static bool holds_colours(const struct glint_kept *k,
+                          const struct file_type *type,
+                          const struct glint_samples *to)
+{
+    return !glint_sample_is_float(to->colour[0].sample) &&
+           !glint_sample_is_float(k->samples.colour[0].sample) &&
+           to->n_colours == k->samples.n_colours &&
+           ((k->has_icc && (type->holds & HOLDS_ICC)) ||
+            (k->has_cicp && (type->holds & HOLDS_CICP)));
+}
+
 /* Converts FROM to samples that files of TYPE hold, in TO; the caller frees
- * to->mem. */
-static enum glint_status convert(struct glint_samples *to,
+ * to->mem. If FROM has the colours of K, TO has them, too, where TYPE holds
+ * them, and KEEPS is set. */
+static enum glint_status convert(const struct glint_kept *k,
+                                 struct glint_samples *to,
                                  const struct glint_samples *from,
-                                 const struct file_type *type)
+                                 const struct file_type *type, bool *keeps)
 {
     const bool has_alpha = from->has_alpha && type->alpha != ALPHA_NONE;
     const bool is_grey = type->is_grey ||
@@ -893,6 +923,9 @@ static enum glint_status convert(struct glint_samples *to,
             sample_for(type, from->colour[0].sample),
             (is_grey ? 1 : 3) + has_alpha);
     to->is_premultiplied = type->alpha != ALPHA_STRAIGHT;
+    *keeps = from == &k->samples && holds_colours(k, type, to);
+    if (*keeps)
+        to->colours = from->colours;
     to->mem = malloc(samples_bytes(to));
     if (!to->mem)
         return GLINT_E_MEMORY;
@@ -935,15 +968,13 @@ static enum glint_status write_native(struct glint_output *out,
     return status;
 }
 
-static enum glint_status write_kept(struct glint_kept *k,
-                                    struct glint_output *out,
-                                    const struct glint_samples *pixels,
-                                    const struct glint_kept_options *options,
-                                    struct glint_error *error)
+static enum glint_status
+write_kept(struct glint_kept *k, struct glint_output *out,
+           const struct glint_samples *pixels, bool keeps_colours,
+           struct glint_kept_options *options, struct glint_error *error)
 {
-    const struct glint_oiio_options how = {.quality = options->quality,
-                                           .drop_icc = pixels != NULL &&
-                                                       pixels != &k->samples};
+    struct glint_oiio_options how = {.quality = options->quality,
+                                     .drop_colours = !keeps_colours};
     const struct glint_oiio *oiio;
     enum glint_status status = glint_oiio_load(&oiio, error);
     void *data;
@@ -954,6 +985,8 @@ static enum glint_status write_kept(struct glint_kept *k,
                                    &how, error);
     if (status)
         return status;
+    if (*how.said)
+        add_note(options->said, how.said);
     status = glint_output_write(out, data, bytes, error);
     free(data);
     return status;
@@ -970,16 +1003,24 @@ static enum glint_status save_converted(struct glint_kept *k,
     const struct file_type *const type = type_of(out->name);
     struct glint_samples to;
     enum glint_status status;
+    bool keeps_colours;
+    char text[48];
 
     if (!type)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, out->name,
                                   "is of no type that is written");
-    status = convert(&to, from, type);
+    status = convert(k, &to, from, type, &keeps_colours);
     if (status)
         return report_memory(error, out->name, to.width, to.height);
     say_losses(options, &to, from);
-    status = type->is_native ? write_native(out, &to, type, error)
-                             : write_kept(k, out, &to, options, error);
+    if (k->metadata && *k->metadata && !(type->holds & HOLDS_METADATA)) {
+        snprintf(text, sizeof text, "%s has no %s", type->extension,
+                 k->metadata);
+        add_note(options->said, text);
+    }
+    status = type->is_native
+                 ? write_native(out, &to, type, error)
+                 : write_kept(k, out, &to, keeps_colours, options, error);
     free(to.mem);
     return status;
 }
@@ -1001,7 +1042,7 @@ enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
         status = save_converted(kept, &out, alone ? alone : &kept->samples,
                                 options, error);
     } else if (kept->oiio) {
-        status = write_kept(kept, &out, NULL, options, error);
+        status = write_kept(kept, &out, NULL, true, options, error);
     } else {
         refill_native(kept);
         status =

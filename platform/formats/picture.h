@@ -27,8 +27,8 @@
  *
  * An output of the input's type preserves depth, alpha, other channels, parts,
  * windows, profile and metadata. An output of another type has the colours,
- * upright, the depth and alpha that the type can hold, and the metadata that
- * OpenImageIO translates.
+ * upright, the depth, alpha and profile that the type can hold, Exif and XMP,
+ * and other metadata that OpenImageIO translates.
  */
 #ifndef GLINT_PLATFORM_FORMATS_PICTURE_H
 #define GLINT_PLATFORM_FORMATS_PICTURE_H
@@ -51,6 +51,8 @@ struct glint_kept {
     /* Private. */
     const char *path;
     const struct glint_oiio *oiio; /* NULL: the file is a PNM or PFM */
+    bool has_icc, has_cicp;        /* which of the two states the colours */
+    const char *metadata;          /* as in glint_oiio_facts; NULL: none */
     struct glint_oiio_file *file;
     /* all bytes of a PNM or PFM; of other files the first 12 */
     uint8_t *native;

@@ -20,11 +20,54 @@ void glint_tone_curve_set(struct glint_tone_curve *transfer,
                                  .b = 0.099 / 1.099,
                                  .c = 1 / 4.5,
                                  .d = 0.081},
-        [GLINT_TONE_IS_GAMMA] = {.gamma = 1, .a = 1}};
+        [GLINT_TONE_IS_GAMMA] = {.gamma = 1, .a = 1},
+        [GLINT_TONE_IS_PQ] = {.is_pq = true},
+        [GLINT_TONE_IS_HLG] = {.is_hlg = true}};
 
     *transfer = curves[kind];
     if (kind == GLINT_TONE_IS_GAMMA)
         transfer->gamma = gamma;
+}
+
+bool glint_tone_curve_is_hdr(const struct glint_tone_curve *transfer)
+{
+    return transfer->is_pq || transfer->is_hlg;
+}
+
+/* light of PQ's code 1, and of HLG's */
+#define PQ_PEAK  (10000 / 203.0)
+#define HLG_PEAK 3.7741178
+
+/* Converts between code and light of PQ [SMPTE ST 2084], 0 .. 1 both. */
+static double decode_pq(double code)
+{
+    const double p = pow(code, 32 / 2523.0);
+
+    return pow(fmax(p - 3424 / 4096.0, 0) / (2413 / 128.0 - 2392 / 128.0 * p),
+               8192 / 1305.0);
+}
+
+static double encode_pq(double light)
+{
+    const double p = pow(light, 1305 / 8192.0);
+
+    return pow((3424 / 4096.0 + 2413 / 128.0 * p) / (1 + 2392 / 128.0 * p),
+               2523 / 32.0);
+}
+
+/* The same of HLG [ITU-R BT.2100], scene light. */
+static const double hlg_a = 0.17883277, hlg_b = 0.28466892, hlg_c = 0.55991073;
+
+static double decode_hlg(double code)
+{
+    return code <= 0.5 ? code * code / 3
+                       : (exp((code - hlg_c) / hlg_a) + hlg_b) / 12;
+}
+
+static double encode_hlg(double light)
+{
+    return light <= 1 / 12.0 ? sqrt(3 * light)
+                             : hlg_a * log(12 * light - hlg_b) + hlg_c;
 }
 
 static double look_up(const struct glint_tone_curve *t, double code)
@@ -45,6 +88,10 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
         return -glint_tone_curve_decode(t, -code);
     if (t->n_entries)
         return look_up(t, code);
+    if (t->is_pq)
+        return PQ_PEAK * decode_pq(fmin(code, 1));
+    if (t->is_hlg)
+        return HLG_PEAK * decode_hlg(code);
     if (code < t->d)
         return t->c * code + t->f;
     return (t->gamma == 1 ? t->a * code + t->b
@@ -83,6 +130,10 @@ double glint_tone_curve_encode(const struct glint_tone_curve *transfer,
         return -glint_tone_curve_encode(t, -light);
     if (t->n_entries)
         return find(t, light);
+    if (t->is_pq)
+        return encode_pq(fmin(light / PQ_PEAK, 1));
+    if (t->is_hlg)
+        return encode_hlg(light / HLG_PEAK);
     if (t->d > 0 && light < t->c * t->d + t->f)
         return t->c > 0 ? fmax(0, (light - t->f) / t->c) : 0;
     code = fmax(0, light - t->e);

@@ -22,7 +22,10 @@ enum glint_tone_kind {
     GLINT_TONE_IS_LINEAR,
     GLINT_TONE_IS_SRGB,
     GLINT_TONE_IS_BT709,
-    GLINT_TONE_IS_GAMMA
+    GLINT_TONE_IS_GAMMA,
+    GLINT_TONE_IS_PQ, /* light 1 is 203 cd/m2 [ITU-R BT.2408], 49.26 is code 1
+                       */
+    GLINT_TONE_IS_HLG /* light 1 is code 0.75, scene light; 3.774 is code 1 */
 };
 
 #define GLINT_TONE_ENTRIES 1024
@@ -32,7 +35,8 @@ enum glint_tone_kind {
  * steps of code; an entry of 65535 is light 1. */
 struct glint_tone_curve {
     double gamma, a, b, c, d, e, f;
-    int n_entries; /* 0: no table */
+    bool is_pq, is_hlg; /* their curves replace the formula, too */
+    int n_entries;      /* 0: no table */
     uint16_t entry[GLINT_TONE_ENTRIES];
 };
 
@@ -54,6 +58,9 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
                                double code);
 double glint_tone_curve_encode(const struct glint_tone_curve *transfer,
                                double light);
+
+/* Returns whether codes up to 1 hold light above 1. */
+bool glint_tone_curve_is_hdr(const struct glint_tone_curve *transfer);
 
 /* Sets COLOURS to BT.709 primaries, with one curve for all three colours. */
 void glint_colours_set(struct glint_colours *colours, enum glint_tone_kind kind,

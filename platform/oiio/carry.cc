@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "oiio/keep.h"
+#include "oiio/pieces.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -13,66 +12,9 @@ namespace glint
 namespace
 {
 
-uint32_t big32(const unsigned char *at)
-{
-    return uint32_t(at[0]) << 24 | uint32_t(at[1]) << 16 |
-           uint32_t(at[2]) << 8 | at[3];
-}
-
-uint32_t little32(const unsigned char *at)
-{
-    return uint32_t(at[3]) << 24 | uint32_t(at[2]) << 16 |
-           uint32_t(at[1]) << 8 | at[0];
-}
-
-void append(bytes &to, const unsigned char *at, size_t n)
-{
-    to.insert(to.end(), at, at + n);
-}
-
-/* A chunk of PNG or WebP, or a segment of JPEG: all of it, and its data. */
-struct piece {
-    std::string name;
-    const unsigned char *whole;
-    size_t whole_bytes;
-    const unsigned char *data;
-    size_t data_bytes;
-};
-
-/* ------------------------------------------------------------------- PNG */
-
-/* Returns the chunks of FILE; none if it is malformed. */
-std::vector<piece> chunks_of_png(const bytes &file)
-{
-    std::vector<piece> chunks;
-    size_t at = 8;
-
-    while (file.size() - at >= 12 && at < file.size()) {
-        const unsigned char *const p = file.data() + at;
-        const size_t n = big32(p);
-
-        if (n > file.size() - at - 12)
-            return {};
-        chunks.push_back({std::string(reinterpret_cast<const char *>(p) + 4, 4),
-                          p, n + 12, p + 8, n});
-        if (chunks.back().name == "IEND")
-            return chunks[0].name == "IHDR" ? chunks : std::vector<piece>();
-        at += n + 12;
-    }
-    return {};
-}
-
-bool is_one_of(const std::string &name, std::initializer_list<const char *> of)
-{
-    for (const char *one : of)
-        if (name == one)
-            return true;
-    return false;
-}
-
 /* Checks whether CHUNK goes into the new file. Chunks about the coding of
  * pixels need the SAME_CODING; those about colours do not go if DROP_ICC. */
-bool goes_along(const piece &chunk, bool same_coding, bool drop_icc)
+bool goes_along(const file_piece &chunk, bool same_coding, bool drop_icc)
 {
     if (!(chunk.name[0] & 0x20) || is_one_of(chunk.name, {"tRNS", "hIST",
                                                          "acTL", "fcTL",
@@ -84,43 +26,7 @@ bool goes_along(const piece &chunk, bool same_coding, bool drop_icc)
                                                 "cICP", "mDCv", "cLLi"});
 }
 
-/* -------------------------------------------------------------------- JPEG */
-
-/* Returns the segments of FILE up to the first scan, then all its other bytes
- * as one segment named "". Returns none if FILE is malformed. */
-std::vector<piece> segments_of_jpeg(const bytes &file)
-{
-    std::vector<piece> segments;
-    size_t at = 2;
-
-    while (at + 4 <= file.size() && file[at] == 0xff) {
-        const unsigned char *const p = file.data() + at;
-        const size_t n = size_t(p[2]) << 8 | p[3];
-
-        if (p[1] == 0xff) { /* fill */
-            at++;
-            continue;
-        }
-        if (p[1] == 0xda) {
-            segments.push_back({"", p, file.size() - at, p, file.size() - at});
-            return segments;
-        }
-        if (n < 2 || n + 2 > file.size() - at)
-            return {};
-        segments.push_back(
-            {std::string(1, char(p[1])), p, n + 2, p + 4, n - 2});
-        at += n + 2;
-    }
-    return {};
-}
-
-bool is_marker(const piece &segment, int marker)
-{
-    return segment.name.size() == 1 &&
-           static_cast<unsigned char>(segment.name[0]) == marker;
-}
-
-bool is_metadata(const piece &segment)
+bool is_metadata(const file_piece &segment)
 {
     const int marker =
         segment.name.empty() ? 0 : static_cast<unsigned char>(segment.name[0]);
@@ -129,64 +35,28 @@ bool is_metadata(const piece &segment)
            marker == 0xfe;
 }
 
-bool begins(const piece &segment, const char *text, size_t n)
-{
-    return segment.data_bytes >= n && !std::memcmp(segment.data, text, n);
-}
-
 /* Checks whether SEGMENT lists more pictures, by offsets in the old file. */
-bool is_index(const piece &segment)
+bool is_index(const file_piece &segment)
 {
     return is_marker(segment, 0xe2) && begins(segment, "MPF", 4);
 }
 
-bool is_icc(const piece &segment)
+bool is_icc(const file_piece &segment)
 {
     return is_marker(segment, 0xe2) && begins(segment, "ICC_PROFILE", 12);
 }
 
-/* -------------------------------------------------------------------- WebP */
-
-std::vector<piece> chunks_of_webp(const bytes &file)
-{
-    std::vector<piece> chunks;
-    size_t at = 12;
-
-    if (file.size() < 12 || std::memcmp(file.data(), "RIFF", 4) ||
-        std::memcmp(file.data() + 8, "WEBP", 4))
-        return {};
-    while (at + 8 <= file.size()) {
-        const unsigned char *const p = file.data() + at;
-        const size_t n = little32(p + 4);
-        const size_t whole = 8 + n + (n & 1);
-
-        if (n > file.size() - at - 8)
-            return {};
-        chunks.push_back({std::string(reinterpret_cast<const char *>(p), 4), p,
-                          whole, p + 8, n});
-        at += whole;
-    }
-    return chunks;
-}
-
-void append_chunk(bytes &to, const piece &chunk)
-{
-    append(to, chunk.whole, 8 + chunk.data_bytes);
-    if (chunk.data_bytes & 1)
-        to.push_back(0);
-}
-
-void append_named(bytes &to, const std::vector<piece> &chunks,
+void append_named(bytes &to, const std::vector<file_piece> &chunks,
                   std::initializer_list<const char *> names)
 {
-    for (const piece &chunk : chunks)
+    for (const file_piece &chunk : chunks)
         if (is_one_of(chunk.name, names))
             append_chunk(to, chunk);
 }
 
 /* Sets SIDE to width and height less 1, as VP8X has them, and ALPHA, from the
  * only chunk of a simple file. Returns false if it cannot read CHUNK. */
-bool canvas_of(const piece &chunk, uint32_t side[2], bool &alpha)
+bool canvas_of(const file_piece &chunk, uint32_t side[2], bool &alpha)
 {
     const unsigned char *const d = chunk.data;
 
@@ -207,7 +77,7 @@ bool canvas_of(const piece &chunk, uint32_t side[2], bool &alpha)
     return false;
 }
 
-bytes vp8x_of(const std::vector<piece> &made)
+bytes vp8x_of(const std::vector<file_piece> &made)
 {
     uint32_t side[2] = {0, 0};
     bool alpha = false;
@@ -231,8 +101,8 @@ bytes vp8x_of(const std::vector<piece> &made)
 
 bytes carry_png(const bytes &made, const bytes &from, bool drop_icc)
 {
-    const std::vector<piece> ours = chunks_of_png(made);
-    const std::vector<piece> theirs = chunks_of_png(from);
+    const std::vector<file_piece> ours = chunks_of_png(made);
+    const std::vector<file_piece> theirs = chunks_of_png(from);
     bytes file;
 
     if (ours.empty() || theirs.empty() || ours[0].data_bytes != 13 ||
@@ -242,10 +112,10 @@ bytes carry_png(const bytes &made, const bytes &from, bool drop_icc)
     append(file, made.data(), 8);
     append(file, ours[0].whole, ours[0].whole_bytes);
     bool behind = false;
-    for (const piece &chunk : theirs) {
+    for (const file_piece &chunk : theirs) {
         if (chunk.name == "IDAT" && !behind) {
             behind = true;
-            for (const piece &data : ours)
+            for (const file_piece &data : ours)
                 if (data.name == "IDAT")
                     append(file, data.whole, data.whole_bytes);
         } else if (goes_along(chunk, same, drop_icc)) {
@@ -256,108 +126,43 @@ bytes carry_png(const bytes &made, const bytes &from, bool drop_icc)
     return behind ? file : made;
 }
 
-/* ------------------------------------------------------- what XMP claims */
+/* ---------------------------------------------------- pictures behind a JPEG */
 
 namespace
 {
 
-const char xmp_head[] = "http://ns.adobe.com/xap/1.0/"; /* and a zero */
-
-bool is_xmp(const piece &segment)
-{
-    return is_marker(segment, 0xe1) &&
-           begins(segment, xmp_head, sizeof xmp_head);
-}
-
 /* Returns whether SEGMENT describes the gain map of a file [ISO 21496-1]. */
-bool is_gain_map(const piece &segment)
+bool is_gain_map(const file_piece &segment)
 {
     static const char name[] = "urn:iso:std:iso:ts:21496:-1";
 
     return is_marker(segment, 0xe2) && begins(segment, name, sizeof name);
 }
 
-std::string text_of(const piece &segment)
+std::string packet_of(const file_piece &xmp_segment)
 {
-    return std::string(reinterpret_cast<const char *>(segment.data),
-                       segment.data_bytes);
-}
-
-/* beginnings of names of XMP's properties about the pictures and the video
- * behind the first picture [Ultra HDR; Motion Photo format 1.0; Apple] */
-const char *const claims[] = {"hdrgm:",
-                              "HDRGainMap:",
-                              "GCamera:MotionPhoto",
-                              "Camera:MotionPhoto",
-                              "GCamera:MicroVideo",
-                              "Camera:MicroVideo",
-                              "GContainer:Directory",
-                              "Container:Directory"};
-
-size_t end_of_name(const std::string &xmp, size_t at)
-{
-    return std::min(xmp.find_first_of("= />\t\r\n", at), xmp.size());
-}
-
-/* Removes from XMP the attributes whose names begin with CLAIM. */
-void remove_attributes(std::string &xmp, const std::string &claim)
-{
-    for (size_t at = 0; (at = xmp.find(claim, at)) != std::string::npos;) {
-        const size_t equals = end_of_name(xmp, at);
-        const bool is_attribute =
-            at > 0 && std::isspace(static_cast<unsigned char>(xmp[at - 1])) &&
-            equals + 1 < xmp.size() && xmp[equals] == '=' &&
-            (xmp[equals + 1] == '"' || xmp[equals + 1] == '\'');
-        const size_t end =
-            is_attribute ? xmp.find(xmp[equals + 1], equals + 2)
-                         : std::string::npos;
-
-        if (end == std::string::npos)
-            at++;
-        else
-            xmp.erase(at - 1, end + 1 - (at - 1));
-    }
-}
-
-/* Removes from XMP the elements whose names begin with CLAIM. */
-void remove_elements(std::string &xmp, const std::string &claim)
-{
-    for (size_t at = 0; (at = xmp.find("<" + claim, at)) != std::string::npos;) {
-        const size_t close = xmp.find('>', at);
-        const std::string end_tag =
-            "</" + xmp.substr(at + 1, end_of_name(xmp, at + 1) - at - 1) + ">";
-        const bool is_alone =
-            close != std::string::npos && xmp[close - 1] == '/';
-        const size_t end = is_alone ? close : xmp.find(end_tag, at);
-
-        if (close == std::string::npos || end == std::string::npos)
-            at++;
-        else
-            xmp.erase(at, end + (is_alone ? 1 : end_tag.size()) - at);
-    }
+    return std::string(
+        reinterpret_cast<const char *>(xmp_segment.data) + xmp_head_bytes,
+        xmp_segment.data_bytes - xmp_head_bytes);
 }
 
 /* Appends SEGMENT, XMP, without what it claims of pictures and videos that are
- * not there any more. */
-void append_xmp(bytes &to, const piece &segment)
+ * not there any more; appends nothing if it is malformed. */
+void append_xmp(bytes &to, const file_piece &segment)
 {
-    std::string xmp = text_of(segment);
+    std::string xmp = packet_of(segment);
 
-    for (const char *claim : claims) {
-        remove_elements(xmp, claim);
-        remove_attributes(xmp, claim);
-    }
-    const size_t n = xmp.size() + 2;
-    const unsigned char head[] = {0xff, 0xe1,
-                                  static_cast<unsigned char>(n >> 8),
-                                  static_cast<unsigned char>(n)};
-    append(to, head, sizeof head);
-    append(to, reinterpret_cast<const unsigned char *>(xmp.data()), xmp.size());
+    if (!remove_claims(xmp, false))
+        return;
+    append_segment(to, 0xe1, reinterpret_cast<const char *>(segment.data),
+                   xmp_head_bytes,
+                   reinterpret_cast<const unsigned char *>(xmp.data()),
+                   xmp.size());
 }
 
 /* Returns whether all pictures after the first that SEGMENT lists are previews
  * of it [CIPA DC-007]. */
-bool lists_previews(const piece &segment)
+bool lists_previews(const file_piece &segment)
 {
     const unsigned char *const d = segment.data + 4; /* after "MPF", 0 */
     const size_t n = segment.data_bytes - 4;
@@ -390,9 +195,10 @@ bool lists_previews(const piece &segment)
 std::string more_of_jpeg(const bytes &jpeg)
 {
     bool map = false, video = false, more = false, previews = false;
+    bool malformed = false;
     std::string text;
 
-    for (const piece &segment : segments_of_jpeg(jpeg)) {
+    for (const file_piece &segment : segments_of_jpeg(jpeg)) {
         if (is_index(segment)) {
             more = true;
             previews = lists_previews(segment);
@@ -400,11 +206,12 @@ std::string more_of_jpeg(const bytes &jpeg)
         map = map || is_gain_map(segment);
         if (!is_xmp(segment))
             continue;
-        const std::string xmp = text_of(segment);
+        std::string xmp = packet_of(segment);
 
         map = map || xmp.find("hdrgm:") != std::string::npos;
         video = video || xmp.find("Camera:MotionPhoto") != std::string::npos ||
                 xmp.find("Camera:MicroVideo") != std::string::npos;
+        malformed = malformed || !remove_claims(xmp, false);
     }
     if (map)
         text = "its gain map (Ultra HDR) is dropped";
@@ -414,24 +221,27 @@ std::string more_of_jpeg(const bytes &jpeg)
     if (text.empty() && more)
         text = previews ? "its embedded preview is dropped"
                         : "only the first of its pictures is kept";
+    if (malformed)
+        text += std::string(text.empty() ? "" : "; ") +
+                "its XMP is malformed and is dropped";
     return text;
 }
 
 bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc)
 {
-    const std::vector<piece> ours = segments_of_jpeg(made);
-    const std::vector<piece> theirs = segments_of_jpeg(from);
+    const std::vector<file_piece> ours = segments_of_jpeg(made);
+    const std::vector<file_piece> theirs = segments_of_jpeg(from);
     bytes file = {0xff, 0xd8};
 
     if (ours.empty() || theirs.empty())
         return made;
-    for (const piece &segment : theirs)
+    for (const file_piece &segment : theirs)
         if (is_xmp(segment))
             append_xmp(file, segment);
         else if (is_metadata(segment) && !is_index(segment) &&
                  !is_gain_map(segment) && !(drop_icc && is_icc(segment)))
             append(file, segment.whole, segment.whole_bytes);
-    for (const piece &segment : ours)
+    for (const file_piece &segment : ours)
         if (!is_metadata(segment))
             append(file, segment.whole, segment.whole_bytes);
     return file;
@@ -439,13 +249,13 @@ bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc)
 
 bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc)
 {
-    const std::vector<piece> ours = chunks_of_webp(made);
-    const std::vector<piece> theirs = chunks_of_webp(from);
+    const std::vector<file_piece> ours = chunks_of_webp(made);
+    const std::vector<file_piece> theirs = chunks_of_webp(from);
     bytes file = {'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'};
     const bytes x = vp8x_of(ours);
     unsigned flags = 0;
 
-    for (const piece &chunk : theirs)
+    for (const file_piece &chunk : theirs)
         flags |= chunk.name == "ICCP" && !drop_icc ? 0x20u
                  : chunk.name == "EXIF"            ? 0x08u
                  : chunk.name == "XMP "            ? 0x04u
@@ -466,7 +276,7 @@ bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc)
 
 bool is_animated_webp(const bytes &webp)
 {
-    for (const piece &chunk : chunks_of_webp(webp))
+    for (const file_piece &chunk : chunks_of_webp(webp))
         if (chunk.name == "ANIM")
             return true;
     return false;
@@ -474,7 +284,7 @@ bool is_animated_webp(const bytes &webp)
 
 bool is_lossless(const bytes &webp)
 {
-    for (const piece &chunk : chunks_of_webp(webp))
+    for (const file_piece &chunk : chunks_of_webp(webp))
         if (chunk.name == "VP8L")
             return true;
     return false;
@@ -482,7 +292,7 @@ bool is_lossless(const bytes &webp)
 
 bytes chunk_of_png(const bytes &file, const char *name)
 {
-    for (const piece &chunk : chunks_of_png(file))
+    for (const file_piece &chunk : chunks_of_png(file))
         if (chunk.name == name)
             return bytes(chunk.data, chunk.data + chunk.data_bytes);
     return {};
@@ -494,11 +304,11 @@ bytes chunk_of_png(const bytes &file, const char *name)
  * before 0 and restart markers; any other marker ends the scan. */
 std::string missing_of_jpeg(const bytes &file)
 {
-    const std::vector<piece> segments = segments_of_jpeg(file);
+    const std::vector<file_piece> segments = segments_of_jpeg(file);
 
     if (segments.empty())
         return "is cut off before its first scan";
-    const piece &scans = segments.back();
+    const file_piece &scans = segments.back();
     const unsigned char *at = scans.data;
     const unsigned char *const end = at + scans.data_bytes;
 
@@ -520,7 +330,7 @@ std::string missing_of_jpeg(const bytes &file)
 
 bool is_progressive(const bytes &jpeg)
 {
-    for (const piece &segment : segments_of_jpeg(jpeg))
+    for (const file_piece &segment : segments_of_jpeg(jpeg))
         if (is_marker(segment, 0xc2))
             return true;
     return false;
@@ -528,7 +338,7 @@ bool is_progressive(const bytes &jpeg)
 
 bool is_of_inks(const bytes &jpeg)
 {
-    for (const piece &segment : segments_of_jpeg(jpeg))
+    for (const file_piece &segment : segments_of_jpeg(jpeg))
         if ((is_marker(segment, 0xc0) || is_marker(segment, 0xc1) ||
              is_marker(segment, 0xc2)) &&
             segment.data_bytes > 5)
@@ -547,7 +357,7 @@ int quality_of_jpeg(const bytes &file)
     long stated = 0, nearest = 1L << 30;
     int best = 0;
 
-    for (const piece &segment : segments_of_jpeg(file)) {
+    for (const file_piece &segment : segments_of_jpeg(file)) {
         if (!is_marker(segment, 0xdb) || segment.data_bytes < 65)
             continue;
         const bool wide = segment.data[0] >> 4;

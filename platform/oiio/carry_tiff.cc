@@ -3,7 +3,7 @@
  * Tags of TIFF. The file that OpenImageIO has written keeps its tags on how
  * pixels lie in it; all other tags, with the directories of Exif and GPS, come
  * from the file that was read, whose byte order may be the other one. */
-#include "oiio/keep.h"
+#include "oiio/blocks.h"
 
 #include <cstdint>
 #include <cstring>
@@ -111,7 +111,15 @@ bool is_structure(unsigned tag)
     return false;
 }
 
-enum { EXIF = 34665, GPS = 34853, INTEROPERABILITY = 40965, PROFILE = 34675 };
+enum {
+    XMP = 700,
+    IPTC = 33723,
+    PHOTOSHOP = 34377,
+    EXIF = 34665,
+    PROFILE = 34675,
+    GPS = 34853,
+    INTEROPERABILITY = 40965
+};
 
 void put(bytes &to, uint32_t value, int n)
 {
@@ -178,6 +186,19 @@ void move_pointers(bytes &to, const reader &from, directory &d, int depth)
     }
 }
 
+/* Puts directory D, to be followed by NEXT, at the end of FILE, a little-endian
+ * TIFF, and its offset to LINK. Returns the offset of the link to NEXT. */
+uint64_t link_directory(bytes &file, uint64_t link, const directory &d,
+                        uint32_t next)
+{
+    const uint32_t now = write_directory(file, d, next);
+
+    for (int k = 0; k < 4; k++)
+        file[link + static_cast<uint64_t>(k)] =
+            static_cast<unsigned char>(now >> (8 * k));
+    return now + 2 + 12 * d.size();
+}
+
 } // namespace
 
 bool is_classic_tiff(const bytes &file)
@@ -206,13 +227,56 @@ bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc)
             if (!is_structure(e.first) && !(drop_icc && e.first == PROFILE))
                 d[e.first] = e.second;
         move_pointers(file, theirs, d, 0);
-        const uint32_t now = write_directory(file, d, our_next);
-        for (int k = 0; k < 4; k++)
-            file[link + static_cast<uint64_t>(k)] =
-                static_cast<unsigned char>(now >> (8 * k));
-        link = now + 2 + 12 * d.size();
+        link = link_directory(file, link, d, our_next);
     }
     return file.size() < UINT32_MAX ? file : made;
+}
+
+bytes add_to_tiff(const bytes &made, const bytes &exif, const std::string &xmp)
+{
+    if (!is_classic_tiff(made) || !is_classic_tiff(exif) || made[0] != 'I')
+        return made;
+    const reader ours = {made, true}, theirs = {exif, exif[0] == 'I'};
+    bytes file = made;
+    uint32_t our_next, their_next;
+    directory d = read_directory(ours, ours.number(4, 4), our_next);
+
+    for (const auto &e :
+         read_directory(theirs, theirs.number(4, 4), their_next))
+        if (!is_structure(e.first))
+            d[e.first] = e.second;
+    if (!xmp.empty())
+        d[XMP] = {1, static_cast<uint32_t>(xmp.size()),
+                  bytes(xmp.begin(), xmp.end())};
+    move_pointers(file, theirs, d, 0);
+    link_directory(file, 4, d, our_next);
+    return file.size() < UINT32_MAX ? file : made;
+}
+
+file_blocks blocks_of_tiff(const bytes &whole)
+{
+    file_blocks b = {};
+
+    if (!is_classic_tiff(whole))
+        return b;
+    const reader from = {whole, whole[0] == 'I'};
+    uint32_t next;
+    directory d = read_directory(from, from.number(4, 4), next);
+    const auto xmp = d.find(XMP);
+
+    if (xmp != d.end())
+        b.xmp.assign(xmp->second.values.begin(), xmp->second.values.end());
+    for (auto e = d.begin(); e != d.end();)
+        e = is_structure(e->first) || e->first == XMP || e->first == IPTC ||
+                    e->first == PHOTOSHOP || e->first == PROFILE
+                ? d.erase(e)
+                : std::next(e);
+    b.exif = {'I', 'I', '*', 0, 0, 0, 0, 0};
+    move_pointers(b.exif, from, d, 0);
+    link_directory(b.exif, 4, d, 0);
+    if (d.empty())
+        b.exif.clear();
+    return b;
 }
 
 } // namespace glint

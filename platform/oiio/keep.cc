@@ -20,7 +20,9 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include "oiio/blocks.h"
 #include "oiio/guard.h"
+#include "oiio/heif.h"
 
 #if __has_include(<webp/encode.h>)
 #include <webp/decode.h>
@@ -59,10 +61,21 @@ struct glint_oiio_file {
     glint::bytes whole; /* bytes of the file if is_carried(type) */
     std::vector<glint::kept_part> parts;
     std::vector<unsigned char> icc;
+    glint::file_blocks meta; /* as they were read; of types that have blocks */
+    const char *metadata; /* as in glint_oiio_facts */
+    /* of HEIF: bits of its samples, or 0; what of it is not kept */
+    int bits;
+    bool is_avif;
+    std::string lost;
 };
 
 namespace
 {
+
+bool is_avif_name(const char *path)
+{
+    return OIIO::Strutil::iends_with(path, ".avif");
+}
 
 /* Returns whether metadata of files of TYPE, OpenImageIO's name of it, are
  * copied byte for byte. */
@@ -242,10 +255,58 @@ void check_whole(const struct glint_oiio_file &file)
         throw failure{GLINT_E_FORMAT, missing};
 }
 
+/* Reads the HEIF in FILE.whole by libheif. */
+void read_heif(struct glint_oiio_file &file)
+{
+    glint::heif_picture read = glint::heif_decode(file.whole);
+    ImageSpec spec(read.width, read.height, read.channels,
+                   read.bits > 8 ? TypeDesc::UINT16 : TypeDesc::UINT8);
+    const bytes &icc = read.meta.icc;
+
+    if (!icc.empty())
+        spec.attribute("ICCProfile",
+                       TypeDesc(TypeDesc::UINT8, static_cast<int>(icc.size())),
+                       icc.data());
+    spec.attribute("Orientation", 1);
+    if (!read.is_premultiplied)
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+    file.type = "heif";
+    file.bits = read.bits;
+    file.is_avif = read.is_avif;
+    file.lost = read.lost;
+    file.meta = read.meta;
+    file.parts.push_back({spec, std::move(read.pixels)});
+}
+
+/* Reads FILE by libheif if it is a HEIF, whatever its name, and libheif is
+ * there. Returns false if it is not. */
+bool take_heif(struct glint_oiio_file &file, const char *path)
+{
+    bytes head(16);
+    FILE *const f = std::fopen(path, "rb");
+
+    if (!f)
+        throw failure{GLINT_E_IO, "cannot be opened"};
+    head.resize(std::fread(head.data(), 1, head.size(), f));
+    std::fclose(f);
+    if (!glint::is_heif(head))
+        return false;
+    if (!glint::heif_reads()) {
+        file.lost = "read as sRGB of 8 bits, as glint was built without "
+                    "libheif-dev";
+        return false;
+    }
+    file.whole = read_whole(path);
+    read_heif(file);
+    return true;
+}
+
 void read_file(struct glint_oiio_file &file, const char *path)
 {
     ImageSpec as_stored;
 
+    if (take_heif(file, path))
+        return;
     as_stored.attribute("oiio:UnassociatedAlpha", 1);
     const std::unique_ptr<ImageInput> in = open_picture(path, &as_stored);
     check_spec(in->spec());
@@ -253,6 +314,7 @@ void read_file(struct glint_oiio_file &file, const char *path)
     if (is_carried(file.type))
         file.whole = read_whole(path);
     check_whole(file);
+    file.meta = glint::blocks_of(file.type, file.whole);
     for (int i = 0; i < 64 && in->seek_subimage(i, 0); i++) {
         file.parts.emplace_back();
         read_part(*in, i, file.whole, file.parts.back());
@@ -362,7 +424,6 @@ void fill_samples(struct glint_samples &s, kept_part &part,
 
 void fill_png_facts(struct glint_oiio_facts &facts, const bytes &whole)
 {
-    const bytes cicp = glint::chunk_of_png(whole, "cICP");
     const bytes gamma = glint::chunk_of_png(whole, "gAMA");
     const bytes srgb = glint::chunk_of_png(whole, "sRGB");
     const bytes primaries = glint::chunk_of_png(whole, "cHRM");
@@ -372,10 +433,6 @@ void fill_png_facts(struct glint_oiio_facts &facts, const bytes &whole)
                1e-5;
     };
 
-    if (cicp.size() == 4) {
-        facts.cicp[0] = cicp[0];
-        facts.cicp[1] = cicp[1];
-    }
     facts.colour_space[0] = 0;
     if (!srgb.empty())
         return;
@@ -403,10 +460,22 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
     const OIIO::ParamValue *const xy = spec.find_attribute("chromaticities");
 
     facts = {};
+    file.metadata = !file.meta.exif.empty()
+                        ? file.meta.xmp.empty() ? "Exif" : "Exif and XMP"
+                    : file.meta.xmp.empty() ? ""
+                                            : "XMP";
+    facts.metadata = file.metadata;
+    facts.cicp[0] = file.meta.cicp[0];
+    facts.cicp[1] = file.meta.cicp[1];
     if (icc && icc->type().basetype == TypeDesc::UINT8) {
         const auto *const at = static_cast<const unsigned char *>(icc->data());
 
         file.icc.assign(at, at + icc->type().size());
+        facts.icc = file.icc.data();
+        facts.icc_bytes = file.icc.size();
+    }
+    if (!facts.icc && file.type == "webp" && !file.meta.icc.empty()) {
+        file.icc = file.meta.icc;
         facts.icc = file.icc.data();
         facts.icc_bytes = file.icc.size();
     }
@@ -429,6 +498,8 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
         if (glint::is_of_inks(file.whole))
             say(facts, "its CMYK becomes RGB");
     }
+    if (!file.lost.empty())
+        say(facts, file.lost.c_str());
     if (spec.get_int_attribute("oiio:Movie", 0) ||
         spec.get_int_attribute("gif:FrameCount", 0) > 1 ||
         (file.type == "png" &&
@@ -512,7 +583,7 @@ int glint::is_same_type(const struct glint_oiio_file *file, const char *path)
         const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
 
         is_same = out && file->type == out->format_name() &&
-                  file->type != "heif";
+                  (file->type != "heif" || file->is_avif == is_avif_name(path));
     });
     return is_same;
 }
@@ -523,7 +594,13 @@ int glint::can_write(const char *path)
     bool can = false;
 
     guarded(path, GLINT_E_OUTPUT, &error,
-            [&] { can = ImageOutput::create(path) != nullptr; });
+            [&] {
+                const std::unique_ptr<ImageOutput> out =
+                    ImageOutput::create(path);
+
+                can = out && (out->format_name() != std::string("heif") ||
+                              heif_writes(is_avif_name(path)));
+            });
     return can;
 }
 
@@ -747,12 +824,7 @@ bytes encode_by_oiio(ImageOutput &out, const char *path,
 
     if (parts.size() > 1 && out.format_name() == std::string("openexr"))
         return encode_exr(out, specs, parts);
-    if (!out.supports("ioproxy")) { /* HEIF */
-        const glint::memory_file file;
-
-        write_parts(out, file.name().c_str(), specs, parts);
-        encoded = file.contents();
-    } else if (out.set_ioproxy(&to)) {
+    if (out.set_ioproxy(&to)) {
         write_parts(out, path, specs, parts);
     }
     if (encoded.empty())
@@ -771,21 +843,80 @@ void clear_empty(ImageSpec &spec)
             all.erase(all.begin() + static_cast<std::ptrdiff_t>(i));
 }
 
-/* Returns OpenImageIO's name of the coding for a file of TYPE; HEIF has that of
- * PATH's extension. */
-std::string coding_of(const char *path, const std::string &type)
+/* Returns the blocks of FILE for another file, upright. */
+glint::file_blocks upright_blocks(const struct glint_oiio_file *file,
+                             const struct glint_oiio_options &options)
 {
-    return type != "heif"                              ? type
-           : OIIO::Strutil::iends_with(path, ".avif") ? "avif"
-                                                      : "heic";
+    glint::file_blocks b = {};
+
+    if (file)
+        b = file->meta;
+    glint::make_upright(b);
+    if (file && !options.drop_colours)
+        b.icc = file->icc;
+    else
+        std::fill_n(b.cicp, 4, static_cast<unsigned char>(0));
+    return b;
+}
+
+/* Returns PART as a HEIF with the blocks of FILE; grey becomes R = G = B. */
+bytes encode_heif(const char *path, const kept_part &part,
+                  const struct glint_oiio_file *file, int quality,
+                  struct glint_oiio_options &options)
+{
+    const size_t n = static_cast<size_t>(part.spec.nchannels);
+    const bool alpha = part.spec.alpha_channel >= 0;
+    const size_t sample = part.spec.format.size();
+    glint::heif_picture p = {};
+
+    p.width = part.spec.width;
+    p.height = part.spec.height;
+    p.channels = alpha ? 4 : 3;
+    p.bits = sample == 1 ? 8 : file && file->bits > 8 ? file->bits : 16;
+    p.is_avif = is_avif_name(path);
+    p.is_premultiplied =
+        !part.spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
+    p.meta = upright_blocks(file, options);
+    for (size_t at = 0; at < part.pixels.size(); at += n * sample)
+        for (size_t c = 0; c < size_t(p.channels); c++) {
+            const size_t from = n >= 3 ? c : c < 3 ? 0 : 1;
+
+            p.pixels.insert(p.pixels.end(),
+                            part.pixels.begin() + long(at + from * sample),
+                            part.pixels.begin() +
+                                long(at + (from + 1) * sample));
+        }
+    if (glint::heif_bits(p) < p.bits)
+        std::snprintf(options.said, sizeof options.said, "%d bits are left",
+                      glint::heif_bits(p));
+    return glint::heif_encode(p, quality);
+}
+
+/* Returns ENCODED, a file of TYPE, with the blocks of FILE, which is of another
+ * type. */
+bytes add_blocks(const std::string &type, const bytes &encoded,
+                 const struct glint_oiio_file *file,
+                 struct glint_oiio_options &options)
+{
+    std::string lost;
+    const glint::file_blocks b = upright_blocks(file, options);
+    const bytes made = glint::carry_blocks(type, encoded, b, lost);
+
+    /* OpenImageIO fills other headers, but not from what libheif has read. */
+    if (lost.empty() && file && file->type == "heif" && type == "openexr" &&
+        *file->metadata)
+        lost = std::string("no ") + file->metadata;
+
+    std::snprintf(options.said, sizeof options.said, "%s", lost.c_str());
+    return made;
 }
 
 bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
                    const struct glint_oiio_file *file, bool same,
-                   const struct glint_oiio_options &options)
+                   struct glint_oiio_options &options)
 {
     const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
-    const bool drop = options.drop_icc;
+    const bool drop = options.drop_colours;
     std::vector<ImageSpec> specs;
     bytes encoded;
 
@@ -793,6 +924,8 @@ bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
         throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
     const std::string type = out->format_name();
     const int quality = quality_of(type, file, options);
+    if (type == "heif")
+        return encode_heif(path, parts[0], file, quality, options);
     for (const kept_part &p : parts) {
         specs.push_back(same && is_carried_from(*file) ? bare(p.spec) : p.spec);
         if (type == "tiff")
@@ -801,10 +934,9 @@ bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
             clear_empty(specs.back());
         if (drop)
             specs.back().erase_attribute("ICCProfile");
-        if (type == "jpeg" || type == "heif" || type == "jpegxl")
+        if (type == "jpeg" || type == "jpegxl")
             specs.back().attribute("Compression",
-                                   coding_of(path, type) + ":" +
-                                       std::to_string(quality));
+                                   type + ":" + std::to_string(quality));
         if (same && type == "jpeg" && glint::is_progressive(file->whole))
             specs.back().attribute("jpeg:progressive", 1);
     }
@@ -814,7 +946,7 @@ bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
     else
         encoded = encode_by_oiio(*out, path, specs, parts);
     if (!same)
-        return encoded;
+        return add_blocks(type, encoded, file, options);
     return type == "png"    ? glint::carry_png(encoded, file->whole, drop)
            : type == "jpeg" ? glint::carry_jpeg(encoded, file->whole, drop)
            : type == "webp" ? glint::carry_webp(encoded, file->whole, drop)
@@ -828,10 +960,11 @@ enum glint_status glint::encode_file(void **data, size_t *n_bytes,
                                      const char *path,
                                      struct glint_oiio_file *file,
                                      const struct glint_samples *pixels,
-                                     const struct glint_oiio_options *options,
+                                     struct glint_oiio_options *options,
                                      struct glint_error *error)
 {
     return guarded(path, GLINT_E_OUTPUT, error, [&] {
+        options->said[0] = 0;
         const bool same = file && is_same_type(file, path);
         std::vector<kept_part> made;
 

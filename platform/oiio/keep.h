@@ -31,6 +31,16 @@ bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc);
 bool is_classic_tiff(const bytes &file); /* false for BigTIFF */
 bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc);
 
+/* Returns MADE, a TIFF, with the tags of EXIF, a TIFF without pixels, and XMP
+ * added to its first directory. */
+bytes add_to_tiff(const bytes &made, const bytes &exif, const std::string &xmp);
+
+/* Removes from XMP, a packet, the properties that claim pictures or a video
+ * behind the first picture: gain map, motion photo, container; if UPRIGHT, also
+ * the orientation. Returns false and clears XMP if it has such properties and
+ * is malformed. The time is linear in the size of XMP. */
+bool remove_claims(std::string &xmp, bool upright);
+
 /* Return as text what is missing in FILE, "" if it is complete. */
 std::string missing_of_jpeg(const bytes &file);
 std::string missing_of_tiff(const bytes &file);
@@ -90,7 +100,7 @@ int is_same_type(const struct glint_oiio_file *file, const char *path);
 enum glint_status encode_file(void **data, size_t *bytes, const char *path,
                               struct glint_oiio_file *file,
                               const struct glint_samples *pixels,
-                              const struct glint_oiio_options *options,
+                              struct glint_oiio_options *options,
                               struct glint_error *error);
 
 } // namespace glint

@@ -70,6 +70,16 @@ TEST(curves)
     assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.25959) < 1e-5);
     glint_tone_curve_set(&t, GLINT_TONE_IS_GAMMA, 2);
     assert_true(fabs(glint_tone_curve_decode(&t, -0.5) + 0.25) < 1e-9);
+    /* 203 cd/m2 are code 0.58069 of PQ, 1000 are 0.75183 [ITU-R BT.2408]. */
+    glint_tone_curve_set(&t, GLINT_TONE_IS_PQ, 0);
+    assert_true(fabs(glint_tone_curve_decode(&t, 0.58069) - 1) < 1e-4);
+    assert_true(fabs(glint_tone_curve_encode(&t, 1000 / 203.0) - 0.75183) <
+                1e-4);
+    assert_true(glint_tone_curve_decode(&t, 0) == 0);
+    glint_tone_curve_set(&t, GLINT_TONE_IS_HLG, 0);
+    assert_true(fabs(glint_tone_curve_decode(&t, 0.75) - 1) < 1e-6);
+    assert_true(fabs(glint_tone_curve_encode(&t, 3.7741178) - 1) < 1e-6);
+    assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.31451) < 1e-5);
 }
 
 /* Writes V as a big-endian word of an ICC profile. */
