@@ -35,14 +35,16 @@ bool numbered_name(char *name, const char *pattern, int number)
 
 bool numbered_from_hashes(char *pattern, const char *text)
 {
-    const char *const last = strrchr(text, '#');
+    const char *const slash = strrchr(text, '/');
+    const char *const name = slash ? slash + 1 : text;
+    const char *const last = strrchr(name, '#');
     const char *first = last;
     char width[16] = "";
     int n;
 
     if (!last)
         return false;
-    while (first > text && first[-1] == '#')
+    while (first > name && first[-1] == '#')
         first--;
     if (last > first)
         snprintf(width, sizeof width, "0%d", (int)(last - first + 1));

@@ -17,9 +17,10 @@ bool numbered_is(const char *text);
  * Returns false if NAME is too long or PATTERN is not a pattern. */
 bool numbered_name(char *name, const char *pattern, int number);
 
-/* Sets PATTERN, NUMBERED_BYTES long, to TEXT with its last run of N '#', as
- * other programs name sequences, replaced by "%0Nd". Returns false if TEXT has
- * no '#', or if PATTERN is too long or not a pattern. */
+/* Sets PATTERN, NUMBERED_BYTES long, to TEXT with the last run of N '#' of its
+ * file name, as other programs name sequences, replaced by "%0Nd". Folders stay
+ * as they are. Returns false if the name has no '#', or if PATTERN is too long
+ * or not a pattern. */
 bool numbered_from_hashes(char *pattern, const char *text);
 
 #endif
