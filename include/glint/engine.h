@@ -72,7 +72,6 @@ struct glint_engine_lamp glint_engine_lamp_of(const struct glint_lamp *lamp,
 
 /* ------------------------------------------------------------ configuration */
 
-/* Lens, stop and sensor. */
 struct glint_frame_rays;   /* opaque: traces rays */
 struct glint_engine_stops; /* opaque: makes the iris and front_dirt */
 
@@ -80,6 +79,7 @@ struct glint_engine_stops; /* opaque: makes the iris and front_dirt */
  * straight, clean blades. */
 extern const struct glint_engine_stops glint_engine_all_stops;
 
+/* Lens, stop and sensor. */
 struct glint_engine_camera {
     /* n_blades: sides of the stop, 3 .. 64, or 0 for a circle;
      * blade_rotation_deg: angle of the first corner of the stop; f_number: 0

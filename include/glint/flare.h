@@ -59,13 +59,14 @@ struct glint_wave_sets {
                                outlines; 0: every step counts as visible */
 };
 
-/* Cache of the brightness of each ghost of a lens in each of three waves, by
- * the angle of the light. A program keeps one cache for all frames with the
- * same lens, stop, set of waves and size. Plans fill it as needed; no picture
- * depends on entries that were filled before. */
 enum { GLINT_DIM_NODES = 33, GLINT_DIM_VALUES = 4, GLINT_DIM_LIGHTS = 256 };
 struct glint_dim_method;
 extern const struct glint_dim_method glint_dim_method;
+
+/* Cache of the brightness of each ghost, by the angle of the light and at three
+ * wavelengths. A program keeps one cache for frames of one lens, stop, set of
+ * wavelengths and size. Planning a frame fills missing entries; the cache never
+ * changes a picture. */
 struct glint_dim {
     /* &glint_dim_method. It is a pointer so that only programs that use the
      * cache link the method. */

@@ -42,7 +42,8 @@ struct glint_engine_finding {
     struct glint_lamp found[GLINT_LAMP_DETECTOR_MAX];
     int32_t elapsed_us; /* time from the last picture to the next, us; 0: not
                            known */
-    bool is_searched;   /* true: lamps were searched in the next picture */
+    bool is_searched;   /* true: lamps of the picture that is drawn next have
+                           been searched */
     bool is_cut; /* true: the next picture is unrelated to the last one */
 };
 

@@ -184,9 +184,9 @@ static int check_raw(const struct tool *tool, const struct overlay *o)
 static int check_folder(const struct tool *tool, const struct overlay *o, int n)
 {
     if (o->has_raw)
-        return tool_usage(tool, "--format has no folder: a file there keeps "
-                                "the name of its input, raw frames become "
-                                "another");
+        return tool_usage(tool, "--format excludes an output folder: raw "
+                                "frames do not determine the type of the "
+                                "output; name a file by -o");
     if (o->lists_shots)
         return tool_usage(tool, "--list-shots writes no file: leave out -o");
     if (n > 1 &&

@@ -8,10 +8,10 @@
  *                            &report, &error);
  *     glint_environment_open(&environment, data, bytes, &reason);
  *
- *   in   a picture of linear light: an equirectangular panorama, twice as wide
- *        as high, whose middle is ahead and whose right edge is behind; or 3 x
- * 2 faces of a cube, +x +y +z above -x -y -z out  levels, irradiance map and
- * list of bright lights, in one file
+ *   in   a picture in linear light: an equirectangular panorama, twice as wide
+ *        as high, forward in the middle, backward at the right edge; or the
+ *        3 x 2 faces of a cube, +x +y +z above -x -y -z
+ *   out  mip levels, irradiance map and list of bright lights, in one file
  *
  * The same picture and options give the same bytes. */
 #ifndef GLINT_SCENE_ENVIRONMENT_BAKE_H

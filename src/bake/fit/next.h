@@ -5,7 +5,7 @@
  *
  *   in   its width, and the errors of its fit in tolerances
  *   out  whether to accept, halve, fit thoroughly, or divide it by wavelength
- * or into parts; and the error at which a fit may stop early
+ *        or into parts; and the error at which a fit may stop early
  *
  * In lenses with surfaces that are not spheres, faint zones are accepted with
  * larger errors: aspheric powers leave errors at every width, and halving does

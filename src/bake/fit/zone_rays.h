@@ -4,7 +4,7 @@
  *
  *   in   a zone, the paths of a ghost at a few wavelengths
  *   out  rays in the zone's coordinates: positions on the sensor and in the
- * stop, energy, and relative radii at the barrels that cut the ghost
+ *        stop, energy, and relative radii at the barrels that cut the ghost
  */
 #ifndef GLINT_BAKE_FIT_ZONE_RAYS_H
 #define GLINT_BAKE_FIT_ZONE_RAYS_H

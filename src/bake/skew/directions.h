@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * Finds the part of the pupil through which a ghost is visible, for patches of
- * light directions. For lenses that are not round.
+ * light directions. For lenses without rotational symmetry.
  *
  *   in   a ghost, its paths in the lens's own frame, a patch of directions
- *   out  boxes of visible light at some directions and wavelengths; a zone
- * whose box contains them
+ *   out  the pupil box of the visible rays at each sampled direction and
+ *        wavelength; a zone whose box contains all of these boxes
  *
  * A patch is a rectangle of x and y components of directions, each -1 .. 1.
  */

@@ -4,7 +4,7 @@
  *
  *   in   a path, a light in the x-z plane, the visible part of the pupil
  *   out  the barrels that cut, the nonlinearity of positions, whether light
- * folds
+ *        folds
  *
  * Most surfaces are wider than the beam through the stop. Of dozens of
  * surfaces, at most a few vignette the beam. A barrel cuts if it is the first

@@ -62,9 +62,7 @@ static inline int64_t glint_light_q20(int32_t packed)
     return (packed >> 5) * (INT64_C(1) << (packed & 31));
 }
 
-/* Sums of one tile, as changes from pixel to pixel: [3][side rows][stride], R,
- * G, B. The value after the tile's last column is the change for the next tile.
- * All are 0 between tiles. */
+/* bytes of scratch memory of a patch function */
 enum { GLINT_PATCH_SCRATCH = 8192 };
 
 /* Adds the part of patch E that lies in a tile to the tile's narrow or wide
@@ -74,6 +72,10 @@ struct glint_edge_sums;
 typedef void glint_patch_fn(const struct glint_edge_sums *sums, int narrow,
                             const struct glint_edge *e, const int64_t light[3]);
 
+/* Light of one tile, stored as differences between neighbouring pixels of a
+ * row: wide and narrow are [3][side rows][stride], R, G, B. The entry after the
+ * tile's last column is carried into the next tile. All entries are 0 between
+ * tiles. */
 struct glint_edge_sums {
     struct glint_box tile;
     int tile_log2, stride;

@@ -9,7 +9,7 @@
  *
  *   in   a description; the size of the picture
  *   out  for each pixel the light of objects, and the fraction of the
- * background that they cover
+ *        background that they cover
  *
  * Method: several primary rays per pixel. At a hit, Phong's terms of all lights
  * that are not occluded, then one mirrored ray, and one transmitted ray through

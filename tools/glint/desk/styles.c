@@ -28,7 +28,7 @@ const struct style styles[] = {
       {"strength", "0.7"},
       {"starburst", "2"}}},
     {"toy",
-     "no coatings, a round hole for a stop: discs and no stars",
+     "no coatings, a circular stop: disc-shaped ghosts, faint starbursts",
      {{"lens", "double-gauss-angenieux"},
       {"coating", "none"},
       {"stop", "circle"},
