@@ -23,7 +23,7 @@ check() {
 }
 # without_progress FILE: its lines except progress, which depends on speed
 without_progress() {
-    grep -vE '^[^:]+: ([0-9]+ % in [0-9]+ s, about |takes about )|^glint overlay: frame [0-9]+, [0-9.]+ fps' "$1"
+    grep -vE '^[^:]+: ([0-9]+ % in [0-9]+ s, about |will take about )|^glint overlay: frame [0-9]+, [0-9.]+ fps' "$1"
 }
 # expect NAME CODE WORDS COMMAND...: leaves with CODE, says WORDS, of failure in
 # two lines at most

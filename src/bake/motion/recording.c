@@ -367,14 +367,14 @@ static bool read_frame(const struct recording *r, const json_t *object,
 
     *s = (struct glint_motion_sight){.number = -1};
     if (!json_is_object(object))
-        return fail_in_piece(r, 1, 1, "the frame is not a JSON object");
+        return fail_in_piece(r, 1, 1, "it is not a JSON object");
     if (of && (!json_is_integer(of) || json_integer_value(of) < 0))
         return fail_in_piece(r, 1, 1,
                              "'frame_num' is not a whole number from 0");
     if (of)
         s->number = json_integer_value(of);
     if (!json_is_array(foods))
-        return fail_in_piece(r, 1, 1, "the frame has no array 'foods'");
+        return fail_in_piece(r, 1, 1, "there is no array 'foods'");
     if (json_array_size(foods) > GLINT_MOTION_MAX_FOODS)
         return fail_in_piece(r, 1, 1, "more than %d foods",
                              GLINT_MOTION_MAX_FOODS);

@@ -287,7 +287,7 @@ TEST(integers_match)
 }
 
 /* A frame whose fields and edges do not fit into memory is drawn in several
- * parts, bit-identical. */
+ * parts, bit-identical. One thread: each one has memory of its own. */
 TEST(memory_does_not_matter)
 {
     const struct glint_view view = {
@@ -301,7 +301,7 @@ TEST(memory_does_not_matter)
     for (int i = 0; i < 2; i++) {
         struct glint_frame frame;
 
-        glint_frame_init(&frame, &setup, view, workers);
+        glint_frame_init(&frame, &setup, view, NULL);
         frame.trace = &glint_frame_traces;
         frame.cfg.tile_log2 = 4;
         if (i)

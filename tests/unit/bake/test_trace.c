@@ -459,20 +459,18 @@ TEST(row_equals_single_rays)
 {
     static struct glint_prescription lens;
     const struct glint_ghost ghost = {1, 4};
-    const struct glint_row row_equals_single_rays = {
-        21, -5, 0.4, 2.5, {0.1, 0, sqrt(0.99)}};
+    const struct glint_row row = {21, -5, 0.4, 2.5, {0.1, 0, sqrt(0.99)}};
     struct glint_ray ray[21], one;
     enum glint_ray_status status[21];
     struct glint_path path;
 
     load_lens(&lens, "heliar-tronnier");
     glint_path_init(&path, &lens, &ghost, 532);
-    glint_trace_row(&path, &row_equals_single_rays, ray, status, NULL);
+    glint_trace_row(&path, &row, ray, status, NULL);
     for (int k = 0; k < 21; k++) {
-        assert_int_equal(glint_trace(&path, -5 + 0.4 * k, 2.5,
-                                     row_equals_single_rays.direction, &one,
-                                     NULL),
-                         status[k]);
+        assert_int_equal(
+            glint_trace(&path, -5 + 0.4 * k, 2.5, row.direction, &one, NULL),
+            status[k]);
         if (status[k] == GLINT_RAY_OK)
             assert_memory_equal(&one, &ray[k], sizeof one);
     }

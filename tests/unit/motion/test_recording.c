@@ -96,8 +96,8 @@ TEST(bad_recordings_are_refused)
     expect_error("{" BODY_0 ", \"frames\": []}", "there are no frames");
     expect_error("{" BODY_0 "}", "there are no frames");
     expect_error("{" BODY_0 ", \"frames\": 3}", "'[' is expected");
-    expect_error(RUN("{}"), "frame 0: the frame has no array 'foods'");
-    expect_error(RUN("3"), "frame 0: the frame is not a JSON object");
+    expect_error(RUN("{}"), "frame 0: there is no array 'foods'");
+    expect_error(RUN("3"), "frame 0: it is not a JSON object");
     expect_error(RUN(FRAME ",\n {\"foods\": 5}"), "run.json:2:2: frame 1: ");
     expect_error(RUN(FRAME ", {\"foods\": " FOODS("NaN") "}"), "invalid token");
     expect_error(RUN(FRAME ", {\"foods\": " FOODS("1e999") "}"), "overflow");

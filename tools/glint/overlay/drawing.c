@@ -197,8 +197,8 @@ static void watch(const struct tool *tool, struct drawing *d,
     if (!tool->quiet &&
         !GLINT_OPTION_GIVEN(&d->line.settings.options, exposure))
         fprintf(stderr,
-                "glint %s: exact rays: first how bright flares of %s are, "
-                "longer for a zoom, then each frame again\n",
+                "glint %s: exact rays: first measures how bright flares of %s "
+                "are, longer for a zoom, then draws each frame\n",
                 tool->name, d->files.lens.table.name);
     tool_progress_start(&d->run.progress, tool, "exact rays");
     /* Measuring how bright flares are begins at 0 several times: an estimate
