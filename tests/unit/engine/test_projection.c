@@ -156,5 +156,5 @@ TEST(others_are_refused)
     load_lens(&lens, "anamorphic/anamorphic-schneider");
     assert_int_equal(glint_projection_of(&p, &lens, &miss_deg, &error),
                      GLINT_E_LENS);
-    assert_non_null(strstr(error.text, "not symmetric"));
+    assert_non_null(strstr(error.text, "not rotationally symmetric"));
 }

@@ -507,18 +507,18 @@ TEST(refused)
                                 "f 1/1 2/1 3/1\n";
 
     expect_refused(STAGE "plane p at 0 0 0 normal 0 1 0 material c\n",
-                   "a plane has no end");
+                   "an infinite plane cannot");
     expect_refused(STAGE "triangle t 0 0 0 1 0 0 0 1 0 material c\n",
-                   "has no places on its map");
+                   "has no texture coordinates");
     mesh_text = bare;
     expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
                    "x.scene:9:8: material c is translucent, but a face has no");
     mesh_text = outside;
     expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
-                   "are 0 to 1, not 2");
+                   "must be 0 to 1, not 2");
     mesh_text = twice;
     expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
-                   "have two places");
+                   "belong to two places");
     mesh_text = point;
     expect_refused(STAGE "mesh m a.obj at 0 0 0 material c\n",
                    "covers no texel");
