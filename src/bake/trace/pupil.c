@@ -222,7 +222,7 @@ static double energy_of(struct search *s)
     double most = 0;
 
     for (int j = 0; j <= s->down; j++) {
-        if (!memchr(s->kept[j], true, sizeof s->kept[j]))
+        if (!memchr(s->kept[j], 1, sizeof s->kept[j]))
             continue;
         sample_row(s, &s->grid, s->openings.path, j);
         for (int i = 0; i <= s->across; i++)
