@@ -62,7 +62,7 @@ $(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan pla
 $(call of,src/tile/bins src/tile/pass src/star/star src/veil/veil $(addprefix src/image/,resolve curve mix),-Os)
 
 # Loops over doubles that a machine takes two at a time.
-$(call of,src/bake/exact/ray_field src/bake/translucent/% tests/reference/scatter/%,-O3)
+$(call of,src/bake/translucent/% tests/reference/scatter/%,-O3)
 # The compiler of Debian 12 for aarch64 fails in this with -O3.
 $(call of,src/bake/translucent/quantise,-O2)
 

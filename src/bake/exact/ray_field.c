@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/compiler.h"
 #include "bake/trace/sampling.h"
 #include "engine/setup/degrees.h"
 #include "lens/grid.h"
@@ -706,7 +705,6 @@ void glint_ray_place_set(struct ray_place *p, const struct ray_field *f,
 }
 
 /* Sets ROW to the weighted sum of row J of all samples. */
-WIDE_VECTORS
 static void blend(const struct ray_place *p, int j, float *row)
 {
     const struct ray_field *f = p->field;
@@ -717,9 +715,8 @@ static void blend(const struct ray_place *p, int j, float *row)
     memset(row, 0, (size_t)n * sizeof *row);
     for (int s = 0; s < f->n_samples; s++, from += nodes * CHANNELS) {
         const float w = p->weight[s];
-        const int used = w != 0 ? n : 0;
 
-        for (int i = 0; i < used; i++)
+        for (int i = 0; w != 0 && i < n; i++)
             row[i] += w * from[i];
     }
 }
