@@ -96,8 +96,7 @@ static void collect_accounts(struct glint_explain *e)
                 glint_flare_account(e->frame->memory.flare, ghost, light, wave,
                                     &a);
                 add_account(&e->all, &a);
-                /* NOLINTNEXTLINE: set_numbers() has set all elements of
-                 * ghost_of */
+                /* NOLINTNEXTLINE: set_numbers() has set all of them */
                 add_account(&e->ghost[e->ghost_of[ghost]], &a);
                 add_account(&e->light[light], &a);
                 add_account(&e->wave[find_part(e, wave)], &a);

@@ -79,8 +79,7 @@ find_profile(struct fitter *f, const struct glint_zone_piece *p)
 
     if (is_whole_band(p->w0, p->w1))
         return &f->profile;
-    /* NOLINTNEXTLINE: 0 and -0 may differ; the profile is then computed
-     * again */
+    /* NOLINTNEXTLINE: 0 and -0 may differ, which recomputes a profile. */
     if (memcmp(key, f->profiled, sizeof key) != 0) {
         glint_visible_narrow(&f->in_band, f->visible, p->w0, p->w1);
         glint_visible_profile_find(&f->in_band, range, &f->band_profile);
