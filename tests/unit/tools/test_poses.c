@@ -129,7 +129,7 @@ TEST(mistakes)
     expect_error("-1,ball,1,2,3\n", 1, "frame must be");
     expect_error("1.5,ball,1,2,3\n", 1, "frame must be");
     expect_error("0,bell,1,2,3\n", 1, "no 'bell'; did you mean 'ball'?");
-    expect_error("0,ball,1e8,2,3\n", 1, "beyond");
+    expect_error("0,ball,1e8,2,3\n", 1, "out of the range");
     expect_error("0,sun,0,0,0\n", 1, "must not be 0 0 0");
     expect_error("0,ball,0,0,0,0,0,0,0\n", 1, "must not be all 0");
     expect_error("frame,ball\n", 1, "the heading");
