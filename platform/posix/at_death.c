@@ -11,9 +11,15 @@
 #define MAX_FN 8
 
 static const int deadly[] = {
-    SIGHUP,  SIGINT,    SIGTERM, SIGQUIT, SIGUSR1, SIGUSR2,
-    SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGSYS,  SIGABRT,
-    SIGSEGV, SIGBUS,    SIGILL,  SIGFPE,  SIGTRAP,
+    SIGHUP,    SIGINT,    SIGTERM, SIGQUIT, SIGUSR1, SIGUSR2,
+    SIGALRM,   SIGVTALRM, SIGPROF, SIGXCPU, SIGSYS,  SIGABRT,
+    SIGSEGV,   SIGBUS,    SIGILL,  SIGFPE,  SIGTRAP, SIGPOLL,
+#ifdef SIGPWR
+    SIGPWR,
+#endif
+#ifdef SIGSTKFLT
+    SIGSTKFLT,
+#endif
 };
 
 /* registered functions, NULL after the last; atomic */
@@ -61,20 +67,29 @@ static void handle_signal(int signal_number)
     raise(signal_number);
 }
 
+/* Sets the action of SIGNAL_NUMBER to ACT, if it has the default action. */
+static void replace_default(int signal_number, const struct sigaction *act)
+{
+    struct sigaction old;
+
+    if (!sigaction(signal_number, NULL, &old) && old.sa_handler == SIG_DFL)
+        sigaction(signal_number, act, NULL);
+}
+
 static void install_signal_handlers(void)
 {
     static const int broken[] = {SIGPIPE, SIGXFSZ};
-    struct sigaction old, act = {.sa_handler = SIG_IGN};
+    struct sigaction act = {.sa_handler = SIG_IGN};
 
     sigemptyset(&act.sa_mask);
     for (size_t i = 0; i < sizeof broken / sizeof *broken; i++)
-        if (!sigaction(broken[i], NULL, &old) && old.sa_handler == SIG_DFL)
-            sigaction(broken[i], &act, NULL);
+        replace_default(broken[i], &act);
     act.sa_handler = handle_signal;
     act.sa_flags = (int)SA_RESETHAND;
     for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
-        if (!sigaction(deadly[i], NULL, &old) && old.sa_handler == SIG_DFL)
-            sigaction(deadly[i], &act, NULL);
+        replace_default(deadly[i], &act);
+    for (int i = SIGRTMIN; i <= SIGRTMAX; i++)
+        replace_default(i, &act);
     atexit(run_at_exit);
 }
 

@@ -49,7 +49,7 @@ static void expect_end(void (*die)(int), int number, int code, const char *text)
     assert_int_equal(pipe(child_pipe), 0);
     child = fork();
     if (child == 0) {
-        for (int i = 1; i < SIGRTMIN; i++)
+        for (int i = 1; i <= SIGRTMAX; i++)
             signal(i, SIG_DFL); /* replaces cmocka's handler */
         close(child_pipe[0]);
         setrlimit(RLIMIT_CORE, &no_core);
@@ -146,9 +146,16 @@ static void end_by_ignored(int number)
 
 TEST(signals)
 {
-    static const int deadly[] = {SIGHUP,  SIGINT,  SIGTERM, SIGQUIT, SIGUSR1,
-                                 SIGUSR2, SIGALRM, SIGABRT, SIGSEGV, SIGBUS,
-                                 SIGILL,  SIGFPE,  SIGTRAP};
+    const int deadly[] = {SIGHUP,    SIGINT,  SIGTERM, SIGQUIT, SIGUSR1,
+                          SIGUSR2,   SIGALRM, SIGABRT, SIGSEGV, SIGBUS,
+                          SIGILL,    SIGFPE,  SIGTRAP, SIGPOLL,
+#ifdef SIGPWR
+                          SIGPWR,
+#endif
+#ifdef SIGSTKFLT
+                          SIGSTKFLT,
+#endif
+                          SIGRTMIN};
 
     for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
         expect_end(end_by_raise, deadly[i], 128 + deadly[i], "21");
