@@ -427,13 +427,13 @@ static void edit_name(struct glint_model_header *h, int number)
                                                    "evil\x1b[2J",
                                                    "two\nlines",
                                                    "\xff\xfe",
-                                                   "",
+                                                   "unused",
                                                    "a/../b",
-                                                   "tab\t",
+                                                   "",
                                                    "\xe2\x80\xae",
                                                    "del\x7f"};
 
-    if (number == 5)
+    if (number == 5) /* in place of "unused" */
         memset(h->name, 'x', sizeof h->name); /* not terminated */
     else
         snprintf(h->name, sizeof h->name, "%s", name[number]);
