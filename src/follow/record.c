@@ -303,16 +303,18 @@ static void slow_down(struct glint_record *r,
 }
 
 /* Averages the velocity with the velocity of the last step from BEFORE; noise
- * counts half as much as change. Velocities are clamped to 16 times the
- * picture's width a second. */
+ * counts half as much as change, and the first change of a new lamp is its
+ * velocity. Velocities are clamped to 16 times the picture's width a second. */
 static void learn_velocity(struct glint_record *r,
                            const struct glint_record_step *step, int axis,
                            int64_t before_q16, int32_t change_q15)
 {
     const int64_t limit_q16 = (int64_t)step->cfg->width << (16 + 4);
     const int32_t us = step->pace.elapsed_us;
-    const int32_t part_q15 =
-        q_mul(glint_pace_part_q15(us, VELOCITY_US), ONE_Q15 + change_q15, 16);
+    const int32_t part_q15 = r->is_new && change_q15 == ONE_Q15
+                                 ? ONE_Q15
+                                 : q_mul(glint_pace_part_q15(us, VELOCITY_US),
+                                         ONE_Q15 + change_q15, 16);
     int64_t now_q16;
 
     if (us == 0)
@@ -326,7 +328,7 @@ static void learn_velocity(struct glint_record *r,
 /* Updates the position after a change of shape, which is not a motion.
  * Within half the lamp's radius of the predicted position it counts as
  * noise; farther away the shown position continues its motion and is blended
- * to the new position. */
+ * to the new position, which a lamp of unknown velocity takes at once. */
 static void follow_doubtful_place(struct glint_record *r,
                                   const struct glint_record_step *step,
                                   int axis, int64_t target_q16)
@@ -338,7 +340,8 @@ static void follow_doubtful_place(struct glint_record *r,
     if (compute_abs(target_q16 - ahead_q16) <= extent_q16 / 2)
         follow_doubt(f, ahead_q16, target_q16, extent_q16 / 4, &step->pace);
     else
-        follow_jump(f, target_q16, ahead_q16 + f->offset);
+        follow_jump(f, target_q16,
+                    r->is_new ? target_q16 : ahead_q16 + f->offset);
 }
 
 /* Returns whether the lamp moves along AXIS by more than half a pixel plus a
@@ -360,29 +363,6 @@ static enum follow_as judge_place(const struct glint_record *r, int axis,
         is_moving(r, axis))
         return FOLLOW_CHANGED;
     return is_repeat ? FOLLOW_REPEATED : FOLLOW_JUDGED;
-}
-
-/* Returns whether TARGET is farther than the lamp's motion explains: farther
- * from the predicted position than twice its radius plus an eighth of the
- * match distance. The cause may be a motion that begins, or another lamp. */
-static int is_leap(const struct glint_record *r,
-                   const struct glint_record_step *step, int axis,
-                   int64_t target_q16)
-{
-    return compute_abs(target_q16 - r->ahead_q16[axis]) >
-           r->of[SIZE].value * 512 +
-               (int64_t)step->cfg->width * step->cfg->match_q15 / 4;
-}
-
-static void jump_to_target(struct glint_record *r,
-                           const struct glint_record_step *step, int axis,
-                           int64_t target_q16)
-{
-    struct glint_follow *f = &r->of[X + axis];
-    const int64_t before_q16 = f->value;
-
-    follow_jump(f, target_q16, r->ahead_q16[axis] + f->offset);
-    learn_velocity(r, step, axis, before_q16, ONE_Q15);
 }
 
 static void follow_place(struct glint_record *r,
@@ -494,7 +474,7 @@ static void start_channels(struct glint_record *r, const struct glint_spot *s)
 void glint_record_begin(struct glint_record *r, uint32_t id,
                         const struct glint_spot *spot)
 {
-    *r = (struct glint_record){.id = id, .last = *spot};
+    *r = (struct glint_record){.id = id, .last = *spot, .is_new = 1};
     start_channels(r, spot);
 }
 
@@ -531,8 +511,6 @@ void glint_record_see(struct glint_record *r,
         for (int axis = 0; axis < 2; axis++)
             if (is_new_shape)
                 follow_doubtful_place(r, step, axis, target[X + axis]);
-            else if (is_leap(r, step, axis, target[X + axis]))
-                jump_to_target(r, step, axis, target[X + axis]);
             else
                 follow_place(r, step, axis, target[X + axis], is_repeat);
         for (int c = FLUX; c < GLINT_CHANNELS; c++)
@@ -540,6 +518,7 @@ void glint_record_see(struct glint_record *r,
     }
     blend_channels(r, step);
     r->last = *spot;
+    r->is_new = 0;
     r->lost_us = 0;
 }
 

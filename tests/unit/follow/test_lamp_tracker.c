@@ -474,6 +474,52 @@ TEST(a_lamp_that_starts_is_followed)
     }
 }
 
+/* Returns the max distance between the track and the centroid of a lamp of
+ * RADIUS, pixels, over 20 frames in which it moves by SPEED pixels per frame
+ * from frame FIRST to frame LAST. */
+static double measure_pan(double radius, double speed, int first, int last)
+{
+    double furthest = 0;
+
+    night_init(&night, speed < 10 ? 320 : (int)(32 * speed), 120);
+    night.sigma = 2;
+    assert_true(night_open(&night));
+    for (int frame = 0; frame < 20; frame++) {
+        const int n_moves =
+            frame < first ? 0 : (frame < last ? frame : last) - first;
+        const struct night_lamp lamp = {30.3 + speed * n_moves, 60.4, radius,
+                                        3};
+        const struct glint_lamp_track *t;
+
+        night_step(&night, &lamp, 1, 40000);
+        t = find_only_track();
+        assert_int_equal(t->id, 1);
+        furthest = fmax(furthest, hypot(t->x_q8 - night.spot[0].x_q8,
+                                        t->y_q8 - night.spot[0].y_q8) /
+                                      256);
+    }
+    night_close(&night);
+    return furthest;
+}
+
+/* Checks that a lamp in a pan of up to 3 % of the width per frame is followed
+ * within a pixel from its second frame on, and when the pan starts or stops. */
+TEST(a_pan_does_not_leave_its_lamps_behind)
+{
+    static const double speeds[] = {3, 13, 40}, radii[] = {1.5, 3, 8};
+    static const int range[][2] = {{0, 20}, {8, 20}, {0, 8}, {8, 14}};
+
+    for (int k = 0; k < 3 * 3 * 4; k++) {
+        const double speed = speeds[k / 12], radius = radii[k / 4 % 3];
+        const int first = range[k % 4][0], last = range[k % 4][1];
+        const double off = measure_pan(radius, speed, first, last);
+
+        print_message("radius %.1f, %2.0f px a frame in %d..%d: %.2f px\n",
+                      radius, speed, first, last, off);
+        assert_true(off < 1);
+    }
+}
+
 /* Checks a lamp that returns after a second, 25 pixels off, which is too far
  * for one frame (0.06 of 320 is 19 pixels): its track fades in at the new
  * position. */
