@@ -13,6 +13,10 @@ static const double norm = 4;
  * white */
 static const double mean_most = 0.32;
 
+/* max display light of the flare's mean at strength 1: at strength 0.5, 1.5 %
+ * of white. Ghosts that cover the picture fog it from about twice that on. */
+static const double fog_most = 0.06;
+
 /* log2 of the display light, at --exposure 0, of a flare of medium
  * brightness */
 static const double common_log2 = -5;
@@ -105,15 +109,17 @@ static double compute_strength_log2(const struct glint_strength *s)
 }
 
 /* Returns the log2 of the factor, at strength 1, that exposes a flare of
- * brightness LIGHT. */
+ * brightness LIGHT without fogging the picture. */
 static double compute_target_log2(const struct glint_response_light *light)
 {
     const double peak = fmax(glint_largest_channel(light->peak), 1e-60);
-    const double mean = glint_largest_channel(light->mean) / mean_most;
+    const double light_mean = fmax(glint_largest_channel(light->mean), 1e-60);
+    const double mean = light_mean / mean_most;
     const double more =
         compression * (log2(combine_norm(peak, mean)) - common_log2);
 
-    return -log2(combine_norm(peak * exp2(-tanh(more)), mean));
+    return fmin(-log2(combine_norm(peak * exp2(-tanh(more)), mean)),
+                log2(fog_most / light_mean));
 }
 
 /* --------------------------------------------------------------- over time */
