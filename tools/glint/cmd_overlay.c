@@ -419,6 +419,19 @@ static void draw_nothing(struct settings *s, bool is_zoomed)
     GLINT_OPTION_GIVEN(o, exposure) = true;
 }
 
+/* Returns what to do if the lens has no model: for pictures it is baked as soon
+ * as a lamp is found. */
+static enum settings_unbaked choose_unbaked(const struct overlay *o)
+{
+    const struct glint_options *const of = &o->drawing.line.settings.options;
+
+    if (o->is_video || overlay_is_sequence(o))
+        return SETTINGS_BAKE;
+    return of->keys || of->control || of->scene || of->budget > 0
+               ? SETTINGS_BAKE
+               : SETTINGS_SEARCH;
+}
+
 static int overlay_input(struct tool *tool, struct overlay *o)
 {
     int code = check_output(tool, o);
@@ -437,6 +450,7 @@ static int overlay_input(struct tool *tool, struct overlay *o)
     if (code == EXIT_OK)
         code = zoom_clip_open(tool, &o->zoom, o->is_video ? o->input : NULL,
                               &o->drawing.line);
+    o->drawing.line.settings.unbaked = choose_unbaked(o);
     if (code == EXIT_OK)
         code = drawing_open(tool, &o->drawing);
     if (code != EXIT_OK)

@@ -20,6 +20,7 @@ struct opened_lens {
     /* for a model only name and film are set */
     struct glint_prescription table;
     struct model_file model; /* closed if rays are exact */
+    bool is_unbaked; /* the table has no model, and SETTINGS do not bake it */
     struct glint_setup setup;
     /* of --projection lens; else all zero */
     struct glint_projection projection;
@@ -31,8 +32,8 @@ struct opened_lens {
 
 /* Reads the table or model NAME and prepares LENS, which must be closed,
  * with SETTINGS. If a table has no model yet, it is baked, unless rays are
- * exact. Returns an exit code. Call opened_lens_close() also after a
- * failure. */
+ * exact or settings->unbaked rules that out. Returns an exit code. Call
+ * opened_lens_close() also after a failure. */
 int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
                      const struct settings *settings, const char *name);
 

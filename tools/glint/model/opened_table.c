@@ -70,6 +70,20 @@ static int check_picture(const struct tool *tool, const char *picture)
     return EXIT_OK;
 }
 
+/* Sets the f-number of the table of LENS to that of SETTINGS, as exact rays are
+ * traced through the stop itself. */
+static int stop_table(const struct tool *tool, struct opened_lens *lens,
+                      const struct settings *settings)
+{
+    const double f_number = settings->options.f_number;
+    struct glint_error error = {""};
+
+    if (!(f_number > 0) || glint_prescription_set_f_number(
+                               &lens->table, f_number, &error) == GLINT_OK)
+        return EXIT_OK;
+    return settings_refuse_stop(tool, settings, error.text);
+}
+
 /* Finds or bakes the model of LENS for lights up to DEG off the axis. */
 static int find_model(const struct tool *tool, struct opened_lens *lens,
                       const struct settings *settings, double deg)
@@ -80,8 +94,13 @@ static int find_model(const struct tool *tool, struct opened_lens *lens,
 
     if (deg > options.max_deg)
         options.max_deg = 89;
-    if (settings->picture && !model_is_cached(&lens->table, &options))
+    lens->is_unbaked = (settings->picture || settings->unbaked) &&
+                       !model_is_cached(&lens->table, &options);
+    if (lens->is_unbaked && settings->picture)
         code = check_picture(tool, settings->picture);
+    if (lens->is_unbaked && settings->unbaked != SETTINGS_BAKE)
+        return code == EXIT_OK ? stop_table(tool, lens, settings) : code;
+    lens->is_unbaked = false;
     return code == EXIT_OK
                ? model_cached(tool, &lens->table, options, &lens->model)
                : code;
@@ -102,12 +121,10 @@ int opened_table(const struct tool *tool, struct opened_lens *lens,
         return code;
     coating_apply(&settings->coating, &lens->table);
     /* A model serves all stops that are narrower than its own. */
-    if (o->f_number > 0 &&
-        (o->rays == GLINT_RAYS_EXACT || o->f_number < lens->table.f_number))
-        status =
-            glint_prescription_set_f_number(&lens->table, o->f_number, &error);
-    if (status != GLINT_OK)
-        return settings_refuse_stop(tool, settings, error.text);
+    if (o->rays == GLINT_RAYS_EXACT || o->f_number < lens->table.f_number)
+        code = stop_table(tool, lens, settings);
+    if (code != EXIT_OK)
+        return code;
     if (o->projection == GLINT_PROJECTION_LENS)
         status = set_projection(lens, &settings->camera, &deg, &error);
     if (status != GLINT_OK)

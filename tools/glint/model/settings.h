@@ -16,6 +16,10 @@
 /* max lamps on the command line; files may have more */
 enum { SETTINGS_MAX_LAMPS = 1024 };
 
+/* BAKE: bakes the model; TRACE: leaves the model out, so that rays are exact;
+ * SEARCH: leaves it out until a lamp is found. */
+enum settings_unbaked { SETTINGS_BAKE, SETTINGS_TRACE, SETTINGS_SEARCH };
+
 struct settings {
     struct glint_options options; /* values as set on the command line */
 
@@ -42,6 +46,8 @@ struct settings {
     /* The input image, which is validated before a lens is baked. NULL: not
      * known yet. */
     const char *picture;
+    /* What opening a table that has no model does, an enum settings_unbaked */
+    int unbaked;
     const char *f_number_from; /* "FILE:LINE" that sets the f-number; NULL: the
                                   command line */
 };

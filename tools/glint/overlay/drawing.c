@@ -190,11 +190,17 @@ static int size_scene(struct drawing *d, int width, int height)
     return over_scene_size(&d->files.scene, &dials);
 }
 
+/* Returns whether the flare is drawn by exact rays. */
+static bool is_exact(const struct drawing *d)
+{
+    return d->files.has_lens && !d->files.lens.model.data;
+}
+
 /* Shows progress while rays are exact. */
 static void watch(const struct tool *tool, struct drawing *d,
                   struct glint_engine_config *cfg)
 {
-    if (!tool->quiet &&
+    if (!tool->quiet && !d->line.is_still &&
         !GLINT_OPTION_GIVEN(&d->line.settings.options, exposure))
         fprintf(stderr,
                 "glint %s: exact rays: first measures how bright flares of %s "
@@ -205,7 +211,6 @@ static void watch(const struct tool *tool, struct drawing *d,
      * would be wrong, so only a terminal's bar moves. */
     d->run.progress.shown &= d->run.progress.is_terminal;
     d->run.progress.told = true;
-    d->run.is_progressing = true;
     cfg->drawing.progress = tool_progress_show;
     cfg->drawing.progress_ctx = &d->run.progress;
 }
@@ -242,12 +247,13 @@ static int size_engine(const struct tool *tool, struct drawing *d)
                        run->view.height, &cfg);
     cfg.search.more_lamps = more_lamps(d);
     /* what the scene leaves */
-    if (line->reserve_bytes)
+    if (line->reserve_bytes && !d->files.lens.is_unbaked)
         cfg.arena_bytes =
             line->reserve_bytes > scene ? line->reserve_bytes - scene : 1;
     run->cache = response_cache(tool);
     cfg.cache = &run->cache;
-    if (line->settings.options.rays == GLINT_RAYS_EXACT)
+    run->is_progressing = is_exact(d);
+    if (run->is_progressing)
         watch(tool, d, &cfg);
     status = glint_engine_create(&run->engine, &cfg, &error);
     if (status != GLINT_OK)
@@ -577,6 +583,43 @@ enum glint_status drawing_find(struct drawing *drawing,
     return scene->is_open ? draw_scene(drawing, image) : GLINT_OK;
 }
 
+int drawing_bake_found(const struct tool *tool, struct drawing *d,
+                       const struct glint_image *image)
+{
+    struct opened_lens *const lens = &d->files.lens;
+    struct settings *const s = &d->line.settings;
+    const enum glint_status status = find_lamps(d, image, 0);
+    int code;
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    if (d->run.n_lamps == 0)
+        return EXIT_OK;
+    if (!tool->quiet)
+        fprintf(stderr, "glint %s: %d light%s\n", tool->name, d->run.n_lamps,
+                d->run.n_lamps == 1 ? "" : "s");
+    s->unbaked = SETTINGS_BAKE;
+    opened_lens_close(lens);
+    code = opened_lens_open(tool, lens, s, s->options.lens);
+    return code == EXIT_OK ? drawing_size(tool, d, image->width, image->height)
+                           : code;
+}
+
+/* Prints, before exact rays are traced for a still picture, how many lamps it
+ * has. */
+static void say_exact(const struct drawing *d)
+{
+    const struct tool *const tool = d->files.scene.tool;
+    const int n = d->run.n_lamps;
+
+    if (tool->quiet || !d->line.is_still || n == 0)
+        return;
+    fprintf(stderr,
+            "glint %s: %d light%s; draws the flare of %s by exact rays%s\n",
+            tool->name, n, n == 1 ? "" : "s", d->files.lens.table.name,
+            d->files.lens.is_unbaked ? ", as it has no baked model" : "");
+}
+
 enum glint_status drawing_expose(struct drawing *drawing,
                                  const struct glint_image *image)
 {
@@ -585,6 +628,8 @@ enum glint_status drawing_expose(struct drawing *drawing,
     enum glint_status status;
 
     save_lamps(&drawing->files.save, run, focal_of(drawing));
+    if (run->is_progressing)
+        say_exact(drawing);
     glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
     status = glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,

@@ -62,6 +62,11 @@ int drawing_open_lens(const struct tool *tool, struct drawing *drawing);
 int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
                  int height);
 
+/* If IMAGE has lamps, bakes the lens that was opened without a model,
+ * SETTINGS_SEARCH, and prepares DRAWING again. Returns an exit code. */
+int drawing_bake_found(const struct tool *tool, struct drawing *drawing,
+                       const struct glint_image *image);
+
 /* Adds the flare to IMAGE, whose size must be that of drawing_size(). IMAGE
  * follows the previous frame after ELAPSED_US; 0: it is an independent picture.
  * Returns GLINT_E_MEMORY on failure. */

@@ -111,6 +111,9 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
     drawing->line.is_still = o->elapsed_us == 0;
     if (!drawing->run.is_sized)
         code = drawing_size(tool, drawing, image->width, image->height);
+    if (code == EXIT_OK && drawing->files.lens.is_unbaked &&
+        drawing->line.settings.unbaked == SETTINGS_SEARCH)
+        code = drawing_bake_found(tool, drawing, image);
     if (code != EXIT_OK)
         return code;
     status = draw(ctx, drawing, image, o->elapsed_us);
