@@ -35,7 +35,7 @@ class Package(unittest.TestCase):
         return str(pathlib.Path(self.folder.name) / name)
 
     def by_command(self, *options):
-        command("overlay", PHOTO, "-o", self.path("want.ppm"), *options)
+        command("overlay", PHOTO, "-o", self.path("want.ppm"), "--rays", "model", *options)
         return read(self.path("want.ppm"))
 
     def test_overlay_is_overlays(self):

@@ -87,7 +87,7 @@ for (let k = +first; k < +first + +count; k++) {
     const lists = draw() < 0.5, head = `P6\n${w} ${h}\n255\n`;
     const file = path.join(folder, "in.ppm"), out = path.join(folder, "out.ppm"), csv = path.join(folder, "lamps.csv");
     fs.writeFileSync(file, Buffer.concat([Buffer.from(head), Buffer.from(rgba.filter((_, i) => i % 4 < 3))]));
-    const line = ["overlay", file, "-o", out, "-q",
+    const line = ["overlay", file, "-o", out, "-q", "--rays", "model",
         ...Object.entries(o).flatMap(([key, value]) => value === "yes" ? ["--" + key] : ["--" + key, value])];
     try {
         glint.options(o);

@@ -65,7 +65,7 @@ await() {
 # what many scripts draw on, and quickly
 photo=tests/data/bridge.ppm
 # shellcheck disable=SC2034
-quick=(--grid 16 --max-lights 2)
+quick=(--grid 16 --max-lights 2 --rays model)
 # shellcheck disable=SC2034
 model=tests/fuzz/corpus/model/auto
 

@@ -419,14 +419,18 @@ static void draw_nothing(struct settings *s, bool is_zoomed)
     GLINT_OPTION_GIVEN(o, exposure) = true;
 }
 
-/* Returns what to do if the lens has no model: for pictures it is baked as soon
- * as a lamp is found. */
+/* Returns what to do if the lens has no model: one picture is drawn by exact
+ * rays; for several pictures, or if an option needs the model, it is baked as
+ * soon as a lamp is found. */
 static enum settings_unbaked choose_unbaked(const struct overlay *o)
 {
-    const struct glint_options *const of = &o->drawing.line.settings.options;
+    const struct settings *const s = &o->drawing.line.settings;
+    const struct glint_options *const of = &s->options;
 
     if (o->is_video || overlay_is_sequence(o))
         return SETTINGS_BAKE;
+    if (!o->is_one_of_many && settings_still(s) == SETTINGS_TRACE)
+        return SETTINGS_TRACE;
     return of->keys || of->control || of->scene || of->budget > 0
                ? SETTINGS_BAKE
                : SETTINGS_SEARCH;
@@ -472,8 +476,8 @@ static int overlay_input(struct tool *tool, struct overlay *o)
 /* ------------------------------------------------------------------ folders */
 
 /* Adds a flare to the input of a command line, for overlay_folder() to one
- * of several. OUTPUT: see parse(). */
-static int overlay_line(int argc, char **argv, const char *output);
+ * of N inputs. OUTPUT: see parse(). */
+static int overlay_line(int argc, char **argv, const char *output, int n);
 
 /* Adds flares to the N inputs ARGV[FIRST] on; each is written to FOLDER
  * under its own name. An input that fails does not stop the others, unless
@@ -498,7 +502,7 @@ static int overlay_folder(const struct tool *tool, char **argv, int first,
         line[first] = argv[first + i];
         optind = 0;
         if (folder_path(path, folder, argv[first + i]))
-            one = overlay_line(first + 1, line, path);
+            one = overlay_line(first + 1, line, path, n);
         else
             tool_error(tool, "%s: the name is too long", argv[first + i]);
         done += one == EXIT_OK;
@@ -517,7 +521,7 @@ static int overlay_folder(const struct tool *tool, char **argv, int first,
     return code;
 }
 
-static int overlay_line(int argc, char **argv, const char *output)
+static int overlay_line(int argc, char **argv, const char *output, int n)
 {
     struct tool tool = {
         .name = "overlay", .help = help, .help_end = COMMON_HELP};
@@ -530,6 +534,7 @@ static int overlay_line(int argc, char **argv, const char *output)
     drawing_line_defaults(&o->drawing.line);
     o->start_number = o->transfer = -1;
     o->last = o->warm_up = INT_MAX;
+    o->is_one_of_many = n > 1;
     code = parse_inputs(&tool, argc, argv, o, output, &folder);
     if (code < 0 && folder)
         code = overlay_folder(&tool, argv, optind, argc - optind, folder,
@@ -549,5 +554,5 @@ static int overlay_line(int argc, char **argv, const char *output)
 
 int cmd_overlay(int argc, char **argv)
 {
-    return overlay_line(argc, argv, NULL);
+    return overlay_line(argc, argv, NULL, 1);
 }

@@ -96,6 +96,7 @@ static int parse_option(struct tool *tool, struct render *r, int c)
         r->exact = word == 1;
         if (r->exact)
             r->settings.options.rays = GLINT_RAYS_EXACT;
+        GLINT_OPTION_GIVEN(&r->settings.options, rays) = true;
         return word >= 0 ? -1 : tool_refuse(tool, "engine", optarg);
     default:
         return tool_option(tool, c, optarg);
@@ -227,6 +228,13 @@ static void print_lights(const struct tool *tool,
             report->arena_bytes + report->star_bytes);
 }
 
+/* Returns MODEL or EXACT, by what is drawn. */
+static const char *rays_of(const struct render *r, const char *model,
+                           const char *exact)
+{
+    return r->lens.model.data ? model : exact;
+}
+
 static int render_model(struct tool *tool, struct render *r)
 {
     struct glint_engine_report report = {.lights = 0};
@@ -250,7 +258,8 @@ static int render_model(struct tool *tool, struct render *r)
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (tool->json) {
-        json_write(&r->json, "{engine: %s", "model");
+        json_write(&r->json, "{engine: %s, rays: %s", "model",
+                   rays_of(r, "model", "exact"));
         settings_json(&r->json, &report);
     }
     print_lights(tool, &report);
@@ -306,10 +315,12 @@ static int check_apart(const struct tool *tool, const struct render *r,
 static int render_lens(struct tool *tool, struct render *r, const char *lens)
 {
     int code = check_apart(tool, r, lens);
+    char what[sizeof r->lens.table.name + 16];
     double start;
 
     if (code == EXIT_OK)
         code = render_file_check(tool, r->output, &r->linear);
+    r->settings.unbaked = settings_still(&r->settings);
     if (code == EXIT_OK)
         code = opened_lens_open(tool, &r->lens, &r->settings, lens);
     if (code == EXIT_OK && r->lights_file)
@@ -330,9 +341,11 @@ static int render_lens(struct tool *tool, struct render *r, const char *lens)
             GLINT_OPTION_GIVEN(&r->settings.options, exposure) ? 1 : 0);
     if (code == EXIT_OK && tool->json)
         json_write(&r->json, "ms: %.3f}\n", 1e3 * (tool_seconds() - start));
+    snprintf(what, sizeof what, "%s, %s", r->lens.table.name,
+             rays_of(r, "baked model", "exact rays"));
     if (code == EXIT_OK)
-        render_file_say(tool, r->output, r->width, r->height,
-                        r->lens.table.name, tool_seconds() - start);
+        render_file_say(tool, r->output, r->width, r->height, what,
+                        tool_seconds() - start);
     free(r->image.rgb);
     return code;
 }

@@ -184,6 +184,14 @@ static int draw_style(struct tool *tool, struct styles_command *c,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
+/* Opens the lens of a style, without a bake. Returns an exit code. */
+static int open_style(const struct tool *tool, struct drawing *drawing)
+{
+    drawing->line.is_still = true;
+    drawing->line.settings.unbaked = settings_still(&drawing->line.settings);
+    return drawing_open_lens(tool, drawing);
+}
+
 static int draw_styles(struct tool *tool, struct styles_command *c,
                        const struct style *style, struct sheet *sheet, int k,
                        int n)
@@ -198,7 +206,7 @@ static int draw_styles(struct tool *tool, struct styles_command *c,
     if (code < 0)
         code = parse_options(tool, c, drawing);
     if (code < 0)
-        code = drawing_open_lens(tool, drawing);
+        code = open_style(tool, drawing);
     if (code == EXIT_OK)
         code = draw_style(tool, c, drawing, style, sheet, k, n);
     drawing_close(drawing);

@@ -10,7 +10,7 @@ web:
 	@$(MAKE) --no-print-directory wasm build/glint
 	@mkdir -p build/web/models
 	$(Q)cp $(wasm) $(web_files) build/web && cp tests/data/bridge.jpg build/web/sample.jpg
-	$(Q)XDG_CACHE_HOME=$(CURDIR)/build/web-cache build/glint styles tests/data/bridge.ppm -o build/web-cache.ppm -q
+	$(Q)XDG_CACHE_HOME=$(CURDIR)/build/web-cache build/glint styles tests/data/bridge.ppm -o build/web-cache.ppm -q --rays model
 	$(Q)cp build/web-cache/glint/*.glint build/web/models
 	@echo "build/web/glint.wasm: $$(wc -c <build/web/glint.wasm) bytes, $$(gzip -9c build/web/glint.wasm | wc -c) by gzip"
 # The module alone. Objects of another machine, as those of boards.

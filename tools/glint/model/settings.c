@@ -112,6 +112,16 @@ bool settings_has_veil(const struct settings *settings)
            settings->camera.front_dirt.dust > 0 || settings->options.front_mask;
 }
 
+enum settings_unbaked settings_still(const struct settings *settings)
+{
+    const struct glint_options *const o = &settings->options;
+    const bool is_chosen = GLINT_OPTION_GIVEN(o, rays) || o->memory ||
+                           o->keys || o->control || o->budget > 0 ||
+                           settings->dials.flags & GLINT_DIAL_ALWAYS_HALF;
+
+    return is_chosen ? SETTINGS_BAKE : SETTINGS_TRACE;
+}
+
 int settings_only_ghost(const struct settings *settings)
 {
     return GLINT_OPTION_GIVEN(&settings->options, ghost)

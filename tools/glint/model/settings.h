@@ -100,6 +100,10 @@ int settings_only_ghost(const struct settings *settings);
 /* Returns whether a veil, light spread over the whole image, is drawn. */
 bool settings_has_veil(const struct settings *settings);
 
+/* Returns what a command that draws one picture does with a table that has no
+ * model: it traces exact rays, unless an option requests or needs a model. */
+enum settings_unbaked settings_still(const struct settings *settings);
+
 /* Returns the factor for all light, gain * 2^EV. */
 double settings_scale(const struct settings *settings);
 

@@ -55,9 +55,10 @@ struct overlay {
     int transfer; /* enum glint_transfer_curve; -1: auto */
     int quality;  /* quality of JPEG and WebP; 0: as the input */
     bool is_video;
-    bool lists_shots; /* Prints the frames from cut to cut, draws nothing. */
-    bool is_cut;      /* Lamps and exposure restarted in the last frame. */
-    bool is_copied;   /* The picture file was copied: nothing was drawn. */
+    bool lists_shots;    /* Prints the frames from cut to cut, draws nothing. */
+    bool is_cut;         /* Lamps and exposure restarted in the last frame. */
+    bool is_one_of_many; /* one of several inputs, for which one model serves */
+    bool is_copied;      /* The picture file was copied: nothing was drawn. */
     struct layers layers;
     bool has_layers_type, has_raw;
     const char *encode; /* options for ffmpeg, or NULL */

@@ -312,8 +312,9 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
         return;
     }
     say_lights(drawing, o->figures.most_lights, to);
-    fprintf(to, ", %s f/%.3g, ", drawing->files.lens.table.name,
-            f_number_of(&drawing->files.lens));
+    fprintf(to, ", %s f/%.3g, %s, ", drawing->files.lens.table.name,
+            f_number_of(&drawing->files.lens),
+            drawing->files.lens.model.data ? "baked model" : "exact rays");
     say_brightness(&o->figures, to);
     if (light->is_known)
         fprintf(to, ": %s at %.*g %% of white, %.2g %% on average",
@@ -341,17 +342,19 @@ void overlay_json(struct json_writer *json, const struct overlay *o,
         json_write(json, "lens: null, found: []");
         return;
     }
-    json_write(json,
-               "lens: %s, f_number: %g, strength: %g, scale_ev: %.3f, "
-               "peak: %.6g, mean: %.6g, found: [",
-               drawing->files.lens.table.name,
-               f_number_of(&drawing->files.lens),
-               GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure)
-                   ? (double)NAN
-                   : drawing->line.settings.options.strength,
-               log2(drawing_scale(&drawing->run)),
-               light->is_known ? light->peak : (double)NAN,
-               light->is_known ? light->mean : (double)NAN);
+    json_write(
+        json,
+        "lens: %s, rays: %s, f_number: %g, strength: %g, scale_ev: %.3f, "
+        "peak: %.6g, mean: %.6g, found: [",
+        drawing->files.lens.table.name,
+        drawing->files.lens.model.data ? "model" : "exact",
+        f_number_of(&drawing->files.lens),
+        GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure)
+            ? (double)NAN
+            : drawing->line.settings.options.strength,
+        log2(drawing_scale(&drawing->run)),
+        light->is_known ? light->peak : (double)NAN,
+        light->is_known ? light->mean : (double)NAN);
     for (int i = 0; i < drawing->run.n_lamps; i++) {
         const struct glint_engine_lamp *known = &drawing->run.lamp[i];
         const struct glint_lamp *l = &known->lamp;
