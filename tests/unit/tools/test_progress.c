@@ -105,6 +105,20 @@ TEST(long_work)
                         "with a larger --tolerance\n");
 }
 
+/* Checks that a clock that waits for the first report leaves out what came
+ * before, and that shorter work has an estimate on request. */
+TEST(clock_of_first_report)
+{
+    struct tool_progress p = start_progress(false, false);
+
+    p.waits = true;
+    p.least_s = 3;
+    assert_string_equal(show_progress(&p, 50, 0.01), "");
+    assert_string_equal(show_progress(&p, 50.9, 0.2), "");
+    assert_string_equal(show_progress(&p, 51, 0.25),
+                        "bake: will take about 3 s\n");
+}
+
 TEST(quiet)
 {
     for (int is_terminal = 0; is_terminal < 2; is_terminal++) {

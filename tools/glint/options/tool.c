@@ -251,6 +251,8 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
     p->started = p->clock();
     p->last = 0;
     p->most = 0;
+    p->least_s = 20;
+    p->waits = false;
     p->shown = !tool->quiet;
     p->told = false;
     p->is_terminal = isatty(STDERR_FILENO);
@@ -274,7 +276,7 @@ static void show_line(struct tool_progress *p, double now, double done)
             100 * p->most, spent, spent * (1 - done) / done);
 }
 
-/* Prints an estimate of the time once, after a second, if it is 20 s or
+/* Prints an estimate of the time once, after a second, if it is p->least_s or
  * more. */
 static void print_estimate(struct tool_progress *p, double spent, double done)
 {
@@ -283,7 +285,7 @@ static void print_estimate(struct tool_progress *p, double spent, double done)
     if (spent < 1)
         return;
     p->told = true;
-    if (all < 20)
+    if (all < p->least_s)
         return;
     if (left < 120)
         fprintf(stderr, "%s: will take about %.0f s%s\n", p->what, left,
@@ -297,11 +299,16 @@ static void print_estimate(struct tool_progress *p, double spent, double done)
 void tool_progress_show(void *progress, double done)
 {
     struct tool_progress *p = progress;
-    const double now = p->clock(), spent = now - p->started;
+    const double now = p->clock();
     const int width = 30;
+    double spent;
     char bar[32];
     int filled;
 
+    if (p->waits)
+        p->started = now;
+    p->waits = false;
+    spent = now - p->started;
     done = p->from + p->share * done;
     p->most = fmax(done, p->most);
     filled = (int)(p->most * width);

@@ -120,7 +120,7 @@ int tool_save_text(const struct tool *tool, const char *path, FILE *file,
 /* ----------------------------------------------------------------- progress */
 
 /* Progress on standard error: a bar on a terminal, else a line every ten
- * seconds. For work of more than 20 s an estimate is printed first. PROGRESS
+ * seconds. For work of LEAST_S or more an estimate is printed first. PROGRESS
  * below is a struct tool_progress, and DONE is 0 .. 1. */
 struct tool_progress {
     const char *what;
@@ -129,8 +129,11 @@ struct tool_progress {
     const char *besides; /* work that the estimate does not include, printed
                             with it, or NULL */
     double from, share;  /* see tool_progress_part() */
+    double least_s;      /* shortest work with an estimate, s; default: 20 */
+    bool waits;          /* its clock starts with the first report: what comes
+                            before is not part of DONE */
     bool shown, is_terminal;
-    bool told;             /* the estimate was printed, or is below 20 s */
+    bool told;             /* the estimate was printed, or is below LEAST_S */
     double (*clock)(void); /* seconds; tool_seconds() except in unit tests */
     double started, last;
     double most; /* max progress so far: the bar never moves back */

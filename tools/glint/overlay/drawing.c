@@ -635,9 +635,12 @@ enum glint_status drawing_expose(struct drawing *drawing,
     status = glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
                                  run->white);
     /* What follows is drawn once: its clock starts here. */
-    if (run->is_progressing)
+    if (run->is_progressing) {
         tool_progress_start(&run->progress, drawing->files.scene.tool,
                             "exact rays");
+        run->progress.least_s = 3;
+        run->progress.waits = true;
+    }
     return status;
 }
 
