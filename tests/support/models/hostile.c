@@ -433,7 +433,7 @@ static void edit_name(struct glint_model_header *h, int number)
                                                    "\xe2\x80\xae",
                                                    "del\x7f"};
 
-    if (number == 5) /* in place of "unused" */
+    if (number == 5)                          /* in place of "unused" */
         memset(h->name, 'x', sizeof h->name); /* not terminated */
     else
         snprintf(h->name, sizeof h->name, "%s", name[number]);
