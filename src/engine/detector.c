@@ -17,7 +17,7 @@ static int choose_max_tracks(int max)
 }
 
 /* Returns BYTES rounded up to the alignment that the init functions require. */
-static size_t round_up(size_t bytes)
+static size_t round_up_to_64(size_t bytes)
 {
     return (bytes + 63) & ~(size_t)63;
 }
@@ -29,11 +29,12 @@ allocate_all(struct glint_lamp_detector *f,
              const struct glint_lamp_finder_config *lights,
              const struct glint_lamp_tracker_config *tracks)
 {
-    const size_t lights_bytes = round_up(glint_lamp_finder_bytes(lights));
-    const size_t tracks_bytes = round_up(glint_lamp_tracker_bytes(tracks));
-    const size_t profile_bytes = round_up(glint_profile_bytes());
+    const size_t lights_bytes = round_up_to_64(glint_lamp_finder_bytes(lights));
+    const size_t tracks_bytes =
+        round_up_to_64(glint_lamp_tracker_bytes(tracks));
+    const size_t profile_bytes = round_up_to_64(glint_profile_bytes());
     const size_t spot_bytes =
-        round_up(GLINT_LAMP_DETECTOR_MAX * sizeof *f->spot);
+        round_up_to_64(GLINT_LAMP_DETECTOR_MAX * sizeof *f->spot);
     enum glint_status status;
     uint8_t *at;
 

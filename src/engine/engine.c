@@ -49,7 +49,7 @@ static bool are_reserved_unset(const struct glint_engine_config *c)
 }
 
 /* Returns a text that states what is out of range in C, or NULL. */
-static const char *check(const struct glint_engine_config *c)
+static const char *check_config(const struct glint_engine_config *c)
 {
     const struct glint_engine_light *l = &c->light;
     const struct glint_engine_search *s = &c->search;
@@ -169,7 +169,7 @@ static enum glint_status make_front(struct glint_engine_optics *o,
     return status;
 }
 
-static struct glint_view view_of(const struct glint_engine_config *c)
+static struct glint_view make_view(const struct glint_engine_config *c)
 {
     const struct glint_engine_camera *camera = &c->camera;
     double mm[2] = {camera->sensor_width_mm, camera->sensor_height_mm};
@@ -191,7 +191,7 @@ static enum glint_status open_frame(struct glint_engine *e,
     const struct glint_engine_drawing *d = &c->drawing;
     struct glint_frame *f = &e->paint.frame;
 
-    glint_frame_init(f, e->optics.setup, view_of(c), c->workers);
+    glint_frame_init(f, e->optics.setup, make_view(c), c->workers);
     f->lens = c->model;
     f->trace = c->camera.rays;
     f->progress = d->progress;
@@ -230,8 +230,9 @@ static enum glint_status open_detector(struct glint_engine *e,
 }
 
 /* Takes the memory that C gives for drawing. */
-static enum glint_status reserve(struct glint_engine *e,
-                                 const struct glint_engine_config *c)
+static enum glint_status
+reserve_drawing_memory(struct glint_engine *e,
+                       const struct glint_engine_config *c)
 {
     const struct glint_engine_search *s = &c->search;
     struct glint_frame *f = &e->paint.frame;
@@ -256,8 +257,10 @@ static enum glint_status reserve(struct glint_engine *e,
 
 /* Writes why an engine could not be made; with too little memory, the minimum
  * that it needs. */
-static void say(struct glint_engine *e, const struct glint_engine_config *c,
-                enum glint_status status, struct glint_error *error)
+static void describe_failure(struct glint_engine *e,
+                             const struct glint_engine_config *c,
+                             enum glint_status status,
+                             struct glint_error *error)
 {
     struct glint_frame *const f = &e->paint.frame;
     const size_t mib = (size_t)1 << 20;
@@ -272,9 +275,9 @@ static void say(struct glint_engine *e, const struct glint_engine_config *c,
                 mib);
 }
 
-static enum glint_status make(struct glint_engine *e,
-                              const struct glint_engine_config *c,
-                              struct glint_error *error)
+static enum glint_status make_optics(struct glint_engine *e,
+                                     const struct glint_engine_config *c,
+                                     struct glint_error *error)
 {
     struct glint_engine_optics *const o = &e->optics;
     enum glint_status status = GLINT_OK;
@@ -317,9 +320,9 @@ static enum glint_status make(struct glint_engine *e,
     glint_engine_choose(e, e->paint.parts, c->light.starburst,
                         c->light.gain > 0);
     if (status == GLINT_OK)
-        status = reserve(e, c);
+        status = reserve_drawing_memory(e, c);
     if (status != GLINT_OK)
-        say(e, c, status, error);
+        describe_failure(e, c, status, error);
     return status;
 }
 
@@ -342,7 +345,7 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
     }
     glint_engine_defaults(&whole, cfg->width, cfg->height);
     memcpy(&whole, cfg, cfg->size);
-    wrong = check(&whole);
+    wrong = check_config(&whole);
     if (wrong) {
         snprintf(error->text, sizeof error->text, "%s", wrong);
         return GLINT_E_ARGUMENT;
@@ -352,7 +355,7 @@ enum glint_status glint_engine_create(struct glint_engine **engine,
         snprintf(error->text, sizeof error->text, "no memory");
         return GLINT_E_MEMORY;
     }
-    status = make(e, &whole, error);
+    status = make_optics(e, &whole, error);
     if (status == GLINT_OK)
         *engine = e;
     else

@@ -8,7 +8,7 @@
 /* Max lamps of a search: most pictures have many barely visible ones. */
 enum { FOUND = 16 };
 
-static unsigned parts_of(int only)
+static unsigned select_passes(int only)
 {
     switch (only) {
     case GLINT_ONLY_GHOSTS:
@@ -23,7 +23,7 @@ static unsigned parts_of(int only)
 }
 
 /* Returns the factor on the star: off with a single ghost, unless given. */
-static double starburst_of(const struct glint_options *o)
+static double find_starburst_level(const struct glint_options *o)
 {
     if (GLINT_OPTION_GIVEN(o, starburst))
         return o->starburst;
@@ -32,7 +32,7 @@ static double starburst_of(const struct glint_options *o)
     return GLINT_OPTION_GIVEN(o, ghost) ? 0 : o->starburst;
 }
 
-static struct glint_engine_drawing drawing_of(const struct glint_options *o)
+static struct glint_engine_drawing make_drawing(const struct glint_options *o)
 {
     const bool has_grid = GLINT_OPTION_GIVEN(o, grid) ||
                           GLINT_OPTION_GIVEN(o, quality) ||
@@ -46,7 +46,7 @@ static struct glint_engine_drawing drawing_of(const struct glint_options *o)
         .apart_px = o->apart,
         .tile_log2 = 3 + o->tile,
         .dither = o->dither,
-        .parts = parts_of(o->only),
+        .parts = select_passes(o->only),
         .only_ghost = GLINT_OPTION_GIVEN(o, ghost) ? o->ghost : -1,
         .keep_points = o->area_samples != 0,
         .keep_lights = o->max_lights != 0};
@@ -105,7 +105,7 @@ void glint_engine_configure(struct glint_engine_config *cfg,
                                     .exposure_ev = o->exposure,
                                     .gain = o->gain,
                                     .by_hand = GLINT_OPTION_GIVEN(o, exposure),
-                                    .starburst = starburst_of(o),
+                                    .starburst = find_starburst_level(o),
                                     .veil = o->veil,
                                     .haze = o->haze};
     glint_option_threshold(o->threshold, cfg->search.threshold_ev);
@@ -113,7 +113,7 @@ void glint_engine_configure(struct glint_engine_config *cfg,
         GLINT_OPTION_GIVEN(o, headroom) ? o->headroom : -1;
     cfg->search.max_found =
         found < GLINT_ENGINE_MAX_LAMPS ? found : GLINT_ENGINE_MAX_LAMPS;
-    cfg->drawing = drawing_of(o);
+    cfg->drawing = make_drawing(o);
     set_camera(&cfg->camera, o);
     cfg->arena_bytes = (size_t)o->memory << 20;
     cfg->arena_has_all = 1;

@@ -7,10 +7,10 @@
 #include "glint/options.h"
 
 /* Sets what OPTION of O is, which is valid, for the pictures to come. */
-static enum glint_status apply(struct glint_engine *engine,
-                               const struct glint_option *option,
-                               const struct glint_options *o,
-                               struct glint_error *error)
+static enum glint_status apply_option(struct glint_engine *engine,
+                                      const struct glint_option *option,
+                                      const struct glint_options *o,
+                                      struct glint_error *error)
 {
     struct glint_engine_light light = engine->expose.light;
     struct glint_engine_camera camera = engine->optics.camera;
@@ -46,9 +46,9 @@ static enum glint_status apply(struct glint_engine *engine,
 }
 
 /* Sets NAME to TEXT, or to VALUE if it is NULL. */
-static enum glint_status set(struct glint_engine *engine, const char *name,
-                             const char *text, double value,
-                             struct glint_error *error)
+static enum glint_status set_option(struct glint_engine *engine,
+                                    const char *name, const char *text,
+                                    double value, struct glint_error *error)
 {
     const struct glint_option *const option = glint_option_named(name);
     struct glint_options o;
@@ -59,7 +59,7 @@ static enum glint_status set(struct glint_engine *engine, const char *name,
     status = text ? glint_options_set_text(&o, name, text, error)
                   : glint_options_set(&o, name, value, error);
     if (status == GLINT_OK)
-        return apply(engine, option, &o, error);
+        return apply_option(engine, option, &o, error);
     if (option && status == GLINT_E_ARGUMENT) {
         glint_option_accepts(option, accepts, sizeof accepts);
         snprintf(error->text, sizeof error->text, "%s is %s", name, accepts);
@@ -71,12 +71,12 @@ enum glint_status glint_engine_set(struct glint_engine *engine,
                                    const char *name, double value,
                                    struct glint_error *error)
 {
-    return set(engine, name, NULL, value, error);
+    return set_option(engine, name, NULL, value, error);
 }
 
 enum glint_status glint_engine_set_text(struct glint_engine *engine,
                                         const char *name, const char *text,
                                         struct glint_error *error)
 {
-    return set(engine, name, text ? text : "", 0, error);
+    return set_option(engine, name, text ? text : "", 0, error);
 }

@@ -30,8 +30,8 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
 
 /* Called twice: first with an arena that only measures, when it returns
  * NULL, then to allocate. */
-static struct glint_flare *carve(struct glint_arena *a,
-                                 const struct glint_flare_config *c)
+static struct glint_flare *carve_flare(struct glint_arena *a,
+                                       const struct glint_flare_config *c)
 {
     const size_t n_workers = (size_t)glint_workers_count(c->workers);
     union {
@@ -110,7 +110,7 @@ size_t glint_flare_bytes(const struct glint_flare_config *cfg)
 
     if (!is_valid_config(cfg))
         return 0;
-    carve(&arena, cfg);
+    carve_flare(&arena, cfg);
     return arena.used;
 }
 
@@ -125,7 +125,7 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
         return GLINT_E_ARGUMENT;
     if (glint_flare_bytes(cfg) > bytes)
         return GLINT_E_MEMORY;
-    f = carve(&arena, cfg);
+    f = carve_flare(&arena, cfg);
     f->cfg = *cfg;
     glint_flare_forget(f);
     glint_edges_begin(f);
@@ -215,8 +215,8 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* Returns N minus the number of trailing lights outside the model's range of
  * angles, so that a frame with only such lights costs nothing. */
-static int count_within(const struct glint_lens *lens,
-                        const struct glint_light *lights, int n)
+static int count_lights_in_range(const struct glint_lens *lens,
+                                 const struct glint_light *lights, int n)
 {
     while (n > 0 && glint_plan_is_beyond(lens, &lights[n - 1]))
         n--;
@@ -286,7 +286,7 @@ static void keep_seen(struct glint_flare *f, int n)
 
 /* Plans all waves of N_JOBS pairs of a ghost and a light. Returns the number
  * of visible bundles. */
-static int plan_all(struct glint_flare *f, int n_jobs)
+static int plan_all_bundles(struct glint_flare *f, int n_jobs)
 {
     const int n_waves = f->plan.frame->n_waves;
     const int need =
@@ -308,7 +308,8 @@ void glint_flare_plan(struct glint_flare *flare,
 {
     const int n_ghosts = (int)frame->lens->header->n_ghosts;
     const int64_t pairs =
-        (int64_t)count_within(frame->lens, lights, n_lights) * n_ghosts;
+        (int64_t)count_lights_in_range(frame->lens, lights, n_lights) *
+        n_ghosts;
     const int n_jobs = pairs < INT32_MAX ? (int)pairs : INT32_MAX;
 
     if (flare->cfg.reuse &&
@@ -335,15 +336,15 @@ void glint_flare_plan(struct glint_flare *flare,
     if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
         frame->n_waves == GLINT_DIM_WAVES &&
         !(frame->lens && glint_basis_is_lens(frame->lens->header->basis))) {
-        frame->dim->method->fill(flare,
-                                 count_within(frame->lens, lights, n_lights));
+        frame->dim->method->fill(
+            flare, count_lights_in_range(frame->lens, lights, n_lights));
         flare->plan.dims = 1;
-        frame->dim->method->gather(flare,
-                                   count_within(frame->lens, lights, n_lights));
+        frame->dim->method->gather(
+            flare, count_lights_in_range(frame->lens, lights, n_lights));
     }
     flare->flux = flare->brightest = (struct glint_real){0, 0};
     keep_seen(flare, frame->sets ? frame->sets->planner->plan(flare, n_jobs)
-                                 : plan_all(flare, n_jobs));
+                                 : plan_all_bundles(flare, n_jobs));
     if (flare->cfg.reuse)
         flare->reusable = GLINT_REUSABLE_PLANNED;
 }

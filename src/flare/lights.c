@@ -176,7 +176,7 @@ static void sort_lights(struct order *o, int n)
 
 /* Sorts lights along the curve of round ROUND. Curves begin at multiples of
  * irrational numbers, so that no two of them separate the same neighbours. */
-static void sort_along(struct glint_light *b, int n, int round)
+static void sort_along_curve(struct glint_light *b, int n, int round)
 {
     const uint32_t k = (uint32_t)round;
     struct order o = {b, 0, k * UINT32_C(1640531527) >> 2,
@@ -317,13 +317,13 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
     int n = prepare_lights(lights, n_lights), round = 0;
 
     for (; round < CURVES && n > 1; round++) {
-        sort_along(lights, n, round);
+        sort_along_curve(lights, n, round);
         n = merge_neighbours(lights, n, &rule);
     }
     *n_apart = n;
     rule = (struct rule){.most = most > 1 ? most : 1};
     for (; n > rule.most; round++) {
-        sort_along(lights, n, round);
+        sort_along_curve(lights, n, round);
         rule.cost = find_next_cost(lights, n, rule.most);
         n = merge_neighbours(lights, n, &rule);
     }

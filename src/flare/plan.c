@@ -122,9 +122,9 @@ static struct glint_real compute_box_side(const struct glint_transfer *t, int k)
  * PLANNED to the light of the wave of PLANNED itself. It is 1 for that wave;
  * for other waves it includes only the fraction that is not drawn with their
  * own rays. */
-static int64_t compute_part_q16(const struct glint_plan *p,
-                                const struct glint_bundle_plan *planned,
-                                int wave, int share_q8)
+static int64_t compute_dim_factor_q16(const struct glint_plan *p,
+                                      const struct glint_bundle_plan *planned,
+                                      int wave, int share_q8)
 {
     if (wave == planned->wave)
         return 1 << 16;
@@ -151,7 +151,7 @@ static struct glint_real compute_colour(const struct glint_plan *p,
     int64_t rgb_q28[3] = {0, 0, 0}, most = 0;
 
     for (int wave = first; wave <= last; wave++) {
-        const int64_t part = compute_part_q16(p, planned, wave, share_q8);
+        const int64_t part = compute_dim_factor_q16(p, planned, wave, share_q8);
 
         for (int c = 0; c < 3; c++)
             rgb_q28[c] +=
@@ -301,7 +301,7 @@ struct glint_place glint_plan_place(const struct glint_plan *plan,
 
 /* Returns log2 of the factor by which energies can be scaled up without
  * overflow, if they are at most 5/4 of the probe's max ENERGY. */
-static int find_energy_up(int64_t energy)
+static int find_energy_shift(int64_t energy)
 {
     const int up = 29 - bit_length((uint64_t)(energy + energy / 4));
 
@@ -483,7 +483,7 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
     if (!is_in_view(plan, planned->turn, &reach))
         return GLINT_OUTCOME_OUTSIDE;
     planned->view_q8 = compute_view_q8(plan, planned->turn, &reach);
-    planned->energy_up = (uint8_t)find_energy_up(s->energy);
+    planned->energy_up = (uint8_t)find_energy_shift(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - planned->energy_up;
     planned->flux = compute_flux(plan, b, planned, transfer, colour, exponent);
     if (share_q8 < GLINT_DIM_WHOLE_Q8 && planned->wave != GLINT_DIM_WAVE)

@@ -20,7 +20,8 @@ struct reuse {
 
 /* Allocates the state from A. Called twice: to measure (returns NULL) and to
  * place. */
-static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
+static void *carve_reuse(struct glint_arena *a,
+                         const struct glint_flare_config *c)
 {
     struct reuse measured, *placed, *own;
 
@@ -35,7 +36,7 @@ static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
     return placed;
 }
 
-static uint64_t mix(uint64_t digest, int64_t x)
+static uint64_t mix_into_digest(uint64_t digest, int64_t x)
 {
     const uint64_t y = (digest ^ (uint64_t)x) * UINT64_C(0x9e3779b97f4a7c15);
 
@@ -44,31 +45,32 @@ static uint64_t mix(uint64_t digest, int64_t x)
 
 static uint64_t mix_real(uint64_t digest, struct glint_real x)
 {
-    return mix(mix(digest, x.mantissa), x.exponent);
+    return mix_into_digest(mix_into_digest(digest, x.mantissa), x.exponent);
 }
 
 static uint64_t mix_rgb(uint64_t digest, const int32_t rgb_q14[3])
 {
     for (int c = 0; c < 3; c++)
-        digest = mix(digest, rgb_q14[c]);
+        digest = mix_into_digest(digest, rgb_q14[c]);
     return digest;
 }
 
-static uint64_t digest_of(const struct glint_flare_frame *r)
+static uint64_t compute_digest(const struct glint_flare_frame *r)
 {
     uint64_t d = 1;
 
     for (int i = 0; i < r->n_waves; i++) {
-        d = mix_real(mix(d, r->wave[i].wave_q24), r->wave[i].weight);
+        d = mix_real(mix_into_digest(d, r->wave[i].wave_q24),
+                     r->wave[i].weight);
         d = mix_rgb(d, r->wave[i].rgb_q14);
     }
-    d = mix(d, r->sets != NULL);
+    d = mix_into_digest(d, r->sets != NULL);
     if (r->sets) {
         for (int i = 0; i < r->sets->n_sets; i++)
-            d = mix(d, r->sets->size[i]);
-        d = mix_real(mix(d, r->sets->apart_q8), r->sets->step);
+            d = mix_into_digest(d, r->sets->size[i]);
+        d = mix_real(mix_into_digest(d, r->sets->apart_q8), r->sets->step);
     }
-    d = mix(d, r->tints != NULL);
+    d = mix_into_digest(d, r->tints != NULL);
     for (uint32_t i = 0; r->tints && i < r->lens->header->n_ghosts; i++)
         d = mix_rgb(mix_real(d, r->tints[i].gain), r->tints[i].rgb_q14);
     return d;
@@ -112,27 +114,29 @@ static int is_same(const struct glint_flare *f,
     for (int i = 0; i < n_lights; i++)
         if (!is_same_light(&lights[i], &own->light[i]))
             return 0;
-    return digest_of(frame) == own->digest;
+    return compute_digest(frame) == own->digest;
 }
 
-static void note(struct glint_flare *f, const struct glint_flare_frame *frame,
-                 const struct glint_light *lights, int n_lights)
+static void store_frame(struct glint_flare *f,
+                        const struct glint_flare_frame *frame,
+                        const struct glint_light *lights, int n_lights)
 {
     struct reuse *own = f->reuse;
 
     own->n_lights = n_lights <= f->cfg.reuse_lights ? n_lights : -1;
     own->frame = *frame;
-    own->digest = digest_of(frame);
+    own->digest = compute_digest(frame);
     for (int i = 0; i < own->n_lights; i++)
         own->light[i] = lights[i];
 }
 
-static int take(struct glint_flare *f, const struct glint_flare_frame *frame,
-                const struct glint_light *lights, int n_lights)
+static int reuse_frame(struct glint_flare *f,
+                       const struct glint_flare_frame *frame,
+                       const struct glint_light *lights, int n_lights)
 {
     if (f->reusable != GLINT_REUSABLE_BINNED ||
         !is_same(f, frame, lights, n_lights)) {
-        note(f, frame, lights, n_lights);
+        store_frame(f, frame, lights, n_lights);
         return 0;
     }
     f->plan.frame = frame;
@@ -143,7 +147,7 @@ static int take(struct glint_flare *f, const struct glint_flare_frame *frame,
     return 1;
 }
 
-static void turn(struct glint_flare *f)
+static void update_gains(struct glint_flare *f)
 {
     struct reuse *own = f->reuse;
     const int32_t(*gain_q14)[3] = f->plan.frame->gain_q14;
@@ -168,4 +172,4 @@ static void turn(struct glint_flare *f)
     own->has_rgb = 1;
 }
 
-const struct glint_reuse glint_reuse = {carve, take, turn};
+const struct glint_reuse glint_reuse = {carve_reuse, reuse_frame, update_gains};

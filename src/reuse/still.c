@@ -14,8 +14,8 @@ enum {
 
 /* Returns the index of the planned light nearest to LIGHT, or -1 if no planned
  * light is within NEAR_Q30. */
-static int nearest(const struct glint_still *s, const struct glint_light *light,
-                   int32_t near_q30)
+static int find_nearest_light(const struct glint_still *s,
+                              const struct glint_light *light, int32_t near_q30)
 {
     uint64_t least2_q60 = (uint64_t)near_q30 * (uint64_t)near_q30;
     int at = -1;
@@ -70,8 +70,9 @@ static int set_gain(struct glint_still *s, int i)
 
 /* Matches LIGHTS with the planned lights and sets the factors. Returns whether
  * the planned lights can stand for LIGHTS. */
-static int serves(struct glint_still *s, const struct glint_light *lights,
-                  int n, int32_t near_q30)
+static int covers_all_lights(struct glint_still *s,
+                             const struct glint_light *lights, int n,
+                             int32_t near_q30)
 {
     int all = 1;
 
@@ -79,7 +80,7 @@ static int serves(struct glint_still *s, const struct glint_light *lights,
         for (int c = 0; c < 3; c++)
             s->sum_q20[i][c] = 0;
     for (int i = 0; i < n; i++) {
-        const int at = nearest(s, &lights[i], near_q30);
+        const int at = find_nearest_light(s, &lights[i], near_q30);
 
         if (at < 0 || s->light[at].power.mantissa <= 0)
             return 0;
@@ -95,7 +96,7 @@ int glint_lights_still(struct glint_still *still,
                        const struct glint_light *lights, int n_lights,
                        int32_t near_q30)
 {
-    if (still->n > 0 && serves(still, lights, n_lights, near_q30))
+    if (still->n > 0 && covers_all_lights(still, lights, n_lights, near_q30))
         return still->n;
     still->n = n_lights <= still->max_lights ? n_lights : 0;
     for (int i = 0; i < still->n; i++) {

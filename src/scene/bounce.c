@@ -226,7 +226,8 @@ static void add_bounces(const struct glint_scene *s,
     }
 }
 
-static void carve(struct glint_scene *scene, struct glint_arena *arena)
+static void carve_environment(struct glint_scene *scene,
+                              struct glint_arena *arena)
 {
     glint_around_carve(&scene->around, arena, scene->cfg.width,
                        scene->cfg.height);
@@ -238,5 +239,5 @@ static void store_background(struct glint_scene *scene,
     glint_around_look(&scene->around, image, scene->cfg.workers);
 }
 
-const struct glint_scene_bounces glint_scene_bounces = {add_bounces, carve,
-                                                        store_background};
+const struct glint_scene_bounces glint_scene_bounces = {
+    add_bounces, carve_environment, store_background};

@@ -31,7 +31,7 @@ struct line {
     int64_t across, down, at;
 };
 
-static inline int64_t line_at(const struct line *l, int64_t x, int64_t y)
+static inline int64_t evaluate_line(const struct line *l, int64_t x, int64_t y)
 {
     return l->across * x + l->down * y + l->at;
 }
@@ -129,7 +129,7 @@ static int set_depths(const struct glint_scene *s, uint32_t object,
     if (!compute_corner_depths(s, object, t, depth_q30))
         return 0;
     for (int k = 0; k < 3; k++)
-        all += line_at(&line[k], c->x, c->y);
+        all += evaluate_line(&line[k], c->x, c->y);
     if (all <= 0)
         return 0;
     for (int k = 1; k < 3; k++) { /* below 2^46 */
@@ -168,7 +168,7 @@ static inline void set_small(const struct glint_scene *s, int n,
             small->off[i][k] -= most;
         small->across[i] = 256 * across;
         small->down[i] = 256 * down;
-        small->at[i] = (int32_t)line_at(&line[i], x_q8, y_q8) + most;
+        small->at[i] = (int32_t)evaluate_line(&line[i], x_q8, y_q8) + most;
     }
     for (int k = 0; k < n; k++)
         small->deeper[k] =
@@ -889,9 +889,9 @@ static void draw_box(struct glint_scene_worker *w, const struct seen *seen,
     for (int y = b.y0; y < b.y1; y++) {
         const int32_t y_q8 = glint_place(s, y, 1);
         const int64_t depth = d.across * x_q8 + d.down * y_q8 + d.at;
-        int64_t at_0 = line_at(&l[0], x_q8, y_q8) + seen->most[0];
-        int64_t at_1 = line_at(&l[1], x_q8, y_q8) + seen->most[1];
-        int64_t at_2 = line_at(&l[2], x_q8, y_q8) + seen->most[2];
+        int64_t at_0 = evaluate_line(&l[0], x_q8, y_q8) + seen->most[0];
+        int64_t at_1 = evaluate_line(&l[1], x_q8, y_q8) + seen->most[1];
+        int64_t at_2 = evaluate_line(&l[2], x_q8, y_q8) + seen->most[2];
         int i = glint_sample_index(w, b.x0, y, 0);
 
         for (int x = 0; x < b.x1 - b.x0; x++, i += n) {

@@ -67,7 +67,7 @@ static size_t count_vertices(const struct glint_scene_model *m)
 }
 
 /* Returns whether N is a power of two whose bit is set in ALL. */
-static int is_one_of(int n, int all)
+static int is_enum_value(int n, int all)
 {
     return n > 0 && (n & all) == n && (n & (n - 1)) == 0;
 }
@@ -76,10 +76,12 @@ static int is_in_range(const struct glint_scene_config *c)
 {
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->tile_log2 >= 3 &&
-           c->tile_log2 <= 6 && is_one_of(c->edge_samples, 1 | 4 | 8 | 16) &&
-           is_one_of(c->shadow_points, 1 | 4 | 16) && c->ward_samples >= 1 &&
-           c->ward_samples <= 32 && (c->half_shading & ~1) == 0 &&
-           c->highlights >= -1 && c->highlights <= 8 && c->max_refs >= 0 &&
+           c->tile_log2 <= 6 &&
+           is_enum_value(c->edge_samples, 1 | 4 | 8 | 16) &&
+           is_enum_value(c->shadow_points, 1 | 4 | 16) &&
+           c->ward_samples >= 1 && c->ward_samples <= 32 &&
+           (c->half_shading & ~1) == 0 && c->highlights >= -1 &&
+           c->highlights <= 8 && c->max_refs >= 0 &&
            glint_workers_count(c->workers) <= 64;
 }
 
@@ -171,9 +173,9 @@ static int shows_picture(const struct glint_scene_model *model)
 
 /* Called twice: first with an arena that only measures, when it returns
  * NULL, then to allocate. */
-static struct glint_scene *carve(struct glint_arena *a,
-                                 const struct glint_scene_config *cfg,
-                                 const struct glint_scene_model *model)
+static struct glint_scene *carve_scene(struct glint_arena *a,
+                                       const struct glint_scene_config *cfg,
+                                       const struct glint_scene_model *model)
 {
     struct glint_scene measured = {.cfg = *cfg, .model = *model};
     struct glint_scene *placed = glint_arena_take(a, 1, sizeof *placed);
@@ -231,7 +233,7 @@ size_t glint_scene_bytes(const struct glint_scene_config *cfg,
 
     if (!is_in_range(cfg) || glint_scene_lacks(&cfg->parts, model))
         return 0;
-    carve(&arena, cfg, model);
+    carve_scene(&arena, cfg, model);
     return arena.used;
 }
 
@@ -304,7 +306,7 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
         return GLINT_E_UNSUPPORTED;
     if (glint_scene_bytes(cfg, model) > bytes)
         return GLINT_E_MEMORY;
-    s = carve(&arena, cfg, model);
+    s = carve_scene(&arena, cfg, model);
     s->view = view;
     s->has_split = s->has_catchers = 0;
     s->moved = 0;

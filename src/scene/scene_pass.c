@@ -239,8 +239,8 @@ static inline int all_see(const uint32_t *id, int n, uint32_t thing)
 
 /* Returns whether the N samples from ID on may use the shading result of
  * THING. */
-static int is_joined_to(const struct glint_scene *s, const uint32_t *id, int n,
-                        uint32_t thing)
+static int is_joined_to_all(const struct glint_scene *s, const uint32_t *id,
+                            int n, uint32_t thing)
 {
     uint32_t last = thing;
 
@@ -265,9 +265,10 @@ static int is_quad(const struct glint_scene_worker *w, int n, int x, int y)
     id = &w->id[glint_sample_index(w, x0, y0, 0)];
     if (id[0] == GLINT_NOTHING)
         return 0;
-    return is_joined_to(w->scene, id, 2 * n, id[0]) &&
-           is_joined_to(w->scene, &w->id[glint_sample_index(w, x0, y0 + 1, 0)],
-                        2 * n, id[0]);
+    return is_joined_to_all(w->scene, id, 2 * n, id[0]) &&
+           is_joined_to_all(w->scene,
+                            &w->id[glint_sample_index(w, x0, y0 + 1, 0)], 2 * n,
+                            id[0]);
 }
 
 /* Shades pixel (X, Y), whose N samples see ID. */

@@ -5,20 +5,20 @@
 
 static const double degree = GLINT_PI / 180;
 
-static double power_of(const struct glint_lamp *lamp)
+static double find_max_power(const struct glint_lamp *lamp)
 {
     return lamp->power * fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
 }
 
 /* Returns the number of points of a lamp before thinning. A uniform ellipse has
  * semi-axes of twice its RMS semi-axes. */
-static double points_of(const struct glint_lamp *lamp,
-                        const struct glint_area_rule *rule)
+static double count_points(const struct glint_lamp *lamp,
+                           const struct glint_area_rule *rule)
 {
     const double spacing = GLINT_AREA_SPACING_PX / rule->pixels_per_tangent;
     const double area = 180 * degree * 4 * lamp->axis[0] * lamp->axis[1];
     const double share =
-        rule->brightest > 0 ? power_of(lamp) / rule->brightest : 1;
+        rule->brightest > 0 ? find_max_power(lamp) / rule->brightest : 1;
 
     return 1 + fmin(area / (spacing * spacing),
                     fmax(rule->most - 1, 0) * sqrt(fmin(share, 1)));
@@ -33,9 +33,9 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
     int n_wide = 0;
 
     for (int i = 0; i < n; i++)
-        rule.brightest = fmax(rule.brightest, power_of(&lamps[i]));
+        rule.brightest = fmax(rule.brightest, find_max_power(&lamps[i]));
     for (int i = 0; i < n; i++) {
-        const double points = points_of(&lamps[i], &rule);
+        const double points = count_points(&lamps[i], &rule);
 
         more += points - 1;
         /* The number of points of each wide lamp is rounded up. */
@@ -51,7 +51,8 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
 
 /* Sets PLACE to point I of a sunflower pattern in a circle of radius 1; returns
  * its fraction of the power. */
-static double at(const struct glint_area *a, int i, double place[2])
+static double set_sunflower_point(const struct glint_area *a, int i,
+                                  double place[2])
 {
     const double golden = 2.39996322972865332;
     const double weight = fmin(a->points - i, 1);
@@ -71,7 +72,7 @@ static void set_pattern(struct glint_area *a, int n)
     double square = 0, place[2];
 
     for (int i = 0; i < n; i++) {
-        const double weight = at(a, i, place);
+        const double weight = set_sunflower_point(a, i, place);
 
         a->centre[0] += weight * place[0];
         a->centre[1] += weight * place[1];
@@ -93,7 +94,7 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     int n;
 
     *area = (struct glint_area){.lamp = *lamp, .points = 1};
-    area->points += rule->thinning * (points_of(lamp, rule) - 1);
+    area->points += rule->thinning * (count_points(lamp, rule) - 1);
     n = (int)ceil(area->points);
     if (n == 1)
         return 1;
@@ -129,7 +130,7 @@ struct glint_lamp glint_area_point(const struct glint_area *area, int i)
     point.axis[0] = point.axis[1] = 0;
     if (area->points <= 1)
         return point;
-    point.power *= at(area, i, place);
+    point.power *= set_sunflower_point(area, i, place);
     for (int k = 0; k < 2; k++)
         place[k] = (place[k] - area->centre[k]) * area->spread;
     u = area->u + place[0] * area->stretch[0] + place[1] * area->stretch[1];

@@ -74,8 +74,8 @@ static const double level_db[GLINT_QUALITY_LEVELS] = {39, 44, 49, 53.5, 54.5,
 
 /* Returns the dials at STEP and CUT. The cost model does not cover sets of
  * wavelengths, so a budget draws with three. */
-static struct glint_dials dials_at(int step, int cut,
-                                   const struct glint_dials *asked)
+static struct glint_dials make_step_dials(int step, int cut,
+                                          const struct glint_dials *asked)
 {
     struct glint_dials d =
         glint_quality_at((double)step / GLINT_BUDGET_STEPS).dials;
@@ -93,17 +93,17 @@ static struct glint_dials dials_at(int step, int cut,
 struct glint_dials glint_budget_dials(const struct glint_budget *b,
                                       const struct glint_dials *asked)
 {
-    return dials_at(b->step, b->cut, asked);
+    return make_step_dials(b->step, b->cut, asked);
 }
 
-static double place_of(int step)
+static double find_step_place(int step)
 {
     return glint_quality_place((double)step / GLINT_BUDGET_STEPS);
 }
 
-static double octaves_at(const struct glint_budget *b, int step)
+static double find_learned_octaves(const struct glint_budget *b, int step)
 {
-    const double at = place_of(step);
+    const double at = find_step_place(step);
     const int below =
         at < GLINT_QUALITY_LEVELS - 1 ? (int)at : GLINT_QUALITY_LEVELS - 2;
 
@@ -113,26 +113,26 @@ static double octaves_at(const struct glint_budget *b, int step)
 
 /* Returns the milliseconds that PLAN would take at quality STEP and CUT, as
  * predicted. */
-static double predict(const struct glint_budget *b,
-                      const struct glint_cost_plan *plan, int step, int cut)
+static double predict_ms(const struct glint_budget *b,
+                         const struct glint_cost_plan *plan, int step, int cut)
 {
-    const struct glint_dials then = dials_at(step, cut, &b->asked);
+    const struct glint_dials then = make_step_dials(step, cut, &b->asked);
     const struct glint_cost cost = glint_cost_of(plan, &then);
 
     return b->ms_per_minsn * glint_cost_minsn(&cost) *
-           exp2(octaves_at(b, step) + (b->n_frames > 1 ? 0 : FIRST));
+           exp2(find_learned_octaves(b, step) + (b->n_frames > 1 ? 0 : FIRST));
 }
 
 /* Returns the best quality within the budget with CUT, or the coarsest. */
-static int best_step(const struct glint_budget *b,
-                     const struct glint_cost_plan *plan, int cut)
+static int find_best_step(const struct glint_budget *b,
+                          const struct glint_cost_plan *plan, int cut)
 {
     int low = 0, high = GLINT_BUDGET_STEPS;
 
     while (low < high) {
         const int middle = (low + high + 1) / 2;
 
-        if (predict(b, plan, middle, cut) <= ROOM * b->ms)
+        if (predict_ms(b, plan, middle, cut) <= ROOM * b->ms)
             low = middle;
         else
             high = middle - 1;
@@ -141,24 +141,26 @@ static int best_step(const struct glint_budget *b,
 }
 
 /* Returns the mean square of the difference that a PSNR of DB stands for. */
-static double square_of(double db)
+static double convert_db_to_mse(double db)
 {
     return pow(10, -db / 10);
 }
 
 /* Returns the error of quality STEP with CUT; above 1 if it would not fit, the
  * less so the less it takes. */
-static double error_at(const struct glint_budget *b,
-                       const struct glint_cost_plan *plan, int step, int cut)
+static double estimate_error(const struct glint_budget *b,
+                             const struct glint_cost_plan *plan, int step,
+                             int cut)
 {
-    const double at = place_of(step);
+    const double at = find_step_place(step);
     const int below =
         at < GLINT_QUALITY_LEVELS - 1 ? (int)at : GLINT_QUALITY_LEVELS - 2;
     const double db = level_db[below] +
                       (at - below) * (level_db[below + 1] - level_db[below]);
-    const double over = step > 0 ? 0 : predict(b, plan, 0, cut) / b->ms;
+    const double over = step > 0 ? 0 : predict_ms(b, plan, 0, cut) / b->ms;
 
-    return square_of(db) + square_of(cuts[cut].loss) + (over > 1 ? over : 0);
+    return convert_db_to_mse(db) + convert_db_to_mse(cuts[cut].loss) +
+           (over > 1 ? over : 0);
 }
 
 /* Returns whether CUT reduces anything in PLAN that the cut before it does not.
@@ -175,7 +177,8 @@ static bool is_of_use(const struct glint_cost_plan *plan, int cut)
 
 /* Chooses the cut and the quality of the least error that fit the budget.
  * Returns the quality; one bundle in some stands for all of many. */
-static int best(struct glint_budget *b, const struct glint_cost_plan *plan)
+static int choose_step_and_cut(struct glint_budget *b,
+                               const struct glint_cost_plan *plan)
 {
     struct glint_cost_plan some = *plan;
     struct glint_planned last;
@@ -186,10 +189,11 @@ static int best(struct glint_budget *b, const struct glint_cost_plan *plan)
         n++;
     some.every = n;
     for (int cut = 0; cut < N_CUTS; cut++) {
-        const int here =
-            cut == 0 || is_of_use(plan, cut) ? best_step(b, &some, cut) : -1;
+        const int here = cut == 0 || is_of_use(plan, cut)
+                             ? find_best_step(b, &some, cut)
+                             : -1;
         const double error =
-            here < 0 ? HUGE_VAL : error_at(b, &some, here, cut);
+            here < 0 ? HUGE_VAL : estimate_error(b, &some, here, cut);
 
         if (error < least) {
             least = error;
@@ -206,11 +210,11 @@ static int best(struct glint_budget *b, const struct glint_cost_plan *plan)
 static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
                     int step)
 {
-    const int is_gap = place_of(step + 1) - place_of(step) >= 1;
+    const int is_gap = find_step_place(step + 1) - find_step_place(step) >= 1;
 
     if (step == GLINT_BUDGET_STEPS || !is_gap || b->n_trials == TRIALS ||
-        predict(b, plan, step, b->cut) >= SPARE * b->ms ||
-        predict(b, plan, step + 1, b->cut) > TRY * b->ms)
+        predict_ms(b, plan, step, b->cut) >= SPARE * b->ms ||
+        predict_ms(b, plan, step + 1, b->cut) > TRY * b->ms)
         return step;
     b->n_trials++;
     b->n_tries = MAX_TRIES; /* no more plans, as their prediction would reject
@@ -225,17 +229,17 @@ bool glint_budget_choose(struct glint_budget *b,
     const int cut = b->cut;
     int step;
 
-    b->predicted_ms = predict(b, plan, b->step, cut);
+    b->predicted_ms = predict_ms(b, plan, b->step, cut);
     if (++b->n_tries >= MAX_TRIES ||
         (b->predicted_ms <= b->ms &&
          (b->predicted_ms >= SPARE * b->ms ||
           (b->step == GLINT_BUDGET_STEPS && cut == 0))))
         return false;
-    step = try_next(b, plan, best(b, plan));
+    step = try_next(b, plan, choose_step_and_cut(b, plan));
     if (step == b->step && cut == b->cut)
         return false;
     b->step = step;
-    *dials = dials_at(step, b->cut, &b->asked);
+    *dials = make_step_dials(step, b->cut, &b->asked);
     return true;
 }
 
@@ -246,14 +250,14 @@ bool glint_budget_choose(struct glint_budget *b,
  * could keep a level from ever being tried again. */
 void glint_budget_note(struct glint_budget *b, double ms)
 {
-    const double at = place_of(b->step);
+    const double at = find_step_place(b->step);
     const double part = at - floor(at);
     const double both = part * part + (1 - part) * (1 - part);
     /* A frame that waited for other programs says little. */
     const double wrong =
         fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));
-    const double here = octaves_at(b, b->step);
+    const double here = find_learned_octaves(b, b->step);
 
     for (int i = 0; i < GLINT_QUALITY_LEVELS && ms > 0 && b->n_frames > 1;
          i++) {

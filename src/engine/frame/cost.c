@@ -52,7 +52,7 @@ enum { LESS_CELLS = 6 };
 
 /* Returns the cells a side that the plan would have chosen for grids FINER
  * times as fine. */
-static double cells_at(int planned, double finer)
+static double predict_cells(int planned, double finer)
 {
     const double free =
         planned > GLINT_LEAST_CELLS || finer <= 1 ? planned : LESS_CELLS;
@@ -77,13 +77,14 @@ struct bundle {
 
 /* Returns the steps an octave for a ghost that is OCTAVES below white, in
  * codes. */
-static double steps_at(int steps, double octaves)
+static double count_steps_per_octave(int steps, double octaves)
 {
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
 }
 
 /* Returns how many outlines a soft edge makes (edges/ghost_rings.c). */
-static double rings_of(const struct glint_cost_plan *p, const struct bundle *b)
+static double count_rings(const struct glint_cost_plan *p,
+                          const struct bundle *b)
 {
     const double octaves = fmax(0, -log2(b->light));
     const double soft =
@@ -100,9 +101,9 @@ static double rings_of(const struct glint_cost_plan *p, const struct bundle *b)
 
 /* Returns how many of the bundle are left if ghosts below DIM codes share rays
  * where they were planned to below WAS codes. */
-static double share_of(const struct glint_cost_plan *p,
-                       const struct glint_planned *b, double light, double was,
-                       double dim)
+static double estimate_drawn_share(const struct glint_cost_plan *p,
+                                   const struct glint_planned *b, double light,
+                                   double was, double dim)
 {
     enum { WAVES = 3, MIDDLE = 1 };
     const double codes = p->code > 0 ? light / p->code : HUGE_VAL;
@@ -122,7 +123,7 @@ static double share_of(const struct glint_cost_plan *p,
  * of powers: least squares over the bundles of 48 random frames of four lenses
  * (Poisson regression). Sums over a frame are off by 15 percent in the
  * median. */
-static double edges_of(const struct bundle *b, double log_steps)
+static double estimate_edges(const struct bundle *b, double log_steps)
 {
     const double n = log(b->cells);
 
@@ -130,7 +131,8 @@ static double edges_of(const struct bundle *b, double log_steps)
                0.6 * log(b->view) + 0.15 * b->log_bright);
 }
 
-static double rows_of(const struct bundle *b, double log_steps, double height)
+static double estimate_rows(const struct bundle *b, double log_steps,
+                            double height)
 {
     return exp(0.55 + 0.91 * log(b->cells) + 0.058 * log_steps +
                0.461 * log1p(b->area) - 0.183 * log(height) -
@@ -139,23 +141,25 @@ static double rows_of(const struct bundle *b, double log_steps, double height)
 }
 
 /* Makes bundle P of a plan as it would be with the dials THEN. */
-static struct bundle bundle_of(const struct glint_cost_plan *p,
-                               const struct glint_planned *b,
-                               const struct glint_dials *then, double larger)
+static struct bundle predict_bundle(const struct glint_cost_plan *p,
+                                    const struct glint_planned *b,
+                                    const struct glint_dials *then,
+                                    double larger)
 {
     enum { FOLD = 255 };
     const double light = glint_real_value(b->irradiance);
     const double finer = (double)then->fineness / p->dials.fineness;
     struct bundle to = {
-        .cells = cells_at(b->n_cells, finer),
+        .cells = predict_cells(b->n_cells, finer),
         .light = light,
         .area = light > 0 ? larger * glint_real_value(b->flux) / light : 0,
         .inside = fmax(b->inside_q8, 1) / 255,
         .view = fmax(b->view_q8, 1) / 255,
         .log_bright = b->contrast_q4 == FOLD ? 4 : b->contrast_q4 / 16.};
 
-    to.rings = rings_of(p, &to);
-    to.share = share_of(p, b, light, p->dials.dim_codes, then->dim_codes);
+    to.rings = count_rings(p, &to);
+    to.share =
+        estimate_drawn_share(p, b, light, p->dials.dim_codes, then->dim_codes);
     return to;
 }
 
@@ -170,7 +174,7 @@ struct cells {
 };
 
 /* Returns the smallest visible step of light on top of LIGHT. */
-static double step_of(const struct glint_cost_plan *p, double light)
+static double find_visible_step(const struct glint_cost_plan *p, double light)
 {
     return p->code > 0
                ? fmax(0.0094 * pow(2. / 3, fmax(0, -log2(light))), 0.0003) /
@@ -178,7 +182,7 @@ static double step_of(const struct glint_cost_plan *p, double light)
                : 1. / 128;
 }
 
-static int within(int x, int low, int high)
+static int clamp_int(int x, int low, int high)
 {
     return x < low ? low : x > high ? high : x;
 }
@@ -211,7 +215,7 @@ static double mean_parts(const struct glint_shade *s, int level, double step,
             d /= 2;
         if (log2_parts)
             sum += (1 - cut) * exp2(2 * log2_parts) +
-                   cut * ALONE * exp2(2 * within(log2_parts, 0, CUT_LOG2));
+                   cut * ALONE * exp2(2 * clamp_int(log2_parts, 0, CUT_LOG2));
     }
     return n ? sum / n : 0;
 }
@@ -223,38 +227,39 @@ static double count_parts(const struct glint_cost_plan *plan,
 {
     const struct glint_shade *s = plan->shade;
     const int skipped =
-        s->log2 - within(log2_used, GLINT_SHADE_LEAST_LOG2, s->log2);
+        s->log2 - clamp_int(log2_used, GLINT_SHADE_LEAST_LOG2, s->log2);
     const double n2 = g->cells * g->cells;
     /* side of a cell, stop radii and pixels */
     const double side = sqrt(3.14 / (n2 * g->inside));
     const double px = sqrt(g->area / n2);
-    const int level = within((int)floor(log2(side * (1 << (s->log2 - 1)))),
-                             skipped, s->log2 - 1);
-    int most = within(level - skipped + 1, 0, MOST_LOG2);
+    const int level = clamp_int((int)floor(log2(side * (1 << (s->log2 - 1)))),
+                                skipped, s->log2 - 1);
+    int most = clamp_int(level - skipped + 1, 0, MOST_LOG2);
 
     if (g->light <= 0 || px < 1)
         return 0;
-    most = within((int)floor(log2(px)), 0, most);
+    most = clamp_int((int)floor(log2(px)), 0, most);
     return n2 * g->inside * g->view *
-           mean_parts(s, level, step_of(plan, g->light), most,
+           mean_parts(s, level, find_visible_step(plan, g->light), most,
                       fmin(1, 4 / sqrt(n2 * g->inside)));
 }
 
-static void add(struct glint_cost *cost, const struct glint_cost_plan *p,
-                const struct glint_dials *then, const struct bundle *b,
-                double height)
+static void add_bundle_cost(struct glint_cost *cost,
+                            const struct glint_cost_plan *p,
+                            const struct glint_dials *then,
+                            const struct bundle *b, double height)
 {
     const double drawn = b->share * b->rings;
-    const double log_steps =
-        log1p(then->irradiance_steps
-                  ? steps_at(then->irradiance_steps, -log2(b->light))
-                  : MOST_STEPS);
-    const double edges = edges_of(b, log_steps);
+    const double log_steps = log1p(
+        then->irradiance_steps
+            ? count_steps_per_octave(then->irradiance_steps, -log2(b->light))
+            : MOST_STEPS);
+    const double edges = estimate_edges(b, log_steps);
 
     cost->count[GLINT_COST_BUNDLES] += b->share;
     cost->count[GLINT_COST_VERTICES] += drawn * (b->cells + 1) * (b->cells + 1);
     cost->count[GLINT_COST_EDGES] += drawn * edges;
-    cost->count[GLINT_COST_ROWS] += drawn * rows_of(b, log_steps, height);
+    cost->count[GLINT_COST_ROWS] += drawn * estimate_rows(b, log_steps, height);
     if (p->shade && p->shade->log2)
         cost->count[GLINT_COST_PARTS] +=
             drawn * count_parts(p,
@@ -269,8 +274,8 @@ struct covered {
     double most, all; /* of this ghost, and of all before; pixels */
 };
 
-static void cover(struct covered *c, const struct glint_planned *p,
-                  const struct bundle *b)
+static void add_covered_area(struct covered *c, const struct glint_planned *p,
+                             const struct bundle *b)
 {
     const double here = b->share * b->area * b->inside * b->view;
 
@@ -299,13 +304,13 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *p,
 
     for (int i = 0; p->flare && glint_flare_planned(p->flare, i, &b);
          i += every) {
-        struct bundle here = bundle_of(p, &b, then, larger);
+        struct bundle here = predict_bundle(p, &b, then, larger);
 
         here.share *= every;
         if (!(here.light > 0) || !(here.share > 0))
             continue;
-        add(&cost, p, then, &here, height);
-        cover(&covered, &b, &here);
+        add_bundle_cost(&cost, p, then, &here, height);
+        add_covered_area(&covered, &b, &here);
     }
     covered.all += covered.most;
     cost.count[GLINT_COST_LIT] = width * height *

@@ -66,7 +66,7 @@ void glint_frame_finish(struct glint_frame *frame)
 }
 
 /* Returns the number of waves of all sets together. */
-static int all_waves(const struct glint_setup *s)
+static int count_all_waves(const struct glint_setup *s)
 {
     int n = 0;
 
@@ -87,7 +87,7 @@ static void set_waves(struct glint_frame *f)
     for (int i = 0; i < s->n_sets; i++)
         f->lights.sets.size[i] = s->set_size[i];
     if (glint_frame_has_sets(f))
-        for (int i = 0; i < all_waves(s); i++)
+        for (int i = 0; i < count_all_waves(s); i++)
             f->lights.wave[i] =
                 glint_wave_of(w[i].nm, w[i].rgb, w[i].unit_flux);
     else
@@ -97,7 +97,7 @@ static void set_waves(struct glint_frame *f)
 }
 
 /* Returns the chord of the angle that PX pixels on the axis are. */
-static int32_t near_q30(const struct glint_frame *f, double px)
+static int32_t convert_px_to_chord_q30(const struct glint_frame *f, double px)
 {
     const double pixels = glint_frame_pixels_per_tangent(f);
 
@@ -147,7 +147,7 @@ static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
 
 /* Returns the most lights that N lamps may be drawn as, those with an extent as
  * several points. */
-static int room_for(const struct glint_frame *f, int n)
+static int bound_light_count(const struct glint_frame *f, int n)
 {
     const int most = f->dials.max_lights;
 
@@ -161,7 +161,7 @@ static enum glint_status set_lights(struct glint_frame *f,
                                     const struct glint_lamp *lamps, int n,
                                     double scale)
 {
-    const int room = room_for(f, n);
+    const int room = bound_light_count(f, n);
     int within = 0, total;
     const struct glint_area_rule rule =
         glint_area_rule_of(lamps, n, glint_frame_pixels_per_tangent(f),
@@ -179,7 +179,7 @@ static enum glint_status set_lights(struct glint_frame *f,
     }
     f->lights.n_more = within - (n - f->lights.n_beyond);
     f->lights.n = glint_lights_merge(
-        f->lights.light, within, near_q30(f, f->apart_px),
+        f->lights.light, within, convert_px_to_chord_q30(f, f->apart_px),
         larger(room, f->dials.max_lights), &f->lights.n_apart);
     if (!f->limits.is_held) /* after a limit was met, fewer lights keep the
                         fraction of all */
@@ -191,8 +191,8 @@ static enum glint_status set_lights(struct glint_frame *f,
 }
 
 /* Returns the frame of rays for IMAGE; NULL stands for a linear picture. */
-static struct glint_flare_frame rays_of(struct glint_frame *f,
-                                        const struct glint_image *image)
+static struct glint_flare_frame make_ray_frame(struct glint_frame *f,
+                                               const struct glint_image *image)
 {
     set_waves(f);
     glint_frame_check_dim(f);
@@ -201,7 +201,7 @@ static struct glint_flare_frame rays_of(struct glint_frame *f,
     return (struct glint_flare_frame){
         .lens = f->lens,
         .wave = f->lights.wave,
-        .n_waves = glint_frame_has_sets(f) ? all_waves(f->setup)
+        .n_waves = glint_frame_has_sets(f) ? count_all_waves(f->setup)
                                            : f->setup->n_wavelengths,
         .sets = glint_frame_has_sets(f) ? &f->lights.sets : NULL,
         .pixels_per_mm = glint_real_of(f->view.width / f->view.sensor_width_mm),
@@ -238,8 +238,8 @@ static void follow_dials(struct glint_frame *f)
 }
 
 /* Plans, after making room for all bundles there can be. */
-static enum glint_status plan(struct glint_frame *f,
-                              const struct glint_flare_frame *rays)
+static enum glint_status plan_frame(struct glint_frame *f,
+                                    const struct glint_flare_frame *rays)
 {
     enum glint_status status;
 
@@ -255,7 +255,7 @@ static enum glint_status plan(struct glint_frame *f,
 
 /* Returns whether dials changed, so that the frame must be planned again.
  */
-static bool choose(struct glint_frame *f)
+static bool choose_dials(struct glint_frame *f)
 {
     const struct glint_cost_plan plan = glint_frame_plan(f);
 
@@ -283,13 +283,14 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     if (status == GLINT_OK && f->budget.ms <= 0 && glint_frame_hold_looking(f))
         status = set_lights(f, lamps, n_lamps, scale);
     if (status == GLINT_OK)
-        status = glint_frame_still(f, near_q30(f, f->dials.still_px));
+        status =
+            glint_frame_still(f, convert_px_to_chord_q30(f, f->dials.still_px));
     while (status == GLINT_OK) {
-        f->plan.rays = rays_of(f, image);
-        status = plan(f, &f->plan.rays);
+        f->plan.rays = make_ray_frame(f, image);
+        status = plan_frame(f, &f->plan.rays);
         if (status != GLINT_OK)
             break;
-        if (f->budget.ms > 0 && choose(f))
+        if (f->budget.ms > 0 && choose_dials(f))
             continue;
         if (f->budget.ms <= 0 && glint_frame_hold_work(f)) {
             status = set_lights(f, lamps, n_lamps, scale);
@@ -315,7 +316,7 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
 /* Merges LAMPS for exact rays; sets *N to how many are left. NULL: memory is
  * short. */
 static const struct glint_lamp *
-merged_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
+merge_exact_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 {
     struct glint_lamp *merged;
 
@@ -338,7 +339,7 @@ draw_exact(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
            double scale, const struct glint_image *image,
            struct glint_flare_stats *stats, double times[5])
 {
-    const struct glint_lamp *merged = merged_lamps(f, lamps, &n_lamps);
+    const struct glint_lamp *merged = merge_exact_lamps(f, lamps, &n_lamps);
 
     follow_dials(f);
     return merged
@@ -357,9 +358,9 @@ static enum glint_status model_scale(struct glint_frame *frame,
 
     frame->limits.is_held = frame->picture.can_half = false;
     status = set_lights(frame, lamps, n_lamps, 1);
-    rays = rays_of(frame, NULL);
+    rays = make_ray_frame(frame, NULL);
     if (status == GLINT_OK)
-        status = plan(frame, &rays);
+        status = plan_frame(frame, &rays);
     if (status != GLINT_OK)
         return status;
     glint_flare_light(frame->memory.flare, &brightest, &together);
@@ -377,7 +378,7 @@ enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
     *scale = (struct glint_frame_scale){0, 0};
     if (frame->lens)
         return model_scale(frame, lamps, n_lamps, scale);
-    lamps = merged_lamps(frame, lamps, &n_lamps);
+    lamps = merge_exact_lamps(frame, lamps, &n_lamps);
     return lamps ? frame->trace->scale(frame, lamps, n_lamps, scale)
                  : GLINT_E_MEMORY;
 }
@@ -391,8 +392,8 @@ static int n_drawn(const struct glint_frame *f,
 
 /* Sets the members of REPORT on lights, plans and memory of the drawn frame.
  */
-static void report_on(struct glint_frame *frame,
-                      struct glint_engine_report *report)
+static void fill_report(struct glint_frame *frame,
+                        struct glint_engine_report *report)
 {
     report->beyond_lights = frame->lights.n_beyond;
     report->apart_lights =
@@ -455,7 +456,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         if (frame->memory.bytes == bytes && !report->stats.reused)
             glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
     }
-    report_on(frame, report);
+    fill_report(frame, report);
     return GLINT_OK;
 }
 

@@ -6,7 +6,7 @@
 #include "engine/frame/frame_parts.h"
 
 /* Returns the largest magnitude of N values. */
-static uint32_t peak_of(const int32_t *linear_q20, size_t n)
+static uint32_t find_peak(const int32_t *linear_q20, size_t n)
 {
     uint32_t peak = 0;
 
@@ -22,7 +22,7 @@ static uint32_t peak_of(const int32_t *linear_q20, size_t n)
 /* Returns by how many octaves a picture with PEAK should be drawn brighter; 0
  * instead of 1, as a single octave gains too little. Below 0 if light was
  * clamped, as its peak is then unknown. */
-static int octaves_up(uint32_t peak, struct glint_frame_scale scale)
+static int choose_octaves(uint32_t peak, struct glint_frame_scale scale)
 {
     const int room = scale.most - scale.likely;
     int up = 0;
@@ -61,7 +61,7 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
         memset(linear_q20, 0, n * sizeof *linear_q20);
         status = glint_frame_draw(frame, lamps, n_lamps, exp2(scale.likely),
                                   &layer, report);
-        up = octaves_up(peak_of(linear_q20, n), scale);
+        up = choose_octaves(find_peak(linear_q20, n), scale);
         scale.likely += i < 3 ? up : 0;
     }
     for (size_t i = 0; i < n && status == GLINT_OK; i++)

@@ -43,7 +43,7 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
 }
 
 /* Returns how many of N bundles a frame may take. */
-static int bundles_within(double n)
+static int clamp_bundles(double n)
 {
     return n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 }
@@ -54,7 +54,7 @@ static int count_bundles(const struct glint_frame *f, int n_lights)
 {
     const struct glint_setup *s = f->setup;
 
-    return bundles_within(
+    return clamp_bundles(
         (double)n_lights * s->n_ghosts *
         (glint_frame_has_sets(f) ? s->set_size[0] : s->n_wavelengths));
 }
@@ -65,12 +65,13 @@ static size_t most_bytes(const struct glint_frame *f)
 }
 
 /* Returns a configuration in which what was binned finds room. */
-static struct glint_flare_config needed_by(const struct glint_frame *f,
-                                           const struct glint_flare_stats *s)
+static struct glint_flare_config
+make_needed_config(const struct glint_frame *f,
+                   const struct glint_flare_stats *s)
 {
     struct glint_flare_config needed = f->cfg;
 
-    needed.max_bundles = bundles_within(s->need_bundles);
+    needed.max_bundles = clamp_bundles(s->need_bundles);
     needed.max_vertices = s->need_vertices;
     needed.max_primitives = s->need_primitives;
     needed.max_refs = s->need_refs;
@@ -80,10 +81,10 @@ static struct glint_flare_config needed_by(const struct glint_frame *f,
 /* Returns the bytes of that with one worker and primitives as for uneven
  * shares, so that they do not depend on how many workers there are. FIXED
  * receives those that coarser grids take, too. */
-static double bytes_of(const struct glint_frame *f,
-                       const struct glint_flare_stats *s, double *fixed)
+static double estimate_bytes(const struct glint_frame *f,
+                             const struct glint_flare_stats *s, double *fixed)
 {
-    struct glint_flare_config needed = needed_by(f, s);
+    struct glint_flare_config needed = make_needed_config(f, s);
     double bytes;
 
     needed.workers = NULL;
@@ -96,7 +97,7 @@ static double bytes_of(const struct glint_frame *f,
 
 /* Returns the bytes for a number of primitives, with references for each:
  * rather too many. */
-static size_t bytes_for(struct glint_frame *f, int primitives)
+static size_t compute_bytes(struct glint_frame *f, int primitives)
 {
     f->cfg.max_primitives = primitives;
     f->cfg.max_refs = 2 * primitives;
@@ -105,22 +106,22 @@ static size_t bytes_for(struct glint_frame *f, int primitives)
 
 /* Sets the capacities that BYTES have room for; returns false if there is none.
  */
-static bool fit(struct glint_frame *f, size_t bytes)
+static bool fit_primitives(struct glint_frame *f, size_t bytes)
 {
     int most = 0;
 
     for (int step = 1 << 24; step > 0; step /= 2) {
-        const size_t need = bytes_for(f, most + step);
+        const size_t need = compute_bytes(f, most + step);
 
         if (need != 0 && need <= bytes)
             most += step;
     }
-    return most > 0 && bytes_for(f, most) <= bytes;
+    return most > 0 && compute_bytes(f, most) <= bytes;
 }
 
 /* Returns the primitives that reserved memory would have to have room for, with
- * the fractions of bytes_for(). */
-static double primitives_of(const struct glint_flare_stats *s)
+ * the fractions of compute_bytes(). */
+static double count_primitives(const struct glint_flare_stats *s)
 {
     return fmax(s->need_primitives * UNEVEN, s->need_refs / 2.0);
 }
@@ -137,7 +138,7 @@ static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
     const int fineness = f->dials.fineness;
     double fixed = 0;
     const double need =
-        f->limits.reserved ? primitives_of(s) : bytes_of(f, s, &fixed);
+        f->limits.reserved ? count_primitives(s) : estimate_bytes(f, s, &fixed);
 
     if (most <= 0 || f->budget.ms > 0 || need <= most ||
         fineness <= LEAST_FINENESS ||
@@ -152,7 +153,7 @@ static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
                 (int)(fineness * sqrt(fmax(0, (ROOM_SHARE * most - fixed) /
                                                   (need - fixed))))));
     if (!f->limits.reserved)
-        fit(f, (size_t)most);
+        fit_primitives(f, (size_t)most);
     return f->limits.is_held = true;
 }
 
@@ -160,7 +161,7 @@ bool glint_frame_fit_capacity(struct glint_frame *f,
                               const struct glint_flare_stats *s)
 {
     struct glint_flare_config *c = &f->cfg;
-    const int bundles = bundles_within(s->need_bundles);
+    const int bundles = clamp_bundles(s->need_bundles);
 
     if (f->limits.is_full)
         return true;
@@ -187,7 +188,7 @@ enum glint_status glint_frame_regrow(struct glint_frame *f)
     size_t bytes = glint_flare_bytes(&f->cfg);
 
     if (f->lens && !f->limits.reserved && most && bytes > most) {
-        if (!fit(f, most))
+        if (!fit_primitives(f, most))
             return GLINT_E_MEMORY;
         f->limits.is_full = true;
         bytes = glint_flare_bytes(&f->cfg);
@@ -271,7 +272,7 @@ enum glint_status glint_frame_make_room(struct glint_frame *f)
 
 size_t glint_frame_least_bytes(struct glint_frame *f)
 {
-    return bytes_for(f, 1);
+    return compute_bytes(f, 1);
 }
 
 enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
@@ -282,16 +283,16 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
     f->dials.max_lights =
         smaller(f->dials.max_lights, smaller(n_drawn, n_lamps));
     /* Not all ghosts are visible, and few use the largest set. */
-    f->cfg.max_bundles = bundles_within((glint_frame_has_sets(f) ? 2. : 1) *
-                                        count_bundles(f, f->dials.max_lights));
+    f->cfg.max_bundles = clamp_bundles((glint_frame_has_sets(f) ? 2. : 1) *
+                                       count_bundles(f, f->dials.max_lights));
     if (f->cfg.reuse)
         f->cfg.reuse_lights = f->dials.max_lights;
     f->cfg.reuse_gains = f->cfg.reuse && f->dials.still_px > 0;
     f->cfg.workers = NULL;
-    fit(f, bytes);
+    fit_primitives(f, bytes);
     f->limits.most_primitives = f->cfg.max_primitives;
     f->cfg.workers = workers;
-    if (!fit(f, bytes))
+    if (!fit_primitives(f, bytes))
         return GLINT_E_MEMORY;
     /* Dials may be turned later, when nothing is allocated any more. */
     if (glint_frame_hold_ghosts(f) != GLINT_OK ||
@@ -322,7 +323,7 @@ size_t glint_frame_bytes_used(const struct glint_frame *f,
 size_t glint_frame_bytes_needed(const struct glint_frame *f,
                                 const struct glint_flare_stats *s)
 {
-    const struct glint_flare_config needed = needed_by(f, s);
+    const struct glint_flare_config needed = make_needed_config(f, s);
 
     return f->limits.tight > 0 ? f->limits.tight_bytes
                                : glint_flare_bytes(&needed);
@@ -330,12 +331,12 @@ size_t glint_frame_bytes_needed(const struct glint_frame *f,
 
 /* Returns the millions of instructions for which a plan looks at N_RAYS
  * rays. */
-static double minsn_to_look_at(double n_rays)
+static double estimate_probe_minsn(double n_rays)
 {
     return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n_rays;
 }
 
-static double bound_of(const struct glint_frame *f)
+static double find_minsn_limit(const struct glint_frame *f)
 {
     return f->limits.most_minsn * f->limits.share;
 }
@@ -346,12 +347,12 @@ bool glint_frame_hold_looking(struct glint_frame *f)
     const int waves = glint_frame_has_sets(f) ? f->setup->set_size[0]
                                               : f->setup->n_wavelengths;
     const double light =
-        minsn_to_look_at((double)RAYS * f->setup->n_ghosts * waves);
+        estimate_probe_minsn((double)RAYS * f->setup->n_ghosts * waves);
     const int n = f->lights.n;
 
     if (f->limits.most_minsn <= 0)
         return false;
-    while (f->lights.n > 1 && f->lights.n * light > bound_of(f) / 2)
+    while (f->lights.n > 1 && f->lights.n * light > find_minsn_limit(f) / 2)
         f->lights.n--;
     if (f->lights.n == n)
         return false;
@@ -434,9 +435,9 @@ bool glint_frame_hold_work(struct glint_frame *f)
     enum { MOST_PLANS = 12 };
     const struct glint_cost_plan plan = glint_frame_plan(f);
     const struct glint_cost cost = glint_cost_of(&plan, &f->dials);
-    const double spent = minsn_to_look_at((double)f->plan.n_looked);
+    const double spent = estimate_probe_minsn((double)f->plan.n_looked);
     const double again = spent / f->plan.n_plans;
-    const double left = bound_of(f) - spent;
+    const double left = find_minsn_limit(f) - spent;
     const struct glint_dials before = f->dials;
     double then;
 

@@ -41,7 +41,7 @@ enum { BUDGET_STEPS = 8 };
  * 36 x 24 mm: a lamp's picture has been taken through some stop. */
 static const double photo_airy = 0.55e-3 * 22 / 43.27;
 
-static struct glint_star_optics optics_of(const struct glint_frame *f)
+static struct glint_star_optics make_star_optics(const struct glint_frame *f)
 {
     const struct glint_optics *o = &f->setup->optics;
 
@@ -81,7 +81,7 @@ static enum glint_status make_smear(struct glint_frame *f, bool *is_new)
 static enum glint_status make_tables(struct glint_frame *f)
 {
     struct glint_frame_star *s = &f->star;
-    struct glint_star_optics optics = optics_of(f);
+    struct glint_star_optics optics = make_star_optics(f);
     bool is_new;
     enum glint_status status = make_smear(f, &is_new);
 
@@ -158,7 +158,7 @@ struct seen {
     bool is_bare; /* the picture does not show it at all */
 };
 
-static struct seen seen_of(const struct glint_frame *f, int i)
+static struct seen find_seen_lamp(const struct glint_frame *f, int i)
 {
     const struct glint_engine_lamp *lamp = f->known ? &f->known[i] : NULL;
     const double size_px = lamp ? fmax(lamp->seen_px, 0) : 0;
@@ -170,8 +170,8 @@ static struct seen seen_of(const struct glint_frame *f, int i)
 
 /* Returns the POWER of a lamp, in white pixels of its brightest channel; if the
  * picture clips it, an estimate of its true power. */
-static double unclipped(const struct glint_frame *f, const struct seen *seen,
-                        double power)
+static double estimate_unclipped_power(const struct glint_frame *f,
+                                       const struct seen *seen, double power)
 {
     const double most = white_share * pow(GLINT_PI * seen->radius_px, 3) /
                         airy_of_photo(f) * seen->level;
@@ -189,8 +189,9 @@ static double unclipped(const struct glint_frame *f, const struct seen *seen,
  * white; the square of that is subtracted from the square of what is SEEN. A
  * lamp of a video is as wide as that of a still, which is at least HIDDEN_PX.
  */
-static double disc_of(const struct glint_frame *f, const struct seen *seen,
-                      double found, double power, double own_px)
+static double compute_disc_radius(const struct glint_frame *f,
+                                  const struct seen *seen, double found,
+                                  double power, double own_px)
 {
     const double white_px =
         cbrt(power / seen->level * airy_of_photo(f)) / GLINT_PI;
@@ -215,8 +216,9 @@ static bool set_light(const struct glint_frame *f,
     const double focal_mm = f->setup->optics.focal_mm;
     const double pixels = glint_frame_pixels_per_tangent(f);
     const double most = fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
-    const double found = lamp->power * most, all = unclipped(f, seen, found);
-    const double radius = disc_of(
+    const double found = lamp->power * most,
+                 all = estimate_unclipped_power(f, seen, found);
+    const double radius = compute_disc_radius(
         f, seen, found, all, 2 * fmax(lamp->axis[0], lamp->axis[1]) * pixels);
     const double power = all * scale;
     double x, y;
@@ -251,7 +253,8 @@ static int by_power(const void *a, const void *b)
 
 /* Sets the star of N_LIGHTS down to light FAINTEST, or to the least light with
  * which it keeps to its fraction of the budget. */
-static void set_within(struct glint_frame *f, int n_lights, double faintest)
+static void set_lights_within_budget(struct glint_frame *f, int n_lights,
+                                     double faintest)
 {
     struct glint_frame_star *s = &f->star;
     const double most_minsn =
@@ -288,16 +291,17 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
     if (status != GLINT_OK || (s->smear_mark && !s->smear.sum))
         return status;
     for (int i = 0; i < n; i++) {
-        const struct seen seen = seen_of(f, i);
+        const struct seen seen = find_seen_lamp(f, i);
 
         n_lights += set_light(f, &lamps[i], scale * s->share, &seen,
                               &s->light[n_lights]);
     }
     if (n_lights > GLINT_STAR_MAX_LIGHTS)
         qsort(s->light, (size_t)n_lights, sizeof *s->light, by_power);
-    set_within(f, n_lights,
-               f->dials.star_cull *
-                   glint_frame_codes_light(f, image, f->dials.cull_codes));
+    set_lights_within_budget(
+        f, n_lights,
+        f->dials.star_cull *
+            glint_frame_codes_light(f, image, f->dials.cull_codes));
     s->n_lights = n_lights;
     s->is_set = true;
     return GLINT_OK;
@@ -320,7 +324,7 @@ void glint_frame_paint(struct glint_frame *frame,
 }
 
 /* Returns the largest channel of the powers of all lamps. */
-static double brightest(const struct glint_lamp *lamps, int n)
+static double find_brightest(const struct glint_lamp *lamps, int n)
 {
     double most = 0;
 
@@ -340,7 +344,7 @@ enum glint_status glint_frame_star_alone(struct glint_frame *frame,
     struct glint_image layer =
         glint_image_over(linear_q20, GLINT_LINEAR_Q20, width, height);
     /* No pixel gets more than all of a lamp's light. */
-    const double most = brightest(lamps, n) * frame->star.share;
+    const double most = find_brightest(lamps, n) * frame->star.share;
     const double scale = most > 0 ? exp2(10 - ceil(log2(most))) : 1;
     enum glint_status status;
 

@@ -115,7 +115,7 @@ enum glint_status glint_frame_veil_look(struct glint_frame *f,
 
 /* Sets TABLE to a Gaussian of SIGMA cells, 0: even, over N cells and their
  * mirror images. */
-static void set_table(int32_t *table_q30, int n, double sigma)
+static void set_gaussian_table(int32_t *table_q30, int n, double sigma)
 {
     double at[GLINT_VEIL_CELLS + 1], sum = 0;
     int32_t rest = INT32_C(1) << 30;
@@ -137,8 +137,8 @@ static void set_table(int32_t *table_q30, int n, double sigma)
 }
 
 /* Makes a spread of SIGMA pixels, 0: even, that gives SHARE of all light. */
-static struct glint_veil_spread spread_of(const struct glint_frame *f,
-                                          double sigma, double share)
+static struct glint_veil_spread make_spread(const struct glint_frame *f,
+                                            double sigma, double share)
 {
     struct glint_veil_spread s;
     const double size[2] = {f->view.width, f->view.height};
@@ -150,8 +150,8 @@ static struct glint_veil_spread spread_of(const struct glint_frame *f,
         /* Wider than that, it is even, too. */
         const bool is_even = !(sigma > 0) || in_cells > 2 * cells[k];
 
-        set_table(k ? s.down_q30 : s.across_q30, cells[k],
-                  is_even ? 0 : in_cells);
+        set_gaussian_table(k ? s.down_q30 : s.across_q30, cells[k],
+                           is_even ? 0 : in_cells);
     }
     s.share = glint_real_of(share * cells[0] * cells[1] / (size[0] * size[1]));
     return s;
@@ -174,10 +174,10 @@ static int set_haze(const struct glint_frame *f, double share,
                     struct glint_veil_spread spreads[N_HAZE])
 {
     for (int k = 0; k < N_HAZE; k++)
-        spreads[k] = spread_of(f,
-                               glint_frame_pixels_per_tangent(f) *
-                                   tan(haze_deg[k] * GLINT_PI / 180),
-                               share / N_HAZE);
+        spreads[k] = make_spread(f,
+                                 glint_frame_pixels_per_tangent(f) *
+                                     tan(haze_deg[k] * GLINT_PI / 180),
+                                 share / N_HAZE);
     return N_HAZE;
 }
 
@@ -190,9 +190,9 @@ static int set_spreads(const struct glint_frame *f,
     int n = 0;
 
     for (int k = 0; k < N_GLARE && v->glare > 0; k++)
-        spreads[n++] =
-            spread_of(f, glare[k].sigma * hypot(f->view.width, f->view.height),
-                      v->glare * over * glare[k].share);
+        spreads[n++] = make_spread(
+            f, glare[k].sigma * hypot(f->view.width, f->view.height),
+            v->glare * over * glare[k].share);
     if (v->haze > 0)
         n += set_haze(f, v->haze * over, spreads + n);
     return n;
@@ -215,14 +215,15 @@ static void spread_front(const struct glint_frame *f)
 static const double even_sigma = 0.5;
 
 /* Returns the fraction of a Gaussian that is left FAR from its middle. */
-static double left_of(double far, double sigma)
+static double compute_gaussian_falloff(double far, double sigma)
 {
     return exp(-0.5 * far * far / (sigma * sigma));
 }
 
 /* Returns the fraction of the veil of a lamp at the border that one has FAR
  * pixels off-screen: each part falls by its own Gaussian. */
-static double beside(const struct glint_frame *f, double far)
+static double compute_offscreen_fraction(const struct glint_frame *f,
+                                         double far)
 {
     const struct glint_frame_veil *v = &f->veil;
     const double haze = v->haze + front_share(v);
@@ -231,12 +232,14 @@ static double beside(const struct glint_frame *f, double far)
 
     for (int k = 0; k < N_GLARE; k++)
         sum += v->glare * glare[k].share *
-               left_of(far, diagonal * (glare[k].sigma > 0 ? glare[k].sigma
-                                                           : even_sigma));
+               compute_gaussian_falloff(far, diagonal * (glare[k].sigma > 0
+                                                             ? glare[k].sigma
+                                                             : even_sigma));
     for (int k = 0; k < N_HAZE; k++)
         sum += haze / N_HAZE *
-               left_of(far, glint_frame_pixels_per_tangent(f) *
-                                tan(haze_deg[k] * GLINT_PI / 180));
+               compute_gaussian_falloff(far,
+                                        glint_frame_pixels_per_tangent(f) *
+                                            tan(haze_deg[k] * GLINT_PI / 180));
     return sum / fmax(v->glare + haze, 1e-9);
 }
 
@@ -274,7 +277,7 @@ static void add_lamp(struct glint_frame *f, const struct glint_lamp *lamp,
     if (!isfinite(far) || !(power * most > 0))
         return;
     if (far > 0)
-        power *= beside(f, far);
+        power *= compute_offscreen_fraction(f, far);
     if (!(power * most > 1e-9))
         return;
     for (int c = 0; c < 3; c++)

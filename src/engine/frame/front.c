@@ -23,8 +23,9 @@ static double covered_by_mask(const struct glint_front *f, double x, double y)
 }
 
 /* Sets the sums along the rows of DIRT; beyond the rim nothing is covered. */
-static void cover(struct glint_front_dirt *dirt, const struct glint_front *f,
-                  const struct glint_dust *dust)
+static void set_row_sums(struct glint_front_dirt *dirt,
+                         const struct glint_front *f,
+                         const struct glint_dust *dust)
 {
     for (int j = 0; j < SIDE; j++) {
         float *row = dirt->along + (ptrdiff_t)j * (SIDE + 1);
@@ -45,7 +46,7 @@ static void cover(struct glint_front_dirt *dirt, const struct glint_front *f,
 
 static const struct glint_front_method method;
 
-static const char *check(const struct glint_front *f)
+static const char *check_front(const struct glint_front *f)
 {
     if (!(f->dust >= 0 && f->dust <= 0.5))
         return "dust must cover 0 to 0.5 of the front element";
@@ -58,7 +59,7 @@ enum glint_status glint_front_make(struct glint_front_dirt **dirt,
                                    const struct glint_front *front,
                                    struct glint_error *error)
 {
-    const char *wrong = check(front);
+    const char *wrong = check_front(front);
     struct glint_dust *dust;
     struct glint_front_dirt *d;
 
@@ -75,7 +76,7 @@ enum glint_status glint_front_make(struct glint_front_dirt **dirt,
         d->method = &method;
         d->along = (float *)(void *)(d + 1);
         glint_dust_strew(dust, front->dust, front->dust_seed);
-        cover(d, front, dust);
+        set_row_sums(d, front, dust);
         *dirt = d;
     } else {
         free(d);
@@ -127,7 +128,7 @@ static void set_chords(struct chords *c, const struct glint_setup *setup,
 }
 
 /* Returns the sum of what is covered of a row of cells up to X, in cells. */
-static double sum_to(const float *row, double x)
+static double sum_row_to(const float *row, double x)
 {
     const double at = fmin(fmax(x, 0), SIDE);
     const int i = (int)fmin(at, SIDE - 1);
@@ -141,9 +142,10 @@ static double on_row(const struct glint_front_dirt *d, const struct chords *c,
 {
     const float *row = d->along + (ptrdiff_t)j * (SIDE + 1);
 
-    return j < 0 || j >= SIDE ? 0
-                              : sum_to(row, middle + scale * c->to[k]) -
-                                    sum_to(row, middle + scale * c->from[k]);
+    return j < 0 || j >= SIDE
+               ? 0
+               : sum_row_to(row, middle + scale * c->to[k]) -
+                     sum_row_to(row, middle + scale * c->from[k]);
 }
 
 /* Returns the mean of what is covered over the stop about (X, Y) of the front,
@@ -170,10 +172,10 @@ static double mean_about(const struct glint_front_dirt *d,
 /* --------------------------------------------------------------- the table */
 
 /* A stop of less than a cell is as good as one of a cell. */
-static void optics_of(struct glint_front_optics *o,
-                      const struct glint_setup *setup,
-                      const struct glint_lens *lens,
-                      const struct glint_view *view)
+static void set_front_optics(struct glint_front_optics *o,
+                             const struct glint_setup *setup,
+                             const struct glint_lens *lens,
+                             const struct glint_view *view)
 {
     const struct glint_entrance e = glint_entrance_of(setup, lens);
     const double front = fmax(e.front_mm, setup->optics.entrance_radius_mm);
@@ -191,14 +193,15 @@ static void optics_of(struct glint_front_optics *o,
 
 /* Returns the place on the front, in its radii, that the middle of the stop is
  * seen through from pixel AT of N, along x or, turned, y. */
-static double seen_at(const struct glint_front_optics *o, double at, int n)
+static double find_front_position(const struct glint_front_optics *o, double at,
+                                  int n)
 {
     return -o->z * o->tangent * (at - 0.5 * n);
 }
 
 /* Returns how many nodes apart places are enough, 2^n: discs have 16 of these
  * to a radius. */
-static int apart(const struct glint_front_optics *o)
+static int choose_node_step_log2(const struct glint_front_optics *o)
 {
     const double disc =
         o->radius / (fabs(o->z * o->tangent) * GLINT_VEIL_FRONT_PX * 16 + 1e-9);
@@ -215,16 +218,16 @@ static void set_covered(double *covered, int n_x, int n_y,
                         const struct glint_front_optics *o,
                         const struct glint_setup *setup)
 {
-    const int step = apart(o);
+    const int step = choose_node_step_log2(o);
     struct chords chords;
 
     set_chords(&chords, setup, o->radius);
     for (int j = 0; j < n_y; j += step)
         for (int i = 0; i < n_x; i += step)
-            covered[j * n_x + i] =
-                mean_about(dirt, &chords, o->radius,
-                           seen_at(o, GLINT_VEIL_FRONT_PX * i, o->width),
-                           -seen_at(o, GLINT_VEIL_FRONT_PX * j, o->height));
+            covered[j * n_x + i] = mean_about(
+                dirt, &chords, o->radius,
+                find_front_position(o, GLINT_VEIL_FRONT_PX * i, o->width),
+                -find_front_position(o, GLINT_VEIL_FRONT_PX * j, o->height));
     /* outside, the last one continues */
     for (int j = 0; j < n_y; j += step)
         for (int i = 0; i < n_x; i++) {
@@ -291,7 +294,7 @@ static enum glint_status make_table(struct glint_front_table **table,
     return GLINT_OK;
 }
 
-static const struct glint_front_method method = {optics_of, make_table,
+static const struct glint_front_method method = {set_front_optics, make_table,
                                                  glint_veil_front};
 
 double glint_front_covered(const struct glint_front_dirt *dirt,
@@ -309,9 +312,11 @@ double glint_front_covered(const struct glint_front_dirt *dirt,
         const double u = (2 * (k % steps) + 1.) / steps - 1;
         const double v = (2 * row + 1.) / steps - 1;
         const double at_x =
-            (seen_at(o, x, o->width) + o->radius * u + 1) * SIDE / 2;
+            (find_front_position(o, x, o->width) + o->radius * u + 1) * SIDE /
+            2;
         const double at_y =
-            (-seen_at(o, y, o->height) + o->radius * v + 1) * SIDE / 2;
+            (-find_front_position(o, y, o->height) + o->radius * v + 1) * SIDE /
+            2;
         const float *row_at;
 
         if (glint_iris_depth(&sides, u, v) < 0)

@@ -5,7 +5,7 @@
 
 static const double degree = GLINT_PI / 180;
 
-static struct glint_real largest_of(const double rgb[3], int32_t rgb_q14[3])
+static struct glint_real normalise_rgb(const double rgb[3], int32_t rgb_q14[3])
 {
     const double most = fmax(fabs(rgb[0]), fmax(fabs(rgb[1]), fabs(rgb[2])));
 
@@ -18,7 +18,7 @@ struct glint_wave glint_wave_of(double nm, const double rgb[3],
                                 double unit_flux)
 {
     struct glint_wave w;
-    const double size = glint_real_value(largest_of(rgb, w.rgb_q14));
+    const double size = glint_real_value(normalise_rgb(rgb, w.rgb_q14));
 
     w.wave_q24 = (int32_t)lrint(1e6 / (nm * nm) * 0x1p24);
     w.weight = glint_real_of(size / unit_flux);
@@ -28,7 +28,7 @@ struct glint_wave glint_wave_of(double nm, const double rgb[3],
 struct glint_light glint_light_of(const struct glint_lamp *l, double scale)
 {
     struct glint_light b;
-    const double size = glint_real_value(largest_of(l->rgb, b.rgb_q14));
+    const double size = glint_real_value(normalise_rgb(l->rgb, b.rgb_q14));
     const double power = size * l->power * scale;
 
     b.sine_q30 = (int32_t)lrint(sin(l->theta_deg * degree) * 0x1p30);

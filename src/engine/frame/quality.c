@@ -57,7 +57,7 @@ double glint_quality_named(int name)
 }
 
 /* Returns the value PART of the way from A to B, in equal ratios. */
-static double between(double a, double b, double part)
+static double interpolate_ratio(double a, double b, double part)
 {
     return a > 0 && b > 0 ? a * pow(b / a, part) : a + part * (b - a);
 }
@@ -78,7 +78,7 @@ double glint_quality_place(double quality)
 /* Returns the level of QUALITY, interpolated between those of the table. Values
  * that cannot be interpolated are those of the nearer level, except for models:
  * the finer one costs no time. */
-static struct level level_at(double quality)
+static struct level find_level(double quality)
 {
     const double at = glint_quality_place(quality);
     const int below =
@@ -87,15 +87,16 @@ static struct level level_at(double quality)
     struct level l = at - below < 0.5 ? *a : *b;
 
     l.tolerance = at > below ? b->tolerance : a->tolerance;
-    l.grid = between(a->grid, b->grid, at - below);
-    l.quantum = between(a->quantum, b->quantum, at - below);
-    l.snap = between(a->snap, b->snap, at - below);
-    l.cull = between(a->cull, b->cull, at - below);
-    l.dim = between(a->dim, b->dim, at - below);
-    l.points = between(a->points, b->points, at - below);
-    l.still = between(a->still, b->still, at - below);
+    l.grid = interpolate_ratio(a->grid, b->grid, at - below);
+    l.quantum = interpolate_ratio(a->quantum, b->quantum, at - below);
+    l.snap = interpolate_ratio(a->snap, b->snap, at - below);
+    l.cull = interpolate_ratio(a->cull, b->cull, at - below);
+    l.dim = interpolate_ratio(a->dim, b->dim, at - below);
+    l.points = interpolate_ratio(a->points, b->points, at - below);
+    l.still = interpolate_ratio(a->still, b->still, at - below);
     if (a->dispersion > 0 && b->dispersion > 0)
-        l.dispersion = between(a->dispersion, b->dispersion, at - below);
+        l.dispersion =
+            interpolate_ratio(a->dispersion, b->dispersion, at - below);
     return l;
 }
 
@@ -107,7 +108,7 @@ int glint_quality_steps(double quantum)
 
 struct glint_quality glint_quality_at(double quality)
 {
-    const struct level l = level_at(quality);
+    const struct level l = find_level(quality);
 
     return (struct glint_quality){
         /* The fineness of grids comes in steps of four cells. */
@@ -140,17 +141,17 @@ double glint_quality_for_error(double px)
     int i = 0;
 
     while (i < 256 &&
-           (level_at(i / 256.).half || level_at(i / 256.).grid < grid))
+           (find_level(i / 256.).half || find_level(i / 256.).grid < grid))
         i++;
     return i / 256.;
 }
 
-static int smaller(int a, int b)
+static int min_int(int a, int b)
 {
     return a < b ? a : b;
 }
 
-static int larger(int a, int b)
+static int max_int(int a, int b)
 {
     return a > b ? a : b;
 }
@@ -159,18 +160,18 @@ struct glint_dials glint_dials_coarser(struct glint_dials a,
                                        struct glint_dials b)
 {
     return (struct glint_dials){
-        .fineness = smaller(a.fineness, b.fineness),
-        .irradiance_steps = smaller(a.irradiance_steps, b.irradiance_steps),
-        .snap_codes_q8 = larger(a.snap_codes_q8, b.snap_codes_q8),
+        .fineness = min_int(a.fineness, b.fineness),
+        .irradiance_steps = min_int(a.irradiance_steps, b.irradiance_steps),
+        .snap_codes_q8 = max_int(a.snap_codes_q8, b.snap_codes_q8),
         .dispersion_q8 = a.dispersion_q8 && b.dispersion_q8
-                             ? larger(a.dispersion_q8, b.dispersion_q8)
+                             ? max_int(a.dispersion_q8, b.dispersion_q8)
                              : 0,
-        .max_lights = smaller(a.max_lights, b.max_lights),
+        .max_lights = min_int(a.max_lights, b.max_lights),
         .flags = a.flags | b.flags,
         .cull_codes = fmax(a.cull_codes, b.cull_codes),
         .dim_codes = fmax(a.dim_codes, b.dim_codes),
         .still_px = fmax(a.still_px, b.still_px),
         .star_cull = fmax(a.star_cull, b.star_cull),
-        .dust_log2 = smaller(a.dust_log2, b.dust_log2),
+        .dust_log2 = min_int(a.dust_log2, b.dust_log2),
         .area_points = fmin(a.area_points, b.area_points)};
 }

@@ -76,7 +76,7 @@ const struct glint_option *glint_option_named(const char *name)
 /* ------------------------------------------------------------------- setting
  */
 
-static void store(struct glint_options *options, int i, double value)
+static void store_value(struct glint_options *options, int i, double value)
 {
     void *const at = (char *)options + place[i].begin;
 
@@ -120,7 +120,7 @@ void glint_options_defaults_sized(struct glint_options *options, size_t size)
         if (table[i].type == GLINT_OPTION_TEXT)
             store_text(options, i, table[i].text[0] ? table[i].text : NULL);
         else if (!isnan(table[i].initial))
-            store(options, i, table[i].initial);
+            store_value(options, i, table[i].initial);
 }
 
 struct glint_options glint_options_whole(const struct glint_options *options)
@@ -135,8 +135,8 @@ struct glint_options glint_options_whole(const struct glint_options *options)
 }
 
 /* Returns the number of words of OPTION, and the length of word INDEX. */
-static int words_of(const struct glint_option *option, int index, size_t *n,
-                    const char **word)
+static int find_word(const struct glint_option *option, int index, size_t *n,
+                     const char **word)
 {
     const char *at = option->accepts;
     int count = 0;
@@ -159,7 +159,7 @@ static int word_index(const struct glint_option *option, const char *text)
     const char *word = NULL;
     size_t n = 0;
 
-    for (int i = 0; i < words_of(option, i, &n, &word); i++)
+    for (int i = 0; i < find_word(option, i, &n, &word); i++)
         if (strlen(text) == n && memcmp(text, word, n) == 0)
             return i;
     return -1;
@@ -203,9 +203,9 @@ void glint_option_accepts(const struct glint_option *option, char *text,
         snprintf(text, bytes, "%s", option->accepts);
         break;
     case GLINT_OPTION_WORD:
-        count = words_of(option, 0, &n, &word);
+        count = find_word(option, 0, &n, &word);
         for (int i = 0; i < count && used < (int)bytes; i++) {
-            words_of(option, i, &n, &word);
+            find_word(option, i, &n, &word);
             used += snprintf(text + used, bytes - (size_t)used, "%s%.*s",
                              i == 0           ? ""
                              : i == count - 1 ? " or "
@@ -218,14 +218,15 @@ void glint_option_accepts(const struct glint_option *option, char *text,
     }
 }
 
-static enum glint_status refuse(const struct glint_option *option,
-                                struct glint_error *error)
+static enum glint_status reject_value(const struct glint_option *option,
+                                      struct glint_error *error)
 {
     glint_option_accepts(option, error->text, sizeof error->text);
     return GLINT_E_ARGUMENT;
 }
 
-static enum glint_status unknown(const char *name, struct glint_error *error)
+static enum glint_status reject_name(const char *name,
+                                     struct glint_error *error)
 {
     snprintf(error->text, sizeof error->text, "there is no option %s", name);
     return GLINT_E_ARGUMENT;
@@ -248,7 +249,8 @@ static void note_given(struct glint_options *options, int i)
 }
 
 /* Returns whether option I of OPTIONS may be VALUE, which is in its range. */
-static bool goes(const struct glint_options *options, int i, double value)
+static bool accepts_value(const struct glint_options *options, int i,
+                          double value)
 {
     switch (i) {
     case GLINT_OPTION_OF_dispersion:
@@ -273,17 +275,17 @@ enum glint_status glint_options_set(struct glint_options *options,
     size_t n;
 
     if (!option)
-        return unknown(name, error);
+        return reject_name(name, error);
     if (option->type == GLINT_OPTION_TEXT)
-        return refuse(option, error);
+        return reject_value(option, error);
     high = option->type == GLINT_OPTION_WORD
-               ? words_of(option, -1, &n, &word) - 1
+               ? find_word(option, -1, &n, &word) - 1
                : option->high;
     if (!(value >= option->low && value <= high) || isinf(value) ||
         (option->type != GLINT_OPTION_REAL && value != floor(value)) ||
-        !goes(options, i, value))
-        return refuse(option, error);
-    store(options, i, value);
+        !accepts_value(options, i, value))
+        return reject_value(option, error);
+    store_value(options, i, value);
     note_given(options, i);
     return GLINT_OK;
 }
@@ -337,7 +339,7 @@ static enum glint_status set_text(struct glint_options *options, int i,
     const bool is_set = text && *text;
 
     if (is_set && !glint_text_is_valid((enum glint_option_id)i, text))
-        return refuse(&table[i], error);
+        return reject_value(&table[i], error);
     store_text(options, i,
                is_set             ? text
                : table[i].text[0] ? table[i].text
@@ -356,20 +358,20 @@ enum glint_status glint_options_set_text(struct glint_options *options,
 
     error->text[0] = '\0';
     if (!option)
-        return unknown(name, error);
+        return reject_name(name, error);
     switch (option->type) {
     case GLINT_OPTION_TEXT:
         return set_text(options, i, text, error);
     case GLINT_OPTION_FLAG:
         if (!flag_value(text, &value))
-            return refuse(option, error);
+            return reject_value(option, error);
         break;
     case GLINT_OPTION_WORD:
         value = text ? word_index(option, text) : -1;
         break;
     default:
         if (!text)
-            return refuse(option, error);
+            return reject_value(option, error);
         /* Without a distance the lens is focused at infinity. */
         if (i == GLINT_OPTION_OF_focus && strcmp(text, "inf") == 0) {
             options->focus = 0;
@@ -378,7 +380,7 @@ enum glint_status glint_options_set_text(struct glint_options *options,
         }
         if (!named_number(options, i, text, &value) &&
             glint_option_numbers(text, &value, 1) != 1)
-            return refuse(option, error);
+            return reject_value(option, error);
     }
     return glint_options_set(options, name, value, error);
 }

@@ -30,7 +30,7 @@ static double of_mask(const struct glint_iris *iris, double x, double y)
 }
 
 /* Returns what dust and mask let through. */
-static double clear(const struct glint_dirt *d, double x, double y)
+static double read_clear_light(const struct glint_dirt *d, double x, double y)
 {
     const double u = x * d->cos_turn + y * d->sin_turn;
     const double v = y * d->cos_turn - x * d->sin_turn;
@@ -39,15 +39,15 @@ static double clear(const struct glint_dirt *d, double x, double y)
     return d->iris.mask ? light * of_mask(&d->iris, u, v) : light;
 }
 
-static double through(const struct glint_dirt *d, double x, double y)
+static double read_light(const struct glint_dirt *d, double x, double y)
 {
     const double soft = d->iris.softness;
     double in;
 
     if (!(soft > 0))
-        return clear(d, x, y);
+        return read_clear_light(d, x, y);
     in = fmin(fmax(glint_iris_depth(&d->sides, x, y) / soft, 0), 1);
-    return in * in * (3 - 2 * in) * clear(d, x, y);
+    return in * in * (3 - 2 * in) * read_clear_light(d, x, y);
 }
 
 /* ------------------------------------------------------------------- table */
@@ -63,7 +63,7 @@ static double mean_about(const struct glint_dirt *d, int i, int j)
         const int row = k / N;
         const double a = (k % N + 0.5) / N - 0.5, b = (row + 0.5) / N - 0.5;
 
-        sum += through(d, (i + a) * cell - 1, (j + b) * cell - 1);
+        sum += read_light(d, (i + a) * cell - 1, (j + b) * cell - 1);
     }
     return sum / (N * N);
 }
@@ -89,7 +89,7 @@ static void set_mean(struct glint_dirt *d)
 
         if (glint_iris_depth(&d->sides, x, y) < 0)
             continue;
-        sum += through(d, x, y);
+        sum += read_light(d, x, y);
         n++;
     }
     mean = sum / n;
@@ -134,8 +134,8 @@ static size_t all_nodes(void)
 /* Returns the most by which the nodes about node (I, J) of a level differ
  * from its VALUE: those of the finer level of FINE_SIDE nodes a side, and
  * what these themselves say of finer ones; up to REACH of them away. */
-static int rough_at(const uint16_t *fine, const uint8_t *rough, int fine_side,
-                    int i, int j, int reach, int value)
+static int find_roughness(const uint16_t *fine, const uint8_t *rough,
+                          int fine_side, int i, int j, int reach, int value)
 {
     int most = 0;
 
@@ -154,7 +154,7 @@ static int rough_at(const uint16_t *fine, const uint8_t *rough, int fine_side,
 }
 
 /* Returns a number of the N nodes and the sides of D, never 0 [FNV-1a]. */
-static uint64_t mark_of(const struct glint_dirt *d, int n)
+static uint64_t compute_digest(const struct glint_dirt *d, int n)
 {
     uint64_t mark = UINT64_C(0xcbf29ce484222325);
     const int sides[3] = {d->sides.n, (int)lrint(d->sides.round * 0x1p20),
@@ -183,10 +183,10 @@ static void set_table(struct glint_dirt *d)
         return;
     }
     set_finest(d);
-    d->mark = mark_of(d, side * side);
+    d->mark = compute_digest(d, side * side);
     for (int i = 0; i < side * side; i++)
-        rough[i] = (uint8_t)rough_at(light, NULL, side, i % side, i / side, 1,
-                                     light[i]);
+        rough[i] = (uint8_t)find_roughness(light, NULL, side, i % side,
+                                           i / side, 1, light[i]);
     for (int k = 0; k < GLINT_DIRT_LOG2; k++) {
         const int n = side * side, coarser = side / 2 + 1;
 
@@ -197,8 +197,8 @@ static void set_table(struct glint_dirt *d)
         set_coarser(light, side, light + n, coarser);
         for (int i = 0; i < coarser * coarser; i++)
             rough[n + i] =
-                (uint8_t)rough_at(light, rough, side, 2 * (i % coarser),
-                                  2 * (i / coarser), 3, light[n + i]);
+                (uint8_t)find_roughness(light, rough, side, 2 * (i % coarser),
+                                        2 * (i / coarser), 3, light[n + i]);
         light += n;
         rough += n;
         side = coarser;
@@ -208,7 +208,7 @@ static void set_table(struct glint_dirt *d)
 /* -------------------------------------------------------------------- iris
  */
 
-static const char *check(const struct glint_iris *i)
+static const char *check_iris(const struct glint_iris *i)
 {
     if (!(i->roundness >= 0 && i->roundness <= 1))
         return "the roundness of blades must be 0 to 1";
@@ -226,14 +226,14 @@ static bool is_dirty(const struct glint_iris *i)
     return i->softness > 0 || i->dust > 0 || i->mask;
 }
 
-static struct glint_dirt *make(const struct glint_setup *setup)
+static struct glint_dirt *make_dirt(const struct glint_setup *setup)
 {
     struct glint_dirt *d = calloc(1, sizeof *d);
 
     if (!d)
         return NULL;
     d->iris = setup->iris;
-    d->through = through;
+    d->through = read_light;
     d->cos_turn = glint_cos_deg(setup->blade_rotation_deg);
     d->sin_turn = glint_sin_deg(setup->blade_rotation_deg);
     d->node_q15 = malloc(all_nodes() * sizeof *d->node_q15);
@@ -259,7 +259,7 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
                                    struct glint_error *error)
 {
     const double before = glint_iris_share(setup);
-    const char *const wrong = check(iris);
+    const char *const wrong = check_iris(iris);
 
     *dirt = NULL;
     if (wrong) {
@@ -270,7 +270,7 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
     setup->dirt = NULL;
     setup->clear = 1;
     if (is_dirty(iris)) {
-        *dirt = make(setup);
+        *dirt = make_dirt(setup);
         if (!*dirt) {
             snprintf(error->text, sizeof error->text, "not enough memory");
             return GLINT_E_MEMORY;

@@ -15,22 +15,22 @@ struct draw {
 
 /* Returns a number from 0 to below 1, by a multiplicative congruence whose
  * upper bits are taken; the same on every machine. */
-static double next(struct draw *d)
+static double draw_random(struct draw *d)
 {
     d->state = d->state * UINT64_C(6364136223846793005) +
                UINT64_C(1442695040888963407);
     return (double)(d->state >> 40) * 0x1p-24;
 }
 
-static double between(struct draw *d, double a, double b)
+static double draw_between(struct draw *d, double a, double b)
 {
-    return a + (b - a) * next(d);
+    return a + (b - a) * draw_random(d);
 }
 
 /* Sets AT to a place in the unit circle, all of it alike. */
-static void place(struct draw *d, double at[2])
+static void draw_position(struct draw *d, double at[2])
 {
-    const double r = sqrt(next(d)), phi = 2 * GLINT_PI * next(d);
+    const double r = sqrt(draw_random(d)), phi = 2 * GLINT_PI * draw_random(d);
 
     at[0] = r * cos(phi);
     at[1] = r * sin(phi);
@@ -41,7 +41,7 @@ static void add_disc(struct glint_dust *dust, struct draw *d, double radius,
 {
     struct glint_speck *s = &dust->speck[dust->n++];
 
-    place(d, s->end[0]);
+    draw_position(d, s->end[0]);
     s->end[1][0] = s->end[0][0];
     s->end[1][1] = s->end[0][1];
     s->radius = radius;
@@ -52,14 +52,15 @@ static void add_disc(struct glint_dust *dust, struct draw *d, double radius,
 static void add_scratch(struct glint_dust *dust, struct draw *d)
 {
     struct glint_speck *s = &dust->speck[dust->n++];
-    const double length = between(d, 0.2, 1), phi = 2 * GLINT_PI * next(d);
+    const double length = draw_between(d, 0.2, 1),
+                 phi = 2 * GLINT_PI * draw_random(d);
 
-    place(d, s->end[0]);
+    draw_position(d, s->end[0]);
     s->end[1][0] = s->end[0][0] + length * cos(phi);
     s->end[1][1] = s->end[0][1] + length * sin(phi);
-    s->radius = between(d, 0.004, 0.01);
+    s->radius = draw_between(d, 0.004, 0.01);
     s->rim = 0.5;
-    s->opacity = between(d, 0.2, 0.6);
+    s->opacity = draw_between(d, 0.2, 0.6);
 }
 
 /* Sets the square that S lies in. */
@@ -89,16 +90,16 @@ void glint_dust_strew(struct glint_dust *dust, double amount, int seed)
         add_scratch(dust, &d);
     for (int i = 0; i < n_smudges; i++) {
         /* One draw a statement: compilers differ in the order of arguments. */
-        const double opacity = fmin(amount * between(&d, 0.5, 2), 0.5);
-        const double radius = between(&d, 0.15, 0.4);
+        const double opacity = fmin(amount * draw_between(&d, 0.5, 2), 0.5);
+        const double radius = draw_between(&d, 0.15, 0.4);
 
         add_disc(dust, &d, radius, 0.9, opacity);
     }
     while (left > 0 && dust->n < GLINT_DUST_MOST) {
-        const double radius =
-            least_radius * pow(most_radius / least_radius, pow(next(&d), 1.5));
+        const double radius = least_radius * pow(most_radius / least_radius,
+                                                 pow(draw_random(&d), 1.5));
 
-        add_disc(dust, &d, radius, 0.3, between(&d, 0.3, 0.95));
+        add_disc(dust, &d, radius, 0.3, draw_between(&d, 0.3, 0.95));
         left -= radius * radius;
     }
     for (int i = 0; i < dust->n; i++)

@@ -14,8 +14,8 @@ struct chief {
 };
 
 /* Finds CHIEF of GHOST for light at SINE; false if there is none. */
-static bool chief_of(const struct glint_lens *lens, int ghost, double sine,
-                     struct chief *chief)
+static bool find_chief_ray(const struct glint_lens *lens, int ghost,
+                           double sine, struct chief *chief)
 {
     enum { STOP = GLINT_OUT_STOP_X };
     const int32_t u_q30 = 1 << 28; /* a quarter of the box to both sides */
@@ -54,9 +54,9 @@ static double z_of_model(const struct glint_setup *setup,
     struct chief on, off;
 
     for (int k = setup->n_ghosts - setup->n_parts - 1; k >= 0; k--)
-        if (chief_of(lens, k, 0, &on) && fabs(on.x_mm) < 0.02 * radius &&
+        if (find_chief_ray(lens, k, 0, &on) && fabs(on.x_mm) < 0.02 * radius &&
             fabs(fabs(on.radii_per_mm) * radius - 1) < 0.05 &&
-            chief_of(lens, k, sine, &off))
+            find_chief_ray(lens, k, sine, &off))
             return (on.x_mm - off.x_mm) / tangent;
     /* such that the corner of the picture is seen past the rim of the front */
     return fmax(front - radius, 0.1 * radius) * fabs(setup->optics.focal_mm) /

@@ -55,7 +55,7 @@ double glint_iris_depth(const struct glint_iris_sides *sides, double x,
 
 /* Returns the area of a stop of N sides of curvature ROUND: of the polygon, and
  * of the segments between its sides and the arcs. */
-static double area_of(int n, double round)
+static double compute_opening_area(int n, double round)
 {
     const double half_side = sin(GLINT_PI / n);
     const double polygon = 0.5 * n * sin(2 * GLINT_PI / n);
@@ -69,6 +69,7 @@ static double area_of(int n, double round)
 double glint_iris_share(const struct glint_setup *setup)
 {
     return setup->n_blades
-               ? area_of(setup->n_blades, setup->iris.roundness) / GLINT_PI
+               ? compute_opening_area(setup->n_blades, setup->iris.roundness) /
+                     GLINT_PI
                : 1;
 }

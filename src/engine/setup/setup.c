@@ -16,7 +16,7 @@
  * wavelengths hardly contribute to a channel, or their sum is negative, all get
  * the same value: few wavelengths make a grey picture rather than a wrong one.
  */
-static void normalise(struct glint_setup *s)
+static void normalise_colours(struct glint_setup *s)
 {
     const int n = s->n_wavelengths;
 
@@ -41,7 +41,7 @@ static void set_colours(struct glint_setup *s)
             s->rgb[i][c] = c == i;
     }
     if (s->n_wavelengths != 3)
-        normalise(s);
+        normalise_colours(s);
 }
 
 enum glint_status glint_setup_check(int n_blades, double rotation_deg,

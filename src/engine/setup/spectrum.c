@@ -30,7 +30,8 @@ enum {
 };
 
 /* Returns a Gaussian with different widths below and above its centre. */
-static double lobe(double nm, double centre, double below, double above)
+static double evaluate_lobe(double nm, double centre, double below,
+                            double above)
 {
     const double t = (nm - centre) / (nm < centre ? below : above);
 
@@ -39,15 +40,15 @@ static double lobe(double nm, double centre, double below, double above)
 
 /* Sets XYZ of the CIE 1931 2 degree observer by the multi-lobe fit of
  * [Wyman13], table 1; within 1 % of the peak of the tabulated functions. */
-static void observer(double nm, double xyz[3])
+static void evaluate_observer(double nm, double xyz[3])
 {
-    xyz[0] = 1.056 * lobe(nm, 599.8, 37.9, 31.0) +
-             0.362 * lobe(nm, 442.0, 16.0, 26.7) -
-             0.065 * lobe(nm, 501.1, 20.4, 26.2);
-    xyz[1] = 0.821 * lobe(nm, 568.8, 46.9, 40.5) +
-             0.286 * lobe(nm, 530.9, 16.3, 31.1);
-    xyz[2] = 1.217 * lobe(nm, 437.0, 11.8, 36.0) +
-             0.681 * lobe(nm, 459.0, 26.0, 13.8);
+    xyz[0] = 1.056 * evaluate_lobe(nm, 599.8, 37.9, 31.0) +
+             0.362 * evaluate_lobe(nm, 442.0, 16.0, 26.7) -
+             0.065 * evaluate_lobe(nm, 501.1, 20.4, 26.2);
+    xyz[1] = 0.821 * evaluate_lobe(nm, 568.8, 46.9, 40.5) +
+             0.286 * evaluate_lobe(nm, 530.9, 16.3, 31.1);
+    xyz[2] = 1.217 * evaluate_lobe(nm, 437.0, 11.8, 36.0) +
+             0.681 * evaluate_lobe(nm, 459.0, 26.0, 13.8);
 }
 
 static void to_bt709(const double xyz[3], double rgb[3])
@@ -64,7 +65,7 @@ void glint_observer_rgb(double nm, double rgb[3])
 {
     double xyz[3];
 
-    observer(nm, xyz);
+    evaluate_observer(nm, xyz);
     to_bt709(xyz, rgb);
 }
 
@@ -86,7 +87,7 @@ static void all_colours(double rgb[N_ALL][3])
 
 /* Returns how many wavelengths should lie in a nanometre about NM, in any unit.
  */
-static double density(double nm)
+static double evaluate_density(double nm)
 {
     double rgb[3], squares = 0;
 
@@ -98,15 +99,15 @@ static double density(double nm)
 
 /* Places N wavelengths so that each has equal parts of the density on either
  * side. */
-static void place(int n, double *wavelength_nm)
+static void place_wavelengths(int n, double *wavelength_nm)
 {
     double sum = 0, passed = 0;
     int i = 0;
 
     for (int nm = FIRST_NM; nm < LAST_NM; nm++)
-        sum += density(nm + 0.5);
+        sum += evaluate_density(nm + 0.5);
     for (int nm = FIRST_NM; nm < LAST_NM; nm++) {
-        const double here = density(nm + 0.5);
+        const double here = evaluate_density(nm + 0.5);
 
         for (; i < n && sum * (i + 0.5) / n < passed + here; i++)
             wavelength_nm[i] = nm + (sum * (i + 0.5) / n - passed) / here;
@@ -130,7 +131,8 @@ static int first_near(int n, const double *wavelength_nm, double nm)
 /* Returns the fraction of wavelength K in the value at NM: Lagrange's
  * polynomial.
  */
-static double share_of(int n, const double *wavelength_nm, int k, double nm)
+static double compute_wave_share(int n, const double *wavelength_nm, int k,
+                                 double nm)
 {
     const double at = fmin(fmax(nm, wavelength_nm[0] - BEYOND_NM),
                            wavelength_nm[n - 1] + BEYOND_NM);
@@ -152,12 +154,12 @@ void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
     double all[N_ALL][3];
 
     all_colours(all);
-    place(n, wavelength_nm);
+    place_wavelengths(n, wavelength_nm);
     for (int k = 0; k < n; k++) {
         share[k] = rgb[k][0] = rgb[k][1] = rgb[k][2] = 0;
         for (int j = 0; j < N_ALL; j++) {
             const double part =
-                share_of(n, wavelength_nm, k, FIRST_NM + STEP_NM * j);
+                compute_wave_share(n, wavelength_nm, k, FIRST_NM + STEP_NM * j);
 
             share[k] += part / N_ALL;
             for (int c = 0; c < 3; c++)

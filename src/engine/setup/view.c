@@ -33,7 +33,7 @@ static bool is_tangent(const struct glint_projection *p)
     return zero;
 }
 
-static double bent(const struct glint_projection *p, double rho)
+static double bend_radius(const struct glint_projection *p, double rho)
 {
     const double r = fmin(rho, p->reach), r2 = r * r;
     double sum = 0;
@@ -46,8 +46,9 @@ static double bent(const struct glint_projection *p, double rho)
 double glint_projection_deg(const struct glint_projection *projection,
                             double rho)
 {
-    return is_tangent(projection) ? atan(rho) * (180 / GLINT_PI)
-                                  : fmin(MOST_DEG, bent(projection, rho));
+    return is_tangent(projection)
+               ? atan(rho) * (180 / GLINT_PI)
+               : fmin(MOST_DEG, bend_radius(projection, rho));
 }
 
 double glint_projection_rho(const struct glint_projection *projection,
@@ -58,8 +59,8 @@ double glint_projection_rho(const struct glint_projection *projection,
 
     if (is_tangent(projection))
         return glint_sin_deg(theta_deg) / glint_cos_deg(theta_deg);
-    for (int k = 0;
-         k < DOUBLINGS && hi < MOST_RHO && bent(projection, hi) < theta_deg;
+    for (int k = 0; k < DOUBLINGS && hi < MOST_RHO &&
+                    bend_radius(projection, hi) < theta_deg;
          k++) {
         lo = hi;
         hi *= 2;
@@ -67,7 +68,7 @@ double glint_projection_rho(const struct glint_projection *projection,
     for (int k = 0; k < HALVINGS; k++) {
         const double middle = 0.5 * (lo + hi);
 
-        if (bent(projection, middle) < theta_deg)
+        if (bend_radius(projection, middle) < theta_deg)
             lo = middle;
         else
             hi = middle;

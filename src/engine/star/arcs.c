@@ -24,13 +24,13 @@ void glint_arcs_init(struct glint_arcs *a, int n, double rotation_deg,
 
 /* Returns how many of N sides to add up: of an even number half, as light of
  * the opposite side is that of a side with its phase turned round. */
-static int half_of(int n)
+static int find_parallel_half(int n)
 {
     return n % 2 ? n : n / 2;
 }
 
 /* Returns the direction of the normal in the middle of side I. */
-static double normal_of(const struct glint_arcs *a, int i)
+static double compute_normal(const struct glint_arcs *a, int i)
 {
     return a->rotation_deg * (GLINT_PI / 180) + (i + 0.5) * 2 * GLINT_PI / a->n;
 }
@@ -145,8 +145,9 @@ double glint_arcs_transform(const struct glint_arcs *a, double qx, double qy)
 
     if (q < 1e-5)
         return 1;
-    for (int i = 0; i < half_of(a->n); i++)
-        sum += (q > 5 ? along_far : along)(a, normal_of(a, i), q, direction);
+    for (int i = 0; i < find_parallel_half(a->n); i++)
+        sum +=
+            (q > 5 ? along_far : along)(a, compute_normal(a, i), q, direction);
     size = (a->n % 2 ? cabs(sum) : 2 * cimag(sum)) /
            (2 * GLINT_PI * q * q * a->area);
     return size * size;
@@ -161,8 +162,8 @@ double glint_arcs_far(const struct glint_arcs *a, double qx, double qy)
     const double limit = 0.25 / (q * q);
     double sum = 0;
 
-    for (int i = 0; i < half_of(a->n); i++) {
-        const double normal = normal_of(a, i);
+    for (int i = 0; i < find_parallel_half(a->n); i++) {
+        const double normal = compute_normal(a, i);
         const double size = cabs(arc(a, q, normal - to));
         /* the corner after it: normals of both arcs there */
         const double one = to - (normal + a->turn);

@@ -37,7 +37,7 @@ static double (*at(const struct cells *s, int i, int k))[3]
 
 /* Returns how many points across a cell takes whose middle is R pixels from the
  * light. */
-static int points_of(const struct glint_psf *psf, double r)
+static int count_points(const struct glint_psf *psf, double r)
 {
     const double fine = r < 12 * psf->airy_px + 0.5
                             ? psf->airy_px / 8
@@ -51,7 +51,7 @@ static void cell_light(const struct cells *s, int i, int k, double rgb[3])
 {
     const struct glint_psf *psf = s->psf;
     const double side = 1.0 / CELLS;
-    const int n = points_of(psf, side * hypot(i + 0.5, k + 0.5));
+    const int n = count_points(psf, side * hypot(i + 0.5, k + 0.5));
 
     rgb[0] = rgb[1] = rgb[2] = 0;
     for (int p = 0; p < n * n; p++) {
@@ -76,7 +76,7 @@ static void cell_light(const struct cells *s, int i, int k, double rgb[3])
 
 /* Returns the fraction of the light of channel C that lies farther out than R
  * pixels. */
-static double beyond(const struct cells *s, double r, int c)
+static double integrate_beyond(const struct cells *s, double r, int c)
 {
     const double all = glint_psf_beyond(s->psf, r, c);
 
@@ -105,14 +105,14 @@ static void set_cells(struct cells *s)
             }
         }
     for (int c = 0; c < 3; c++) {
-        const double more = (1 - beyond(s, r, c) - missing[c]) / 4;
+        const double more = (1 - integrate_beyond(s, r, c) - missing[c]) / 4;
 
         for (int p = 0; p < 4; p++)
             (*at(s, p / 2, p % 2))[c] += more;
     }
 }
 
-static void sum_up(struct cells *s)
+static void sum_cells(struct cells *s)
 {
     for (int i = -s->half; i < s->half; i++)
         for (int k = -s->half; k < s->half; k++)
@@ -176,7 +176,7 @@ void glint_star_tabled(const struct glint_star_tables *t, double x, double y,
 
 /* -------------------------------------------------------------------- core */
 
-static uint16_t code_of(double light)
+static uint16_t encode_light(double light)
 {
     const unsigned sign = light < 0 ? 1U << 15 : 0;
     double size = fabs(light) * 0x1p40;
@@ -192,7 +192,7 @@ static uint16_t code_of(double light)
 
 /* Returns the cells from node to node: so few that rings are resolved, but
  * enough that the core reaches the place where they have faded. */
-static int cells_of(const struct glint_psf *psf)
+static int count_cells(const struct glint_psf *psf)
 {
     const double far = 9 * psf->airy_px / GLINT_STAR_CORE;
 
@@ -229,7 +229,7 @@ static void set_nodes(struct glint_star_tables *t, const struct cells *s,
                             (double)i * step / CELLS, far);
             for (int c = 0; c < 3; c++)
                 t->core[i][k + GLINT_STAR_CORE][c] =
-                    code_of(part * (light[c] - far[c]));
+                    encode_light(part * (light[c] - far[c]));
         }
 }
 
@@ -238,7 +238,7 @@ enum glint_status glint_star_set_core(struct glint_star_tables *tables,
                                       const struct glint_smear *smear,
                                       double airy_px)
 {
-    const int step = cells_of(psf);
+    const int step = count_cells(psf);
     struct cells s = {.psf = psf,
                       .smear = smear,
                       .airy_px = airy_px,
@@ -250,7 +250,7 @@ enum glint_status glint_star_set_core(struct glint_star_tables *tables,
         return GLINT_E_MEMORY;
     tables->core_per_pixel_q16 = 65536 * CELLS / step;
     set_cells(&s);
-    sum_up(&s);
+    sum_cells(&s);
     set_nodes(tables, &s, step);
     free(s.sum);
     return GLINT_OK;

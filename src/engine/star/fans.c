@@ -30,8 +30,8 @@ double glint_psf_softness(double soft, double q)
 }
 
 /* Sets RGB to the light at R pixels, times r^2, turned by OFF from a line. */
-static void direct(const struct glint_psf *p, double r, double off,
-                   double rgb[3])
+static void evaluate_direct(const struct glint_psf *p, double r, double off,
+                            double rgb[3])
 {
     const double at = GLINT_PI / p->n_blades + off;
 
@@ -52,7 +52,7 @@ static void direct(const struct glint_psf *p, double r, double off,
 /* Mixes the far field of a circle into RGB, which is light at R pixels, times
  * r^2: close to a circle the gaps between fans are as narrow as what blurs
  * them. */
-static void fade(const struct glint_psf *p, double r, double rgb[3])
+static void evaluate_fade(const struct glint_psf *p, double r, double rgb[3])
 {
     const double t =
         fmin(fmax((p->round - fade_from) / (fade_to - fade_from), 0), 1);
@@ -84,10 +84,10 @@ enum glint_status glint_fans_init(struct glint_psf *p)
         const int row = k / COLUMNS;
         const double r = first * exp2((double)row / PER_OCTAVE);
 
-        direct(p, r, half * (k % COLUMNS) / (COLUMNS - 1), p->far[k]);
+        evaluate_direct(p, r, half * (k % COLUMNS) / (COLUMNS - 1), p->far[k]);
         for (int c = 0; c < 3; c++)
             p->far[k][c] /= sum[c];
-        fade(p, r, p->far[k]);
+        evaluate_fade(p, r, p->far[k]);
     }
     return GLINT_OK;
 }

@@ -7,7 +7,7 @@
 #include "engine/star/smear.h"
 #include "glint/view.h"
 
-static void swap(double a[2], double b[2])
+static void swap_complex(double a[2], double b[2])
 {
     for (int k = 0; k < 2; k++) {
         const double t = a[k];
@@ -28,12 +28,12 @@ static void turn_bits(double (*at)[2], int n)
             j ^= bit;
         j |= bit;
         if (i < j)
-            swap(at[i], at[j]);
+            swap_complex(at[i], at[j]);
     }
 }
 
 /* Transforms N numbers; ROOT: the first N / 2 of the N roots of 1. */
-static void line(double (*at)[2], int n, const double (*root)[2])
+static void transform_line(double (*at)[2], int n, const double (*root)[2])
 {
     turn_bits(at, n);
     for (int half = 1; half < n; half *= 2)
@@ -65,7 +65,7 @@ enum glint_status glint_fourier(double (*at)[2], int n, int used)
         root[i][1] = -sin(2 * GLINT_PI * i / n);
     }
     for (int i = 0; i < used && root && column; i++)
-        line(at + (size_t)i * (size_t)n, n, (const double(*)[2])root);
+        transform_line(at + (size_t)i * (size_t)n, n, (const double(*)[2])root);
     for (int x = 0; x < n && root && column; x += ABREAST) {
         for (int y = 0; y < n; y++)
             for (int k = 0; k < ABREAST; k++)
@@ -73,7 +73,7 @@ enum glint_status glint_fourier(double (*at)[2], int n, int used)
                     column[k * n + y][c] =
                         at[(size_t)y * (size_t)n + (size_t)(x + k)][c];
         for (int k = 0; k < ABREAST; k++)
-            line(column + k * n, n, (const double(*)[2])root);
+            transform_line(column + k * n, n, (const double(*)[2])root);
         for (int y = 0; y < n; y++)
             for (int k = 0; k < ABREAST; k++)
                 for (int c = 0; c < 2; c++)

@@ -15,7 +15,7 @@ static const double span = 32;
 
 /* --------------------------------------------------------------- transform */
 
-static double sinc(double x)
+static double evaluate_sinc(double x)
 {
     const double t = GLINT_PI * x;
 
@@ -23,7 +23,7 @@ static double sinc(double x)
 }
 
 /* Returns Bessel's function of order 1 at X, as an integral over a period. */
-static double bessel1(double x)
+static double evaluate_bessel1(double x)
 {
     const int n = 32 + (int)(fabs(x) * 0.7);
     double sum = 0;
@@ -36,10 +36,10 @@ static double bessel1(double x)
     return sum / n;
 }
 
-static double circle(double q)
+static double transform_circle(double q)
 {
     const double x = 2 * GLINT_PI * q;
-    const double f = x < 1e-3 ? 1 - x * x / 8 : 2 * bessel1(x) / x;
+    const double f = x < 1e-3 ? 1 - x * x / 8 : 2 * evaluate_bessel1(x) / x;
 
     return f * f;
 }
@@ -70,7 +70,7 @@ static void set_sides(struct sides *p, int n, double rotation_deg)
 }
 
 /* Returns |F|^2 / area^2 of a polygon at (QX, QY). */
-static double polygon(const struct sides *p, double qx, double qy)
+static double transform_polygon(const struct sides *p, double qx, double qy)
 {
     const double q2 = qx * qx + qy * qy;
     double re = 0, im = 0;
@@ -80,7 +80,7 @@ static double polygon(const struct sides *p, double qx, double qy)
     for (int i = 0; i < p->n; i++) {
         const double u = qx * p->c[i] + qy * p->s[i];
         const double v = qy * p->c[i] - qx * p->s[i];
-        const double size = u * sinc(v * p->length);
+        const double size = u * evaluate_sinc(v * p->length);
         const double phase = 2 * GLINT_PI * u * p->apothem;
 
         re += size * sin(phase);
@@ -97,9 +97,9 @@ double glint_psf_transform(int n, double rotation_deg, double qx, double qy)
     struct sides sides;
 
     if (n == 0)
-        return circle(hypot(qx, qy));
+        return transform_circle(hypot(qx, qy));
     set_sides(&sides, n, rotation_deg);
-    return polygon(&sides, qx, qy);
+    return transform_polygon(&sides, qx, qy);
 }
 
 /* ---------------------------------------------------------------- spectrum */
@@ -130,7 +130,7 @@ static void set_profile(struct glint_psf *p)
         const double v = span * k / GLINT_PSF_PROFILE;
 
         for (int i = 0; i < GLINT_PSF_WAVES; i++) {
-            const double s = sinc(v / p->scale[i]);
+            const double s = evaluate_sinc(v / p->scale[i]);
 
             for (int c = 0; c < 3; c++)
                 p->profile[k][c] += p->weight[i][c] * s * s;
@@ -156,8 +156,8 @@ static void set_smooth(struct glint_psf *p)
         }
 }
 
-static void profile_of(const struct glint_psf *p, double v,
-                       const double (*table)[3], double rgb[3])
+static void interpolate_profile(const struct glint_psf *p, double v,
+                                const double (*table)[3], double rgb[3])
 {
     const double size =
         p->n_pair * p->edge * p->edge / (4 * GLINT_PI * GLINT_PI * p->area);
@@ -177,14 +177,14 @@ static void profile_of(const struct glint_psf *p, double v,
 
 void glint_psf_profile(const struct glint_psf *p, double v, double rgb[3])
 {
-    profile_of(p, v, (const double(*)[3])p->profile, rgb);
+    interpolate_profile(p, v, (const double(*)[3])p->profile, rgb);
 }
 
 /* -------------------------------------------------------------------- near */
 
 /* Returns a table of the transform: a row for each 1 / GLINT_PSF_STEPS of an
  * order of diffraction, and columns of angles; NULL if memory is short. */
-static double *transforms(const struct glint_psf *p, int n_rows)
+static double *tabulate_transforms(const struct glint_psf *p, int n_rows)
 {
     double *table =
         malloc((size_t)n_rows * (size_t)p->n_columns * sizeof *table);
@@ -206,8 +206,8 @@ static double *transforms(const struct glint_psf *p, int n_rows)
 
             table[i * p->n_columns + k] =
                 (p->fans       ? glint_arcs_transform(&p->arcs, q * x, q * y)
-                 : p->n_blades ? polygon(&sides, q * x, q * y)
-                               : circle(q)) *
+                 : p->n_blades ? transform_polygon(&sides, q * x, q * y)
+                               : transform_circle(q)) *
                 glint_psf_softness(p->soft, q);
         }
     }
@@ -243,7 +243,7 @@ static enum glint_status set_near(struct glint_psf *p)
                                            ORDERS * 0.7 * GLINT_PSF_STEPS)
                                : 1;
     p->near = calloc((size_t)p->n_rows * (size_t)p->n_columns, sizeof *p->near);
-    table = transforms(p, n_rows);
+    table = tabulate_transforms(p, n_rows);
     for (int i = 0; i < GLINT_PSF_WAVES && table && p->near; i++)
         add_wave(p, i, table);
     free(table);
@@ -362,8 +362,8 @@ static void add_edges(const struct glint_psf *p, double x, double y,
             (1 - (window ? window(v, self) : 0)) * u * u / (r2 * r2);
         double here[3];
 
-        profile_of(p, v, (const double(*)[3])(window ? p->smooth : p->profile),
-                   here);
+        interpolate_profile(
+            p, v, (const double(*)[3])(window ? p->smooth : p->profile), here);
         for (int c = 0; c < 3; c++)
             rgb[c] += part * here[c];
         *sum += last * slope;

@@ -23,13 +23,13 @@ struct totals {
 /* ------------------------------------------------------------------ fields */
 
 /* Returns the fraction of a cell that lies within the outline, DEPTH inside. */
-static double inside(double depth)
+static double compute_inside_fraction(double depth)
 {
     return fmin(fmax(depth / cell + 0.5, 0), 1);
 }
 
 /* Returns what a soft edge lets through DEPTH inside. */
-static double softness(double soft, double depth)
+static double compute_softness(double soft, double depth)
 {
     const double in = soft > 0 ? fmin(fmax(depth / soft, 0), 1) : 1;
 
@@ -44,12 +44,12 @@ static void set_row(const struct glint_dirt *d, int j, double (*at)[2],
         const double x = (i + 0.5 - 0.5 * HALF) * cell;
         const double y = (j + 0.5 - 0.5 * HALF) * cell;
         const double depth = glint_iris_depth(&d->sides, x, y);
-        const double part = inside(depth);
+        const double part = compute_inside_fraction(depth);
         double clear, light;
 
         if (part <= 0)
             continue;
-        clear = softness(d->iris.softness, fmax(depth, 0));
+        clear = compute_softness(d->iris.softness, fmax(depth, 0));
         light = d->through(d, x, y);
         at[i][0] = part * sqrt(light);
         at[i][1] = part * sqrt(clear);
@@ -65,17 +65,18 @@ static void set_row(const struct glint_dirt *d, int j, double (*at)[2],
 /* --------------------------------------------------------------- transform */
 
 /* Returns element (I, K) of the transform, counted from its middle. */
-static const double *element(double (*at)[2], int i, int k)
+static const double *compute_element(double (*at)[2], int i, int k)
 {
     return at[(size_t)((i + N) % N) * N + (size_t)((k + N) % N)];
 }
 
 /* Returns D at (I, K): G and O are the transforms of the real and the imaginary
  * part. */
-static double difference(double (*at)[2], int i, int k, const struct totals *t,
-                         double clear)
+static double compute_difference(double (*at)[2], int i, int k,
+                                 const struct totals *t, double clear)
 {
-    const double *a = element(at, i, k), *b = element(at, -i, -k);
+    const double *a = compute_element(at, i, k),
+                 *b = compute_element(at, -i, -k);
     const double g_re = a[0] + b[0], g_im = a[1] - b[1];
     const double o_re = a[1] + b[1], o_im = a[0] - b[0];
     const double unit = cell * cell * cell * cell / 4;
@@ -98,7 +99,8 @@ static void set_sums(struct glint_smear *s, double (*at)[2],
 
         row[0] = 0;
         for (int k = 0; k < N; k++) {
-            const double d = difference(at, i - HALF, k - HALF, t, s->clear);
+            const double d =
+                compute_difference(at, i - HALF, k - HALF, t, s->clear);
             const double q = step_q * hypot(i - HALF, k - HALF);
 
             along += d * step_q * step_q;
@@ -150,7 +152,7 @@ void glint_smear_finish(struct glint_smear *smear)
 /* ------------------------------------------------------------------- means */
 
 /* Returns the integral up to place (X, Y) of the sums. */
-static double sum_at(const struct glint_smear *s, double y, double x)
+static double sum_spectrum_at(const struct glint_smear *s, double y, double x)
 {
     const int i = (int)fmin(fmax(y, 0), N - 1),
               k = (int)fmin(fmax(x, 0), N - 1);
@@ -172,8 +174,10 @@ double glint_smear_mean(const struct glint_smear *s, double qx, double qy,
 
     if (fmax(fabs(qx), fabs(qy)) + wide > HALF * step_q - 1)
         return s->edge * pow(edge_q / fmax(q, edge_q), 3);
-    return (sum_at(s, y + h, x + h) - sum_at(s, y - h, x + h) -
-            sum_at(s, y + h, x - h) + sum_at(s, y - h, x - h)) /
+    return (sum_spectrum_at(s, y + h, x + h) -
+            sum_spectrum_at(s, y - h, x + h) -
+            sum_spectrum_at(s, y + h, x - h) +
+            sum_spectrum_at(s, y - h, x - h)) /
            (4 * wide * wide);
 }
 
@@ -189,10 +193,10 @@ double glint_smear_within(const struct glint_smear *s, double q)
         const double mid = HALF + 0.5, row = i + HALF;
 
         if (x > 0)
-            sum += sum_at(s, row + 1, mid + x / step_q) -
-                   sum_at(s, row, mid + x / step_q) -
-                   sum_at(s, row + 1, mid - x / step_q) +
-                   sum_at(s, row, mid - x / step_q);
+            sum += sum_spectrum_at(s, row + 1, mid + x / step_q) -
+                   sum_spectrum_at(s, row, mid + x / step_q) -
+                   sum_spectrum_at(s, row + 1, mid - x / step_q) +
+                   sum_spectrum_at(s, row, mid - x / step_q);
     }
     return sum + 2 * GLINT_PI * s->edge * edge_q * edge_q * edge_q *
                      (1 / held - 1 / far);

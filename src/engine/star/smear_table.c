@@ -42,7 +42,7 @@ double glint_smear_beyond(const struct glint_smear *smear,
 }
 
 /* Returns pixels from node to node of ring K. */
-static double step_of(int k)
+static double find_ring_step(int k)
 {
     return exp2(k) * GLINT_STAR_SMEAR_PX / HALF;
 }
@@ -52,7 +52,7 @@ static double ring_light(const struct glint_smear *smear,
                          const struct glint_psf *psf, double airy_px, int k,
                          double (*light)[3])
 {
-    const double step = step_of(k);
+    const double step = find_ring_step(k);
     double most = 0;
 
     for (int i = 0; i < NODES; i++) {
@@ -103,8 +103,8 @@ void glint_smear_tabled(const struct glint_star_smear *t, double x, double y,
         k++;
     if (k == RINGS)
         return;
-    at_x = turn * x / step_of(k) + HALF;
-    at_y = turn * y / step_of(k);
+    at_x = turn * x / find_ring_step(k) + HALF;
+    at_y = turn * y / find_ring_step(k);
     i = (int)fmin(fmax(at_x, 0), 2 * HALF - 1);
     j = (int)fmin(at_y, HALF - 1);
     a = at_x - i;

@@ -29,7 +29,7 @@ struct window {
     double end; /* pixels */
 };
 
-static double window_at(double v, const void *self)
+static double evaluate_window(double v, const void *self)
 {
     const struct window *w = self;
     const double t = fmin(fmax(2 * fabs(v) / w->end - 1, 0), 1);
@@ -37,7 +37,7 @@ static double window_at(double v, const void *self)
     return 0.5 + 0.5 * cos(GLINT_PI * t);
 }
 
-static int32_t held(double x, double most)
+static int32_t hold_value(double x, double most)
 {
     return (int32_t)lrint(fmin(fmax(x, -most), most));
 }
@@ -52,16 +52,16 @@ static void set_direction(struct glint_star_line *line, double angle,
 
     line->cos_q30 = (int32_t)lrint(c * 0x1p30);
     line->sin_q30 = (int32_t)lrint(s * 0x1p30);
-    line->cot_q16 = held(fabs(s) < 1e-9 ? 0 : 65536 * c / s, 0x1p28);
-    line->across_q16 = held(65536 / held_s, 0x1p28);
+    line->cot_q16 = hold_value(fabs(s) < 1e-9 ? 0 : 65536 * c / s, 0x1p28);
+    line->across_q16 = hold_value(65536 / held_s, 0x1p28);
     line->border_q16 =
-        held(65536 * cos(border) / fmax(sin(border), 1e-9), 0x1p28);
+        hold_value(65536 * cos(border) / fmax(sin(border), 1e-9), 0x1p28);
 }
 
 /* Sets RGB to the profile at V averaged over a pixel that is turned by ANGLE,
  * which is a convolution with two boxes. */
-static void filtered(const struct glint_psf *psf, const struct window *window,
-                     double angle, double v, double rgb[3])
+static void filter_psf(const struct glint_psf *psf, const struct window *window,
+                       double angle, double v, double rgb[3])
 {
     enum { N = 192 };
     const double a = fabs(cos(angle)), b = fabs(sin(angle));
@@ -77,7 +77,7 @@ static void filtered(const struct glint_psf *psf, const struct window *window,
 
         glint_psf_profile(psf, v + at, here);
         for (int c = 0; c < 3; c++)
-            rgb[c] += part * here[c] * window_at(v + at, window);
+            rgb[c] += part * here[c] * evaluate_window(v + at, window);
         total += part;
     }
     for (int c = 0; c < 3; c++)
@@ -92,7 +92,7 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
     double peak = 0x1p-60, rgb[3];
 
     for (int i = 0; i < psf->n_lines; i++) {
-        filtered(psf, window, glint_psf_angle(psf, i), 0, rgb);
+        filter_psf(psf, window, glint_psf_angle(psf, i), 0, rgb);
         peak = fmax(peak, glint_largest_channel(rgb) * 1.001);
     }
     t->step = glint_real_of(peak / 65535);
@@ -101,7 +101,7 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
 
         set_direction(&line[i], angle, fmod(angle + half, GLINT_PI));
         for (int k = 0; k < GLINT_STAR_PROFILE; k++) {
-            filtered(psf, window, angle, reach * k / GLINT_STAR_PROFILE, rgb);
+            filter_psf(psf, window, angle, reach * k / GLINT_STAR_PROFILE, rgb);
             for (int c = 0; c < 3; c++) {
                 line[i].profile[k][c] =
                     (uint16_t)lrint(fmin(rgb[c] / peak, 1) * 65535);
@@ -144,9 +144,9 @@ static void add_fans(const struct glint_psf *psf, double r, double off,
 
 /* Sets log2 of light times r^2 at ROW and COLUMN of the halo of a lamp of
  * radius RADIUS. */
-static void halo_at(const struct glint_psf *psf, const struct window *window,
-                    double reach, double radius, int row, int column,
-                    double log2_of[3])
+static void set_halo_node(const struct glint_psf *psf,
+                          const struct window *window, double reach,
+                          double radius, int row, int column, double log2_of[3])
 {
     const double r = exp2(2 + 0.25 * row);
     const double v = 0.25 * reach * (exp2(0.25 * column) - 1);
@@ -157,8 +157,8 @@ static void halo_at(const struct glint_psf *psf, const struct window *window,
     if (psf->fans)
         add_fans(psf, r, off, v, radius, rgb);
     else
-        glint_psf_far(psf, r * cos(angle), r * sin(angle), window_at, window,
-                      rgb);
+        glint_psf_far(psf, r * cos(angle), r * sin(angle), evaluate_window,
+                      window, rgb);
     for (int c = 0; c < 3; c++)
         log2_of[c] = log2(fmax(rgb[c] * r * r, 0x1p-60));
 }
@@ -172,7 +172,8 @@ static void set_halo_row(struct glint_star_tables *t,
     double log2_of[3];
 
     for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
-        halo_at(psf, window, t->reach_q8 / 256.0, radius, row, k, log2_of);
+        set_halo_node(psf, window, t->reach_q8 / 256.0, radius, row, k,
+                      log2_of);
         for (int c = 0; c < 3; c++) {
             const double steps = 2048 * log2_of[c] - t->halo_log2_q16 / 32.0;
 
@@ -191,7 +192,7 @@ static void set_halo(struct glint_star_tables *t, const struct glint_psf *psf,
 
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
         for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
-            halo_at(psf, window, reach, 0, i, k, log2_of);
+            set_halo_node(psf, window, reach, 0, i, k, log2_of);
             top = fmax(top, glint_largest_channel(log2_of));
         }
     t->halo_log2_q16 = (int32_t)lrint((top - 31.99) * 65536);

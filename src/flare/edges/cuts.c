@@ -31,8 +31,8 @@ static int half_sides(const struct glint_stop *stop)
 
 /* Returns 1 - (1 + r^2) / 2 at V in a round stop, minus its inset; clamped far
  * outside. */
-static int64_t disc_q16(const struct glint_stop *stop,
-                        const struct glint_vertex *v)
+static int64_t evaluate_disc_q16(const struct glint_stop *stop,
+                                 const struct glint_vertex *v)
 {
     const int64_t value_q16 =
         (((INT64_C(1) << 32) - radius2_q32(v)) >> 17) - stop->inset_q16;
@@ -44,8 +44,10 @@ static int64_t disc_q16(const struct glint_stop *stop,
  * glint_side_q16() is 0 or less. LEAST is the apothem minus half a unit of
  * _q16, as glint_side_q16() rounds. HALF is the number of pairs of parallel
  * sides, which are tested together; if it is 0, sides are tested one by one. */
-static inline uint64_t sides_of(const struct glint_stop *stop, int half,
-                                const struct glint_vertex *v, int64_t least_q46)
+static inline uint64_t find_outside_sides(const struct glint_stop *stop,
+                                          int half,
+                                          const struct glint_vertex *v,
+                                          int64_t least_q46)
 {
     const int n = half ? half : stop->n_blades;
     uint64_t sides = 0, opposite = 0;
@@ -62,8 +64,8 @@ static inline uint64_t sides_of(const struct glint_stop *stop, int half,
 }
 
 /* Returns a bit for each arc that V lies on or outside of. */
-static uint64_t arcs_of(const struct glint_stop *stop,
-                        const struct glint_vertex *v)
+static uint64_t find_outside_arcs(const struct glint_stop *stop,
+                                  const struct glint_vertex *v)
 {
     const int64_t disc_q16 = glint_disc_q16(v);
     uint64_t sides = 0;
@@ -90,10 +92,11 @@ void glint_cuts_row(const struct glint_stop *stop,
     for (int i = 0; i < n; i++) {
         const struct glint_vertex *v = &row[i];
 
-        sides[i] = stop->n_blades == 0           ? disc_q16(stop, v) <= 0
+        sides[i] = stop->n_blades == 0 ? evaluate_disc_q16(stop, v) <= 0
                    : radius2_q32(v) < within_q32 ? 0
-                   : stop->round_q30             ? arcs_of(stop, v)
-                                     : sides_of(stop, half, v, least_q46);
+                   : stop->round_q30
+                       ? find_outside_arcs(stop, v)
+                       : find_outside_sides(stop, half, v, least_q46);
         barrels[i] = (uint8_t)((v->barrel_q16[0] >= 1 << 16) +
                                2 * (v->barrel_q16[1] >= 1 << 16));
     }
@@ -111,12 +114,13 @@ int glint_cuts_count(struct glint_outside o)
 /* ------------------------------------------------------------------- parts */
 
 /* Returns the value of cut CUT at V, positive inside. */
-static int64_t cut_q16(const struct glint_stop *stop, int cut,
-                       const struct glint_vertex *v)
+static int64_t evaluate_cut_q16(const struct glint_stop *stop, int cut,
+                                const struct glint_vertex *v)
 {
     if (cut >= BARREL)
         return glint_barrel_q16(cut - BARREL, v);
-    return stop->n_blades ? glint_side_q16(stop, cut, v) : disc_q16(stop, v);
+    return stop->n_blades ? glint_side_q16(stop, cut, v)
+                          : evaluate_disc_q16(stop, v);
 }
 
 struct interval {
@@ -128,7 +132,8 @@ static void shorten_interval(const struct glint_stop *stop, struct interval *in,
                              int cut, const struct glint_vertex *a,
                              const struct glint_vertex *b)
 {
-    const int64_t fa = cut_q16(stop, cut, a), fb = cut_q16(stop, cut, b);
+    const int64_t fa = evaluate_cut_q16(stop, cut, a),
+                  fb = evaluate_cut_q16(stop, cut, b);
     const int end = fb <= 0; /* index of the end that is outside */
     int32_t t_q30;
 
@@ -192,7 +197,7 @@ struct plane {
     int64_t middle4, u2, v2;
 };
 
-static struct plane plane_of(const int64_t value[4])
+static struct plane fit_plane(const int64_t value[4])
 {
     return (struct plane){value[0] + value[1] + value[2] + value[3],
                           value[1] - value[0] + value[2] - value[3],
@@ -201,7 +206,7 @@ static struct plane plane_of(const int64_t value[4])
 
 /* Sets *Q16 to X / Y if the quotient lies in the cell or near it (-3/4 .. 3/4);
  * else returns 0. */
-static int near_q16(int64_t x, int64_t y, int64_t *q16)
+static int divide_in_cell_q16(int64_t x, int64_t y, int64_t *q16)
 {
     const int wide = bit_length(q_magnitude(x));
     const int down = wide > 45 ? wide - 45 : 0;
@@ -226,8 +231,8 @@ int glint_cuts_cross(const struct glint_stop *stop,
     for (int k = 0; k < 4; k++) {
         const struct glint_vertex *v = corner[k];
 
-        fa[k] = cut_q16(stop, a, v);
-        fb[k] = cut_q16(stop, b, v);
+        fa[k] = evaluate_cut_q16(stop, a, v);
+        fb[k] = evaluate_cut_q16(stop, b, v);
         most |=
             (uint64_t)(fa[k] ^ fa[k] >> 63) | (uint64_t)(fb[k] ^ fb[k] >> 63);
         x[k] = v->x_q8;
@@ -239,16 +244,18 @@ int glint_cuts_cross(const struct glint_stop *stop,
         fa[k] >>= down;
         fb[k] >>= down;
     }
-    pa = plane_of(fa);
-    pb = plane_of(fb);
+    pa = fit_plane(fa);
+    pb = fit_plane(fb);
     /* Both planes are 0: middle4 / 4 + u u2 / 2 + v v2 / 2 = 0, so 2 u u2 + 2 v
      * v2 = -middle4. */
     det = 2 * (pa.u2 * pb.v2 - pb.u2 * pa.v2);
-    if (!near_q16(pb.middle4 * pa.v2 - pa.middle4 * pb.v2, det, &u_q16) ||
-        !near_q16(pa.middle4 * pb.u2 - pb.middle4 * pa.u2, det, &v_q16))
+    if (!divide_in_cell_q16(pb.middle4 * pa.v2 - pa.middle4 * pb.v2, det,
+                            &u_q16) ||
+        !divide_in_cell_q16(pa.middle4 * pb.u2 - pb.middle4 * pa.u2, det,
+                            &v_q16))
         return 0;
-    px = plane_of(x);
-    py = plane_of(y);
+    px = fit_plane(x);
+    py = fit_plane(y);
     at_q8[0] = q_narrow(
         q_shift(px.middle4 * 32768 + px.u2 * u_q16 + px.v2 * v_q16, 17));
     at_q8[1] = q_narrow(

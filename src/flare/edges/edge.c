@@ -12,7 +12,7 @@
 /* Returns ACROSS / DOWN, rounded towards 0 with an error of at most 2^-31 of
  * the result plus one unit. DOWN must be above 0, both magnitudes below
  * 2^30. */
-static int64_t slope_of(int32_t across, int32_t down)
+static int64_t divide_slope(int32_t across, int32_t down)
 {
     const int up = q_up((uint32_t)down);
     const int64_t r = q_reciprocal((uint32_t)down << up);
@@ -33,7 +33,7 @@ int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
         .x_q8 = upper[0],
         .y_q8 = upper[1],
         .end_y_q8 = lower[1],
-        .slope_q40 = slope_of(lower[0] - upper[0], lower[1] - upper[1]),
+        .slope_q40 = divide_slope(lower[0] - upper[0], lower[1] - upper[1]),
         .left = up ? other : light,
         .right = up ? light : other};
     return 1;
@@ -52,7 +52,7 @@ enum visit { COUNT, PUT, SPAN };
 
 /* Returns the index, in a row of tiles, of the tile of column X; LAST is the
  * last column of the region. */
-static inline int tile_of(int x, int last, int log2)
+static inline int find_tile(int x, int last, int log2)
 {
     return (x < 0 ? 0 : x > last ? last : x) >> log2;
 }
@@ -84,8 +84,8 @@ static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
         const int low = q_smaller(x, next_x), high = q_larger(x, next_x);
 
         if (low <= last)
-            for (int k = tile_of(low, last, log2);
-                 k <= tile_of(high, last, log2); k++) {
+            for (int k = find_tile(low, last, log2);
+                 k <= find_tile(high, last, log2); k++) {
                 n++;
                 if (visit == PUT)
                     bins->ref[start[k]] = index;

@@ -36,7 +36,8 @@ struct run {
                    for linear light */
     int x0, x1; /* the tile's columns */
     int64_t light;
-    int64_t rise_q32; /* rise of the covered area per pixel, see rise_of() */
+    int64_t
+        rise_q32; /* rise of the covered area per pixel, see compute_rise() */
 };
 
 static inline void add_change(const struct run *r, enum mode mode, int x,
@@ -49,7 +50,8 @@ static inline void add_change(const struct run *r, enum mode mode, int x,
 }
 
 /* Returns AREA, at most one pixel, in the units of the sums. */
-static inline fast units(const struct run *r, enum mode mode, fast area_q16)
+static inline fast convert_area(const struct run *r, enum mode mode,
+                                fast area_q16)
 {
     const int less = mode == NARROW ? 8 : r->less;
 
@@ -83,8 +85,8 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
          * side */
         const fast far_q16 = (fast)((i > first ? ONE_Q16 : side_q16 - a_q16) +
                                     (i < last ? 0 : side_q16 - b_q16));
-        const fast area =
-            units(r, mode, low + (fast)((int64_t)(high - low) * far_q16 >> 17));
+        const fast area = convert_area(
+            r, mode, low + (fast)((int64_t)(high - low) * far_q16 >> 17));
 
         if (i >= r->x0)
             add_change(r, mode, i, area - before);
@@ -92,13 +94,14 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
         low = high;
     }
     if (last < r->x1 && last >= r->x0)
-        add_change(r, mode, last + 1, units(r, mode, height_q16) - before);
+        add_change(r, mode, last + 1,
+                   convert_area(r, mode, height_q16) - before);
 }
 
 /* Returns the rise of an edge, height _q16 / width _q16, with 32 additional
  * fraction bits. Edges so steep that they move by less than 2^-16 pixels per
  * 1/256 pixel of height get a smaller rise. */
-static int64_t rise_of(int64_t slope_q40)
+static int64_t compute_rise(int64_t slope_q40)
 {
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
     const int64_t least = INT64_C(1) << 24;
@@ -119,11 +122,11 @@ static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
     const int first = (int)(a_q16 >> 16);
     const fast far_q16 = ONE_Q16 - (a_q16 & 0xffff);
     const fast left_q16 = ONE_Q16 - (b_q16 & 0xffff);
-    const fast height = units(r, mode, height_q16);
+    const fast height = convert_area(r, mode, height_q16);
 
     if (first == b_q16 >> 16) {
         const int64_t area_q33 = (int64_t)height_q16 * (far_q16 + left_q16);
-        const fast area = units(r, mode, (fast)(area_q33 >> 17));
+        const fast area = convert_area(r, mode, (fast)(area_q33 >> 17));
 
         add_change(r, mode, first, area);
         add_change(r, mode, first + 1, height - area);
@@ -132,8 +135,9 @@ static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
         const int64_t rest_q33 =
             (int64_t)(height_q16 - low_q16) * (ONE_Q16 + left_q16);
         const fast one =
-            units(r, mode, (fast)((int64_t)low_q16 * far_q16 >> 17));
-        const fast two = units(r, mode, low_q16 + (fast)(rest_q33 >> 17));
+            convert_area(r, mode, (fast)((int64_t)low_q16 * far_q16 >> 17));
+        const fast two =
+            convert_area(r, mode, low_q16 + (fast)(rest_q33 >> 17));
 
         add_change(r, mode, first, one);
         add_change(r, mode, first + 1, two - one);
@@ -152,7 +156,7 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
     if (last < r->x0) { /* A piece left of the picture counts as one at the
                            picture's left side. */
         if (r->x0 == 0)
-            add_change(r, mode, 0, units(r, mode, height_q16));
+            add_change(r, mode, 0, convert_area(r, mode, height_q16));
     } else if (first >= r->x1) {
         return;
     } else if (first == last ||
@@ -193,8 +197,8 @@ static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
 
 /* Like add_rows(), but in each row the edge must cross only one or two pixels
  * of the tile. */
-static inline void add_rows_within(struct run r, enum mode mode, int n,
-                                   int64_t x_q40, int64_t step_q40, int stride)
+static inline void add_near_rows(struct run r, enum mode mode, int n,
+                                 int64_t x_q40, int64_t step_q40, int stride)
 {
     for (; n > 0; n--) {
         const fast a_q16 = (fast)(x_q40 >> 24);
@@ -213,9 +217,10 @@ struct part {
     int64_t x_q40; /* x of its upper end */
 };
 
-static inline struct part part_of(const struct glint_edge_sums *s,
-                                  enum mode mode, const struct glint_edge *e,
-                                  int64_t light, int channel)
+static inline struct part clip_edge_to_tile(const struct glint_edge_sums *s,
+                                            enum mode mode,
+                                            const struct glint_edge *e,
+                                            int64_t light, int channel)
 {
     const struct glint_box *t = &s->tile;
     const int32_t end_q8 = q_smaller(e->end_y_q8, t->y1 * 256);
@@ -237,7 +242,7 @@ static inline struct part part_of(const struct glint_edge_sums *s,
 }
 
 /* Returns the height, in 1/256 pixel, of the part of P within its first row. */
-static inline int32_t height_of(const struct part *p)
+static inline int32_t find_first_height(const struct part *p)
 {
     return q_smaller((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
 }
@@ -252,9 +257,9 @@ static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
     int n;
 
     if (low_q40 >> 40 != high_q40 >> 40)
-        p.run.rise_q32 = rise_of(e->slope_q40);
+        p.run.rise_q32 = compute_rise(e->slope_q40);
     if (p.y_q8 & 255) {
-        const int32_t height_q8 = height_of(&p);
+        const int32_t height_q8 = find_first_height(&p);
         const int64_t next_q40 = p.x_q40 + e->slope_q40 * height_q8;
 
         add_piece(&p.run, mode, p.x_q40, next_q40, height_q8 * 256);
@@ -272,7 +277,7 @@ static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
             !is_narrow)
             add_rows(p.run, mode, n, p.x_q40, step_q40, s->stride);
         else
-            add_rows_within(p.run, mode, n, p.x_q40, step_q40, s->stride);
+            add_near_rows(p.run, mode, n, p.x_q40, step_q40, s->stride);
         go_down(&p.run, mode, (ptrdiff_t)n * s->stride);
         p.x_q40 += n * step_q40;
         p.y_q8 += n * 256;
@@ -300,7 +305,7 @@ static inline void add_full_rows(struct run r, enum mode mode, int n,
                                  int64_t x_q40, int64_t step_q40, int stride)
 {
     const uint64_t end_q40 = (uint64_t)(r.x1 * ONE_Q40);
-    const fast full = units(&r, mode, ONE_Q16);
+    const fast full = convert_area(&r, mode, ONE_Q16);
 
     x_q40 += step_q40 / 2;
     if (r.x0 == 0 && (x_q40 < 0 || x_q40 + (n - 1) * step_q40 < 0)) {
@@ -332,11 +337,11 @@ static inline void add_whole_rows(const struct glint_edge_sums *s,
     p.x_q40 -= p.run.x0 * ONE_Q40;
     p.run.x1 -= p.run.x0;
     if (p.y_q8 & 255) {
-        const int32_t height_q8 = height_of(&p);
+        const int32_t height_q8 = find_first_height(&p);
         const int64_t step_q40 = e->slope_q40 * height_q8;
 
         add_whole(&p.run, mode, p.x_q40 + step_q40 / 2,
-                  units(&p.run, mode, height_q8 * 256));
+                  convert_area(&p.run, mode, height_q8 * 256));
         go_down(&p.run, mode, s->stride);
         p.x_q40 += step_q40;
         p.y_q8 += height_q8;
@@ -352,7 +357,7 @@ static inline void add_whole_rows(const struct glint_edge_sums *s,
     if (p.y_q8 < p.end_q8)
         add_whole(&p.run, mode,
                   p.x_q40 + e->slope_q40 * (p.end_q8 - p.y_q8) / 2,
-                  units(&p.run, mode, (p.end_q8 - p.y_q8) * 256));
+                  convert_area(&p.run, mode, (p.end_q8 - p.y_q8) * 256));
 }
 
 static int64_t coloured_q20(int32_t light, int32_t colour_q14)
@@ -365,7 +370,8 @@ static int64_t coloured_q20(int32_t light, int32_t colour_q14)
 
 /* Returns the change of light across E in one channel, with LESS of the 20
  * fraction bits dropped. */
-static int64_t step_of(const struct glint_edge *e, int32_t colour_q14, int less)
+static int64_t find_light_change(const struct glint_edge *e, int32_t colour_q14,
+                                 int less)
 {
     return q_shift(coloured_q20(e->right, colour_q14), less) -
            q_shift(coloured_q20(e->left, colour_q14), less);
@@ -389,11 +395,11 @@ static int64_t add_patch(const struct glint_edge_sums *s, enum mode mode,
 
 /* Adds the edges to the sums of MODE. Returns the sum of the magnitudes of all
  * changes of light, a bound on how far a sum can get from its start. */
-static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
-                                     enum mode mode,
-                                     const struct glint_edge *edge,
-                                     const struct glint_bundle *bundle,
-                                     const int32_t *ref, int n_refs)
+static WHOLLY_INLINE int64_t add_edges(const struct glint_edge_sums *s,
+                                       enum mode mode,
+                                       const struct glint_edge *edge,
+                                       const struct glint_bundle *bundle,
+                                       const int32_t *ref, int n_refs)
 {
     const int less = s->linear || s->fine ? 0 : 4;
     int64_t far[3] = {0, 0, 0}, most;
@@ -413,7 +419,8 @@ static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
             continue;
         }
         for (int c = 0; c < 3; c++) {
-            const int64_t step = rgb_q14[c] ? step_of(e, rgb_q14[c], less) : 0;
+            const int64_t step =
+                rgb_q14[c] ? find_light_change(e, rgb_q14[c], less) : 0;
 
             if (step == 0)
                 continue;
@@ -422,9 +429,10 @@ static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
                 return far[c]; /* The narrow sums could overflow in this tile;
                                   the caller uses the wide sums. */
             if (e->whole)
-                add_whole_rows(s, mode, e, part_of(s, mode, e, step, c));
+                add_whole_rows(s, mode, e,
+                               clip_edge_to_tile(s, mode, e, step, c));
             else
-                add_smooth(s, mode, e, part_of(s, mode, e, step, c));
+                add_smooth(s, mode, e, clip_edge_to_tile(s, mode, e, step, c));
         }
     }
     most = far[0] > far[1] ? far[0] : far[1];
@@ -454,12 +462,13 @@ void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
     if (!sums->linear)
         far = far_carry(sums);
     if (!sums->linear && far < most) {
-        far += add_all(sums, NARROW, edge, bundle, ref, n_refs) * INT64_C(256);
+        far +=
+            add_edges(sums, NARROW, edge, bundle, ref, n_refs) * INT64_C(256);
         sums->in_narrow = far + 2048 < most;
         if (sums->in_narrow)
             return;
         for (int i = 0; i < (3 << sums->tile_log2) * sums->stride; i++)
             sums->narrow[i] = 0;
     }
-    add_all(sums, WIDE, edge, bundle, ref, n_refs);
+    add_edges(sums, WIDE, edge, bundle, ref, n_refs);
 }

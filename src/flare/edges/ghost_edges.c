@@ -93,7 +93,7 @@ static void set_cell(const struct glint_ghost_edges *g, int i, int j,
 
 /* Returns twice the signed area of the triangle of corners I, I + 1 and I + 2.
  */
-static int64_t turn_q16(const struct glint_corners *c, int i)
+static int64_t compute_corner_area_q16(const struct glint_corners *c, int i)
 {
     const struct glint_vertex *a = c->at[i], *b = c->at[i + 1];
     const struct glint_vertex *d = c->at[(i + 2) & 3];
@@ -101,12 +101,15 @@ static int64_t turn_q16(const struct glint_corners *c, int i)
     return glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, d->x_q8, d->y_q8);
 }
 
-/* Returns the sign of the cell's area if the cell is convex, else 0. turn_q16()
- * of two opposite corners adds up to twice the area of the cell. */
-static int convexity(const struct glint_corners *c)
+/* Returns the sign of the cell's area if the cell is convex, else 0.
+ * compute_corner_area_q16() of two opposite corners adds up to twice the area
+ * of the cell. */
+static int find_convexity(const struct glint_corners *c)
 {
-    const int64_t one = turn_q16(c, 0), other = c->area2_q16 - one;
-    const int64_t two = turn_q16(c, 1), another = c->area2_q16 - two;
+    const int64_t one = compute_corner_area_q16(c, 0),
+                  other = c->area2_q16 - one;
+    const int64_t two = compute_corner_area_q16(c, 1),
+                  another = c->area2_q16 - two;
 
     if (one > 0 && other > 0 && two > 0 && another > 0)
         return 1;
@@ -272,7 +275,7 @@ static NEVER_INLINE void add_triangles(struct glint_ghost_edges *g,
 }
 
 /* Draws a cell that shares no side with its neighbours. TURN is its
- * convexity(). */
+ * find_convexity(). */
 static NEVER_INLINE void add_odd(struct glint_ghost_edges *g,
                                  const struct glint_ghost_cell *c,
                                  const struct glint_corners *corners, int turn)
@@ -334,7 +337,7 @@ static void add_chords(struct glint_ghost_edges *g,
     }
 }
 
-static int64_t mean_energy_q16(const struct glint_corners *c)
+static int64_t compute_mean_energy_q16(const struct glint_corners *c)
 {
     return ((int64_t)c->at[0]->energy_q16 + c->at[1]->energy_q16 +
             c->at[2]->energy_q16 + c->at[3]->energy_q16 + 2) >>
@@ -378,7 +381,7 @@ static void dim_cell(const struct glint_ghost_edges *g,
 /* Returns the light of the cell at (I, J) for the edges that it shares with its
  * neighbours, or 0 for cells that are drawn separately or not at all. Nearly
  * all cells lie wholly outside the visible part or wholly inside it. */
-static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
+static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
 {
     const struct glint_ghost_rows *r = g->rows;
     const uint64_t *s = r->sides[j & 1] + i, *t = r->sides[~j & 1] + i;
@@ -406,7 +409,7 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
         return 0;
     set_corners(g, i, j, &corners);
-    turn = convexity(&corners);
+    turn = find_convexity(&corners);
     cuts = any.sides || any.barrels ? glint_cuts_count(any) : 0;
     odd = turn == 0 || cuts > 2 ||
           (cuts && !g->transfer && !g->rays &&
@@ -419,7 +422,7 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
         add_odd(g, &cell, &corners, turn);
         return 0;
     }
-    energy_q16 = mean_energy_q16(&corners);
+    energy_q16 = compute_mean_energy_q16(&corners);
     if (g->stop->shade &&
         !g->stop->shade->method->cell(g, &corners, turn, cuts, &energy_q16))
         return 0;
@@ -452,8 +455,8 @@ static void add_shared(struct glint_ghost_edges *g,
         add_edge(g, part.end_q8[0], part.end_q8[1], light, other);
 }
 
-static struct glint_outside outside_at(const struct glint_ghost_edges *g, int i,
-                                       int j)
+static struct glint_outside find_outside_bits(const struct glint_ghost_edges *g,
+                                              int i, int j)
 {
     return (struct glint_outside){g->rows->sides[j & 1][i],
                                   g->rows->barrels[j & 1][i] & NODE_BARRELS};
@@ -465,8 +468,8 @@ static void add_level(struct glint_ghost_edges *g, int j, const int32_t *above,
 {
     for (int i = 0; i < g->bundle->n_cells; i++)
         if (above[i] != below[i])
-            add_shared(g, ghost_node(g, i, j), outside_at(g, i, j),
-                       ghost_node(g, i + 1, j), outside_at(g, i + 1, j),
+            add_shared(g, ghost_node(g, i, j), find_outside_bits(g, i, j),
+                       ghost_node(g, i + 1, j), find_outside_bits(g, i + 1, j),
                        below[i], above[i]);
 }
 
@@ -481,9 +484,9 @@ static void add_upright(struct glint_ghost_edges *g, int j,
         const int32_t behind = i < n ? light[i] : 0;
 
         if (before != behind)
-            add_shared(g, ghost_node(g, i, j), outside_at(g, i, j),
-                       ghost_node(g, i, j + 1), outside_at(g, i, j + 1), before,
-                       behind);
+            add_shared(g, ghost_node(g, i, j), find_outside_bits(g, i, j),
+                       ghost_node(g, i, j + 1), find_outside_bits(g, i, j + 1),
+                       before, behind);
     }
 }
 
@@ -502,7 +505,7 @@ void glint_ghost_emit_once(struct glint_ghost_edges *ghost)
 
         glint_ghost_set_nodes(ghost, j + 1);
         for (int i = 0; i < n; i++)
-            here[i] = light_at(ghost, i, j);
+            here[i] = find_cell_light(ghost, i, j);
         add_level(ghost, j, above, here);
         add_upright(ghost, j, here);
     }

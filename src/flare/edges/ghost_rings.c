@@ -15,7 +15,7 @@ static const uint16_t depth_q16[GLINT_SOFT_RINGS] = {
     34134, 36886, 39698, 42622, 45732, 49152, 53143, 58598};
 
 /* Returns log2 of X, rounded down and clamped to 0 .. 30. */
-static int log2_of(struct glint_real x)
+static int compute_log2(struct glint_real x)
 {
     const int64_t n = real_integer(x, 0, INT64_C(1) << 30);
 
@@ -40,7 +40,7 @@ static int rings_log2(const struct glint_ghost_edges *g)
         const struct glint_real soft = real_of(g->stop->shade->soft_q16, -16);
         const struct glint_real pixels2 = real_times(
             real_over(g->flux, g->irradiance), real_times(soft, soft));
-        const int pixels_log2 = log2_of(pixels2) / 2;
+        const int pixels_log2 = compute_log2(pixels2) / 2;
 
         log2 = pixels_log2 < log2 ? pixels_log2 : log2;
     }
@@ -49,7 +49,7 @@ static int rings_log2(const struct glint_ghost_edges *g)
 
 /* Moves the outline of STOP inwards by BY, in stop radii; returns 0 if no
  * opening is left. */
-static int shrink(struct glint_stop *stop, int32_t by_q16)
+static int shrink_stop(struct glint_stop *stop, int32_t by_q16)
 {
     if (stop->n_blades == 0)
         stop->inset_q16 =
@@ -93,8 +93,9 @@ void glint_rings_emit(struct glint_ghost_edges *g)
                 : (depth_q16[(at - 1) / 2] + depth_q16[at / 2]) / 2;
 
         ring = *whole;
-        if (!shrink(&ring, (int32_t)q_shift(
-                               (int64_t)whole->shade->soft_q16 * depth, 16)))
+        if (!shrink_stop(
+                &ring,
+                (int32_t)q_shift((int64_t)whole->shade->soft_q16 * depth, 16)))
             break;
         g->n_dropped = 0;
         glint_ghost_emit_once(g);

@@ -38,7 +38,7 @@ static struct glint_vertex *subtract_sags(const struct glint_ghost_edges *g,
 }
 
 /* Returns row J of the grid; it stays valid until row J + 2 is requested. */
-static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
+static const struct glint_vertex *find_row(struct glint_ghost_edges *g, int j)
 {
     const int n = g->bundle->n_cells;
     struct glint_ghost_rows *r = g->rows;
@@ -67,7 +67,7 @@ void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j)
     const int32_t top = g->top * 256, floor = g->height * 256;
     const int32_t right = g->width * 256;
 
-    g->row[j & 1] = row_of(g, j);
+    g->row[j & 1] = find_row(g, j);
     glint_cuts_row(g->stop, g->row[j & 1], n + 1, sides, barrels);
     for (int i = 0; i <= n; i++) {
         const struct glint_vertex *v = ghost_node(g, i, j);

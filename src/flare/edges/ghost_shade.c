@@ -12,17 +12,17 @@ enum { WHITE_LOG2 = 20 }; /* log2 of display white in _q20 */
 
 /* ------------------------------------------------------------------ tables */
 
-static int64_t size_of(int64_t x)
+static int64_t magnitude(int64_t x)
 {
     return x < 0 ? -x : x;
 }
 
-static int64_t larger(int64_t a, int64_t b)
+static int64_t max_int64(int64_t a, int64_t b)
 {
     return a > b ? a : b;
 }
 
-static int shift_of(const struct glint_shade *s, int level)
+static int find_level_shift(const struct glint_shade *s, int level)
 {
     return 17 - s->log2 + level;
 }
@@ -36,10 +36,10 @@ static int32_t clamp_to_table(int64_t at_q16)
 
 /* Returns the light at (X, Y), in stop radii, interpolated between the four
  * nodes around it. */
-static int32_t light_q15(const struct glint_shade *s, int level, int64_t x_q16,
-                         int64_t y_q16)
+static int32_t interpolate_light_q15(const struct glint_shade *s, int level,
+                                     int64_t x_q16, int64_t y_q16)
 {
-    const int shift = shift_of(s, level);
+    const int shift = find_level_shift(s, level);
     const int side = (1 << (s->log2 - level)) + 1;
     const int32_t one = 1 << shift, x = clamp_to_table(x_q16),
                   y = clamp_to_table(y_q16);
@@ -57,7 +57,7 @@ static int32_t light_q15(const struct glint_shade *s, int level, int64_t x_q16,
 static int rough_q8(const struct glint_shade *s, int level, int64_t x_q16,
                     int64_t y_q16)
 {
-    const int shift = shift_of(s, level);
+    const int shift = find_level_shift(s, level);
     const int side = (1 << (s->log2 - level)) + 1;
     const int32_t half = 1 << (shift - 1);
 
@@ -67,19 +67,19 @@ static int rough_q8(const struct glint_shade *s, int level, int64_t x_q16,
 
 /* Returns the level whose nodes are as far apart as the corners CORNER, or at
  * least half as far. */
-static int level_of(const struct glint_shade *s,
-                    const struct glint_vertex *const *corner)
+static int choose_level(const struct glint_shade *s,
+                        const struct glint_vertex *const *corner)
 {
     int64_t far = 0;
     int level;
 
     for (int k = 1; k < 4; k += 2) {
-        far = larger(far, size_of((int64_t)corner[k]->stop_x_q16 -
-                                  corner[0]->stop_x_q16));
-        far = larger(far, size_of((int64_t)corner[k]->stop_y_q16 -
-                                  corner[0]->stop_y_q16));
+        far = max_int64(far, magnitude((int64_t)corner[k]->stop_x_q16 -
+                                       corner[0]->stop_x_q16));
+        far = max_int64(far, magnitude((int64_t)corner[k]->stop_y_q16 -
+                                       corner[0]->stop_y_q16));
     }
-    level = bit_length((uint64_t)far) - 1 - shift_of(s, 0);
+    level = bit_length((uint64_t)far) - 1 - find_level_shift(s, 0);
     return level < 0 ? 0 : level < s->log2 ? level : s->log2 - 1;
 }
 
@@ -93,7 +93,7 @@ static int64_t tolerance_q20(const struct glint_ghost_edges *g,
     int64_t code_q20 = 9869;
 
     if (!g->coded)
-        return larger(light_q20 >> 7, 1);
+        return max_int64(light_q20 >> 7, 1);
     for (int k = WHITE_LOG2; k > log2 && code_q20 > 318; k--)
         code_q20 = code_q20 * 2 / 3;
     return code_q20;
@@ -159,8 +159,8 @@ static int set_map(struct glint_patch *p, const struct glint_vertex *const *at)
             slope_q24(b.stop_q16[k], a.x_q8, a.stop_q16[k], b.x_q8, det);
         int64_t from_q24;
 
-        if (size_of(across) > most_q24 || size_of(down) > most_q24 ||
-            size_of(sum_q16) > 1 << 24)
+        if (magnitude(across) > most_q24 || magnitude(down) > most_q24 ||
+            magnitude(sum_q16) > 1 << 24)
             return 0;
         from_q24 =
             sum_q16 * 64 + q_shift(across * (p->box.x0 * 256 + 128 - x_q8) +
@@ -198,8 +198,8 @@ static void set_level(struct glint_patch *p, const struct glint_shade *s)
     int64_t most = 1;
 
     for (int k = 0; k < 2; k++)
-        most = larger(
-            most, larger(size_of(p->across_q24[k]), size_of(p->down_q24[k])));
+        most = max_int64(most, max_int64(magnitude(p->across_q24[k]),
+                                         magnitude(p->down_q24[k])));
     p->level = bit_length((uint64_t)most) - 1 - (25 - s->log2);
     p->level = p->level < 0 ? 0 : p->level < s->log2 ? p->level : s->log2 - 1;
 }
@@ -254,8 +254,10 @@ static int pixels_log2(const struct glint_vertex *const *corner)
     int64_t far = 0;
 
     for (int k = 1; k < 4; k++) {
-        far = larger(far, size_of((int64_t)corner[k]->x_q8 - corner[0]->x_q8));
-        far = larger(far, size_of((int64_t)corner[k]->y_q8 - corner[0]->y_q8));
+        far = max_int64(far,
+                        magnitude((int64_t)corner[k]->x_q8 - corner[0]->x_q8));
+        far = max_int64(far,
+                        magnitude((int64_t)corner[k]->y_q8 - corner[0]->y_q8));
     }
     return bit_length((uint64_t)far >> 8) - 1;
 }
@@ -285,7 +287,7 @@ static int draw_cell(struct glint_ghost_edges *g, const struct glint_corners *c,
 {
     const struct glint_shade *s = g->stop->shade;
     const struct glint_vertex *const *corner = c->at;
-    const int level = s->log2 ? level_of(s, corner) : 0;
+    const int level = s->log2 ? choose_level(s, corner) : 0;
     const int64_t whole_q16 = *energy_q16;
     struct glint_patch p;
     int32_t light[4];
@@ -294,8 +296,8 @@ static int draw_cell(struct glint_ghost_edges *g, const struct glint_corners *c,
     if (!s->log2)
         return 1;
     for (int k = 0; k < 4; k++) {
-        light[k] =
-            light_q15(s, level, corner[k]->stop_x_q16, corner[k]->stop_y_q16);
+        light[k] = interpolate_light_q15(s, level, corner[k]->stop_x_q16,
+                                         corner[k]->stop_y_q16);
         sum += light[k];
     }
     *energy_q16 = q_shift(whole_q16 * sum, 17);
@@ -333,15 +335,15 @@ static void dim_corners(const struct glint_shade *shade,
                         struct glint_ghost_cell *c,
                         struct glint_vertex dimmed[4])
 {
-    const int level = shade->log2 ? level_of(shade, c->corner) : 0;
+    const int level = shade->log2 ? choose_level(shade, c->corner) : 0;
 
     for (int k = 0; k < 4 && shade->log2; k++) {
         dimmed[k] = *c->corner[k];
         if (!(c->at[k].barrels & NODE_LOST))
             dimmed[k].energy_q16 = (int32_t)q_shift(
-                (int64_t)dimmed[k].energy_q16 * light_q15(shade, level,
-                                                          dimmed[k].stop_x_q16,
-                                                          dimmed[k].stop_y_q16),
+                (int64_t)dimmed[k].energy_q16 *
+                    interpolate_light_q15(shade, level, dimmed[k].stop_x_q16,
+                                          dimmed[k].stop_y_q16),
                 15);
         c->corner[k] = &dimmed[k];
     }

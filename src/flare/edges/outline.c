@@ -42,7 +42,7 @@ static void set_side(const struct glint_stop *stop, int side,
 
 enum side { OUTSIDE, CUT, INSIDE };
 
-static enum side side_of(const int64_t *value, int n)
+static enum side classify_values(const int64_t *value, int n)
 {
     int inside = 0;
 
@@ -51,7 +51,7 @@ static enum side side_of(const int64_t *value, int n)
     return inside == n ? INSIDE : inside ? CUT : OUTSIDE;
 }
 
-static enum side worse(enum side a, enum side b)
+static enum side merge_sides(enum side a, enum side b)
 {
     return a < b ? a : b;
 }
@@ -65,7 +65,7 @@ static enum side barrel_side(const struct glint_corners *c)
 
         for (int i = 0; i < c->n; i++)
             value[i] = glint_barrel_q16(barrel, c->at[i]);
-        all = worse(all, side_of(value, c->n));
+        all = merge_sides(all, classify_values(value, c->n));
     }
     return all;
 }
@@ -81,12 +81,12 @@ static enum side disc_side(const struct glint_corners *c,
 
     for (int i = 0; i < c->n; i++)
         value[i] = glint_disc_q16(c->at[i]) - stop->inset_q16;
-    side = side_of(value, c->n);
+    side = classify_values(value, c->n);
     if (side != OUTSIDE)
         return side;
     for (int i = 0; i < c->n; i++)
         value[i] += 1 << 14;
-    return worse(CUT, side_of(value, c->n));
+    return merge_sides(CUT, classify_values(value, c->n));
 }
 
 static enum side stop_side(const struct glint_corners *c,
@@ -101,7 +101,7 @@ static enum side stop_side(const struct glint_corners *c,
         disc[i] = glint_disc_q16(c->at[i]);
     for (int side = 0; side < stop->n_blades && all != OUTSIDE; side++) {
         set_side(stop, side, c->at, c->n, disc, value);
-        all = worse(all, side_of(value, c->n));
+        all = merge_sides(all, classify_values(value, c->n));
     }
     return all;
 }
@@ -121,7 +121,8 @@ int glint_outline_classify(const struct glint_corners *corners,
 
 /* --------------------------------------------------------------------- cut */
 
-static int64_t value_at(const int64_t *value_q16, const struct glint_uv *p)
+static int64_t interpolate_value(const int64_t *value_q16,
+                                 const struct glint_uv *p)
 {
     return value_q16[0] + q_shift((value_q16[1] - value_q16[0]) * p->u_q28 +
                                       (value_q16[2] - value_q16[0]) * p->v_q28,
@@ -142,14 +143,14 @@ static void cut_one(struct glint_outline *o, const int64_t *value_q16)
     int64_t here, next;
     int n = 0;
 
-    if (o->n == 0 || side_of(value_q16, 3) == INSIDE)
+    if (o->n == 0 || classify_values(value_q16, 3) == INSIDE)
         return;
     o->uv[o->n] = o->uv[0];
-    here = value_at(value_q16, &o->uv[0]);
+    here = interpolate_value(value_q16, &o->uv[0]);
     for (int i = 0; i < o->n; i++, here = next) {
         const struct glint_uv *a = &o->uv[i], *b = &o->uv[i + 1];
 
-        next = value_at(value_q16, b);
+        next = interpolate_value(value_q16, b);
         if (here >= 0)
             o->kept[n++] = *a;
         if ((here >= 0) != (next >= 0))
@@ -177,7 +178,7 @@ static void cut_barrels(struct glint_outline *o,
 /* Returns the mean height over the triangle of (1 - r^2) / 2 above the plane
  * through its corners. At barycentric l it is half the sum of l_i l_j |s_i -
  * s_j|^2, and the mean of l_i l_j is 1/12. */
-static int64_t disc_lift_q16(const struct glint_vertex *const *at)
+static int64_t compute_disc_bulge_q16(const struct glint_vertex *const *at)
 {
     int64_t sum_q16 = 0;
 
@@ -198,7 +199,7 @@ static void cut_stop(struct glint_outline *o,
                      const struct glint_vertex *const *at,
                      const struct glint_stop *stop, int lowered)
 {
-    const int64_t lift_q16 = lowered ? 0 : disc_lift_q16(at);
+    const int64_t lift_q16 = lowered ? 0 : compute_disc_bulge_q16(at);
     const int64_t arc_lift_q16 =
         stop->round_q30 ? q_shift(lift_q16 * stop->round_q30, 30) : 0;
     int64_t disc[3] = {0}, value[3];
@@ -249,7 +250,7 @@ static void set_share(struct glint_outline *o,
     int64_t twice_q56 = 0, energy = 0;
 
     for (int i = 0; i < o->n; i++)
-        energy += value_at(energy_q16, &o->uv[i]);
+        energy += interpolate_value(energy_q16, &o->uv[i]);
     for (int i = 1; i + 1 < o->n; i++) {
         const struct glint_uv *a = &o->uv[i], *b = &o->uv[i + 1];
 
@@ -303,7 +304,7 @@ void glint_outline_whole(struct glint_outline *outline,
 /* Lengthens the strip from A to B to the min length. The first coordinate is
  * along the strip; A's must not be larger than B's. Returns twice the strip's
  * area, q32. */
-static int64_t strip(int64_t a[2], int64_t b[2])
+static int64_t lengthen_strip(int64_t a[2], int64_t b[2])
 {
     const int64_t middle = (a[0] + b[0]) >> 1;
 
@@ -329,7 +330,7 @@ int64_t glint_outline_widen_q32(struct glint_outline *o)
     flat = x[right] - x[left] > y[bottom] - y[top];
     a[0] = flat ? x[left] : y[top], a[1] = flat ? y[left] : x[top];
     b[0] = flat ? x[right] : y[bottom], b[1] = flat ? y[right] : x[bottom];
-    area2_q32 = strip(a, b);
+    area2_q32 = lengthen_strip(a, b);
     o->n = 4;
     for (int i = 0; i < 4; i++) {
         /* Corners go round the same way in both cases: left, right, right,

@@ -21,7 +21,7 @@ static void set_word(struct glint_edge *e, int i, int32_t word)
             (int64_t)((both & UINT32_MAX) | (uint64_t)(uint32_t)word << 32);
 }
 
-static int32_t word_of(const struct glint_edge *e, int i)
+static int32_t read_word(const struct glint_edge *e, int i)
 {
     const int32_t at[5] = {e->x_q8, e->y_q8, e->end_y_q8, e->left, e->right};
 
@@ -80,17 +80,17 @@ void glint_patch_read(struct glint_patch *p, const struct glint_edge *edge)
                                   &p->down_q24[i]};
 
         for (int j = 0; j < 3; j++, k++)
-            *word[j] = word_of(&e[k / WORDS], k % WORDS);
+            *word[j] = read_word(&e[k / WORDS], k % WORDS);
     }
-    p->n = word_of(&e[k / WORDS], k % WORDS);
+    p->n = read_word(&e[k / WORDS], k % WORDS);
     k++;
     p->clear = p->n & 1;
     p->level = p->n >> 1 & 31;
     p->n >>= 6;
     for (int i = 0; i < p->n; i++) {
-        p->x_q8[i] = word_of(&e[k / WORDS], k % WORDS);
+        p->x_q8[i] = read_word(&e[k / WORDS], k % WORDS);
         k++;
-        p->y_q8[i] = word_of(&e[k / WORDS], k % WORDS);
+        p->y_q8[i] = read_word(&e[k / WORDS], k % WORDS);
         k++;
     }
 }

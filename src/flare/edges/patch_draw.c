@@ -53,7 +53,7 @@ struct draw {
     int nodes, shift;     /* nodes per side; log2 of their distance, _q24 */
     struct glint_box box; /* the part of the patch within the tile */
     /* The current row: the sides that cut its pixels, and for each pixel and
-     * one more the difference from the edges' light, see area_of(). */
+     * one more the difference from the edges' light, see convert_to_area(). */
     int n_parts;
     struct part part[GLINT_OUTLINE_CORNERS];
     int32_t area[MOST_TILE + 2 * RUN];
@@ -61,7 +61,7 @@ struct draw {
 
 STATIC_ASSERT(sizeof(struct draw) <= GLINT_PATCH_SCRATCH);
 
-static int32_t size_of(int32_t x)
+static int32_t magnitude(int32_t x)
 {
     return x < 0 ? -x : x;
 }
@@ -83,10 +83,10 @@ static void set_side(struct side *s, const struct draw *d, int i)
     s->down_q16 = (int32_t)q_divide(dx * ONE_Q16, all);
     s->at_q24 = (d->box.x0 * 256 + 128 - p->x_q8[i]) * (int64_t)s->across_q16 +
                 (d->box.y0 * 256 + 128 - p->y_q8[i]) * (int64_t)s->down_q16;
-    s->less_q16 = q_smaller(size_of(s->across_q16), size_of(s->down_q16));
+    s->less_q16 = q_smaller(magnitude(s->across_q16), magnitude(s->down_q16));
     larger_q16 = q_larger(ONE_Q16 - s->less_q16, HALF_Q16);
     s->larger_q16 = (int32_t)q_divide(INT64_C(1) << 32, larger_q16);
-    if (size_of(s->across_q16) > STEEP_Q16) {
+    if (magnitude(s->across_q16) > STEEP_Q16) {
         s->column_q16 =
             q_divide(-((s->at_q24 >> 8) + HALF_Q16) * ONE_Q16, s->across_q16);
         s->step_q16 = q_divide(-(int64_t)s->down_q16 * ONE_Q16, s->across_q16);
@@ -99,7 +99,7 @@ static void set_side(struct side *s, const struct draw *d, int i)
 
 /* Returns the fraction of a pixel inside S; DISTANCE is the function of S at
  * the pixel's middle. */
-static int32_t share_q16(const struct side *s, int64_t distance_q16)
+static int32_t compute_share_q16(const struct side *s, int64_t distance_q16)
 {
     const int upper = distance_q16 > 0;
     /* distance of the side from the nearer extreme corner of the pixel */
@@ -117,7 +117,7 @@ static int32_t share_q16(const struct side *s, int64_t distance_q16)
 }
 
 /* Returns the fraction of pixel X of the row that lies in the patch. */
-static int32_t cover_q16(const struct draw *d, int x)
+static int32_t compute_cover_q16(const struct draw *d, int x)
 {
     int64_t cover_q16 = ONE_Q16;
 
@@ -126,7 +126,7 @@ static int32_t cover_q16(const struct draw *d, int x)
         const int64_t at_q16 = p->at_q16 + (int64_t)x * p->side->across_q16;
 
         if (at_q16 < HALF_Q16)
-            cover_q16 = cover_q16 * share_q16(p->side, at_q16) >> 16;
+            cover_q16 = cover_q16 * compute_share_q16(p->side, at_q16) >> 16;
     }
     return (int32_t)cover_q16;
 }
@@ -140,8 +140,8 @@ static int32_t held_q24(int32_t at_q24)
 
 /* Returns the light of the shade at a position, interpolated between the four
  * nodes around it. */
-static inline int32_t light_q15(const struct draw *d, int32_t s_q24,
-                                int32_t t_q24)
+static inline int32_t interpolate_light_q15(const struct draw *d, int32_t s_q24,
+                                            int32_t t_q24)
 {
     const uint32_t x = (uint32_t)held_q24(s_q24), y = (uint32_t)held_q24(t_q24);
     const uint32_t u = x >> (d->shift - 8) & 255, v = y >> (d->shift - 8) & 255;
@@ -159,7 +159,7 @@ struct place {
                            matter */
 };
 
-static struct place place_of(const struct draw *d, int y, int x)
+static struct place find_stop_place(const struct draw *d, int y, int x)
 {
     const struct glint_patch *p = &d->patch;
     const uint32_t dx = (uint32_t)(d->box.x0 - p->box.x0 + x);
@@ -175,7 +175,7 @@ static struct place place_of(const struct draw *d, int y, int x)
 
 /* Returns by how much LIGHT differs from the light that edges give a pixel, in
  * units of the sums. */
-static inline int32_t area_of(const struct draw *d, int32_t light_q15)
+static inline int32_t convert_to_area(const struct draw *d, int32_t light_q15)
 {
     const int32_t off_q15 = light_q15 - d->patch.clear * 32768;
 
@@ -201,13 +201,14 @@ static int is_even(const struct draw *d, struct place at)
     return d->patch.clear ? node[0] >= 32766 : node[0] <= 2;
 }
 
-static inline int32_t area_at(const struct draw *d, const struct place *at)
+static inline int32_t compute_pixel_area(const struct draw *d,
+                                         const struct place *at)
 {
-    return area_of(
-        d, light_q15(d, (int32_t)at->at_q24[0], (int32_t)at->at_q24[1]));
+    return convert_to_area(d, interpolate_light_q15(d, (int32_t)at->at_q24[0],
+                                                    (int32_t)at->at_q24[1]));
 }
 
-static inline void go_on(struct place *at, const uint32_t by_q24[2])
+static inline void advance_place(struct place *at, const uint32_t by_q24[2])
 {
     at->at_q24[0] += by_q24[0];
     at->at_q24[1] += by_q24[1];
@@ -218,11 +219,11 @@ static inline void go_on(struct place *at, const uint32_t by_q24[2])
  * and means between them. Returns nonzero if any area is nonzero. */
 static int32_t add_run(struct draw *d, struct place at, int x)
 {
-    int32_t any = 0, area = area_at(d, &at);
+    int32_t any = 0, area = compute_pixel_area(d, &at);
 
     if (d->sums->linear) {
-        for (int i = 0; i < RUN; i++, go_on(&at, d->once_q24)) {
-            d->area[x + i] = area_at(d, &at);
+        for (int i = 0; i < RUN; i++, advance_place(&at, d->once_q24)) {
+            d->area[x + i] = compute_pixel_area(d, &at);
             any |= d->area[x + i];
         }
         return any;
@@ -230,8 +231,8 @@ static int32_t add_run(struct draw *d, struct place at, int x)
     for (int i = 0; i < RUN; i += 2) {
         int32_t next;
 
-        go_on(&at, d->twice_q24);
-        next = area_at(d, &at);
+        advance_place(&at, d->twice_q24);
+        next = compute_pixel_area(d, &at);
         d->area[x + i] = area;
         d->area[x + i + 1] = (area + next) >> 1;
         any |= area | next;
@@ -248,7 +249,7 @@ static int add_inside(struct draw *d, int y, int from, int end)
     int any = 0;
 
     for (int x = from & ~(RUN - 1); x < end; x += RUN) {
-        const struct place at = place_of(d, y, x);
+        const struct place at = find_stop_place(d, y, x);
 
         if (d->run_q15 && is_even(d, at))
             for (int i = 0; i < RUN; i++)
@@ -273,9 +274,10 @@ static int set_row(struct draw *d, int y, int from, int end)
 
     if (!add_inside(d, y, from, end))
         return 0;
-    for (; x < last && (cover = cover_q16(d, x)) < ONE_Q16; x++)
+    for (; x < last && (cover = compute_cover_q16(d, x)) < ONE_Q16; x++)
         scale_area(d, x, cover);
-    for (; last > x && (cover = cover_q16(d, last - 1)) < ONE_Q16; last--)
+    for (; last > x && (cover = compute_cover_q16(d, last - 1)) < ONE_Q16;
+         last--)
         scale_area(d, last - 1, cover);
     d->area[end] = 0;
     return 1;

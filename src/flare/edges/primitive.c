@@ -5,7 +5,7 @@
 #include "base/divide.h"
 #include "base/q.h"
 
-static int clamp(int x, int max)
+static int clamp_to_max(int x, int max)
 {
     return x < 0 ? 0 : x > max ? max : x;
 }
@@ -55,10 +55,10 @@ struct glint_box glint_corners_reach(const struct glint_corners *corners,
     const struct glint_box e = extent_q8(corners);
 
     return (struct glint_box){
-        clamp((e.x0 - grow) >> GLINT_VERTEX_FRAC, width),
-        clamp((e.y0 - grow) >> GLINT_VERTEX_FRAC, height),
-        clamp(((e.x1 + grow) >> GLINT_VERTEX_FRAC) + 1, width),
-        clamp(((e.y1 + grow) >> GLINT_VERTEX_FRAC) + 1, height)};
+        clamp_to_max((e.x0 - grow) >> GLINT_VERTEX_FRAC, width),
+        clamp_to_max((e.y0 - grow) >> GLINT_VERTEX_FRAC, height),
+        clamp_to_max(((e.x1 + grow) >> GLINT_VERTEX_FRAC) + 1, width),
+        clamp_to_max(((e.y1 + grow) >> GLINT_VERTEX_FRAC) + 1, height)};
 }
 
 /* Returns the light MANTISSA * 2^UP, clamped to LIMIT; adds 1 to *N_HELD if it

@@ -31,7 +31,7 @@ static int more_bits(const struct glint_edge_sums *s)
     return s->fine ? 12 : 8;
 }
 
-static uint16_t rounded_q16(int64_t sum, int more)
+static uint16_t round_to_q16(int64_t sum, int more)
 {
     return (uint16_t)q_clamp_sat((sum >> more) + (sum >> (more - 1) & 1), 0,
                                  65535);
@@ -45,7 +45,7 @@ static void wide_light(uint64_t *change, int64_t *carry, int n, int more,
     for (int x = 0; x < n; x++) {
         sum += change[x];
         change[x] = 0;
-        light_q16[x] = rounded_q16((int64_t)sum, more);
+        light_q16[x] = round_to_q16((int64_t)sum, more);
     }
     *carry = (int64_t)sum;
 }
@@ -64,7 +64,7 @@ int glint_edge_dark(const struct glint_edge_sums *sums, int row)
 /* Fills a row with constant light; returns whether the light is above 0. */
 static int even_light(int64_t carry, int n, int more, uint16_t *light_q16)
 {
-    const uint16_t light = rounded_q16(carry, more);
+    const uint16_t light = round_to_q16(carry, more);
 
     for (int x = 0; x < n; x++)
         light_q16[x] = light;

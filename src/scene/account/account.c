@@ -72,9 +72,9 @@ static void count_lit(const struct glint_scene *s,
 
 /* Continues along RAY from SURFACE, and counts the surface that it meets and
  * shades. Returns 0 if it meets none. */
-static int go_on(const struct glint_scene *s, struct glint_scene_ray *ray,
-                 struct glint_met_surface *surface,
-                 struct glint_scene_part *part)
+static int follow_ray(const struct glint_scene *s, struct glint_scene_ray *ray,
+                      struct glint_met_surface *surface,
+                      struct glint_scene_part *part)
 {
     const struct glint_met_surface from = *surface;
     struct glint_met met;
@@ -100,12 +100,12 @@ static void count_bounces(const struct glint_scene *s,
 
     if (surface->material->reflect_q15) {
         glint_mirror(ray->toward_q30, surface->normal_q30, on.toward_q30);
-        go_on(s, &on, &at, part);
+        follow_ray(s, &on, &at, part);
         at = *surface;
         on = *ray;
     }
     for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++)
-        if (!go_on(s, &on, &at, part))
+        if (!follow_ray(s, &on, &at, part))
             return;
 }
 
@@ -226,7 +226,7 @@ static enum glint_scene_fate fate_unseen(const struct glint_placed *p)
 }
 
 /* Returns whether the ray through the middle of pixel (X, Y) meets object I. */
-static int meets(const struct glint_scene *s, uint32_t i, int x, int y)
+static int meets_object(const struct glint_scene *s, uint32_t i, int x, int y)
 {
     struct glint_met met = {.t = GLINT_FAR};
     struct glint_scene_ray ray;
@@ -251,7 +251,7 @@ static void find_cover(const struct account *a, uint32_t i)
         for (int x = b.x0; x < b.x1; x++) {
             int other;
 
-            if (!meets(s, i, x, y))
+            if (!meets_object(s, i, x, y))
                 continue;
             any = 1;
             other = a->seen ? a->seen[(ptrdiff_t)y * s->cfg.width + x] : -1;
@@ -276,7 +276,7 @@ static void set_fate(const struct account *a, uint32_t i)
 
 /* ------------------------------------------------------------------- whole */
 
-static void clear(const struct account *a)
+static void clear_counts(const struct account *a)
 {
     const struct glint_scene *s = a->scene;
     const ptrdiff_t n = (ptrdiff_t)s->cfg.width * s->cfg.height;
@@ -296,7 +296,7 @@ void glint_scene_account(struct glint_scene *scene,
     const struct glint_bins *bins = &scene->bins;
     const int n_tiles = bins->tiles_x * bins->tiles_y;
 
-    clear(&a);
+    clear_counts(&a);
     for (int tile = 0; tile < n_tiles; tile++)
         count_tile(&a, &scene->worker[0], glint_bins_tile(bins, tile));
     for (int32_t i = 0; scene->has_triangles && i < bins->start[n_tiles]; i++)

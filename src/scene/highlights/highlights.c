@@ -54,8 +54,8 @@ enum { UNSEEN = -2, END = -1 };
 
 /* ------------------------------------------------------------------- light */
 
-static struct glint_highlight_state *carve(const struct glint_scene *scene,
-                                           struct glint_arena *arena)
+static struct glint_highlight_state *
+carve_highlights(const struct glint_scene *scene, struct glint_arena *arena)
 {
     struct glint_highlight_state measured;
     struct glint_highlight_state *placed =
@@ -72,14 +72,15 @@ static struct glint_highlight_state *carve(const struct glint_scene *scene,
     return placed;
 }
 
-static void begin(struct glint_highlight_state *b)
+static void clear_cells(struct glint_highlight_state *b)
 {
     for (int i = 0; i < b->across * b->down; i++)
         b->cell[i] = (struct glint_highlight_cell){0};
 }
 
-static void note(struct glint_highlight_state *b, uint32_t object, int32_t x_q8,
-                 int32_t y_q8, const int32_t rgb_q15[3], int share_q4)
+static void add_sample(struct glint_highlight_state *b, uint32_t object,
+                       int32_t x_q8, int32_t y_q8, const int32_t rgb_q15[3],
+                       int share_q4)
 {
     const int64_t light_q15 =
         q_shift(INT64_C(6966) * rgb_q15[0] + INT64_C(23436) * rgb_q15[1] +
@@ -119,7 +120,7 @@ static void add_cell(const struct glint_highlight_cell *c, struct gathered *g)
 
 /* Appends the neighbours of square I that have light and are in no list to the
  * list that ends with LAST; returns the new last square. */
-static int put_around(struct glint_highlight_state *b, int i, int last)
+static int append_neighbours(struct glint_highlight_state *b, int i, int last)
 {
     const int x = i % b->across, y = i / b->across;
 
@@ -137,8 +138,8 @@ static int put_around(struct glint_highlight_state *b, int i, int last)
 }
 
 /* Sets AT to the middle of square I, pixels q8. */
-static void middle_of(const struct glint_highlight_state *b, int i,
-                      int32_t at[2])
+static void find_cell_middle(const struct glint_highlight_state *b, int i,
+                             int32_t at[2])
 {
     const struct glint_highlight_cell *c = &b->cell[i];
     const int corner[2] = {i % b->across * SIDE_Q8, i / b->across * SIDE_Q8};
@@ -149,8 +150,8 @@ static void middle_of(const struct glint_highlight_state *b, int i,
 }
 
 /* Returns the weight of square C in a highlight of flux FLUX_Q19. */
-static uint64_t weight_of(const struct glint_highlight_cell *c,
-                          int64_t flux_q19)
+static uint64_t compute_weight(const struct glint_highlight_cell *c,
+                               int64_t flux_q19)
 {
     const int up = q_up((uint64_t)flux_q19);
     const int down = q_larger(0, 32 - WEIGHT_LOG2 - up);
@@ -165,10 +166,10 @@ static void set_middle(const struct glint_highlight_state *b,
     uint64_t weight = 0, at[2] = {0, 0};
 
     for (int i = g->first; i != END; i = b->next[i]) {
-        const uint64_t w = weight_of(&b->cell[i], g->flux_q19);
+        const uint64_t w = compute_weight(&b->cell[i], g->flux_q19);
         int32_t middle[2];
 
-        middle_of(b, i, middle);
+        find_cell_middle(b, i, middle);
         weight += w;
         for (int k = 0; k < 2; k++)
             at[k] += w * (uint64_t)middle[k];
@@ -179,7 +180,7 @@ static void set_middle(const struct glint_highlight_state *b,
 
 /* Gathers the highlight that contains square I. The square must be in no
  * list. */
-static struct gathered gather(struct glint_highlight_state *b, int i)
+static struct gathered gather_highlight(struct glint_highlight_state *b, int i)
 {
     struct gathered g = {.first = i};
     int last = i;
@@ -187,7 +188,7 @@ static struct gathered gather(struct glint_highlight_state *b, int i)
     b->next[i] = END;
     for (int at = i; at != END; at = b->next[at]) {
         add_cell(&b->cell[at], &g);
-        last = put_around(b, at, last);
+        last = append_neighbours(b, at, last);
     }
     set_middle(b, &g);
     return g;
@@ -197,7 +198,8 @@ static struct gathered gather(struct glint_highlight_state *b, int i)
 
 /* Inserts G into the list of the N brightest so far, at most KEPT; returns the
  * new number. Equal highlights stay in the order in which they were found. */
-static int keep(struct gathered *kept, int n, const struct gathered *g)
+static int insert_brightest(struct gathered *kept, int n,
+                            const struct gathered *g)
 {
     int i = n < KEPT ? n : KEPT - 1;
 
@@ -218,8 +220,8 @@ static int is_near(const struct gathered *a, const struct gathered *b)
 }
 
 /* Merges FROM and its list of squares into TO. */
-static void join(struct glint_highlight_state *b, struct gathered *to,
-                 const struct gathered *from)
+static void merge_highlights(struct glint_highlight_state *b,
+                             struct gathered *to, const struct gathered *from)
 {
     int last = to->first;
 
@@ -237,7 +239,7 @@ static void join(struct glint_highlight_state *b, struct gathered *to,
     set_middle(b, to);
 }
 
-static int drop(struct gathered *kept, int n, int i)
+static int remove_highlight(struct gathered *kept, int n, int i)
 {
     for (; i + 1 < n; i++)
         kept[i] = kept[i + 1];
@@ -246,17 +248,17 @@ static int drop(struct gathered *kept, int n, int i)
 
 /* Merges the first pair of the *N highlights that are near each other, and
  * sorts the result by brightness. Returns whether there was such a pair. */
-static int join_two(struct glint_highlight_state *b, struct gathered *kept,
-                    int *n)
+static int merge_first_pair(struct glint_highlight_state *b,
+                            struct gathered *kept, int *n)
 {
     for (int i = 0; i < *n; i++)
         for (int k = i + 1; k < *n; k++)
             if (is_near(&kept[i], &kept[k])) {
                 struct gathered both = kept[i];
 
-                join(b, &both, &kept[k]);
-                *n = drop(kept, drop(kept, *n, k), i);
-                *n = keep(kept, *n, &both);
+                merge_highlights(b, &both, &kept[k]);
+                *n = remove_highlight(kept, remove_highlight(kept, *n, k), i);
+                *n = insert_brightest(kept, *n, &both);
                 return 1;
             }
     return 0;
@@ -271,19 +273,19 @@ struct spread {
 
 /* Returns the variances of the middles of G's squares, plus the mean variance
  * within squares, taken as isotropic. */
-static struct spread spread_of(const struct glint_highlight_state *b,
-                               const struct gathered *g)
+static struct spread compute_spread(const struct glint_highlight_state *b,
+                                    const struct gathered *g)
 {
     int64_t x = 0, y = 0, xy = 0, within = 0;
     uint64_t weight = 0;
 
     for (int i = g->first; i != END; i = b->next[i]) {
         const struct glint_highlight_cell *c = &b->cell[i];
-        const int64_t w = (int64_t)weight_of(c, g->flux_q19);
+        const int64_t w = (int64_t)compute_weight(c, g->flux_q19);
         int32_t middle[2];
         int64_t off[2], own;
 
-        middle_of(b, i, middle);
+        find_cell_middle(b, i, middle);
         for (int k = 0; k < 2; k++) /* below 2^17, q4 */
             off[k] = (middle[k] - g->at_q8[k]) / 16;
         own = glint_ratio((uint64_t)c->square_q35, (uint64_t)c->flux_q19);
@@ -358,7 +360,7 @@ static void set_spot(const struct glint_highlight_state *b,
                      struct glint_scene_highlight *found)
 {
     struct glint_spot *spot = &found->spot;
-    const struct spread spread = spread_of(b, g);
+    const struct spread spread = compute_spread(b, g);
     const int64_t max_q16 = INT64_C(1) << 42;
 
     *spot = (struct glint_spot){.x_q8 = g->at_q8[0],
@@ -384,12 +386,12 @@ static int find_highlights(const struct glint_scene *scene,
         b->next[i] = UNSEEN;
     for (int i = 0; i < b->across * b->down; i++)
         if (b->cell[i].flux_q19 > 0 && b->next[i] == UNSEEN) {
-            const struct gathered g = gather(b, i);
+            const struct gathered g = gather_highlight(b, i);
 
-            n = keep(kept, n, &g);
+            n = insert_brightest(kept, n, &g);
         }
     do
-        joined = join_two(b, kept, &n);
+        joined = merge_first_pair(b, kept, &n);
     while (joined);
     n = q_smaller(n, glint_scene_wanted_highlights(scene));
     while (n > 0 && kept[n - 1].flux_q19 < LEAST_Q19)
@@ -399,8 +401,8 @@ static int find_highlights(const struct glint_scene *scene,
     return n;
 }
 
-const struct glint_scene_highlights glint_scene_highlights = {carve, begin,
-                                                              note};
+const struct glint_scene_highlights glint_scene_highlights = {
+    carve_highlights, clear_cells, add_sample};
 
 int glint_scene_find_highlights(const struct glint_scene *scene,
                                 struct glint_scene_highlight *found)

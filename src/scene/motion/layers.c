@@ -28,7 +28,7 @@ struct side {
     int64_t by[3];
 };
 
-static int64_t inside(const struct side *side, const int32_t v[3])
+static int64_t find_distance_inside(const struct side *side, const int32_t v[3])
 {
     return side->by[0] * v[0] + side->by[1] * v[1] + side->by[2] * v[2];
 }
@@ -36,7 +36,8 @@ static int64_t inside(const struct side *side, const int32_t v[3])
 /* Clips A .. B to SIDE; returns 0 if nothing is left. */
 static int clip_line(const struct side *side, int32_t a[3], int32_t b[3])
 {
-    const int64_t in[2] = {inside(side, a), inside(side, b)};
+    const int64_t in[2] = {find_distance_inside(side, a),
+                           find_distance_inside(side, b)};
     int32_t part_q30;
 
     if (in[0] >= 0 && in[1] >= 0)
@@ -189,8 +190,8 @@ static int move_towards(int32_t a[3], const int32_t b[3], int32_t steps)
 }
 
 /* Returns the radius of object FIRST + I, or 0 if there is no such object. */
-static int32_t radius_of(const struct glint_scene *s, uint32_t first,
-                         uint32_t i)
+static int32_t find_radius(const struct glint_scene *s, uint32_t first,
+                           uint32_t i)
 {
     return first == GLINT_SCENE_NONE ? 0 : s->placed[first + i].radius;
 }
@@ -210,8 +211,8 @@ static void add_lines(struct glint_scene *s, uint32_t f)
             a[k] = m->food_at[f][k];
             b[k] = m->sensor_at[i][k];
         }
-        if (move_towards(a, b, radius_of(s, m->how->food, f)) &&
-            move_towards(b, a, radius_of(s, m->how->sensor, i)))
+        if (move_towards(a, b, find_radius(s, m->how->food, f)) &&
+            move_towards(b, a, find_radius(s, m->how->sensor, i)))
             add_line(s, a, b, m->line, GLINT_KIND_LINES);
     }
 }
@@ -279,7 +280,7 @@ static void add_box(struct glint_scene *s)
 }
 
 /* Sorts layers from back to front; a stable sort. */
-static void sort(struct glint_motion_state *m)
+static void sort_layers(struct glint_motion_state *m)
 {
     for (int i = 1; i < m->n_layers; i++) {
         const struct glint_motion_layer l = m->layer[i];
@@ -291,7 +292,7 @@ static void sort(struct glint_motion_state *m)
     }
 }
 
-static void project(struct glint_scene *s)
+static void project_layers(struct glint_scene *s)
 {
     struct glint_motion_state *m = s->motion;
 
@@ -306,10 +307,10 @@ static void project(struct glint_scene *s)
         if (glint_motion_shows(m, GLINT_KIND_LINES))
             add_lines(s, f);
     }
-    sort(m);
+    sort_layers(m);
 }
 
-static int count(const struct glint_scene *s, enum glint_scene_kind kind)
+static int count_layers(const struct glint_scene *s, enum glint_scene_kind kind)
 {
     int n = 0;
 
@@ -321,8 +322,8 @@ static int count(const struct glint_scene *s, enum glint_scene_kind kind)
 /* --------------------------------------------------------------------- tiles
  */
 
-static struct glint_box touch(const struct glint_scene *s,
-                              struct glint_box tile)
+static struct glint_box find_touched_box(const struct glint_scene *s,
+                                         struct glint_box tile)
 {
     struct glint_box all = {0, 0, 0, 0};
 
@@ -332,8 +333,9 @@ static struct glint_box touch(const struct glint_scene *s,
 }
 
 /* Narrows X0 .. X1 - 1 to the pixels of row Y that line L may touch. */
-static void confine(const struct glint_scene *s,
-                    const struct glint_motion_layer *l, int y, int *x0, int *x1)
+static void narrow_columns(const struct glint_scene *s,
+                           const struct glint_motion_layer *l, int y, int *x0,
+                           int *x1)
 {
     const int32_t down = glint_place(s, y, 1) - l->y_q8;
     const int32_t *u = l->along_q14;
@@ -371,7 +373,7 @@ static void list_spans(struct glint_scene_worker *w, int y)
         if (y < b.y0 || y >= b.y1)
             continue;
         if (!m->layer[i].ball)
-            confine(w->scene, &m->layer[i], y, &span.x0, &span.x1);
+            narrow_columns(w->scene, &m->layer[i], y, &span.x0, &span.x1);
         else if (!glint_scene_span(w->scene, m->layer[i].ball, y, &span.x0,
                                    &span.x1))
             continue;
@@ -427,8 +429,8 @@ static int line_q8(const struct glint_scene_worker *w,
 }
 
 /* Returns the depth of the point T steps away in direction SEEN_Q30. */
-static int32_t depth_of(const struct glint_scene *s, int32_t t,
-                        const int32_t seen_q30[3])
+static int32_t compute_depth(const struct glint_scene *s, int32_t t,
+                             const int32_t seen_q30[3])
 {
     const int32_t z = t <= 0 ? 1 : q_larger(1, q_mul(t, seen_q30[2], 30));
 
@@ -448,7 +450,7 @@ static int find_entry(const struct glint_scene *s,
     if (!glint_ray_sphere(&ray, ball->at, ball->radius, chord) ||
         chord->t[1] <= 0)
         return 0;
-    *depth = depth_of(s, chord->t[0], seen_q30);
+    *depth = compute_depth(s, chord->t[0], seen_q30);
     return 1;
 }
 
@@ -539,7 +541,7 @@ static int shell_q8(const struct glint_scene_worker *w,
     if (!is_clear(w, x, y, l->depth[0])) { /* compared with the shell's farthest
                                               point */
         t = glint_quick_away(l->ball, &ray, cosine_q30);
-        all_q8 = seen_q8(w, x, y, depth_of(s, t, seen_q30));
+        all_q8 = seen_q8(w, x, y, compute_depth(s, t, seen_q30));
     }
     return (int)q_shift(shell_q31(s, l, cosine_q30 >> 15) * all_q8, 31);
 }
@@ -562,8 +564,8 @@ static int next_change(struct glint_scene_worker *w, int x)
     return end;
 }
 
-static void lay_over(const struct glint_scene_worker *w, int x, int y,
-                     struct glint_scene_sum *sum)
+static void composite_layers(const struct glint_scene_worker *w, int x, int y,
+                             struct glint_scene_sum *sum)
 {
     const struct glint_scene *s = w->scene;
 
@@ -593,12 +595,7 @@ static void carve_worker(const struct glint_scene *s, struct glint_arena *arena,
                                     sizeof *worker->over);
 }
 
-const struct glint_scene_motions glint_scene_motions = {glint_motion_carve,
-                                                        carve_worker,
-                                                        glint_motion_begin,
-                                                        project,
-                                                        count,
-                                                        touch,
-                                                        list_spans,
-                                                        next_change,
-                                                        lay_over};
+const struct glint_scene_motions glint_scene_motions = {
+    glint_motion_carve, carve_worker, glint_motion_begin,
+    project_layers,     count_layers, find_touched_box,
+    list_spans,         next_change,  composite_layers};

@@ -37,8 +37,8 @@ uint32_t glint_motion_sum(const uint8_t *at, uint32_t block)
 }
 
 /* Sets AT to block BLOCK. */
-static enum glint_status fetch(struct glint_motion *m, uint32_t block,
-                               const uint8_t **at)
+static enum glint_status fetch_block(struct glint_motion *m, uint32_t block,
+                                     const uint8_t **at)
 {
     const uint32_t *end;
 
@@ -68,7 +68,7 @@ static enum glint_status read_record(struct glint_motion *m, uint32_t block,
 {
     const uint32_t each = glint_motion_per_block(bytes);
     const uint8_t *at = NULL;
-    const enum glint_status status = fetch(m, block + i / each, &at);
+    const enum glint_status status = fetch_block(m, block + i / each, &at);
 
     *record = at + (size_t)(i % each) * bytes;
     return status;
@@ -77,7 +77,7 @@ static enum glint_status read_record(struct glint_motion *m, uint32_t block,
 /* ------------------------------------------------------------------- checks */
 
 /* Returns the number of blocks of N records of BYTES bytes. */
-static uint64_t blocks_of(uint64_t n, size_t bytes)
+static uint64_t count_blocks(uint64_t n, size_t bytes)
 {
     const uint64_t each = bytes ? glint_motion_per_block(bytes) : 1;
 
@@ -86,7 +86,8 @@ static uint64_t blocks_of(uint64_t n, size_t bytes)
 
 static uint32_t n_index(const struct glint_motion_header *h)
 {
-    return (uint32_t)blocks_of(h->n_frames, sizeof(struct glint_motion_pose));
+    return (uint32_t)count_blocks(h->n_frames,
+                                  sizeof(struct glint_motion_pose));
 }
 
 static const char *check_counts(const struct glint_motion_header *h)
@@ -123,24 +124,25 @@ static const char *check_header(const struct glint_motion_header *h,
         return wrong;
     if (h->sensor_block != block)
         return outside;
-    block += blocks_of(h->n_sensors, sizeof(struct glint_motion_sensor));
+    block += count_blocks(h->n_sensors, sizeof(struct glint_motion_sensor));
     if (h->event_block != block)
         return outside;
-    block += blocks_of(h->n_events, sizeof(struct glint_motion_event));
+    block += count_blocks(h->n_events, sizeof(struct glint_motion_event));
     if (h->index_block != block)
         return outside;
-    block += blocks_of(n_index(h), sizeof(struct glint_motion_index));
+    block += count_blocks(n_index(h), sizeof(struct glint_motion_index));
     if (h->pose_block != block)
         return outside;
     block += n_index(h);
     if (h->intensity_block != block)
         return outside;
-    block += blocks_of(h->n_frames, h->intensities);
+    block += count_blocks(h->n_frames, h->intensities);
     return block == n_blocks ? NULL : outside;
 }
 
 /* Returns whether AT lies in the box of the motion. */
-static int is_within(const struct glint_motion_header *h, const int32_t at[3])
+static int is_in_motion_box(const struct glint_motion_header *h,
+                            const int32_t at[3])
 {
     for (int k = 0; k < 3; k++)
         if (at[k] < h->low[k] || at[k] > h->high[k])
@@ -156,7 +158,7 @@ static int is_pose(const struct glint_motion_header *h,
     for (int k = 0; k < 4; k++)
         square_q28 += (int64_t)p->turn_q14[k] * p->turn_q14[k];
     /* the error is half a unit per element, up to 2^15 for the sum */
-    return is_within(h, p->at) && square_q28 >= (1 << 28) - (1 << 16) &&
+    return is_in_motion_box(h, p->at) && square_q28 >= (1 << 28) - (1 << 16) &&
            square_q28 <= (1 << 28) + (1 << 16);
 }
 
@@ -164,14 +166,14 @@ static int is_event(const struct glint_motion_header *h,
                     const struct glint_motion_event *e)
 {
     return e->frame < h->n_frames && e->slot < h->n_foods &&
-           is_within(h, e->at);
+           is_in_motion_box(h, e->at);
 }
 
 /* ------------------------------------------------------------------- records
  */
 
-static enum glint_status event_of(struct glint_motion *m, uint32_t i,
-                                  const struct glint_motion_event **event)
+static enum glint_status read_event(struct glint_motion *m, uint32_t i,
+                                    const struct glint_motion_event **event)
 {
     const void *record = NULL;
     const enum glint_status status =
@@ -190,7 +192,7 @@ enum glint_status glint_motion_event(struct glint_motion *motion, uint32_t i,
     enum glint_status status = GLINT_E_ARGUMENT;
 
     if (i < motion->header.n_events)
-        status = event_of(motion, i, &e);
+        status = read_event(motion, i, &e);
     if (status == GLINT_OK)
         *event = *e;
     return status;
@@ -229,7 +231,7 @@ static enum glint_status place_foods(struct glint_motion *m, uint32_t k,
     if (status != GLINT_OK)
         return status;
     for (uint32_t s = 0; status == GLINT_OK && s < m->header.n_foods; s++) {
-        status = event_of(m, index.food[s], &e);
+        status = read_event(m, index.food[s], &e);
         if (status == GLINT_OK && (e->slot != s || e->frame > k))
             status = GLINT_E_FORMAT;
         for (int axis = 0; status == GLINT_OK && axis < 3; axis++)
@@ -237,7 +239,7 @@ static enum glint_status place_foods(struct glint_motion *m, uint32_t k,
     }
     for (uint32_t i = index.event; status == GLINT_OK && i < m->header.n_events;
          i++) {
-        status = event_of(m, i, &e);
+        status = read_event(m, i, &e);
         if (status != GLINT_OK || e->frame > k)
             break;
         for (int axis = 0; axis < 3; axis++)
@@ -324,7 +326,7 @@ static const char *check_events(struct glint_motion *m)
     for (uint32_t i = 0; i < m->header.n_events; i++) {
         const struct glint_motion_event *e = NULL;
 
-        if (event_of(m, i, &e) != GLINT_OK || e->frame < last ||
+        if (read_event(m, i, &e) != GLINT_OK || e->frame < last ||
             (i < m->header.n_foods && (e->slot != i || e->frame)))
             return "an event is out of range or order";
         last = e->frame;
@@ -346,7 +348,7 @@ static const char *check_index(struct glint_motion *m)
         int fits;
 
         for (; event < m->header.n_events &&
-               event_of(m, event, &e) == GLINT_OK && e->frame <= block * each;
+               read_event(m, event, &e) == GLINT_OK && e->frame <= block * each;
              event++)
             food[e->slot] = event;
         fits = glint_motion_index(m, block, &index) == GLINT_OK &&
@@ -401,7 +403,7 @@ enum glint_status glint_motion_over(struct glint_motion *motion,
     motion->blocks = *blocks;
     motion->buffer = buffer;
     motion->held = 0;
-    status = fetch(motion, 0, &first);
+    status = fetch_block(motion, 0, &first);
     *reason =
         status == GLINT_OK ? NULL : "the motion's first block cannot be read";
     if (status != GLINT_OK)

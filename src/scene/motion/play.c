@@ -12,8 +12,8 @@
 
 /* Sets N_FOODS and N_SENSORS from the file. They are clamped, as the file is
  * not checked before it is opened. */
-static void count(const struct glint_scene_motion *how, uint32_t *n_foods,
-                  uint32_t *n_sensors)
+static void count_objects(const struct glint_scene_motion *how,
+                          uint32_t *n_foods, uint32_t *n_sensors)
 {
     const struct glint_motion_header *h = (const void *)(how + 1);
     const int is_there = how->bytes >= sizeof *h;
@@ -28,7 +28,7 @@ size_t glint_motion_layers(const struct glint_scene_motion *how)
 {
     uint32_t n_foods, n_sensors;
 
-    count(how, &n_foods, &n_sensors);
+    count_objects(how, &n_foods, &n_sensors);
     return (size_t)n_foods * (n_sensors + 1) + GLINT_BOX_EDGES;
 }
 
@@ -41,7 +41,7 @@ struct glint_motion_state *glint_motion_carve(const struct glint_scene *scene,
     struct glint_placed *ball;
     struct glint_motion_layer *layer;
 
-    count(how, &n_foods, &n_sensors);
+    count_objects(how, &n_foods, &n_sensors);
     ball = glint_arena_take(arena, n_foods, sizeof *ball);
     layer = glint_arena_take(arena, glint_motion_layers(how), sizeof *layer);
     if (m) {
@@ -53,7 +53,7 @@ struct glint_motion_state *glint_motion_carve(const struct glint_scene *scene,
 }
 
 /* Returns log2 of the ratio of the motion's step to the scene's step. */
-static int up_of(const struct glint_scene *s)
+static int find_scale_log2(const struct glint_scene *s)
 {
     return s->model.header->unit_log2 - s->motion->motion.header.unit_log2;
 }
@@ -62,7 +62,7 @@ static int up_of(const struct glint_scene *s)
 static void to_scene(const struct glint_scene *s, const int32_t from[3],
                      int32_t to[3])
 {
-    const int up = up_of(s);
+    const int up = find_scale_log2(s);
     const int mirrored = s->model.header->variant == GLINT_HAND_RIGHT;
 
     for (int k = 0; k < 3; k++) {
@@ -75,10 +75,10 @@ static void to_scene(const struct glint_scene *s, const int32_t from[3],
 
 /* Returns whether all points of the motion, with the objects around them, are
  * in the scene's range. */
-static int fits(const struct glint_scene *s)
+static int fits_scene_range(const struct glint_scene *s)
 {
     const struct glint_motion_header *h = &s->motion->motion.header;
-    const int up = up_of(s);
+    const int up = find_scale_log2(s);
 
     for (int k = 0; k < 3; k++) {
         const int64_t most = q_larger(h->high[k], -h->low[k]);
@@ -125,7 +125,7 @@ enum glint_status glint_motion_begin(struct glint_scene *scene)
     m->how = how;
     if (glint_motion_open(&m->motion, how + 1, how->bytes, &reason) !=
             GLINT_OK ||
-        !fits(scene) || !are_balls(scene, how->body, 1) ||
+        !fits_scene_range(scene) || !are_balls(scene, how->body, 1) ||
         !are_balls(scene, how->sensor, h->n_sensors) ||
         !are_balls(scene, how->food, h->n_foods) || !rides_lamps(scene) ||
         (how->camera != GLINT_SCENE_NONE && how->camera >= h->n_sensors))
@@ -152,7 +152,7 @@ struct wide {
 };
 
 /* Returns A B, both below 2^63. */
-static struct wide product(uint64_t a, uint64_t b)
+static struct wide multiply_wide(uint64_t a, uint64_t b)
 {
     const uint64_t a1 = a >> 32, a0 = a & UINT32_MAX;
     const uint64_t b1 = b >> 32, b0 = b & UINT32_MAX;
@@ -176,16 +176,17 @@ int glint_motion_sees(const int32_t axis_q30[3], int32_t cos_half_q30,
     const int64_t dot_q30 = v3_dot(axis_q30, d);
     const uint64_t size = q_magnitude(dot_q30); /* below 2^61 */
     const uint64_t cosine = q_magnitude(cos_half_q30);
-    const struct wide seen = product(size, size);
+    const struct wide seen = multiply_wide(size, size);
     /* 2^60 times 3 2^58 */
-    const struct wide least = product(cosine * cosine, (uint64_t)v3_dot(d, d));
+    const struct wide least =
+        multiply_wide(cosine * cosine, (uint64_t)v3_dot(d, d));
 
     if (dot_q30 > 0)
         return cos_half_q30 <= 0 || is_less(least, seen);
     return cos_half_q30 < 0 && is_less(seen, least);
 }
 
-static void detect(struct glint_motion_state *m)
+static void detect_foods(struct glint_motion_state *m)
 {
     const struct glint_motion_header *h = &m->motion.header;
 
@@ -320,7 +321,7 @@ static void move_things(struct glint_scene *s, const int32_t turn_q30[4])
 }
 
 /* Moves all objects to their positions in the current frame. */
-static void move(struct glint_scene *s)
+static void move_objects(struct glint_scene *s)
 {
     struct glint_motion_state *m = s->motion;
     int32_t turn_q30[4];
@@ -332,7 +333,7 @@ static void move(struct glint_scene *s)
     for (uint32_t i = 0; i < m->motion.header.n_foods; i++)
         to_scene(s, m->frame.food[i], m->food_at[i]);
     move_things(s, turn_q30);
-    detect(m);
+    detect_foods(m);
     if (m->sensor >= 0)
         move_camera(s);
 }
@@ -346,7 +347,7 @@ void glint_scene_seek(struct glint_scene *scene, uint32_t frame)
     m->now = frame < m->motion.header.n_frames ? frame
                                                : m->motion.header.n_frames - 1;
     if (glint_motion_frame(&m->motion, m->now, &m->frame) == GLINT_OK)
-        move(scene);
+        move_objects(scene);
 }
 
 uint32_t glint_scene_frames(const struct glint_scene *scene)
@@ -357,8 +358,8 @@ uint32_t glint_scene_frames(const struct glint_scene *scene)
 /* -------------------------------------------------------------------- looks */
 
 /* Sets FIRST to the first object of KIND; returns their number. */
-static uint32_t things_of(const struct glint_motion_state *m,
-                          enum glint_scene_kind kind, uint32_t *first)
+static uint32_t find_objects(const struct glint_motion_state *m,
+                             enum glint_scene_kind kind, uint32_t *first)
 {
     const uint32_t of[3] = {m->how->body, m->how->sensor, m->how->food};
     const uint32_t n[3] = {1, m->motion.header.n_sensors,
@@ -377,7 +378,7 @@ void glint_scene_show_kind(struct glint_scene *scene,
     if (!m || kind >= GLINT_KINDS)
         return;
     m->shown = (m->shown & ~(1u << kind)) | (is_shown ? 1u << kind : 0);
-    n = things_of(m, kind, &first);
+    n = find_objects(m, kind, &first);
     for (uint32_t i = 0; i < n; i++)
         glint_scene_show(
             scene, (int)(first + i),
@@ -393,12 +394,12 @@ enum glint_status glint_scene_size_kind(struct glint_scene *scene,
 
     if (!m || kind >= GLINT_KINDS || steps < 1 || steps > GLINT_SCENE_SPAN / 4)
         return GLINT_E_ARGUMENT;
-    n = things_of(m, kind, &first);
+    n = find_objects(m, kind, &first);
     for (uint32_t i = 0; i < n; i++)
         glint_scene_set_radius(scene, (int)(first + i), steps);
     if (kind == GLINT_KIND_BODY) {
         m->size = steps;
-        move(scene);
+        move_objects(scene);
     } else if (kind == GLINT_KIND_SHELLS) {
         m->shell = steps;
     } else if (kind == GLINT_KIND_LINES) {

@@ -73,7 +73,7 @@ enum {
 
 /* --------------------------------------------------------------------- seen */
 
-static void see_all(struct glint_stone_skin *skin)
+static void mark_all_visible(struct glint_stone_skin *skin)
 {
     for (int i = 0; i < skin->across * skin->down; i++)
         skin->block[i] |= GLINT_BLOCK_SEEN;
@@ -88,7 +88,7 @@ struct reach {
     int32_t cosine_q30, sine_q30;
 };
 
-static struct reach reach_of(const struct glint_stone_skin *skin)
+static struct reach find_block_reach(const struct glint_stone_skin *skin)
 {
     const struct reach wide = {Q_CONST(.88, 30), Q_CONST(.475, 30)};
     const struct reach less = {Q_CONST(.97, 30), Q_CONST(.244, 30)};
@@ -98,9 +98,9 @@ static struct reach reach_of(const struct glint_stone_skin *skin)
 
 /* Returns whether, at texel (X, Y) of ball P, the cosine between the normal and
  * the camera's direction is above LIMIT. */
-static int faces(const struct glint_placed *p,
-                 const struct glint_stone_skin *skin, int x, int y,
-                 const int32_t toward_q30[3], int32_t limit_q30)
+static int faces_camera(const struct glint_placed *p,
+                        const struct glint_stone_skin *skin, int x, int y,
+                        const int32_t toward_q30[3], int32_t limit_q30)
 {
     const int32_t *round_q30 = skin->turn_q30[x];
     const int32_t *down_q30 = skin->turn_q30[skin->spread.width + y];
@@ -115,10 +115,11 @@ static int faces(const struct glint_placed *p,
 /* Marks the blocks with points that face the camera: n.d > R / D, where d is
  * the unit vector to the camera at distance D. Marks all blocks if the camera
  * is inside. */
-static void see_ball(const struct glint_scene *s, const struct glint_placed *p,
-                     struct glint_stone_skin *skin)
+static void mark_visible_ball(const struct glint_scene *s,
+                              const struct glint_placed *p,
+                              struct glint_stone_skin *skin)
 {
-    const struct reach reach = reach_of(skin);
+    const struct reach reach = find_block_reach(skin);
     int32_t off[3], toward_q30[3], limit_q30;
     int64_t wide[3];
     uint32_t away;
@@ -129,7 +130,7 @@ static void see_ball(const struct glint_scene *s, const struct glint_placed *p,
         wide[k] = off[k];
     if (skin->spread.width < 128 || away <= (uint32_t)p->radius ||
         !glint_unit(wide, toward_q30)) {
-        see_all(skin);
+        mark_all_visible(skin);
         return;
     }
     limit_q30 =
@@ -137,12 +138,12 @@ static void see_ball(const struct glint_scene *s, const struct glint_placed *p,
         reach.sine_q30 - (1 << 20);
     for (int i = 0; i < skin->across * skin->down; i++)
         for (int k = 0; k < 4; k++)
-            if (faces(p, skin,
-                      i % skin->across * GLINT_BLOCK_WIDTH +
-                          (k & 1 ? 3 : 1) * GLINT_BLOCK_WIDTH / 4,
-                      i / skin->across * GLINT_BLOCK_HEIGHT +
-                          (k & 2 ? 3 : 1) * GLINT_BLOCK_HEIGHT / 4,
-                      toward_q30, limit_q30))
+            if (faces_camera(p, skin,
+                             i % skin->across * GLINT_BLOCK_WIDTH +
+                                 (k & 1 ? 3 : 1) * GLINT_BLOCK_WIDTH / 4,
+                             i / skin->across * GLINT_BLOCK_HEIGHT +
+                                 (k & 2 ? 3 : 1) * GLINT_BLOCK_HEIGHT / 4,
+                             toward_q30, limit_q30))
                 skin->block[i] |= GLINT_BLOCK_SEEN;
 }
 
@@ -179,8 +180,8 @@ static int is_seen(const struct glint_scene *s, const struct glint_placed *p,
 
 /* Marks the blocks that the triangle of UV touches, with a margin of a
  * texel. */
-static void see_uv(struct glint_stone_skin *skin,
-                   const int32_t *const uv_q16[3])
+static void mark_visible_uv(struct glint_stone_skin *skin,
+                            const int32_t *const uv_q16[3])
 {
     const int size_log2[2] = {bit_length(GLINT_BLOCK_WIDTH) - 1,
                               bit_length(GLINT_BLOCK_HEIGHT) - 1};
@@ -203,8 +204,9 @@ static void see_uv(struct glint_stone_skin *skin,
             skin->block[y * skin->across + x] |= GLINT_BLOCK_SEEN;
 }
 
-static void see_mesh(const struct glint_scene *s, const struct glint_placed *p,
-                     struct glint_stone_skin *skin)
+static void mark_visible_mesh(const struct glint_scene *s,
+                              const struct glint_placed *p,
+                              struct glint_stone_skin *skin)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(s, skin->of->object);
     const int32_t *uv_q16 = glint_mesh_table(s, m->uv_at);
@@ -217,7 +219,7 @@ static void see_mesh(const struct glint_scene *s, const struct glint_placed *p,
             continue;
         for (int k = 0; k < 3; k++)
             corner_q16[k] = uv_q16 + 2 * (size_t)t->vertex[k];
-        see_uv(skin, corner_q16);
+        mark_visible_uv(skin, corner_q16);
     }
 }
 
@@ -232,13 +234,13 @@ static void mark_visible(const struct glint_scene *scene,
         skin->block[i] &= (uint8_t)~GLINT_BLOCK_SEEN;
     if (scene->has_split) /* mirrors show points that face away from the
                              camera */
-        see_all(skin);
+        mark_all_visible(skin);
     else if (!p->is_seen)
         return;
     else if (skin->spread.is_ball)
-        see_ball(scene, p, skin);
+        mark_visible_ball(scene, p, skin);
     else
-        see_mesh(scene, p, skin);
+        mark_visible_mesh(scene, p, skin);
 }
 
 /* ------------------------------------------------------------------- around */
@@ -287,8 +289,9 @@ static int32_t max_around(const struct glint_scene *scene)
 
 /* Returns the max light of LIT on a white surface of object P: for a lamp at
  * the nearest point, but at least a sixteenth of the object's size away. */
-static int32_t max_of(const struct glint_scene *s, const struct glint_lit *lit,
-                      const struct glint_placed *p)
+static int32_t bound_light(const struct glint_scene *s,
+                           const struct glint_lit *lit,
+                           const struct glint_placed *p)
 {
     int32_t toward_q30[3] = {0}, level_q15[3] = {0}, place[3], off[3];
     int64_t away;
@@ -304,14 +307,14 @@ static int32_t max_of(const struct glint_scene *s, const struct glint_lit *lit,
 }
 
 /* Sets the shift of SKIN from the max light that may fall on it. */
-static void expose(const struct glint_scene *scene,
-                   struct glint_stone_skin *skin)
+static void set_exposure_shift(const struct glint_scene *scene,
+                               struct glint_stone_skin *skin)
 {
     const struct glint_placed *p = &scene->placed[skin->of->object];
     int64_t most = scene->stones->around_q15;
 
     for (uint32_t i = 0; i < scene->n_lit; i++)
-        most += max_of(scene, &scene->lit[i], p);
+        most += bound_light(scene, &scene->lit[i], p);
     skin->shift = 0;
     while (most >> skin->shift > MOST_VALUE && skin->shift < 15)
         skin->shift++;
@@ -475,7 +478,7 @@ static void light_block(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------ opening */
 
-static const void *table_at(const struct glint_scene *s, uint32_t at)
+static const void *find_table(const struct glint_scene *s, uint32_t at)
 {
     return (const unsigned char *)s->model.header + at;
 }
@@ -483,9 +486,9 @@ static const void *table_at(const struct glint_scene *s, uint32_t at)
 /* Returns the header of the translucent medium of skin I; its sides were
  * checked with the scene. */
 static const struct glint_translucent_header *
-header_of(const struct glint_scene *s, uint32_t i)
+find_header(const struct glint_scene *s, uint32_t i)
 {
-    return table_at(s, s->model.stone[s->model.skin[i].stone].file_at);
+    return find_table(s, s->model.stone[s->model.skin[i].stone].file_at);
 }
 
 static int is_ball(const struct glint_scene *s, uint32_t i)
@@ -496,7 +499,7 @@ static int is_ball(const struct glint_scene *s, uint32_t i)
 static void carve_skin(const struct glint_scene *s, struct glint_arena *a,
                        uint32_t i, struct glint_stone_skin *skin)
 {
-    const int side = 1 << header_of(s, i)->side_log2;
+    const int side = 1 << find_header(s, i)->side_log2;
     const size_t texels = (size_t)side * (size_t)side
                           << (is_ball(s, i) ? 1 : 0);
     const size_t blocks = texels / (GLINT_BLOCK_WIDTH * GLINT_BLOCK_HEIGHT);
@@ -526,7 +529,7 @@ static struct glint_spread_scratch carve_scratch(const struct glint_scene *s,
     int height = 0;
 
     for (uint32_t i = 0; i < s->model.header->n_skins; i++) {
-        const struct glint_translucent_header *h = header_of(s, i);
+        const struct glint_translucent_header *h = find_header(s, i);
 
         height = q_larger(height, 1 << h->side_log2);
         if (h->rank > largest.rank)
@@ -542,8 +545,8 @@ static struct glint_spread_scratch carve_scratch(const struct glint_scene *s,
     return glint_spread_carve(a, &stone, height);
 }
 
-static struct glint_stone_state *carve(const struct glint_scene *scene,
-                                       struct glint_arena *arena)
+static struct glint_stone_state *carve_media(const struct glint_scene *scene,
+                                             struct glint_arena *arena)
 {
     const uint32_t n = scene->model.header->n_skins;
     const int workers = glint_workers_count(scene->cfg.workers);
@@ -571,7 +574,7 @@ static enum glint_status open_skin(const struct glint_scene *s,
     const int n = skin->spread.width * skin->spread.height;
     const char *reason;
 
-    if (glint_translucent_open(&skin->stone, table_at(s, stone->file_at),
+    if (glint_translucent_open(&skin->stone, find_table(s, stone->file_at),
                                stone->file_bytes, &reason) != GLINT_OK)
         return GLINT_E_FORMAT;
     skin->material = stone->material;
@@ -579,9 +582,9 @@ static enum glint_status open_skin(const struct glint_scene *s,
     skin->spread.stone = &skin->stone;
     skin->spread.convolve = glint_convolve_of(s->cfg.sets);
     if (skin->spread.is_ball)
-        skin->turn_q30 = (const int32_t(*)[2])table_at(s, skin->of->texel_at);
+        skin->turn_q30 = (const int32_t(*)[2])find_table(s, skin->of->texel_at);
     else
-        skin->triangle = table_at(s, skin->of->texel_at);
+        skin->triangle = find_table(s, skin->of->texel_at);
     for (int c = 0; c < CHANNELS; c++)
         for (int i = 0; i < n; i++)
             skin->spread.light[c][i] = skin->spread.map[c][i] = 0;
@@ -590,7 +593,7 @@ static enum glint_status open_skin(const struct glint_scene *s,
     return GLINT_OK;
 }
 
-static void relight(struct glint_scene *scene)
+static void update_environment_bound(struct glint_scene *scene)
 {
     scene->stones->around_q15 = max_around(scene);
 }
@@ -600,7 +603,7 @@ static enum glint_status open_stones(struct glint_scene *scene)
     for (uint32_t i = 0; i < scene->model.header->n_skins; i++)
         if (open_skin(scene, &scene->stones->skin[i]) != GLINT_OK)
             return GLINT_E_FORMAT;
-    relight(scene);
+    update_environment_bound(scene);
     return GLINT_OK;
 }
 
@@ -609,7 +612,8 @@ static enum glint_status open_stones(struct glint_scene *scene)
 
 /* Clears the state of all blocks if objects have moved since the map was
  * lit. */
-static void forget(const struct glint_scene *s, struct glint_stone_skin *skin)
+static void clear_stale_blocks(const struct glint_scene *s,
+                               struct glint_stone_skin *skin)
 {
     if (skin->is_lit && skin->moved == s->moved)
         return;
@@ -617,7 +621,7 @@ static void forget(const struct glint_scene *s, struct glint_stone_skin *skin)
         skin->block[i] = 0;
     skin->is_lit = 1;
     skin->moved = s->moved;
-    expose(s, skin);
+    set_exposure_shift(s, skin);
 }
 
 /* Requests light for block (X, Y), which may lie outside the map. */
@@ -703,7 +707,7 @@ static void spread_job(void *ctx, int job, int worker)
 }
 
 /* Marks the blocks that were lit and spread. */
-static void note(struct glint_stone_skin *skin)
+static void store_lit_state(struct glint_stone_skin *skin)
 {
     for (int i = 0; i < skin->n_list; i++) {
         uint8_t *block = &skin->block[skin->list[i]];
@@ -730,7 +734,7 @@ static int32_t max_coat_q15(const struct glint_scene *scene,
     return glint_ratio(UINT64_C(1) << 30, (uint64_t)max_q15);
 }
 
-static int update(struct glint_scene *scene)
+static int update_maps(struct glint_scene *scene)
 {
     int n = 0;
 
@@ -742,7 +746,7 @@ static int update(struct glint_scene *scene)
         u.skin->max_coat_q15 = max_coat_q15(scene, u.skin);
         if (!p->is_shown || (!p->is_seen && !scene->has_split))
             continue;
-        forget(scene, u.skin);
+        clear_stale_blocks(scene, u.skin);
         mark_visible(scene, u.skin);
         blocks = list_blocks(u.skin);
         if (blocks == 0)
@@ -750,7 +754,7 @@ static int update(struct glint_scene *scene)
         glint_workers_run(scene->cfg.workers, u.skin->n_list, light_job, &u);
         glint_workers_run(scene->cfg.workers, CHANNELS * u.skin->across,
                           spread_job, &u);
-        note(u.skin);
+        store_lit_state(u.skin);
         n += blocks * BLOCK_TEXELS;
     }
     return n;
@@ -782,8 +786,8 @@ static struct between find_texels(int32_t uv_q16, int side_log2, int goes_round)
 
 /* Returns the light of MAP interpolated between four texels, in units of the
  * map. */
-static int32_t sample(const int16_t *map, int width, const struct between *x,
-                      const struct between *y)
+static int32_t sample_map(const int16_t *map, int width,
+                          const struct between *x, const struct between *y)
 {
     const int16_t *upper = map + (ptrdiff_t)y->first * width;
     const int16_t *lower = map + (ptrdiff_t)y->second * width;
@@ -840,7 +844,7 @@ static int32_t add_scattered(const struct glint_scene *scene,
         const int32_t part_q15 =
             q_mul(surface->material->rgb_q15[c], passes_q15, 15);
         const int64_t light_q22 =
-            (int64_t)sample(skin->spread.map[c], skin->spread.width, &x, &y)
+            (int64_t)sample_map(skin->spread.map[c], skin->spread.width, &x, &y)
             << skin->shift;
 
         rgb_q15[c] = q_clamp_sat(rgb_q15[c] + q_shift(light_q22 * part_q15, 22),
@@ -850,4 +854,5 @@ static int32_t add_scattered(const struct glint_scene *scene,
 }
 
 const struct glint_scene_stones glint_scene_stones = {
-    carve, open_stones, relight, update, add_scattered};
+    carve_media, open_stones, update_environment_bound, update_maps,
+    add_scattered};

@@ -30,7 +30,7 @@ glint_spread_carve(struct glint_arena *arena,
 /* ------------------------------------------------------------------- taps */
 
 /* Returns tap I of TAP[N], counted from the last; 0 if out of range. */
-static int32_t tap_at(const int16_t *tap, int n, int i)
+static int32_t read_tap(const int16_t *tap, int n, int i)
 {
     return i < 0 || i >= n ? 0 : tap[n - 1 - i];
 }
@@ -46,11 +46,11 @@ static void set_taps(const struct glint_translucent *t, uint32_t i,
     taps->shift = (int)t->shift[i];
     for (int k = 0; k < taps->n; k++) {
         taps->row[k] =
-            glint_pair(tap_at(row, n, 2 * k), tap_at(row, n, 2 * k + 1));
-        taps->even[k] =
-            glint_pair(tap_at(column, n, 2 * k), tap_at(column, n, 2 * k + 1));
-        taps->odd[k] =
-            glint_pair(tap_at(column, n, 2 * k - 1), tap_at(column, n, 2 * k));
+            glint_pair(read_tap(row, n, 2 * k), read_tap(row, n, 2 * k + 1));
+        taps->even[k] = glint_pair(read_tap(column, n, 2 * k),
+                                   read_tap(column, n, 2 * k + 1));
+        taps->odd[k] = glint_pair(read_tap(column, n, 2 * k - 1),
+                                  read_tap(column, n, 2 * k));
     }
 }
 
@@ -64,8 +64,8 @@ struct codes {
 };
 
 /* Returns codes of table TABLE, from texel (X, Y) of the map on. */
-static struct codes codes_at(const struct glint_translucent *t, size_t table,
-                             int x, int y)
+static struct codes find_codes(const struct glint_translucent *t, size_t table,
+                               int x, int y)
 {
     const struct glint_translucent_header *h = t->header;
     const size_t log2 = h->side_log2, mask = ((size_t)1 << log2) - 1;
@@ -76,7 +76,7 @@ static struct codes codes_at(const struct glint_translucent *t, size_t table,
                           is_signed, GLINT_TRANSLUCENT_CODE_BITS - is_signed};
 }
 
-static inline int32_t code_of(const struct codes *f, int i)
+static inline int32_t read_code(const struct codes *f, int i)
 {
     return f->is_signed ? (int8_t)f->at[i] : f->at[i];
 }
@@ -97,10 +97,10 @@ static void set_piece(const struct glint_spread *s, int c, int x, int y, int n,
             value[i] = light[i];
         return;
     }
-    in = codes_at(s->stone, 3 + (size_t)c, x, y);
+    in = find_codes(s->stone, 3 + (size_t)c, x, y);
     for (int i = 0; i < n; i++)
         value[i] =
-            (int16_t)((light[i] * code_of(&in, i) + (1 << (in.bits - 1))) >>
+            (int16_t)((light[i] * read_code(&in, i) + (1 << (in.bits - 1))) >>
                       in.bits);
 }
 
@@ -230,15 +230,16 @@ static void add_plane(const struct glint_spread *s, int c, uint32_t p, int x0,
     const size_t table = t->header->variant == GLINT_TRANSLUCENT_FACTORED
                              ? (size_t)c * t->header->n_planes + p
                              : (size_t)c;
-    const struct codes f = codes_at(t, table, x0, y);
+    const struct codes f = find_codes(t, table, x0, y);
     const int32_t half = 1 << (f.bits - 1);
 
     if (t->cluster) {
         const uint8_t *of = t->cluster + ((y & mask) << log2) + (x0 & mask);
 
         for (int i = 0; i < GLINT_STRIP; i++)
-            total[i] = of[i] == p ? ((sum[i] + half) >> f.bits) * code_of(&f, i)
-                                  : total[i];
+            total[i] = of[i] == p
+                           ? ((sum[i] + half) >> f.bits) * read_code(&f, i)
+                           : total[i];
     } else if (f.is_signed) {
         const int8_t *code = (const int8_t *)f.at;
 
@@ -246,7 +247,7 @@ static void add_plane(const struct glint_spread *s, int c, uint32_t p, int x0,
             total[i] += ((sum[i] + half) >> f.bits) * code[i];
     } else {
         for (int i = 0; i < GLINT_STRIP; i++)
-            total[i] += ((sum[i] + half) >> f.bits) * code_of(&f, i);
+            total[i] += ((sum[i] + half) >> f.bits) * read_code(&f, i);
     }
 }
 
@@ -276,8 +277,8 @@ static void spread_plane(const struct glint_spread *s, int c, uint32_t p,
 /* ------------------------------------------------------------------ strips */
 
 /* Sets a row of the map to TOTAL times the gain, clamped to 0 or more. */
-static void finish(const struct glint_spread *s, int c, int x0, int y,
-                   const int32_t *total)
+static void finish_row(const struct glint_spread *s, int c, int x0, int y,
+                       const int32_t *total)
 {
     const struct glint_real gain = s->stone->header->gain[c];
     const int down = -gain.exponent;
@@ -305,6 +306,6 @@ void glint_spread_strip(const struct glint_spread *spread, int c, int x0,
         if (has_plane(spread, p, x0, y0, y1))
             spread_plane(spread, c, p, x0, y0, y1, scratch);
     for (int y = 0; y < rows; y++)
-        finish(spread, c, x0, y0 + y,
-               scratch->total + (ptrdiff_t)y * GLINT_STRIP);
+        finish_row(spread, c, x0, y0 + y,
+                   scratch->total + (ptrdiff_t)y * GLINT_STRIP);
 }

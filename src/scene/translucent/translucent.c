@@ -103,7 +103,7 @@ static const char *check_taps(const struct glint_translucent *t)
     return NULL;
 }
 
-static uint32_t codes_of(const struct glint_translucent_header *h)
+static uint32_t count_codes(const struct glint_translucent_header *h)
 {
     const uint32_t texels = 1U << 2 * h->side_log2;
 
@@ -114,7 +114,7 @@ static uint32_t codes_of(const struct glint_translucent_header *h)
 }
 
 /* Returns the number of 4-byte words of N items of BYTES bytes. */
-static uint64_t words(uint64_t n, uint64_t bytes)
+static uint64_t count_words(uint64_t n, uint64_t bytes)
 {
     return (n * bytes + 3) / 4;
 }
@@ -126,11 +126,13 @@ static const char *find_tables(struct glint_translucent *t,
     const uint32_t n = CHANNELS * h->n_planes * h->rank;
     const uint32_t texels = 1U << 2 * h->side_log2;
 
-    t->code = glint_blob_section(b, h->code_at, words(codes_of(h), 1), 4);
-    t->tap = glint_blob_section(b, h->tap_at, words(2 * n * h->kernel, 2), 4);
+    t->code =
+        glint_blob_section(b, h->code_at, count_words(count_codes(h), 1), 4);
+    t->tap =
+        glint_blob_section(b, h->tap_at, count_words(2 * n * h->kernel, 2), 4);
     t->shift = glint_blob_section(b, h->shift_at, n, 4);
     t->transmit_q15 = glint_blob_section(
-        b, h->transmit_at, words(GLINT_TRANSLUCENT_COSINES + 1, 2), 4);
+        b, h->transmit_at, count_words(GLINT_TRANSLUCENT_COSINES + 1, 2), 4);
     if (!t->code || !t->tap || !t->shift || !t->transmit_q15)
         return outside;
     if (h->variant != GLINT_TRANSLUCENT_CLUSTERED)
@@ -152,7 +154,7 @@ static const char *check_contents(struct glint_translucent *t,
         wrong = find_tables(t, blob);
     if (!wrong)
         wrong = check_taps(t);
-    for (uint32_t i = 0; !wrong && i < codes_of(h); i++)
+    for (uint32_t i = 0; !wrong && i < count_codes(h); i++)
         if (h->variant == GLINT_TRANSLUCENT_FACTORED && t->code[i] == 128)
             wrong = "a code of the stone is the least of its type";
     for (uint32_t i = 0; !wrong && t->cluster && i < 1U << 2 * h->side_log2;

@@ -8,7 +8,8 @@
 #include "kernels/ward/texels.h"
 
 /* Sets U and V to the position of direction TOWARD in the square map. */
-static void place(const int32_t toward[3], int32_t *u_q17, int32_t *v_q17)
+static void find_texel_position(const int32_t toward[3], int32_t *u_q17,
+                                int32_t *v_q17)
 {
     const uint32_t x = (uint32_t)q_magnitude(toward[0]);
     const uint32_t y = (uint32_t)q_magnitude(toward[1]);
@@ -42,7 +43,7 @@ void glint_environment_irradiance(const struct glint_environment *environment,
     struct glint_found found;
     int32_t u_q17, v_q17;
 
-    place(normal, &u_q17, &v_q17);
+    find_texel_position(normal, &u_q17, &v_q17);
     glint_reads_of(&level, u_q17, v_q17, 256, reads.at, reads.weight_q22);
     glint_find_light(environment->irradiance, &reads, 4, &found);
     set_light(&found, rgb);
@@ -50,7 +51,7 @@ void glint_environment_irradiance(const struct glint_environment *environment,
 
 /* Returns the weight of the next level, which has four times the variance, so
  * that the blend has the variance of a level OVER_Q8 above the first. */
-static uint32_t share_of(int32_t over_q8)
+static uint32_t compute_level_weight(int32_t over_q8)
 {
     return (uint32_t)(q_exp2_q16(over_q8 * 512) - 65536) * 85 >> 16;
 }
@@ -66,9 +67,9 @@ void glint_environment_look(const struct glint_environment *environment,
     int32_t u_q17, v_q17;
     uint32_t share_q8;
 
-    place(toward, &u_q17, &v_q17);
+    find_texel_position(toward, &u_q17, &v_q17);
     level_q8 = q_smaller(q_larger(level_q8, 0), texels->last << 8);
-    share_q8 = share_of(level_q8 & 255);
+    share_q8 = compute_level_weight(level_q8 & 255);
     level = &texels->level[level_q8 >> 8];
     glint_reads_of(level, u_q17, v_q17, 256 - share_q8, reads.at,
                    reads.weight_q22);

@@ -87,8 +87,9 @@ static void add_disc(const struct glint_ward_state *w,
             0, GLINT_SCENE_MOST_LIGHT);
 }
 
-static void behind(const struct glint_scene *scene, const int32_t toward_q30[3],
-                   int64_t spread_q40, int32_t rgb_q15[3])
+static void read_blurred_environment(const struct glint_scene *scene,
+                                     const int32_t toward_q30[3],
+                                     int64_t spread_q40, int32_t rgb_q15[3])
 {
     const struct glint_ward_state *w = scene->wards;
     const struct glint_environment *e = &w->environment;
@@ -188,8 +189,8 @@ static int find_half(const struct glint_scene_ray *ray,
 }
 
 /* Returns the weight of the lobe by NORM, 0 .. 8, before its density. */
-static struct glint_real weight_of(enum glint_ward_norm norm,
-                                   const struct half *h)
+static struct glint_real compute_weight(enum glint_ward_norm norm,
+                                        const struct half *h)
 {
     const struct glint_real most = real_of(8, 0);
     const struct glint_real ho = real_of(h->ho_q30, -30);
@@ -206,12 +207,13 @@ static struct glint_real weight_of(enum glint_ward_norm norm,
     return real_less(weight, most) ? weight : most;
 }
 
-static int shine(const struct glint_scene *scene,
-                 const struct glint_scene_ray *ray,
-                 const struct glint_met_surface *surface,
-                 const struct glint_brushed *brushed,
-                 const int32_t toward_q30[3], const int32_t level_q15[3],
-                 int32_t radius_q30, int32_t rgb_q15[3])
+static int add_highlight_light(const struct glint_scene *scene,
+                               const struct glint_scene_ray *ray,
+                               const struct glint_met_surface *surface,
+                               const struct glint_brushed *brushed,
+                               const int32_t toward_q30[3],
+                               const int32_t level_q15[3], int32_t radius_q30,
+                               int32_t rgb_q15[3])
 {
     const struct glint_ward_material *m =
         &scene->wards->material[surface->material->ward];
@@ -245,7 +247,7 @@ static int shine(const struct glint_scene *scene,
     gain = real_of(q_exp2_q16((14 << 16) -
                               (int32_t)((int64_t)slope_q16 * LOG2_E_Q16 >> 16)),
                    -30);
-    gain = real_over(real_times(gain, weight_of(m->norm, &h)), area);
+    gain = real_over(real_times(gain, compute_weight(m->norm, &h)), area);
     for (int c = 0; c < 3; c++)
         rgb_q15[c] = (int32_t)real_integer(
             real_times(real_of((int64_t)level_q15[c] * m->specular_q15[c], -30),
@@ -262,8 +264,8 @@ enum {
 
 /* ------------------------------------------------------------------- memory */
 
-static struct glint_ward_state *carve(const struct glint_scene *scene,
-                                      struct glint_arena *arena)
+static struct glint_ward_state *carve_ward(const struct glint_scene *scene,
+                                           struct glint_arena *arena)
 {
     const struct glint_scene_header *h = scene->model.header;
     const uint32_t n = h->n_wards;
@@ -317,7 +319,8 @@ static void set_lobes(const struct glint_scene *scene)
 
 /* Sets the rotation. The environment's lights are the last shining lights of
  * the scene. */
-static void turn(struct glint_scene *scene, const int32_t turn_q30[2])
+static void turn_environment(struct glint_scene *scene,
+                             const int32_t turn_q30[2])
 {
     struct glint_ward_state *w = scene->wards;
     const uint32_t n = w->environment.header->n_lights;
@@ -336,7 +339,8 @@ static void turn(struct glint_scene *scene, const int32_t turn_q30[2])
     }
 }
 
-static void scale(struct glint_scene *scene, struct glint_real factor)
+static void scale_environment(struct glint_scene *scene,
+                              struct glint_real factor)
 {
     struct glint_ward_state *w = scene->wards;
     const uint32_t n = w->environment.header->n_lights;
@@ -356,7 +360,7 @@ static void scale(struct glint_scene *scene, struct glint_real factor)
     set_lobes(scene);
 }
 
-static void show(struct glint_scene *scene, uint32_t i)
+static void set_shown_environment(struct glint_scene *scene, uint32_t i)
 {
     struct glint_ward_state *w = scene->wards;
     const struct glint_scene_header *h = scene->model.header;
@@ -373,8 +377,8 @@ static void show(struct glint_scene *scene, uint32_t i)
             q_larger(w->environment.light[k - first].radius_q30, LEAST_SUN_Q30);
         scene->lit[k].light = sun;
     }
-    turn(scene, from->turn_q30);
-    scale(scene, from->scale);
+    turn_environment(scene, from->turn_q30);
+    scale_environment(scene, from->scale);
 }
 
 /* ------------------------------------------------------------------ opening */
@@ -397,7 +401,7 @@ static enum glint_status open_wards(struct glint_scene *scene)
             return GLINT_E_FORMAT;
     }
     if (w->has_environment)
-        show(scene, 0);
+        set_shown_environment(scene, 0);
     else
         set_lobes(scene);
     return GLINT_OK;
@@ -504,9 +508,9 @@ static int32_t spread_q30(const struct glint_scene *s,
 
 /* Metal is brushed around the y axis of balls and meshes. Where the y axis is
  * the normal, as everywhere on planes, it is brushed along the x axis. */
-static void lie(const struct glint_scene *scene,
-                const struct glint_met_surface *surface,
-                struct glint_brushed *brushed)
+static void set_brushed_frame(const struct glint_scene *scene,
+                              const struct glint_met_surface *surface,
+                              struct glint_brushed *brushed)
 {
     const struct glint_placed *p = &scene->placed[surface->object];
     const int32_t *n_q30 = surface->normal_q30;
@@ -578,12 +582,12 @@ static void add_diffuse(const struct glint_ward_state *w,
             q_mul(q_mul(diffuse_q15, colour_q15[c], 15), weight_q15, 15));
 }
 
-static void reflect(const struct glint_scene *scene,
-                    const struct glint_scene_ray *ray,
-                    const struct glint_met_surface *surface,
-                    const struct glint_brushed *brushed,
-                    const int32_t colour_q15[3], int32_t weight_q15,
-                    int32_t rgb_q15[3])
+static void add_reflection(const struct glint_scene *scene,
+                           const struct glint_scene_ray *ray,
+                           const struct glint_met_surface *surface,
+                           const struct glint_brushed *brushed,
+                           const int32_t colour_q15[3], int32_t weight_q15,
+                           int32_t rgb_q15[3])
 {
     const struct glint_ward_state *w = scene->wards;
     const struct glint_scene_material *m = surface->material;
@@ -606,6 +610,14 @@ static void reflect(const struct glint_scene *scene,
         add_weighted(&rgb_q15[c], light[c], weight_q15);
 }
 
-const struct glint_scene_wards glint_scene_wards = {
-    carve,      open_wards, set_lobe, show,  scale, turn,
-    spread_q30, lie,        reflect,  shine, behind};
+const struct glint_scene_wards glint_scene_wards = {carve_ward,
+                                                    open_wards,
+                                                    set_lobe,
+                                                    set_shown_environment,
+                                                    scale_environment,
+                                                    turn_environment,
+                                                    spread_q30,
+                                                    set_brushed_frame,
+                                                    add_reflection,
+                                                    add_highlight_light,
+                                                    read_blurred_environment};

@@ -9,7 +9,7 @@
 enum { MOST_LIGHT = 1 << 30 };
 
 /* Returns X * 2^LOG2, clamped to 2^30. X must be 0 .. 2^61. */
-static int32_t scaled(uint64_t x, int log2)
+static int32_t scale_value(uint64_t x, int log2)
 {
     if (log2 <= 0)
         return log2 < -62
@@ -52,8 +52,8 @@ void glint_ward_send(const struct glint_ward_lobe *lobe,
             (sum_q12[k] >> 16) * (uint32_t)lobe->share_q16 +
             ((sum_q12[k] & 0xffff) * (uint32_t)lobe->share_q16 >> 16);
 
-        rgb_q15[k] = scaled(mean_q12 * (uint32_t)lobe->specular_q15[k],
-                            lobe->unit_log2 - 12);
+        rgb_q15[k] = scale_value(mean_q12 * (uint32_t)lobe->specular_q15[k],
+                                 lobe->unit_log2 - 12);
     }
 }
 

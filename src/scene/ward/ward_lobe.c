@@ -26,7 +26,7 @@ static const int32_t sine_q30[9] = {0,         209476638,  410903207,
                                     596538995, 759250125,  892783698,
                                     992008094, 1053110176, 1073741824};
 
-static int32_t sine_of(unsigned k)
+static int32_t find_sine(unsigned k)
 {
     const unsigned of_half = k & 15;
     const int32_t s = sine_q30[of_half > 8 ? 16 - of_half : of_half];
@@ -40,7 +40,7 @@ static unsigned reversed(unsigned k)
 }
 
 /* Sets SLOPE_Q16 to the slopes of N samples for alphas of 1. */
-static void draw(int n, int32_t slope_q16[GLINT_WARD_SAMPLES][2])
+static void draw_slopes(int n, int32_t slope_q16[GLINT_WARD_SAMPLES][2])
 {
     for (int k = 0; k < n; k++) {
         const int32_t log2_q16 =
@@ -49,8 +49,8 @@ static void draw(int n, int32_t slope_q16[GLINT_WARD_SAMPLES][2])
             (uint64_t)(uint32_t)log2_q16 * LN2_Q16); /* of a q32 */
         const unsigned turn = reversed((unsigned)k);
 
-        slope_q16[k][0] = q_mul(length_q16, sine_of((turn + 8) & 31), 30);
-        slope_q16[k][1] = q_mul(length_q16, sine_of(turn), 30);
+        slope_q16[k][0] = q_mul(length_q16, find_sine((turn + 8) & 31), 30);
+        slope_q16[k][1] = q_mul(length_q16, find_sine(turn), 30);
     }
 }
 
@@ -210,7 +210,7 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
                                      .norm = material->norm,
                                      .unit_log2 = h->unit_log2,
                                      .share_q16 = ((1 << 16) + n / 2) / n};
-    draw(n, slope_q16);
+    draw_slopes(n, slope_q16);
     for (int j = 0; j < 2 && options->rule == GLINT_WARD_CONSTANT; j++)
         normalise_slopes(n, j,
                          (uint32_t)spread_q16(alpha_q24[j], b_q48, f_q16) << 15,
