@@ -6,7 +6,7 @@
 
 /* ------------------------------------------------------------------- colour */
 
-static uint8_t code_of(double value)
+static uint8_t round_to_code(double value)
 {
     return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value + 0.5);
 }
@@ -22,14 +22,15 @@ void paint_colour(struct paint *p, uint8_t r, uint8_t g, uint8_t b)
     p->rgb[0] = r;
     p->rgb[1] = g;
     p->rgb[2] = b;
-    p->ycc[0] = code_of(full ? y : 16 + y * 219 / 255);
-    p->ycc[1] = code_of(128 + chroma * (b - y) / (1 - kb));
-    p->ycc[2] = code_of(128 + chroma * (r - y) / (1 - kr));
+    p->ycc[0] = round_to_code(full ? y : 16 + y * 219 / 255);
+    p->ycc[1] = round_to_code(128 + chroma * (b - y) / (1 - kb));
+    p->ycc[2] = round_to_code(128 + chroma * (r - y) / (1 - kr));
 }
 
 /* ------------------------------------------------------------------- pixels */
 
-static uint8_t *at(const struct glint_image *image, int plane, int x, int y)
+static uint8_t *find_pixel(const struct glint_image *image, int plane, int x,
+                           int y)
 {
     return image->plane[plane] + y * image->stride_bytes[plane] + x;
 }
@@ -53,11 +54,11 @@ static void put_chroma(const struct paint *p, int x, int y)
     if (image->format == GLINT_NV12 || image->format == GLINT_NV21) {
         const int swapped = image->format == GLINT_NV21;
 
-        *at(image, 1, 2 * cx + swapped, cy) = p->ycc[1];
-        *at(image, 1, 2 * cx + !swapped, cy) = p->ycc[2];
+        *find_pixel(image, 1, 2 * cx + swapped, cy) = p->ycc[1];
+        *find_pixel(image, 1, 2 * cx + !swapped, cy) = p->ycc[2];
     } else {
-        *at(image, 1, cx, cy) = p->ycc[1];
-        *at(image, 2, cx, cy) = p->ycc[2];
+        *find_pixel(image, 1, cx, cy) = p->ycc[1];
+        *find_pixel(image, 2, cx, cy) = p->ycc[2];
     }
 }
 
@@ -66,7 +67,7 @@ static void put_chroma(const struct paint *p, int x, int y)
 static void put_packed(const struct paint *p, int x, int y)
 {
     const int luma = p->image->format == GLINT_YUYV ? 0 : 1;
-    uint8_t *pair = at(p->image, 0, x / 2 * 4, y);
+    uint8_t *pair = find_pixel(p->image, 0, x / 2 * 4, y);
 
     pair[luma + x % 2 * 2] = p->ycc[0];
     pair[1 - luma] = p->ycc[1];
@@ -75,7 +76,7 @@ static void put_packed(const struct paint *p, int x, int y)
 
 static void put_rgb(const struct paint *p, int x, int y, int bytes, bool is_bgr)
 {
-    uint8_t *px = at(p->image, 0, bytes * x, y);
+    uint8_t *px = find_pixel(p->image, 0, bytes * x, y);
 
     for (int i = 0; i < 3; i++)
         px[is_bgr ? 2 - i : i] = p->rgb[i];
@@ -99,19 +100,19 @@ static void put(const struct paint *p, int x, int y)
         put_rgb(p, x, y, 4, false);
         break;
     case GLINT_RGB565:
-        put_565(at(p->image, 0, 2 * x, y), p->rgb);
+        put_565(find_pixel(p->image, 0, 2 * x, y), p->rgb);
         break;
     case GLINT_YUYV:
     case GLINT_UYVY:
         put_packed(p, x, y);
         break;
     case GLINT_GREY:
-        *at(p->image, 0, x, y) = p->ycc[0];
+        *find_pixel(p->image, 0, x, y) = p->ycc[0];
         break;
     case GLINT_LINEAR_Q20:
         break;
     default:
-        *at(p->image, 0, x, y) = p->ycc[0];
+        *find_pixel(p->image, 0, x, y) = p->ycc[0];
         put_chroma(p, x, y);
     }
 }
@@ -139,7 +140,7 @@ void paint_box(const struct paint *p, int x, int y, int half)
 
 /* Returns the glyph of C: five rows of three pixels, the top left one in the
  * highest of 15 bits. */
-static uint16_t glyph_of(char c)
+static uint16_t find_glyph(char c)
 {
     static const uint16_t digits[10] = {075557, 026227, 071747, 071717, 055711,
                                         074717, 074757, 071122, 075757, 075717};
@@ -183,12 +184,12 @@ int paint_text_width(const struct paint *p, const char *text)
 void paint_text(const struct paint *p, int x, int y, const char *text)
 {
     for (int i = 0; text[i]; i++)
-        draw_glyph(p, x + 4 * i * p->line, y, glyph_of(text[i]));
+        draw_glyph(p, x + 4 * i * p->line, y, find_glyph(text[i]));
 }
 
 /* Sets CODE to the values that even and odd bytes of PLANE have in black. */
-static void black_of(const struct glint_image *image, int plane,
-                     uint8_t code[2])
+static void set_black_code(const struct glint_image *image, int plane,
+                           uint8_t code[2])
 {
     const bool limited = !glint_image_is_rgb(image->format) &&
                          image->range == GLINT_RANGE_LIMITED;
@@ -209,7 +210,7 @@ void paint_black(const struct glint_image *image)
             glint_image_row_bytes(image->format, p, image->width);
         uint8_t code[2];
 
-        black_of(image, p, code);
+        set_black_code(image, p, code);
         for (int y = 0; y < rows; y++) {
             uint8_t *row = image->plane[p] + y * image->stride_bytes[p];
 

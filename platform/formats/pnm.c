@@ -47,7 +47,7 @@ static bool take_token(char token[TOKEN_CHARS], const uint8_t *data,
 
 /* Returns TOKEN as a number, at most 99999, or 0 if any character is not a
  * digit. */
-static int side_of(const char *token)
+static int parse_side(const char *token)
 {
     int value = 0;
 
@@ -68,8 +68,8 @@ static bool read_pfm_header(struct glint_pnm_header *h, const uint8_t *data,
     for (int i = 0; i < 3; i++)
         if (!take_token(token[i], data, bytes, &h->bytes))
             return false;
-    h->width = side_of(token[0]);
-    h->height = side_of(token[1]);
+    h->width = parse_side(token[0]);
+    h->height = parse_side(token[1]);
     scale = glint_option_number(token[2], &end);
     h->little = scale < 0;
     return h->width > 0 && h->height > 0 && !*end && isfinite(scale) &&

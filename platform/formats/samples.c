@@ -23,7 +23,7 @@ float glint_half_decode(uint16_t half)
 }
 
 /* Returns MANTISSA / 2^N, N >= 1, rounded to nearest, ties to even. */
-static uint32_t drop(uint32_t mantissa, int n)
+static uint32_t round_off_bits(uint32_t mantissa, int n)
 {
     const uint32_t half = UINT32_C(1) << (n - 1);
     const uint32_t kept = mantissa >> n, rest = mantissa & (2 * half - 1);
@@ -46,10 +46,12 @@ uint16_t glint_half_encode(float value)
         return (uint16_t)(sign | 0x7c00);
     /* Rounding may carry into the exponent, up to infinity. */
     if (exponent >= -14)
-        return (uint16_t)(sign | (drop(size, 13) - (UINT32_C(112) << 10)));
+        return (uint16_t)(sign |
+                          (round_off_bits(size, 13) - (UINT32_C(112) << 10)));
     if (exponent < -25)
         return (uint16_t)sign;
-    return (uint16_t)(sign | drop((size & 0x7fffff) | 0x800000, -1 - exponent));
+    return (uint16_t)(sign | round_off_bits((size & 0x7fffff) | 0x800000,
+                                            -1 - exponent));
 }
 
 size_t glint_sample_bytes(enum glint_sample sample)
@@ -83,7 +85,7 @@ int glint_samples_height(const struct glint_samples *samples)
 
 /* Returns the pixel that is seen at X, Y of the upright display window, or NULL
  * if the file has no pixel there. */
-static uint8_t *find(const struct glint_samples *s, int x, int y)
+static uint8_t *find_pixel(const struct glint_samples *s, int x, int y)
 {
     const int right = s->window_width - 1, bottom = s->window_height - 1;
     /* 64 bits, as a file may place its window anywhere */
@@ -192,7 +194,7 @@ static void put_float(const struct glint_sample_place *c, uint8_t *pixel,
         memcpy(pixel + c->offset, &value, sizeof value);
 }
 
-static uint32_t most_of(enum glint_sample sample)
+static uint32_t find_max_code(enum glint_sample sample)
 {
     return sample == GLINT_SAMPLE_U8    ? UINT8_MAX
            : sample == GLINT_SAMPLE_U16 ? UINT16_MAX
@@ -201,8 +203,8 @@ static uint32_t most_of(enum glint_sample sample)
 
 /* Returns sample C of PIXEL, an integer divided by MAXIMUM, a float
  * unchanged. */
-static double take(const struct glint_sample_place *c, uint32_t maximum,
-                   const uint8_t *pixel)
+static double read_sample(const struct glint_sample_place *c, uint32_t maximum,
+                          const uint8_t *pixel)
 {
     if (glint_sample_is_float(c->sample))
         return take_float(c, pixel);
@@ -221,10 +223,12 @@ static void put(const struct glint_sample_place *c, uint32_t maximum,
                     value >= 1 ? maximum : (uint32_t)(value * maximum + 0.5));
 }
 
-static double alpha_of(const struct glint_samples *s, const uint8_t *pixel)
+static double read_alpha(const struct glint_samples *s, const uint8_t *pixel)
 {
     const double alpha =
-        s->has_alpha ? take(&s->alpha, most_of(s->alpha.sample), pixel) : 1;
+        s->has_alpha
+            ? read_sample(&s->alpha, find_max_code(s->alpha.sample), pixel)
+            : 1;
 
     return alpha > 0 ? fmin(alpha, 1) : 0;
 }
@@ -260,7 +264,7 @@ static void decoder_close(struct decoder *d)
         free(d->entries[c]);
 }
 
-static double decode(const struct decoder *d, int c, const uint8_t *pixel)
+static double decode_pixel(const struct decoder *d, int c, const uint8_t *pixel)
 {
     const struct glint_samples *const s = d->samples;
     const struct glint_sample_place *const from = &s->colour[c];
@@ -268,12 +272,13 @@ static double decode(const struct decoder *d, int c, const uint8_t *pixel)
 
     if (!d->entries[c])
         return glint_tone_curve_decode(&s->colours.transfer[c],
-                                       take(from, s->maximum, pixel));
+                                       read_sample(from, s->maximum, pixel));
     code = take_integer(from, pixel);
     return (double)d->entries[c][code < s->maximum ? code : s->maximum];
 }
 
-static void turn(const double m[3][3], const double from[3], double to[3])
+static void multiply_matrix(const double m[3][3], const double from[3],
+                            double to[3])
 {
     for (int i = 0; i < 3; i++)
         to[i] = m[i][0] * from[0] + m[i][1] * from[1] + m[i][2] * from[2];
@@ -281,18 +286,18 @@ static void turn(const double m[3][3], const double from[3], double to[3])
 
 /* Returns VALUE; 65504, the largest half, if it is infinity; 0 if it is minus
  * infinity or NaN. */
-static double finite(double value)
+static double clamp_to_finite(double value)
 {
     return isnan(value) ? 0 : isinf(value) ? (value > 0 ? 65504 : 0) : value;
 }
 
 /* Sets RGB to the linear light of PIXEL, BT.709 primaries: without alpha if
  * STRAIGHT, else multiplied by alpha. */
-static void light_of(const struct decoder *d, const uint8_t *pixel,
-                     bool straight, double rgb[3])
+static void decode_light(const struct decoder *d, const uint8_t *pixel,
+                         bool straight, double rgb[3])
 {
     const struct glint_samples *const s = d->samples;
-    const double alpha = alpha_of(s, pixel);
+    const double alpha = read_alpha(s, pixel);
     double own[3], factor = 1;
 
     if (s->has_alpha && s->is_premultiplied && straight)
@@ -300,19 +305,19 @@ static void light_of(const struct decoder *d, const uint8_t *pixel,
     else if (s->has_alpha && !s->is_premultiplied && !straight)
         factor = alpha;
     for (int c = 0; c < 3; c++)
-        own[c] = finite(decode(d, c, pixel)) * factor;
-    turn(s->colours.to_bt709, own, rgb);
+        own[c] = clamp_to_finite(decode_pixel(d, c, pixel)) * factor;
+    multiply_matrix(s->colours.to_bt709, own, rgb);
 }
 
 void glint_samples_light(const struct glint_samples *samples, int x, int y,
                          float rgb[3])
 {
     const struct decoder by_formula = {.samples = samples};
-    const uint8_t *const pixel = find(samples, x, y);
+    const uint8_t *const pixel = find_pixel(samples, x, y);
     double light[3] = {0, 0, 0};
 
     if (pixel)
-        light_of(&by_formula, pixel, false, light);
+        decode_light(&by_formula, pixel, false, light);
     for (int c = 0; c < 3; c++)
         rgb[c] = (float)light[c];
 }
@@ -323,7 +328,7 @@ void glint_samples_light(const struct glint_samples *samples, int x, int y,
 
 /* Returns the 99th percentile of the pixels' largest channel, rounded up to an
  * eighth of an octave, at least 1; 1 if samples are not floats. */
-static double white_of(const struct decoder *d)
+static double find_white(const struct decoder *d)
 {
     const struct glint_samples *const s = d->samples;
     const size_t n = (size_t)s->width * (size_t)s->height;
@@ -336,7 +341,7 @@ static double white_of(const struct decoder *d)
     for (size_t i = 0; i < n; i++) {
         double rgb[3], most;
 
-        light_of(d, s->mem + i * s->pixel_bytes, false, rgb);
+        decode_light(d, s->mem + i * s->pixel_bytes, false, rgb);
         most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
         if (most > 1)
             bins[(int)fmin(log2(most) * 8 + 64, BINS - 1)]++;
@@ -368,11 +373,11 @@ static void fill_proxy(const struct decoder *d, const struct glint_image *proxy,
         uint8_t *at = proxy->plane[0] + y * proxy->stride_bytes[0];
 
         for (int x = 0; x < proxy->width; x++, at += 3) {
-            const uint8_t *const pixel = find(d->samples, x, y);
+            const uint8_t *const pixel = find_pixel(d->samples, x, y);
             double rgb[3] = {0, 0, 0};
 
             if (pixel)
-                light_of(d, pixel, false, rgb);
+                decode_light(d, pixel, false, rgb);
             for (int c = 0; c < 3; c++) {
                 const double light = rgb[c] / white;
 
@@ -404,7 +409,7 @@ enum glint_status glint_samples_proxy(const struct glint_samples *samples,
     }
     glint_image_place(&made, mem);
     decoder_open(&d, samples);
-    *white = white_of(&d);
+    *white = find_white(&d);
     fill_proxy(&d, &made, *white, codes);
     decoder_close(&d);
     free(codes);
@@ -414,12 +419,13 @@ enum glint_status glint_samples_proxy(const struct glint_samples *samples,
 
 /* ------------------------------------------------------------------ adding */
 
-static void add_to(const struct decoder *d, int c, uint8_t *pixel, double light)
+static void add_light_to_channel(const struct decoder *d, int c, uint8_t *pixel,
+                                 double light)
 {
     const struct glint_samples *const s = d->samples;
     const struct glint_sample_place *const at = &s->colour[c];
     const struct glint_tone_curve *const transfer = &s->colours.transfer[c];
-    const double sum = decode(d, c, pixel) + light;
+    const double sum = decode_pixel(d, c, pixel) + light;
     uint32_t code, lit;
 
     if (!(light > 0) || !isfinite(sum))
@@ -445,13 +451,14 @@ static void add_pixel(const struct decoder *d, uint8_t *pixel,
     double own[3];
 
     if (s->n_colours == 1) {
-        add_to(d, 0, pixel,
-               0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2]);
+        add_light_to_channel(d, 0, pixel,
+                             0.2126 * light[0] + 0.7152 * light[1] +
+                                 0.0722 * light[2]);
         return;
     }
-    turn(s->colours.from_bt709, light, own);
+    multiply_matrix(s->colours.from_bt709, light, own);
     for (int c = 0; c < 3; c++)
-        add_to(d, c, pixel, own[c]);
+        add_light_to_channel(d, c, pixel, own[c]);
 }
 
 void glint_samples_add(struct glint_samples *samples, const float *layer)
@@ -464,7 +471,7 @@ void glint_samples_add(struct glint_samples *samples, const float *layer)
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, layer += 3) {
             const bool lit = layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
-            uint8_t *const pixel = lit ? find(samples, x, y) : NULL;
+            uint8_t *const pixel = lit ? find_pixel(samples, x, y) : NULL;
 
             if (pixel)
                 add_pixel(&d, pixel, layer);
@@ -478,7 +485,7 @@ static void put_pixel(const struct glint_samples *s, uint8_t *pixel,
 {
     double own[3] = {0, 0, 0};
 
-    turn(s->colours.from_bt709, rgb, own);
+    multiply_matrix(s->colours.from_bt709, rgb, own);
     if (s->n_colours == 1)
         own[0] = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
     for (int c = 0; c < s->n_colours && c < 3; c++)
@@ -489,16 +496,17 @@ static void put_pixel(const struct glint_samples *s, uint8_t *pixel,
 void glint_samples_set(struct glint_samples *samples, int x, int y,
                        const double rgb[3], double cover)
 {
-    uint8_t *const pixel = find(samples, x, y);
+    uint8_t *const pixel = find_pixel(samples, x, y);
     double alpha;
 
     if (!pixel)
         return;
-    alpha = 1 - (1 - alpha_of(samples, pixel)) * (1 - cover);
+    alpha = 1 - (1 - read_alpha(samples, pixel)) * (1 - cover);
     put_pixel(samples, pixel, rgb,
               samples->is_premultiplied || !(alpha > 0) ? 1 : alpha);
     if (samples->has_alpha)
-        put(&samples->alpha, most_of(samples->alpha.sample), pixel, alpha);
+        put(&samples->alpha, find_max_code(samples->alpha.sample), pixel,
+            alpha);
 }
 
 /* -------------------------------------------------------------- converting */
@@ -510,11 +518,11 @@ static void convert_pixel(const struct glint_samples *to, uint8_t *dst,
     double rgb[3] = {0, 0, 0};
 
     if (src)
-        light_of(from, src, straight, rgb);
+        decode_light(from, src, straight, rgb);
     put_pixel(to, dst, rgb, 1);
     if (to->has_alpha)
-        put(&to->alpha, most_of(to->alpha.sample), dst,
-            src ? alpha_of(from->samples, src) : 0);
+        put(&to->alpha, find_max_code(to->alpha.sample), dst,
+            src ? read_alpha(from->samples, src) : 0);
 }
 
 void glint_samples_convert(struct glint_samples *to,
@@ -526,6 +534,6 @@ void glint_samples_convert(struct glint_samples *to,
     decoder_open(&d, from);
     for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++, dst += to->pixel_bytes)
-            convert_pixel(to, dst, &d, find(from, x, y));
+            convert_pixel(to, dst, &d, find_pixel(from, x, y));
     decoder_close(&d);
 }

@@ -70,7 +70,7 @@ static double encode_hlg(double light)
                              : hlg_a * log(12 * light - hlg_b) + hlg_c;
 }
 
-static double look_up(const struct glint_tone_curve *t, double code)
+static double interpolate_curve(const struct glint_tone_curve *t, double code)
 {
     const double at = code * (t->n_entries - 1);
     /* NaN, too, uses the last interval. */
@@ -87,7 +87,7 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
     if (code < 0)
         return -glint_tone_curve_decode(t, -code);
     if (t->n_entries)
-        return look_up(t, code);
+        return interpolate_curve(t, code);
     if (t->is_pq)
         return PQ_PEAK * decode_pq(fmin(code, 1));
     if (t->is_hlg)
@@ -101,7 +101,7 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
 
 /* Returns the code, 0 .. 1, that T's table decodes to LIGHT; the table must
  * rise. */
-static double find(const struct glint_tone_curve *t, double light)
+static double find_code(const struct glint_tone_curve *t, double light)
 {
     const double level = light * 65535;
     int low = 0, high = t->n_entries - 1;
@@ -129,7 +129,7 @@ double glint_tone_curve_encode(const struct glint_tone_curve *transfer,
     if (light < 0)
         return -glint_tone_curve_encode(t, -light);
     if (t->n_entries)
-        return find(t, light);
+        return find_code(t, light);
     if (t->is_pq)
         return encode_pq(fmin(light / PQ_PEAK, 1));
     if (t->is_hlg)
@@ -143,7 +143,7 @@ double glint_tone_curve_encode(const struct glint_tone_curve *transfer,
 
 /* --------------------------------------------------------------- primaries */
 
-static bool invert(double to[3][3], const double m[3][3])
+static bool invert_matrix(double to[3][3], const double m[3][3])
 {
     double det = 0;
 
@@ -163,8 +163,8 @@ static bool invert(double to[3][3], const double m[3][3])
     return true;
 }
 
-static void multiply(double to[3][3], const double a[3][3],
-                     const double b[3][3])
+static void multiply_matrices(double to[3][3], const double a[3][3],
+                              const double b[3][3])
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -190,7 +190,7 @@ static bool to_xyz(double m[3][3], const double xy[4][2])
             *(c < 3 ? &columns[i][c] : &white[i]) = c < 3 ? v : v / y;
         }
     }
-    if (!invert(back, (const double(*)[3])columns))
+    if (!invert_matrix(back, (const double(*)[3])columns))
         return false;
     for (int c = 0; c < 3; c++) {
         const double s = back[c][0] * white[0] + back[c][1] * white[1] +
@@ -210,10 +210,10 @@ static bool set_matrices(struct glint_colours *colours, const double file[3][3],
     double back[3][3], to[3][3], from[3][3];
     bool is_same = true;
 
-    if (!invert(back, bt709))
+    if (!invert_matrix(back, bt709))
         return false;
-    multiply(to, (const double(*)[3])back, file);
-    if (!invert(from, (const double(*)[3])to))
+    multiply_matrices(to, (const double(*)[3])back, file);
+    if (!invert_matrix(from, (const double(*)[3])to))
         return false;
     for (int i = 0; i < 9; i++)
         is_same = is_same && fabs(to[i / 3][i % 3] - (i % 4 == 0)) < 2e-3;
@@ -261,15 +261,15 @@ struct profile {
     size_t bytes;
 };
 
-static uint32_t u32(const uint8_t *at)
+static uint32_t read_u32(const uint8_t *at)
 {
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 |
            (uint32_t)at[2] << 8 | at[3];
 }
 
-static double s15f16(const uint8_t *at)
+static double read_s15f16(const uint8_t *at)
 {
-    return (int32_t)u32(at) / 65536.0;
+    return (int32_t)read_u32(at) / 65536.0;
 }
 
 /* Returns the data of tag NAME and sets *BYTES to their length; NULL if P has
@@ -277,13 +277,13 @@ static double s15f16(const uint8_t *at)
 static const uint8_t *find_tag(const struct profile *p, const char *name,
                                size_t least, size_t *bytes)
 {
-    const uint32_t n = p->bytes >= 132 ? u32(p->data + 128) : 0;
+    const uint32_t n = p->bytes >= 132 ? read_u32(p->data + 128) : 0;
 
     for (uint32_t i = 0; i < n && 144 + (size_t)i * 12 <= p->bytes; i++) {
         const uint8_t *const entry = p->data + 132 + (size_t)i * 12;
-        const size_t at = u32(entry + 4);
+        const size_t at = read_u32(entry + 4);
 
-        *bytes = u32(entry + 8);
+        *bytes = read_u32(entry + 8);
         if (memcmp(entry, name, 4) == 0)
             return at <= p->bytes && *bytes <= p->bytes - at && *bytes >= least
                        ? p->data + at
@@ -320,7 +320,7 @@ static bool take_formula(struct glint_tone_curve *t, const uint8_t *at,
     if (kind > 4 || bytes < 12 + 4 * (size_t)n_values[kind])
         return false;
     for (int i = 0; i < n_values[kind]; i++)
-        v[i] = s15f16(at + 12 + 4 * i);
+        v[i] = read_s15f16(at + 12 + 4 * i);
     *t = (struct glint_tone_curve){.gamma = v[0], .a = kind ? v[1] : 1};
     t->b = v[2];
     if (kind == 1 || kind == 2) {
@@ -348,7 +348,7 @@ static bool take_curve(struct glint_tone_curve *t, const struct profile *p,
         return take_formula(t, at, bytes);
     if (!at || memcmp(at, "curv", 4) != 0)
         return false;
-    n = u32(at + 8);
+    n = read_u32(at + 8);
     if (n > (bytes - 12) / 2)
         return false;
     if (n == 1)
@@ -385,7 +385,7 @@ static bool take_matrix(struct glint_colours *colours, const struct profile *p)
         const uint8_t *const at = find_tag(p, names[c], 20, &bytes);
 
         for (int i = 0; at && i < 3; i++)
-            file[i][c] = s15f16(at + 8 + 4 * i);
+            file[i][c] = read_s15f16(at + 8 + 4 * i);
         if (!at)
             return false;
     }

@@ -108,8 +108,8 @@ static enum glint_v4l2_outcome convert_errno(int number)
                                                  : GLINT_V4L2_BROKEN;
 }
 
-static enum glint_v4l2_outcome dequeue(struct glint_v4l2 *v,
-                                       struct glint_v4l2_taken *t)
+static enum glint_v4l2_outcome dequeue_buffer(struct glint_v4l2 *v,
+                                              struct glint_v4l2_taken *t)
 {
     struct v4l2_plane planes[3];
     struct v4l2_buffer b = describe_buffer(v, 0, planes);
@@ -160,7 +160,7 @@ static enum glint_v4l2_outcome read_frame(struct glint_v4l2 *v,
 static enum glint_v4l2_outcome take_buffer(struct glint_v4l2 *v,
                                            struct glint_v4l2_taken *t)
 {
-    return v->io == GLINT_V4L2_READ ? read_frame(v, t) : dequeue(v, t);
+    return v->io == GLINT_V4L2_READ ? read_frame(v, t) : dequeue_buffer(v, t);
 }
 
 /* ------------------------------------------------------------------ buffers */
@@ -314,7 +314,7 @@ static const char *fill_buffers(struct glint_v4l2 *v, uint32_t n)
 /* Allocates buffers of type IO. Returns NULL, or the name of the call that
  * failed, with errno set. Requests them twice, as a driver that was just
  * stopped refuses the first request. */
-static const char *try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
+static const char *allocate_buffers(struct glint_v4l2 *v, enum glint_v4l2_io io)
 {
     const enum v4l2_memory memory =
         io == GLINT_V4L2_MMAP ? V4L2_MEMORY_MMAP : V4L2_MEMORY_USERPTR;
@@ -358,13 +358,13 @@ static const char *get_buffers(struct glint_v4l2 *v)
 
     errno = EINVAL;
     if (may_stream && wish != GLINT_V4L2_USERPTR)
-        failed = try_io(v, GLINT_V4L2_MMAP);
+        failed = allocate_buffers(v, GLINT_V4L2_MMAP);
     if (may_stream && wish != GLINT_V4L2_MMAP && is_lacking(v))
-        failed = try_io(v, GLINT_V4L2_USERPTR);
+        failed = allocate_buffers(v, GLINT_V4L2_USERPTR);
     if ((wish == GLINT_V4L2_READ || wish == GLINT_V4L2_AUTO) &&
         caps & V4L2_CAP_READWRITE && v->device.format.n_blocks == 1 &&
         is_lacking(v))
-        failed = try_io(v, GLINT_V4L2_READ);
+        failed = allocate_buffers(v, GLINT_V4L2_READ);
     if (v->n_buffers || failed)
         return failed;
     errno = ENOTSUP;
@@ -394,7 +394,7 @@ static void stop_stream(struct glint_v4l2 *v)
     release_buffers(v);
 }
 
-static int stream_on(struct glint_v4l2 *v)
+static int start_stream(struct glint_v4l2 *v)
 {
     int type = (int)v->device.type;
 
@@ -440,7 +440,7 @@ static enum glint_status begin_stream(struct glint_v4l2 *v,
         n_queued += queue_buffer(v, i) == 0;
     if (n_queued == 0)
         return glint_ioctl_failed(error, v->device.path, "VIDIOC_QBUF");
-    if (stream_on(v) < 0)
+    if (start_stream(v) < 0)
         return glint_ioctl_failed(error, v->device.path, "VIDIOC_STREAMON");
     v->streams = true;
     v->n_numbered = 0;
@@ -455,9 +455,10 @@ static bool is_patient(const struct glint_v4l2 *v)
 }
 
 /* Implements glint_source.start. Until a stream has started once, an error
- * is returned at once; after a restart next() tries again for PATIENCE_US. */
-static enum glint_status start(struct glint_source *source,
-                               struct glint_error *error)
+ * is returned at once; after a restart read_next_frame() tries again for
+ * PATIENCE_US. */
+static enum glint_status start_source(struct glint_source *source,
+                                      struct glint_error *error)
 {
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     const enum glint_status status =
@@ -728,7 +729,7 @@ static enum glint_status take_frame(struct glint_v4l2 *v,
     if (!v->streams && v->n_buffers == 0)
         return restart_stream(v, "the stream is broken", error);
     if (!v->streams) {
-        const enum glint_status status = start(&v->source, error);
+        const enum glint_status status = start_source(&v->source, error);
 
         if (!v->streams)
             return status;
@@ -756,9 +757,9 @@ static enum glint_status take_frame(struct glint_v4l2 *v,
                           error);
 }
 
-static enum glint_status next(struct glint_source *source,
-                              struct glint_source_frame *frame,
-                              struct glint_error *error)
+static enum glint_status read_next_frame(struct glint_source *source,
+                                         struct glint_source_frame *frame,
+                                         struct glint_error *error)
 {
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     const enum glint_status status = take_frame(v, frame, error);
@@ -767,7 +768,8 @@ static enum glint_status next(struct glint_source *source,
     return status;
 }
 
-static void done(struct glint_source *source, struct glint_source_frame *frame)
+static void return_frame(struct glint_source *source,
+                         struct glint_source_frame *frame)
 {
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     struct glint_v4l2_buffer *b = frame->buffer;
@@ -791,8 +793,8 @@ static void close_camera(struct glint_source *source)
     v->source.fd = -1;
 }
 
-static void describe(const struct glint_source *source,
-                     struct glint_source_format *format)
+static void describe_source(const struct glint_source *source,
+                            struct glint_source_format *format)
 {
     static const char *const io[] = {"", "mapped", "user", "read"};
     const struct glint_v4l2 *v = (const struct glint_v4l2 *)source;
@@ -828,10 +830,10 @@ enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
     enum glint_status status;
 
     *camera = (struct glint_v4l2){.source = {.fd = -1,
-                                             .start = start,
-                                             .next = next,
-                                             .done = done,
-                                             .describe = describe,
+                                             .start = start_source,
+                                             .next = read_next_frame,
+                                             .done = return_frame,
+                                             .describe = describe_source,
                                              .close = close_camera},
                                   .wish_io = io,
                                   .wish_buffers = n_buffers};

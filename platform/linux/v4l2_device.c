@@ -432,7 +432,7 @@ static void read_input(struct glint_v4l2_device *d)
 
 /* Subscribes to changes of the source. Drivers whose source never changes
  * refuse with EINVAL, which is ignored. */
-static void subscribe(const struct glint_v4l2_device *d)
+static void subscribe_to_events(const struct glint_v4l2_device *d)
 {
     struct v4l2_event_subscription wanted = {.type = V4L2_EVENT_SOURCE_CHANGE,
                                              .id = d->input};
@@ -451,7 +451,7 @@ static enum glint_status choose_input(struct glint_v4l2_device *d,
                                         "has no input %d", d->wish.input)
                    : glint_ioctl_failed(error, d->path, "VIDIOC_S_INPUT");
     read_input(d);
-    subscribe(d);
+    subscribe_to_events(d);
     return GLINT_OK;
 }
 

@@ -196,9 +196,9 @@ static void copy_frame(const struct glint_v4l2_sink *out,
                    glint_image_row_bytes(to->format, i, to->width));
 }
 
-static enum glint_status put(struct glint_sink *sink,
-                             const struct glint_image *image,
-                             struct glint_error *error)
+static enum glint_status write_frame(struct glint_sink *sink,
+                                     const struct glint_image *image,
+                                     struct glint_error *error)
 {
     struct glint_v4l2_sink *const out = (struct glint_v4l2_sink *)sink;
     const uint8_t *data = image->plane[0];
@@ -252,8 +252,10 @@ enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
     enum glint_status status = GLINT_OK;
     struct v4l2_format format;
 
-    *out = (struct glint_v4l2_sink){
-        .sink = {put, close_sink}, .name = path, .fd = -1, .frame = *like};
+    *out = (struct glint_v4l2_sink){.sink = {write_frame, close_sink},
+                                    .name = path,
+                                    .fd = -1,
+                                    .frame = *like};
     if (!fourcc)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
                                   "V4L2 has no such format");

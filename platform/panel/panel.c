@@ -605,7 +605,7 @@ static int find_nearest(int i, int from, int to)
 
 /* Rounds BYTES up to a multiple of 64, so that consecutive arrays are aligned
  * as malloc aligns. */
-static size_t round_up(size_t bytes)
+static size_t round_up_to_64(size_t bytes)
 {
     return (bytes + 63) & ~(size_t)63;
 }
@@ -615,9 +615,9 @@ static enum glint_status allocate_memory(struct glint_panel *p,
 {
     const int widest =
         p->cfg.width > p->cfg.image_width ? p->cfg.width : p->cfg.image_width;
-    const size_t line = round_up(4 * (size_t)widest);
-    const size_t map = round_up(sizeof *p->from_x * (size_t)p->cfg.width);
-    const size_t rgb = round_up(glint_row_rgb_bytes(widest));
+    const size_t line = round_up_to_64(4 * (size_t)widest);
+    const size_t map = round_up_to_64(sizeof *p->from_x * (size_t)p->cfg.width);
+    const size_t rgb = round_up_to_64(glint_row_rgb_bytes(widest));
     uint8_t *const mem =
         malloc(2 * line + map + rgb + glint_row_pack_bytes(widest));
 

@@ -224,9 +224,9 @@ static bool is_ready(const struct glint_y4m_sink *y)
                                           by the next write. */
 }
 
-static enum glint_status put(struct glint_sink *sink,
-                             const struct glint_image *image,
-                             struct glint_error *error)
+static enum glint_status write_y4m_frame(struct glint_sink *sink,
+                                         const struct glint_image *image,
+                                         struct glint_error *error)
 {
     struct glint_y4m_sink *const y = (struct glint_y4m_sink *)sink;
     enum glint_status status = GLINT_OK;
@@ -277,7 +277,7 @@ void glint_y4m_sink_open(struct glint_y4m_sink *y4m, const char *path,
                          int fps_num, int fps_den)
 {
     *y4m = (struct glint_y4m_sink){
-        .sink = {put, close_y4m},
+        .sink = {write_y4m_frame, close_y4m},
         .path = path,
         .fps_num = fps_num,
         .fps_den = fps_den,

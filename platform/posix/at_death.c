@@ -25,7 +25,7 @@ static const int deadly[] = {
 /* registered functions, NULL after the last; atomic */
 static glint_at_death_fn *fns[MAX_FN];
 
-static void run_all(void)
+static void run_all_handlers(void)
 {
     for (int i = MAX_FN - 1; i >= 0; i--) {
         glint_at_death_fn *const fn =
@@ -51,7 +51,7 @@ static bool report_library(void)
 
 static void run_at_exit(void)
 {
-    run_all();
+    run_all_handlers();
     report_library();
 }
 
@@ -61,7 +61,7 @@ static void run_at_exit(void)
  * with the status that its parent expects. */
 static void handle_signal(int signal_number)
 {
-    run_all();
+    run_all_handlers();
     if (signal_number == SIGABRT && report_library())
         _exit(EXIT_FAILURE);
     raise(signal_number);
@@ -125,7 +125,7 @@ void glint_at_death_by(int signal_number)
     struct sigaction act = {.sa_handler = SIG_DFL};
     sigset_t open;
 
-    run_all();
+    run_all_handlers();
     sigemptyset(&act.sa_mask);
     sigaction(signal_number, &act, NULL);
     sigemptyset(&open);

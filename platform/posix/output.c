@@ -485,8 +485,8 @@ static bool may_retry(int fd)
     return errno == EINTR;
 }
 
-static void write_all(struct glint_output *out, const uint8_t *data,
-                      size_t bytes)
+static void write_all_bytes(struct glint_output *out, const uint8_t *data,
+                            size_t bytes)
 {
     while (bytes > 0 && !out->failed) {
         const ssize_t n = write(out->fd, data, bytes);
@@ -504,13 +504,13 @@ enum glint_status glint_output_write(struct glint_output *out, const void *data,
                                      size_t bytes, struct glint_error *error)
 {
     if (bytes > BUFFER_BYTES - out->used) {
-        write_all(out, out->buffer, out->used);
+        write_all_bytes(out, out->buffer, out->used);
         out->used = 0; /* NOLINT: glint_output_end() frees the buffer. */
     }
     if (out->failed)
         return report_failed(out, error);
     if (bytes >= BUFFER_BYTES) {
-        write_all(out, data, bytes);
+        write_all_bytes(out, data, bytes);
     } else {
         memcpy(out->buffer + out->used, data, bytes);
         out->used += bytes;
@@ -521,7 +521,7 @@ enum glint_status glint_output_write(struct glint_output *out, const void *data,
 enum glint_status glint_output_flush(struct glint_output *out,
                                      struct glint_error *error)
 {
-    write_all(out, out->buffer, out->used);
+    write_all_bytes(out, out->buffer, out->used);
     out->used = 0;
     return out->failed ? report_failed(out, error) : GLINT_OK;
 }

@@ -76,7 +76,7 @@ static int is_close_request(const SDL_Event *event)
                                         event->key.keysym.sym == SDLK_q));
 }
 
-static int show(void *window, const void *pixels, int stride)
+static int show_pixels(void *window, const void *pixels, int stride)
 {
     struct view *v = window;
     SDL_Event event;
@@ -93,4 +93,4 @@ static int show(void *window, const void *pixels, int stride)
 }
 
 __attribute__((visibility("default"))) const struct glint_sdl glint_sdl_face = {
-    GLINT_SDL_VERSION, open_view, show, close_view};
+    GLINT_SDL_VERSION, open_view, show_pixels, close_view};

@@ -53,9 +53,9 @@ static enum glint_status open_for_image(struct glint_window *w,
     return status;
 }
 
-static enum glint_status put(struct glint_sink *sink,
-                             const struct glint_image *image,
-                             struct glint_error *error)
+static enum glint_status show_frame(struct glint_sink *sink,
+                                    const struct glint_image *image,
+                                    struct glint_error *error)
 {
     struct glint_window *w = (struct glint_window *)sink;
     enum glint_status status = GLINT_OK;
@@ -84,7 +84,7 @@ enum glint_status glint_window_open(struct glint_window *window,
 {
     struct glint_error cause;
 
-    *window = (struct glint_window){.sink = {put, close_window},
+    *window = (struct glint_window){.sink = {show_frame, close_window},
                                     .sdl = glint_plugin_load(&plugin, &cause),
                                     .title = title};
     if (window->sdl)

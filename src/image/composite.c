@@ -14,7 +14,7 @@ struct glint_composite {
 
 /* Allocates a composite from A. Called twice: first to measure, when it
  * returns NULL, then to allocate. */
-static struct glint_composite *carve(struct glint_arena *a)
+static struct glint_composite *carve_composite(struct glint_arena *a)
 {
     struct glint_composite measured = {0}, *placed;
     struct glint_composite *c;
@@ -31,7 +31,7 @@ size_t glint_composite_bytes(void)
 {
     struct glint_arena arena = glint_arena_measure();
 
-    carve(&arena);
+    carve_composite(&arena);
     return arena.used;
 }
 
@@ -47,7 +47,7 @@ enum glint_status glint_composite_init(struct glint_composite **composite,
         return GLINT_E_ARGUMENT;
     if (glint_composite_bytes() > bytes)
         return GLINT_E_MEMORY;
-    c = carve(&arena);
+    c = carve_composite(&arena);
     glint_resolve_init(c->resolve, image, dither, sets);
     *composite = c;
     return GLINT_OK;

@@ -120,7 +120,7 @@ static void cover_ycc(struct stretch *s, const struct glint_mix *mix,
 }
 
 /* Returns whether all pixels of the run are fully hidden. */
-static int hides_all(const struct stretch *s)
+static int hides_all_pixels(const struct stretch *s)
 {
     unsigned shown = 0;
 
@@ -131,7 +131,7 @@ static int hides_all(const struct stretch *s)
 }
 
 /* Sets the codes of all pixels of the run to black. */
-static void blacken(const struct stretch *s, int is_rgb)
+static void set_black(const struct stretch *s, int is_rgb)
 {
     const uint8_t luma = (uint8_t)(is_rgb ? 0 : s->black);
     const uint8_t rest = is_rgb ? 0 : 128;
@@ -159,8 +159,8 @@ void glint_cover_stretch(const struct glint_resolve *resolve,
     const int is_rgb = s.layout->kind == GLINT_LAYOUT_RGB ||
                        s.layout->kind == GLINT_LAYOUT_565;
 
-    if (hides_all(&s)) {
-        blacken(&s, is_rgb);
+    if (hides_all_pixels(&s)) {
+        set_black(&s, is_rgb);
     } else {
         glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
         if (is_rgb)

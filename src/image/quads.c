@@ -11,7 +11,7 @@ struct stretch {
     const uint16_t *const *light_q16;
 };
 
-static int round_up(int n)
+static int round_up_to_step(int n)
 {
     return (n + STEP - 1) & -STEP;
 }
@@ -31,7 +31,7 @@ static void add_to_pixels(const struct glint_resolve *r,
 {
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < s->n_y; row++)
-            double_row(s->light_q16[c], round_up(s->n_x) / 2,
+            double_row(s->light_q16[c], round_up_to_step(s->n_x) / 2,
                        rows->light.rgb_q16[c][row]);
     glint_resolve_stretch(r, s->image, s->x, s->y, s->n_x, s->n_y, &rows->light,
                           &rows->rows);
@@ -53,8 +53,8 @@ static void add_to_pairs(const struct glint_resolve *r, const struct stretch *s,
 
     glint_codes_read(codes, s->image, s->x, s->y, s->n_x, s->n_y);
     glint_quad_kernels_of(r->sets)->add(luma, chroma, s->light_q16,
-                                        round_up(s->n_x), &r->mix, round,
-                                        round_chroma);
+                                        round_up_to_step(s->n_x), &r->mix,
+                                        round, round_chroma);
     glint_codes_write(codes, s->image, s->x, s->y, s->n_x, s->n_y);
 }
 

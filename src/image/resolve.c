@@ -28,7 +28,7 @@ void glint_resolve_init(struct glint_resolve *resolve,
                 (int16_t)(dither ? 2 * bayer_rank(x, y) + 1 : 64);
 }
 
-static int round_up(int n)
+static int round_up_to_lanes(int n)
 {
     return (n + GLINT_LANES - 1) & -GLINT_LANES;
 }
@@ -40,7 +40,7 @@ static void resolve_rgb(const struct glint_resolve *r, int y, int n_x, int n_y,
     for (int row = 0; row < n_y; row++)
         for (int c = 0; c < 3; c++)
             r->kernels->add_code(codes->sample[c][row], light->rgb_q16[c][row],
-                                 round_up(n_x), &r->mix.tone,
+                                 round_up_to_lanes(n_x), &r->mix.tone,
                                  r->round_q7[(y + row) & 7]);
 }
 
@@ -88,11 +88,11 @@ static void resolve_whole(const struct glint_resolve *r,
                         rows->codes.sample[2][row]};
 
     if (grey) {
-        compute_luminance(light, row, round_up(n), rows->grey_q16);
+        compute_luminance(light, row, round_up_to_lanes(n), rows->grey_q16);
         rgb[0] = rgb[1] = rgb[2] = rows->grey_q16;
     }
-    r->kernels->add_luma(code[0], code[1], code[2], rgb, change, round_up(n),
-                         &r->mix, round);
+    r->kernels->add_luma(code[0], code[1], code[2], rgb, change,
+                         round_up_to_lanes(n), &r->mix, round);
     for (int k = 0; k < 2 && !grey; k++)
         add_chroma(code[1 + k], change[1 - k], change[2],
                    r->mix.to_ycc.one +
@@ -131,7 +131,7 @@ static void resolve_pairs(const struct glint_resolve *r,
 
         r->kernels->add_pairs(rows->codes.sample[0][row],
                               rows->codes.chroma[l->log2_y ? 0 : row], rgb,
-                              mean, round_up(n_x), step, &r->mix,
+                              mean, round_up_to_lanes(n_x), step, &r->mix,
                               r->round_q7[(y + row) & 7], r->round_q7[cy & 7]);
     }
 }

@@ -21,7 +21,7 @@ static int16_t multiply_q15(int a, int b)
     return (int16_t)((a * b + (1 << 14)) >> 15);
 }
 
-static uint16_t decode(const struct glint_tone16 *t, int16_t code)
+static uint16_t decode_code(const struct glint_tone16 *t, int16_t code)
 {
     const int16_t *f = t->factor.one;
     const int w = code > t->toe_end[0] ? code - t->toe_end[0] : 0;
@@ -32,7 +32,7 @@ static uint16_t decode(const struct glint_tone16 *t, int16_t code)
                       multiply_q15(multiply_q15(w, w), rise));
 }
 
-static int16_t encode(const struct glint_tone16 *t, uint16_t light)
+static int16_t encode_light(const struct glint_tone16 *t, uint16_t light)
 {
     const int zeros = 16 - bit_length(light);
     const int16_t z = (int16_t)(uint16_t)((uint32_t)light << zeros);
@@ -51,7 +51,7 @@ static int16_t compute_change(const struct glint_tone16 *t, int16_t code,
                               uint16_t light_q16)
 {
     const int16_t lit =
-        encode(t, (uint16_t)(decode(t, code) + (light_q16 >> 1)));
+        encode_light(t, (uint16_t)(decode_code(t, code) + (light_q16 >> 1)));
 
     return lit > code ? (int16_t)(lit - code) : 0;
 }
@@ -354,8 +354,8 @@ void glint_run_sum_c(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
 static int16_t hide_light(const struct glint_tone16 *t, int16_t code,
                           int cover_q8)
 {
-    const uint32_t light = decode(t, code) * (uint32_t)(256 - cover_q8);
-    const int16_t left = encode(t, (uint16_t)((light + 128) >> 8));
+    const uint32_t light = decode_code(t, code) * (uint32_t)(256 - cover_q8);
+    const int16_t left = encode_light(t, (uint16_t)((light + 128) >> 8));
 
     return left < code ? left : code;
 }

@@ -101,7 +101,7 @@ static int32_t log2_q16(struct glint_real x)
 }
 
 /* Returns 2^LOG2_OF pixels, rounded up; at most 2^20 + 1. */
-static int exp2_rounded_up(int32_t log2_of_q16)
+static int compute_exp2_ceil(int32_t log2_of_q16)
 {
     const int64_t far_q16 = q_exp2_q16(q_smaller(log2_of_q16, 20 * 65536));
 
@@ -161,9 +161,9 @@ static int compute_halo_reach(const struct glint_star_tables *t,
         /* row i holds for r^2 from 2^(4 + i / 2) on, the last row for all
          * larger r^2 */
         if (row == GLINT_STAR_HALO_ROWS - 1 && r2_log2_q16 > (26 << 16))
-            return exp2_rounded_up(r2_log2_q16 / 2);
+            return compute_exp2_ceil(r2_log2_q16 / 2);
         if (r2_log2_q16 >= (4 << 16) + row * 32768)
-            return exp2_rounded_up((4 << 15) + (row + 1) * 16384);
+            return compute_exp2_ceil((4 << 15) + (row + 1) * 16384);
     }
     return 0;
 }
@@ -263,10 +263,10 @@ static int set_lamp(struct glint_star_lamp *lamp,
             l->rgb_q14[c] > 0
                 ? log2_q16(real_times(power, real_of(l->rgb_q14[c], -14)))
                 : INT32_MIN / 2;
-    lamp->reach =
-        t->n_lines && line.mantissa > 0
-            ? exp2_rounded_up((log2_q16(line) + 16 * 65536 - min_log2_q16) / 2)
-            : 0;
+    lamp->reach = t->n_lines && line.mantissa > 0
+                      ? compute_exp2_ceil(
+                            (log2_q16(line) + 16 * 65536 - min_log2_q16) / 2)
+                      : 0;
     set_zones(lamp, t, log2_q16(line) - min_log2_q16);
     lamp->halo_reach = compute_halo_reach(t, log2_q16(power), min_log2_q16);
     lamp->smear_reach =

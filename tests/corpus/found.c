@@ -9,7 +9,7 @@
 
 enum { MOST = 128 };
 
-static int find(const char *name, const struct glint_image *image)
+static int print_found_lamps(const char *name, const struct glint_image *image)
 {
     struct glint_lamp_finder_config cfg;
     struct glint_lamp_finder *finder;
@@ -44,7 +44,7 @@ int main(int argc, char **argv)
     for (int i = 1; i < argc && code == 0; i++) {
         code = ppm_read(argv[i], &image);
         if (code == 0) {
-            code = find(argv[i], &image);
+            code = print_found_lamps(argv[i], &image);
             free(image.plane[0]);
         }
     }

@@ -40,23 +40,23 @@ static void (*set_value)(void *, void *, int);
 static void (*get_value)(void *, void *, int);
 static void (*update)(void *, double, const uint32_t *, uint32_t *);
 
-static int fail(const char *text, const char *what)
+static int exit_with_error(const char *text, const char *what)
 {
     fprintf(stderr, "frei0r_host: %s %s\n", text, what ? what : "");
     exit(1);
 }
 
-static void entry(void *library, const char *name, void *to)
+static void find_symbol(void *library, const char *name, void *to)
 {
     void *const at = dlsym(library, name);
 
     if (!at)
-        fail("no entry", name);
+        exit_with_error("no entry", name);
     memcpy(to, &at, sizeof at);
 }
 
 /* Sets and reads back a parameter. */
-static void set(void *instance, const struct setting *s)
+static void set_parameter(void *instance, const struct setting *s)
 {
     struct f0r_param info;
     double number = strtod(s->value, NULL), got = -1;
@@ -65,7 +65,7 @@ static void set(void *instance, const struct setting *s)
 
     for (;; i++) {
         if (i == plugin.n_params)
-            fail("no parameter", s->name);
+            exit_with_error("no parameter", s->name);
         param_info(&info, i);
         if (strcmp(info.name, s->name) == 0)
             break;
@@ -78,19 +78,19 @@ static void set(void *instance, const struct setting *s)
         get_value(instance, &got, i);
     }
     if (info.type == F0R_STRING ? strcmp(back, word) != 0 : got != number)
-        fail("is not what was set:", s->name);
+        exit_with_error("is not what was set:", s->name);
 }
 
-static void *run(void *out)
+static void *draw_frames(void *out)
 {
     void *const instance = construct(width, height);
 
     if (!instance)
-        fail("no instance", NULL);
+        exit_with_error("no instance", NULL);
     for (size_t i = 0; i < n_frames; i++) {
         for (int k = 0; k < n_settings; k++)
             if (setting[k].frame == (int)i)
-                set(instance, &setting[k]);
+                set_parameter(instance, &setting[k]);
         update(instance, (double)i / 25,
                (const uint32_t *)(const void *)(input + i * frame_bytes),
                (uint32_t *)(void *)((unsigned char *)out + i * frame_bytes));
@@ -106,27 +106,27 @@ static void take_setting(const char *text)
 
     if (!value || n_settings == MOST ||
         sscanf(text, "%31[^@=]@%d", s->name, &s->frame) < 1)
-        fail("not NAME=VALUE:", text);
+        exit_with_error("not NAME=VALUE:", text);
     s->value = value + 1;
 }
 
-static void load(const char *path)
+static void load_plugin(const char *path)
 {
     void *const library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     int (*init)(void);
 
     if (!library)
-        fail("cannot load", dlerror());
-    entry(library, "f0r_init", &init);
-    entry(library, "f0r_construct", &construct);
-    entry(library, "f0r_destruct", &destruct);
-    entry(library, "f0r_get_plugin_info", &plugin_info);
-    entry(library, "f0r_get_param_info", &param_info);
-    entry(library, "f0r_set_param_value", &set_value);
-    entry(library, "f0r_get_param_value", &get_value);
-    entry(library, "f0r_update", &update);
+        exit_with_error("cannot load", dlerror());
+    find_symbol(library, "f0r_init", &init);
+    find_symbol(library, "f0r_construct", &construct);
+    find_symbol(library, "f0r_destruct", &destruct);
+    find_symbol(library, "f0r_get_plugin_info", &plugin_info);
+    find_symbol(library, "f0r_get_param_info", &param_info);
+    find_symbol(library, "f0r_set_param_value", &set_value);
+    find_symbol(library, "f0r_get_param_value", &get_value);
+    find_symbol(library, "f0r_update", &update);
     if (init() != 1)
-        fail("init fails:", path);
+        exit_with_error("init fails:", path);
     plugin_info(&plugin);
 }
 
@@ -138,25 +138,25 @@ int main(int argc, char **argv)
     size_t bytes;
 
     if (n < 1 || n > MOST || sscanf(argv[2], "%ux%u", &width, &height) != 2)
-        fail("PLUGIN WIDTHxHEIGHT INSTANCES [NAME=VALUE...]", NULL);
+        exit_with_error("PLUGIN WIDTHxHEIGHT INSTANCES [NAME=VALUE...]", NULL);
     frame_bytes = (size_t)4 * width * height;
     input = malloc((size_t)256 << 20);
     if (!input)
-        fail("no memory", NULL);
+        exit_with_error("no memory", NULL);
     n_frames = fread(input, 1, (size_t)256 << 20, stdin) / frame_bytes;
     for (int i = 4; i < argc; i++)
         take_setting(argv[i]);
     setlocale(LC_ALL, ""); /* as hosts with windows do */
-    load(argv[1]);
+    load_plugin(argv[1]);
     bytes = n_frames * frame_bytes;
     for (int i = 0; i < n; i++)
         if (!(out[i] = malloc(bytes)) ||
-            pthread_create(&thread[i], NULL, run, out[i]) != 0)
-            fail("no memory, or no thread", NULL);
+            pthread_create(&thread[i], NULL, draw_frames, out[i]) != 0)
+            exit_with_error("no memory, or no thread", NULL);
     for (int i = 0; i < n; i++) {
         pthread_join(thread[i], NULL);
         if (memcmp(out[0], out[i], bytes) != 0)
-            fail("an instance differs from the first", NULL);
+            exit_with_error("an instance differs from the first", NULL);
     }
     return fwrite(out[0], 1, bytes, stdout) != bytes;
 }

@@ -13,7 +13,7 @@ enum { WIDTH = 160, HEIGHT = 96, BYTES = 4 * WIDTH * HEIGHT };
 
 static int status;
 
-static void report(const char *name, int is_met)
+static void report_result(const char *name, int is_met)
 {
     g_print("%s %s\n", is_met ? "ok" : "not ok", name);
     status |= !is_met;
@@ -33,7 +33,7 @@ static GstBuffer *frame_of(int k)
     return buffer;
 }
 
-static const guint8 *bytes_of(GstBuffer *buffer)
+static const guint8 *copy_buffer_bytes(GstBuffer *buffer)
 {
     GstMapInfo map;
     const guint8 *data;
@@ -66,7 +66,8 @@ static GstBuffer *drawn(GstHarness *h, int k)
 static int is_plain(GstBuffer *buffer)
 {
     GstBuffer *const plain = frame_of(0);
-    const int same = memcmp(bytes_of(buffer), bytes_of(plain), BYTES) == 0;
+    const int same =
+        memcmp(copy_buffer_bytes(buffer), copy_buffer_bytes(plain), BYTES) == 0;
 
     gst_buffer_unref(plain);
     gst_buffer_unref(buffer);
@@ -77,14 +78,14 @@ static void test_in_place(void)
 {
     GstHarness *const h = harness("lens=heliar-tronnier");
     GstBuffer *const in = frame_of(0);
-    const guint8 *const before = bytes_of(in);
+    const guint8 *const before = copy_buffer_bytes(in);
     GstBuffer *out;
 
     gst_harness_push(h, in);
     out = gst_harness_pull(h);
-    report("the frame is the buffer that came, at the same address",
-           out == in && bytes_of(out) == before);
-    report("with a flare on it", !is_plain(out));
+    report_result("the frame is the buffer that came, at the same address",
+                  out == in && copy_buffer_bytes(out) == before);
+    report_result("with a flare on it", !is_plain(out));
     gst_harness_teardown(h);
 }
 
@@ -120,25 +121,26 @@ static void test_live(void)
     gst_element_set_bus(e, bus);
     gst_object_unref(bus);
     full = drawn(h, 0);
-    memcpy(first, bytes_of(full), BYTES);
+    memcpy(first, copy_buffer_bytes(full), BYTES);
     gst_buffer_unref(full);
     g_object_set(e, "gain", 0.0, "starburst", 0.0, NULL);
-    report("gain 0 from the next frame on", is_plain(drawn(h, 1)));
+    report_result("gain 0 from the next frame on", is_plain(drawn(h, 1)));
     g_object_set(e, "gain", 1.0, "starburst", 1.0, NULL);
-    report("and gain 1 again", !is_plain(drawn(h, 2)));
+    report_result("and gain 1 again", !is_plain(drawn(h, 2)));
     g_object_set(e, "auto", FALSE, "x", 0.8, "y", 0.2, "f-number", "8", NULL);
     full = drawn(h, 3);
-    report("a lamp at x, y", memcmp(bytes_of(full), first, BYTES) != 0);
-    report("which draws", !is_plain(full));
+    report_result("a lamp at x, y",
+                  memcmp(copy_buffer_bytes(full), first, BYTES) != 0);
+    report_result("which draws", !is_plain(full));
     g_object_get(e, "lens", &lens, "gain", &gain, NULL);
-    report("properties are read back",
-           g_strcmp0(lens, "heliar-tronnier") == 0 && gain > 0.99);
+    report_result("properties are read back",
+                  g_strcmp0(lens, "heliar-tronnier") == 0 && gain > 0.99);
     g_object_set(e, "lens", "nothing", NULL);
-    report("an unknown lens is an error of the stream",
-           gst_harness_push(h, frame_of(4)) == GST_FLOW_ERROR);
-    report("whose message names it", names_lens(e, "nothing"));
+    report_result("an unknown lens is an error of the stream",
+                  gst_harness_push(h, frame_of(4)) == GST_FLOW_ERROR);
+    report_result("whose message names it", names_lens(e, "nothing"));
     g_object_set(e, "lens", "heliar-tronnier", NULL);
-    report("until it is known", !is_plain(drawn(h, 5)));
+    report_result("until it is known", !is_plain(drawn(h, 5)));
     g_free(lens);
     gst_object_unref(e);
     gst_harness_teardown(h);
@@ -149,18 +151,18 @@ static void test_qos(void)
     GstHarness *const h = harness("lens=heliar-tronnier");
     GstBuffer *out = drawn(h, 0);
 
-    report("frames in time come", out != NULL);
+    report_result("frames in time come", out != NULL);
     gst_buffer_unref(out);
     /* The sink got the frame of 40 ms 200 ms too late. */
     gst_harness_push_upstream_event(h, gst_event_new_qos(GST_QOS_TYPE_UNDERFLOW,
                                                          2, 200 * GST_MSECOND,
                                                          40 * GST_MSECOND));
     out = drawn(h, 2);
-    report("one that is late already is dropped", out == NULL);
+    report_result("one that is late already is dropped", out == NULL);
     if (out)
         gst_buffer_unref(out);
     out = drawn(h, 100);
-    report("one after that is drawn", out && !is_plain(out));
+    report_result("one after that is drawn", out && !is_plain(out));
     gst_harness_teardown(h);
 }
 
@@ -174,11 +176,12 @@ static void test_again(void)
     gst_harness_set_src_caps_str(h, "video/x-raw,format=RGBA,width=80,"
                                     "height=192,framerate=25/1");
     small = drawn(h, 1);
-    report("another size", small && gst_buffer_get_size(small) == BYTES);
+    report_result("another size", small && gst_buffer_get_size(small) == BYTES);
     gst_buffer_unref(small);
     gst_harness_set_src_caps_str(h, "video/x-raw,format=RGBA,width=160,"
                                     "height=96,framerate=25/1");
-    report("and the first again, after a jump back", !is_plain(drawn(h, 0)));
+    report_result("and the first again, after a jump back",
+                  !is_plain(drawn(h, 0)));
     gst_harness_teardown(h);
 }
 

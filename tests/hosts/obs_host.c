@@ -21,8 +21,9 @@ enum { WAIT_S = 3600, FRAME_MS = 40, POLL_US = 2000, SLOW_POLLS = 100000 };
 /* ------------------------------------------------------------------- frames */
 
 /* Rows and bytes of each plane, for WIDTH x HEIGHT. */
-static int planes_of(enum video_format format, uint32_t width, uint32_t height,
-                     uint32_t bytes[3], uint32_t rows[3])
+static int find_plane_sizes(enum video_format format, uint32_t width,
+                            uint32_t height, uint32_t bytes[3],
+                            uint32_t rows[3])
 {
     const uint32_t w2 = (width + 1) / 2, h2 = (height + 1) / 2;
 
@@ -67,7 +68,7 @@ static struct {
     unsigned char *bytes;
 } seen = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-static const char *name_of(void *type)
+static const char *get_source_name(void *type)
 {
     (void)type;
     return "of the host";
@@ -84,11 +85,12 @@ static void nothing(void *data)
     (void)data;
 }
 
-static struct obs_source_frame *look(void *data, struct obs_source_frame *frame)
+static struct obs_source_frame *
+record_output_frame(void *data, struct obs_source_frame *frame)
 {
     uint32_t bytes[3], rows[3];
-    const int n =
-        planes_of(frame->format, frame->width, frame->height, bytes, rows);
+    const int n = find_plane_sizes(frame->format, frame->width, frame->height,
+                                   bytes, rows);
     unsigned char *to;
 
     (void)data;
@@ -106,16 +108,16 @@ static struct obs_source_frame *look(void *data, struct obs_source_frame *frame)
 static struct obs_source_info feed = {.id = "host_feed",
                                       .type = OBS_SOURCE_TYPE_INPUT,
                                       .output_flags = OBS_SOURCE_ASYNC_VIDEO,
-                                      .get_name = name_of,
+                                      .get_name = get_source_name,
                                       .create = no_data,
                                       .destroy = nothing};
 static struct obs_source_info probe = {.id = "host_probe",
                                        .type = OBS_SOURCE_TYPE_FILTER,
                                        .output_flags = OBS_SOURCE_ASYNC_VIDEO,
-                                       .get_name = name_of,
+                                       .get_name = get_source_name,
                                        .create = no_data,
                                        .destroy = nothing,
-                                       .filter_video = look};
+                                       .filter_video = record_output_frame};
 
 /* ---------------------------------------------------------------------- run */
 
@@ -127,7 +129,7 @@ struct run {
     obs_source_t *source, *filter;
 };
 
-static void fail(const char *what)
+static void exit_with_error(const char *what)
 {
     fprintf(stderr, "obs_host: %s\n", what);
     exit(1);
@@ -144,7 +146,7 @@ static void log_line(int level, const char *format, va_list args, void *ctx)
     fputc('\n', stderr);
 }
 
-static void start(const char *path)
+static void start_obs(const char *path)
 {
     struct obs_video_info video = {.graphics_module = "libobs-opengl",
                                    .fps_num = 120,
@@ -161,12 +163,12 @@ static void start(const char *path)
 
     base_set_log_handler(log_line, NULL);
     if (!obs_startup("en-US", NULL, NULL))
-        fail("libobs does not start");
+        exit_with_error("libobs does not start");
     if (obs_reset_video(&video) != OBS_VIDEO_SUCCESS)
-        fail("libobs has no graphics");
+        exit_with_error("libobs has no graphics");
     if (obs_open_module(&module, path, NULL) != MODULE_SUCCESS ||
         !obs_init_module(module))
-        fail("the module does not load");
+        exit_with_error("the module does not load");
     fprintf(stderr, "obs_host: libobs %s, %s\n", obs_get_version_string(),
             obs_get_module_name(module));
     obs_register_source(&feed);
@@ -174,7 +176,7 @@ static void start(const char *path)
 }
 
 /* Sets what SETTINGS say for FRAME. */
-static void set(struct run *r, char **settings, int n, long frame)
+static void apply_setting(struct run *r, char **settings, int n, long frame)
 {
     obs_data_t *const data = obs_source_get_settings(r->filter);
 
@@ -183,7 +185,7 @@ static void set(struct run *r, char **settings, int n, long frame)
         long at = 0;
 
         if (sscanf(settings[i], "%63[^=]=%255[^@]@%ld", key, value, &at) < 2)
-            fail(settings[i]);
+            exit_with_error(settings[i]);
         if (at != frame)
             continue;
         if (strncmp(value, "number:", 7) == 0)
@@ -198,7 +200,7 @@ static void set(struct run *r, char **settings, int n, long frame)
 }
 
 /* Gives the frame of BYTES at MS, and waits until it came out. */
-static void pass(struct run *r, unsigned char *bytes, uint64_t ms)
+static void pass_frame(struct run *r, unsigned char *bytes, uint64_t ms)
 {
     struct obs_source_frame frame = {.width = r->width,
                                      .height = r->height,
@@ -225,23 +227,23 @@ static void pass(struct run *r, unsigned char *bytes, uint64_t ms)
         pthread_mutex_unlock(&seen.lock);
     } while (timestamp != frame.timestamp && polls++ < SLOW_POLLS);
     if (timestamp != frame.timestamp)
-        fail("a frame did not come out");
+        exit_with_error("a frame did not come out");
 }
 
-static void run(struct run *r, char **settings, int n_settings)
+static void run_filter(struct run *r, char **settings, int n_settings)
 {
     unsigned char *const frame = malloc(r->size);
     uint64_t ms = 1000;
 
     seen.bytes = malloc(r->size);
     if (!frame || !seen.bytes)
-        fail("no memory");
+        exit_with_error("no memory");
     for (long i = 0; fread(frame, r->size, 1, stdin) == 1; i++) {
         const uint64_t end = ms + (uint64_t)WAIT_S * 1000;
 
-        set(r, settings, n_settings, i);
+        apply_setting(r, settings, n_settings, i);
         do {
-            pass(r, frame, ms);
+            pass_frame(r, frame, ms);
             ms += FRAME_MS;
         } while (i == 0 && memcmp(seen.bytes, frame, r->size) == 0 &&
                  obs_source_enabled(r->filter) && ms < end);
@@ -263,21 +265,21 @@ int main(int argc, char **argv)
               stderr);
         return 2;
     }
-    start(argv[1]);
+    start_obs(argv[1]);
     r.format = format_named(argv[2]);
-    r.n_planes = planes_of(r.format, r.width, r.height, r.bytes, r.rows);
+    r.n_planes = find_plane_sizes(r.format, r.width, r.height, r.bytes, r.rows);
     for (int p = 0; p < r.n_planes; p++)
         r.size += (size_t)r.bytes[p] * r.rows[p];
     r.source = obs_source_create_private("host_feed", "feed", NULL);
     r.filter = obs_source_create_private("glint_flare", "flare", NULL);
     watch = obs_source_create_private("host_probe", "probe", NULL);
     if (!r.source || !r.filter || !watch)
-        fail("no source");
+        exit_with_error("no source");
     obs_source_set_async_unbuffered(r.source, true);
     obs_source_filter_add(r.source, r.filter);
     obs_source_filter_add(r.source, watch);
     obs_set_output_source(0, r.source);
-    run(&r, argv + 4, argc - 4);
+    run_filter(&r, argv + 4, argc - 4);
     obs_set_output_source(0, NULL);
     obs_source_release(watch);
     obs_source_release(r.filter);

@@ -45,7 +45,7 @@ static uint8_t rgb[3 * WIDTH * HEIGHT];
 
 /* Returns the glare at distance R of a point, per unit of its light;
  * integrates to about 1. */
-static double glare_at(double r)
+static double compute_glare(double r)
 {
     return 0.14 * exp(-r * r / 2) + 0.02 / pow(1 + r, 3);
 }
@@ -68,7 +68,7 @@ static double draw_lamp(const struct scene *s, double x0, double x1)
 
     for (int i = 0; i < 4 * SQUARES && table[0] == 0; i++)
         table[4 * SQUARES - 1 - i] =
-            glare_at(sqrt((4 * SQUARES - 0.5 - i) / 4));
+            compute_glare(sqrt((4 * SQUARES - 0.5 - i) / 4));
     for (int i = 0; i < POINTS; i++) { /* points in a sunflower spiral */
         const double r = s->radius * sqrt((i + 0.5) / POINTS);
         const double x = cx + r * cos(2.399963 * i);

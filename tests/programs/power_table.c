@@ -229,7 +229,7 @@ static struct power_lamp random_lamp(int i, int width, int height,
     return l;
 }
 
-static int is_held_out(int i)
+static int is_validation_sample(int i)
 {
     return (i / 4 + i) & 1;
 }
@@ -398,7 +398,7 @@ static void print_panorama(const char *path, int id)
 int main(int argc, char **argv)
 {
     for (int i = 0; i < LAMPS; i++)
-        if (!is_held_out(i))
+        if (!is_validation_sample(i))
             print_rendered(i);
     for (int i = 2; i < argc; i += 2)
         print_panorama(argv[i], i);

@@ -5,9 +5,9 @@
  * street, at the default quality with three wavelengths.
  *
  * With SCALE, a factor on their powers, draws several times, by the function
- * measured(), onto a frame that was drawn before: without reuse; with the same
- * lights; with lights that moved by up to half a pixel and whose powers changed
- * by up to a fifth.
+ * draw_timed(), onto a frame that was drawn before: without reuse; with the
+ * same lights; with lights that moved by up to half a pixel and whose powers
+ * changed by up to a fifth.
  *
  * Without SCALE, prints the scale at which all but 1e-4 of the samples are at
  * most a quarter of white; the bytes of a frame without and with memory for
@@ -29,7 +29,8 @@ static struct glint_frame plain, reusing;
 static struct glint_lamp lamps[MOST];
 static uint8_t want[BYTES], got[BYTES];
 
-static void measured(struct glint_frame *f, int n, double scale, uint8_t *codes)
+static void draw_timed(struct glint_frame *f, int n, double scale,
+                       uint8_t *codes)
 {
     struct glint_image image = {.format = GLINT_RGB24,
                                 .width = W,
@@ -44,7 +45,7 @@ static void measured(struct glint_frame *f, int n, double scale, uint8_t *codes)
 /* A volatile pointer prevents inlining, so that the function keeps its name
  * in profiles. */
 static void (*volatile frame)(struct glint_frame *, int, double,
-                              uint8_t *) = measured;
+                              uint8_t *) = draw_timed;
 
 /* Draws on black. PX: tolerance of reuse, pixels; below 0: no reuse. */
 static void draw_frame(int n, double scale, double px, uint8_t *codes)
@@ -129,7 +130,7 @@ static void print_figures(int n)
     puts("");
 }
 
-static void draw_all(int n, double scale)
+static void draw_case(int n, double scale)
 {
     uint64_t noise = 1;
 
@@ -162,7 +163,7 @@ int main(int argc, char **argv)
         return 2;
     street_lamps(&stage, lamps, n);
     if (argc == 4)
-        draw_all(n, atof(argv[3]));
+        draw_case(n, atof(argv[3]));
     else
         print_figures(n);
     glint_frame_finish(&plain);

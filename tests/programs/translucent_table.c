@@ -81,8 +81,8 @@ static void exit_with_error(const char *what)
 
 /* Returns the judgement of candidate O on ROWS, without its maps. */
 static struct glint_scatter_judgement
-evaluate(struct glint_scatter_rows *rows,
-         const struct glint_scatter_candidate *o)
+judge_candidate(struct glint_scatter_rows *rows,
+                const struct glint_scatter_candidate *o)
 {
     struct glint_scatter_judgement j, kept;
 
@@ -124,7 +124,7 @@ static void open_stone(struct table *t, int i)
     for (int run = 0; run < RUNS; run++) {
         const struct glint_scatter_candidate o = make_candidate((enum run)run);
 
-        t->j[i][run] = evaluate(&t->rows[i], &o);
+        t->j[i][run] = judge_candidate(&t->rows[i], &o);
         fprintf(stderr, "%s, %s: %.0f s\n", stone_name[i], run_of[run].name,
                 t->j[i][run].seconds);
     }
@@ -250,7 +250,8 @@ static void print_shifted_rows(struct table *t)
 
             o.terms = terms[k];
             o.turned = way & 1;
-            printf(" %.5f |", evaluate(way & 2 ? &off : &t->rows[0], &o).rmse);
+            printf(" %.5f |",
+                   judge_candidate(way & 2 ? &off : &t->rows[0], &o).rmse);
         }
         printf("\n");
     }
@@ -276,7 +277,7 @@ static void print_polynomials(struct table *t)
 
             o.terms = terms[k];
             o.degree = p;
-            j = evaluate(&t->rows[2], &o);
+            j = judge_candidate(&t->rows[2], &o);
             printf(" %.5f, %.0f x |", j.rmse, j.compression);
         }
         printf("\n");
@@ -304,7 +305,7 @@ static void print_logarithms(struct table *t)
             struct glint_scatter_judgement j;
 
             o.a = as[k];
-            j = evaluate(&t->rows[i], &o);
+            j = judge_candidate(&t->rows[i], &o);
             printf(" %.5f, %.2f %% |", j.rmse, 100 * j.negative);
         }
         printf(" %.5f: %g, %g |\n", found->rmse, found->candidate.a,

@@ -52,8 +52,8 @@ void night_close(struct night *night)
     free(night->mem[2]);
 }
 
-static double light_at(const struct night *night, const struct night_lamp *lamp,
-                       int n, int x, int y)
+static double compute_light(const struct night *night,
+                            const struct night_lamp *lamp, int n, int x, int y)
 {
     double light = 0.01;
 
@@ -100,7 +100,7 @@ void night_draw(struct night *night, const struct night_lamp *lamp, int n)
              y < image->height && y <= cy + reach; y++)
             for (int x = cx - reach < 0 ? 0 : cx - reach;
                  x < image->width && x <= cx + reach; x++)
-                put_pixel(night, x, y, light_at(night, lamp, n, x, y));
+                put_pixel(night, x, y, compute_light(night, lamp, n, x, y));
     }
 }
 

@@ -11,7 +11,7 @@
 
 enum { LIMIT = 1 << 24, LAMPS = 64 };
 
-static size_t read_all(const char *path, void *data)
+static size_t read_whole_file(const char *path, void *data)
 {
     FILE *file = fopen(path, "rb");
     const size_t n = file ? fread(data, 1, LIMIT, file) : 0;
@@ -62,9 +62,9 @@ int main(int argc, char **argv)
     void *mem = NULL;
 
     if (argc == 4 && ppm_read(argv[3], &image) == 0 &&
-        glint_lens_open(&lens, baked, read_all(argv[1], baked), &reason) ==
-            GLINT_OK &&
-        glint_scene_open(&model, objects, read_all(argv[2], objects),
+        glint_lens_open(&lens, baked, read_whole_file(argv[1], baked),
+                        &reason) == GLINT_OK &&
+        glint_scene_open(&model, objects, read_whole_file(argv[2], objects),
                          &reason) == GLINT_OK) {
         glint_engine_defaults(&cfg, image.width, image.height);
         cfg.model = &lens;

@@ -329,7 +329,7 @@ enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
 
 /* Ensures that *MEM has capacity for N items of BYTES each. Returns false if
  * there is no memory. */
-static bool reserve(void **mem, size_t *room, size_t n, size_t bytes)
+static bool grow_array(void **mem, size_t *room, size_t n, size_t bytes)
 {
     size_t more = *room;
     void *grown;
@@ -352,10 +352,10 @@ static bool reserve_frame(struct glint_motion_baker *b, int n_foods)
     size_t poses = b->pose_room, events = b->event_room;
     const size_t each = (size_t)n_foods * (size_t)b->n_intensities;
     bool good =
-        reserve(&pose, &poses, (size_t)b->n_frames + 1, sizeof *b->pose) &&
-        reserve(&event, &events, (size_t)b->n_events + (size_t)n_foods,
-                sizeof *b->event) &&
-        reserve(&intensity, &b->byte_room, b->n_bytes + each, 1);
+        grow_array(&pose, &poses, (size_t)b->n_frames + 1, sizeof *b->pose) &&
+        grow_array(&event, &events, (size_t)b->n_events + (size_t)n_foods,
+                   sizeof *b->event) &&
+        grow_array(&intensity, &b->byte_room, b->n_bytes + each, 1);
 
     b->pose = pose;
     b->event = event;
@@ -509,7 +509,7 @@ glint_motion_baker_frame(struct glint_motion_baker *baker,
 
 /* ------------------------------------------------------------------- finish */
 
-static double distance(const double a[3], const double b[3])
+static double compute_distance(const double a[3], const double b[3])
 {
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
                 (a[2] - b[2]) * (a[2] - b[2]));
@@ -523,11 +523,11 @@ static void sum_report(const struct glint_motion_baker *b,
     compute_box(b, low, high);
     *r = b->report;
     r->n_frames = (long)b->n_frames;
-    r->span = distance(low, high);
+    r->span = compute_distance(low, high);
     for (uint32_t i = 0; i < b->n_frames; i++) {
         const double residual = (double)b->pose[i].residual;
 
-        r->path += i ? distance(b->pose[i].at, b->pose[i - 1].at) : 0;
+        r->path += i ? compute_distance(b->pose[i].at, b->pose[i - 1].at) : 0;
         squares += residual * residual;
         r->bad_frames += residual > BAD_RESIDUAL * r->span;
         if (residual > r->residual) {

@@ -484,7 +484,7 @@ static bool read_member(struct recording *r, unsigned *seen)
     return key == FRAMES ? read_frames(r) : read_value(r, key);
 }
 
-static bool read_all(struct recording *r)
+static bool read_recording(struct recording *r)
 {
     unsigned seen = 0;
     bool done;
@@ -522,7 +522,7 @@ enum glint_status glint_recording_read(struct glint_motion_baker *baker,
     r->line = r->column = 1;
     r->number = -1;
     load_byte(r);
-    read_all(r);
+    read_recording(r);
     status = r->status;
     free(r->text);
     free(r);

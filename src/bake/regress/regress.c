@@ -234,8 +234,8 @@ static void add_products(const struct search *s, const double *a, int first,
 
 /* Subtracts SHARE times each chosen direction from A, for M rays from ray
  * FIRST on. */
-static void subtract_all(const struct search *s, double *a, int first, int m,
-                         const double share[GLINT_MAX_TERMS])
+static void subtract_terms(const struct search *s, double *a, int first, int m,
+                           const double share[GLINT_MAX_TERMS])
 {
     for (int k = 0; k < s->n_chosen; k++)
         subtract_scaled(a + first, share[k], get_direction(s, k) + first, m);
@@ -252,11 +252,11 @@ static void make_orthogonal(const struct search *s, struct column *column)
 
     memcpy(q, column->at, (size_t)n * sizeof *q);
     for (int i = 0; i < n; i += BLOCK) {
-        subtract_all(s, q, i, count_block(n, i), column->on);
+        subtract_terms(s, q, i, count_block(n, i), column->on);
         add_products(s, q, i, count_block(n, i), again);
     }
     for (int i = 0; i < n; i += BLOCK)
-        subtract_all(s, q, i, count_block(n, i), again);
+        subtract_terms(s, q, i, count_block(n, i), again);
     for (int k = 0; k < s->n_chosen; k++)
         column->on[k] += again[k];
     column->was2 = column->left2 = compute_dot(q, q, n);

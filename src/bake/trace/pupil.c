@@ -105,8 +105,8 @@ static bool may_pass(const struct search *s, const struct bounds *b)
 }
 
 /* Adds one cell to those that are kept: its place and where its light lands. */
-static void keep(struct search *s, int i, int j, const struct bounds *cell,
-                 struct bounds *box, struct glint_pupil *found)
+static void keep_cell(struct search *s, int i, int j, const struct bounds *cell,
+                      struct bounds *box, struct glint_pupil *found)
 {
     const int at[4] = {i, i + 1, j, j + 1};
     double *sensor = found->sensor_mm;
@@ -137,7 +137,7 @@ static void mirror_sensor(struct glint_pupil *p)
 
 /* Shrinks P to the cells that may let a ray through; returns whether there are
  * any. */
-static bool shrink(struct search *s, struct glint_pupil *p)
+static bool shrink_to_cells(struct search *s, struct glint_pupil *p)
 {
     struct glint_pupil found = *p;
     struct bounds box = {.n = 0};
@@ -154,7 +154,7 @@ static bool shrink(struct search *s, struct glint_pupil *p)
                 if (s->status[j + (k >> 1)][i + (k & 1)] == GLINT_RAY_OK)
                     bounds_add(&cell, &s->ray[j + (k >> 1)][i + (k & 1)]);
             if (may_pass(s, &cell))
-                keep(s, i, j, &cell, &box, &found);
+                keep_cell(s, i, j, &cell, &box, &found);
         }
     if (box.n == 0)
         return false;
@@ -172,8 +172,8 @@ static bool shrink(struct search *s, struct glint_pupil *p)
 /* Returns the part of the vertex plane at which rays can enter. A slanted ray
  * crosses this plane beside the place where it meets the curved surface, by up
  * to the sag at the rim times its tangent. */
-static double sag_of(const struct glint_path *path,
-                     const struct glint_event *front)
+static double grow_by_sag(const struct glint_path *path,
+                          const struct glint_event *front)
 {
     const double h = front->semi_mm, c = front->curvature;
     double slope[2], most = 0;
@@ -205,7 +205,7 @@ static struct glint_pupil whole_front(const struct glint_path *path,
                                       const double direction[3])
 {
     const double off = off_axis(path, front), h = front->semi_mm + off;
-    const double deep = fabs(sag_of(path, front)) + off;
+    const double deep = fabs(grow_by_sag(path, front)) + off;
     const double x = h + deep * fabs(direction[0] / direction[2]);
     const double y = h + deep * fabs(direction[1] / direction[2]);
 
@@ -217,7 +217,7 @@ static struct glint_pupil whole_front(const struct glint_path *path,
 }
 
 /* Returns the largest energy at the corners that the last grid kept. */
-static double energy_of(struct search *s)
+static double find_max_energy(struct search *s)
 {
     double most = 0;
 
@@ -232,15 +232,15 @@ static double energy_of(struct search *s)
     return most;
 }
 
-static double extent(const struct glint_pupil *p)
+static double compute_area(const struct glint_pupil *p)
 {
     return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
 }
 
 /* Returns BOX grown by half of its size on each side, and by a part of the
  * whole front, as boxes may be slivers. */
-static struct glint_pupil surroundings(const struct glint_pupil *box,
-                                       const struct glint_pupil *front)
+static struct glint_pupil grow_box(const struct glint_pupil *box,
+                                   const struct glint_pupil *front)
 {
     const double more =
         0.5 * (box->x1_mm - box->x0_mm) + 0.01 * (front->x1_mm - front->x0_mm);
@@ -258,23 +258,23 @@ static struct glint_pupil surroundings(const struct glint_pupil *box,
 
 /* Shrinks P by rounds of grids, the first of ACROSS x DOWN cells; returns
  * whether anything gets through. */
-static bool shrink_on(struct search *s, struct glint_pupil *p, int across,
-                      int down)
+static bool shrink_in_rounds(struct search *s, struct glint_pupil *p,
+                             int across, int down)
 {
     bool found = true;
 
     for (int round = 0; round < ROUNDS && found; round++) {
-        const double before = extent(p);
+        const double before = compute_area(p);
 
         s->across = round ? NEXT_ACROSS : across;
         s->down = round ? NEXT_DOWN : down;
-        found = shrink(s, p);
-        if (round > 0 && extent(p) > 0.8 * before)
+        found = shrink_to_cells(s, p);
+        if (round > 0 && compute_area(p) > 0.8 * before)
             break;
     }
     /* Places decide what is kept: only the last grid's energies are needed. */
     if (found)
-        p->energy = energy_of(s);
+        p->energy = find_max_energy(s);
     return found;
 }
 
@@ -293,22 +293,23 @@ static bool find_spot(struct search *s, const struct glint_pupil *front,
                               .y1_mm = x[1] - x[0],
                               .mirrored = front->mirrored};
     glint_spot_grow(&s->openings, p);
-    return shrink_on(s, p, NEXT_ACROSS, NEXT_DOWN);
+    return shrink_in_rounds(s, p, NEXT_ACROSS, NEXT_DOWN);
 }
 
 /* Finds the pupil on P, or a spot of FRONT. */
-static bool find(struct search *s, const struct glint_pupil *front,
-                 struct glint_pupil *p, bool near)
+static bool find_pupil(struct search *s, const struct glint_pupil *front,
+                       struct glint_pupil *p, bool near)
 {
     struct glint_pupil wider;
 
-    if (!shrink_on(s, p, near ? NEXT_ACROSS : ACROSS, near ? NEXT_DOWN : DOWN))
+    if (!shrink_in_rounds(s, p, near ? NEXT_ACROSS : ACROSS,
+                          near ? NEXT_DOWN : DOWN))
         return find_spot(s, front, p);
     /* Where light bends more than cells allow for, some of it enters beside
      * those that were kept. */
     wider = *p;
     if (glint_spot_grow(&s->openings, &wider) &&
-        shrink_on(s, &wider, NEXT_ACROSS, NEXT_DOWN))
+        shrink_in_rounds(s, &wider, NEXT_ACROSS, NEXT_DOWN))
         *p = wider;
     return true;
 }
@@ -356,8 +357,8 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
     s.places = *path;
     s.places.places_only = true;
     whole = whole_front(path, front, direction);
-    p = near ? surroundings(near, &whole) : whole;
-    found = find(&s, &whole, &p, near);
+    p = near ? grow_box(near, &whole) : whole;
+    found = find_pupil(&s, &whole, &p, near);
     if (found)
         *pupil = p;
     return found;

@@ -189,8 +189,8 @@ bool glint_spot_find(const struct glint_openings *o,
 
 /* Returns whether one of N + 1 rays that start between (X0, Y0) and (X1, Y1)
  * passes. */
-static bool passes_along(const struct glint_openings *o, double x0, double y0,
-                         double x1, double y1, int n)
+static bool passes_on_segment(const struct glint_openings *o, double x0,
+                              double y0, double x1, double y1, int n)
 {
     struct glint_launch from[BORDER + 1] = {{0, 0, {0, 0, 0}}};
     struct glint_ray ray[BORDER + 1];
@@ -216,13 +216,13 @@ bool glint_spot_grow(const struct glint_openings *o, struct glint_pupil *p)
         const double x0 = p->x0_mm, x1 = p->x1_mm, y0 = p->y0_mm, y1 = p->y1_mm;
         const double wide = STEP * (x1 - x0), high = STEP * (y1 - y0);
 
-        if (passes_along(o, x0, y0, x0, y1, SHORT))
+        if (passes_on_segment(o, x0, y0, x0, y1, SHORT))
             p->x0_mm -= wide;
-        if (passes_along(o, x1, y0, x1, y1, SHORT))
+        if (passes_on_segment(o, x1, y0, x1, y1, SHORT))
             p->x1_mm += wide;
-        if (passes_along(o, x0, y1, x1, y1, BORDER))
+        if (passes_on_segment(o, x0, y1, x1, y1, BORDER))
             p->y1_mm += high;
-        if (!p->mirrored && passes_along(o, x0, y0, x1, y0, BORDER))
+        if (!p->mirrored && passes_on_segment(o, x0, y0, x1, y0, BORDER))
             p->y0_mm -= high;
         if (p->x0_mm == x0 && p->x1_mm == x1 && p->y0_mm == y0 &&
             p->y1_mm == y1)

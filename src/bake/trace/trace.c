@@ -178,8 +178,8 @@ static WHOLLY_INLINE void meet_sphere(struct beam *b, int n, double c)
 /* Sets the direction of ray K to S direction + PART normal. Marks the ray as
  * invalid if the sign of its z direction is not that of before, times WAY
  * (1: refraction, -1: reflection). */
-static WHOLLY_INLINE void deflect(struct beam *b, int k, double c, double s,
-                                  double part, double way)
+static WHOLLY_INLINE void deflect_beam(struct beam *b, int k, double c,
+                                       double s, double part, double way)
 {
     const double before = b->n[k];
 
@@ -242,12 +242,13 @@ static WHOLLY_INLINE void cross_surface(struct beam *b, int n,
         return;
     }
     for (int k = 0; k < n && reflects; k++)
-        deflect(b, k, c, 1.0, -2.0 * b->cosine[k], -1.0);
+        deflect_beam(b, k, c, 1.0, -2.0 * b->cosine[k], -1.0);
     for (int k = 0; k < n && !reflects; k++) {
         b->status[k] =
             judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
-        deflect(b, k, c, ratio,
-                (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k], 1.0);
+        deflect_beam(b, k, c, ratio,
+                     (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k],
+                     1.0);
     }
 }
 

@@ -88,7 +88,7 @@ static double safe_ratio(double above, double below)
     return below > 0 ? above / below : 0;
 }
 
-static void fit_out(const struct clusters *p)
+static void fit_leaving_light(const struct clusters *p)
 {
     for (int x = 0; x < p->fit->side * p->fit->side; x++)
         for (int c = 0; c < 3; c++) {
@@ -132,7 +132,7 @@ static void fit_scales(const struct clusters *p, bool in_scales, double *scale,
         scale[i] = safe_ratio(p->above[i], p->below[i]);
 }
 
-static void fit_in(const struct clusters *p)
+static void fit_entering_light(const struct clusters *p)
 {
     fit_scales(p, true, p->fit->in,
                3 * (size_t)p->fit->side * (size_t)p->fit->side);
@@ -248,12 +248,12 @@ static enum glint_status fit_clusters(struct clusters *p,
             return GLINT_E_CLOSED;
         if (i > 0)
             assign_kernels(p);
-        fit_out(p);
-        fit_in(p);
+        fit_leaving_light(p);
+        fit_entering_light(p);
         fit_kernels(p);
     }
     normalise_kernels(p);
-    fit_out(p);
+    fit_leaving_light(p);
     return GLINT_OK;
 }
 

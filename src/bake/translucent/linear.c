@@ -123,7 +123,7 @@ void glint_solve(double *a, int n, double *b)
 }
 
 /* Orthonormalises N rows of V; rows that depend on earlier rows become 0. */
-static void orthonormalise(double *v, int n, int m)
+static void orthonormalise_columns(double *v, int n, int m)
 {
     for (int i = 0; i < n; i++) {
         double *x = v + (size_t)i * (size_t)m;
@@ -172,7 +172,7 @@ static void find_subspace(const double *g, int m, double *v, int n, int wanted,
         seed = seed * UINT32_C(1664525) + UINT32_C(1013904223);
         v[i] = (double)seed / 2147483648.0 - 1;
     }
-    orthonormalise(v, n, m);
+    orthonormalise_columns(v, n, m);
     for (int round = 0; round < ROUNDS; round++) {
         double sum = 0;
 
@@ -181,7 +181,7 @@ static void find_subspace(const double *g, int m, double *v, int n, int wanted,
             sum += compute_dot(v + (size_t)i * (size_t)m,
                                scratch + (size_t)i * (size_t)m, m);
         memcpy(v, scratch, (size_t)n * (size_t)m * sizeof *v);
-        orthonormalise(v, n, m);
+        orthonormalise_columns(v, n, m);
         if (fabs(sum - before) <= STILL * sum)
             return;
         before = sum;

@@ -195,7 +195,7 @@ static void compute_diagonal_block(const struct inverse *v, int j,
 }
 
 /* Computes the blocks of row J from those of row J + 1. */
-static void move_ring_up(struct inverse *v, int j)
+static void compute_row_blocks(struct inverse *v, int j)
 {
     const int below = v->b->side - 1 - j;
     const int kept = below < v->reach ? below : v->reach;
@@ -233,7 +233,7 @@ static enum glint_status compute_blocks(struct inverse *v, int reach,
     for (int j = n - 1; j >= 0; j--) {
         const int done = n - j;
 
-        move_ring_up(v, j);
+        compute_row_blocks(v, j);
         for (int l = j; l < n && l <= j + reach; l++)
             add_block(ctx, j, l, v->ring[l - j]);
         if (glint_watch_ends(watch, first + (1.0 - first) * done / n))
@@ -288,7 +288,7 @@ static double hash_point(uint32_t seed, int x, int y)
     return (h ^ h >> 15) / 4294967295.0;
 }
 
-static double smoothstep(double t)
+static double interpolate_smoothly(double t)
 {
     return t * t * (3 - 2 * t);
 }
@@ -299,7 +299,8 @@ static double compute_noise(uint32_t seed, int cells, double u, double v)
 {
     const int x = (int)floor(u * cells), y = (int)floor(v * cells);
     const int right = (x + 1) % cells, below = (y + 1) % cells;
-    const double s = smoothstep(u * cells - x), t = smoothstep(v * cells - y);
+    const double s = interpolate_smoothly(u * cells - x),
+                 t = interpolate_smoothly(v * cells - y);
     const double top =
         (1 - s) * hash_point(seed, x, y) + s * hash_point(seed, right, y);
     const double bottom = (1 - s) * hash_point(seed, x, below) +
@@ -321,7 +322,7 @@ static double compute_vein(uint32_t seed, double u, double v)
         bent += ldexp(compute_noise(seed + (uint32_t)i, CELLS << i, u, v) - 0.5,
                       -i);
     wave = fabs(sin((ALONG_U * u + ALONG_V * v) * 3.14159265358979 + 5 * bent));
-    return wave >= 0.4 ? 1 : smoothstep(fmax(0, (wave - 0.1) / 0.3));
+    return wave >= 0.4 ? 1 : interpolate_smoothly(fmax(0, (wave - 0.1) / 0.3));
 }
 
 void glint_stone_shares(const struct glint_stone *stone, double *share)

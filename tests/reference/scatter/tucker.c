@@ -185,10 +185,10 @@ static void rebuild_row(const struct tucker *p, int x, int degree, double *mean,
     }
 }
 
-static enum glint_status rebuild_all(const struct tucker *p,
-                                     const struct glint_scatter_candidate *o,
-                                     const struct glint_watch *watch,
-                                     struct glint_scatter_rows *rebuilt)
+static enum glint_status rebuild_rows(const struct tucker *p,
+                                      const struct glint_scatter_candidate *o,
+                                      const struct glint_watch *watch,
+                                      struct glint_scatter_rows *rebuilt)
 {
     set_residual(p, o->turned);
     for (int t = 0; t < o->terms; t++) {
@@ -219,7 +219,7 @@ enum glint_status glint_rebuild_tucker(const struct glint_scatter_rows *rows,
     p.most = p.h + k2;
     p.first = malloc(n * sizeof *p.first);
     if (p.left && p.f && p.first)
-        status = rebuild_all(&p, o, watch, rebuilt);
+        status = rebuild_rows(&p, o, watch, rebuilt);
     free(p.left);
     free(p.f);
     free(p.first);

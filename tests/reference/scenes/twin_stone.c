@@ -297,8 +297,9 @@ static int find_neighbour(const struct twin_map *m, int from, int across,
 }
 
 /* Adds FROM, convolved with TAP along rows or columns, times SCALE, to TO. */
-static void convolve(const struct twin_map *m, const double *from,
-                     const int16_t *tap, bool down, double scale, double *to)
+static void convolve_map(const struct twin_map *m, const double *from,
+                         const int16_t *tap, bool down, double scale,
+                         double *to)
 {
     const int kernel = (int)m->stone.header->kernel, r = kernel / 2;
 
@@ -328,9 +329,9 @@ static void add_plane(struct twin_map *m, int c, int p, double *out)
         const int16_t *tap = m->stone.tap + 2 * (size_t)i * h->kernel;
 
         memset(row, 0, (size_t)n * sizeof *row);
-        convolve(m, m->work, tap, false, ldexp(1, -(int)m->stone.shift[i]),
-                 row);
-        convolve(m, row, tap + h->kernel, true, 1, sum);
+        convolve_map(m, m->work, tap, false, ldexp(1, -(int)m->stone.shift[i]),
+                     row);
+        convolve_map(m, row, tap + h->kernel, true, 1, sum);
     }
     for (int x = 0; x < n; x++) {
         const int table = is_factored ? c * (int)h->n_planes + p : c;

@@ -80,7 +80,7 @@ static struct glint_model_output put_output(struct model_image *m, int kind,
 
 /* Returns the exponent with which the magnitudes of P's coefficients add up to
  * less than 2^29 units, and to half of that or more; 0 if P is 0. */
-static int exponent_of(const struct polynomial *p)
+static int find_exponent(const struct polynomial *p)
 {
     double sum = fabs(p->w);
     int exponent;
@@ -100,7 +100,7 @@ static uint32_t put_outputs(struct model_image *m, const struct polynomial *p,
     for (int k = 0; k < n; k++) {
         /* x and y share the larger exponent of the two */
         const int pair = k < GLINT_OUT_ENERGY ? k ^ 1 : k;
-        const int a = exponent_of(&p[k]), b = exponent_of(&p[pair]);
+        const int a = find_exponent(&p[k]), b = find_exponent(&p[pair]);
 
         o[k] = put_output(m, k, &p[k], a > b ? a : b);
     }
@@ -140,9 +140,9 @@ static void set_folds(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
     }
 }
 
-static struct glint_model_system system_of(const struct model_image *m,
-                                           uint32_t outputs, int n_outputs,
-                                           uint32_t box)
+static struct glint_model_system make_system(const struct model_image *m,
+                                             uint32_t outputs, int n_outputs,
+                                             uint32_t box)
 {
     const struct glint_model_header *h = model_header(m);
 
@@ -184,9 +184,9 @@ static void put_pairs(struct model_image *m, enum hostile_family family,
     for (uint32_t j = 1; j < SURFACES; j++)
         for (uint32_t i = 0; i < j; i++, n++) {
             ghost[n] = (struct glint_model_ghost){i, j, n, 1};
-            of[n] =
-                system_of(m, output[n % VARIANTS],
-                          folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1, box);
+            of[n] = make_system(m, output[n % VARIANTS],
+                                folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1,
+                                box);
             of[n].annulus = folds && n % 5 == 0 ? GLINT_MAX_ANNULUS : 0;
         }
     model_end(m, ghost, PAIRS, of, PAIRS);
@@ -216,7 +216,7 @@ static void put_lost(struct model_image *m, int number, uint32_t *seed)
     output = put_outputs(m, p, GLINT_OUT_ENERGY + 1);
     for (uint32_t k = 0; k < n; k++) {
         ghost[k] = (struct glint_model_ghost){k % 63, 63, k, 1};
-        of[k] = system_of(m, output, GLINT_OUT_ENERGY + 1, box);
+        of[k] = make_system(m, output, GLINT_OUT_ENERGY + 1, box);
     }
     model_end(m, ghost, n, of, n);
 }
@@ -242,7 +242,7 @@ static void put_systems(struct model_image *m, int number, uint32_t *seed)
     set_whole(p, seed);
     output = put_outputs(m, p, GLINT_OUT_ENERGY + 1);
     for (int k = 0; k < N; k++) {
-        of[k] = system_of(m, output, GLINT_OUT_ENERGY + 1, box);
+        of[k] = make_system(m, output, GLINT_OUT_ENERGY + 1, box);
         of[k].sine_lo_q30 = turn * (k / BANDS);
         of[k].sine_hi_q30 = of[k].sine_lo_q30 + turn;
         of[k].wave_lo_q24 = h.wave_lo_q24 + wide * (k % BANDS);
@@ -296,8 +296,8 @@ static void put_sums(struct model_image *m, int number)
                                                  : -29 - number,
                     kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y);
     }
-    s = system_of(m, model_put(m, o, sizeof o), GLINT_OUT_KINDS,
-                  model_put(m, side, sizeof side));
+    s = make_system(m, model_put(m, o, sizeof o), GLINT_OUT_KINDS,
+                    model_put(m, side, sizeof side));
     s.box_exponent = -26;
     model_end(m, ghost, 1, &s, 1);
 }
@@ -305,7 +305,7 @@ static void put_sums(struct model_image *m, int number)
 /* ------------------------------------------------------------------ editing */
 
 /* Returns the address of OFFSET in M. Baked models are edited in place. */
-static void *at(const struct model_image *m, uint32_t offset)
+static void *find_bytes_at(const struct model_image *m, uint32_t offset)
 {
     return m->data + offset;
 }
@@ -316,7 +316,7 @@ static void edit_coefficients(const struct model_image *m,
                               struct glint_model_output *o, uint32_t *seed)
 {
     const int n_wide = o->n_terms - o->n_narrow;
-    int32_t *wide = at(m, o->coef_at);
+    int32_t *wide = find_bytes_at(m, o->coef_at);
     int16_t *narrow = (int16_t *)(void *)(wide + n_wide);
     int64_t left = (INT64_C(1) << 30) - 1;
 
@@ -336,7 +336,7 @@ static void edit_coefficients(const struct model_image *m,
 static void edit_numbers(const struct model_image *m,
                          struct glint_model_system *s, uint32_t *seed)
 {
-    struct glint_model_output *o = at(m, s->output_at);
+    struct glint_model_output *o = find_bytes_at(m, s->output_at);
 
     for (int k = 0; k < s->n_outputs; k++) {
         const int kind = o[k].kind;
@@ -360,7 +360,7 @@ static void edit_box(const struct model_image *m, struct glint_model_system *s,
                      int huge, uint32_t *seed)
 {
     int n = 0;
-    int32_t *box = at(m, s->box_at);
+    int32_t *box = find_bytes_at(m, s->box_at);
 
     for (int bit = 0; bit < GLINT_BOX_TERMS; bit++)
         n += s->box_terms >> bit & 1;
@@ -379,10 +379,10 @@ static void edit_box(const struct model_image *m, struct glint_model_system *s,
 static void edit_stop(const struct model_image *m, struct glint_model_system *s,
                       int number)
 {
-    struct glint_model_output *o = at(m, s->output_at);
+    struct glint_model_output *o = find_bytes_at(m, s->output_at);
 
     for (int k = GLINT_OUT_STOP_X; k <= GLINT_OUT_STOP_Y; k++) {
-        int32_t *wide = at(m, o[k].coef_at);
+        int32_t *wide = find_bytes_at(m, o[k].coef_at);
 
         if (number % 3 == 2) {
             o[k].exponent = (int16_t)(-20 + 2 * number);
@@ -439,8 +439,8 @@ static void edit_name(struct glint_model_header *h, int number)
         snprintf(h->name, sizeof h->name, "%s", name[number]);
 }
 
-static void edit(struct model_image *m, const struct glint_lens *baked,
-                 enum hostile_family family, int number, uint32_t *seed)
+static void edit_model(struct model_image *m, const struct glint_lens *baked,
+                       enum hostile_family family, int number, uint32_t *seed)
 {
     struct glint_model_header *h;
     struct glint_model_system *s;
@@ -451,7 +451,7 @@ static void edit(struct model_image *m, const struct glint_lens *baked,
         abort();
     memcpy(m->data, baked->header, m->bytes);
     h = model_header(m);
-    s = at(m, h->system_at);
+    s = find_bytes_at(m, h->system_at);
     for (uint32_t k = 0; k < h->n_systems; k++)
         if (family == HOSTILE_NUMBERS)
             edit_numbers(m, &s[k], seed);
@@ -470,7 +470,7 @@ static void edit(struct model_image *m, const struct glint_lens *baked,
 
 /* Returns how many rows of pixels the edges of FLARE cross, summed over
  * edges. */
-static double rows_of(const struct glint_flare *flare)
+static double count_rows(const struct glint_flare *flare)
 {
     double rows = 0;
 
@@ -489,14 +489,14 @@ static double rows_of(const struct glint_flare *flare)
 /* Returns the millions of instructions that the frame took: all that its plans
  * looked at, vertices and edges of each binning, and the rows and pixels drawn
  * once, times their weights. */
-static double work_of(const struct glint_frame *f,
-                      const struct glint_engine_report *r)
+static double estimate_work(const struct glint_frame *f,
+                            const struct glint_engine_report *r)
 {
     double count[GLINT_COST_KINDS] = {
         [GLINT_COST_LOOKED_AT] = (double)r->looked,
         [GLINT_COST_BUNDLES] = (double)f->memory.flare->n_bundles * r->binned,
         [GLINT_COST_EDGES] = (double)r->stats.need_primitives * r->binned,
-        [GLINT_COST_ROWS] = rows_of(f->memory.flare),
+        [GLINT_COST_ROWS] = count_rows(f->memory.flare),
         [GLINT_COST_LIT] = (double)r->tiles * (1 << 2 * f->cfg.tile_log2)};
     double work = 0;
 
@@ -527,8 +527,8 @@ static bool make_setup(const struct hostile_scene *scene,
     return true;
 }
 
-static bool draw(const struct hostile_scene *scene, struct glint_frame *frame,
-                 struct hostile_result *result)
+static bool draw_model(const struct hostile_scene *scene,
+                       struct glint_frame *frame, struct hostile_result *result)
 {
     enum { W = HOSTILE_WIDTH, H = HOSTILE_HEIGHT };
     struct glint_image image = {.format = scene->linear ? GLINT_LINEAR_Q20
@@ -551,7 +551,7 @@ static bool draw(const struct hostile_scene *scene, struct glint_frame *frame,
                    : report.coarsened           ? HOSTILE_COARSER
                    : report.stats.primitives    ? HOSTILE_DRAWN
                                                 : HOSTILE_EMPTY,
-        .minsn = work_of(frame, &report),
+        .minsn = estimate_work(frame, &report),
         .most_minsn = frame->limits.most_minsn * frame->limits.share,
         .bytes = (double)report.arena_bytes,
         .most_bytes = (double)frame->limits.most_bytes * frame->limits.share,
@@ -581,7 +581,7 @@ bool hostile_draw(const struct hostile_scene *scene,
         NULL);
     frame.lens = &lens;
     frame.cfg.sets = glint_sets_here();
-    drawn = draw(scene, &frame, result);
+    drawn = draw_model(scene, &frame, result);
     glint_frame_finish(&frame);
     return drawn;
 }
@@ -606,7 +606,7 @@ void hostile_make(struct hostile_scene *scene, enum hostile_family family,
     }
     if ((family >= HOSTILE_NUMBERS && family <= HOSTILE_HEADERS) ||
         family == HOSTILE_TEXTS) {
-        edit(m, baked, family, number, &seed);
+        edit_model(m, baked, family, number, &seed);
         return;
     }
     model_begin(m, GLINT_BASIS_AUTO, "hostile");

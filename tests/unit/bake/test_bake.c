@@ -33,8 +33,8 @@ static struct glint_bake_options options;
 static struct baked model;
 static double field_mm;
 
-static void bake(struct baked *b, const struct glint_prescription *lens,
-                 const struct glint_bake_options *o)
+static void bake_lens(struct baked *b, const struct glint_prescription *lens,
+                      const struct glint_bake_options *o)
 {
     struct glint_error error;
     const char *reason = "";
@@ -52,7 +52,7 @@ TEST_OPEN
     glint_bake_defaults(&options);
     options.tolerance = TOLERANCE;
     options.max_deg = MAX_DEG;
-    bake(&model, &heliar, &options);
+    bake_lens(&model, &heliar, &options);
     field_mm = glint_real_value(model.lens.header->field_mm);
 }
 
@@ -61,7 +61,7 @@ TEST_CLOSE
     free(model.data);
 }
 
-static void parse(struct glint_prescription *lens, const char *text)
+static void parse_lens(struct glint_prescription *lens, const char *text)
 {
     struct glint_error error;
 
@@ -72,13 +72,13 @@ static void parse(struct glint_prescription *lens, const char *text)
 /* Parses a lens with one pair of surfaces. */
 static void make_singlet(struct glint_prescription *lens)
 {
-    parse(lens, "name singlet\n"
-                "source none\n"
-                "f-number 8\n"
-                "film 36 24\n"
-                "surface 51.68 5 12 1.5168 64.17\n"
-                "surface flat 2 12 air\n"
-                "stop 94 10\n");
+    parse_lens(lens, "name singlet\n"
+                     "source none\n"
+                     "f-number 8\n"
+                     "film 36 24\n"
+                     "surface 51.68 5 12 1.5168 64.17\n"
+                     "surface flat 2 12 air\n"
+                     "stop 94 10\n");
 }
 
 #define FAST_SINGLET                  \
@@ -97,22 +97,22 @@ static void bake_fast(struct baked *b, struct glint_prescription *lens,
     struct glint_bake_options o = options;
 
     if (text)
-        parse(lens, text);
+        parse_lens(lens, text);
     o.tolerance = tolerance;
     o.max_deg = max_deg;
-    bake(b, lens, &o);
+    bake_lens(b, lens, &o);
 }
 
 static void make_doublet(struct glint_prescription *lens)
 {
-    parse(lens, "name doublet\n"
-                "source none\n"
-                "f-number 5.6\n"
-                "film 36 24\n"
-                "surface 61.47 6 13 1.5168 64.17\n"
-                "surface -44.64 2.5 13 1.6727 32.21\n"
-                "surface -129.94 2 13 air\n"
-                "stop 93 10\n");
+    parse_lens(lens, "name doublet\n"
+                     "source none\n"
+                     "f-number 5.6\n"
+                     "film 36 24\n"
+                     "surface 61.47 6 13 1.5168 64.17\n"
+                     "surface -44.64 2.5 13 1.6727 32.21\n"
+                     "surface -129.94 2 13 air\n"
+                     "stop 93 10\n");
 }
 
 /* -------------------------------------------------------------------- bytes */
@@ -128,7 +128,7 @@ static void check_same_bytes(const struct glint_prescription *lens,
 
     shuffle_init(&shuffle, workers, seed);
     shuffled.workers = workers ? &shuffle.workers : NULL;
-    bake(&b, lens, &shuffled);
+    bake_lens(&b, lens, &shuffled);
     assert_int_equal(b.bytes, expected->bytes);
     assert_memory_equal(b.data, expected->data, b.bytes);
     assert_memory_equal(&b.report, &expected->report, sizeof b.report);
@@ -146,7 +146,7 @@ TEST(repeated_bake_is_identical)
     struct baked b;
 
     make_singlet(&lens);
-    bake(&b, &lens, &options);
+    bake_lens(&b, &lens, &options);
     assert_int_equal(b.lens.header->n_ghosts, 1);
     assert_true(b.lens.header->n_systems >= 1);
     check_same_bytes(&lens, &options, &b, 0, 5);
@@ -756,7 +756,7 @@ TEST(no_ghosts)
     make_singlet(&lens);
     lens.n_surfaces = 1; /* the sensor lies in the glass */
     lens.stop_after = 1;
-    bake(&b, &lens, &options);
+    bake_lens(&b, &lens, &options);
     assert_int_equal(b.lens.header->n_ghosts, 0);
     assert_int_equal(b.lens.header->n_systems, 0);
     assert_int_equal(b.report.rays, 0);
@@ -772,7 +772,7 @@ TEST(loosest)
 
     make_singlet(&lens);
     o.tolerance = 100;
-    bake(&b, &lens, &o);
+    bake_lens(&b, &lens, &o);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++)
         assert_in_range(get_outputs(&b, (int)k)->n_terms, 1,
                         GLINT_MAX_MODEL_TERMS);

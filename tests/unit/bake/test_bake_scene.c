@@ -53,8 +53,8 @@ struct baked {
 };
 
 /* Bakes the scene of TEXT. On failure ERROR states the reason. */
-static enum glint_status bake(struct baked *b, const char *text,
-                              struct glint_error *error)
+static enum glint_status bake_scene_text(struct baked *b, const char *text,
+                                         struct glint_error *error)
 {
     const struct glint_description_files files = {NULL, read_mesh, read_picture,
                                                   NULL, NULL,      NULL};
@@ -81,7 +81,7 @@ static void bake_good(struct baked *b, const char *text)
 {
     struct glint_error error = {""};
 
-    if (bake(b, text, &error) != GLINT_OK)
+    if (bake_scene_text(b, text, &error) != GLINT_OK)
         fail_msg("%s", error.text);
 }
 
@@ -384,12 +384,13 @@ TEST(extremes)
         free(a.data);
         free(b.data);
     }
-    assert_int_equal(bake(&a,
-                          "material m phong 0 1 0\n"
-                          "sphere big at 0 0 0 radius 1e6 material m\n"
-                          "sphere dot at 0 0 0 radius 1e-6 material m\n",
-                          &error),
-                     GLINT_E_LENS);
+    assert_int_equal(
+        bake_scene_text(&a,
+                        "material m phong 0 1 0\n"
+                        "sphere big at 0 0 0 radius 1e6 material m\n"
+                        "sphere dot at 0 0 0 radius 1e-6 material m\n",
+                        &error),
+        GLINT_E_LENS);
     assert_non_null(
         strstr(error.text, "sphere dot, radius 1e-06, is too small"));
 }

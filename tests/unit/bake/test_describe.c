@@ -82,8 +82,8 @@ static const struct glint_description_files files = {
 
 /* Parses the valid text, with LINE in place of line NUMBER (from 1; 0: no
  * replacement). */
-static enum glint_status parse(struct glint_description *scene, int number,
-                               const char *line, struct glint_error *error)
+static enum glint_status parse_line(struct glint_description *scene, int number,
+                                    const char *line, struct glint_error *error)
 {
     char text[4096] = "", *copy;
     enum glint_status status;
@@ -119,7 +119,7 @@ TEST(good)
     struct glint_error error;
 
     assert_non_null(s);
-    if (parse(s, 0, NULL, &error) != GLINT_OK)
+    if (parse_line(s, 0, NULL, &error) != GLINT_OK)
         fail_msg("%s", error.text);
     assert_true(s->left_handed && s->has_shadows);
     check_near(s->camera.right, 1, 0, 0);
@@ -153,7 +153,7 @@ TEST(mesh)
     struct glint_error error;
 
     assert_non_null(s);
-    assert_ok(parse(s, 0, NULL, &error));
+    assert_ok(parse_line(s, 0, NULL, &error));
     o = &s->object[3];
     assert_int_equal(o->first_triangle, 1);
     assert_int_equal(o->n_triangles, 3);
@@ -179,7 +179,7 @@ TEST(texture)
     const uint8_t *row;
 
     assert_non_null(s);
-    assert_ok(parse(s, 0, NULL, &error));
+    assert_ok(parse_line(s, 0, NULL, &error));
     assert_int_equal(s->texture[0].image.width, 8);
     assert_int_equal(s->texture[0].image.height, 2);
     row = s->texture[0].image.plane[0];
@@ -332,7 +332,7 @@ TEST(mistakes)
         char wanted[200];
 
         snprintf(wanted, sizeof wanted, "x.scene:%s", m->error);
-        assert_int_not_equal(parse(s, m->line, m->text, &error), GLINT_OK);
+        assert_int_not_equal(parse_line(s, m->line, m->text, &error), GLINT_OK);
         if (strncmp(error.text, wanted, strlen(wanted)) != 0)
             fail_msg("'%s': %s", m->text, error.text);
     }
@@ -347,17 +347,17 @@ TEST(hands)
     struct glint_error error;
 
     assert_non_null(s);
-    assert_ok(parse(s, 1, "hand right", &error));
+    assert_ok(parse_line(s, 1, "hand right", &error));
     check_near(s->camera.right, -1, 0, 0);
     check_near(s->camera.up, 0, 1, 0);
     glint_description_free(s);
-    assert_ok(
-        parse(s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0", &error));
+    assert_ok(parse_line(s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0",
+                         &error));
     check_near(s->camera.at, 2, 1, 0);
     /* x points right, z away from the viewer */
     check_near(s->camera.right, 0, 0, 1);
     glint_description_free(s);
-    assert_ok(parse(s, 2, "camera corners", &error));
+    assert_ok(parse_line(s, 2, "camera corners", &error));
     check_near(s->camera.forward, 0, 0, 1);
     check_near(s->camera.right, 1, 0, 0);
     glint_description_free(s);
@@ -441,7 +441,7 @@ TEST(warnings)
 
     assert_non_null(s);
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
-        assert_ok(parse(s, odd[i].line, odd[i].text, &error));
+        assert_ok(parse_line(s, odd[i].line, odd[i].text, &error));
         assert_int_equal(!s->warning[0], !odd[i].warning[0]);
         assert_non_null(strstr(s->warning, odd[i].warning));
         glint_description_free(s);

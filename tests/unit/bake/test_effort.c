@@ -16,8 +16,8 @@ enum { HEAD = 32 }; /* work before the first ghost, in fits; see effort.c */
  * EXPECTED: typical work of a ghost passed to glint_effort_expect(); 0: not
  * called. Sets SAID to reported / true remaining time at 1/4, 1/2 and 3/4 of
  * the time. */
-static void bake(const double *work, int n, bool wide, double expected,
-                 double said[3])
+static void simulate_bake(const double *work, int n, bool wide, double expected,
+                          double said[3])
 {
     struct glint_effort e;
     double all = HEAD, now = HEAD;
@@ -54,7 +54,7 @@ TEST(equal_ghosts)
 
     for (int g = 0; g < 100; g++)
         work[g] = 20;
-    bake(work, 100, false, 0, said);
+    simulate_bake(work, 100, false, 0, said);
     for (int k = 0; k < 3; k++)
         assert_true(said[k] > 0.8 && said[k] < 1.25);
 }
@@ -72,7 +72,7 @@ TEST(random_ghosts)
 
         for (int g = 0; g < 20; g++)
             work[g] = ceil(pow(10, 2 * rng_unit(&seed)));
-        bake(work, 20, true, 0, said);
+        simulate_bake(work, 20, true, 0, said);
         off += fabs(log(said[1])) > log(3);
     }
     assert_in_range(off, 0, 10);
@@ -86,7 +86,7 @@ TEST(long_ghost)
 
     for (int g = 0; g < 20; g++)
         work[g] = g < 19 ? 5 : 1000;
-    bake(work, 20, true, 0, said);
+    simulate_bake(work, 20, true, 0, said);
     assert_true(said[1] > 0.5 && said[1] < 2);
     assert_true(said[2] > 0.5 && said[2] < 2);
 }
@@ -126,7 +126,7 @@ TEST(late_ghosts_expected)
 
     for (int g = 0; g < 100; g++)
         work[g] = g < 70 ? 1 : 70;
-    bake(work, 100, false, 20, said);
+    simulate_bake(work, 100, false, 20, said);
     for (int k = 0; k < 3; k++)
         assert_true(said[k] > 0.5 && said[k] < 2);
 }

@@ -116,7 +116,8 @@ static void paint_picture(double (*light)(const double d[3]))
         }
 }
 
-static void bake(struct baked *b, const struct glint_environment_options *o)
+static void bake_panorama(struct baked *b,
+                          const struct glint_environment_options *o)
 {
     struct glint_error error;
     const char *reason = "";
@@ -166,7 +167,7 @@ TEST(uniform_light)
     struct baked b;
 
     paint_picture(uniform_light);
-    bake(&b, &o);
+    bake_panorama(&b, &o);
     assert_string_equal(b.environment.header->name, "anight");
     assert_int_equal(b.environment.header->key[1], 1);
     assert_int_equal(b.environment.header->n_lights, 0);
@@ -206,7 +207,7 @@ TEST(irradiance)
         o.turn_deg = 90 * turned;
         o.scale = 1 + turned;
         paint_picture(turned ? ahead_light : slope_light);
-        bake(&b, &o);
+        bake_panorama(&b, &o);
         for (int i = 0; i < 1024; i++) {
             double n[3], want;
 
@@ -243,7 +244,7 @@ TEST(blur)
 
     paint_picture(patch_light);
     o.max_lights = 0;
-    bake(&b, &o);
+    bake_panorama(&b, &o);
     assert_true(glint_sphere_open(&s, 2 * SIDE));
     assert_true(glint_sphere_project(&s, &image, &o, &report));
     for (int k = 0; k <= SIDE_LOG2; k++) {
@@ -299,7 +300,7 @@ TEST(mips)
     paint_picture(patch_light);
     o.max_lights = 0;
     o.levels = GLINT_ENVIRONMENT_MIP;
-    bake(&b, &o);
+    bake_panorama(&b, &o);
     for (int k = 1; k <= SIDE_LOG2; k++) {
         const size_t side = SIDE >> k;
 
@@ -345,7 +346,7 @@ TEST(light)
             if (picture[y][x][0] > 100)
                 solid += 2 * GLINT_PI / WIDTH * GLINT_PI / HEIGHT *
                          cos(GLINT_PI * (.5 - (y + .5) / HEIGHT));
-    bake(&b, &o);
+    bake_panorama(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 1);
     l = b.environment.light;
     for (int k = 0; k < 3; k++)
@@ -375,7 +376,7 @@ TEST(light)
                          (power * 4000 * solid + 4 * GLINT_PI)) < .002);
     free(b.data);
     o.max_lights = 0;
-    bake(&b, &o);
+    bake_panorama(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 0);
     assert_true(b.report.residual_largest > 2000);
     free(b.data);
@@ -393,7 +394,7 @@ TEST(areas_stay)
     struct baked b;
 
     paint_picture(window_light);
-    bake(&b, &o);
+    bake_panorama(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 0);
     assert_true(b.report.residual_largest > 250);
     free(b.data);
@@ -415,7 +416,7 @@ TEST(clamps_invalid_samples)
     picture[10][8][2] = NAN;
     picture[12][8][0] = INFINITY;
     picture[14][9][0] = -INFINITY;
-    bake(&b, &o);
+    bake_panorama(&b, &o);
     assert_true(b.report.negative == 2 && b.report.not_finite == 3);
     assert_true(b.report.largest < 12.6 * .9 && b.report.mean > 6);
     free(b.data);
@@ -434,7 +435,7 @@ TEST(clamps_invalid_samples)
                          GLINT_E_ARGUMENT);
     }
     memset(picture, 0, sizeof picture); /* a black picture is valid */
-    bake(&b, &o);
+    bake_panorama(&b, &o);
     assert_true(decode_texel(&b.environment, 2, 3, 0) == 0);
     free(b.data);
 }
@@ -519,7 +520,7 @@ TEST(rejects_damaged_files)
     const struct glint_environment_header *h;
 
     paint_picture(day_light);
-    bake(&b, &o);
+    bake_panorama(&b, &o);
     h = b.environment.header;
     check_refused(&b, AT(magic), 0, "no baked environment");
     check_refused(&b, AT(version), 9, "newer");
@@ -547,9 +548,9 @@ TEST(rejects_damaged_files)
 
 /* ------------------------------------------------------------------- texts */
 
-static enum glint_status parse(const char *text,
-                               struct glint_environment_options *o,
-                               char *source, struct glint_error *error)
+static enum glint_status parse_text(const char *text,
+                                    struct glint_environment_options *o,
+                                    char *source, struct glint_error *error)
 {
     return glint_environment_parse(o, source, text, strlen(text),
                                    "n.environment", error);
@@ -561,7 +562,7 @@ static void check_wrong_text(const char *text, const char *why)
     char source[GLINT_ENVIRONMENT_FILE_BYTES];
     struct glint_error error;
 
-    assert_int_equal(parse(text, &o, source, &error), GLINT_E_LENS);
+    assert_int_equal(parse_text(text, &o, source, &error), GLINT_E_LENS);
     if (!strstr(error.text, why))
         fail_msg("%s\nnot\n%s", error.text, why);
 }
@@ -572,10 +573,10 @@ TEST(text)
     char source[GLINT_ENVIRONMENT_FILE_BYTES];
     struct glint_error error;
 
-    assert_ok(parse("# night\nsource a night.exr\nsize 128\n"
-                    "turn -90\nscale .5\n"
-                    "lights 3 radius 2.5 above 20\n",
-                    &o, source, &error));
+    assert_ok(parse_text("# night\nsource a night.exr\nsize 128\n"
+                         "turn -90\nscale .5\n"
+                         "lights 3 radius 2.5 above 20\n",
+                         &o, source, &error));
     assert_string_equal(source, "a night.exr");
     assert_true(o.side_log2 == 7 && o.turn_deg == -90 && o.scale == .5 &&
                 o.max_lights == 3 && o.light_deg == 2.5 && o.light_above == 20);

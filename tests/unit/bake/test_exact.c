@@ -35,8 +35,8 @@ TEST_CLOSE
     glint_pool_destroy(workers);
 }
 
-static void render(double *out, struct glint_view view,
-                   const struct glint_lamp *lamps, int n_lamps, int grid)
+static void render_exact(double *out, struct glint_view view,
+                         const struct glint_lamp *lamps, int n_lamps, int grid)
 {
     const struct glint_exact_config cfg = {.setup = &setup,
                                            .view = view,
@@ -113,7 +113,7 @@ static void compare_golden(const struct golden *g)
         skip();
     }
     load_setup(&setup, &lens, g->name);
-    render(rgb, view, &lamp, 1, g->grid);
+    render_exact(rgb, view, &lamp, 1, g->grid);
     got = convert_to_floats(rgb, 0, view);
     assert_true(glint_measure_compare(&want, &got, true, &m));
     print_message("%s: %.1f dB\n", g->name, m.psnr_db);
@@ -149,7 +149,7 @@ TEST(axis_light_is_symmetric)
     double worst = 0, peak = 0;
 
     load_setup(&setup, &lens, "heliar-tronnier");
-    render(rgb, view, &lamp, 1, 128);
+    render_exact(rgb, view, &lamp, 1, 128);
     for (int y = 0; y < 160; y++)
         for (int x = 0; x < 160; x++)
             for (int c = 0; c < 3; c++) {
@@ -175,8 +175,8 @@ TEST(quarter_turn)
     const struct glint_lamp lamp = make_lamp(6, 20), turned = make_lamp(6, 110);
 
     load_setup(&setup, &lens, "double-gauss-angenieux");
-    render(rgb, view, &lamp, 1, 96);
-    render(other, view, &turned, 1, 96);
+    render_exact(rgb, view, &lamp, 1, 96);
+    render_exact(other, view, &turned, 1, 96);
     for (int y = 0; y < 160; y++) /* (x, y) becomes (y, 159 - x) */
         for (int x = 0; x < 160; x++)
             for (int c = 0; c < 3; c++)
@@ -197,8 +197,8 @@ TEST(doubling_the_grid)
     double db;
 
     load_setup(&setup, &lens, "heliar-tronnier");
-    render(rgb, view, &lamp, 1, 256);
-    render(other, view, &lamp, 1, 512);
+    render_exact(rgb, view, &lamp, 1, 256);
+    render_exact(other, view, &lamp, 1, 512);
     db = compute_psnr(other, rgb, view);
     print_message("256 against 512: %.1f dB\n", db);
     assert_true(db > 60);
@@ -215,7 +215,7 @@ TEST(flux_is_bounded)
     double sum[3] = {0, 0, 0};
 
     load_setup(&setup, &lens, "heliar-tronnier");
-    render(rgb, view, &lamp, 1, 64);
+    render_exact(rgb, view, &lamp, 1, 64);
     for (int i = 0; i < 3 * 200 * 200; i++)
         sum[i % 3] += rgb[i];
     for (int c = 0; c < 3; c++) {
@@ -234,10 +234,10 @@ TEST(threads_do_not_matter)
 
     load_setup(&setup, &lens, "heliar-tronnier");
     workers = NULL;
-    render(rgb, view, lamps, 2, 64);
+    render_exact(rgb, view, lamps, 2, 64);
     for (int n = 2; n <= 8; n += 3) {
         assert_ok(glint_pool_create(&workers, n));
-        render(other, view, lamps, 2, 64);
+        render_exact(other, view, lamps, 2, 64);
         glint_pool_destroy(workers);
         assert_memory_equal(rgb, other, sizeof(double) * 3 * 120 * 67);
     }
@@ -276,7 +276,7 @@ TEST(integers_match)
         double db;
 
         load_setup(&setup, &lens, names[i]);
-        render(rgb, view, lamps, 1 + i, 192);
+        render_exact(rgb, view, lamps, 1 + i, 192);
         render_integers(view, lamps, 1 + i, other, &report);
         db = compute_psnr(rgb, other, view);
         print_message("%s, %d light(s): %.1f dB\n", names[i], 1 + i, db);
@@ -375,11 +375,11 @@ TEST(torics_that_are_spheres)
 
     load_shaped("", "", "");
     flux = setup.direct_flux[1];
-    render(rgb, view, &lamp, 1, 128);
+    render_exact(rgb, view, &lamp, 1, 128);
     load_shaped("", "shape toric x 40.1\n", "shape toric y -537\n");
     assert_false(glint_prescription_is_round(&lens));
     assert_true(fabs(setup.direct_flux[1] / flux - 1) < 1e-5);
-    render(other, view, &lamp, 1, 128);
+    render_exact(other, view, &lamp, 1, 128);
     db = compute_psnr(rgb, other, view);
     print_message("spheres and torics: %.1f dB\n", db);
     assert_true(db > 60);
@@ -399,9 +399,9 @@ TEST(decentred_at_the_diagonal)
     double db;
 
     load_shaped("group decentre 0.7 0\n", "", "end\n");
-    render(rgb, view, &at[0], 1, 64);
+    render_exact(rgb, view, &at[0], 1, 64);
     load_shaped("group decentre 0 0.7\n", "", "end\n");
-    render(other, view, &at[1], 1, 64);
+    render_exact(other, view, &at[1], 1, 64);
     for (int y = 0; y < 120; y++)
         for (int x = 0; x < 120; x++)
             for (int c = 0; c < 3; c++) {
@@ -414,6 +414,6 @@ TEST(decentred_at_the_diagonal)
     print_message("decentred, mirrored: %.1f dB\n", db);
     assert_true(db > 55);
     load_shaped("", "", "");
-    render(other, view, &at[0], 1, 64);
+    render_exact(other, view, &at[0], 1, 64);
     assert_true(compute_psnr(rgb, other, view) < 40);
 }

@@ -14,8 +14,8 @@ static const double nm[3] = {650, 532, 450};
 
 /* Sets MODEL from the header of the model of lens NAME, stopped down to
  * F_NUMBER, and EXACT from traced rays. */
-static void set_up(const char *name, double f_number, struct glint_setup *model,
-                   struct glint_setup *exact)
+static void make_setups(const char *name, double f_number,
+                        struct glint_setup *model, struct glint_setup *exact)
 {
     static struct glint_prescription lens;
     static struct glint_setup whole;
@@ -56,7 +56,7 @@ TEST(fast_lenses)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         static struct glint_setup model, exact;
 
-        set_up(cases[i].name, cases[i].f_number, &model, &exact);
+        make_setups(cases[i].name, cases[i].f_number, &model, &exact);
         for (int k = 0; k < 3; k++)
             assert_near(model.direct_flux[k] / exact.direct_flux[k], 1,
                         cases[i].within);

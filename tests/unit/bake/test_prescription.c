@@ -45,9 +45,9 @@ static size_t compose_table(char text[4096], int number, const char *line,
     return strlen(text);
 }
 
-static enum glint_status parse(struct glint_prescription *lens,
-                               const char *text, size_t bytes,
-                               struct glint_error *error)
+static enum glint_status parse_copy(struct glint_prescription *lens,
+                                    const char *text, size_t bytes,
+                                    struct glint_error *error)
 {
     /* The copy has the exact size of the text, so that the address sanitizer
      * detects reads beyond its end. */
@@ -67,7 +67,7 @@ static void expect_good(struct glint_prescription *lens, const char *text,
 {
     struct glint_error error;
 
-    if (parse(lens, text, bytes, &error))
+    if (parse_copy(lens, text, bytes, &error))
         fail_msg("%s", error.text);
 }
 
@@ -78,7 +78,7 @@ static void expect_error(const char *text, size_t bytes, const char *expected)
 
     memset(&lens, 0x55, sizeof(lens));
     before = lens;
-    assert_int_equal(parse(&lens, text, bytes, &error), GLINT_E_LENS);
+    assert_int_equal(parse_copy(&lens, text, bytes, &error), GLINT_E_LENS);
     assert_string_equal(error.text, expected);
     assert_memory_equal(&lens, &before, sizeof(lens));
 }
@@ -649,8 +649,8 @@ TEST(corpus)
         if (entry->d_name[0] == '.')
             continue;
         snprintf(path, sizeof(path), CORPUS "/%s", entry->d_name);
-        status =
-            parse(&lens, text, read_file(path, text, sizeof(text)), &error);
+        status = parse_copy(&lens, text, read_file(path, text, sizeof(text)),
+                            &error);
         if (!strncmp(entry->d_name, status ? "good-" : "bad-", status ? 5 : 4))
             fail_msg("%s: %s", path, status ? error.text : "accepted");
         n++;

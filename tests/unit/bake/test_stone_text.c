@@ -16,8 +16,8 @@
     "stone pale scatter 2 3 4 absorb .1 .2 .3\n" \
     "stone dark scatter .5 .6 .7 absorb 1 2 3\n"
 
-static enum glint_status parse(struct glint_stone_text *t, const char *text,
-                               struct glint_error *error)
+static enum glint_status parse_text(struct glint_stone_text *t,
+                                    const char *text, struct glint_error *error)
 {
     return glint_stone_parse(t, text, strlen(text), "x", error);
 }
@@ -26,7 +26,7 @@ static void parse_good(struct glint_stone_text *t, const char *text)
 {
     struct glint_error error = {.text = ""};
 
-    if (parse(t, text, &error) != GLINT_OK)
+    if (parse_text(t, text, &error) != GLINT_OK)
         fail_msg("%s: %s", text, error.text);
 }
 
@@ -138,7 +138,7 @@ TEST(rejects_mistakes)
         struct glint_error error = {.text = ""};
         struct glint_stone_text t;
 
-        assert_int_equal(parse(&t, wrong[i].text, &error), GLINT_E_LENS);
+        assert_int_equal(parse_text(&t, wrong[i].text, &error), GLINT_E_LENS);
         if (!strstr(error.text, wrong[i].error))
             fail_msg("%s\ngives '%s', not '%s'", wrong[i].text, error.text,
                      wrong[i].error);

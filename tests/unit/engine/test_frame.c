@@ -68,7 +68,8 @@ static const struct glint_lamp lamps[] = {
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
-static void make_frame_of(const struct opened *of, struct glint_frame *frame)
+static void make_frame_for_lens(const struct opened *of,
+                                struct glint_frame *frame)
 {
     assert_ok(settings_frame(&tool, of, WIDTH, HEIGHT, frame));
     frame->dials.fineness = 16;
@@ -76,7 +77,7 @@ static void make_frame_of(const struct opened *of, struct glint_frame *frame)
 
 static void make_frame(struct glint_frame *frame)
 {
-    make_frame_of(&opened, frame);
+    make_frame_for_lens(&opened, frame);
 }
 
 static void make_even(struct glint_frame *frame, int fineness)
@@ -400,7 +401,7 @@ TEST(no_memory)
         for (int nth = 0; nth < 100; nth++) {
             enum glint_status status;
 
-            make_frame_of(exact ? &exact_scene : &opened, &frame);
+            make_frame_for_lens(exact ? &exact_scene : &opened, &frame);
             frame.only_ghost = 0;
             frame.dials.max_lights = 2; /* forces a merge of the three lamps */
             n_allocations = 0;
@@ -471,7 +472,7 @@ TEST(too_many_feeds)
     for (int i = 0; i < N; i++)
         many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1,
                                       {1, 1, 1},    {0, 0},       0};
-    make_frame_of(&exact_scene, &frame);
+    make_frame_for_lens(&exact_scene, &frame);
     crowd = exact_scene.lens.setup; /* 66577 x 2016 x 32 is 2^32 + 48128 */
     crowd.n_ghosts = 2016;
     crowd.n_wavelengths = 32;

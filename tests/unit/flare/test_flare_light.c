@@ -51,7 +51,7 @@ TEST(focused_light_arrives)
     }
 }
 
-static int32_t pixel_at(const int32_t *p, int x, int y)
+static int32_t read_pixel(const int32_t *p, int x, int y)
 {
     return p[3 * (y * WIDTH + x)];
 }
@@ -73,11 +73,11 @@ TEST(flat_inside)
                 (50000 + (x + 0.5 - 100) / 40 * 65536 / 8) / 65536;
             const double q20 = irradiance * energy * 1048576;
 
-            assert_true(pixel_at(pixels, x, y) > 0.985 * q20 - 2 &&
-                        pixel_at(pixels, x, y) < 1.015 * q20 + 2);
+            assert_true(read_pixel(pixels, x, y) > 0.985 * q20 - 2 &&
+                        read_pixel(pixels, x, y) < 1.015 * q20 + 2);
         }
     }
-    assert_int_equal(pixel_at(pixels, 100, 2), 0);
+    assert_int_equal(read_pixel(pixels, 100, 2), 0);
 }
 
 /* Checks that outlines close bit by bit; else a streak would extend to the
@@ -138,9 +138,9 @@ TEST(far_corner_closes)
         glint_flare_bin(f, &stats);
         glint_flare_draw(f, &image);
         free(mem);
-        assert_true(pixel_at(pixels, 12, 12) > 0);
+        assert_true(read_pixel(pixels, 12, 12) > 0);
         for (int y = 0; y < HEIGHT; y++)
-            assert_int_equal(pixel_at(pixels, 60, y), 0);
+            assert_int_equal(read_pixel(pixels, 60, y), 0);
     }
 }
 
@@ -291,7 +291,7 @@ static struct glint_flare_stats draw_quad(const struct quad *q)
 
 static void assert_light(int x, int y, double light)
 {
-    const double got = pixel_at(pixels, x, y) / 1048576.0;
+    const double got = read_pixel(pixels, x, y) / 1048576.0;
 
     if (got < light - 1e-4 || got > light + 1e-4)
         print_message("pixel %d,%d: %f, not %f\n", x, y, got, light);

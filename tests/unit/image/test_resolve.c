@@ -62,7 +62,7 @@ static void make_image(enum glint_pixel_format format, int width, int height,
     }
 }
 
-static uint8_t *sample_at(int plane, int x, int y)
+static uint8_t *find_sample(int plane, int x, int y)
 {
     return fixture.image.plane[plane] + y * fixture.image.stride_bytes[plane] +
            x;
@@ -87,7 +87,7 @@ static void fill_random(int plane, int low, int high)
 {
     for (int y = 0; y < row_count(plane); y++)
         for (int x = 0; x < row_bytes(plane); x++)
-            *sample_at(plane, x, y) =
+            *find_sample(plane, x, y) =
                 (uint8_t)(low + rng_below(&seed, high - low + 1));
 }
 
@@ -137,7 +137,8 @@ static void add_light(int dither)
 
 static int byte_before(int plane, int x, int y)
 {
-    return fixture.before[plane][sample_at(plane, x, y) - fixture.plane[plane]];
+    return fixture
+        .before[plane][find_sample(plane, x, y) - fixture.plane[plane]];
 }
 
 static void assert_guards_whole(void)
@@ -149,7 +150,7 @@ static void assert_guards_whole(void)
         if (i < glint_image_planes(fixture.image.format))
             for (int y = 0; y < row_count(i); y++)
                 for (int x = 0; x < row_bytes(i); x++)
-                    inside[sample_at(i, x, y) - fixture.plane[i]] = 1;
+                    inside[find_sample(i, x, y) - fixture.plane[i]] = 1;
         for (int k = 0; k < PLANE_BYTES; k++)
             assert_true(inside[k] || fixture.plane[i][k] == GUARD);
     }
@@ -230,7 +231,7 @@ static void check_block(int cx, int cy, double within)
             assert_code(byte_before(0, x, y) +
                             c.y_steps *
                                 (c.kr * rgb[0] + c.kg * rgb[1] + c.kb * rgb[2]),
-                        *sample_at(0, x, y), within);
+                        *find_sample(0, x, y), within);
         }
     for (int i = 0; i < 3; i++)
         total[i] /= n;
@@ -239,10 +240,10 @@ static void check_block(int cx, int cy, double within)
 
         assert_code(byte_before(1, cx, cy) +
                         c.c_steps * (total[2] - luma) / 2 / (1 - c.kb),
-                    *sample_at(1, cx, cy), within);
+                    *find_sample(1, cx, cy), within);
         assert_code(byte_before(2, cx, cy) +
                         c.c_steps * (total[0] - luma) / 2 / (1 - c.kr),
-                    *sample_at(2, cx, cy), within);
+                    *find_sample(2, cx, cy), within);
     }
 }
 
@@ -262,7 +263,7 @@ static void check_rgb24(double within)
             const int code = byte_before(0, x, y);
 
             assert_code(code + 255 * code_change(code / 255.0, light),
-                        *sample_at(0, x, y), within);
+                        *find_sample(0, x, y), within);
         }
 }
 
@@ -280,7 +281,7 @@ static void check_grey(double within)
                 light += weight[i] * light_at(i, y * fixture.image.width + x);
             assert_code(byte_before(0, x, y) +
                             c.y_steps * code_change(v, light),
-                        *sample_at(0, x, y), within);
+                        *find_sample(0, x, y), within);
         }
 }
 
@@ -415,10 +416,10 @@ TEST(white_saturates)
             for (int i = 0; i < glint_image_planes(formats[f]); i++)
                 for (int y = 0; y < row_count(i); y++)
                     for (int x = 0; x < row_bytes(i); x++)
-                        assert_int_equal(*sample_at(i, x, y), i > 0 ? 128
-                                                              : (k & 2) && f > 0
-                                                                  ? 235
-                                                                  : 255);
+                        assert_int_equal(*find_sample(i, x, y),
+                                         i > 0              ? 128
+                                         : (k & 2) && f > 0 ? 235
+                                                            : 255);
         }
 }
 
@@ -427,14 +428,14 @@ TEST(white_saturates)
 TEST(codes_by_hand)
 {
     make_image(GLINT_RGB24, 1, 1, 0);
-    memset(sample_at(0, 0, 0), 128, 3);
+    memset(find_sample(0, 0, 0), 128, 3);
     fixture.light_q20[0][0] = 3 * 226346 / 2;
     fixture.light_q20[1][0] = 3 * 226346;
     fixture.light_q20[2][0] = WHITE_Q20 / 4 - 226346;
     add_light(0);
-    assert_int_equal(*sample_at(0, 0, 0), 194);
-    assert_int_equal(*sample_at(0, 1, 0), 239);
-    assert_int_equal(*sample_at(0, 2, 0), 137);
+    assert_int_equal(*find_sample(0, 0, 0), 194);
+    assert_int_equal(*find_sample(0, 1, 0), 239);
+    assert_int_equal(*find_sample(0, 2, 0), 137);
 }
 
 /* Checks that one lit pixel of four changes their chroma sample by a
@@ -448,13 +449,13 @@ TEST(chroma_is_the_mean_of_those_that_exist)
     fixture.light_q20[2][0] = WHITE_Q20;
     fixture.light_q20[2][8] = WHITE_Q20;
     add_light(0);
-    assert_int_equal(*sample_at(0, 0, 0), 29); /* 0.114 * 255 */
-    assert_int_equal(*sample_at(0, 1, 0), 0);
-    assert_int_equal(*sample_at(0, 2, 2), 29);
-    assert_int_equal(*sample_at(1, 0, 0), 160); /* 128 + 127.5 / 4 */
-    assert_int_equal(*sample_at(1, 1, 0), 128);
-    assert_int_equal(*sample_at(1, 1, 1), 255); /* 128 + 127.5 */
-    assert_int_equal(*sample_at(2, 1, 1),
+    assert_int_equal(*find_sample(0, 0, 0), 29); /* 0.114 * 255 */
+    assert_int_equal(*find_sample(0, 1, 0), 0);
+    assert_int_equal(*find_sample(0, 2, 2), 29);
+    assert_int_equal(*find_sample(1, 0, 0), 160); /* 128 + 127.5 / 4 */
+    assert_int_equal(*find_sample(1, 1, 0), 128);
+    assert_int_equal(*find_sample(1, 1, 1), 255); /* 128 + 127.5 */
+    assert_int_equal(*find_sample(2, 1, 1),
                      107); /* 128 - 0.114 * 127.5 / 0.701 */
 }
 
@@ -472,8 +473,8 @@ TEST(dither_has_the_right_mean)
             fixture.light_q20[0][k] = light;
         add_light(1);
         for (int k = 0; k < 64; k++) {
-            total += *sample_at(0, 3 * (k % 8), k / 8);
-            assert_int_equal(*sample_at(0, 3 * (k % 8) + 1, k / 8), 200);
+            total += *find_sample(0, 3 * (k % 8), k / 8);
+            assert_int_equal(*find_sample(0, 3 * (k % 8) + 1, k / 8), 200);
         }
         want = 200 + 255 * code_change(200 / 255.0, light_at(0, 0));
         assert_true(fabs(total / 64.0 - want) <= 0.1);
@@ -710,18 +711,18 @@ TEST(quads_of_edges)
         fixture.image.range = GLINT_RANGE_LIMITED;
         for (int x = 0; x < 64; x++)
             for (int y = 0; y < 2; y++)
-                *sample_at(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
+                *find_sample(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
         for (int i = 0; i < 3 * 64; i++)
             fixture.light_q20[i / 64][i % 64] = 1 << strength >> 4;
         add_quads(&fixture.image, 0, 0);
         for (int x = 0; x < 64; x += 2)
             for (int y = 0; y < 2; y++) {
-                assert_in_range(*sample_at(0, x, y), luma[y][x / 2 % 2], 235);
-                assert_int_equal(*sample_at(0, x + 1, y), 128);
+                assert_in_range(*find_sample(0, x, y), luma[y][x / 2 % 2], 235);
+                assert_int_equal(*find_sample(0, x + 1, y), 128);
                 if (strength == 24)
-                    assert_int_equal(*sample_at(0, x, y), 235);
+                    assert_int_equal(*find_sample(0, x, y), 235);
             }
-        assert_true(*sample_at(0, 0, 0) <= *sample_at(0, 0, 1));
+        assert_true(*find_sample(0, 0, 0) <= *find_sample(0, 0, 1));
     }
 }
 
@@ -739,8 +740,9 @@ static double quads_rms(int differ)
         fill_random(0, 0, differ);
         for (int x = 0; x < 64; x++)
             for (int y = 0; y < 2; y++)
-                *sample_at(0, x, y) = (uint8_t)(*sample_at(0, x, y) +
-                                                (x % 2 ? 120 : 20 + 3 * turn));
+                *find_sample(0, x, y) =
+                    (uint8_t)(*find_sample(0, x, y) +
+                              (x % 2 ? 120 : 20 + 3 * turn));
         for (int i = 0; i < 3 * 64; i++)
             fixture.light_q20[i / 64][i % 64] = 3000 << turn % 8;
         memcpy(fixture.before, fixture.plane, sizeof fixture.before);
@@ -750,8 +752,8 @@ static double quads_rms(int differ)
         add_quads(&fixture.image, 0, 0);
         for (int x = 0; x < 64; x += 2)
             for (int y = 0; y < 2; y++, n++) {
-                const int off = *sample_at(0, x, y) -
-                                want[sample_at(0, x, y) - fixture.plane[0]];
+                const int off = *find_sample(0, x, y) -
+                                want[find_sample(0, x, y) - fixture.plane[0]];
 
                 sum2 += off * off;
             }

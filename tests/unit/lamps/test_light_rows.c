@@ -29,7 +29,7 @@ struct fixture {
 };
 
 /* Sets up an image of random codes, many of which repeat the previous pixel. */
-static void set_up(struct fixture *f, enum glint_pixel_format format)
+static void make_fixture(struct fixture *f, enum glint_pixel_format format)
 {
     struct glint_arena arena = glint_arena_measure();
     const size_t bytes = glint_image_bytes(format, WIDTH, HEIGHT);
@@ -132,7 +132,7 @@ TEST(light_of_runs)
     for (int round = 0; round < ROUNDS; round++) {
         struct fixture f;
 
-        set_up(&f, canvas_format[round % CANVAS_FORMATS]);
+        make_fixture(&f, canvas_format[round % CANVAS_FORMATS]);
         for (int y = 0; y < HEIGHT; y++)
             check_row(&f, y);
         tear_down(&f);
@@ -180,7 +180,7 @@ TEST(brief_scores)
         const int32_t order = 0;
         struct fixture f;
 
-        set_up(&f, canvas_format[round % CANVAS_FORMATS]);
+        make_fixture(&f, canvas_format[round % CANVAS_FORMATS]);
         glint_white_measure(&white, &f.bright, HEIGHT);
         c[0] = c[1] = draw_candidate();
         for (int brief = 0; brief < 2; brief++) {

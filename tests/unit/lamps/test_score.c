@@ -146,7 +146,7 @@ static int find_lamps(const struct settings *s, enum glint_pixel_format format,
     return n;
 }
 
-static void assert_at(const struct settings *s, double x, double y)
+static void assert_spot_near(const struct settings *s, double x, double y)
 {
     double least = HUGE_VAL;
 
@@ -182,7 +182,7 @@ TEST(lamps_of_every_colour)
         add_lamp(&s, 0.3, 0.35, 0.015, 0.01, colours[i]);
         for (int f = 0; f < 3; f++) {
             assert_int_equal(find_lamps(&s, formats[f], 1), 1);
-            assert_at(&s, 0.3, 0.35);
+            assert_spot_near(&s, 0.3, 0.35);
         }
         free(s.light);
     }
@@ -202,8 +202,8 @@ TEST(underexposed_night)
         add_lamp(&s, 0.3, 0.35, 0.02, 0.01, light);
         add_lamp(&s, 0.8, 0.15, 0.02, 0.01, light);
         assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 2);
-        assert_at(&s, 0.3, 0.35);
-        assert_at(&s, 0.8, 0.15);
+        assert_spot_near(&s, 0.3, 0.35);
+        assert_spot_near(&s, 0.8, 0.15);
         free(s.light);
     }
 }
@@ -215,7 +215,7 @@ TEST(lamp_before_a_bright_wall)
 
     add_lamp(&s, 0.4, 0.3, 0.03, 0.02, white);
     assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 1);
-    assert_at(&s, 0.4, 0.3);
+    assert_spot_near(&s, 0.4, 0.3);
     free(s.light);
 }
 
@@ -229,7 +229,7 @@ TEST(sun_in_haze)
     add_lamp(&s, 0.5, 0.25, 0.04, 0.02, sun);
     add_lamp(&s, 0.5, 0.25, 0.04, 0.2, haze);
     assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 1);
-    assert_at(&s, 0.5, 0.25);
+    assert_spot_near(&s, 0.5, 0.25);
     free(s.light);
 }
 
@@ -246,9 +246,9 @@ TEST(every_resolution)
         add_lamp(&s, 0.5, 0.4, 0.012, 0.008, lamp);
         add_lamp(&s, 0.8, 0.3, 0.03, 0.01, lamp);
         assert_int_equal(find_lamps(&s, GLINT_RGB24, 1), 3);
-        assert_at(&s, 0.2, 0.2);
-        assert_at(&s, 0.5, 0.4);
-        assert_at(&s, 0.8, 0.3);
+        assert_spot_near(&s, 0.2, 0.2);
+        assert_spot_near(&s, 0.5, 0.4);
+        assert_spot_near(&s, 0.8, 0.3);
         free(s.light);
     }
 }
@@ -321,7 +321,7 @@ TEST(test_patterns)
         assert_int_equal(find_lamps(&bars, GLINT_RGB24, 0), 0);
         assert_int_equal(find_lamps(&box, GLINT_RGB24, 0), 0);
         assert_int_equal(find_lamps(&lamp, GLINT_RGB24, 0), 1);
-        assert_at(&lamp, 0.825, 0.4);
+        assert_spot_near(&lamp, 0.825, 0.4);
         free(bars.light);
         free(box.light);
         free(lamp.light);

@@ -226,7 +226,7 @@ TEST(half_size_below_0)
 
 /* Sets the coefficients of the first system to random values with the
  * largest sums of magnitudes allowed. SEED gives sizes and signs. */
-static void fill_up(struct model_image *m, uint32_t *seed)
+static void set_max_coefficients(struct model_image *m, uint32_t *seed)
 {
     const struct glint_model_header *h = model_header(m);
     const struct glint_model_system *s = (const void *)(m->data + h->system_at);
@@ -265,7 +265,7 @@ TEST(extremes)
         struct glint_lens lens;
 
         if (k % 20 == 0)
-            fill_up(&m, &seed);
+            set_max_coefficients(&m, &seed);
         lens = model_open(&m);
         assert_int_equal(glint_transfer_init(&t, &lens, 0, sine_q30, wave_q24),
                          1);

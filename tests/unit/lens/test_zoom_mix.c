@@ -128,7 +128,7 @@ static void interpolate_barrels(const struct barrel *a, uint32_t n_a,
     free(at[1].data);
 }
 
-static double output_at(int kind, double u, double v)
+static double evaluate_output(int kind, double u, double v)
 {
     struct glint_outputs out;
 
@@ -140,7 +140,7 @@ static double output_at(int kind, double u, double v)
 /* Checks that output KIND is X at (U, V). */
 static void check_output(int kind, double u, double v, double x)
 {
-    const double got = output_at(kind, u, v);
+    const double got = evaluate_output(kind, u, v);
 
     if (fabs(got - x) > 1e-6)
         fail_msg("output %d at %g, %g is %.9f, not %.9f", kind, u, v, got, x);
@@ -378,7 +378,7 @@ TEST(boxes_move)
  * interpolated. */
 static void check_circle(double u, double v, double x, double y)
 {
-    const double got = output_at(GLINT_OUT_BARREL_0, u, v);
+    const double got = evaluate_output(GLINT_OUT_BARREL_0, u, v);
 
     if (fabs(got - 0.5 - (x * x + y * y) / 32) > 0.1)
         fail_msg("the barrel is %g at %g, %g mm", got, x, y);

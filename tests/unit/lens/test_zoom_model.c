@@ -32,7 +32,7 @@ static unsigned char *file;
 static size_t bytes;
 static struct glint_zoom_lens zoom;
 
-static void move_to(struct glint_prescription *to, double along)
+static void set_zoom_position(struct glint_prescription *to, double along)
 {
     struct glint_error error = {""};
 
@@ -57,7 +57,7 @@ TEST_OPEN
     for (int k = 0; k < POSITIONS; k++) {
         unsigned char *data;
 
-        move_to(&at, 0.5 * k);
+        set_zoom_position(&at, 0.5 * k);
         if (glint_bake(&at, &options, &data, &model[k].bytes, &report,
                        &error) != GLINT_OK)
             fail_msg("%s", error.text);
@@ -128,7 +128,7 @@ static struct off measure_error(double along)
     double sum = 0, energies = 0;
     int n = 0, n_ghosts;
 
-    move_to(&at, along);
+    set_zoom_position(&at, along);
     glint_optics_of(&at, &optics);
     glint_zoom_set(&zoom, (int32_t)lrint(along * 0x1p30));
     n_ghosts = glint_ghost_list(&at, ghost, 8);
@@ -234,7 +234,7 @@ TEST(some)
     glint_bake_defaults(&options);
     options.max_deg = 8;
     options.ghosts = three[1].ghosts = ghosts;
-    move_to(&at, 0.5);
+    set_zoom_position(&at, 0.5);
     assert_ok(glint_bake(&at, &options, &three[1].data, &three[1].bytes,
                          &report, &error));
     assert_ok(glint_lens_open(&alone, three[1].data, three[1].bytes, &reason));

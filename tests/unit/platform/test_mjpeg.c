@@ -45,7 +45,7 @@ struct bytes {
     size_t n;
 };
 
-static struct bytes copy_of(const void *data, size_t n)
+static struct bytes copy_bytes(const void *data, size_t n)
 {
     const struct bytes b = {malloc(n ? n : 1), n};
 
@@ -56,7 +56,7 @@ static struct bytes copy_of(const void *data, size_t n)
 
 /* Returns the sample of plane P at (X, Y): a gradient per plane, plus noise
  * if C is noisy. */
-static uint8_t sample_at(const struct coding *c, int p, int x, int y)
+static uint8_t make_sample(const struct coding *c, int p, int x, int y)
 {
     static const int base[] = {20, 60, 200}, dx[] = {2, 1, -1},
                      dy[] = {1, 2, 0};
@@ -83,7 +83,7 @@ static void write_planes(struct jpeg_compress_struct *j, const struct coding *c)
                 row[p][y] = mem[p][y];
                 for (int x = 0; x < 2048; x++)
                     mem[p][y][x] =
-                        sample_at(c, p, x, mcu * c->factor[p][1] * 8 + y);
+                        make_sample(c, p, x, mcu * c->factor[p][1] * 8 + y);
             }
         jpeg_write_raw_data(j, planes, (JDIMENSION)(j->max_v_samp_factor * 8));
     }
@@ -122,7 +122,7 @@ static struct bytes encode_frame(const struct coding *c,
     write_planes(&j, c);
     jpeg_finish_compress(&j);
     jpeg_destroy_compress(&j);
-    exact = copy_of(data, n);
+    exact = copy_bytes(data, n);
     free(data);
     return exact;
 }
@@ -211,9 +211,9 @@ static void expect_planes(const struct glint_image *i, const struct coding *c)
             for (int x = 0; x < across; x++) {
                 const int is = i->plane[p][y * i->stride_bytes[p] + x];
 
-                if (abs(is - sample_at(c, p, x, y)) > 3)
+                if (abs(is - make_sample(c, p, x, y)) > 3)
                     fail_msg("plane %d, %d, %d: %d is not %d", p, x, y, is,
-                             sample_at(c, p, x, y));
+                             make_sample(c, p, x, y));
             }
     }
     for (int p = count_planes(c); p < 3; p++)
@@ -317,7 +317,7 @@ TEST(by_hand)
     memcpy(frame, head, sizeof head);
     memset(frame + sizeof head, 1, 64);
     memcpy(frame + sizeof head + 64, tail, sizeof tail);
-    b = copy_of(frame, sizeof frame);
+    b = copy_bytes(frame, sizeof frame);
     image = decode_frame(d, &b);
     assert_int_equal(image.format, GLINT_GREY);
     for (int y = 0; y < 8; y++)
@@ -545,7 +545,7 @@ static void check_truncations(struct coding c)
 
     assert_int_equal(whole.data[end + 1], 0xd9);
     for (size_t n = 0; n < end; n++) {
-        const struct bytes b = copy_of(whole.data, n);
+        const struct bytes b = copy_bytes(whole.data, n);
 
         expect_refusal(d, &b, GLINT_E_FORMAT,
                        n == 0    ? "frame is empty"
@@ -556,7 +556,7 @@ static void check_truncations(struct coding c)
         free(b.data);
     }
     for (size_t n = end; n <= whole.n; n++) {
-        const struct bytes b = copy_of(whole.data, n);
+        const struct bytes b = copy_bytes(whole.data, n);
         const struct glint_image image = decode_frame(d, &b);
 
         expect_planes(&image, &c);
@@ -605,7 +605,7 @@ TEST(damage)
     assert_non_null(said);
     kept = redirect_stderr(said);
     for (int i = 0; i < 3000; i++) {
-        struct bytes b = copy_of(whole.data, whole.n);
+        struct bytes b = copy_bytes(whole.data, whole.n);
         enum glint_status status;
 
         for (int n = 1 + i % 4; n > 0; n--)
@@ -636,7 +636,7 @@ TEST(garbage)
     uint32_t seed = 2;
 
     for (size_t n = 0; n < 600; n++) {
-        struct bytes b = copy_of("", 0);
+        struct bytes b = copy_bytes("", 0);
         uint8_t noise[600];
 
         for (size_t i = 0; i < n; i++)
@@ -682,7 +682,7 @@ TEST(memory_is_constant)
     struct glint_mjpeg *const d = open_decoder(720, 405);
     struct coding c = {720, 405, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 1};
     const struct bytes whole = encode_frame(&c, NULL);
-    const struct bytes half = copy_of(whole.data, whole.n / 2);
+    const struct bytes half = copy_bytes(whole.data, whole.n / 2);
     struct mallinfo2 early = {0}, late;
 
     for (int i = 0; i < 100; i++) {

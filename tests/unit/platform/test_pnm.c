@@ -20,7 +20,7 @@ static struct glint_error error;
 
 /* Returns an allocated copy of exactly BYTES bytes, so that ASan detects
  * overreads. */
-static void *copy_of(const void *data, size_t bytes)
+static void *copy_bytes(const void *data, size_t bytes)
 {
     void *const copy = malloc(bytes ? bytes : 1);
 
@@ -32,7 +32,7 @@ static void *copy_of(const void *data, size_t bytes)
 static enum glint_status read_pnm(struct glint_image *image, const char *data,
                                   size_t bytes)
 {
-    void *const copy = copy_of(data, bytes);
+    void *const copy = copy_bytes(data, bytes);
     const enum glint_status status =
         glint_pnm_read(image, copy, bytes, "x.ppm", &error);
 
@@ -43,7 +43,7 @@ static enum glint_status read_pnm(struct glint_image *image, const char *data,
 static enum glint_status read_pfm(struct glint_float_image *floats,
                                   const char *data, size_t bytes)
 {
-    void *const copy = copy_of(data, bytes);
+    void *const copy = copy_bytes(data, bytes);
     const enum glint_status status =
         glint_pfm_read(floats, copy, bytes, "x.pfm", &error);
 

@@ -619,7 +619,7 @@ TEST(jpeg)
 
 /* --------------------------------------------------- other kinds of memory */
 
-static void check_io(enum glint_v4l2_io wish, enum glint_v4l2_io got)
+static void check_io_method(enum glint_v4l2_io wish, enum glint_v4l2_io got)
 {
     if (try_open(NULL, wish))
         fail_msg("%s", said.text);
@@ -635,17 +635,17 @@ static void check_io(enum glint_v4l2_io wish, enum glint_v4l2_io got)
 
 TEST(memory)
 {
-    check_io(GLINT_V4L2_AUTO, GLINT_V4L2_MMAP);
-    check_io(GLINT_V4L2_MMAP, GLINT_V4L2_MMAP);
-    check_io(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
+    check_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_MMAP);
+    check_io_method(GLINT_V4L2_MMAP, GLINT_V4L2_MMAP);
+    check_io_method(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
     camera.lacks_mmap = true;
-    check_io(GLINT_V4L2_AUTO, GLINT_V4L2_USERPTR);
+    check_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_USERPTR);
     use_format(V4L2_PIX_FMT_NV12M, true);
-    check_io(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
+    check_io_method(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
     fake_camera_reset();
     camera.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
-    check_io(GLINT_V4L2_AUTO, GLINT_V4L2_READ);
-    check_io(GLINT_V4L2_READ, GLINT_V4L2_READ);
+    check_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_READ);
+    check_io_method(GLINT_V4L2_READ, GLINT_V4L2_READ);
 }
 
 /* Checks that a type of memory which the device lacks is reported as such,

@@ -252,8 +252,8 @@ TEST(frames)
 
 /* Reads the stream DATA until its end or first error. Sets *FRAMES to the
  * number of complete frames. Returns the status. */
-static enum glint_status read_all(const char *data, size_t bytes, long *frames,
-                                  bool fails)
+static enum glint_status read_all_frames(const char *data, size_t bytes,
+                                         long *frames, bool fails)
 {
     struct memory memory = {data, bytes, 0, 7, fails};
     struct glint_y4m_reader reader;
@@ -278,21 +278,21 @@ TEST(every_truncation)
     for (size_t n = 0; n < sizeof SMALL; n++) {
         const int whole = n == 22 || n == 45 || n == 76;
 
-        assert_int_equal(read_all(SMALL, n, &frames, false),
+        assert_int_equal(read_all_frames(SMALL, n, &frames, false),
                          whole ? GLINT_OK : GLINT_E_FORMAT);
         assert_int_equal(frames, n < 45 ? 0 : n < 76 ? 1 : 2);
-        assert_int_equal(read_all(SMALL, n, &frames, true), GLINT_E_IO);
+        assert_int_equal(read_all_frames(SMALL, n, &frames, true), GLINT_E_IO);
     }
-    read_all(SMALL, 75, &frames, false);
+    read_all_frames(SMALL, 75, &frames, false);
     assert_string_equal(error.text, "x.y4m: frame 1: ends after 16 of 17 "
                                     "bytes");
-    read_all(SMALL, 47, &frames, false);
+    read_all_frames(SMALL, 47, &frames, false);
     assert_string_equal(error.text, "x.y4m: frame 1: malformed FRAME line");
-    read_all(SMALL, 21, &frames, false);
+    read_all_frames(SMALL, 21, &frames, false);
     assert_string_equal(error.text, "x.y4m: ends inside the Y4M header");
-    read_all(SMALL, 0, &frames, false);
+    read_all_frames(SMALL, 0, &frames, false);
     assert_string_equal(error.text, "x.y4m: is empty");
-    read_all("RIFFxxxxAVI \n", 13, &frames, false);
+    read_all_frames("RIFFxxxxAVI \n", 13, &frames, false);
     assert_string_equal(error.text, "x.y4m: is not a YUV4MPEG2 stream");
 }
 
@@ -304,20 +304,20 @@ TEST(long_lines)
 
     memset(text, 'x', sizeof text);
     memcpy(text, "YUV4MPEG2 W1 H1 C444 X", magic);
-    assert_int_equal(read_all(text, sizeof text, &frames, false),
+    assert_int_equal(read_all_frames(text, sizeof text, &frames, false),
                      GLINT_E_FORMAT);
     assert_string_equal(error.text, "x.y4m: has a Y4M header that is too long");
     text[GLINT_Y4M_LINE] = '\n';
-    assert_int_equal(read_all(text, sizeof text, &frames, false),
+    assert_int_equal(read_all_frames(text, sizeof text, &frames, false),
                      GLINT_E_FORMAT);
     text[GLINT_Y4M_LINE - 1] = '\n';
     memcpy(text + GLINT_Y4M_LINE, "FRAME ", 6);
-    assert_int_equal(read_all(text, sizeof text, &frames, false),
+    assert_int_equal(read_all_frames(text, sizeof text, &frames, false),
                      GLINT_E_FORMAT);
     assert_string_equal(error.text, "x.y4m: frame 0: malformed FRAME line");
     text[GLINT_Y4M_LINE + 5 + GLINT_Y4M_FRAME_TAGS - 1] = '\n';
-    assert_ok(read_all(text, GLINT_Y4M_LINE + 5 + GLINT_Y4M_FRAME_TAGS + 3,
-                       &frames, false));
+    assert_ok(read_all_frames(
+        text, GLINT_Y4M_LINE + 5 + GLINT_Y4M_FRAME_TAGS + 3, &frames, false));
     assert_int_equal(frames, 1);
 }
 
@@ -339,7 +339,7 @@ TEST(hostile_frames)
     long frames;
 
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        if (read_all(bad[i].text, bad[i].bytes, &frames, false) !=
+        if (read_all_frames(bad[i].text, bad[i].bytes, &frames, false) !=
             GLINT_E_FORMAT)
             fail_msg("%s", bad[i].text);
 }

@@ -124,8 +124,8 @@ TEST(furnace)
 
 /* --------------------------------------------------------------- reference */
 
-static double texel_at(const struct glint_environment *e, int k, size_t i,
-                       int c)
+static double decode_texel(const struct glint_environment *e, int k, size_t i,
+                           int c)
 {
     const uint32_t word = ((const uint32_t *)e->texel[k])[i];
 
@@ -146,7 +146,7 @@ static double lookup_level(const struct glint_environment *e, int k,
         const int i = (int)floor(x) + (j & 1), l = (int)floor(y) + (j >> 1);
 
         sum += (1 - fabs(x - i)) * (1 - fabs(y - l)) *
-               texel_at(e, k, glint_sphere_index(side, i, l), c);
+               decode_texel(e, k, glint_sphere_index(side, i, l), c);
     }
     return sum;
 }

@@ -162,7 +162,7 @@ static void compare_ray(struct meter *m, int i, int j,
 }
 
 /* Compares bundles of random ghosts, directions and wavelengths. */
-static void compare_all(struct meter *m)
+static void compare_all_rays(struct meter *m)
 {
     static struct glint_vertex vertex[NODES * NODES];
     uint32_t seed = 7;
@@ -204,7 +204,7 @@ static void check_errors(void)
     double pixels, radii, share;
 
     m = (struct meter){.n = 0};
-    compare_all(&m);
+    compare_all_rays(&m);
     assert_true(m.n > 500);
     print_message("%d of %d exact rays are invalid\n", m.lost, m.through);
     assert_true(m.through > 1000 && 1000 * m.lost < m.through);

@@ -23,9 +23,10 @@ enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
 
 /* Draws N lights into LINEAR_Q20, linear light, down to a light of FAINTEST.
  * Returns the reported number of lit pixels. */
-static double draw_down_to(const struct glint_star_tables *t,
-                           const struct glint_star_light *lights, int n,
-                           struct glint_real faintest, int32_t *linear_q20)
+static double draw_down_to_light(const struct glint_star_tables *t,
+                                 const struct glint_star_light *lights, int n,
+                                 struct glint_real faintest,
+                                 int32_t *linear_q20)
 {
     struct star_canvas c;
     double pixels;
@@ -41,7 +42,7 @@ static void draw_linear(const struct glint_star_tables *t,
                         const struct glint_star_light *lights, int n,
                         int32_t *linear_q20)
 {
-    draw_down_to(t, lights, n, glint_real_of(0), linear_q20);
+    draw_down_to_light(t, lights, n, glint_real_of(0), linear_q20);
 }
 
 static int32_t linear_q20[N];
@@ -391,7 +392,7 @@ TEST(pixels)
             double times;
 
             light.radius_q8 = 0;
-            times = draw_down_to(t, &light, 1, least, linear_q20);
+            times = draw_down_to_light(t, &light, 1, least, linear_q20);
             times /= count_lit();
             print_message("%d blades: %.2f times the pixels that are lit\n", n,
                           times);

@@ -38,7 +38,7 @@ static enum glint_status parse_text(const char *text, struct glint_tint **tints,
     return status;
 }
 
-static double gain_of(const struct glint_tint *tints, int ghost)
+static double read_gain(const struct glint_tint *tints, int ghost)
 {
     return glint_real_value(tints[ghost].gain);
 }
@@ -51,8 +51,8 @@ TEST(values)
     assert_ok(parse_text("# remark\nlens lens-a\n\n0 mute # gone\r\n"
                          "\t12-2  gain 2.5 tint 1,0.5,0\n",
                          &t, &error));
-    assert_true(gain_of(t, 0) == 0 && gain_of(t, 1) == 2.5 &&
-                gain_of(t, 2) == 1);
+    assert_true(read_gain(t, 0) == 0 && read_gain(t, 1) == 2.5 &&
+                read_gain(t, 2) == 1);
     assert_int_equal(t[1].rgb_q14[0], 16384);
     assert_int_equal(t[1].rgb_q14[1], 8192);
     assert_int_equal(t[1].rgb_q14[2], 0);
@@ -67,8 +67,8 @@ TEST(solo)
     struct glint_error error;
 
     assert_ok(parse_text("1 solo gain 3\n2 mute\n", &t, &error));
-    assert_true(gain_of(t, 0) == 0 && gain_of(t, 1) == 3);
-    assert_true(gain_of(t, 2) == 0 && gain_of(t, 3) == 3);
+    assert_true(read_gain(t, 0) == 0 && read_gain(t, 1) == 3);
+    assert_true(read_gain(t, 2) == 0 && read_gain(t, 3) == 3);
     free(t);
     assert_int_equal(parse_text("1 mute\n2 solo\n1 solo\n", &t, &error),
                      GLINT_E_FORMAT);
@@ -88,7 +88,7 @@ TEST(lines_read_back)
     free(t);
     ghost_file_line(line, sizeof line, 0, NULL);
     assert_ok(parse_text(line, &t, &error));
-    assert_true(gain_of(t, 0) == 1);
+    assert_true(read_gain(t, 0) == 1);
     free(t);
 }
 

@@ -20,7 +20,7 @@ static const struct synth_item named = {.width = 64,
                                         .coating = "mixed",
                                         .quality = 0.3};
 
-static double field_of(const struct synth_item *item, int k)
+static double read_field(const struct synth_item *item, int k)
 {
     return *(const double *)(const void *)((const char *)item +
                                            synth_field[k].at);
@@ -50,7 +50,7 @@ TEST(lines_hold_all)
                 assert_string_equal((char *)&item + synth_field[k].at,
                                     (char *)&back + synth_field[k].at);
             else
-                assert_true(field_of(&item, k) == field_of(&back, k));
+                assert_true(read_field(&item, k) == read_field(&back, k));
         for (int k = 0; k < (int)item.n_lights; k++)
             assert_memory_equal(&item.light[k], &back.light[k],
                                 sizeof item.light[k]);
@@ -76,9 +76,10 @@ TEST(numbers_keep_to_ranges)
         zeros += item.dust == 0;
         assert_true(item.light[0].power == 1);
         for (int k = 0; k < SYNTH_FIELDS; k++)
-            if (synth_field[k].law > SYNTH_COUNTED && field_of(&item, k) != 0) {
-                low[k] = fmin(low[k], field_of(&item, k));
-                high[k] = fmax(high[k], field_of(&item, k));
+            if (synth_field[k].law > SYNTH_COUNTED &&
+                read_field(&item, k) != 0) {
+                low[k] = fmin(low[k], read_field(&item, k));
+                high[k] = fmax(high[k], read_field(&item, k));
             }
     }
     assert_in_range(zeros, 1850, 2150); /* 5 sigma are 158 */

@@ -20,7 +20,7 @@ static const char table[] = "name t\n"
 
 static struct glint_prescription lens;
 
-static void zoom_to(struct glint_prescription *at, double along)
+static void set_zoom_position(struct glint_prescription *at, double along)
 {
     struct glint_error error = {""};
 
@@ -63,8 +63,8 @@ static uint64_t compute_key(const struct glint_bake_options *options,
     struct glint_prescription at, other;
     struct glint_bake_options with = *options;
 
-    zoom_to(&at, along);
-    zoom_to(&other, beside < 0 ? 0 : beside);
+    set_zoom_position(&at, along);
+    set_zoom_position(&other, beside < 0 ? 0 : beside);
     with.beside = &other;
     with.n_beside = beside >= 0;
     return glint_bake_key(&at, &with);

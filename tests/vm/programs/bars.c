@@ -13,8 +13,8 @@
 
 /* Returns channel C at (X, Y), 0 .. 255. Bars range from white to black by
  * decreasing luma. */
-static uint32_t colour_at(unsigned x, unsigned y, unsigned width,
-                          unsigned height, unsigned c)
+static uint32_t find_bar_colour(unsigned x, unsigned y, unsigned width,
+                                unsigned height, unsigned c)
 {
     static const unsigned bit[3] = {2, 4, 1};
     unsigned top = height * 3 / 4;
@@ -31,7 +31,7 @@ static void put_pixel(uint8_t *dst, const struct fb_var_screeninfo *var,
     if (var->transp.length)
         pixel = ((1u << var->transp.length) - 1) << var->transp.offset;
     for (unsigned c = 0; c < 3; c++)
-        pixel |= colour_at(x, y, var->xres, var->yres, c) >>
+        pixel |= find_bar_colour(x, y, var->xres, var->yres, c) >>
                  (8 - field[c]->length) << field[c]->offset;
     for (unsigned i = 0; i < var->bits_per_pixel / 8; i++)
         dst[i] = (uint8_t)(pixel >> 8 * i);
@@ -73,7 +73,7 @@ static void write_expected(const char *name, const char *size)
         for (unsigned x = 0; x < width; x++)
             for (unsigned c = 0; c < 3; c++)
                 putchar(shown(&layout, c,
-                              colour_at(x, y, width, height, c) >>
+                              find_bar_colour(x, y, width, height, c) >>
                                   (8 - layout.length[c])));
 }
 

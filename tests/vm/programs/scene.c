@@ -43,7 +43,7 @@ static double random_noise(void)
 
 /* Returns the luma at (X, Y), 16 .. 235: lamps are white with a glow around
  * them; the sky is brighter at the bottom. */
-static uint8_t luma_at(const struct scene *s, int frame, int x, int y)
+static uint8_t compute_luma(const struct scene *s, int frame, int x, int y)
 {
     double v = 24 + 24.0 * y / s->height;
 
@@ -61,7 +61,7 @@ static uint8_t luma_at(const struct scene *s, int frame, int x, int y)
 }
 
 /* Returns Y, Cb, Cr of the bar at X: BT.709, 75 %, from white to black. */
-static const uint8_t *bar_at(const struct scene *s, int x)
+static const uint8_t *find_bar(const struct scene *s, int x)
 {
     static const uint8_t bar[8][3] = {
         {180, 128, 128}, {168, 44, 136}, {145, 147, 44}, {133, 63, 52},
@@ -76,9 +76,9 @@ static int is_bar(const struct scene *s, int y)
     return y >= s->height - s->height / 6;
 }
 
-static uint8_t chroma_at(const struct scene *s, int x, int y, int which)
+static uint8_t compute_chroma(const struct scene *s, int x, int y, int which)
 {
-    return is_bar(s, y) ? bar_at(s, x)[which] : 128;
+    return is_bar(s, y) ? find_bar(s, x)[which] : 128;
 }
 
 static void write_yuyv(const struct scene *s, const uint8_t *luma, FILE *file)
@@ -86,7 +86,7 @@ static void write_yuyv(const struct scene *s, const uint8_t *luma, FILE *file)
     for (int y = 0; y < s->height; y++)
         for (int x = 0; x < s->width; x++) {
             putc(luma[y * s->width + x], file);
-            putc(chroma_at(s, x & ~1, y, 1 + (x & 1)), file);
+            putc(compute_chroma(s, x & ~1, y, 1 + (x & 1)), file);
         }
 }
 
@@ -99,12 +99,12 @@ static void write_planes(const struct scene *s, const uint8_t *luma, int nv12,
     if (nv12)
         for (int y = 0; y < s->height; y += 2)
             for (int x = 0; x < s->width; x++)
-                putc(chroma_at(s, x & ~1, y, 1 + (x & 1)), file);
+                putc(compute_chroma(s, x & ~1, y, 1 + (x & 1)), file);
     else
         for (int which = 1; which <= 2; which++)
             for (int y = 0; y < s->height; y++)
                 for (int x = 0; x < s->width; x += 2)
-                    putc(chroma_at(s, x, y, which), file);
+                    putc(compute_chroma(s, x, y, which), file);
 }
 
 static void write_frame(const struct scene *s, const char *format,
@@ -155,8 +155,9 @@ int main(int argc, char **argv)
     for (int f = 0; f < s.n_frames; f++) {
         for (int y = 0; y < s.height; y++)
             for (int x = 0; x < s.width; x++)
-                luma[y * s.width + x] =
-                    is_bar(&s, y) ? bar_at(&s, x)[0] : luma_at(&s, f, x, y);
+                luma[y * s.width + x] = is_bar(&s, y)
+                                            ? find_bar(&s, x)[0]
+                                            : compute_luma(&s, f, x, y);
         write_frame(&s, format, luma, file);
     }
     free(luma);

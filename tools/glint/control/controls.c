@@ -482,8 +482,8 @@ static enum glint_status parse_line(const struct controls *in, const char *text,
 }
 
 /* Parses all lines of the file. */
-static enum glint_status read_all(struct controls *in,
-                                  struct glint_error *error)
+static enum glint_status parse_all_lines(struct controls *in,
+                                         struct glint_error *error)
 {
     enum glint_status status = GLINT_OK;
     struct control_line line = {.verb = CONTROL_NONE};
@@ -523,7 +523,7 @@ enum glint_status controls_open(struct controls *input, const char *path,
         return text_lines_pipe(&in->lines, path, error);
     status = text_lines_open(&in->lines, path, NULL, MAX_BYTES, error);
     if (status == GLINT_OK)
-        status = read_all(in, error);
+        status = parse_all_lines(in, error);
     text_lines_close(&in->lines);
     if (status != GLINT_OK)
         controls_close(in);

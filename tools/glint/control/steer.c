@@ -160,7 +160,7 @@ static void rotate_axes(double axis[3][3], int a, int b, double deg)
 }
 
 /* Sets FROM to the unit vector from the centre of the orbit to the camera. */
-static void set_from(const struct steer_orbit *o, double from[3])
+static void set_orbit_from_position(const struct steer_orbit *o, double from[3])
 {
     const double yaw = o->yaw_deg * RADIAN, pitch = o->pitch_deg * RADIAN;
 
@@ -179,7 +179,7 @@ static enum glint_status orbit_camera(const struct steer *steer,
     const double x = cos(yaw), z = sin(yaw);
     double from[3];
 
-    set_from(&s->orbit, from);
+    set_orbit_from_position(&s->orbit, from);
     /* up is ahead x right, as z points away from the viewer */
     const double axis[3][3] = {
         {x, 0, z},

@@ -132,7 +132,7 @@ static void load_mask(struct occlusion *o, int frame)
  */
 
 /* Returns the mask, 0 .. 1, at its pixel (X, Y), clamped to its borders. */
-static double mask_at(const struct occlusion *o, int x, int y)
+static double read_mask(const struct occlusion *o, int x, int y)
 {
     const struct glint_image *m = &o->image;
     const int i = x < 0 ? 0 : x < m->width ? x : m->width - 1;
@@ -159,9 +159,9 @@ static double mask_between(const struct occlusion *o,
 
     if (!(x >= 0 && y >= 0 && x < view->width && y < view->height))
         return 1;
-    above = mask_at(o, i, j) * (i + 1 - u) + mask_at(o, i + 1, j) * (u - i);
-    below =
-        mask_at(o, i, j + 1) * (i + 1 - u) + mask_at(o, i + 1, j + 1) * (u - i);
+    above = read_mask(o, i, j) * (i + 1 - u) + read_mask(o, i + 1, j) * (u - i);
+    below = read_mask(o, i, j + 1) * (i + 1 - u) +
+            read_mask(o, i + 1, j + 1) * (u - i);
     return above * (j + 1 - v) + below * (v - j);
 }
 

@@ -58,8 +58,8 @@ static bool is_lit(const struct marking *m, int x0, int y0, int side)
 
 /* Shades a tile: bluish, with a brighter line at its left and top, if TOUCHED,
  * else darker. */
-static void shade(const struct marking *m, int x0, int y0, int side,
-                  bool touched)
+static void shade_square(const struct marking *m, int x0, int y0, int side,
+                         bool touched)
 {
     static const int tint[3] = {6, 12, 34};
 
@@ -84,10 +84,10 @@ static void shade_tiles(struct marking *m)
         glint_explain_draw(m->explain, -1);
     for (int y = 0; y < m->height; y += side)
         for (int x = 0; x < m->width; x += side, tile++)
-            shade(m, x, y, side,
-                  m->explain->n_lights &&
-                      (glint_explain_listed(m->explain, tile) > 0 ||
-                       is_lit(m, x, y, side)));
+            shade_square(m, x, y, side,
+                         m->explain->n_lights &&
+                             (glint_explain_listed(m->explain, tile) > 0 ||
+                              is_lit(m, x, y, side)));
 }
 
 /* ------------------------------------------------------------------ ghosts */
@@ -160,7 +160,7 @@ static void put_label(struct marking *m, int k, int number)
     paint_text(&p, l.x0 + 2 * p.line, l.y0 + 2 * p.line, text);
 }
 
-static void outline(const struct marking *m, int k)
+static void draw_outline(const struct marking *m, int k)
 {
     struct paint p = {.image = m->image, .line = 1};
     const int wide = (m->scale + 1) / 2;
@@ -185,7 +185,7 @@ static int n_marked(const struct glint_explain *e,
     return n < t->top ? n : t->top;
 }
 
-static int columns(const struct marking *m)
+static int count_columns(const struct marking *m)
 {
     const int n = m->width / (COLUMN * m->scale);
 
@@ -194,7 +194,8 @@ static int columns(const struct marking *m)
 
 static int legend_rows(const struct marking *m, const struct explain_title *t)
 {
-    return 1 + (n_marked(m->explain, t) + columns(m) - 1) / columns(m);
+    return 1 +
+           (n_marked(m->explain, t) + count_columns(m) - 1) / count_columns(m);
 }
 
 static void put_title(const struct marking *m, const struct explain_title *t)
@@ -218,8 +219,8 @@ static void put_entry(const struct marking *m, int k, int ghost)
 {
     struct paint p = {.image = m->image, .line = m->scale};
     const struct glint_explain_part *part = &m->explain->ghost[ghost];
-    const int x = k % columns(m) * COLUMN * p.line + 4 * p.line;
-    const int y = m->height + (3 + 8 * (1 + k / columns(m))) * p.line;
+    const int x = k % count_columns(m) * COLUMN * p.line + 4 * p.line;
+    const int y = m->height + (3 + 8 * (1 + k / count_columns(m))) * p.line;
     char text[64];
 
     set_palette(&p, k);
@@ -276,7 +277,7 @@ enum glint_status explain_mark(struct glint_explain *e,
         if (glint_explain_drawn(&e->ghost[ghosts[i]]) == 0)
             continue;
         glint_explain_draw(e, ghosts[i]);
-        outline(&m, n);
+        draw_outline(&m, n);
         put_entry(&m, n++, ghosts[i]);
     }
     n = 0;

@@ -18,15 +18,16 @@ static const struct {
     [GLINT_SCENE_SMALL] = {"small", "below a pixel"},
 };
 
-static const struct glint_scene_model *model_of(const struct explained_scene *s)
+static const struct glint_scene_model *
+get_model(const struct explained_scene *s)
 {
     return &s->drawing->files.scene.baked.model;
 }
 
-static const char *name_of(const struct explained_scene *s, int object)
+static const char *get_object_name(const struct explained_scene *s, int object)
 {
     const char *const name =
-        object >= 0 ? model_of(s)->object[object].name : "background";
+        object >= 0 ? get_model(s)->object[object].name : "background";
 
     return *name ? name : "(no name)";
 }
@@ -57,8 +58,8 @@ struct light {
 
 /* Returns the light of the flare that stands for LAMP, or -1: one within its
  * extent and a pixel. */
-static int drawn_for(const struct explained_scene *s,
-                     const struct glint_lamp *lamp)
+static int find_drawn_light(const struct explained_scene *s,
+                            const struct glint_lamp *lamp)
 {
     const double focal = s->drawing->files.lens.setup.optics.focal_mm;
     const double px = glint_view_pixel_tangent(&s->drawing->run.view, focal);
@@ -83,8 +84,8 @@ static int drawn_for(const struct explained_scene *s,
 }
 
 /* Returns in a word what the lens makes of LAMP. */
-static const char *word_of(const struct explained_scene *s,
-                           const struct glint_lamp *lamp)
+static const char *find_fate_word(const struct explained_scene *s,
+                                  const struct glint_lamp *lamp)
 {
     const struct glint_explain_part *part;
     int at, most = GLINT_OUTCOME_EMPTY;
@@ -95,7 +96,7 @@ static const char *word_of(const struct explained_scene *s,
         return "no power";
     if (glint_explain_is_beyond(s->flare, lamp))
         return "beyond the model";
-    at = drawn_for(s, lamp);
+    at = find_drawn_light(s, lamp);
     if (at < 0)
         return "merged";
     part = &s->flare->light[at];
@@ -111,14 +112,14 @@ static const char *word_of(const struct explained_scene *s,
 
 /* Sets LIGHT to the outcome of light I; SEEN[N] are those ahead of the camera.
  * LAMPS of the scene are those that have any light, in this order. */
-static struct light light_of(const struct explained_scene *s, int i,
-                             const struct glint_scene_lamp *seen, int n)
+static struct light find_light(const struct explained_scene *s, int i,
+                               const struct glint_scene_lamp *seen, int n)
 {
     const struct drawing *const c = s->drawing;
     struct light light = {.word = "behind the camera"};
     const struct glint_engine_lamp *lamp = c->run.lamp + c->run.n_own;
 
-    if (!model_of(s)->header->flare) {
+    if (!get_model(s)->header->flare) {
         light.word =
             "only lights objects ('flare lights' shows it to the lens)";
         return light;
@@ -136,11 +137,11 @@ static struct light light_of(const struct explained_scene *s, int i,
                                    .is_ahead = true};
             if (seen[k].share == 0) {
                 light.word = "hidden by";
-                light.extra = name_of(
+                light.extra = get_object_name(
                     s, glint_scene_hider(c->files.scene.frame.scene, i));
             } else if (has_light)
-                light.word =
-                    c->files.has_lens ? word_of(s, &lamp->lamp) : "no lens";
+                light.word = c->files.has_lens ? find_fate_word(s, &lamp->lamp)
+                                               : "no lens";
             return light;
         }
         lamp += has_light;
@@ -158,14 +159,14 @@ static int lights_of(const struct explained_scene *s, struct light *light)
 {
     struct glint_scene_lamp seen[GLINT_SCENE_MAX_LIGHTS];
     const int n = glint_scene_lights(s->drawing->files.scene.frame.scene, seen);
-    const struct glint_scene_header *const h = model_of(s)->header;
+    const struct glint_scene_header *const h = get_model(s)->header;
     const int own = (int)(h->n_lights - h->n_environment_lights);
     int all = (int)h->n_lights;
 
-    while (all > own && !is_bright(&model_of(s)->light[all - 1]))
+    while (all > own && !is_bright(&get_model(s)->light[all - 1]))
         all--; /* kept for another environment */
     for (int i = 0; i < all; i++)
-        light[i] = light_of(s, i, seen, n);
+        light[i] = find_light(s, i, seen, n);
     return all;
 }
 
@@ -173,7 +174,7 @@ static int lights_of(const struct explained_scene *s, struct light *light)
 static const char *light_name(const struct explained_scene *s, int i,
                               char text[40])
 {
-    const char *const name = model_of(s)->light[i].name;
+    const char *const name = get_model(s)->light[i].name;
 
     if (*name)
         snprintf(text, 40, "%.39s", name);
@@ -193,8 +194,8 @@ struct highlight {
 
 /* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights, which are the last
  * lamps of the drawing, in order. Returns their number. */
-static int highlights_of(const struct explained_scene *s,
-                         struct highlight *found)
+static int find_highlights(const struct explained_scene *s,
+                           struct highlight *found)
 {
     const struct drawing *const c = s->drawing;
     struct glint_scene_highlight seen[GLINT_SCENE_MAX_HIGHLIGHTS];
@@ -205,10 +206,10 @@ static int highlights_of(const struct explained_scene *s,
         const struct glint_lamp *const lamp =
             c->files.has_lens ? &c->run.lamp[c->run.n_lamps - n + i].lamp
                               : NULL;
-        const int at = lamp && s->flare ? drawn_for(s, lamp) : -1;
+        const int at = lamp && s->flare ? find_drawn_light(s, lamp) : -1;
 
         found[i] = (struct highlight){
-            lamp ? word_of(s, lamp) : "no lens",
+            lamp ? find_fate_word(s, lamp) : "no lens",
             spot->x_q8 / 256.0,
             spot->y_q8 / 256.0,
             (double)spot->power_q16 * 0x1p-16,
@@ -220,27 +221,28 @@ static int highlights_of(const struct explained_scene *s,
 
 /* -------------------------------------------------------------------- table */
 
-static int count_of(const struct explained_scene *s, enum glint_scene_fate fate)
+static int count_objects(const struct explained_scene *s,
+                         enum glint_scene_fate fate)
 {
     int n = 0;
 
-    for (uint32_t i = 0; i < model_of(s)->header->n_objects; i++)
+    for (uint32_t i = 0; i < get_model(s)->header->n_objects; i++)
         n += s->account.objects[i].fate == fate;
     return n;
 }
 
 static void print_title(const struct explained_scene *s)
 {
-    const struct glint_scene_header *const h = model_of(s)->header;
+    const struct glint_scene_header *const h = get_model(s)->header;
 
     printf("scene %s, %dx%d: %u objects, drawn %d", h->name,
            s->drawing->files.scene.frame.cfg.width,
            s->drawing->files.scene.frame.cfg.height, h->n_objects,
-           count_of(s, GLINT_SCENE_DRAWN));
+           count_objects(s, GLINT_SCENE_DRAWN));
     for (int k = GLINT_SCENE_OFF; k < GLINT_SCENE_FATES; k++)
-        if (count_of(s, (enum glint_scene_fate)k))
+        if (count_objects(s, (enum glint_scene_fate)k))
             printf(", %s %d", fates[k].word,
-                   count_of(s, (enum glint_scene_fate)k));
+                   count_objects(s, (enum glint_scene_fate)k));
     printf("\n");
 }
 
@@ -266,15 +268,15 @@ static void print_lights(const struct explained_scene *s)
 static void print_highlights(const struct explained_scene *s)
 {
     struct highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
-    const int n = highlights_of(s, found);
+    const int n = find_highlights(s, found);
 
     if (n > 0)
         printf("\n%-22s %9s %9s %9s %7s\n", "highlight on", "x", "y", "power",
                "bundles");
     for (int i = 0; i < n; i++)
-        printf("%-22s %9.1f %9.1f %9.4g %7d  %s\n", name_of(s, found[i].object),
-               found[i].x, found[i].y, found[i].power, found[i].bundles,
-               found[i].word);
+        printf("%-22s %9.1f %9.1f %9.4g %7d  %s\n",
+               get_object_name(s, found[i].object), found[i].x, found[i].y,
+               found[i].power, found[i].bundles, found[i].word);
 }
 
 /* What is laid over the objects of a recorded motion. */
@@ -289,7 +291,7 @@ enum { N_LAYERS = sizeof layers / sizeof *layers };
 
 static void print_layers(const struct explained_scene *s)
 {
-    if (!model_of(s)->motion)
+    if (!get_model(s)->motion)
         return;
     printf("\n%-26s %8s %8s\n", "over the motion's objects", "pixels",
            "number");
@@ -304,7 +306,7 @@ static void print_layers(const struct explained_scene *s)
 /* Light below the surface of translucent media. */
 static void print_maps(const struct explained_scene *s)
 {
-    if (model_of(s)->header->n_skins > 0)
+    if (get_model(s)->header->n_skins > 0)
         printf("\nmaps of stones: light has spread to %d texels\n",
                s->drawing->files.scene.frame.map_texels);
 }
@@ -314,11 +316,11 @@ void explain_scene_print(const struct explained_scene *s)
     print_title(s);
     printf("\n%3s %-22s %8s %8s %9s %8s %8s %7s %9s\n", "", "thing", "pixels",
            "shaded", "shadows", "texels", "lookups", "bounced", "triangles");
-    for (uint32_t i = 0; i < model_of(s)->header->n_objects; i++) {
+    for (uint32_t i = 0; i < get_model(s)->header->n_objects; i++) {
         const struct glint_scene_part *const p = &s->account.objects[i];
         const int64_t *const n = p->count;
 
-        printf("%3u %-22s ", i, name_of(s, (int)i));
+        printf("%3u %-22s ", i, get_object_name(s, (int)i));
         if (p->fate == GLINT_SCENE_DRAWN)
             printf("%8" PRId64 " %8" PRId64 " %9" PRId64 " %8" PRId64
                    " %8" PRId64 " %7" PRId64 " %9" PRId64,
@@ -329,7 +331,8 @@ void explain_scene_print(const struct explained_scene *s)
         else
             printf("%s%s%s", fates[p->fate].reason,
                    p->fate == GLINT_SCENE_COVERED ? " " : "",
-                   p->fate == GLINT_SCENE_COVERED ? name_of(s, p->by) : "");
+                   p->fate == GLINT_SCENE_COVERED ? get_object_name(s, p->by)
+                                                  : "");
         printf("\n");
     }
     print_layers(s);
@@ -344,14 +347,14 @@ static void highlights_json(struct json_writer *json,
                             const struct explained_scene *s)
 {
     struct highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
-    const int n = highlights_of(s, found);
+    const int n = find_highlights(s, found);
 
     json_write(json, "highlights: [");
     for (int i = 0; i < n; i++)
         json_write(json,
                    "{object: %s, x: %.2f, y: %.2f, power: %.6g, bundles: %d, "
                    "fate: %s}",
-                   name_of(s, found[i].object), found[i].x, found[i].y,
+                   get_object_name(s, found[i].object), found[i].x, found[i].y,
                    found[i].power, found[i].bundles, found[i].word);
     json_write(json, "]");
 }
@@ -378,13 +381,13 @@ void explain_scene_json(struct json_writer *json,
                         const struct explained_scene *s)
 {
     json_write(json, "{objects: [");
-    for (uint32_t i = 0; i < model_of(s)->header->n_objects; i++) {
+    for (uint32_t i = 0; i < get_model(s)->header->n_objects; i++) {
         const struct glint_scene_part *const p = &s->account.objects[i];
         const bool is_covered = p->fate == GLINT_SCENE_COVERED && p->by >= 0;
 
         json_write(json, "{name: %s, fate: %s, by: %s",
-                   model_of(s)->object[i].name, fates[p->fate].word,
-                   is_covered ? name_of(s, p->by) : NULL);
+                   get_model(s)->object[i].name, fates[p->fate].word,
+                   is_covered ? get_object_name(s, p->by) : NULL);
         for (int k = 0; k < GLINT_SCENE_ITEMS; k++)
             json_write(json, "%s: %" PRId64, scene_item_name[k], p->count[k]);
         json_write(json, "}");

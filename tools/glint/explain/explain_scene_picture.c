@@ -26,7 +26,7 @@ static int n_objects(const struct heat *h)
 
 /* Returns the mean steps per pixel of OBJECT: points shaded, shadows, texels,
  * lookups and rays that continue. */
-static double steps_of(const struct heat *h, int object)
+static double compute_heat_steps(const struct heat *h, int object)
 {
     const int64_t *const n = h->scene->account.objects[object].count;
 
@@ -40,16 +40,17 @@ static double steps_of(const struct heat *h, int object)
 
 /* Sets RGB to the colour of OBJECT: blue, red, yellow by the root of its steps.
  */
-static void colour_of(const struct heat *h, int object, uint8_t rgb[3])
+static void find_heat_colour(const struct heat *h, int object, uint8_t rgb[3])
 {
-    const double x = h->most > 0 ? sqrt(steps_of(h, object) / h->most) : 0;
+    const double x =
+        h->most > 0 ? sqrt(compute_heat_steps(h, object) / h->most) : 0;
 
     rgb[0] = (uint8_t)(255 * fmin(1, 2 * x));
     rgb[1] = (uint8_t)(255 * fmax(0, 2 * x - 1));
     rgb[2] = (uint8_t)(255 * fmax(0, 1 - 1.5 * x));
 }
 
-static int seen_at(const struct heat *h, int x, int y)
+static int find_seen_object(const struct heat *h, int x, int y)
 {
     return x < 0 || y < 0 ? -1
                           : h->scene->account.seen[(ptrdiff_t)y * h->width + x];
@@ -70,13 +71,14 @@ static void shade(const struct heat *h)
         uint8_t *px = h->image->plane[0] + y * h->image->stride_bytes[0];
 
         for (int x = 0; x < h->width; x++, px += 3) {
-            const int object = seen_at(h, x, y);
-            const bool rim = (x > 0 && object != seen_at(h, x - 1, y)) ||
-                             (y > 0 && object != seen_at(h, x, y - 1));
+            const int object = find_seen_object(h, x, y);
+            const bool rim =
+                (x > 0 && object != find_seen_object(h, x - 1, y)) ||
+                (y > 0 && object != find_seen_object(h, x, y - 1));
             uint8_t rgb[3] = {0, 0, 0};
 
             if (object >= 0)
-                colour_of(h, object, rgb);
+                find_heat_colour(h, object, rgb);
             for (int c = 0; c < 3; c++)
                 px[c] = rim ? 255
                         : is_catcher(h, object)
@@ -88,8 +90,8 @@ static void shade(const struct heat *h)
 
 /* Sets X and Y to the pixel nearest to AT that shows OBJECT; at least one pixel
  * must show it. */
-static void nearest(const struct heat *h, int object, const double at[2],
-                    int *x, int *y)
+static void find_nearest_pixel(const struct heat *h, int object,
+                               const double at[2], int *x, int *y)
 {
     double best = HUGE_VAL;
 
@@ -97,7 +99,7 @@ static void nearest(const struct heat *h, int object, const double at[2],
         for (int i = 0; i < h->width; i++) {
             const double away = hypot(i - at[0], j - at[1]);
 
-            if (seen_at(h, i, j) == object && away < best) {
+            if (find_seen_object(h, i, j) == object && away < best) {
                 best = away;
                 *x = i;
                 *y = j;
@@ -106,7 +108,7 @@ static void nearest(const struct heat *h, int object, const double at[2],
 }
 
 /* Writes the number of each object at the middle of the pixels that show it. */
-static void number(const struct heat *h)
+static void number_objects(const struct heat *h)
 {
     struct paint p = {.image = h->image, .line = h->scale};
 
@@ -117,7 +119,7 @@ static void number(const struct heat *h)
 
         for (int y = 0; y < h->height; y++)
             for (int x = 0; x < h->width; x++)
-                if (seen_at(h, x, y) == i) {
+                if (find_seen_object(h, x, y) == i) {
                     sum[0] += x;
                     sum[1] += y;
                     n++;
@@ -128,7 +130,7 @@ static void number(const struct heat *h)
         wide = paint_text_width(&p, text);
         sum[0] /= n;
         sum[1] /= n;
-        nearest(h, i, sum, &x0, &y0);
+        find_nearest_pixel(h, i, sum, &x0, &y0);
         x0 -= wide / 2;
         y0 -= 2 * p.line;
         paint_colour(&p, 0, 0, 0);
@@ -141,14 +143,14 @@ static void number(const struct heat *h)
 
 /* ------------------------------------------------------------------- legend */
 
-static int columns_of(const struct heat *h)
+static int count_columns(const struct heat *h)
 {
     const int n = h->width / (COLUMN * h->scale);
 
     return n > 0 ? n : 1;
 }
 
-static int entries_of(const struct heat *h)
+static int count_entries(const struct heat *h)
 {
     return n_objects(h) < MOST_ENTRIES ? n_objects(h) : MOST_ENTRIES;
 }
@@ -158,17 +160,17 @@ static void put_entry(const struct heat *h, int i)
     const struct glint_scene_object *const object =
         &h->scene->drawing->files.scene.baked.model.object[i];
     struct paint p = {.image = h->image, .line = h->scale};
-    const int x = i % columns_of(h) * COLUMN * p.line + 4 * p.line;
-    const int y = h->height + (3 + ROW * (i / columns_of(h))) * p.line;
+    const int x = i % count_columns(h) * COLUMN * p.line + 4 * p.line;
+    const int y = h->height + (3 + ROW * (i / count_columns(h))) * p.line;
     char text[96];
     uint8_t rgb[3];
 
-    colour_of(h, i, rgb);
+    find_heat_colour(h, i, rgb);
     paint_colour(&p, rgb[0], rgb[1], rgb[2]);
     paint_fill(&p, x, y, x + 5 * p.line, y + 5 * p.line);
     paint_colour(&p, 208, 208, 208);
     snprintf(text, sizeof text, "%d %.16s  %.1f steps a px", i, object->name,
-             steps_of(h, i));
+             compute_heat_steps(h, i));
     paint_text(&p, x + 8 * p.line, y, text);
 }
 
@@ -182,17 +184,18 @@ enum glint_status explain_scene_mark(const struct explained_scene *scene,
                      .height = picture->height,
                      .scale = 1 + picture->height / 540};
     const int legend =
-        ((entries_of(&h) + columns_of(&h) - 1) / columns_of(&h) * ROW + 4) *
+        ((count_entries(&h) + count_columns(&h) - 1) / count_columns(&h) * ROW +
+         4) *
         h.scale;
     const enum glint_status status = explain_copy(picture, legend, marked);
 
     if (status != GLINT_OK)
         return status;
     for (int i = 0; i < n_objects(&h); i++)
-        h.most = fmax(h.most, steps_of(&h, i));
+        h.most = fmax(h.most, compute_heat_steps(&h, i));
     shade(&h);
-    number(&h);
-    for (int i = 0; i < entries_of(&h); i++)
+    number_objects(&h);
+    for (int i = 0; i < count_entries(&h); i++)
         put_entry(&h, i);
     return GLINT_OK;
 }
