@@ -60,7 +60,7 @@ enum glint_blob_fault {
 #define GLINT_BLOB_FAULT_TEXT(thing, things, done)                          \
     {                                                                       \
         [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes", \
-        [GLINT_BLOB_FOREIGN] = "this is no baked " thing,                   \
+        [GLINT_BLOB_FOREIGN] = "not a baked " thing,                        \
         [GLINT_BLOB_NEWER] = "the " thing " was " done " by a newer glint", \
         [GLINT_BLOB_NO_VERSION] =                                           \
             "no glint ever " done " " things " of this version",            \

@@ -76,7 +76,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     }
     if (!e->output)
         return tool_usage(tool, "needs -o OUT");
-    return tool_inputs(tool, argc, argv, 1, "takes one scene");
+    return tool_inputs(tool, argc, argv, 1, "expects one scene");
 }
 
 static void print_json(const struct glint_description *scene,

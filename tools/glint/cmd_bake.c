@@ -26,29 +26,30 @@
 static const char help[] =
     "glint bake LENS -o MODEL [options]\n"
     "\n"
-    "Fits polynomials to the rays of every ghost of LENS, turns them into\n"
+    "Fits polynomials to the rays of every ghost of LENS, converts them to\n"
     "integers, proves that these cannot overflow, measures the errors with "
     "the\n"
-    "run-time arithmetic, and writes one file for render, overlay and trace.\n"
-    "The same lens and options give the same bytes. NAME.scene, "
-    "NAME.translucent,\n"
-    "panoramas (.exr .hdr .dds .pfm .environment) and recordings (.json)\n"
-    "have other options:\n"
+    "run-time arithmetic, and writes one file for render, overlay and trace. "
+    "The\n"
+    "same lens and options give the same bytes. NAME.scene, NAME.translucent,\n"
+    "panoramas (.exr .hdr .dds .pfm .environment) and recordings (.json) have\n"
+    "other options:\n"
     "glint bake NAME.scene --help.\n"
     "\n"
     "  -o, --output MODEL\n"
     "                    -: standard output, without a report\n"
-    "  --f-number N      stop the lens to f/N first\n" ZOOM_HELP COATING_HELP
-    "  --band LO,HI      wavelengths, nm (default 400,700)\n"
-    "  --max-angle DEG   of a light (default 60)\n"
-    "  --positions N     of a zoom: models at N steps along its way, 2 .. 64, "
-    "in\n"
-    "                    one file, which can zoom without a bake\n"
-    "  --halfway DB      with --positions: PSNR between positions (default "
+    "  --f-number N      stop the lens down to f/N first\n" ZOOM_HELP
+        COATING_HELP "  --band LO,HI      wavelengths in nm (default 400,700)\n"
+    "  --max-angle DEG   max angle of a light in degrees (default 60)\n"
+    "  --positions N     of a zoom lens: bake models at N positions of the "
+    "zoom\n"
+    "                    range, 2 .. 64, into one file, which zooms without a "
+    "bake\n"
+    "  --halfway DB      with --positions: min PSNR between positions (default "
     "45);\n"
     "                    ghosts below it are baked there, too; 0: no check\n"
     "  --field MM        radius on the sensor within which light counts\n"
-    "                    (default: a tenth more than the film's corners)\n"
+    "                    (default: 1.1 times that of the film's corners)\n"
     "  --tolerance T     scale of the tolerances (default 1)\n"
     "  -j, --threads N   default: all processors; never changes the model\n"
     "  --json   -q   -v   --help   --help-all   --version\n";
@@ -135,7 +136,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
                             &index)) >= 0)
         if ((code = parse_option(tool, b, c, options[index].name)) >= 0)
             return code;
-    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    code = tool_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     if (!b->output)

@@ -15,20 +15,25 @@
 static const char help[] =
     "glint compare REFERENCE TEST [options]\n"
     "\n"
-    "How far two pictures of one size are apart: PSNR, SSIM of luma (8 x 8\n"
+    "Prints the difference of two pictures of one size: PSNR, SSIM of luma (8 "
+    "x 8\n"
     "blocks), the 99th percentile of the absolute difference in codes, and "
     "the\n"
     "ratio of the flux. Two pictures in codes (.ppm .png .jpg ...) are "
     "compared\n"
-    "code by code. Where one of them has floats (.pfm .exr .hdr), both are\n"
-    "taken as linear light, exposed so that the 99.9th percentile of the\n"
-    "reference's luminance is 1, clipped, and encoded to 8-bit sRGB first.\n"
-    "Equal pictures are reported as identical; their PSNR is inf, null in "
-    "JSON.\n"
+    "code by code. If one of them has floats (.pfm .exr .hdr), both are read "
+    "as\n"
+    "linear light, exposed so that the 99.9th percentile of the reference's\n"
+    "luminance is 1, clipped, and encoded to 8-bit sRGB first. Equal pictures "
+    "are\n"
+    "reported as identical; their PSNR is inf, null in JSON.\n"
     "\n"
-    "  --exposure EV   stops, of both; auto: by the reference's percentile;\n"
-    "                  default: 0 for two pictures in codes, else auto\n"
-    "  --fit           multiply TEST by the factor that fits best first\n";
+    "  --exposure EV   exposure of both in stops; auto: by the percentile of "
+    "the\n"
+    "                  reference; default: 0 for two pictures in codes, else "
+    "auto\n"
+    "  --fit           first multiply TEST by the factor with the least "
+    "error\n";
 
 static const char help_end[] = COMMON_HELP;
 
@@ -167,7 +172,7 @@ int cmd_compare(int argc, char **argv)
         if (code >= 0)
             return code;
     }
-    code = tool_inputs(&tool, argc, argv, 2, "takes two pictures");
+    code = tool_inputs(&tool, argc, argv, 2, "expects two pictures");
     if (code >= 0)
         return code;
     a.name[0] = argv[optind];

@@ -15,24 +15,26 @@ static const char help[] =
     "           [--plane x|y] [--no-spots] [--f-number N] [--zoom Z] [--focus "
     "M]\n"
     "\n"
-    "A section through the lens, for a browser or a paper: glasses, barrels,\n"
-    "stop, sensor, and rays of the d line from the middle, 0.7 and all of the\n"
-    "field; below, where rays of 450, 546 and 650 nm meet the sensor. Light "
-    "is\n"
-    "from afar, however the lens is focused.\n"
+    "Draws a section through the lens for a browser or a paper: glasses, "
+    "barrels,\n"
+    "stop, sensor, and rays of the d line from the centre, 0.7 and the edge of "
+    "the\n"
+    "field. Spot diagrams below show where rays of 450, 546 and 650 nm meet "
+    "the\n"
+    "sensor. The light comes from infinity at any focus.\n"
     "\n"
     "  -o, --output FILE   the .svg, or - for standard output\n"
-    "  --ghost K           the path of ghost K, numbered as glint info -v "
-    "does,\n"
-    "                      its two mirrors marked, instead of the rays\n"
-    "  --angle DEG         of the ghost's light, 0 .. 89 (default: that of "
-    "the\n"
-    "                      half of the field)\n"
-    "  --rays N            of each fan, 1 .. 41 (default 7)\n"
-    "  --plane x|y         the section of a lens that is not round (default "
+    "  --ghost K           draw the path of ghost K (numbers of glint info -v) "
+    "and\n"
+    "                      mark its two mirrors, instead of the rays\n"
+    "  --angle DEG         angle of the ghost's light, 0 .. 89 (default: half "
+    "of\n"
+    "                      the field)\n"
+    "  --rays N            rays of each fan, 1 .. 41 (default 7)\n"
+    "  --plane x|y         plane of the section of an anamorphic lens (default "
     "x)\n"
-    "  --no-spots          no spot diagrams\n"
-    "  --f-number N        another than the table's\n" ZOOM_HELP;
+    "  --no-spots          draw no spot diagrams\n"
+    "  --f-number N        f-number (default: that of the table)\n" ZOOM_HELP;
 
 static const char help_end[] = COMMON_HELP;
 
@@ -92,7 +94,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
                          parse_option, o);
 
     if (code < 0)
-        code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+        code = tool_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     if (!o->output)
@@ -120,7 +122,7 @@ static int save_drawing(const struct tool *tool, const struct draw *o)
     if (code != EXIT_OK)
         return code;
     if (shown == 0 && !tool->quiet)
-        fprintf(stderr, "glint draw: none of these rays reaches the sensor\n");
+        fprintf(stderr, "glint draw: no ray reaches the sensor\n");
     if (tool->json)
         json_write(&(struct json_writer){.to = stdout}, "{rays: %d}\n", shown);
     return EXIT_OK;

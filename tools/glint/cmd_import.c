@@ -15,30 +15,30 @@ static const char help[] =
     "glint import FILE -o NAME.lens [--strict] [--format F]\n"
     "             [--film WxH] [--f-number N] [--position N] [--lens KEY]\n"
     "\n"
-    "Reads a lens file of another program and writes a table of it: Zemax\n"
+    "Converts a lens file of another program to a lens table: Zemax\n"
     ".zmx (sequential; STANDARD, EVENASPH; text or UTF-16), CODE V .seq,\n"
     "OSLO .len, pbrt .dat, FlareSim .lens, realflare .json, OpenLensFlare "
     ".xml,\n"
     "polyflare .fx, PhotonsToPhotos' Optical Bench .txt. Lengths become\n"
-    "millimetres, glasses those of the catalogue (lenses/README.md) or the\n"
-    "file's nd and Vd. What is guessed or left out is reported with its line, "
-    "and "
-    "stands in\n"
-    "the table's head.\n"
+    "millimetres. A glass becomes that of the catalogue (lenses/README.md), or "
+    "the\n"
+    "nd and Vd of the file. Each guess and omission is reported with its line "
+    "and\n"
+    "listed at the top of the table.\n"
     "\n"
     "  -o, --output FILE   the .lens, or - for standard output\n"
-    "  --strict            tell all that would be guessed or left out, and\n"
-    "                      refuse the file if there is any\n"
+    "  --strict            list what would be guessed or left out, and reject "
+    "the\n"
+    "                      file if there is any\n"
     "  --format F          zmx, seq, oslo, pbrt, flaresim, realflare, lentil,\n"
     "                      openlensflare, polyflare or opticalbench (default: "
     "by\n"
-    "                      the end of the name)\n"
-    "  --film WxH          film, mm (default: what the file's field says)\n"
-    "  --f-number N        f-number (default: the file's)\n"
-    "  --position N        of a zoom's positions, from 1 (default: the "
+    "                      the suffix of the name)\n"
+    "  --film WxH          film in mm (default: from the field of the file)\n"
+    "  --f-number N        f-number (default: that of the file)\n"
+    "  --position N        position of a zoom lens, from 1 (default: the "
     "first)\n"
-    "  --lens KEY          of a file of several lenses (lentil's "
-    "lenses.json)\n";
+    "  --lens KEY          lens in a file of several (lenses.json of lentil)\n";
 
 static const char help_end[] = COMMON_HELP;
 
@@ -117,7 +117,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
                          parse_option, o);
 
     if (code < 0)
-        code = tool_inputs(tool, argc, argv, 1, "takes one file");
+        code = tool_inputs(tool, argc, argv, 1, "expects one file");
     if (code >= 0)
         return code;
     if (!o->output)

@@ -20,32 +20,38 @@
 #include "stones/stone_file.h"
 
 static const char help[] =
-    "glint info LENS|MODEL|SCENE|ENV|STONE|MOTION [--json] [-v]\n"
+    "glint info LENS|MODEL|SCENE|ENVIRONMENT|TRANSLUCENT|MOTION [--json] [-v]\n"
     "           [--zoom Z] [--focus M] [--f-number N] [--coating C]\n"
     "           [--poses FILE.csv]\n"
     "\n"
-    "Of a scene, NAME.scene or baked: objects, triangles, bytes by keyword.\n"
-    "Of an environment, a panorama or baked: texels, lights.\n"
-    "Of a stone, NAME.translucent or baked: model, bits, bytes of a texel.\n"
-    "Of a motion, a recording .json or baked: frames, foods, residuals.\n"
-    "Of a lens: focal length, back focal length, entrance pupil, stop radius "
-    "at\n"
-    "the f-number, surfaces and ghosts with their pairs of surfaces (counted\n"
-    "from 0 at the front, without the stop). First-order values are for the\n"
-    "d line, 587.56 nm.\n"
+    "Prints the contents of a file:\n"
+    "scene (NAME.scene or baked): objects, triangles, bytes per keyword\n"
+    "environment (panorama or baked): texels, lights\n"
+    "translucent medium (NAME.translucent or baked): model, bits, bytes per "
+    "texel\n"
+    "motion (recording .json or baked): frames, foods, residuals\n"
+    "lens: focal length, back focal length, entrance pupil, stop radius at "
+    "the\n"
+    "    f-number, surfaces, and ghosts with their pairs of surfaces (counted "
+    "from\n"
+    "    0 at the front, without the stop); first-order values are for the d "
+    "line,\n"
+    "    587.56 nm\n"
+    "baked model: also the band of wavelengths, the angles, the cost of each "
+    "ghost\n"
+    "    and the difference between its integers and exact rays: rms and p50 "
+    "are\n"
+    "    means over the zones (rms of squares); p99, max, bound and rounding "
+    "are\n"
+    "    those of the worst zone, in sensor pixels of a film 1920 pixels wide\n"
     "\n"
-    "Of a baked model also: band of wavelengths, angles, what each ghost\n"
-    "takes, and how far its integers are from exact rays: rms and p50 are\n"
-    "means over the zones (rms of squares), p99, max, bound and rounding\n"
-    "the worst zone's. Sensor in pixels of a film 1920 wide.\n"
-    "\n"
-    "  --f-number N        stop the lens to f/N first; not of a "
+    "  --f-number N        stop the lens down to f/N first; not for a "
     "model\n" ZOOM_HELP COATING_HELP
-    "  --poses FILE.csv    of a motion: where the body is, frame by frame\n"
-    "  -v                  of a table: what is on each surface; of a model: "
-    "each\n"
-    "                      zone\n"
-    "  --json              one JSON object\n";
+    "  --poses FILE.csv    write the poses of a motion, one line per frame\n"
+    "  -v                  of a table: list the films of each surface; of a "
+    "model:\n"
+    "                      list each zone\n"
+    "  --json              print one JSON object\n";
 
 struct info {
     struct glint_prescription lens;
@@ -97,8 +103,8 @@ static void print_moves(const struct glint_prescription *l,
     }
     if (l->focus_m > 0)
         printf("focus               %10.4g m from the sensor, by moving %s\n"
-               "image scale         %10.3f mm, as of a lens of this focal "
-               "length at infinity\n",
+               "image scale         %10.3f mm, the focal length of an "
+               "equivalent lens at infinity\n",
                l->focus_m, l->n_focus ? "a group" : "the whole lens",
                o->scale_mm);
 }
@@ -258,7 +264,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         if (!good)
             return tool_refuse(tool, options[index].name, optarg);
     }
-    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    code = tool_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     return -1;
@@ -300,7 +306,7 @@ static int print_non_lens(const struct tool *tool, const char *path, bool stop,
             is_motion   ? "a motion"
             : is_scene  ? "a scene"
             : is_around ? "an environment"
-                        : "a stone");
+                        : "a translucent medium");
     if (is_motion)
         return print_motion(tool, path, poses);
     if (poses)
@@ -358,8 +364,9 @@ int cmd_info(int argc, char **argv)
         return EXIT_USAGE;
     if (tool_is_model(argv[optind]))
         return asked.f_number != 0
-                   ? tool_usage(&tool, "the f-number of a model was "
-                                       "chosen when it was baked")
+                   ? tool_usage(
+                         &tool,
+                         "the f-number of a model is set when it is baked")
                    : print_model(&tool, argv[optind], &asked.zoom);
     info = calloc(1, sizeof *info);
     if (!info)

@@ -361,14 +361,19 @@ static int find_mends(const char *text, size_t bytes, struct mend mend[MENDS])
 static const char help[] =
     "glint lint LENS\n"
     "\n"
-    "Looks for misprints in a table: rims that overlap, nd and Vd that no\n"
-    "glass has, one nd with two Vd, focal lengths that are not the stated\n"
-    "ones, and whatever else refuses it. Then it tries each number with one\n"
-    "slip undone (a sign, two digits that changed places, a wrong digit, a\n"
-    "decimal point) and proposes those after which the table is right, the\n"
-    "likeliest first. Exit code 5 if something is wrong.\n"
+    "Searches a table for misprints: rims that overlap, nd and Vd of no known\n"
+    "glass, one nd with two Vd, focal lengths that differ from the stated "
+    "ones,\n"
+    "and errors that make the table unreadable. It then corrects one number at "
+    "a\n"
+    "time (a sign, two swapped digits, a wrong digit, a decimal point) and "
+    "lists\n"
+    "the corrections after which the table is consistent, the likeliest "
+    "first.\n"
+    "The exit code is 5 if something is wrong.\n"
     "\n"
-    "Stated values decide: give focal-length and back-focal-length both.\n";
+    "The check needs stated values: give focal-length and back-focal-length "
+    "both.\n";
 
 static const char help_end[] = COMMON_HELP;
 
@@ -454,7 +459,7 @@ int cmd_lint(int argc, char **argv)
            (c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >= 0)
         code = tool_option(&tool, c, optarg);
     if (code < 0)
-        code = tool_inputs(&tool, argc, argv, 1, "takes one lens");
+        code = tool_inputs(&tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     code = tool_start(&tool);

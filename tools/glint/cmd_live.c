@@ -15,47 +15,50 @@
 static const char help[] =
     "glint live [-d CAMERA] [-o OUTPUT] [options]\n"
     "\n"
-    "Puts the ghosts of a lens on a camera's pictures, at its rate, and shows\n"
-    "them. The newest frame wins: what is late is left out and counted.\n"
+    "Draws the flare of a lens into the frames of a camera at its rate and "
+    "shows\n"
+    "them. Frames that are late are dropped and counted.\n"
     "\n"
     "  -d, --device DEV    /dev/video0 (default), a number; FILE.y4m, -, "
     "test,\n"
     "                      none (black, for --scene)\n"
     "  -o, --output OUT    fb[:/dev/fb0] (default), window, FILE.y4m, y4m:-,\n"
     "                      v4l2:/dev/videoN (v4l2loopback), null\n"
-    "  --list-devices      the cameras there are\n"
-    "  --list-formats      what the camera offers\n"
+    "  --list-devices      list the cameras\n"
+    "  --list-formats      list the formats of the camera\n"
     "Camera\n"
     "  -s, --size WxH      (default: as the camera is set)\n"
     "  -r, --fps N[/D]     (default: likewise)\n"
     "  -f, --format NAME   YUYV, NV12 ...; default: the cheapest\n"
-    "  -i, --input N       of a camera with several\n"
+    "  -i, --input N       input of a camera with several\n"
     "  -n, --buffers N     2 to 32 (default 4)\n"
     "  --io HOW            auto | mmap | userptr | read\n"
-    "  --range R           auto | full | limited: over what the camera says\n"
+    "  --range R           auto | full | limited: overrides that of the "
+    "camera\n"
     "  --matrix M          auto | 601 | 709\n"
     "Run\n"
     "  --count N           frames to show (default: until SIGINT or SIGTERM)\n"
-    "  --skip N            frames to let pass first\n"
-    "  --[no-]adaptive     whether the quality goes down, in steps, to hold "
-    "the\n"
-    "                      rate (default: of cameras, without --budget)\n"
+    "  --skip N            frames to skip first\n"
+    "  --[no-]adaptive     reduce the quality in steps to keep the frame rate\n"
+    "                      (default: of cameras, without --budget)\n"
     "  --reconnect         wait for a camera or panel that went away, instead "
     "of\n"
     "                      leaving with exit code 4\n"
-    "  --stats HOW         auto | line | json | none: each second; json lines "
-    "go\n"
-    "                      to standard output. auto: a line, json with "
-    "--json.\n"
+    "  --stats HOW         auto | line | json | none: print statistics each "
+    "second;\n"
+    "                      json: lines on standard output; auto: a line, or "
+    "json\n"
+    "                      with --json.\n"
     "                      Keys: t (s), fps, frames, drops, late, corrupt,\n"
     "                      latency_ms_p50, latency_ms_p99, ms (convert, find,\n"
     "                      plan, bin, draw, show), lights, ghosts, bytes,\n"
-    "                      quality (0 to 1); total in the last line\n"
-    "  --fit HOW           scale (default) | centre: a picture of another size "
-    "than\n"
-    "                      the panel\n"
+    "                      quality (0 to 1); the last line has totals\n"
+    "  --fit HOW           scale (default) | centre: if the picture and the "
+    "panel\n"
+    "                      differ in size\n"
     "  --snapshot NAME     (default glint-%03d.ppm)\n"
-    "  --config FILE       these options, without dashes: lens = zoom.glint\n"
+    "  --config FILE       read these options, without dashes: lens = "
+    "zoom.glint\n"
     "Signals: SIGHUP reads --config and lens again, SIGUSR1 reports, SIGUSR2 "
     "saves.\n";
 
@@ -289,9 +292,10 @@ static int parse_line(struct line *line)
     while ((c = tool_getopt(line->argc, line->argv, SHORT, options, NULL)) >= 0)
         if ((code = parse_option(line, c, optarg)) >= 0)
             return code;
-    return optind == line->argc ? -1
-                                : tool_usage(line->tool, "'%s' is no option",
-                                             line->argv[optind]);
+    return optind == line->argc
+               ? -1
+               : tool_usage(line->tool, "'%s' is not an option",
+                            line->argv[optind]);
 }
 
 /* Rejects options O with which an output would overwrite an input, the file

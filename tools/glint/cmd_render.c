@@ -20,28 +20,29 @@
 
 static const char help[] =
     "glint render LENS|MODEL -o OUT --light "
-    "THETA,PHI[,POWER[,R,G,B[,SIZE]]]... "
-    "[options]\n"
+    "THETA,PHI[,POWER[,R,G,B[,SIZE]]]... [options]\n"
     "glint render LENS|MODEL -o OUT --lights FILE [options]\n"
     "glint render NAME.scene|BAKED -o OUT; --help behind it has the rest\n"
     "\n"
-    "Draws the ghosts of a lens alone, from its table or its baked model; a\n"
-    "table is baked when it is first drawn (see 'glint bake'). Values are\n"
-    "linear: 1 is what a light of POWER 1 would give if its in-focus image\n"
-    "fell on one pixel. OUT is .pfm,\n"
-    "or with the image plug-in .exr, .hdr: linear as it stands. A .ppm, .png\n"
-    "or .jpg is for the eye: sRGB, the 99.9th percentile of luminance at 1\n"
-    "unless --exposure says otherwise.\n"
+    "Draws the ghosts of a lens alone, from its table or its baked model. A "
+    "table\n"
+    "is baked when it is first drawn (see 'glint bake'). Values are linear: a\n"
+    "light of POWER 1 with its in-focus image on one pixel gives 1. OUT is "
+    ".pfm,\n"
+    "or with the image plug-in .exr or .hdr: linear values. A .ppm, .png or "
+    ".jpg\n"
+    "is encoded to sRGB with the 99.9th percentile of luminance at 1, or by\n"
+    "--exposure.\n"
     "\n"
     "  -o, --output OUT\n"
     "  --size WxH          default 960x540\n"
     "  --light LIST        degrees off the axis, degrees about it (0 = right,\n"
     "                      90 = up), power (default 1), colour; repeatable\n"
-    "  --lights FILE       those of frame 0 of a list as of glint overlay, up "
-    "to a\n"
-    "                      million\n"
+    "  --lights FILE       lights of frame 0 of a list (format: glint "
+    "overlay), up\n"
+    "                      to a million\n"
     "  --engine E          model: the integer run time (default)\n"
-    "                      exact: the reference, every ray in "
+    "                      exact: the reference renderer, every ray in "
     "double\n";
 
 struct render {
@@ -125,7 +126,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         if (code >= 0)
             return code;
     }
-    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    code = tool_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     if (!r->output)

@@ -227,13 +227,11 @@ static int begin_set(const struct tool *tool, const struct synth_set *set,
     free(kept);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    return is_same
-               ? check_count(tool, set)
-               : tool_usage(tool,
-                            "%s was begun with other options or "
-                            "backgrounds (%s): continue with those, or name "
-                            "another folder",
-                            set->folder, path);
+    return is_same ? check_count(tool, set)
+                   : tool_usage(tool,
+                                "%s was made with other options or backgrounds "
+                                "(%s): use those, or name another folder",
+                                set->folder, path);
 }
 
 /* Writes SETTINGS to synth.json after they were validated. */
@@ -415,39 +413,53 @@ static const char help[] =
     "glint synth BACKGROUNDS... -o FOLDER [options]\n"
     "glint synth BACKGROUNDS... -o FOLDER --item LINE\n"
     "\n"
-    "Draws pairs to train flare removal with: pictures of BACKGROUNDS, files\n"
-    "or folders, with the flares of random lights behind real lenses, as a\n"
-    "sensor sees them, and what they should become. Light is added before it\n"
-    "is clipped. FOLDER gets input, gt (with the lights themselves), flare\n"
-    "and mask (where lights are), and manifest.jsonl, a line an item. The\n"
-    "same options give the same bytes, in one run or in shards; a run that\n"
-    "was killed is begun again and continues.\n"
+    "Draws pairs of pictures to train flare removal with. An input is a "
+    "picture\n"
+    "of BACKGROUNDS (files or folders) with the flares of random lights "
+    "behind\n"
+    "real lenses; light is added before the sensor clips it. FOLDER gets "
+    "input,\n"
+    "gt (the picture with the lights but without flare), flare, mask (where "
+    "the\n"
+    "lights are), and manifest.jsonl, one line per item. The same options "
+    "give\n"
+    "the same bytes, in one run or in shards. A run that was killed continues "
+    "if\n"
+    "it is started again.\n"
     "\n"
     "  -o, --output FOLDER\n"
-    "  --count N           items (default 100); more later continue, fewer "
-    "are\n"
-    "                      refused; 0: bakes the lenses only\n"
-    "  --seed S            another set for each (default 0)\n"
-    "  --shard I/N         items I, I + N, I + 2N ...; I from 0\n"
-    "  --size WxH          of the pictures, sides of 16 to 8192 (default\n"
+    "  --count N           number of items (default 100); a larger N continues "
+    "a\n"
+    "                      set, a smaller N is rejected; 0: bake the lenses "
+    "only\n"
+    "  --seed S            seed of the random numbers (default 0)\n"
+    "  --shard I/N         draw items I, I + N, I + 2N ...; I from 0\n"
+    "  --size WxH          size of the pictures, sides of 16 to 8192 (default\n"
     "                      512x512)\n"
-    "  --lenses LIST       names or files with commas, or all, which bakes "
-    "for\n"
-    "                      minutes (default heliar-tronnier,\n"
+    "  --lenses LIST       names or files separated by commas, or all, which "
+    "bakes\n"
+    "                      for minutes (default heliar-tronnier,\n"
     "                      double-gauss-angenieux,nikon-zoom-short)\n"
-    "  --coating C         of all lenses, as of glint overlay (default mixed)\n"
-    "  --range NAME=LO,HI  what a number is drawn from; repeatable; list: "
-    "prints\n"
-    "                      names, ranges and laws\n"
-    "  --layout L          plain | flare7k | bracketflare | wu2021: folders\n"
-    "                      and names as the loaders of these look for them\n"
-    "  --type T            ppm, png, jpg ... (default ppm of plain, else png)\n"
-    "  --item LINE         that line of a manifest alone, the same bytes\n"
-    "  --quality Q         0 to 1, as of glint render (default 0.5)\n";
+    "  --coating C         coating of all lenses; values of glint overlay\n"
+    "                      (default mixed)\n"
+    "  --range NAME=LO,HI  range of a random parameter; repeatable; list: "
+    "print\n"
+    "                      names, ranges and distributions\n"
+    "  --layout L          plain | flare7k | bracketflare | wu2021: folders "
+    "and\n"
+    "                      names that the loaders of these data sets expect\n"
+    "  --type T            ppm, png, jpg ... (default ppm for plain, else "
+    "png)\n"
+    "  --item LINE         draw this line of a manifest alone, with the same "
+    "bytes\n"
+    "  --quality Q         0 to 1, the --quality of glint render (default "
+    "0.5)\n";
 
 static const char help_end[] =
-    "  -j, --threads N     for each picture (default: all processors); shards\n"
-    "                      share out more evenly. Never changes a result\n"
+    "  -j, --threads N     threads for each picture (default: all "
+    "processors);\n"
+    "                      shards scale better. The result does not depend on "
+    "N\n"
     "  --kernels K   --json   -q   -v   --help   --version\n";
 
 static const char default_lenses[] =
@@ -657,7 +669,7 @@ static int set_type(const struct tool *tool, struct synth *s)
         return tool_usage(tool, "--layout %s: %s; or take --type ppm",
                           s->set.layout->name, error.text);
     return tool_usage(tool, "--type %s: %s", s->set.type,
-                      *error.text ? error.text : "no type of picture");
+                      *error.text ? error.text : "not a picture type");
 }
 
 static int parse_options(struct tool *tool, int argc, char **argv,
@@ -764,7 +776,7 @@ static int run_line(const struct tool *tool, struct synth *s)
         !tool->quiet)
         fprintf(stderr,
                 "glint synth: the item is glint %s's; this is %s, which may "
-                "draw it a little differently\n",
+                "draw it slightly differently\n",
                 item.glint, GLINT_VERSION);
     if (code == EXIT_OK)
         code = check_apart(tool, &s->set);

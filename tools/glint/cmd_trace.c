@@ -18,27 +18,31 @@ static const char help[] =
     "            [--pupil] [--model MODEL] [--coating C] [--zoom Z] [--focus "
     "M]\n"
     "\n"
-    "Prints one line a ray, over an N x N grid that spans the clear square of\n"
-    "the front element, x fastest:\n"
+    "Prints one line per ray of an N x N grid over the square around the "
+    "clear\n"
+    "aperture of the front element, x fastest:\n"
     "  px,py,status,stop_x,stop_y,sensor_x,sensor_y,energy,rel_radius\n"
-    "in mm. Status 0 ok, 1 missed a surface, 2 total reflection; the columns\n"
-    "after it are empty then. The light lies in the x-z plane.\n"
+    "in mm. Status 0: ok, 1: missed a surface, 2: total reflection; the "
+    "columns\n"
+    "after it are then empty. The light lies in the x-z plane.\n"
     "\n"
-    "  --ghost K        number of the ghost as 'glint info' counts; -1 is the\n"
-    "                   direct path (default 0)\n"
-    "  --angle DEG      off the axis, below 90 (default 0)\n"
+    "  --ghost K        number of the ghost in 'glint info'; -1: the direct "
+    "path\n"
+    "                   (default 0)\n"
+    "  --angle DEG      angle off the axis in degrees, below 90 (default 0)\n"
     "  --wavelength NM  default 532\n"
     "  --grid N         1 to 4096 rays a side (default 17)\n"
-    "  --pupil          the grid spans where light of this path comes in, "
-    "which\n"
-    "                   in wide lenses is a small part of the front\n"
-    "  --model MODEL    the same rays by a model that was baked from LENS: "
-    "its\n"
-    "                   integers as render and overlay use them. Status 1\n"
-    "                   outside the box and of the angles of the ghost;\n"
-    "                   rel_radius is that of the barrels that limit it, 0\n"
-    "                   where none does\n" ZOOM_HELP COATING_HELP
-    "  --csv            the format above; there is no other\n";
+    "  --pupil          span the grid over the entrance pupil of this path "
+    "only,\n"
+    "                   in wide lenses a small fraction of the front element\n"
+    "  --model MODEL    trace the rays by MODEL, baked from LENS, with the "
+    "integers\n"
+    "                   of render and overlay. Status 1: outside the box and "
+    "the\n"
+    "                   angles of the ghost; rel_radius is that of the "
+    "limiting\n"
+    "                   barrels, 0 without any\n" ZOOM_HELP COATING_HELP
+    "  --csv            the format above (the only one)\n";
 
 struct options {
     const char *model;
@@ -94,7 +98,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         if (!ok)
             return tool_refuse(tool, options[index].name, optarg);
     }
-    code = tool_inputs(tool, argc, argv, 1, "takes one lens");
+    code = tool_inputs(tool, argc, argv, 1, "expects one lens");
     if (code >= 0)
         return code;
     return -1;

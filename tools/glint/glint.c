@@ -32,7 +32,7 @@ static const char help[] =
     "why\n"
     "  glint styles -o OUT             draw a photograph in each --style\n"
     "  glint synth BACKGROUNDS ...     draw pairs to train flare removal with\n"
-    "  glint compare A B               measure how far two pictures are apart\n"
+    "  glint compare A B               measure the difference of two pictures\n"
     "  glint bench                     measure what a frame costs\n"
     "  glint sweep -o FOLDER           measure what accuracy costs: plots, "
     "pictures\n"

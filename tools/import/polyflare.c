@@ -74,7 +74,7 @@ static bool parse_head(struct polyflare *p)
                imported_unread(p->lens, l->number, l->word[0]);
     return lines_number(l, 1, "scale", &p->lens->unit_mm) &&
            (p->lens->unit_mm > 0 ||
-            imported_fail(p->lens, l->number, "scale %g is no size",
+            imported_fail(p->lens, l->number, "scale %g is not above 0",
                           p->lens->unit_mm));
 }
 

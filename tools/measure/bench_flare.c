@@ -181,7 +181,7 @@ static int add_cases(struct bench *b, const struct opened_lens *lens)
 static int open_lens(struct bench *b, struct lenses *lenses, const char *name)
 {
     if (lenses->n == BENCH_LENSES)
-        return tool_usage(b->tool, "takes %d lenses at most", BENCH_LENSES);
+        return tool_usage(b->tool, "accepts at most %d lenses", BENCH_LENSES);
     return opened_lens_open(b->tool, &lenses->lens[lenses->n++], &b->base,
                             name);
 }

@@ -236,15 +236,14 @@ static int open_scene(struct bench *b, int n, const char *const *name)
     int code;
 
     if (n > 0)
-        return tool_usage(b->tool, "--scene takes no lens; '%s' is too much",
-                          *name);
+        return tool_usage(b->tool, "--scene accepts no lens, not '%s'", *name);
     code = baked_scene_open(b->tool, o->file, &o->scene);
     if (code != EXIT_OK)
         return code;
     if (o->scene.model.header->camera.kind == GLINT_CAMERA_LENS)
         return tool_usage(b->tool,
                           "%s: 'camera lens' needs the lens of a flare; here "
-                          "it takes 'camera fov'",
+                          "use 'camera fov'",
                           o->file);
     if (o->scene.model.header->shadow)
         code = open_bare(b, o);

@@ -259,7 +259,7 @@ enum glint_status canvas_exact(const struct tool *tool,
     status = draw_exact(tool, lens, settings, lamp, n_lamps, grid, to);
     if (status == GLINT_OK && kept &&
         glint_picture_save_float(path, to, &error) != GLINT_OK && !tool->quiet)
-        fprintf(stderr, "glint %s: the exact picture is not kept: %s\n",
+        fprintf(stderr, "glint %s: the exact picture was not cached: %s\n",
                 tool->name, error.text);
     return status;
 }

@@ -72,7 +72,7 @@ static enum glint_status read_item(struct synth_item *item, const json_t *line,
 
     if (status == GLINT_OK && json_array_size(lights) != (size_t)item->n_lights)
         return fail_member(error, "lights",
-                           "has not as many as 'n_lights' says");
+                           "the number of lights differs from 'n_lights'");
     for (int i = 0; i < (int)item->n_lights && status == GLINT_OK; i++)
         status = store_members(synth_light_field, SYNTH_LIGHT_FIELDS,
                                json_array_get(lights, (size_t)i),

@@ -351,7 +351,7 @@ static bool read_food(const struct recording *r, const json_t *food, int i,
 
     snprintf(what, sizeof what, "food %d", i);
     if (!json_is_object(food))
-        return fail_in_piece(r, 1, 1, "%s is no object", what);
+        return fail_in_piece(r, 1, 1, "%s is not an object", what);
     for (int k = 0; k < 3; k++)
         if (!read_number(r, food, axis[k], NULL, what, &s->food[i][k]))
             return false;

@@ -107,7 +107,7 @@ static bool reject_word(struct glint_text *text, const char *line,
         offer_candidate(&near, clause[i].word);
     write_hint(&near, mean);
     list_words(clause, words, sizeof words);
-    return glint_text_fail(text, word->place, "%s takes %s, not '%s'%s", line,
+    return glint_text_fail(text, word->place, "%s accepts %s, not '%s'%s", line,
                            words, quote, mean);
 }
 
@@ -121,7 +121,7 @@ bool glint_numbers_read(struct glint_text *text, const char *what, int n,
 
         if (!word.length && n > 1)
             return glint_text_fail(text, word.place,
-                                   "%s takes %d numbers, here are %d", what, n,
+                                   "%s needs %d numbers, got %d", what, n,
                                    i);
         if (!glint_text_value_of(text, &word, &range, &value[i]))
             return false;
@@ -225,7 +225,7 @@ int glint_choice_read(struct glint_text *text, const char *line,
     for (int i = 0; names[i]; i++)
         if (glint_word_is(&word, names[i]))
             return i;
-    glint_text_fail(text, word.place, "%s takes %s%s%s%s", line, list_words,
+    glint_text_fail(text, word.place, "%s accepts %s%s%s%s", line, list_words,
                     word.length ? ", not '" : "",
                     word.length ? glint_word_quote(&word, quote) : "",
                     word.length ? "'" : "");

@@ -40,7 +40,7 @@ static bool read_word(struct glint_describer *d, const char *line,
     if (!word.length)
         return glint_text_fail(&d->text, word.place, "%s needs %s", line, list);
     glint_word_quote(&word, quote);
-    return glint_text_fail(&d->text, word.place, "%s takes %s, not '%s'", line,
+    return glint_text_fail(&d->text, word.place, "%s accepts %s, not '%s'", line,
                            list, quote);
 }
 

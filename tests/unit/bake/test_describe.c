@@ -194,13 +194,13 @@ static const struct mistake {
     int line;
     const char *text, *error;
 } mistakes[] = {
-    {1, "hand up", "1:6: hand takes right or left, not 'up'"},
+    {1, "hand up", "1:6: hand accepts right or left, not 'up'"},
     {1, "hand", "1:5: hand needs right or left"},
     {1, "hand left over", "1:11: 'over' is one value too many for hand"},
     {2, "camera fov 60 at 0 1 -4", "2:8: camera needs 'at X Y Z toward"},
     {2, "camera fov 60 at 0 1 toward 0 1 0",
      "2:22: at 'toward' is not a number"},
-    {2, "camera fov 60 at 0 1", "2:21: at takes 3 numbers, here are 2"},
+    {2, "camera fov 60 at 0 1", "2:21: at needs 3 numbers, got 2"},
     {2, "camera fov 200 at 0 1 -4 toward 0 1 0",
      "2:12: fov must be 0.1 .. 170, not 200"},
     {2, "camera at 0 1 0 toward 0 1 0",
@@ -218,7 +218,7 @@ static const struct mistake {
     {2, "hand left", "2:1: a second hand; the first is on line 1"},
     {3, "background environment",
      "3:12: 'background environment' needs a line 'environment FILE'"},
-    {3, "background sky", "3:12: background takes camera, colour R G B or"},
+    {3, "background sky", "3:12: background accepts camera, colour R G B or"},
     {3, "environment", "3:12: the environment's file is missing"},
     {3, "environment night.env turn 400",
      "3:28: turn must be -360 .. 360, not 400"},
@@ -240,7 +240,7 @@ static const struct mistake {
     {4, "light bulb at 0 0 0",
      "4:7: a light must be a sun or a lamp, not 'bulb'"},
     {5, "light lamp at 0 3 -2 color 8 7 6",
-     "5:22: light lamp takes at, colour, radius and on, not 'color'; did you "
+     "5:22: light lamp accepts at, colour, radius and on, not 'color'; did you "
      "mean "
      "'colour'?"},
     {5, "light lamp at 0 3 -2 at 8 7 6", "5:22: a second 'at'"},
@@ -256,7 +256,7 @@ static const struct mistake {
      "7:29: 'refract' needs a 'pass' above 0"},
     {7, "material red ward alpha .1 .1", "7:30: material needs 'specular'"},
     {7, "material red ward specular .9 .9 .9 alpha .1 .1 reflect .5",
-     "7:49: material takes ward, specular, alpha, diffuse, norm and texture"},
+     "7:49: material accepts ward, specular, alpha, diffuse, norm and texture"},
     {7, "material red ward specular .9 .9 .9 alpha .1 .1 diffuse 0 .2 0",
      "7:19: 'diffuse' and 'specular' sum to 1.1; above 1 the surface would "
      "reflect more light than it receives"},
@@ -272,9 +272,9 @@ static const struct mistake {
     {7, "material red translucent a.glint fresnel no",
      "7:42: 'fresnel' must be on or off, not 'no'"},
     {7, "material red translucent a.glint colour 1 1",
-     "7:44: colour takes 3 numbers, here are 2"},
+     "7:44: colour needs 3 numbers, got 2"},
     {7, "material red translucent a.glint reflect .1",
-     "7:34: material takes coat, specular, alpha, norm, fresnel and colour"},
+     "7:34: material accepts coat, specular, alpha, norm, fresnel and colour"},
     {7, "material 7up phong 0 1 0",
      "7:10: a name must be a letter followed by"},
     {8, "material oak phong 0 1 0 texture wod",
@@ -313,12 +313,12 @@ static const struct mistake {
      "13:27: the axis of a rotation must not be 0 0 0"},
     {13, "mesh cup cup.obj at 0 0 0 scale 1e9 material red",
      "13:10: the mesh extends 2e+09 from its origin; the limit is 1e+06"},
-    {14, "shadow soft", "14:8: shadow takes on or off, not 'soft'"},
+    {14, "shadow soft", "14:8: shadow accepts on or off, not 'soft'"},
     {15, "flare lights highlights 2.5",
      "15:14: 'highlights' must be a whole number"},
     {15, "flare lights highlights 9",
      "15:25: highlights must be 0 .. 8, not 9"},
-    {15, "flare stars", "15:7: flare takes off or lights [highlights N], not"},
+    {15, "flare stars", "15:7: flare accepts off or lights [highlights N], not"},
 };
 
 TEST(mistakes)
@@ -376,7 +376,7 @@ static const struct mesh_text {
      "v 3 3 3\ng x\nf -5 -4 -3 -2 -1\n",
      3, ""},
     {"", 0, "1:1: there is no face"},
-    {"v 0 0\n", 0, "1:6: v takes 3 numbers, here are 2"},
+    {"v 0 0\n", 0, "1:6: v needs 3 numbers, got 2"},
     {"v 0 0 x\n", 0, "1:7: 'x' is not a number"},
     {"v 0 0 nan\n", 0, "1:7: 'nan' is not a number"},
     {"v 0 0 1e13\n", 0, "1:7: numbers of a mesh are at most 1e12"},

@@ -585,7 +585,7 @@ TEST(text)
     check_wrong_text("source\n",
                      "n.environment:1:7: the name of the picture is missing");
     check_wrong_text("source x\nsize 100\n",
-                     "2:6: size takes 16, 32, 64, 128, 256, 512 or "
+                     "2:6: size accepts 16, 32, 64, 128, 256, 512 or "
                      "1024, not '100'");
     check_wrong_text("source x\nturn 400\n", "turn");
     check_wrong_text("source x\nlights 17\n", "lights");

@@ -106,7 +106,7 @@ static const struct {
     {"size 32\nsize 64\n", "x:2:1: a second size; the first is on line 1"},
     {"sizes 32\n", "x:1:1: unknown word 'sizes'; did you mean 'size'?"},
     {"model tucker\n",
-     "x:1:7: model takes clustered, factored or albedo, not 'tucker'"},
+     "x:1:7: model accepts clustered, factored or albedo, not 'tucker'"},
     {"stone a scatter 1 1 1\n", "x:1:"},
     {"stone a scatter 0 1 1 absorb 0 0 0\n", "x:1:17: "},
     {"stone a scatter 1 1 1 absorb -1 0 0\n", "x:1:30: "},

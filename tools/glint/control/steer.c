@@ -400,7 +400,7 @@ static enum glint_status find_index(const struct steer *s,
     }
     return control_fail(
         error, where, line->name_column[k], "the scene has no %s '%s'%s",
-        is_material ? "material" : "thing", name, suggest_words(&suggest));
+        is_material ? "material" : "object", name, suggest_words(&suggest));
 }
 
 /* Returns whether the first name of LINE is a material. */

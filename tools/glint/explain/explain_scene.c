@@ -95,7 +95,7 @@ static const char *find_fate_word(const struct explained_scene *s,
     if (!(lamp->power > 0))
         return "no power";
     if (glint_explain_is_beyond(s->flare, lamp))
-        return "beyond the model";
+        return "outside the model";
     at = find_drawn_light(s, lamp);
     if (at < 0)
         return "merged";
@@ -307,14 +307,14 @@ static void print_layers(const struct explained_scene *s)
 static void print_maps(const struct explained_scene *s)
 {
     if (get_model(s)->header->n_skins > 0)
-        printf("\nmaps of stones: light has spread to %d texels\n",
+        printf("\nmaps of translucent media: light has spread to %d texels\n",
                s->drawing->files.scene.frame.map_texels);
 }
 
 void explain_scene_print(const struct explained_scene *s)
 {
     print_title(s);
-    printf("\n%3s %-22s %8s %8s %9s %8s %8s %7s %9s\n", "", "thing", "pixels",
+    printf("\n%3s %-22s %8s %8s %9s %8s %8s %7s %9s\n", "", "object", "pixels",
            "shaded", "shadows", "texels", "lookups", "bounced", "triangles");
     for (uint32_t i = 0; i < get_model(s)->header->n_objects; i++) {
         const struct glint_scene_part *const p = &s->account.objects[i];

@@ -18,13 +18,14 @@ static const struct {
     [GLINT_OUTCOME_DRAWN] = {"drawn", "drawn"},
     [GLINT_OUTCOME_EMPTY] = {"empty", "no edge of its grid changes a pixel"},
     [GLINT_OUTCOME_OTHER] = {"other", "not requested, or muted"},
-    [GLINT_OUTCOME_BEYOND] = {"beyond", "light beyond the model's angles"},
+    [GLINT_OUTCOME_BEYOND] = {"beyond",
+                              "light outside the angles of the model"},
     [GLINT_OUTCOME_CLOSED] = {"closed", "no light gets through at this angle"},
-    [GLINT_OUTCOME_BLOCKED] = {"blocked", "stop and barrels take all of it"},
+    [GLINT_OUTCOME_BLOCKED] = {"blocked", "stop and barrels block all of it"},
     [GLINT_OUTCOME_DARK] = {"dark", "the light has no such colour"},
     [GLINT_OUTCOME_OUTSIDE] = {"outside", "outside the picture"},
     [GLINT_OUTCOME_FAINT] = {"faint", "too faint for any code"},
-    [GLINT_OUTCOME_NO_ROOM] = {"no_room", "no room left in the arena"},
+    [GLINT_OUTCOME_NO_ROOM] = {"no_room", "the arena is full"},
     [GLINT_OUTCOME_OTHER_SET] = {"other_set", "another set of wavelengths"},
     [GLINT_OUTCOME_SHARED] = {"shared", "dim, drawn with a brighter light's"},
 };
@@ -231,22 +232,22 @@ static void print_lost_lights(const struct glint_explain *e,
     for (int i = 0; i < t->n_lamps; i++) {
         if (glint_explain_is_beyond(e, &t->lamp[i].lamp)) {
             if (n++ < t->top)
-                printf("light at %.3f degrees: beyond the model, which ends at "
-                       "%.1f (bake --max-angle)\n",
+                printf("light at %.3f degrees: outside the model, whose max "
+                       "angle is %.1f (bake --max-angle)\n",
                        t->lamp[i].lamp.theta_deg, most);
         } else
             dark += !(t->lamp[i].lamp.power > 0);
     }
     if (n > t->top)
-        printf("and %d more beyond the model (--top)\n", n - t->top);
+        printf("and %d more outside the model (--top)\n", n - t->top);
     if (dark)
         printf("%d light%s no power\n", dark, dark == 1 ? " has" : "s have");
     n = t->n_lamps - r->beyond_lights - dark;
     if (t->n_lamps && r->apart_lights < n)
-        printf("%d lights are %d as they coincide (--apart)\n", n,
-               r->apart_lights);
+        printf("%d lights were merged to %d because they coincide (--apart)\n",
+               n, r->apart_lights);
     if (r->stats.held_cells)
-        printf("%d cells are so bright that they were cut down to what one may "
+        printf("%d cells were clamped to the max light that a cell may "
                "give a pixel\n",
                r->stats.held_cells);
     if (r->drawn_lights < r->apart_lights)

@@ -10,12 +10,12 @@
 static const char help[] =
     "glint bake NAME.json -o OUT.motion [options]\n"
     "\n"
-    "Finds where a body was that recorded, frame by frame, where objects "
-    "around\n"
-    "it were in its own axes, and writes its poses, its sensors and where the\n"
-    "objects are, for scenes (tools/examples/scenes/README.md has the words "
-    "of\n"
-    "a recording). Frames are read one by one.\n"
+    "Computes the pose of a body in each frame of a recording from the "
+    "objects\n"
+    "that it located in its own axes, and writes the poses, the sensors and "
+    "the\n"
+    "positions of the objects for scenes (tools/examples/scenes/README.md\n"
+    "describes recordings). Reads one frame at a time.\n"
     "\n"
     "  -o, --output OUT\n";
 
@@ -27,7 +27,7 @@ int cmd_bake_motion(struct tool *tool, int argc, char **argv)
     int code;
 
     code = bake_line_begin(tool, help, argc, argv, options, NULL, NULL,
-                           "takes one recording");
+                           "expects one recording");
     if (code >= 0)
         return code;
     code = motion_file_open(tool, argv[optind], &file);

@@ -156,7 +156,7 @@ static int check_entry(struct pass *p, const struct option *option,
     if (option->has_arg != no_argument)
         return 1;
     if (strcmp(value, "yes") != 0 && strcmp(value, "no") != 0)
-        return fail_pass(p, "%s takes yes or no", option->name);
+        return fail_pass(p, "%s accepts yes or no", option->name);
     if (index < MAX_OPTIONS && p->stated[index])
         return fail_pass(p, "%s is stated twice", option->name);
     if (index < MAX_OPTIONS)

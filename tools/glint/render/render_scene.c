@@ -18,36 +18,44 @@
 static const char help[] =
     "glint render NAME.scene|BAKED -o OUT [options]\n"
     "\n"
-    "Draws the objects of a scene (tools/examples/scenes/README.md has the\n"
-    "format) over black, by the integer run time. Values are linear: 1 is\n"
-    "display white. OUT is .pfm, or with the image plug-in .exr, .hdr: linear\n"
-    "as it stands. A .ppm, .png or .jpg is for the eye: sRGB, 1 and above\n"
-    "white. A baked scene is that of glint bake; a text is baked first.\n"
+    "Draws the objects of a scene (tools/examples/scenes/README.md describes "
+    "the\n"
+    "format) over black with integer arithmetic. Values are linear; 1 is "
+    "display\n"
+    "white. OUT is .pfm, or with the image plug-in .exr or .hdr: linear "
+    "values.\n"
+    "A .ppm, .png or .jpg is encoded to sRGB; 1 and above are white. BAKED is "
+    "a\n"
+    "scene baked by glint bake; NAME.scene is baked first.\n"
     "\n"
     "  -o, --output OUT\n"
-    "  --size WxH          default 960x540\n"
-    "  --samples N         points of a pixel at outlines: 1, 4 (default), 8 "
+    "  --size WxH          size of the picture (default 960x540)\n"
+    "  --samples N         samples per pixel at outlines: 1, 4 (default), 8 "
     "or\n"
     "                      16\n"
-    "  --quality Q         0 to 1, or least ... finest: sets what of these is\n"
-    "                      not given, and the flare\n"
-    "  --exposure EV       stops; all light times 2^EV (default 0)\n"
-    "  --pose FILE         moves objects and camera, as of glint overlay\n"
-    "  --control FILE      lines that change the scene, likewise\n"
-    "  --frame N           the frame of these to draw (default 0)\n"
-    "  --frames A-B        all of these; OUT is .y4m, - or has a %04d\n"
-    "  --fps N             of .y4m, and of how fast a lens follows (default "
-    "25)\n"
-    "  --lens LENS|none    adds the flare that LENS makes of the lights of a\n"
-    "                      scene with 'flare lights' (default none), as glint\n"
-    "                      overlay does; its options choose the flare: "
-    "--strength,\n"
-    "                      --coating, --stop, --quality, --light-at ...\n";
+    "  --quality Q         0 to 1, or least ... finest: sets the options that "
+    "are\n"
+    "                      not given, and the quality of the flare\n"
+    "  --exposure EV       multiply all light by 2^EV (default 0)\n"
+    "  --pose FILE         move objects and camera by FILE, see glint overlay\n"
+    "  --control FILE      change the scene by the commands in FILE, likewise\n"
+    "  --frame N           draw frame N of --pose and --control (default 0)\n"
+    "  --frames A-B        draw frames A to B; OUT is .y4m, - or has a %04d\n"
+    "  --fps N             frame rate of .y4m, and the rate at which a lens "
+    "follows\n"
+    "                      (default 25)\n"
+    "  --lens LENS|none    add the flare of LENS for the lights of a scene "
+    "that\n"
+    "                      has 'flare lights' (default none); the options of "
+    "glint\n"
+    "                      overlay apply to it: --strength, --coating, "
+    "--stop,\n"
+    "                      --quality, --light-at ...\n";
 
 enum { MOST_FRAME = 1000000000 };
 
 #define NEEDS_LENS \
-    "%s: 'camera lens' needs the lens of a flare; here it takes 'camera fov'"
+    "%s: 'camera lens' needs the lens of a flare; use 'camera fov'"
 
 enum {
     OPT_FRAME = ENGINE_OPTIONS_END,
@@ -107,7 +115,8 @@ static int take(struct tool *tool, struct render_scene *r, int c)
     case OPT_SAMPLES:
         return tool_integer(optarg, 1, 16, &r->samples)
                    ? -1
-                   : tool_usage(tool, "--samples takes 1, 4, 8 or 16, not '%s'",
+                   : tool_usage(tool,
+                                "--samples accepts 1, 4, 8 or 16, not '%s'",
                                 optarg);
     case OPT_EXPOSURE_OF:
         return tool_number(optarg, &r->exposure_ev) &&
@@ -166,14 +175,14 @@ static int parse(struct tool *tool, int argc, char **argv,
                             NULL)) >= 0)
         if ((code = take_any(tool, r, c)) >= 0)
             return code;
-    code = tool_inputs(tool, argc, argv, 1, "takes one scene");
+    code = tool_inputs(tool, argc, argv, 1, "expects one scene");
     if (code >= 0)
         return code;
     if (!r->output)
         return tool_usage(tool, "needs -o OUT");
     if (r->samples && r->samples != 1 && r->samples != 4 && r->samples != 8 &&
         r->samples != 16)
-        return tool_usage(tool, "--samples takes 1, 4, 8 or 16, not %d",
+        return tool_usage(tool, "--samples accepts 1, 4, 8 or 16, not %d",
                           r->samples);
     if (!GLINT_OPTION_GIVEN(&r->drawing.line.settings.options, quality)) {
         r->samples = r->samples ? r->samples : 4;
@@ -232,8 +241,8 @@ static void say_catchers(const struct tool *tool,
     if (catcher && model->header->background == GLINT_BACKGROUND_CAMERA &&
         !tool->quiet)
         fprintf(stderr,
-                "glint render: '%s' only takes shadows, and over black there "
-                "are none to see; glint overlay PHOTO --scene shows them\n",
+                "glint render: '%s' receives shadows only, which are invisible "
+                "over black; use glint overlay PHOTO --scene\n",
                 catcher->name);
 }
 

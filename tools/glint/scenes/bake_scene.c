@@ -8,9 +8,11 @@
 static const char help[] =
     "glint bake NAME.scene -o OUT.glint [--json]\n"
     "\n"
-    "Turns a scene (tools/examples/scenes/README.md) with the meshes and\n"
-    "pictures that it names into one file of integers, which render and info\n"
-    "take in its place. Prints what is in it, and its bytes.\n"
+    "Writes a scene (tools/examples/scenes/README.md) with the meshes and "
+    "pictures\n"
+    "that it names as one file of integers, which render and info accept in "
+    "place\n"
+    "of NAME.scene. Prints the contents and their bytes.\n"
     "\n"
     "  -o, --output OUT\n";
 
@@ -22,7 +24,7 @@ int cmd_bake_scene(struct tool *tool, int argc, char **argv)
     int code;
 
     code = bake_line_begin(tool, help, argc, argv, options, NULL, NULL,
-                           "takes one scene");
+                           "expects one scene");
     if (code >= 0)
         return code;
     code = baked_scene_open(tool, argv[optind], &scene);

@@ -233,7 +233,7 @@ static void print_baking(const struct glint_environment_report *r)
 {
     printf("picture      %dx%d", r->width, r->height);
     if (r->negative || r->not_finite)
-        printf("; held: %lld pixels below 0, %lld not finite", r->negative,
+        printf("; clamped: %lld pixels below 0, %lld not finite", r->negative,
                r->not_finite);
     printf("\nlight        mean %.4g, largest %.4g, without the lights %.4g\n",
            r->mean, r->largest, r->residual_largest);
@@ -290,20 +290,22 @@ void environment_file_print(const struct tool *tool,
 static const char bake_help[] =
     "glint bake PICTURE|NAME.environment -o OUT.env [options]\n"
     "\n"
-    "Turns a panorama, .exr, .hdr, .dds (by the image plug-in) "
-    "or\n"
-    ".pfm, twice as wide as high or 3 x 2 faces of a cube, into one file for\n"
-    "scenes: the light blurred to several levels, what it lights, and its\n"
-    "brightest spots as lights. Negative and not finite pixels are held and\n"
-    "counted. A text (tools/examples/scenes/README.md) names the picture and\n"
-    "has the same options; those of the line come before.\n"
+    "Converts a panorama to one file for scenes: the light blurred to several\n"
+    "levels, the irradiance, and the brightest spots as lights. PICTURE is "
+    ".exr,\n"
+    ".hdr, .dds (with the image plug-in) or .pfm, twice as wide as high, or\n"
+    "3 x 2 faces of a cube. Negative and non-finite pixels are clamped and "
+    "counted.\n"
+    "A text file NAME.environment (tools/examples/scenes/README.md) names the\n"
+    "picture and has the same options; options of the command line override "
+    "it.\n"
     "\n"
     "  -o, --output OUT\n"
     "  --size N            texels along a side: 16 to 1024, a power of two\n"
     "                      (default 256)\n"
-    "  --lights N          0 to 16 (default 16)\n"
-    "  --turn DEG          about the vertical, to the right\n"
-    "  --scale X           factor of all light\n";
+    "  --lights N          number of lights, 0 to 16 (default 16)\n"
+    "  --turn DEG          rotate about the vertical, to the right\n"
+    "  --scale X           multiply all light by X\n";
 
 /* Values of the command line; -1, or has_ false: not given. */
 struct line {
@@ -370,7 +372,7 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
     int code;
 
     code = bake_line_begin(tool, bake_help, argc, argv, options, take_option,
-                           &line, "takes one environment");
+                           &line, "expects one environment");
     if (code >= 0)
         return code;
     code = environment_file_open(tool, argv[optind], override_options, &line,

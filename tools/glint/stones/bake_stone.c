@@ -10,17 +10,17 @@
 static const char help[] =
     "glint bake NAME.translucent -o OUT.glint [options]\n"
     "\n"
-    "Works out how light spreads below the surface of a stone\n"
-    "(tools/examples/scenes/README.md), fits that by a few kernels, and "
-    "writes\n"
-    "these as integers, for 'material .. translucent OUT.glint' of scenes. "
-    "Says\n"
-    "how near they come to the full table. A minute's work, kept in the "
-    "cache.\n"
+    "Computes how light spreads below the surface of a translucent medium\n"
+    "(tools/examples/scenes/README.md), fits a few kernels to it, and writes "
+    "them\n"
+    "as integers for 'material .. translucent OUT.glint' of a scene. Prints "
+    "the\n"
+    "difference from the full table. Takes about a minute; the result is "
+    "cached.\n"
     "\n"
     "  -o, --output OUT\n"
-    "  --model M           clustered: a kernel for each kind of place, 7 bytes "
-    "a\n"
+    "  --model M           clustered: one kernel per cluster of texels, 7 "
+    "bytes per\n"
     "                      texel (default)\n"
     "                      factored: a sum of terms, 3 bytes each\n"
     "                      albedo: one kernel, 3 bytes\n";
@@ -73,7 +73,7 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
     int code;
 
     code = bake_line_begin(tool, help, argc, argv, options, parse_option, &line,
-                           "takes one stone");
+                           "expects one translucent medium");
     if (code >= 0)
         return code;
     status = stone_file_read(tool, argv[optind], override_text, &line, true,

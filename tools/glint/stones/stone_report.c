@@ -62,7 +62,7 @@ static void print_text(const struct stone_file *file, const struct counts *n)
     const struct glint_translucent_header *h = file->stone.header;
     const int side = 1 << h->side_log2;
 
-    printf("%s, a translucent stone of %dx%d texels of %g mm, index %.4g\n\n",
+    printf("%s, a translucent medium of %dx%d texels of %g mm, index %.4g\n\n",
            h->name, side, side, h->texel_um / 1000., h->index_q16 / 65536.);
     printf("model        %s, %u plane%s of rank %u, kernels of %ux%u\n",
            model_name(h), h->n_planes, h->n_planes > 1 ? "s" : "", h->rank,
