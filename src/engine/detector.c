@@ -3,8 +3,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/frame/block.h"
+
+/* Min number of spots of a still picture whose power is measured. */
+enum { MEASURED = 16 };
 
 /* Returns the max number of tracks if at most MAX lamps are shown. The
  * number is larger than MAX, so that a lamp that becomes strong has been
@@ -168,17 +172,40 @@ static int find_spots(struct glint_lamp_detector *f,
     return n;
 }
 
+/* Moves the MAX of N spots that have the most power to the front, the
+ * strongest first; equal ones keep their order. */
+static void choose_strongest(struct glint_spot *spot, int n, int max)
+{
+    for (int i = 0; i < max; i++) {
+        int best = i;
+        struct glint_spot strongest;
+
+        for (int k = i + 1; k < n; k++)
+            if (spot[k].power_q16 > spot[best].power_q16)
+                best = k;
+        strongest = spot[best];
+        memmove(&spot[i + 1], &spot[i], (size_t)(best - i) * sizeof *spot);
+        spot[i] = strongest;
+    }
+}
+
 /* Finds the lamps of IMAGE without regard to earlier pictures; returns their
- * number. */
+ * number. Among up to MEASURED spots those of the most power are chosen: a
+ * flat window has more clipped light than a lamp that is brighter. */
 static int find_still_lamps(struct glint_lamp_detector *f,
                             const struct glint_image *image)
 {
-    const int n = find_spots(f, image, f->max);
+    const int n = find_spots(f, image, max_i32(f->max, MEASURED));
     int n_lights = 0;
 
-    for (; n_lights < n && !f->spot[n_lights].faint; n_lights++)
-        f->track[n_lights] =
-            make_still_track(&f->spot[n_lights], (uint32_t)n_lights + 1);
+    while (n_lights < n && !f->spot[n_lights].faint)
+        n_lights++;
+    if (n_lights > f->max) {
+        choose_strongest(f->spot, n_lights, f->max);
+        n_lights = f->max;
+    }
+    for (int i = 0; i < n_lights; i++)
+        f->track[i] = make_still_track(&f->spot[i], (uint32_t)i + 1);
     return n_lights;
 }
 

@@ -166,6 +166,35 @@ static void read_text(struct lamp_list *list, const char *text)
 
 /* Checks that CSV and JSON lines give the same lamps; a row belongs to one
  * frame, or to all frames. */
+/* Checks that of a lamp and a larger flat window, which clip alike, the lamp
+ * is kept, as its halo shows that it has more light. */
+TEST(strongest_lamp)
+{
+    static uint8_t grey[W * H];
+    static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
+    const struct glint_view view = glint_view_fit(W, H, 36, 24);
+    struct glint_image image = glint_image_over(grey, GLINT_GREY, W, H);
+    struct glint_lamp_detector finder = {.headroom_ev = -1, .max = 1};
+    struct glint_lamp_finder_config cfg;
+    double x, y;
+
+    for (int i = 0; i < W * H; i++) {
+        const double r2 = pow(i % W - 80, 2) + pow(i / W - 80, 2);
+
+        grey[i] = (uint8_t)canvas_srgb_code(fmin(1, 80 / (1 + r2)));
+    }
+    draw_square(&image, 240, 140, 18);
+    glint_lamp_finder_defaults(&cfg, W, H);
+    cfg.judge = 0;
+    assert_ok(glint_lamp_detector_open(&finder, &cfg));
+    assert_int_equal(
+        glint_lamp_detector_frame(&finder, &image, 0, &view, 50, lamp), 1);
+    glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
+    assert_near(x, 80, 1);
+    assert_near(y, 80, 1);
+    glint_lamp_detector_close(&finder);
+}
+
 TEST(lists)
 {
     static const char *const texts[2] = {
