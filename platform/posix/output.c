@@ -337,6 +337,21 @@ static int create_temporary(char *name, mode_t mode)
     return fd;
 }
 
+/* Reports that no temporary file could be created, with the first 40 bytes
+ * of its folder's name: the cause must fit behind it. */
+static enum glint_status report_folder(const struct glint_output *out,
+                                       int number, struct glint_error *error)
+{
+    const char *const slash = strrchr(out->target, '/');
+    const int n = slash && slash > out->target ? (int)(slash - out->target) : 1;
+
+    return glint_error_report(error, GLINT_E_OUTPUT, out->name,
+                              "cannot create a temporary file in its folder "
+                              "'%.*s': %s",
+                              n < 40 ? n : 40, slash ? out->target : ".",
+                              strerror(number));
+}
+
 /* Opens a temporary file in the folder of out->target. MODE: its permission
  * bits, or (mode_t)-1 for the default by umask. */
 static enum glint_status open_temporary(struct glint_output *out, mode_t mode,
@@ -363,10 +378,7 @@ static enum glint_status open_temporary(struct glint_output *out, mode_t mode,
             break;
     }
     if (out->fd < 0)
-        return glint_error_report(
-            error, GLINT_E_OUTPUT, out->name,
-            "cannot create a temporary file in its folder: %s",
-            strerror(number));
+        return report_folder(out, number, error);
     /* The lock shows clean_folder() that the file is in use. */
     flock(out->fd, LOCK_EX | LOCK_NB);
     if (keep && fchmod(out->fd, mode) < 0)

@@ -432,7 +432,7 @@ TEST(refuses)
 
     check_refusal("/nowhere/x.ppm",
                   "/nowhere/x.ppm: cannot create a temporary file in its "
-                  "folder: No such file or directory");
+                  "folder '/nowhere': No such file or directory");
     check_refusal("", ": No such file or directory");
     snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
     check_refusal(scratch_dir, text);
@@ -445,7 +445,8 @@ TEST(refuses)
     assert_memory_equal(error.text, "...000", 6);
     assert_non_null(strstr(error.text,
                            "1/x?.ppm: cannot create a temporary file in its "
-                           "folder: No such file or directory"));
+                           "folder '/nowhere/00"));
+    assert_non_null(strstr(error.text, "00': No such file or directory"));
 }
 
 TEST(checks)
@@ -461,7 +462,7 @@ TEST(checks)
                      GLINT_E_OUTPUT);
     assert_string_equal(error.text,
                         "/nowhere/x.ppm: cannot create a temporary file in its "
-                        "folder: No such file or directory");
+                        "folder '/nowhere': No such file or directory");
     assert_ok(glint_output_check("-", &error));
     assert_ok(glint_output_check("/dev/null", &error));
     snprintf(name, sizeof name, "%s/x.ppm", scratch_dir);

@@ -266,6 +266,21 @@ static int size_engine(const struct tool *tool, struct drawing *d)
     return EXIT_OK;
 }
 
+/* Warns of lamps of --light-at outside a picture of WIDTH x HEIGHT. */
+static void warn_of_outside(const struct tool *tool, const struct lamp_list *at,
+                            int width, int height)
+{
+    for (int i = 0; i < at->n && !tool->quiet; i++) {
+        const struct lamp_row *const row = &at->row[i];
+
+        if (row->x < 0 || row->y < 0 || row->x > width || row->y > height)
+            fprintf(stderr,
+                    "glint %s: --light-at %g,%g lies outside the picture of "
+                    "%d x %d pixels\n",
+                    tool->name, row->x, row->y, width, height);
+    }
+}
+
 int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
                  int height)
 {
@@ -273,6 +288,7 @@ int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
     int code;
 
     unsize(run);
+    warn_of_outside(tool, &drawing->line.at, width, height);
     run->view = drawing->files.has_lens
                     ? opened_lens_view(&drawing->files.lens,
                                        &drawing->line.settings, width, height)

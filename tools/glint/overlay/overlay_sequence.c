@@ -156,7 +156,7 @@ static int draw_numbered(struct tool *tool, struct overlay *o,
     code = overlay_check_apart(tool, o, from, to);
     if (code == EXIT_OK)
         code = overlay_picture(tool, o, from, to);
-    if (code == EXIT_OK)
+    if (code == EXIT_OK && l->n > 1)
         overlay_progress(tool, o);
     return code;
 }
