@@ -90,12 +90,28 @@ static void report_effort(struct bake_run *run)
         o->progress(o->progress_ctx, FITTED * glint_effort_done(&run->effort));
 }
 
-static void report_fit(void *ctx, double work, double share)
-{
-    struct bake_run *run = ctx;
+/* Context of report_fit(): a ghost that one worker fits. */
+struct fit_report {
+    struct bake_run *run;
+    bool tells;  /* reports progress */
+    double work; /* of the last call */
+};
 
-    glint_effort_spend(&run->effort, work, share);
-    report_effort(run);
+/* Counts the work of a fit. Returns GLINT_E_UNSUPPORTED, without a message, if
+ * the caller of the bake does not allow it. */
+static enum glint_status report_fit(void *ctx, double work, double share)
+{
+    struct fit_report *const r = ctx;
+    const struct glint_bake_options *const o = &r->run->options;
+    const int more = (int)(work - r->work);
+
+    r->work = work;
+    if (r->tells) {
+        glint_effort_spend(&r->run->effort, work, share);
+        report_effort(r->run);
+    }
+    return !o->allow || o->allow(o->allow_ctx, more) ? GLINT_OK
+                                                     : GLINT_E_UNSUPPORTED;
 }
 
 /* Factor on all tolerances of lenses that are not round. Their directions
@@ -135,9 +151,10 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost, bool tells)
         round ? glint_fit_ghost : glint_skew_fit;
     struct glint_visible *const visible =
         allocate_visible(run, ghost, run->options.n_beside);
+    struct fit_report report = {run, tells, 0};
     const enum glint_status status =
-        visible ? fit(visible, run->options.max_deg, &tolerance,
-                      tells ? report_fit : NULL, run, &run->fitted[ghost])
+        visible ? fit(visible, run->options.max_deg, &tolerance, report_fit,
+                      &report, &run->fitted[ghost])
                 : GLINT_E_MEMORY;
 
     free(visible);

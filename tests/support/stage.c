@@ -104,7 +104,7 @@ bool stage_model(struct stage *stage, double tolerance, double max_deg)
                               .n_threads = 1,
                               .workers = stage->workers};
 
-    return model_cached(&tool, &stage->lens,
+    return model_cached(&tool, &stage->lens, stage->lens.name,
                         make_options(stage, tolerance, max_deg),
                         &stage->file) == EXIT_OK &&
            set_of_model(stage);

@@ -272,7 +272,7 @@ static int write_model(const struct lenses *l, const struct entry *e)
         return tool_usage(l->tool, "%s: the name is too long", l->folder);
     if (stat(path, &st) == 0)
         return EXIT_OK;
-    code = model_cached(l->tool, &e->table, e->options, &model);
+    code = model_cached(l->tool, &e->table, e->table.name, e->options, &model);
     if (code == EXIT_OK)
         code = save_model(l->tool, path, &model);
     if (code == EXIT_OK && !l->tool->quiet)

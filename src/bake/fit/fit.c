@@ -215,16 +215,16 @@ static int push_halves(struct glint_zone_piece *stack, int n,
     return n + 2;
 }
 
-/* Counts the fit of P. KEPT: the fit is accepted, so the zone is done. */
-static void count_fit(struct fitter *f, const struct glint_zone_piece *p,
-                      bool kept)
+/* Counts the fit of P. KEPT: the fit is accepted, so the zone is done. Returns
+ * the status of told(). */
+static enum glint_status count_fit(struct fitter *f,
+                                   const struct glint_zone_piece *p, bool kept)
 {
     f->work += p->thorough ? 2 : 1;
     if (kept)
         f->share += (p->hi - p->lo) / f->sines * 0.5 * (p->w1 - p->w0) /
                     (double)(1 << p->depth);
-    if (f->told)
-        f->told(f->told_ctx, f->work, f->share);
+    return f->told ? f->told(f->told_ctx, f->work, f->share) : GLINT_OK;
 }
 
 /* Fits the zones of a range of angles, depth first from the lowest angle up;
@@ -252,7 +252,8 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
         if (status == GLINT_OK)
             next =
                 n + 2 > DEEP ? GLINT_KEEP : glint_next(&f->rules, &p, &attempt);
-        count_fit(f, &p, next == GLINT_KEEP);
+        if (status == GLINT_OK)
+            status = count_fit(f, &p, next == GLINT_KEEP);
         if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
         system.part = f->n_parts;

@@ -22,8 +22,10 @@
 
 /* Called after each fit of a zone. WORK is the number of fits so far, where
  * thorough fits count twice; SHARE is the fraction of the ghost's angles
- * that are done, 0 .. 1. */
-typedef void glint_fit_told_fn(void *ctx, double work, double share);
+ * that are done, 0 .. 1. A status other than GLINT_OK ends the fit of the
+ * ghost, which returns it. */
+typedef enum glint_status glint_fit_told_fn(void *ctx, double work,
+                                            double share);
 
 /* Fits a ghost; TOLD may be NULL. The caller must call glint_fitted_finish()
  * on OUT even after an error. May return GLINT_E_MEMORY. */

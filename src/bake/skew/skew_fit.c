@@ -361,8 +361,8 @@ static enum glint_status fit_patch(struct fitter *f,
             next = choose_next_step(&p, &a, &system);
         f->work++;
         f->share += next == KEEP ? compute_area(&p) / f->area : 0;
-        if (f->told)
-            f->told(f->told_ctx, f->work, f->share);
+        if (f->told && status == GLINT_OK)
+            status = f->told(f->told_ctx, f->work, f->share);
         if (status == GLINT_OK && next == KEEP && system.n_outputs > 0) {
             system.part = glint_piece_number(f->out, &system);
             status = glint_fitted_append(f->out, &system);

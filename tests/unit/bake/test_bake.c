@@ -12,6 +12,7 @@
 #include "bake/measure_model.h"
 #include "bake/fit/zone_rays.h"
 #include "bake/fit/quantise.h"
+#include "glint/pool.h"
 #include "glint/transfer.h"
 #include "support/lens_check.h"
 #include "support/shuffle.h"
@@ -59,6 +60,50 @@ TEST_OPEN
 TEST_CLOSE
 {
     free(model.data);
+}
+
+struct work {
+    int sum, most;
+};
+
+static bool count_work(void *ctx, int more)
+{
+    struct work *const w = ctx;
+
+    return __atomic_add_fetch(&w->sum, more, __ATOMIC_RELAXED) <= w->most;
+}
+
+/* Bakes with at most MOST fits on N workers. Returns the work. */
+static int bake_at_most(int most, int n, enum glint_status want)
+{
+    struct glint_bake_options o = options;
+    struct work work = {0, most};
+    struct glint_bake_report report;
+    struct glint_error error;
+    unsigned char *data = NULL;
+    size_t bytes;
+
+    assert_ok(glint_pool_create(&o.workers, n));
+    o.allow = count_work;
+    o.allow_ctx = &work;
+    assert_true(glint_bake(&heliar, &o, &data, &bytes, &report, &error) ==
+                want);
+    assert_true((data != NULL) == (want == GLINT_OK));
+    free(data);
+    glint_pool_destroy(o.workers);
+    return work.sum;
+}
+
+/* The work of a bake does not depend on the number of workers. A bake that
+ * needs one fit more than is allowed ends without a model. */
+TEST(work_is_limited)
+{
+    const int all = bake_at_most(1 << 30, 1, GLINT_OK);
+
+    assert_true(all > 9);
+    assert_true(bake_at_most(all, 3, GLINT_OK) == all);
+    bake_at_most(all - 1, 3, GLINT_E_UNSUPPORTED);
+    bake_at_most(5, 1, GLINT_E_UNSUPPORTED);
 }
 
 static void parse_lens(struct glint_prescription *lens, const char *text)

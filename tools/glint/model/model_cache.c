@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "model/cache_file.h"
 #include "model/lens_files.h"
@@ -118,13 +119,43 @@ static void write_cached(const struct tool *tool, char *path,
                 tool->name, error.text);
 }
 
-/* Bakes the model of LENS into MODEL and writes it to the cache file PATH,
- * unless that is NULL. Returns an exit code. */
+/* Returns whether FILE is a lens file that does not come with glint. */
+static bool is_foreign(const struct glint_prescription *lens, const char *file)
+{
+    char own[CACHE_PATH_BYTES];
+    struct stat a, b;
+
+    return tool_is_file_name(file) &&
+           (!lens_file_find(lens->name, own, sizeof own) || stat(own, &a) < 0 ||
+            stat(file, &b) < 0 || a.st_ino != b.st_ino || a.st_dev != b.st_dev);
+}
+
+/* Counts WORK, by several threads at once. Returns false if the sum is above
+ * MODEL_CACHE_WORK. */
+static bool allow_work(void *ctx, int work)
+{
+    return __atomic_add_fetch((int *)ctx, work, __ATOMIC_RELAXED) <=
+           MODEL_CACHE_WORK;
+}
+
+/* Reports that baking FILE is more than MODEL_CACHE_WORK. */
+static int refuse_work(const struct tool *tool, const char *file)
+{
+    tool_error(tool,
+               "%.200s: baking takes more than about 30 s of processor time; "
+               "run glint bake on it, and give its model as the lens",
+               file);
+    return EXIT_LENS;
+}
+
+/* Bakes the model of LENS, given as FILE, into MODEL and writes it to the cache
+ * file PATH, unless that is NULL. Returns an exit code. */
 static int bake_model(const struct tool *tool,
-                      const struct glint_prescription *lens,
+                      const struct glint_prescription *lens, const char *file,
                       struct glint_bake_options options, char *path,
                       struct model_file *model)
 {
+    int work = 0;
     struct glint_error error = {""};
     struct glint_bake_report report;
     struct tool_progress progress;
@@ -138,9 +169,13 @@ static int bake_model(const struct tool *tool,
     options.workers = tool->workers;
     options.progress = tool_progress_show;
     options.progress_ctx = &progress;
+    options.allow = is_foreign(lens, file) ? allow_work : NULL;
+    options.allow_ctx = &work;
     tool_progress_start(&progress, tool, "bake");
     status = glint_bake(lens, &options, &data, &model->bytes, &report, &error);
     tool_progress_end(&progress);
+    if (work > MODEL_CACHE_WORK)
+        return refuse_work(tool, file);
     model->data = data;
     if (status == GLINT_OK) {
         status = glint_lens_open(&model->lens, data, model->bytes, &reason);
@@ -180,7 +215,8 @@ static void report_wait(void *ctx)
 }
 
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
-                 struct glint_bake_options options, struct model_file *model)
+                 const char *file, struct glint_bake_options options,
+                 struct model_file *model)
 {
     const uint64_t key = glint_bake_key(lens, &options);
     struct wait wait = {tool, lens->name};
@@ -190,8 +226,9 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     if (load_installed(lens->name, key, model))
         return EXIT_OK;
     if (!model_path(path, sizeof path, lens->name, key))
-        return tool->no_bake ? refuse_bake(tool, lens)
-                             : bake_model(tool, lens, options, NULL, model);
+        return tool->no_bake
+                   ? refuse_bake(tool, lens)
+                   : bake_model(tool, lens, file, options, NULL, model);
     if (load_model(path, key, read_cached, model))
         return EXIT_OK;
     if (tool->no_bake)
@@ -199,7 +236,7 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     /* Another process may be baking the same model. */
     lock = cache_file_lock(path, report_wait, &wait);
     if (!load_model(path, key, read_cached, model))
-        code = bake_model(tool, lens, options, path, model);
+        code = bake_model(tool, lens, file, options, path, model);
     cache_file_unlock(path, lock);
     return code;
 }

@@ -13,11 +13,17 @@
 #include "model/model_file.h"
 
 /* Opens the model of LENS baked with OPTIONS as MODEL: the installed model,
- * the cached model, or a new model, which is baked and cached. Overwrites
- * workers and progress of OPTIONS. Returns an exit code, after printing the
- * reason on failure. */
+ * the cached model, or a new model, which is baked and cached. FILE: name of
+ * the lens as the command line gives it. A lens file that is not in a folder of
+ * glint's lenses is not baked if that is more than MODEL_CACHE_WORK; the
+ * command bake is for that. Overwrites workers, progress and allow of OPTIONS.
+ * Returns an exit code, after printing the reason on failure. */
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
-                 struct glint_bake_options options, struct model_file *model);
+                 const char *file, struct glint_bake_options options,
+                 struct model_file *model);
+
+/* Work of struct glint_bake_options, allow; about 30 s of processor time. */
+enum { MODEL_CACHE_WORK = 750 };
 
 /* Returns whether the model is installed or cached, so that no bake is
  * needed. */

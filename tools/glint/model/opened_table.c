@@ -84,9 +84,11 @@ static int stop_table(const struct tool *tool, struct opened_lens *lens,
     return settings_refuse_stop(tool, settings, error.text);
 }
 
-/* Finds or bakes the model of LENS for lights up to DEG off the axis. */
+/* Finds or bakes the model of LENS, given as NAME, for lights up to DEG off the
+ * axis. */
 static int find_model(const struct tool *tool, struct opened_lens *lens,
-                      const struct settings *settings, double deg)
+                      const struct settings *settings, const char *name,
+                      double deg)
 {
     struct glint_bake_options options =
         opened_table_bake(&lens->table, settings);
@@ -102,7 +104,7 @@ static int find_model(const struct tool *tool, struct opened_lens *lens,
         return code == EXIT_OK ? stop_table(tool, lens, settings) : code;
     lens->is_unbaked = false;
     return code == EXIT_OK
-               ? model_cached(tool, &lens->table, options, &lens->model)
+               ? model_cached(tool, &lens->table, name, options, &lens->model)
                : code;
 }
 
@@ -129,8 +131,9 @@ int opened_table(const struct tool *tool, struct opened_lens *lens,
         status = set_projection(lens, &settings->camera, &deg, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    return o->rays == GLINT_RAYS_EXACT ? EXIT_OK
-                                       : find_model(tool, lens, settings, deg);
+    return o->rays == GLINT_RAYS_EXACT
+               ? EXIT_OK
+               : find_model(tool, lens, settings, name, deg);
 }
 
 const struct glint_frame_rays *opened_table_rays(void)
