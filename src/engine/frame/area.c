@@ -49,8 +49,8 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
     return rule;
 }
 
-/* Sets PLACE to point I of a sunflower pattern in a circle of radius 1; returns
- * its fraction of the power. */
+/* Sets PLACE to point I of a sunflower pattern in the unit circle; returns
+ * the fraction of the lamp's power that this point has. */
 static double set_sunflower_point(const struct glint_area *a, int i,
                                   double place[2])
 {
@@ -63,9 +63,9 @@ static double set_sunflower_point(const struct glint_area *a, int i,
     return weight / a->points;
 }
 
-/* Sets the centre and spread of the first N points. A few points lie off the
- * middle and too close together. One point cannot be spread; from two to four
- * the spread sets in gradually. */
+/* Computes the centre and spread of the first N points, as few points are
+ * off-centre and too close together. One point has no spread; from two to
+ * four points the correction is blended in. */
 static void set_pattern(struct glint_area *a, int n)
 {
     const double part = fmin((a->points - 1) / 3, 1);
@@ -107,11 +107,11 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     return n;
 }
 
-/* Each point represents an equal part of the ellipse, with the same shape: the
- * distance is the length of such a part. For a tube it is at most twice that of
- * a circle of the tube's area: so that ghosts of seven points are not as wide
- * as the tube is long. From one to four points the distance sets in gradually,
- * as the spread does, so that nothing steps. */
+/* Returns the merge distance: the size of the part of the ellipse that one
+ * point represents. For a tube it is at most twice that of a circle of equal
+ * area, so that the ghosts of seven points are not as wide as the tube is
+ * long. From one to four points the distance is blended in, as the spread
+ * is, so that it changes continuously. */
 double glint_area_apart(const struct glint_area *area)
 {
     const double major = 2 * area->lamp.axis[0];

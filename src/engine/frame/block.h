@@ -8,8 +8,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* Returns BYTES, aligned to 64, within *MEM, which the caller frees. If memory
- * is short or BYTES is 0, returns NULL and sets *MEM to NULL. */
+/* Allocates BYTES and returns them aligned to 64. Sets *MEM to the block
+ * that the caller frees. If memory is short or BYTES is 0, returns NULL and
+ * sets *MEM to NULL. */
 static inline void *glint_block_take(size_t bytes, void **mem)
 {
     const uintptr_t last = 63;

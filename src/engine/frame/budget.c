@@ -5,21 +5,22 @@
 
 #include "glint/light.h"
 
-/* octaves by which a first frame takes longer, as it allocates memory */
+/* log2 of the factor by which a first frame is slower, as it allocates
+ * memory */
 #define FIRST 1
 /* fraction of the budget that frames are planned for */
 #define ROOM 0.98
-/* fraction of the budget below which a finer quality is tried */
+/* fraction of the budget below which the next finer quality is tried */
 #define SPARE 0.9
-/* fraction of the budget that a quality may be predicted to take for a trial */
+/* max predicted time of a trial / budget */
 #define TRY 1.15
-/* fraction of an error, in octaves, that one frame teaches */
+/* fraction of a prediction's error, in octaves, that one frame corrects */
 #define LEARNING 0.5
-/* largest error, in octaves, that one frame can teach */
+/* max correction by one frame, octaves */
 #define MOST_WRONG 0.8
-/* least fraction of an error that other qualities learn */
+/* min fraction of a correction that is applied to other qualities */
 #define SPREAD 0.1
-/* fraction of what other qualities learned that is forgotten each frame */
+/* fraction of their correction that other qualities lose each frame */
 #define FORGETTING 0.01
 
 /* Max plans of one frame. A plan predicts poorly for a fineness far from its
@@ -51,8 +52,8 @@ void glint_budget_begin(struct glint_budget *b, const struct glint_dials *asked)
  * by visibility. LOSS: PSNR against a frame without any of it, dB; estimates,
  * as no sweep has measured dust and veil yet. */
 static const struct cut {
-    double dim;    /* least dim_codes */
-    int dust_log2; /* largest */
+    double dim;    /* min dim_codes */
+    int dust_log2; /* max dust_log2 */
     bool no_veil;
     double loss;
 } cuts[] = {{0, GLINT_SHADE_MOST_LOG2, false, 90},
@@ -111,8 +112,7 @@ static double find_learned_octaves(const struct glint_budget *b, int step)
            (at - below) * (b->octaves[below + 1] - b->octaves[below]);
 }
 
-/* Returns the milliseconds that PLAN would take at quality STEP and CUT, as
- * predicted. */
+/* Returns the predicted time of PLAN at quality STEP and CUT, ms. */
 static double predict_ms(const struct glint_budget *b,
                          const struct glint_cost_plan *plan, int step, int cut)
 {
@@ -140,14 +140,14 @@ static int find_best_step(const struct glint_budget *b,
     return low;
 }
 
-/* Returns the mean square of the difference that a PSNR of DB stands for. */
+/* Converts a PSNR of DB to the mean square error, white 1. */
 static double convert_db_to_mse(double db)
 {
     return pow(10, -db / 10);
 }
 
-/* Returns the error of quality STEP with CUT; above 1 if it would not fit, the
- * less so the less it takes. */
+/* Returns the estimated error of quality STEP with CUT. For a frame that
+ * does not fit the budget it is above 1 and rises with the predicted time. */
 static double estimate_error(const struct glint_budget *b,
                              const struct glint_cost_plan *plan, int step,
                              int cut)
@@ -175,8 +175,9 @@ static bool is_of_use(const struct glint_cost_plan *plan, int cut)
            (plan->n_veil > 0 && c->no_veil);
 }
 
-/* Chooses the cut and the quality of the least error that fit the budget.
- * Returns the quality; one bundle in some stands for all of many. */
+/* Chooses the cut and the quality with the smallest error that fit the
+ * budget. Returns the quality. Evaluates a sample of the bundles if there
+ * are many. */
 static int choose_step_and_cut(struct glint_budget *b,
                                const struct glint_cost_plan *plan)
 {
@@ -243,17 +244,17 @@ bool glint_budget_choose(struct glint_budget *b,
     return true;
 }
 
-/* Learns from a frame that took MS, so that the same prediction would be less
- * wrong by LEARNING. Neighbouring qualities learn, too, and all qualities learn
- * more the more wrong the prediction was, as when the machine has become
- * slower. What other qualities learned long ago is forgotten, or one slow frame
- * could keep a level from ever being tried again. */
+/* Corrects the predictions by a frame that took MS: the same prediction
+ * would then be wrong by a factor smaller by LEARNING. Neighbouring
+ * qualities are corrected, too, and all qualities the more, the larger the
+ * error was, as when the machine has become slower. Corrections of other
+ * qualities fade, so that one slow frame does not exclude a quality forever. */
 void glint_budget_note(struct glint_budget *b, double ms)
 {
     const double at = find_step_place(b->step);
     const double part = at - floor(at);
     const double both = part * part + (1 - part) * (1 - part);
-    /* A frame that waited for other programs says little. */
+    /* Errors are clamped, as a frame may have waited for other programs. */
     const double wrong =
         fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));

@@ -18,13 +18,13 @@ enum { GLINT_BUDGET_STEPS = 64 }; /* number of steps of quality */
 
 struct glint_budget {
     double ms;               /* milliseconds per frame; 0: no budget */
-    double calibrated_minsn; /* millions of instructions of the frame by which
-                                speed was measured; 0: it was not */
+    double calibrated_minsn; /* millions of instructions of the calibration
+                                frame; 0: not calibrated */
     double ms_per_minsn;     /* milliseconds per million instructions on this
                                 machine with this lens */
     double octaves[GLINT_QUALITY_LEVELS]; /* log2 of measured over predicted
                                              time, as learned, by quality */
-    struct glint_dials asked;             /* of this frame */
+    struct glint_dials asked;             /* requested dials of this frame */
     int step;     /* quality of the last frame, 0 .. GLINT_BUDGET_STEPS */
     int cut;      /* steps by which other dials were reduced, 0: none */
     int n_tries;  /* number of plans tried for this frame */
@@ -37,12 +37,14 @@ struct glint_budget {
 
 void glint_budget_init(struct glint_budget *budget, double ms);
 
-/* Begins a frame of the dials ASKED: those that do not depend on quality. */
+/* Begins a frame with the requested dials ASKED; only those that do not
+ * depend on quality are used. */
 void glint_budget_begin(struct glint_budget *budget,
                         const struct glint_dials *asked);
 
 /* Adjusts DIALS, with which PLAN was made, if the plan misses the budget or
- * leaves much of it; returns whether it did, so that a new plan is needed. */
+ * leaves much of it unused. Returns whether it did; the frame must then be
+ * planned again. */
 bool glint_budget_choose(struct glint_budget *budget,
                          const struct glint_cost_plan *plan,
                          struct glint_dials *dials);
@@ -52,7 +54,8 @@ bool glint_budget_choose(struct glint_budget *budget,
 struct glint_dials glint_budget_dials(const struct glint_budget *budget,
                                       const struct glint_dials *asked);
 
-/* Notes the time of the whole frame, milliseconds. */
+/* Corrects the predictions by MS, the time of the whole frame in
+ * milliseconds. */
 void glint_budget_note(struct glint_budget *budget, double ms);
 
 double glint_budget_quality(const struct glint_budget *budget);

@@ -4,7 +4,7 @@
 
 #include "engine/frame/frame_parts.h"
 
-/* Draws a few frames; lowers *LEAST_MS to the time of the quickest. */
+/* Draws a few frames; sets *LEAST_MS to the time of the fastest, if lower. */
 static enum glint_status draw_some(struct glint_frame *frame,
                                    const struct glint_image *image,
                                    struct glint_engine_report *report,
@@ -16,7 +16,7 @@ static enum glint_status draw_some(struct glint_frame *frame,
 
     for (int i = 0; i < 4 && status == GLINT_OK; i++) {
         status = glint_frame_draw(frame, &lamp, 1, 1, image, report);
-        if (i > 0) /* the first frame takes memory */
+        if (i > 0) /* the first frame allocates memory */
             *least_ms = fmin(*least_ms, report->plan_ms + report->bin_ms +
                                             report->draw_ms);
     }

@@ -8,11 +8,11 @@
 
 #define QUAD 2 /* number of single pixels that take as long as four at once */
 
-/* Steps an octave that light has which is not rounded. */
+/* Steps per octave that stand for light that is not rounded. */
 #define MOST_STEPS 4096
 
-/* log2 of the most parts a side of a cell, and places a side of the stop at
- * which they are counted */
+/* log2 of the max number of parts per side of a cell; number of sample
+ * positions per side of the stop at which parts are counted */
 enum { MOST_LOG2 = 4, SAMPLES = 24 };
 
 /* By make cost-fit: least squares of the relative errors of random frames, each
@@ -46,12 +46,12 @@ double glint_cost_minsn(const struct glint_cost *cost)
     return 1e-3 * sum;
 }
 
-/* cells a side that are taken to be enough for a grid that got
- * GLINT_LEAST_CELLS */
+/* Estimated cells per side at which a grid planned with GLINT_LEAST_CELLS is
+ * fine enough. */
 enum { LESS_CELLS = 6 };
 
-/* Returns the cells a side that the plan would have chosen for grids FINER
- * times as fine. */
+/* Returns the number of cells per side that the plan would choose for grids
+ * FINER times as fine; PLANNED is the number in the plan. */
 static double predict_cells(int planned, double finer)
 {
     const double free =
@@ -62,27 +62,28 @@ static double predict_cells(int planned, double finer)
 
 /* ------------------------------------------------------------------ bundles */
 
-/* A bundle as it would be with other dials. */
+/* A planned bundle, predicted for other dials. */
 struct bundle {
-    double cells;  /* a side */
-    double light;  /* display white */
-    double area;   /* pixels that its light falls on, in the picture or not */
-    double inside; /* fraction of its rays that get through */
-    double view;   /* fraction of its light's box that lies in the picture */
-    double log_bright; /* natural logarithm of how much more its edges are, as
-                          light differs within it */
-    double rings;      /* outlines of a soft edge */
-    double share; /* of it that is drawn, as it is dim, or 3 bundles for 1 */
+    double cells;      /* per side */
+    double light;      /* display white */
+    double area;       /* pixels that the ghost covers, on-screen or not */
+    double inside;     /* fraction of the rays that are not blocked */
+    double view;       /* fraction of the ghost's box that is on-screen */
+    double log_bright; /* natural logarithm of the factor on the number of edges
+                          because light varies within the ghost */
+    double rings;      /* number of nested outlines of a soft edge */
+    double share; /* expected fraction of the bundle that is drawn: dim ghosts
+                     share rays */
 };
 
-/* Returns the steps an octave for a ghost that is OCTAVES below white, in
- * codes. */
+/* Returns the steps per octave, in codes, for a ghost OCTAVES below white. */
 static double count_steps_per_octave(int steps, double octaves)
 {
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
 }
 
-/* Returns how many outlines a soft edge makes (edges/ghost_rings.c). */
+/* Returns the number of outlines that draw a soft edge
+ * (edges/ghost_rings.c). */
 static double count_rings(const struct glint_cost_plan *p,
                           const struct bundle *b)
 {
@@ -99,8 +100,8 @@ static double count_rings(const struct glint_cost_plan *p,
     return exp2(fmax(most, 0));
 }
 
-/* Returns how many of the bundle are left if ghosts below DIM codes share rays
- * where they were planned to below WAS codes. */
+/* Returns the fraction of the bundle that is still drawn if ghosts below DIM
+ * codes share rays; the plan was made with WAS codes. */
 static double estimate_drawn_share(const struct glint_cost_plan *p,
                                    const struct glint_planned *b, double light,
                                    double was, double dim)
@@ -119,10 +120,10 @@ static double estimate_drawn_share(const struct glint_cost_plan *p,
 
 /* ------------------------------------------------------------------- counts */
 
-/* How many edges a bundle has, and rows of pixels that they cross, as products
- * of powers: least squares over the bundles of 48 random frames of four lenses
- * (Poisson regression). Sums over a frame are off by 15 percent in the
- * median. */
+/* Number of edges of a bundle, and of the pixel rows that they cross, as
+ * products of powers: least squares over the bundles of 48 random frames of
+ * four lenses (Poisson regression). Sums over a frame have a median error of
+ * 15 percent. */
 static double estimate_edges(const struct bundle *b, double log_steps)
 {
     const double n = log(b->cells);
@@ -140,7 +141,7 @@ static double estimate_rows(const struct bundle *b, double log_steps,
                0.293 * b->log_bright);
 }
 
-/* Makes bundle P of a plan as it would be with the dials THEN. */
+/* Predicts planned bundle B for the dials THEN. */
 static struct bundle predict_bundle(const struct glint_cost_plan *p,
                                     const struct glint_planned *b,
                                     const struct glint_dials *then,
@@ -166,11 +167,11 @@ static struct bundle predict_bundle(const struct glint_cost_plan *p,
 /* The cells of a ghost that what lies in the stop shades (edges/ghost_shade.h).
  */
 struct cells {
-    double cells;  /* of the ghost, a side */
+    double cells;  /* number of the ghost's cells per side */
     double light;  /* display white */
-    double area;   /* pixels that its light falls on */
+    double area;   /* pixels that the ghost covers */
     double inside; /* fraction of its cells within the stop */
-    double view;   /* fraction of these in the picture */
+    double view;   /* fraction of these that are on-screen */
 };
 
 /* Returns the smallest visible step of light on top of LIGHT. */
@@ -210,7 +211,7 @@ static double mean_parts(const struct glint_shade *s, int level, double step,
         if (x * x + y * y > 1)
             continue;
         n++;
-        /* bits of how many steps the light differs by */
+        /* log2 of the number of visible steps by which the light differs */
         for (; d >= 1 && log2_parts < most; log2_parts++)
             d /= 2;
         if (log2_parts)
@@ -229,7 +230,7 @@ static double count_parts(const struct glint_cost_plan *plan,
     const int skipped =
         s->log2 - clamp_int(log2_used, GLINT_SHADE_LEAST_LOG2, s->log2);
     const double n2 = g->cells * g->cells;
-    /* side of a cell, stop radii and pixels */
+    /* side of a cell, in stop radii and in pixels */
     const double side = sqrt(3.14 / (n2 * g->inside));
     const double px = sqrt(g->area / n2);
     const int level = clamp_int((int)floor(log2(side * (1 << (s->log2 - 1)))),
@@ -268,10 +269,11 @@ static void add_bundle_cost(struct glint_cost *cost,
                                 then->dust_log2);
 }
 
-/* Where ghosts lie: each once, whatever its waves. */
+/* Area covered by ghosts; each ghost counts once for all its wavelengths. */
 struct covered {
     int ghost, light;
-    double most, all; /* of this ghost, and of all before; pixels */
+    double most, all; /* pixels: max area of this ghost so far; total of all
+                         ghosts before it */
 };
 
 static void add_covered_area(struct covered *c, const struct glint_planned *p,
@@ -295,7 +297,7 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *p,
     const bool was_half = glint_dials_half(&p->dials) && p->can_half;
     const double width = p->width / (half ? 2. : 1);
     const double height = p->height / (half ? 2. : 1);
-    /* Factor on the number of pixels that were planned for. */
+    /* Number of pixels with the dials THEN / number of pixels as planned. */
     const double larger = pow(4, was_half - half);
     const int every = p->every > 1 ? p->every : 1;
     struct glint_cost cost = {{p->n_looked_at}};

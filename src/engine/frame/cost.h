@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Predicts the cost of a frame from its plan: counts that the plan has or
- * computes cheaply, times the cost of each. */
+ * Predicts the cost of a frame from its plan: counts of operations, known from
+ * the plan or cheap to estimate, times the cost of each operation.
+ */
 #ifndef GLINT_ENGINE_FRAME_COST_H
 #define GLINT_ENGINE_FRAME_COST_H
 
@@ -20,26 +21,29 @@ struct glint_cost_plan {
     const struct glint_flare *flare;
     int width, height;  /* size of the picture */
     double n_looked_at; /* rays that the plan probed */
-    int every;     /* only one of so many bundles is evaluated; 0, 1: all are */
-    bool can_half; /* true: the picture is in codes */
-    bool can_dim;  /* true: three waves, so that ghosts may be dim */
-    double code;   /* light of a code near black; 0: linear */
-    double n_star; /* pixels that parts of stars give light to */
-    double n_veil; /* pixels under a veil, and what spreads it as such */
+    int every;     /* every EVERY-th bundle is evaluated, as a sample; 0, 1: all
+                      bundles are */
+    bool can_half; /* true: half resolution is possible, as the picture is in
+                      codes */
+    bool can_dim;  /* true: dim ghosts may share rays, as three wavelengths are
+                      drawn */
+    double code;   /* light of one code near black; 0: linear picture */
+    double n_star; /* number of pixels lit by stars */
+    double n_veil; /* cost of the veil, in pixels */
     /* Shade of the stop, all of its tables; NULL: there is none. */
     const struct glint_shade *shade;
     struct glint_dials dials; /* dials that the frame was planned with */
 };
 
-/* Predicts the cost of the bundles of PLAN if the dials were THEN. Their
- * fineness must be within a factor of 4 of the planned one, or grids at the
- * limits are misjudged. */
+/* Predicts the cost of the bundles of PLAN for the dials THEN. Their
+ * fineness must be within a factor of 4 of the planned one; outside this
+ * range, grids at their size limits are mispredicted. */
 struct glint_cost glint_cost_of(const struct glint_cost_plan *plan,
                                 const struct glint_dials *then);
 
-/* Returns millions of instructions of a processor with 8 lanes of 32 bits;
- * multiplied by their time on this machine that is the frame's time. Fitted to
- * counts of callgrind. */
+/* Returns millions of instructions on a processor with 8 lanes of 32 bits.
+ * The frame's time is this number times the time per million instructions on
+ * this machine. Fitted to counts by callgrind. */
 double glint_cost_minsn(const struct glint_cost *cost);
 
 #endif

@@ -96,7 +96,7 @@ static void set_waves(struct glint_frame *f)
                 glint_wave_of(s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
 }
 
-/* Returns the chord of the angle that PX pixels on the axis are. */
+/* Returns the chord of the angle that corresponds to PX pixels on the axis. */
 static int32_t convert_px_to_chord_q30(const struct glint_frame *f, double px)
 {
     const double pixels = glint_frame_pixels_per_tangent(f);
@@ -124,9 +124,10 @@ double glint_frame_end_deg(const struct glint_frame *frame)
     return atan2(sine, sqrt(1 - sine * sine)) / degree * (1 - 1e-6);
 }
 
-/* Appends the lights of those points of LAMP that the model reaches, and
- * returns how many lights there are then; WITHIN were there before. Others are
- * left out here, as they must not merge with lights that are drawn. */
+/* Appends lights for those points of LAMP that lie within the model's
+ * angles. WITHIN is the number of lights before; returns the number after.
+ * Other points are dropped here, as they must not merge with lights that are
+ * drawn. */
 static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
                       const struct glint_area_rule *rule, double scale,
                       int within)
@@ -145,8 +146,8 @@ static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
     return within;
 }
 
-/* Returns the most lights that N lamps may be drawn as, those with an extent as
- * several points. */
+/* Returns the max number of lights for N lamps; a lamp of visible extent
+ * becomes several points. */
 static int bound_light_count(const struct glint_frame *f, int n)
 {
     const int most = f->dials.max_lights;
@@ -190,7 +191,7 @@ static enum glint_status set_lights(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Returns the frame of rays for IMAGE; NULL stands for a linear picture. */
+/* Returns the settings of ray tracing for IMAGE; NULL: a linear picture. */
 static struct glint_flare_frame make_ray_frame(struct glint_frame *f,
                                                const struct glint_image *image)
 {
@@ -228,7 +229,8 @@ void glint_frame_retune(struct glint_frame *f)
                          f->memory.bytes);
 }
 
-/* Gives the flare the steps of irradiance and the shade of the dials. */
+/* Sets the flare's steps of irradiance and the shade of the stop from the
+ * dials. */
 static void follow_dials(struct glint_frame *f)
 {
     const bool is_other = f->cfg.irradiance_steps != f->dials.irradiance_steps;
@@ -237,7 +239,7 @@ static void follow_dials(struct glint_frame *f)
         glint_frame_retune(f);
 }
 
-/* Plans, after making room for all bundles there can be. */
+/* Plans the frame after allocating memory for the max number of bundles. */
 static enum glint_status plan_frame(struct glint_frame *f,
                                     const struct glint_flare_frame *rays)
 {
@@ -313,8 +315,8 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     return GLINT_OK;
 }
 
-/* Merges LAMPS for exact rays; sets *N to how many are left. NULL: memory is
- * short. */
+/* Merges LAMPS for exact rays; sets *N to their new number. Returns NULL if
+ * memory is short. */
 static const struct glint_lamp *
 merge_exact_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 {
@@ -383,7 +385,7 @@ enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
                  : GLINT_E_MEMORY;
 }
 
-/* Returns the number of bundles whose ghosts are known. */
+/* Returns the number of bundles of the drawn frame whose ghosts are known. */
 static int n_drawn(const struct glint_frame *f,
                    const struct glint_engine_report *r)
 {
@@ -452,7 +454,8 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         report->dials = frame->dials;
         report->unveiled = glint_frame_has_veil(frame) &&
                            frame->dials.flags & GLINT_DIAL_NO_VEIL;
-        /* one that took memory, or reused the last, tells nothing of others */
+        /* Frames that allocated memory or reused edges are not
+         * representative. */
         if (frame->memory.bytes == bytes && !report->stats.reused)
             glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
     }

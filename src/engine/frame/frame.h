@@ -21,14 +21,13 @@
 #include "glint/engine.h"
 #include "glint/flare.h"
 
-/* Lights are merged whose images are nearer than this, pixels: a model is less
- * exact. */
+/* Merge distance of lights' images, pixels; the error of a model is larger. */
 #define GLINT_FRAME_APART_PX 0.125
 /* steps between wavelengths, in codes, that do not show */
 #define GLINT_FRAME_STEP_CODES 2.0
 
-/* Limits of a frame of a model, unless others are set: bytes, and millions of
- * instructions as of glint_cost_minsn(), some ten seconds of one processor.
+/* Default limits of a frame drawn by a model: bytes, and millions of
+ * instructions by glint_cost_minsn(), about ten seconds on one processor.
  * Each further light raises both by 1 / GLINT_FRAME_PER_LIGHT. */
 #define GLINT_FRAME_MOST_BYTES ((size_t)384 << 20)
 #define GLINT_FRAME_MOST_MINSN 30000.0
@@ -40,12 +39,12 @@ struct glint_frame;
 struct glint_frame_scale {
     int likely; /* brings the brightest ghost near 32 times display white; a
                    pixel may reach 2048 */
-    int most;   /* the largest at which no light is clamped: the sum of all is
-                   below 2^24 */
+    int most; /* the largest at which no light is clamped: the sum of all light
+                 is below 2^24 */
 };
 
-/* Makes a scale from log2 of the brightest ghost's mean light and of the flux
- * of all together. */
+/* Returns the scales, given log2 of the brightest ghost's mean light and
+ * log2 of the flux of all ghosts together. */
 struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
                                               int together_log2);
 
@@ -68,7 +67,7 @@ struct glint_frame_rays {
     void (*finish)(struct glint_frame *frame);
 };
 
-/* How the next picture is planned. */
+/* Settings from which the next picture is planned. */
 struct glint_frame_picture {
     bool for_codes; /* true: a linear picture is planned as if it were in codes
                      */
@@ -76,9 +75,9 @@ struct glint_frame_picture {
     bool is_still;  /* true: glint_frame_set_still() raised the points */
     bool uniform;   /* true: all ghosts get the same grid */
     double code_light; /* light of one of its codes near black; 0: linear */
-    int point_room; /* max number of lights from points of wide lamps, if that
-                       is more than max_lights and there are no more lamps than
-                       max_lights */
+    int point_room; /* max number of lights from the points of area lamps; used
+                       if it exceeds max_lights and there are at most max_lights
+                       lamps */
 };
 
 /* Limits of a frame's memory and work. */
@@ -94,9 +93,10 @@ struct glint_frame_limits {
     double most_minsn;   /* limit of a plan for one light; 0: there is none */
     double share;        /* factor on the limits of one light for all lights */
     double tight; /* memory that the last frame's grids would have needed before
-                     they were made coarser, in bytes, or if reserved in
-                     primitives; 0: they were not */
-    size_t tight_bytes; /* bytes that would have drawn these as they were */
+                     they were made coarser, in bytes, or in primitives if
+                     reserved; 0: they were not made coarser */
+    size_t tight_bytes; /* bytes that the last frame's grids would have needed
+                           without being coarser */
 };
 
 /* The lights and wavelengths of the last frame. */
@@ -106,26 +106,27 @@ struct glint_frame_lights {
     struct glint_light *light; /* [capacity] */
     int n, capacity;
     int n_apart;  /* lights that can be distinguished */
-    int n_beyond; /* lights left out before that, outside the model's range */
-    int n_more;   /* lights that are further points of a lamp */
+    int n_beyond; /* number of lights left out before merging, as they lie
+                     outside the model's range */
+    int n_more;   /* number of additional points of area lamps */
     /* Factors on the lights, or NULL. */
     const int32_t (*gain_q14)[3];
     struct glint_lamp *merged; /* [n]: lamps to be traced, if some merged */
     bool *seen; /* [GLINT_MAX_GHOSTS]: true for ghosts in the last frame */
 };
 
-/* What was planned last from a model. */
+/* The last plan made from a model. */
 struct glint_frame_plan {
     struct glint_flare_frame rays;
     double scale; /* factor on the lights */
-    /* Numbers of plans and of those that were binned, and of the rays that all
-     * plans looked at. */
+    /* Number of plans, number of plans whose edges were binned, and number
+     * of rays that all plans probed. */
     int n_plans, n_binned;
     long long n_looked;
 };
 
-/* Brightness of ghosts, for an opening, pixels per mm, and three waves;
- * allocated when the dial first requests it. */
+/* Brightness of ghosts for an opening, pixels per mm and three wavelengths;
+ * allocated when dim ghosts are first requested. */
 struct glint_frame_dim {
     struct glint_dim table;
     double opening, size;
@@ -177,15 +178,16 @@ void glint_frame_init(struct glint_frame *frame,
                       const struct glint_setup *setup, struct glint_view view,
                       struct glint_workers *workers);
 
-/* Makes a frame with the requested options of LIKE, without its budget. */
+/* Initialises FRAME with the requested options of LIKE, without its budget. */
 void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
                       struct glint_view view);
 
-/* Reserves BYTES for all following frames, of up to N_LAMPS lamps each, merged
- * to N_DRAWN: nothing is allocated while drawing. If a frame does not fit, its
- * grids become coarser; what does not fit even then is left out and counted.
- * MEM: the caller's own BYTES, aligned to 64, or NULL. GLINT_E_MEMORY: memory
- * is short, or BYTES are too few for one light. */
+/* Reserves BYTES for all following frames of up to N_LAMPS lamps each,
+ * merged to N_DRAWN: drawing then allocates nothing. If a frame does not
+ * fit, its grids become coarser; parts that still do not fit are left out
+ * and counted. MEM: the caller's BYTES, aligned to 64, or NULL to allocate
+ * them. Returns GLINT_E_MEMORY if memory is short, or if BYTES are too few
+ * for one light. */
 enum glint_status glint_frame_reserve(struct glint_frame *frame, void *mem,
                                       size_t bytes, int n_lamps, int n_drawn);
 
@@ -207,17 +209,18 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
 /* Returns the last plan of FRAME, for glint_cost_of(). */
 struct glint_cost_plan glint_frame_plan(const struct glint_frame *frame);
 
-/* Returns whether LAMP is farther off the axis than FRAME's model goes. */
+/* Returns whether LAMP lies outside the max angle of FRAME's model. */
 bool glint_frame_is_beyond(const struct glint_frame *frame,
                            const struct glint_lamp *lamp);
 
-/* Returns the angle off the axis up to which FRAME's model goes; 89: rays are
- * exact. */
+/* Returns the max angle off the axis of FRAME's model, degrees; 89 for exact
+ * rays. */
 double glint_frame_end_deg(const struct glint_frame *frame);
 
-/* Sets the sampling of area lamps of the next frame. IS_STILL, for a still
- * picture: more points a lamp (if MORE_POINTS) and a larger total (if
- * MORE_LIGHTS); the first other frame after it: those of frame->asked. */
+/* Sets the sampling of area lamps in the next frame. IS_STILL: a still
+ * picture gets more points per lamp (if MORE_POINTS) and a larger total (if
+ * MORE_LIGHTS). The first frame that is not a still restores the numbers of
+ * frame->asked. */
 void glint_frame_set_still(struct glint_frame *frame, bool is_still,
                            bool more_points, bool more_lights);
 

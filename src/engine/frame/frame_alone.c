@@ -19,9 +19,9 @@ static uint32_t find_peak(const int32_t *linear_q20, size_t n)
     return peak;
 }
 
-/* Returns by how many octaves a picture with PEAK should be drawn brighter; 0
- * instead of 1, as a single octave gains too little. Below 0 if light was
- * clamped, as its peak is then unknown. */
+/* Returns log2 of the factor by which a picture with PEAK should be drawn
+ * brighter; 0 instead of 1, as one octave gains too little. Returns a value
+ * below 0 if light was clamped, as its peak is then unknown. */
 static int choose_octaves(uint32_t peak, struct glint_frame_scale scale)
 {
     const int room = scale.most - scale.likely;

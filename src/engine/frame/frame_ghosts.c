@@ -20,8 +20,8 @@ int glint_frame_number(const struct glint_setup *s, int ghost)
     return number;
 }
 
-/* Notes that GHOST is in the frame; returns whether it is the first part of its
- * ghost there. */
+/* Records that GHOST is in the frame; returns whether it is the first of its
+ * ghost's parts there. */
 static bool note_ghost(struct glint_frame *frame, int ghost)
 {
     const int number = glint_frame_number(frame->setup, ghost);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Shared by the files of a frame: its memory, lights and a block for the
- * run-time half that grows to what frames need (frame_room.c), and what drawing
- * alone (frame_alone.c) needs of the plan. */
+ * Shared by the files of a frame: memory, lights, the block for the run-time
+ * half that grows as frames need it (frame_room.c), and the parts of the plan
+ * that drawing alone uses (frame_alone.c).
+ */
 #ifndef GLINT_ENGINE_FRAME_FRAME_PARTS_H
 #define GLINT_ENGINE_FRAME_FRAME_PARTS_H
 
@@ -24,7 +25,8 @@ static inline double now(const struct glint_frame *f)
     return f->clock ? f->clock() : 0;
 }
 
-/* Returns whether light is added to codes, those of IMAGE or later ones. */
+/* Returns whether light is added to codes, those of IMAGE or of later
+ * pictures. */
 static inline bool is_in_codes(const struct glint_frame *f,
                                const struct glint_image *image)
 {
@@ -37,43 +39,45 @@ double glint_frame_pixels_per_tangent(const struct glint_frame *frame);
 /* Returns whether ghosts choose among the setup's sets of wavelengths. */
 bool glint_frame_has_sets(const struct glint_frame *frame);
 
-/* Makes room for N lights. GLINT_E_MEMORY. */
+/* Allocates memory for N lights. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_hold_lights(struct glint_frame *frame, int n);
 
 /* Allocates the table of dim ghosts. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_hold_dim(struct glint_frame *frame);
 
-/* Allocates the data of each ghost. GLINT_E_MEMORY. */
+/* Allocates the data of each ghost. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_hold_ghosts(struct glint_frame *frame);
 
-/* Clears the table of dim ghosts if what it depends on has changed: the
- * opening, the waves that are set, the size of a pixel. */
+/* Clears the table of dim ghosts if the opening, the wavelengths or the
+ * pixel size has changed. */
 void glint_frame_check_dim(struct glint_frame *f);
 
-/* Replaces the block by one for the present capacities, in which the flare
- * restarts. */
+/* Replaces the block by one for the current capacities, and reinitialises
+ * the flare in it. */
 enum glint_status glint_frame_regrow(struct glint_frame *frame);
 
 /* Selects the tables of dust that the dials request for the stop; returns
  * whether they changed. */
 bool glint_frame_shade(struct glint_frame *frame);
 
-/* Makes room for all bundles that the frame's lights may have, unless memory is
- * reserved. GLINT_E_MEMORY. */
+/* Allocates memory for the max number of bundles of the frame's lights,
+ * unless memory is reserved. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_make_room(struct glint_frame *frame);
 
-/* Represents the frame's lights by the static ones within NEAR_Q30, with
- * factors, if the dials have a static tolerance, frames are reused, and
- * reserved memory has capacity. GLINT_E_MEMORY. */
+/* Replaces the frame's lights by static lights within the chord NEAR_Q30,
+ * with factors on their light. Only if the dials set a static tolerance,
+ * frames are reused, and reserved memory has capacity. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_still(struct glint_frame *frame,
                                     int32_t near_q30);
 
-/* Returns how many ghosts the N bundles of the last frame belong to. */
+/* Returns the number of distinct ghosts among the N bundles of the last
+ * frame. */
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 
-/* Returns true if all of STATS fitted or the memory cannot grow. Else raises
- * the capacities, or makes grids coarser if capacities would exceed the frame's
- * memory, and returns false. */
+/* Returns true if all edges counted in STATS fitted, or the memory cannot
+ * grow. Otherwise raises the capacities, or makes grids coarser if the
+ * capacities would exceed the frame's memory, and returns false. */
 bool glint_frame_fit_capacity(struct glint_frame *frame,
                               const struct glint_flare_stats *stats);
 
@@ -101,7 +105,7 @@ double glint_frame_codes_light(const struct glint_frame *frame,
 bool glint_frame_is_ghost(const struct glint_setup *setup, int ghost,
                           int number);
 
-/* Returns the number of the ghost that GHOST of SETUP is, or is a part of. */
+/* Returns the number of the ghost of which GHOST of SETUP is a part. */
 int glint_frame_number(const struct glint_setup *setup, int ghost);
 
 /* Removes lights until probing all bundles of all lights cannot cost more than

@@ -9,18 +9,19 @@
 #include "engine/frame/block.h"
 #include "engine/setup/dirt.h"
 
-/* Most bundles that a frame may have. */
+/* max number of bundles of a frame */
 enum { MAX_BUNDLES = 1 << 20 };
-/* Limits do not make grids coarser than this. */
+/* min fineness to which limits reduce grids */
 enum { LEAST_FINENESS = 8 };
-/* Workers' shares are never quite even: room for so many times the primitives.
- * Limits count that for one worker, too, so that what they do is the same for
- * all: an estimate, and with one worker more than it would take. */
+/* Factor on the capacity for primitives, as the shares of workers are
+ * uneven. Limits apply it to one worker, too, so that results do not depend
+ * on the number of workers; with one worker this overestimates the memory. */
 #define UNEVEN 1.5
-/* Fraction of the limit of memory that a frame which has to be drawn coarser is
- * meant to take: grids are whole numbers of cells. */
+/* Target size of a frame that is made coarser / memory limit; below 1, as
+ * grids have whole numbers of cells. */
 #define ROOM_SHARE 0.9
-/* Coarser grids that take more of the bytes than this gain too little. */
+/* Grids are not made coarser if they would still need more than this
+ * fraction of the bytes. */
 #define NO_GAIN 0.98
 
 bool glint_frame_has_sets(const struct glint_frame *f)
@@ -42,14 +43,14 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
     return GLINT_OK;
 }
 
-/* Returns how many of N bundles a frame may take. */
+/* Returns N clamped to the max number of bundles of a frame. */
 static int clamp_bundles(double n)
 {
     return n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 }
 
-/* Returns how many bundles N_LIGHTS need; with sets of wavelengths, those of
- * the first set. */
+/* Returns the number of bundles of N_LIGHTS lights; with sets of
+ * wavelengths, of the first set. */
 static int count_bundles(const struct glint_frame *f, int n_lights)
 {
     const struct glint_setup *s = f->setup;
@@ -64,7 +65,7 @@ static size_t most_bytes(const struct glint_frame *f)
     return (size_t)((double)f->limits.most_bytes * f->limits.share);
 }
 
-/* Returns a configuration in which what was binned finds room. */
+/* Returns a configuration whose capacities hold the bins of STATS. */
 static struct glint_flare_config
 make_needed_config(const struct glint_frame *f,
                    const struct glint_flare_stats *s)
@@ -78,9 +79,9 @@ make_needed_config(const struct glint_frame *f,
     return needed;
 }
 
-/* Returns the bytes of that with one worker and primitives as for uneven
- * shares, so that they do not depend on how many workers there are. FIXED
- * receives those that coarser grids take, too. */
+/* Returns the bytes of that configuration for one worker, with UNEVEN times
+ * the primitives, so that they do not depend on the number of workers. Sets
+ * FIXED to the bytes that do not shrink with coarser grids. */
 static double estimate_bytes(const struct glint_frame *f,
                              const struct glint_flare_stats *s, double *fixed)
 {
@@ -95,8 +96,8 @@ static double estimate_bytes(const struct glint_frame *f,
     return bytes;
 }
 
-/* Returns the bytes for a number of primitives, with references for each:
- * rather too many. */
+/* Returns the bytes for a number of primitives and their references, rounded
+ * up generously. */
 static size_t compute_bytes(struct glint_frame *f, int primitives)
 {
     f->cfg.max_primitives = primitives;
@@ -119,18 +120,17 @@ static bool fit_primitives(struct glint_frame *f, size_t bytes)
     return most > 0 && compute_bytes(f, most) <= bytes;
 }
 
-/* Returns the primitives that reserved memory would have to have room for, with
- * the fractions of compute_bytes(). */
+/* Returns the number of primitives for which reserved memory would need
+ * capacity, in the proportions of compute_bytes(). */
 static double count_primitives(const struct glint_flare_stats *s)
 {
     return fmax(s->need_primitives * UNEVEN, s->need_refs / 2.0);
 }
 
-/* Makes grids coarser if what was binned would take more memory than a frame
- * may, or than is reserved, by an estimate. Returns whether it did. That does
- * not depend on how many workers there are, nor on frames before. A block that
- * is not reserved becomes as large as it may be, so that they find room the
- * next time. */
+/* Makes grids coarser if the estimated memory exceeds the frame's limit or
+ * the reserved memory. Returns whether it did. The result depends neither on
+ * the number of workers nor on earlier frames. A block that is not reserved
+ * grows to its limit, so that the grids fit next time. */
 static bool hold_room(struct glint_frame *f, const struct glint_flare_stats *s)
 {
     const double most =
@@ -194,7 +194,7 @@ enum glint_status glint_frame_regrow(struct glint_frame *f)
         bytes = glint_flare_bytes(&f->cfg);
     }
 
-    /* Frames of a video that are all drawn coarser keep theirs. */
+    /* In a video whose frames are all made coarser, the block is kept. */
     if (!f->memory.block || f->memory.bytes != bytes) {
         free(f->memory.mem);
         f->memory.bytes = 0;
@@ -248,8 +248,8 @@ enum glint_status glint_frame_still(struct glint_frame *f, int32_t near_q30)
     return GLINT_OK;
 }
 
-/* Returns whether the block has room to plan N bundles of the frame's lights.
- */
+/* Returns whether the block has capacity to plan N bundles of the frame's
+ * lights. */
 static bool has_room(const struct glint_frame *f, int n)
 {
     return f->memory.block && n <= f->cfg.max_bundles &&
@@ -294,7 +294,7 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
     f->cfg.workers = workers;
     if (!fit_primitives(f, bytes))
         return GLINT_E_MEMORY;
-    /* Dials may be turned later, when nothing is allocated any more. */
+    /* Dials may change later, when nothing is allocated any more. */
     if (glint_frame_hold_ghosts(f) != GLINT_OK ||
         (f->lens && glint_frame_hold_dim(f) != GLINT_OK) ||
         glint_frame_hold_lights(f, n_lamps) != GLINT_OK ||
@@ -329,8 +329,7 @@ size_t glint_frame_bytes_needed(const struct glint_frame *f,
                                : glint_flare_bytes(&needed);
 }
 
-/* Returns the millions of instructions for which a plan looks at N_RAYS
- * rays. */
+/* Returns the millions of instructions of a plan that probes N_RAYS rays. */
 static double estimate_probe_minsn(double n_rays)
 {
     return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n_rays;
@@ -343,7 +342,7 @@ static double find_minsn_limit(const struct glint_frame *f)
 
 bool glint_frame_hold_looking(struct glint_frame *f)
 {
-    enum { RAYS = 200 }; /* rays of a coarse probe and a fine one */
+    enum { RAYS = 200 }; /* rays of a coarse and a fine probe */
     const int waves = glint_frame_has_sets(f) ? f->setup->set_size[0]
                                               : f->setup->n_wavelengths;
     const double light =
@@ -360,7 +359,7 @@ bool glint_frame_hold_looking(struct glint_frame *f)
     return f->limits.is_held = true;
 }
 
-/* Returns whether dust can be blurred further, and is most of COST. */
+/* Returns whether dust causes most of COST and can be drawn coarser. */
 static bool is_dusty(const struct glint_frame *f,
                      const struct glint_cost_plan *plan,
                      const struct glint_cost *cost)
@@ -371,8 +370,9 @@ static bool is_dusty(const struct glint_frame *f,
                glint_cost_minsn(cost);
 }
 
-/* Makes tables of dust and grids as fine as PLAN allows within MINSN, or else
- * the coarsest. Returns the millions of instructions that they take. */
+/* Makes tables of dust and grids as fine as PLAN allows within MINSN, or
+ * else the coarsest. Returns the cost of the result, millions of
+ * instructions. */
 static double hold_grids(struct glint_frame *f,
                          const struct glint_cost_plan *plan, double minsn)
 {

@@ -9,7 +9,7 @@
 #include "engine/setup/dirt.h"
 #include "engine/frame/frame_parts.h"
 
-/* Lights farther from the picture's top left corner than this many pixels,
+/* Lights farther from the picture's top left corner than this, in pixels
  * across or down, are not drawn. */
 static const double most_px = 1 << 16;
 
@@ -62,8 +62,8 @@ static bool are_same(const struct glint_star_optics *a,
            a->f_number == b->f_number && a->pixel_um == b->pixel_um;
 }
 
-/* Makes the smear of what lies in the stop, unless it is there. Sets IS_NEW to
- * whether it has changed. */
+/* Makes the smear of dirt in the stop, unless it is up to date. Sets IS_NEW
+ * to whether it changed. */
 static enum glint_status make_smear(struct glint_frame *f, bool *is_new)
 {
     struct glint_frame_star *s = &f->star;
@@ -149,13 +149,13 @@ size_t glint_frame_star_bytes(const struct glint_frame *f)
            f->veil.bytes + (f->veil.table ? f->veil.table->bytes : 0);
 }
 
-/* A lamp as the picture shows it, if it is known from there. */
+/* What the picture shows of a lamp. */
 struct seen {
     double radius_px; /* radius of a disc of its extent; 0 if unknown */
     double hidden_px; /* radius of a lamp that its rim may hide, as stills have
                          it (engine/detector.c) */
     double level;
-    bool is_bare; /* the picture does not show it at all */
+    bool is_bare; /* true: the lamp is not visible in the picture */
 };
 
 static struct seen find_seen_lamp(const struct glint_frame *f, int i)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Units of a frame: the pixels of a tangent, the light of a code, and the
- * powers of two that light may be drawn at. */
+ * Units of a frame: pixels per unit tangent, light per code, and the powers of
+ * two by which light may be scaled.
+ */
 #include <math.h>
 
 #include "engine/frame/frame_parts.h"

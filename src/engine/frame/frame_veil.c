@@ -44,7 +44,7 @@ static bool are_same(const struct glint_front_optics *a,
            a->roundness == b->roundness;
 }
 
-/* Makes the table of what lies on the front element, if that or the frame's
+/* Makes the table of dirt on the front element if that dirt or the frame's
  * optics have changed. */
 static enum glint_status hold_front(struct glint_frame *f)
 {
@@ -133,7 +133,7 @@ static void set_gaussian_table(int32_t *table_q30, int n, double sigma)
         table_q30[d] = (int32_t)lrint(at[d] / sum * 0x1p30);
         rest -= (d == n ? 1 : 2) * table_q30[d];
     }
-    table_q30[0] = rest; /* so that no light is lost */
+    table_q30[0] = rest; /* so that the weights sum to 1 */
 }
 
 /* Makes a spread of SIGMA pixels, 0: even, that gives SHARE of all light. */
@@ -147,7 +147,7 @@ static struct glint_veil_spread make_spread(const struct glint_frame *f,
     glint_veil_cells(f->view.width, f->view.height, cells);
     for (int k = 0; k < 2; k++) {
         const double in_cells = fmax(sigma * cells[k] / size[k], least_sigma);
-        /* Wider than that, it is even, too. */
+        /* A wider Gaussian is treated as even. */
         const bool is_even = !(sigma > 0) || in_cells > 2 * cells[k];
 
         set_gaussian_table(k ? s.down_q30 : s.across_q30, cells[k],
@@ -157,19 +157,19 @@ static struct glint_veil_spread make_spread(const struct glint_frame *f,
     return s;
 }
 
-/* Returns the fraction of all light that what lies on the front spreads. */
+/* Returns the fraction of all light that dirt on the front element scatters. */
 static double front_share(const struct glint_frame_veil *v)
 {
     return v->front && v->table ? v->table->mean : 0;
 }
 
-/* Returns all light over what is not spread. */
+/* Returns all light / light that is not scattered. */
 static double over_direct(const struct glint_frame_veil *v)
 {
     return 1 / (1 - fmin(v->glare + v->haze + front_share(v), GLINT_MOST_VEIL));
 }
 
-/* Sets SPREADS to those of haze of that fraction; returns how many. */
+/* Sets SPREADS for haze of the fraction SHARE; returns their number. */
 static int set_haze(const struct glint_frame *f, double share,
                     struct glint_veil_spread spreads[N_HAZE])
 {
@@ -181,7 +181,7 @@ static int set_haze(const struct glint_frame *f, double share,
     return N_HAZE;
 }
 
-/* Sets SPREADS to those of FRAME; returns how many. */
+/* Sets SPREADS for the glare and haze of FRAME; returns their number. */
 static int set_spreads(const struct glint_frame *f,
                        struct glint_veil_spread spreads[N_GLARE + N_HAZE])
 {
@@ -210,18 +210,18 @@ static void spread_front(const struct glint_frame *f)
             set_haze(f, v->table->most * over_direct(v), spreads));
 }
 
-/* Sigma that even glare is taken to have of a lamp off-screen, fractions
- * of the diagonal. */
+/* Sigma, a fraction of the diagonal, that stands for even glare of
+ * off-screen lamps. */
 static const double even_sigma = 0.5;
 
-/* Returns the fraction of a Gaussian that is left FAR from its middle. */
+/* Returns the value of a Gaussian at distance FAR, relative to its centre. */
 static double compute_gaussian_falloff(double far, double sigma)
 {
     return exp(-0.5 * far * far / (sigma * sigma));
 }
 
-/* Returns the fraction of the veil of a lamp at the border that one has FAR
- * pixels off-screen: each part falls by its own Gaussian. */
+/* Returns the veil of a lamp FAR pixels off-screen as a fraction of its veil
+ * at the border: each spread falls by its own Gaussian. */
 static double compute_offscreen_fraction(const struct glint_frame *f,
                                          double far)
 {
@@ -246,7 +246,8 @@ static double compute_offscreen_fraction(const struct glint_frame *f,
 /* Additional cost of dirt on the front, as a fraction of a pixel's time. */
 static const double front_pixels = 0.4;
 
-/* A pixel takes as long as SPREADING cells that give light to one. */
+/* Cost of the veil in pixels; spreading light from one cell costs as much as
+ * 1 / SPREADING pixel. */
 double glint_frame_veil_pixels(const struct glint_frame *f)
 {
     const double spreading = 14;

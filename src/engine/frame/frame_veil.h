@@ -14,23 +14,22 @@
 struct glint_frame;
 
 struct glint_frame_veil {
-    /* Fraction of all light that is veiling glare of the lens, as of ISO 9358,
-     * spread over the whole picture, and share that dirt on the front element
-     * spreads by 1 to 10 degrees. 0: none. */
+    /* Fractions of all light. GLARE: veiling glare of the lens (ISO 9358),
+     * spread over the whole picture; HAZE: light that dirt on the front
+     * element scatters by 1 to 10 degrees. 0: none. */
     double glare, haze;
     /* Dirt on the front element, which scatters light like haze, but in discs,
      * or NULL. The caller owns it. */
     const struct glint_front_dirt *front;
-    /* Factor on the veil where it is drawn alone, rather than that on the
-     * flare; 0: the same. */
+    /* Factor on the veil when it is drawn alone; 0: the factor on the flare. */
     double alone_gain;
 
     /* Private. */
     struct glint_veil *veil; /* NULL: there is none yet */
     void *mem;
     size_t bytes;   /* of MEM */
-    bool has_front; /* true: VEIL has room for what lies on the front */
-    /* Of FRONT, and what it was made for. */
+    bool has_front; /* true: VEIL has capacity for dirt on the front element */
+    /* Table of FRONT, and the dirt from which it was made. */
     struct glint_front_table *table;
     const struct glint_front_dirt *table_of;
     struct glint_front_optics table_for;
@@ -46,21 +45,22 @@ bool glint_frame_has_veil(const struct glint_frame *frame);
  * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_veil_hold(struct glint_frame *frame);
 
-/* Reads the light of IMAGE, whose white is WHITE, for the next frame, if that
- * is drawn onto another picture; otherwise drawing reads it. Does nothing
- * without a veil. GLINT_E_MEMORY. */
+/* Reads the light of IMAGE, whose white is WHITE, for the next frame; needed
+ * if that is drawn onto another picture, as otherwise drawing reads it. Does
+ * nothing without a veil. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_veil_look(struct glint_frame *frame,
                                         const struct glint_image *image,
                                         double white);
 
-/* Sets the veil of IMAGE, if that has not been looked at before, and LAMPS.
- * Does nothing without a veil. GLINT_E_MEMORY. */
+/* Sets the veil of LAMPS and of IMAGE, unless IMAGE was read before. Does
+ * nothing without a veil. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_veil_set(struct glint_frame *frame,
                                        const struct glint_lamp *lamps, int n,
                                        const struct glint_image *image);
 
-/* Adds the veil that is set for this frame, times TIMES, to RGB, linear light;
- * all that LINEAR_Q20, as large, holds is lost. Does nothing if none is set. */
+/* Adds the veil of this frame, times TIMES, to RGB, linear light.
+ * LINEAR_Q20, of the same size, is scratch memory and is overwritten. Does
+ * nothing without a veil. */
 void glint_frame_veil_add(struct glint_frame *frame, double times,
                           int32_t *linear_q20, float *rgb);
 

@@ -13,7 +13,7 @@ enum { SIDE = GLINT_FRONT_SIDE, LEAST_CHORDS = 24, MOST_CHORDS = 96 };
 
 /* ---------------------------------------------------------------- the front */
 
-/* Returns the mask's covered share at (X, Y), by its nearest pixel. */
+/* Returns the cover of the mask at (X, Y): its nearest pixel. */
 static double covered_by_mask(const struct glint_front *f, double x, double y)
 {
     const int i = (int)(0.5 * (x + 1) * f->mask_width);
@@ -22,7 +22,7 @@ static double covered_by_mask(const struct glint_front *f, double x, double y)
     return f->mask ? 1 - f->mask[(ptrdiff_t)j * f->mask_width + i] / 255. : 0;
 }
 
-/* Sets the sums along the rows of DIRT; beyond the rim nothing is covered. */
+/* Sets the sums along the rows of DIRT; outside the rim the cover is 0. */
 static void set_row_sums(struct glint_front_dirt *dirt,
                          const struct glint_front *f,
                          const struct glint_dust *dust)
@@ -93,15 +93,15 @@ void glint_front_free(struct glint_front_dirt *dirt)
 
 /* ---------------------------------------------------------------- the stop */
 
-/* The stop as chords along x, all of the same height. */
+/* The stop as chords parallel to x, of equal height. */
 struct chords {
     int n;
     double y[MOST_CHORDS], from[MOST_CHORDS], to[MOST_CHORDS]; /* stop radii */
-    double all; /* sum of their lengths */
+    double all; /* sum of the chords' lengths */
 };
 
-/* Sets chords of SETUP's stop for one of RADIUS radii of the front: one for
- * each row of cells, if that many are enough. */
+/* Sets chords of SETUP's stop, whose radius is RADIUS radii of the front
+ * element: one per row of cells, up to the max number. */
 static void set_chords(struct chords *c, const struct glint_setup *setup,
                        double radius)
 {
@@ -127,7 +127,7 @@ static void set_chords(struct chords *c, const struct glint_setup *setup,
     }
 }
 
-/* Returns the sum of what is covered of a row of cells up to X, in cells. */
+/* Returns the sum of the cover of a row of cells up to X, in cells. */
 static double sum_row_to(const float *row, double x)
 {
     const double at = fmin(fmax(x, 0), SIDE);
@@ -136,7 +136,7 @@ static double sum_row_to(const float *row, double x)
     return (double)row[i] + (at - i) * (double)(row[i + 1] - row[i]);
 }
 
-/* Returns what is covered of chord K, moved to MIDDLE, at row J. */
+/* Returns the cover along chord K, moved to MIDDLE, in row J. */
 static double on_row(const struct glint_front_dirt *d, const struct chords *c,
                      int k, double scale, double middle, int j)
 {
@@ -148,8 +148,8 @@ static double on_row(const struct glint_front_dirt *d, const struct chords *c,
                      sum_row_to(row, middle + scale * c->from[k]);
 }
 
-/* Returns the mean of what is covered over the stop about (X, Y) of the front,
- * in its radii; the stop has RADIUS of these. */
+/* Returns the mean cover over a stop of RADIUS front radii, centred at (X,
+ * Y) on the front element, in front radii. */
 static double mean_about(const struct glint_front_dirt *d,
                          const struct chords *c, double radius, double x,
                          double y)
@@ -171,7 +171,7 @@ static double mean_about(const struct glint_front_dirt *d,
 
 /* --------------------------------------------------------------- the table */
 
-/* A stop of less than a cell is as good as one of a cell. */
+/* A stop smaller than a cell is treated as one of a cell. */
 static void set_front_optics(struct glint_front_optics *o,
                              const struct glint_setup *setup,
                              const struct glint_lens *lens,
@@ -191,16 +191,17 @@ static void set_front_optics(struct glint_front_optics *o,
         .roundness = setup->iris.roundness};
 }
 
-/* Returns the place on the front, in its radii, that the middle of the stop is
- * seen through from pixel AT of N, along x or, turned, y. */
+/* Returns the position on the front element, in its radii, through which
+ * pixel AT of N looks along x, or along y if turned, at the middle of the
+ * stop. */
 static double find_front_position(const struct glint_front_optics *o, double at,
                                   int n)
 {
     return -o->z * o->tangent * (at - 0.5 * n);
 }
 
-/* Returns how many nodes apart places are enough, 2^n: discs have 16 of these
- * to a radius. */
+/* Returns log2 of the distance between nodes at which the cover is computed;
+ * 16 nodes per disc radius suffice. */
 static int choose_node_step_log2(const struct glint_front_optics *o)
 {
     const double disc =
@@ -212,7 +213,7 @@ static int choose_node_step_log2(const struct glint_front_optics *o)
     return n;
 }
 
-/* Sets COVERED at every STEP-th node, and straight between them. */
+/* Sets COVERED at every STEP-th node, and interpolates between them. */
 static void set_covered(double *covered, int n_x, int n_y,
                         const struct glint_front_dirt *dirt,
                         const struct glint_front_optics *o,
@@ -228,7 +229,7 @@ static void set_covered(double *covered, int n_x, int n_y,
                 dirt, &chords, o->radius,
                 find_front_position(o, GLINT_VEIL_FRONT_PX * i, o->width),
                 -find_front_position(o, GLINT_VEIL_FRONT_PX * j, o->height));
-    /* outside, the last one continues */
+    /* outside the table the last node is repeated */
     for (int j = 0; j < n_y; j += step)
         for (int i = 0; i < n_x; i++) {
             const int from = i - i % step;

@@ -35,19 +35,20 @@
 struct glint_front_table {
     struct glint_veil_front front; /* nodes are in the same block as this */
     size_t bytes;
-    double mean, most; /* share that is covered, over the picture */
+    /* fraction that is covered: mean and max over the picture */
+    double mean, most;
 };
 
-/* What a table is made for. */
+/* The settings for which a table is made. */
 struct glint_front_optics {
     double tangent;    /* of a pixel on the axis */
-    double z, radius;  /* of the entrance pupil, over the front's radius */
+    double z, radius;  /* of the entrance pupil / radius of the front element */
     int width, height; /* pixels */
     int n_blades;
     double rotation_deg, roundness;
 };
 
-/* A program that makes no dirt does not link these. */
+/* Functions that a program without dirt does not link. */
 struct glint_front_method {
     void (*optics)(struct glint_front_optics *optics,
                    const struct glint_setup *setup,
@@ -66,13 +67,13 @@ enum { GLINT_FRONT_SIDE = 512 }; /* cells per side of the front's square */
 
 struct glint_front_dirt {
     const struct glint_front_method *method;
-    /* [SIDE][SIDE + 1]: covered share from the left up to each cell, in cells;
-     * row 0 at the lowest y */
+    /* [SIDE][SIDE + 1]: sum of the cover from the left up to each cell, in
+     * cells; row 0 has the lowest y */
     float *along;
 };
 
-/* Returns the fraction that is covered as a pixel at (X, Y), from the top left,
- * sees it: by sums over the stop of STEPS^2 places, for tests. */
+/* Returns the cover for the pixel at (X, Y) from the top left, summed over
+ * STEPS^2 points of the stop; for tests. */
 double glint_front_covered(const struct glint_front_dirt *dirt,
                            const struct glint_front_optics *optics,
                            const struct glint_setup *setup, double x, double y,

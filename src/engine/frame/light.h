@@ -11,10 +11,10 @@
 struct glint_wave glint_wave_of(double nm, const double rgb[3],
                                 double unit_flux);
 
-/* Returns LAMP as a point, its power times SCALE. */
+/* Returns LAMP as a point light, its power times SCALE. */
 struct glint_light glint_light_of(const struct glint_lamp *lamp, double scale);
 
-/* Returns LIGHT as a lamp without extent. */
+/* Returns LIGHT as a lamp of no extent. */
 struct glint_lamp glint_lamp_of(const struct glint_light *light);
 
 /* Returns whether LIGHT is beyond the largest angle of LENS; 0 if LENS is NULL.

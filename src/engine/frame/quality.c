@@ -6,7 +6,7 @@
 
 #include "glint/light.h"
 
-/* Most lights; so many cost less than three times as much as 64. */
+/* max number of lights; 128 cost less than three times as much as 64 */
 enum { MAX_LIGHTS = 128 };
 
 /* Stars end at a quarter of a code by default: as near to all of their light as
@@ -56,7 +56,7 @@ double glint_quality_named(int name)
     return (double)name / (GLINT_QUALITY_NAMES - 1);
 }
 
-/* Returns the value PART of the way from A to B, in equal ratios. */
+/* Interpolates geometrically from A to B; PART is 0 at A, 1 at B. */
 static double interpolate_ratio(double a, double b, double part)
 {
     return a > 0 && b > 0 ? a * pow(b / a, part) : a + part * (b - a);
@@ -75,9 +75,9 @@ double glint_quality_place(double quality)
     return level[i].half == level[i + 1].half ? i + part : i + (part >= 0.5);
 }
 
-/* Returns the level of QUALITY, interpolated between those of the table. Values
- * that cannot be interpolated are those of the nearer level, except for models:
- * the finer one costs no time. */
+/* Returns the settings at QUALITY, interpolated between levels of the table.
+ * Settings that cannot be interpolated are those of the nearer level, except
+ * the model: the finer one, as it costs no time. */
 static struct level find_level(double quality)
 {
     const double at = glint_quality_place(quality);
@@ -111,7 +111,7 @@ struct glint_quality glint_quality_at(double quality)
     const struct level l = find_level(quality);
 
     return (struct glint_quality){
-        /* The fineness of grids comes in steps of four cells. */
+        /* The fineness of grids has steps of four cells. */
         .dials = {.fineness = 4 * (int)lrint(l.grid / 4),
                   .irradiance_steps = glint_quality_steps(l.quantum),
                   .snap_codes_q8 = (int)lrint(l.snap * 256),
@@ -133,8 +133,8 @@ struct glint_dials glint_dials_at(int quality_q15)
     return glint_quality_at(quality_q15 * 0x1p-15).dials;
 }
 
-/* Outlines are off by 0.1 pixels at fineness 64, and otherwise in proportion to
- * the inverse square of the fineness. */
+/* The error of outlines is 0.1 pixels at fineness 64 and inversely
+ * proportional to the square of the fineness. */
 double glint_quality_for_error(double px)
 {
     const double grid = 64 * sqrt(0.1 / px);
