@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests coatings of lens tables and of --coating: which surface gets which
- * coating, reflectances, keys of models, and rejected texts.
+ * Checks that each surface gets the coating that the lens table or --coating
+ * names, that reflectances match formulas, that model keys depend on coatings,
+ * and that invalid texts are rejected.
  */
 #include <math.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the parser of scene texts: what it reads from a valid text, and the
- * position and cause that it reports for each mistake.
+ * Checks that the parser of scene texts reads valid texts, and reports the
+ * position and cause of each mistake.
  */
 #include <math.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests progress reports of a bake, with ghosts of known work and a simulated
- * clock.
+ * Checks that progress reports of a bake predict the remaining time, with
+ * ghosts of known work and a simulated clock.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests environment maps: the octahedron mapping, clamped and counted samples,
- * blurs compared with sums over all texels, extraction of known lights, codes,
- * and rejected files.
+ * Checks baked environment maps: directions map to the octahedron and back,
+ * negative and non-finite samples are clamped and counted, blurs equal sums
+ * over all texels, known lights are found, and invalid files are rejected.
  */
 #include <math.h>
 #include <stdint.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the exact reference picture against an independent program, against a
- * finer grid, and against symmetries of optics; then the integer engine with
- * exact rays against the exact picture.
+ * Compares the exact reference picture with an independent program, a finer
+ * grid and mirrored input; then compares the integer engine with exact rays
+ * with the exact picture.
  */
 #include <math.h>
 #include <stdio.h>

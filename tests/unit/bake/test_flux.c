@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the flux of the direct image, the unit of all light: the value in a
- * model against rays through the stop at each f-number.
+ * Compares the flux of the direct image, the unit of all light, with rays
+ * through the stop at each f-number.
  */
 #include <math.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests glasses of the catalogue: their indices, and their names in lens
- * tables.
+ * Checks that glasses of the catalogue have their published indices and are
+ * found by their names in lens tables.
  */
 #include <math.h>
 #include <stdint.h>

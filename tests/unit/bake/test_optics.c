@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests glass, coatings, first-order optics and lists of ghosts against
- * textbook values, and against published values of the tables in lenses/.
+ * Compares refractive indices, coatings, first-order optics and lists of ghosts
+ * with textbook values, and with published values of the tables in lenses/.
  */
 #include <complex.h>
 #include <math.h>

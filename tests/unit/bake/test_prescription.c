@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the parser of lens tables: what it reads from a valid table, and the
- * position and cause that it reports for each mistake.
+ * Checks that the parser of lens tables reads valid tables, and reports the
+ * position and cause of each mistake.
  */
 #include <dirent.h>
 #include <math.h>

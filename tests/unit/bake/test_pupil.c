@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests that the pupil box contains every unblocked ray that a dense scan of
- * the whole front element finds.
+ * Checks that the pupil box contains every unblocked ray that a dense scan of
+ * the front element finds.
  */
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the integers of a model against the polynomials that they approximate:
- * the proven bounds hold for every input tried.
+ * Checks that the integers of a model differ from the polynomials that they
+ * approximate by at most the proven bounds.
  */
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests sparse regression on functions for which a greedy choice of terms is
- * difficult.
+ * Checks that sparse regression finds the terms of functions for which a greedy
+ * choice of terms fails.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the fits of scattering rows that the run time can draw, and their
- * linear algebra.
+ * Checks that fits of scattering rows find known models, preserve light and
+ * reject invalid options, and that their linear solvers are right.
  */
 #include <dlfcn.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the rows of the scattering matrix of a translucent medium: closed form,
- * reciprocity, energy, measured rows. C1 and C2 in names are numbers of
- * requirements.
+ * Compares rows of the scattering matrix of a translucent medium with a closed
+ * form and with measured rows, and checks reciprocity and energy. C1 and C2 in
+ * names are numbers of requirements.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests conics, aspheres, cylinders, torics, and shifted and tilted surfaces:
- * parsing, rays compared with a second method, and analytic results.
+ * Checks conics, aspheres, cylinders, torics, and shifted and tilted surfaces:
+ * parsed values are right, and rays equal those of a second method and analytic
+ * results.
  */
 #include <math.h>
 #include <stdint.h>

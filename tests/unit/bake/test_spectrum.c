@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the replacement of a spectrum by a few wavelengths: their positions,
- * that a flat spectrum is white, and the colours of smooth spectra compared
- * with 31 wavelengths.
+ * Checks the wavelengths that replace a spectrum: a flat spectrum is white, and
+ * the colours of smooth spectra are close to those of 31 wavelengths.
  */
 #include <math.h>
 #include <stdint.h>

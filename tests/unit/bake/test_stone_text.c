@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the parser of translucent media: values, defaults, and errors with
- * their positions.
+ * Checks that the parser of translucent media reads values, sets defaults, and
+ * reports errors with their positions.
  */
 #include <math.h>
 #include <stdbool.h>

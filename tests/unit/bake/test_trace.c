@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests exact rays against those of an independent program, against analytic
- * results, and against symmetries of a centred lens.
+ * Compares exact rays with those of an independent program, with analytic
+ * results, and with rays mirrored in a centred lens.
  */
 #include <dirent.h>
 #include <math.h>

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the halving of the boxes of zones, and the decision when a zone is
- * halved.
+ * Checks that the two halves of a zone cover it, and which zones are halved.
  */
 #include <math.h>
 

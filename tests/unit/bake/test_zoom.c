@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests zoom and focus: tables of several positions against tables of one, gaps
- * between columns, and exact paraxial rays of focused lenses.
+ * Checks zoom and focus: a table of several positions equals one table per
+ * position, gaps are interpolated between columns, and a focused lens has its
+ * paraxial focus on the sensor.
  */
 #include <math.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the container format of baked files with hand-written bytes, and each
- * fault that it can have.
+ * Checks the container of baked files: hand-written bytes are accepted, and
+ * each possible fault is rejected.
  */
 #include "base/blob.h"
 #include "support/test.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests division by words of 32 bits against the compiler's division.
+ * Compares division by words of 32 bits with the compiler's division.
  */
 #include "base/divide.h"
 #include "support/test.h"

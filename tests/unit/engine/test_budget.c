@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests --budget on simulated machines: tool_seconds() is replaced by a formula
- * for the time of a frame.
+ * Checks that --budget keeps the frame time on simulated machines:
+ * tool_seconds() is replaced by a formula for the time of a frame.
  */
 #include <stdint.h>
 

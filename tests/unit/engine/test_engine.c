@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the engine's public API: rejected arguments, reports, equal images in
- * its own and the caller's memory, and the table of options.
+ * Checks the engine's public API: invalid arguments are rejected, reports match
+ * the frame, and images are equal in the engine's and in the caller's memory.
  */
 #include <stdint.h>
 

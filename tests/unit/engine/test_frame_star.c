@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the starbursts of a frame: power and extent estimated for each lamp,
- * the number drawn, and the limits of memory and time.
+ * Checks the starbursts of a frame: estimated power and extent of each lamp,
+ * the number of stars drawn, and the limits of memory and time.
  */
 #include <stdint.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the conversion of lamps in an image or a list to lights at infinity:
- * direction and power.
+ * Checks that lamps in an image or a list become lights at infinity with the
+ * right direction and power.
  */
 #include <math.h>
 #include <stdio.h>

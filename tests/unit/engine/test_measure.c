@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the image metrics (PSNR and others) on images with known results.
+ * Checks that the image metrics (PSNR and others) give known results for
+ * constructed images.
  */
 #include <math.h>
 #include <stdlib.h>

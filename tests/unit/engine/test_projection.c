@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests projections of lenses: polynomials against traced chief rays,
- * inversion, and known properties of lenses.
+ * Compares the polynomials of lens projections with traced chief rays, and
+ * checks their inverses.
  */
 #include <math.h>
 #include <string.h>

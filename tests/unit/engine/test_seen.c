@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the visibility of a flare on the image below it, and the exposure that
- * depends on it.
+ * Checks the predicted visibility of a flare on the image below it, and the
+ * exposure chosen from it.
  */
 #include <math.h>
 #include <stdlib.h>

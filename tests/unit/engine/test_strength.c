@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the automatic exposure: brightness of the flare of one lamp and of
- * many, changes from frame to frame, and the response of a lens.
+ * Checks the automatic exposure: it gives the flare of one lamp or of many the
+ * expected brightness, changes gradually from frame to frame, and uses the
+ * lens's response.
  */
 #include <stdint.h>
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the area to the right of an edge against values computed by hand:
- * rounded to 1/256 pixel for images in codes, to 1/65536 for linear images.
+ * Compares the area to the right of an edge, per pixel, with values computed by
+ * hand: rounded to 1/256 pixel for images in codes, to 1/65536 for linear
+ * images.
  */
 #include <stdint.h>
 #include <stdlib.h>

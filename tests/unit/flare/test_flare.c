@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the integer rasteriser on hand-made grids: settings that must not
- * change the image, and golden hashes.
+ * Draws hand-made grids with the integer rasteriser: tiles, workers and order
+ * do not change the image, and images have their golden hashes.
  */
 #include <stdbool.h>
 #include <stdio.h>

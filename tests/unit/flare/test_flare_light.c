@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the integer rasteriser on hand-made grids: where light falls and how
- * much, also for clipped and folded ghosts.
+ * Draws hand-made grids with the integer rasteriser and checks where light
+ * falls and how much, also for clipped and folded ghosts.
  */
 #include <math.h>
 #include <stdbool.h>

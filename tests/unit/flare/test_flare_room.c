@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the limits of the integer rasteriser: capacities, rejected settings,
- * and counts that saturate at INT_MAX.
+ * Checks the limits of the integer rasteriser: edges above the capacity are
+ * counted, invalid settings are rejected, and counts saturate at INT_MAX.
  */
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the pairing of tracks and spots, nearest first, against a search of all
+ * Compares the pairing of tracks and spots, nearest first, with a search of all
  * pairs.
  */
 #include "support/rng.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests transfer curves, and codes after light is added, against libm; colour
- * matrices against the standards' colours.
+ * Compares transfer curves, and codes after light is added, with libm, and
+ * colour matrices with the standards' colours.
  */
 #include "image/curve.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests adding light to images of every format against double precision, by the
- * standards' curves and matrices instead of tables.
+ * Adds light to images of every format and compares the codes with double
+ * precision, which uses the standards' curves and matrices instead of tables.
  */
 #include "support/canvas.h"
 #include "support/rng.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests sampling the codes of an image of any format at a few positions.
+ * Checks that the codes of an image of any format are sampled correctly at a
+ * few positions.
  */
 #include <stdlib.h>
 #include <string.h>

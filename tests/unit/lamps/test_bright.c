@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the search for bright pixels in random images of every format and
- * threshold against a check of each pixel, and the length of runs of equal
+ * Compares the search for bright pixels in random images of every format and
+ * threshold with a check of each pixel, and checks the length of runs of equal
  * pixels.
  */
 #include "support/canvas.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the lamp finder on drawn images: position and its stability, and what
- * must not count as a lamp.
+ * Checks that the lamp finder finds drawn lamps at stable subpixel positions
+ * and rejects bright areas that are not lamps.
  */
 #include "glint/lamps.h"
 

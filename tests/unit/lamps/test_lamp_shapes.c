@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests connected regions of every shape against a flood fill, and the colours
- * of lamps in every format.
+ * Compares connected regions of every shape with a flood fill, and checks the
+ * colours of lamps in every format.
  */
 #include "glint/lamps.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the estimation of power, colour and extent of lamps clipped to white
- * from the light profile around them.
+ * Checks the power, colour and extent that are estimated for lamps clipped to
+ * white from the light profile around them.
  */
 #include <math.h>
 #include <stdlib.h>

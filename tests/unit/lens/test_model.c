@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the checks of a model file, one by one.
+ * Checks that each kind of damage to a model file is rejected.
  */
 #include <stdint.h>
 #include <stdio.h>

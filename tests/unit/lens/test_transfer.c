@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the evaluation of a model's polynomials for rays, and of vertices,
- * against integers computed by hand.
+ * Compares a model's polynomials, evaluated for rays and vertices, with
+ * integers computed by hand.
  */
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests recordings in JSON: both sets of key names, tolerated deviations, and
- * errors with their line numbers.
+ * Checks that recordings in JSON are read with both sets of key names and with
+ * tolerated deviations, and that errors have their line numbers.
  */
 #include <math.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests finding a file's type by its name's extension.
+ * Checks that a file's type is found by the extension of its name.
  */
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the conversion of V4L2 FOURCCs and colour spaces to glint's formats and
+ * Checks that V4L2 FOURCCs and colour spaces convert to glint's formats and
  * back.
  */
 #include <stdint.h>

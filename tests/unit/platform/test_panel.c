@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests drawing images on panels of every pixel layout: colours, position,
- * size.
+ * Checks colours, position and size of images drawn on panels of every pixel
+ * layout.
  */
 #include <stdint.h>
 

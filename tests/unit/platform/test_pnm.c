@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests PPM, PGM and PFM: hand-written files, hostile headers, truncation at
- * every byte.
+ * Checks that hand-written PPM, PGM and PFM files are read correctly, and that
+ * hostile headers and files cut at any byte are rejected.
  */
 #include <stdint.h>
 

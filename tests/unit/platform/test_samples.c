@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests pixels in the format of image files: reading them as linear light,
- * adding light, and preserving everything else.
+ * Checks that pixels of image files are read as linear light, that light is
+ * added to them, and that everything else is preserved.
  */
 #include <stdint.h>
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the sinks that write frames: raw planes, Y4M, V4L2 output devices.
+ * Checks the bytes that sinks write for frames: raw planes, Y4M, V4L2 output
+ * devices.
  */
 #include <stdarg.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests text from untrusted files: which characters are printed to a terminal,
- * and how JSON strings are escaped.
+ * Checks which characters of untrusted texts are printed to a terminal, and how
+ * JSON strings are escaped.
  */
 #include <stdint.h>
 

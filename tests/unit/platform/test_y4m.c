@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests YUV4MPEG2: headers, odd sizes, truncation at every byte, round trips.
+ * Checks that YUV4MPEG2 frames of odd sizes survive writing and reading, and
+ * that invalid headers and files cut at any byte are rejected.
  */
 #include <stdint.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests division by multiplication: y4m_share() for every numerator, y4m_part()
- * at both ends of each run of numerators with the same quotient, which suffices
- * because the quotient is monotonic.
+ * Compares division by multiplication with exact quotients: y4m_share() for
+ * every numerator, y4m_part() at both ends of each run of numerators with the
+ * same quotient, which suffices because the quotient is monotonic.
  */
 
 #include "support/test.h"

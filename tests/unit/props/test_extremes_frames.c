@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests extreme frames: one pixel, one row, 8192 x 8192, odd sizes, padded rows
+ * Draws extreme frames: one pixel, one row, 8192 x 8192, odd sizes, padded rows
  * and negative strides.
  */
 #include <math.h>

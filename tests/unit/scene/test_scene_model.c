@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the checks of a baked scene file, one by one.
+ * Checks that each kind of damage to a baked scene file is rejected.
  */
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests a baked translucent medium: its integers against the fit in double
- * precision, and invalid files.
+ * Compares the integers of a baked translucent medium with the fit in double
+ * precision, and checks that invalid files are rejected.
  */
 #include <math.h>
 #include <stdint.h>

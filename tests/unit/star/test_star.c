@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the starburst: tables against direct summation in double precision, and
- * drawing in motion and rotation.
+ * Compares the tables of the starburst with direct summation in double
+ * precision, and checks that the star changes continuously as it moves and
+ * rotates.
  */
 #include <math.h>
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests light and coverage of passes against their definition in linear light:
- * in every format, at full and half resolution, with two passes in either
- * order.
+ * Compares the light and coverage of passes with their definition in linear
+ * light: in every format, at full and half resolution, with two passes in
+ * either order.
  */
 #include <math.h>
 #include <string.h>

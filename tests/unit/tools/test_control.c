@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests control lines: values, errors and their positions; keys; playback
- * position; files and pipes.
+ * Checks that control lines set their values or report errors with positions,
+ * that keys and playback position work, and that files and pipes are read
+ * alike.
  */
 #define _GNU_SOURCE /* for mkstemp() and posix_openpt() */
 #include <fcntl.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests files that solo, mute or tint single ghosts: values and errors.
+ * Checks that files that solo, mute or tint single ghosts set the stated
+ * values, and that invalid files are rejected.
  */
 #include <stdint.h>
 #include <stdlib.h>

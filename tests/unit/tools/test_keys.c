@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests key frames: values between and outside them, and invalid files.
+ * Checks the values between and outside key frames, and that invalid files are
+ * rejected.
  */
 #include <stdint.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the dimming of lamps by a mask, and their fading off-screen.
+ * Checks that a mask dims lamps, and that lamps fade off-screen.
  */
 #include <math.h>
 #include <stdint.h>

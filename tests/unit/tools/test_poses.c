@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the poses of a scene's objects, from files and from a pipe: order,
- * handedness, and invalid lines.
+ * Checks that poses of a scene's objects from files and pipes are applied in
+ * order and in the right handedness, and that invalid lines are rejected.
  */
 #include <fcntl.h>
 #include <math.h>

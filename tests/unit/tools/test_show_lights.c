@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the marks of lights in images of every format: position, colour, and no
- * writes off-screen.
+ * Checks position and colour of the marks of lights in images of every format,
+ * and that nothing is written off-screen.
  */
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests lights beyond 60 degrees: which lenses get the special rules for them,
+ * Checks lights beyond 60 degrees: which lenses get the special rules for them,
  * and barrels that the light of a fisheye grazes.
  */
 #include <math.h>
