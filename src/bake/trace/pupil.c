@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds the part of the pupil that a ghost's visible rays come through.
+ * Finds the region of the entrance pupil through which a ghost's visible rays
+ * pass. A grid over the front element keeps the cells that may contain a
+ * visible ray, judged by the bounding box of their corners' stop positions and
+ * relative radii, with a margin for curvature between corners. Finer grids then
+ * cover the kept cells until the region no longer shrinks. If no cell is kept,
+ * a spot is searched for in the light's plane.
  *
- * A grid over the front element keeps the cells that may hold a visible ray,
- * judged by the box of their corners' stop positions and by their relative
- * radii, both with a margin for what bends between corners; then a finer grid
- * covers the cells that were kept, until they no longer shrink. If nothing is
- * found, the light's plane is searched for a spot. Limits: a visible part that
- * is smaller than a 64th of the front element, and whose surroundings bend by
- * more than the margin, can be missed if it is long or lies off that plane. */
+ * Limits: a visible region smaller than a 64th of the front element, around
+ * which rays bend by more than the margin, can be missed if it is elongated or
+ * lies off that plane.
+ */
 #include "glint/trace.h"
 
 #include <math.h>
@@ -20,17 +22,19 @@
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8, TURNS = 16 };
 
-/* Cells of later rounds, which cover less and get by with a coarser grid. */
+/* Cells of later rounds; they cover a smaller region, so a coarser grid
+ * suffices. */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
 struct search {
     struct glint_openings openings;
-    struct glint_path places; /* the path of openings, without energies */
-    int across, down;         /* number of cells of this round */
+    /* path to the stop and barrels, without energies */
+    struct glint_path places;
+    int across, down; /* number of cells of this round */
     struct glint_ray ray[DOWN + 1][ACROSS + 1];
     enum glint_ray_status status[DOWN + 1][ACROSS + 1];
-    struct glint_pupil grid;         /* what the grid covers */
-    bool kept[DOWN + 1][ACROSS + 1]; /* corners of cells that are kept */
+    struct glint_pupil grid;         /* region that the grid covers */
+    bool kept[DOWN + 1][ACROSS + 1]; /* true: corner of a kept cell */
 };
 
 static double column_x(const struct search *s, const struct glint_pupil *p,
@@ -61,7 +65,7 @@ static void sample_row(struct search *s, const struct glint_pupil *p,
 
 struct bounds {
     int n;
-    /* Ranges of stop x and y, relative radius, sensor x and y. */
+    /* Min and max of stop x and y, relative radius, sensor x and y. */
     double low[5], high[5];
 };
 
@@ -82,8 +86,8 @@ static double from_zero(double low, double high)
     return low > 0 ? low : high < 0 ? -high : 0;
 }
 
-/* Returns whether a cell may hold a ray that gets through. A cell with lost
- * corners is judged by the others, with twice the margin. */
+/* Returns whether a cell may contain a ray that is not blocked. A cell with
+ * invalid corners is judged by the others, with twice the margin. */
 static bool may_pass(const struct search *s, const struct bounds *b)
 {
     const double more = b->n == 4 ? 0.5 : 1;
@@ -104,7 +108,8 @@ static bool may_pass(const struct search *s, const struct bounds *b)
                s->openings.field_mm;
 }
 
-/* Adds one cell to those that are kept: its place and where its light lands. */
+/* Adds the position of a kept cell to BOX, and the positions of its rays on
+ * the sensor to FOUND. */
 static void keep_cell(struct search *s, int i, int j, const struct bounds *cell,
                       struct bounds *box, struct glint_pupil *found)
 {
@@ -128,15 +133,15 @@ static void keep_cell(struct search *s, int i, int j, const struct bounds *cell,
         s->kept[j + (k >> 1)][i + (k & 1)] = true;
 }
 
-/* Adds the mirror image of the light on the sensor. */
+/* Extends the sensor range of P by its mirror image. */
 static void mirror_sensor(struct glint_pupil *p)
 {
     p->sensor_mm[3] = fmax(fabs(p->sensor_mm[2]), fabs(p->sensor_mm[3]));
     p->sensor_mm[2] = -p->sensor_mm[3];
 }
 
-/* Shrinks P to the cells that may let a ray through; returns whether there are
- * any. */
+/* Shrinks P to the cells that may contain an unblocked ray; returns whether
+ * there are any. */
 static bool shrink_to_cells(struct search *s, struct glint_pupil *p)
 {
     struct glint_pupil found = *p;
@@ -169,9 +174,9 @@ static bool shrink_to_cells(struct search *s, struct glint_pupil *p)
     return true;
 }
 
-/* Returns the part of the vertex plane at which rays can enter. A slanted ray
- * crosses this plane beside the place where it meets the curved surface, by up
- * to the sag at the rim times its tangent. */
+/* Returns by how much rays may enter the vertex plane outside the front
+ * element's rim: a slanted ray crosses this plane up to the sag at the rim
+ * times its tangent away from where it meets the curved surface. */
 static double grow_by_sag(const struct glint_path *path,
                           const struct glint_event *front)
 {
@@ -188,8 +193,8 @@ static double grow_by_sag(const struct glint_path *path,
     return most;
 }
 
-/* Returns how far aside and askew a front of the lens may lie: its own decentre
- * and what its tilt moves of the rim. */
+/* Returns the max displacement of the front element's rim by its decentre
+ * and tilt. */
 static double off_axis(const struct glint_path *path,
                        const struct glint_event *front)
 {
@@ -216,7 +221,7 @@ static struct glint_pupil whole_front(const struct glint_path *path,
                                 .mirrored = path->round};
 }
 
-/* Returns the largest energy at the corners that the last grid kept. */
+/* Returns the max energy at the kept corners of the last grid. */
 static double find_max_energy(struct search *s)
 {
     double most = 0;
@@ -237,8 +242,8 @@ static double compute_area(const struct glint_pupil *p)
     return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
 }
 
-/* Returns BOX grown by half of its size on each side, and by a part of the
- * whole front, as boxes may be slivers. */
+/* Returns BOX enlarged by half its size on each side, and by a fraction of
+ * the front element, as boxes may be very thin. */
 static struct glint_pupil grow_box(const struct glint_pupil *box,
                                    const struct glint_pupil *front)
 {
@@ -256,8 +261,8 @@ static struct glint_pupil grow_box(const struct glint_pupil *box,
         .mirrored = front->mirrored};
 }
 
-/* Shrinks P by rounds of grids, the first of ACROSS x DOWN cells; returns
- * whether anything gets through. */
+/* Shrinks P by several grids, the first of ACROSS x DOWN cells; returns
+ * whether any ray passes. */
 static bool shrink_in_rounds(struct search *s, struct glint_pupil *p,
                              int across, int down)
 {
@@ -272,14 +277,15 @@ static bool shrink_in_rounds(struct search *s, struct glint_pupil *p,
         if (round > 0 && compute_area(p) > 0.8 * before)
             break;
     }
-    /* Places decide what is kept: only the last grid's energies are needed. */
+    /* Only positions decide which cells are kept; energies of the last grid
+     * alone are needed. */
     if (found)
         p->energy = find_max_energy(s);
     return found;
 }
 
-/* Finds a spot that is smaller than a cell of the first grid; the light's plane
- * goes through its middle. */
+/* Finds a visible spot smaller than a cell of the first grid, in the light's
+ * plane through the middle of the front element. */
 static bool find_spot(struct search *s, const struct glint_pupil *front,
                       struct glint_pupil *p)
 {
@@ -296,7 +302,7 @@ static bool find_spot(struct search *s, const struct glint_pupil *front,
     return shrink_in_rounds(s, p, NEXT_ACROSS, NEXT_DOWN);
 }
 
-/* Finds the pupil on P, or a spot of FRONT. */
+/* Finds the visible region within P, or else a spot of FRONT. */
 static bool find_pupil(struct search *s, const struct glint_pupil *front,
                        struct glint_pupil *p, bool near)
 {
@@ -305,8 +311,8 @@ static bool find_pupil(struct search *s, const struct glint_pupil *front,
     if (!shrink_in_rounds(s, p, near ? NEXT_ACROSS : ACROSS,
                           near ? NEXT_DOWN : DOWN))
         return find_spot(s, front, p);
-    /* Where light bends more than cells allow for, some of it enters beside
-     * those that were kept. */
+    /* Where rays bend more than the margin allows for, some enter outside
+     * the kept cells. */
     wider = *p;
     if (glint_spot_grow(&s->openings, &wider) &&
         shrink_in_rounds(s, &wider, NEXT_ACROSS, NEXT_DOWN))

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_DIGITS = 100 }; /* of a number; more are malformed */
+/* max number of digits; longer numbers are rejected */
+enum { MOST_DIGITS = 100 };
 
 static const char *digits_end(const char *at)
 {
@@ -15,8 +16,8 @@ static const char *digits_end(const char *at)
     return at;
 }
 
-/* Returns where the exponent at AT, "e-3", ends; AT if there is none. Sets
- * EXPONENT to it. */
+/* Returns the end of the exponent at AT, such as "e-3", and sets EXPONENT;
+ * returns AT if there is none. */
 static const char *exponent_end(const char *at, long *exponent)
 {
     const bool is_signed = *at && (at[1] == '-' || at[1] == '+');
@@ -33,8 +34,8 @@ static const char *exponent_end(const char *at, long *exponent)
     return end;
 }
 
-/* strtod() reads "125e-1" for 12.5: without a decimal point its result does not
- * depend on the locale, and it is correctly rounded all the same. */
+/* Calls strtod() with "125e-1" for 12.5: without a decimal point the result
+ * does not depend on the locale and is still correctly rounded. */
 double glint_option_number(const char *text, const char **end)
 {
     const char *const first = text + strspn(text, " \t");

@@ -44,7 +44,8 @@ static const struct glint_option table[] = {
 #include "glint/options.inc"
 };
 
-/* Where the value of each row begins and ends in struct glint_options. */
+/* Offsets in struct glint_options of the first byte of each row's value and
+ * of the byte after it. */
 static const struct place {
     size_t begin, end;
 } place[] = {
@@ -97,7 +98,8 @@ static void store_text(struct glint_options *options, int i, const char *text)
     *(const char **)((char *)options + place[i].begin) = text;
 }
 
-/* Returns whether OPTIONS, perhaps of an older program, have row I. */
+/* Returns whether OPTIONS, which may be an older program's smaller struct,
+ * contain row I. */
 static bool has_row(const struct glint_options *options, int i)
 {
     return place[i].end <= options->size;
@@ -134,7 +136,8 @@ struct glint_options glint_options_whole(const struct glint_options *options)
     return whole;
 }
 
-/* Returns the number of words of OPTION, and the length of word INDEX. */
+/* Returns the number of words of OPTION; sets WORD and N to word INDEX and
+ * its length. */
 static int find_word(const struct glint_option *option, int index, size_t *n,
                      const char **word)
 {
@@ -232,7 +235,7 @@ static enum glint_status reject_name(const char *name,
     return GLINT_E_ARGUMENT;
 }
 
-/* Of two options that exclude each other, the one that was set last counts. */
+/* If two options exclude each other, the one set last is used. */
 static void note_given(struct glint_options *options, int i)
 {
     options->given[i] = true;
@@ -248,7 +251,7 @@ static void note_given(struct glint_options *options, int i)
     }
 }
 
-/* Returns whether option I of OPTIONS may be VALUE, which is in its range. */
+/* Returns whether option I of OPTIONS accepts VALUE, which is in its range. */
 static bool accepts_value(const struct glint_options *options, int i,
                           double value)
 {
@@ -293,7 +296,7 @@ enum glint_status glint_options_set(struct glint_options *options,
 /* ------------------------------------------------------------------- parsing
  */
 
-/* Reads TEXT as a word that stands for a number of option I. */
+/* Reads TEXT as a word that stands for a value of numeric option I. */
 static bool named_number(struct glint_options *options, int i, const char *text,
                          double *value)
 {
@@ -317,7 +320,7 @@ static bool named_number(struct glint_options *options, int i, const char *text,
     return false;
 }
 
-/* Reads TEXT, NULL or "" as of a flag on a command line. */
+/* Reads TEXT as the value of a flag; NULL and "": yes. */
 static bool flag_value(const char *text, double *value)
 {
     static const char *const words[] = {"no", "yes", "0", "1"};

@@ -7,8 +7,9 @@
 
 #include "glint/area.h"
 
-/* Reads a number LOW .. HIGH after NAME from *AT, and what follows it up to the
- * next comma. Returns false, and leaves *AT, if it does not begin with NAME. */
+/* Reads a number LOW .. HIGH after NAME at *AT, and moves *AT past the comma
+ * after it or to the end of the text. Returns false, without changing *AT,
+ * if the text does not begin with NAME. */
 static bool read_part(const char **at, const char *name, double low,
                       double high, double *value)
 {
@@ -99,7 +100,7 @@ bool glint_option_sensor(const char *text, double mm[2])
            mm[0] <= 1000 && mm[1] >= 0.1 && mm[1] <= 1000;
 }
 
-/* Stops by which a lamp extends below its threshold, by default. */
+/* Default extent of a lamp below its threshold, stops. */
 #define EXTENDS_EV 0.05
 
 bool glint_option_threshold(const char *text, double ev[2])

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which texts the options of type TEXT accept. */
+ * Validates the values of options of type TEXT.
+ */
 #ifndef GLINT_ENGINE_OPTIONS_TEXTS_H
 #define GLINT_ENGINE_OPTIONS_TEXTS_H
 
 #include "glint/options.h"
 
-/* Returns whether option ID accepts TEXT, which is not empty. Names of files
- * and lenses are not looked up, and coatings not parsed: that takes the offline
- * half. */
+/* Returns whether option ID accepts TEXT, which is not empty. Does not look
+ * up names of files and lenses, and does not parse coatings, as that needs
+ * the offline half. */
 bool glint_text_is_valid(enum glint_option_id id, const char *text);
 
 /* Returns OPTIONS, perhaps the smaller struct of an older program, with the

@@ -12,7 +12,7 @@ enum { NODES = (1 << GLINT_DIRT_LOG2) + 1 };
 
 /* ----------------------------------------------------------------- doubles */
 
-/* Returns the mask's light at (X, Y), by the four pixels about it. */
+/* Returns the light of the mask at (X, Y), interpolated between four pixels. */
 static double of_mask(const struct glint_iris *iris, double x, double y)
 {
     const double u = 0.5 * (x + 1) * iris->mask_width - 0.5;
@@ -29,7 +29,7 @@ static double of_mask(const struct glint_iris *iris, double x, double y)
     return (high + t * (at[0] + s * (at[1] - at[0]) - high)) / 255;
 }
 
-/* Returns what dust and mask let through. */
+/* Returns the fraction of light that passes dust and mask at (X, Y). */
 static double read_clear_light(const struct glint_dirt *d, double x, double y)
 {
     const double u = x * d->cos_turn + y * d->sin_turn;
@@ -52,7 +52,7 @@ static double read_light(const struct glint_dirt *d, double x, double y)
 
 /* ------------------------------------------------------------------- table */
 
-/* Returns the mean light of the cell about node (I, J) of the finest level. */
+/* Returns the mean light of the cell around node (I, J) of the finest level. */
 static double mean_about(const struct glint_dirt *d, int i, int j)
 {
     enum { N = 2 };
@@ -96,8 +96,9 @@ static void set_mean(struct glint_dirt *d)
     d->mean = mean > 1e-4 ? mean : 1;
 }
 
-/* Sets a level of COARSER nodes a side from the finer one, of SIDE: each node
- * by 1/4, 1/2, 1/4 of the nodes about it, across and down. */
+/* Sets a level of COARSER nodes per side from the next finer one of SIDE
+ * nodes per side: each node is the mean of the nodes around it, with weights
+ * 1/4, 1/2, 1/4 across and down. */
 static void set_coarser(const uint16_t *finer, int side, uint16_t *level,
                         int coarser)
 {
@@ -131,9 +132,10 @@ static size_t all_nodes(void)
     return n;
 }
 
-/* Returns the most by which the nodes about node (I, J) of a level differ
- * from its VALUE: those of the finer level of FINE_SIDE nodes a side, and
- * what these themselves say of finer ones; up to REACH of them away. */
+/* Returns the max difference between VALUE, node (I, J) of a level, and
+ * finer levels up to REACH nodes around it: the nodes of the next finer
+ * level, of FINE_SIDE nodes per side, and their own differences to still
+ * finer levels. */
 static int find_roughness(const uint16_t *fine, const uint8_t *rough,
                           int fine_side, int i, int j, int reach, int value)
 {
@@ -153,7 +155,7 @@ static int find_roughness(const uint16_t *fine, const uint8_t *rough,
     return most < 255 ? most : 255;
 }
 
-/* Returns a number of the N nodes and the sides of D, never 0 [FNV-1a]. */
+/* Returns a digest of the N nodes and the sides of D, never 0 [FNV-1a]. */
 static uint64_t compute_digest(const struct glint_dirt *d, int n)
 {
     uint64_t mark = UINT64_C(0xcbf29ce484222325);
@@ -177,7 +179,7 @@ static void set_table(struct glint_dirt *d)
         .method = &glint_shade_method,
         .log2 = d->dust.n || d->iris.mask ? GLINT_DIRT_LOG2 : 0};
     set_mean(d);
-    /* Where there is a table, it has the soft edge as well. */
+    /* A table includes the soft edge. */
     if (!d->shade.log2) {
         d->shade.soft_q16 = (int32_t)lrint(d->iris.softness * 65536);
         return;

@@ -15,17 +15,18 @@ struct glint_dirt {
     struct glint_iris_sides sides;
     struct glint_dust dust;
     struct glint_iris iris;
-    double cos_turn, sin_turn; /* of the mask and the dust, with the blades */
-    uint64_t mark;             /* differs with what lies in the stop */
+    double cos_turn, sin_turn; /* rotation of mask and dust with the blades */
+    uint64_t mark;             /* digest of the shade; changes if it changes */
     double mean;               /* mean light over the stop; 1 if it is 0 */
-    /* Returns the light that is let through at (X, Y) inside the outline. */
+    /* Returns the fraction of light that passes at (X, Y) inside the
+     * outline. */
     double (*through)(const struct glint_dirt *dirt, double x, double y);
-    uint16_t *node_q15; /* nodes of all levels, one after the other */
+    uint16_t *node_q15; /* nodes of all levels, consecutive */
     uint8_t *rough_q8;
 };
 
-/* Returns the light that the stop of SETUP lets through at (X, Y) inside its
- * outline. */
+/* Returns the fraction of light that passes the stop of SETUP at (X, Y)
+ * inside its outline. */
 static inline double glint_dirt_through(const struct glint_setup *setup,
                                         double x, double y)
 {

@@ -6,15 +6,15 @@
 
 #include "glint/view.h"
 
-/* Radii of specks, in stop radii: the larger, the fewer. */
+/* Range of radii of specks, in stop radii; large specks are rarer. */
 static const double least_radius = 0.01, most_radius = 0.05;
 
 struct draw {
     uint64_t state;
 };
 
-/* Returns a number from 0 to below 1, by a multiplicative congruence whose
- * upper bits are taken; the same on every machine. */
+/* Returns a number in 0 .. 1 (excluded): the upper bits of a linear
+ * congruential generator; the same on every machine. */
 static double draw_random(struct draw *d)
 {
     d->state = d->state * UINT64_C(6364136223846793005) +
@@ -27,7 +27,7 @@ static double draw_between(struct draw *d, double a, double b)
     return a + (b - a) * draw_random(d);
 }
 
-/* Sets AT to a place in the unit circle, all of it alike. */
+/* Sets AT to a random position, uniform in the unit circle. */
 static void draw_position(struct draw *d, double at[2])
 {
     const double r = sqrt(draw_random(d)), phi = 2 * GLINT_PI * draw_random(d);
@@ -63,7 +63,7 @@ static void add_scratch(struct glint_dust *dust, struct draw *d)
     s->opacity = draw_between(d, 0.2, 0.6);
 }
 
-/* Sets the square that S lies in. */
+/* Sets the bounding square of S. */
 static void set_box(struct glint_speck *s)
 {
     double half = 0;
@@ -77,7 +77,7 @@ static void set_box(struct glint_speck *s)
 
 void glint_dust_strew(struct glint_dust *dust, double amount, int seed)
 {
-    /* Fractions of the circle are squares of radii. */
+    /* A disc covers the square of its radius as a fraction of the circle. */
     const int n_lines = (int)ceil(fmin(8, 40 * amount));
     const int n_smudges = (int)ceil(fmin(4, 20 * amount));
     struct draw d = {(uint64_t)(uint32_t)seed * UINT64_C(0x9e3779b97f4a7c15)};
@@ -89,7 +89,8 @@ void glint_dust_strew(struct glint_dust *dust, double amount, int seed)
     for (int i = 0; i < n_lines; i++)
         add_scratch(dust, &d);
     for (int i = 0; i < n_smudges; i++) {
-        /* One draw a statement: compilers differ in the order of arguments. */
+        /* One draw per statement, as the order in which arguments are
+         * evaluated is not defined. */
         const double opacity = fmin(amount * draw_between(&d, 0.5, 2), 0.5);
         const double radius = draw_between(&d, 0.15, 0.4);
 

@@ -12,7 +12,7 @@ enum { GLINT_DUST_MOST = 512 };
 struct glint_speck {
     double end[2][2], radius, rim; /* stop radii */
     double opacity;                /* 0 .. 1, in its middle */
-    double middle[2], reach;       /* of the square that it lies in */
+    double middle[2], reach; /* centre and half side of the bounding square */
 };
 
 struct glint_dust {
@@ -20,12 +20,13 @@ struct glint_dust {
     struct glint_speck speck[GLINT_DUST_MOST];
 };
 
-/* Sets DUST to specks that together cover the fraction AMOUNT, 0 .. 0.5, of the
- * stop's circle, or as much as GLINT_DUST_MOST of them do, and to scratches and
- * smudges, more with more AMOUNT. The same SEED gives the same places. */
+/* Sets DUST to specks that together cover the fraction AMOUNT, 0 .. 0.5, of
+ * the stop's circle, limited to GLINT_DUST_MOST specks, and to scratches and
+ * smudges whose number grows with AMOUNT. The same SEED gives the same
+ * positions. */
 void glint_dust_strew(struct glint_dust *dust, double amount, int seed);
 
-/* Returns the fraction of light that dust lets through at (X, Y). */
+/* Returns the fraction of light that passes the dust at (X, Y). */
 double glint_dust_through(const struct glint_dust *dust, double x, double y);
 
 #endif

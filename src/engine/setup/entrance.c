@@ -7,13 +7,14 @@
 #include "engine/setup/setup.h"
 #include "glint/transfer.h"
 
-/* Where the rays of one ghost that pass the middle of the stop enter. */
+/* Position at which the rays of a ghost through the middle of the stop
+ * enter. */
 struct chief {
     double x_mm;         /* on the vertex plane, in the light's frame */
-    double radii_per_mm; /* stop radii that a mm of that plane takes */
+    double radii_per_mm; /* stop radii per mm on that plane */
 };
 
-/* Finds CHIEF of GHOST for light at SINE; false if there is none. */
+/* Finds CHIEF of GHOST for light at SINE; returns false if no ray passes. */
 static bool find_chief_ray(const struct glint_lens *lens, int ghost,
                            double sine, struct chief *chief)
 {
@@ -41,9 +42,9 @@ static bool find_chief_ray(const struct glint_lens *lens, int ghost,
     return true;
 }
 
-/* Light that is reflected behind the stop alone comes to it as all light does:
- * on the axis a radius of the stop is one of the entrance pupil. Those ghosts
- * are the last of a model. */
+/* A ghost that is reflected only behind the stop reaches the stop as direct
+ * light does: on the axis, a stop radius corresponds to a radius of the
+ * entrance pupil. These ghosts are the last of a model. */
 static double z_of_model(const struct glint_setup *setup,
                          const struct glint_lens *lens)
 {
@@ -58,7 +59,8 @@ static double z_of_model(const struct glint_setup *setup,
             fabs(fabs(on.radii_per_mm) * radius - 1) < 0.05 &&
             find_chief_ray(lens, k, sine, &off))
             return (on.x_mm - off.x_mm) / tangent;
-    /* such that the corner of the picture is seen past the rim of the front */
+    /* such that the picture's corner is visible past the rim of the front
+     * element */
     return fmax(front - radius, 0.1 * radius) * fabs(setup->optics.focal_mm) /
            fmax(field, 1e-6);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where the entrance pupil lies. */
+ * Position of the entrance pupil.
+ */
 #ifndef GLINT_ENGINE_SETUP_ENTRANCE_H
 #define GLINT_ENGINE_SETUP_ENTRANCE_H
 
@@ -12,9 +13,9 @@ struct glint_entrance {
     double front_mm; /* semi-diameter of the first surface */
 };
 
-/* Returns where the entrance pupil of SETUP lies. A model has it in its
- * polynomials; LENS is the model, or NULL if the setup was made from a table.
- */
+/* Returns the position of the entrance pupil of SETUP. LENS is the model
+ * whose polynomials give it, or NULL if the setup was made from a lens
+ * table. */
 struct glint_entrance glint_entrance_of(const struct glint_setup *setup,
                                         const struct glint_lens *lens);
 

@@ -6,8 +6,8 @@
 #include "engine/setup/degrees.h"
 #include "engine/setup/setup.h"
 
-/* Arcs of more than this curvature are hardly distinct from a circle, and their
- * centres would lie too near the stop's for 30 bits. */
+/* Max curvature of arcs: above it, arcs barely differ from a circle, and
+ * their centres would be too close to the stop's centre for 30 bits. */
 static const double most_round = 0.9999;
 
 void glint_iris_sides(struct glint_iris_sides *sides,
@@ -53,8 +53,8 @@ double glint_iris_depth(const struct glint_iris_sides *sides, double x,
     return depth;
 }
 
-/* Returns the area of a stop of N sides of curvature ROUND: of the polygon, and
- * of the segments between its sides and the arcs. */
+/* Returns the area of a stop with N sides of curvature ROUND: the area of
+ * the polygon plus the segments between its sides and the arcs. */
 static double compute_opening_area(int n, double round)
 {
     const double half_side = sin(GLINT_PI / n);

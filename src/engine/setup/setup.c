@@ -12,10 +12,9 @@
 #include "engine/setup/spectrum.h"
 #include "glint/model.h"
 
-/* Scales each channel to the sum 1, so that a flat spectrum is white. If the
- * wavelengths hardly contribute to a channel, or their sum is negative, all get
- * the same value: few wavelengths make a grey picture rather than a wrong one.
- */
+/* Scales each channel to the sum 1, so that a flat spectrum is white. If a
+ * channel's sum is near 0 or negative, all its values are set equal: a grey
+ * picture is better than wrong colours. */
 static void normalise_colours(struct glint_setup *s)
 {
     const int n = s->n_wavelengths;
@@ -107,7 +106,7 @@ enum glint_status glint_setup_units(struct glint_setup *s, const char *name,
     return GLINT_OK;
 }
 
-/* Returns the polynomial COEF of N powers at W. */
+/* Evaluates the polynomial COEF, N powers, at W. */
 static double of_powers(const struct glint_real *coef, int n, double w)
 {
     double sum = 0;
@@ -177,7 +176,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
 {
     const struct glint_model_header *h = lens->header;
     const double widest = glint_real_value(h->f_number);
-    /* F_NUMBER may be a rounded print of the widest one. */
+    /* F_NUMBER may be the rounded f-number of the full opening. */
     const double by =
         fabs(widest / f_number - 1) < 1e-6 ? 1 : widest / f_number;
 
@@ -209,8 +208,8 @@ void glint_setup_weigh(struct glint_setup *setup)
         setup->unit_flux[i] = mean;
 }
 
-/* Returns the flux of the direct image at NM, between those at the wavelengths
- * of SETUP, as a parabola of 1 / wavelength^2 through three of them. */
+/* Returns the flux of the direct image at NM, interpolated by a parabola in
+ * 1 / wavelength^2 through three wavelengths of SETUP. */
 static double flux_between(const struct glint_setup *s, double nm)
 {
     const int at[3] = {0, s->n_wavelengths / 2, s->n_wavelengths - 1};

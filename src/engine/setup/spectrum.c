@@ -24,7 +24,8 @@ enum {
     FIRST_NM = 400,
     LAST_NM = 700,
     STEP_NM = 10,
-    /* Nanometres by which cubics continue beyond the outermost wavelengths. */
+    /* Distance, nm, by which cubics are extrapolated outside the outermost
+     * wavelengths. */
     BEYOND_NM = 15,
     POINTS = 4
 };
@@ -85,8 +86,7 @@ static void all_colours(double rgb[N_ALL][3])
     }
 }
 
-/* Returns how many wavelengths should lie in a nanometre about NM, in any unit.
- */
+/* Returns the density of wavelengths at NM, in arbitrary units. */
 static double evaluate_density(double nm)
 {
     double rgb[3], squares = 0;
@@ -97,8 +97,8 @@ static double evaluate_density(double nm)
     return cbrt(squares / (nm * nm * nm)); /* d (1 / nm^2) ~ nm^-3 */
 }
 
-/* Places N wavelengths so that each has equal parts of the density on either
- * side. */
+/* Places N wavelengths so that each lies in the middle of an equal part of
+ * the density. */
 static void place_wavelengths(int n, double *wavelength_nm)
 {
     double sum = 0, passed = 0;
@@ -115,8 +115,8 @@ static void place_wavelengths(int n, double *wavelength_nm)
     }
 }
 
-/* Returns the index of the first of the wavelengths between which NM is
- * interpolated. */
+/* Returns the index of the first of the wavelengths from which the value at
+ * NM is interpolated. */
 static int first_near(int n, const double *wavelength_nm, double nm)
 {
     int i = 0;
@@ -128,9 +128,8 @@ static int first_near(int n, const double *wavelength_nm, double nm)
     return i > 0 ? i : 0;
 }
 
-/* Returns the fraction of wavelength K in the value at NM: Lagrange's
- * polynomial.
- */
+/* Returns the weight of wavelength K in the interpolated value at NM:
+ * Lagrange's polynomial. */
 static double compute_wave_share(int n, const double *wavelength_nm, int k,
                                  double nm)
 {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * The colours of wavelengths.
+ * Colours of single wavelengths.
  */
 #ifndef GLINT_ENGINE_SETUP_SPECTRUM_H
 #define GLINT_ENGINE_SETUP_SPECTRUM_H
 
-/* Sets RGB to linear BT.709 of light of NM, by the CIE 1931 observer; negative
- * where the light is more saturated than any mixture of the primaries. */
+/* Sets RGB to the linear BT.709 colour of light of wavelength NM, by the CIE
+ * 1931 observer; channels are negative for colours outside the gamut. */
 void glint_observer_rgb(double nm, double rgb[3]);
 
 #endif

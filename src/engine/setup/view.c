@@ -20,7 +20,7 @@ struct glint_view glint_view_fit(int width, int height, double film_width_mm,
 
 /* ------------------------------------------------------------- projections */
 
-/* Largest angle off the axis that a light may have, degrees. */
+/* Max angle of a light off the axis, degrees. */
 #define MOST_DEG 89.9
 #define MOST_RHO 1e6
 

@@ -22,9 +22,9 @@ void glint_arcs_init(struct glint_arcs *a, int n, double rotation_deg,
               n * (2 * a->turn - sin(2 * a->turn)) / (2 * round * round);
 }
 
-/* Returns how many of N sides to add up: of an even number half, as light of
- * the opposite side is that of a side with its phase turned round. */
-static int find_parallel_half(int n)
+/* Returns the number of sides to sum, half of an even number: light of the
+ * opposite side equals that of a side with its phase reversed. */
+static int count_summed_sides(int n)
 {
     return n % 2 ? n : n / 2;
 }
@@ -145,7 +145,7 @@ double glint_arcs_transform(const struct glint_arcs *a, double qx, double qy)
 
     if (q < 1e-5)
         return 1;
-    for (int i = 0; i < find_parallel_half(a->n); i++)
+    for (int i = 0; i < count_summed_sides(a->n); i++)
         sum +=
             (q > 5 ? along_far : along)(a, compute_normal(a, i), q, direction);
     size = (a->n % 2 ? cabs(sum) : 2 * cimag(sum)) /
@@ -162,7 +162,7 @@ double glint_arcs_far(const struct glint_arcs *a, double qx, double qy)
     const double limit = 0.25 / (q * q);
     double sum = 0;
 
-    for (int i = 0; i < find_parallel_half(a->n); i++) {
+    for (int i = 0; i < count_summed_sides(a->n); i++) {
         const double normal = compute_normal(a, i);
         const double size = cabs(arc(a, q, normal - to));
         /* the corner after it: normals of both arcs there */

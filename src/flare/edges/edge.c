@@ -57,9 +57,9 @@ static inline int find_tile(int x, int last, int log2)
     return (x < 0 ? 0 : x > last ? last : x) >> log2;
 }
 
-/* Visits the tiles that edge E crosses, or the tiles of a patch's box, one row
- * of tiles after the other. Parts left of the region belong to its first
- * column. Returns the number of entries. */
+/* Visits the tiles that edge E crosses, or the tiles of a patch's box, row
+ * by row of tiles. Pieces left of the region count for its first column.
+ * Returns the number of entries. */
 static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
                                    const struct glint_bins *bins,
                                    enum visit visit, int32_t index)

@@ -129,15 +129,15 @@ static int64_t interpolate_value(const int64_t *value_q16,
                                   28);
 }
 
-/* Returns the point between A and B where a linear function with the values FA
- * and FB is 0. Products are below 2^28 times 2^33. */
+/* Returns the coordinate between A and B at which a linear function with
+ * values FA and FB is 0. Products are below 2^28 times 2^33. */
 static int32_t find_zero(int32_t a_q28, int32_t b_q28, int64_t fa, int64_t fb)
 {
     return a_q28 + (int32_t)q_divide((b_q28 - a_q28) * fa, fa - fb);
 }
 
-/* Cuts O by one half plane, given the values of its linear function at the
- * triangle's corners: negative is outside. */
+/* Clips O by one half plane. VALUE is its linear function at the triangle's
+ * corners: negative outside. */
 static void cut_one(struct glint_outline *o, const int64_t *value_q16)
 {
     int64_t here, next;
@@ -301,8 +301,8 @@ void glint_outline_whole(struct glint_outline *outline,
 
 /* ------------------------------------------------------------------- widen */
 
-/* Lengthens the strip from A to B to the min length. The first coordinate is
- * along the strip; A's must not be larger than B's. Returns twice the strip's
+/* Lengthens the strip from A to B to the min length. The first coordinate
+ * runs along the strip; A's must not exceed B's. Returns twice the strip's
  * area, q32. */
 static int64_t lengthen_strip(int64_t a[2], int64_t b[2])
 {
@@ -333,8 +333,8 @@ int64_t glint_outline_widen_q32(struct glint_outline *o)
     area2_q32 = lengthen_strip(a, b);
     o->n = 4;
     for (int i = 0; i < 4; i++) {
-        /* Corners go round the same way in both cases: left, right, right,
-         * left; or top, top, bottom, bottom. */
+        /* Corners are in the same cyclic order in both cases: left, right,
+         * right, left; or top, top, bottom, bottom. */
         const int far = flat ? i == 1 || i == 2 : i >= 2;
         const int beyond = flat ? i >= 2 : i == 1 || i == 2;
         const int64_t along = far ? b[0] : a[0];
