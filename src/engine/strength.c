@@ -76,7 +76,7 @@ static void add_light(struct glint_response_light *sum,
     }
 }
 
-static void finish_sum(struct glint_response_light *sum)
+static void compute_peaks(struct glint_response_light *sum)
 {
     for (int c = 0; c < 3; c++)
         sum->peak[c] = pow(sum->peak[c], 1 / norm);
@@ -93,7 +93,7 @@ void glint_strength_light(const struct glint_response *response,
         compute_light(response, lamps, i, &one);
         add_light(light, &one, lamps->lamp[i].level);
     }
-    finish_sum(light);
+    compute_peaks(light);
 }
 
 static double combine_norm(double a, double b)
@@ -182,7 +182,7 @@ static double find_target_log2(const struct glint_response *response,
         compute_light(response, &full, i, &one);
         add_light(&light, &one, 1);
     }
-    finish_sum(&light);
+    compute_peaks(&light);
     return compute_target_log2(&light);
 }
 
@@ -199,7 +199,7 @@ static void expose_lamps(struct glint_strength *s,
         limit_lamp(s, lamps, i, &one);
         add_light(&s->light, &one, lamps->lamp[i].level);
     }
-    finish_sum(&s->light);
+    compute_peaks(&s->light);
     s->scale = s->gain * exp2(compute_strength_log2(s) + s->factor_log2);
 }
 

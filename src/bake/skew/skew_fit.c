@@ -51,9 +51,10 @@
  * which any bearable error is accepted. */
 #define NOT_FAINT 1.5
 #define FAINT     6.0
-/* Estimates, measured with anamorphic-schneider within 4 and 8 degrees:
- * angle beyond which few ghosts have light; fits per ghost and direction;
- * fits per ghost, surface and area of directions (in sines). */
+/* Constants of the estimate of work, measured with anamorphic-schneider
+ * baked to 4 and to 8 degrees: SEEN_DEG: angle beyond which few ghosts have
+ * light; HEAD: fits per ghost and direction; then fits per ghost, surface and
+ * area of directions (in sines). */
 #define SEEN_DEG 25.0
 #define HEAD     0.16
 #define PER_AREA 175.0

@@ -8,9 +8,9 @@
 #include "engine/frame/block.h"
 #include "engine/frame/frame_parts.h"
 
-/* Veiling glare: half of it lies evenly over the picture, as what barrel and
- * camera scatter does, the rest is wider where it is fainter. Sigmas are
- * fractions of the diagonal; 0: even. */
+/* Veiling glare as a sum of Gaussians. Half of it is uniform over the picture,
+ * like light scattered by barrel and camera. Sigmas are fractions of the
+ * diagonal; 0: uniform. */
 static const struct {
     double sigma, share;
 } glare[] = {{0.08, 0.25}, {0.25, 0.25}, {0, 0.5}};

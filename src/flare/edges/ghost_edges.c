@@ -463,8 +463,8 @@ static struct glint_outside find_outside_bits(const struct glint_ghost_edges *g,
 }
 
 /* Adds the edges along the nodes of row J, between two rows of cells. */
-static void add_level(struct glint_ghost_edges *g, int j, const int32_t *above,
-                      const int32_t *below)
+static void add_horizontal_edges(struct glint_ghost_edges *g, int j,
+                                 const int32_t *above, const int32_t *below)
 {
     for (int i = 0; i < g->bundle->n_cells; i++)
         if (above[i] != below[i])
@@ -474,8 +474,8 @@ static void add_level(struct glint_ghost_edges *g, int j, const int32_t *above,
 }
 
 /* Adds the edges between neighbouring cells of row J. */
-static void add_upright(struct glint_ghost_edges *g, int j,
-                        const int32_t *light)
+static void add_vertical_edges(struct glint_ghost_edges *g, int j,
+                               const int32_t *light)
 {
     const int n = g->bundle->n_cells;
 
@@ -506,12 +506,12 @@ void glint_ghost_emit_once(struct glint_ghost_edges *ghost)
         glint_ghost_set_nodes(ghost, j + 1);
         for (int i = 0; i < n; i++)
             here[i] = find_cell_light(ghost, i, j);
-        add_level(ghost, j, above, here);
-        add_upright(ghost, j, here);
+        add_horizontal_edges(ghost, j, above, here);
+        add_vertical_edges(ghost, j, here);
     }
     for (int i = 0; i < n; i++)
         r->light[n & 1][i] = 0;
-    add_level(ghost, n, r->light[~n & 1], r->light[n & 1]);
+    add_horizontal_edges(ghost, n, r->light[~n & 1], r->light[n & 1]);
 }
 
 void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)

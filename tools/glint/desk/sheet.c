@@ -13,7 +13,7 @@ enum { GAP = 8, GROUND = 32 };
 
 /* ----------------------------------------------------------------- captions */
 
-static int stroke_width(int width)
+static int compute_stroke_width(int width)
 {
     return width >= 960 ? 3 : width >= 200 ? 2 : 1;
 }
@@ -23,7 +23,7 @@ static int stroke_width(int width)
  * row. */
 static size_t row_length(int width, const char *text)
 {
-    const int line = stroke_width(width);
+    const int line = compute_stroke_width(width);
     /* letters with their gap are 4 strokes wide, margins 2 */
     const int fit = (width - 3 * line) / (4 * line);
     const size_t room = fit > 1 ? (size_t)fit : 1;
@@ -89,7 +89,7 @@ enum glint_status sheet_open(struct sheet *s, int n, int width, int height,
         s->columns--;
     while (s->columns < n && s->columns * (width + GAP) < 700)
         s->columns++;
-    s->line = stroke_width(width);
+    s->line = compute_stroke_width(width);
     rows = (n + s->columns - 1) / s->columns;
     s->image = (struct glint_image){
         .format = GLINT_RGB24,

@@ -246,8 +246,8 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* light of all ghosts at one angle; lost: of rays that the model does not
- * cover */
+/* light of all ghosts at one angle: total, and part of rays outside the model
+ */
 struct light {
     double all, lost;
 };
