@@ -20,13 +20,13 @@
 
 enum { CELLS = 4 }; /* cells per pixel, across and down */
 
-/* A square of cells about the light, and the sums over all cells from its first
- * corner. */
+/* A square of cells around the light, and the sums over all cells from its
+ * first corner. */
 struct cells {
     const struct glint_psf *psf;
-    const struct glint_smear *smear; /* NULL: nothing lies in the stop */
+    const struct glint_smear *smear; /* NULL: the stop has no dirt */
     double airy_px;                  /* of the smear */
-    int half, side;   /* cells from the middle to a side, and cells across */
+    int half, side;   /* cells from the middle to a side; cells per side */
     double (*sum)[3]; /* [side + 1][side + 1] */
 };
 
@@ -35,8 +35,8 @@ static double (*at(const struct cells *s, int i, int k))[3]
     return &s->sum[(i + s->half) * (s->side + 1) + k + s->half];
 }
 
-/* Returns how many points across a cell takes whose middle is R pixels from the
- * light. */
+/* Returns the number of sample points per side of a cell whose middle is R
+ * pixels from the light. */
 static int count_points(const struct glint_psf *psf, double r)
 {
     const double fine = r < 12 * psf->airy_px + 0.5
@@ -85,8 +85,8 @@ static double integrate_beyond(const struct cells *s, double r, int c)
                     : all;
 }
 
-/* Sets the light of each cell, at the place of its sum; the half above the
- * light mirrors the one below. */
+/* Stores the light of each cell where its sum will be; the half above the
+ * light mirrors the half below. */
 static void set_cells(struct cells *s)
 {
     double missing[3] = {0, 0, 0};
@@ -122,7 +122,7 @@ static void sum_cells(struct cells *s)
                                              (*at(s, i, k))[c];
 }
 
-/* Sets RGB to the light of the pixel about (X, Y), in cells. */
+/* Sets RGB to the light of the pixel centred at (X, Y), in cells. */
 static void pixel_light(const struct cells *s, int y, int x, double rgb[3])
 {
     const int h = CELLS / 2;
@@ -190,8 +190,8 @@ static uint16_t encode_light(double light)
     return (uint16_t)(sign | e << 10 | ((unsigned)lrint(size) - 1024));
 }
 
-/* Returns the cells from node to node: so few that rings are resolved, but
- * enough that the core reaches the place where they have faded. */
+/* Returns the number of cells between nodes: small enough to resolve rings,
+ * large enough that the core reaches to where rings have faded. */
 static int count_cells(const struct glint_psf *psf)
 {
     const double far = 9 * psf->airy_px / GLINT_STAR_CORE;
@@ -199,7 +199,7 @@ static int count_cells(const struct glint_psf *psf)
     return far > 0.5 ? 4 : far > 0.25 ? 2 : 1;
 }
 
-/* Adds the light at (X, Y) of the table of what lies in the stop. */
+/* Adds the light at (X, Y) from the table of dirt in the stop. */
 static void add_smeared(const struct glint_star_tables *t, double x, double y,
                         double rgb[3])
 {

@@ -9,16 +9,16 @@
 #include "engine/star/smear.h"
 #include "star/starburst.h"
 
-/* Sets the core of TABLES, whose other members are set, for what lies in the
- * stop, SMEAR, unless that is NULL; AIRY_PX as of glint_smear_light().
- * GLINT_E_MEMORY. */
+/* Sets the core of TABLES, whose other members are set. SMEAR is the smear
+ * of dirt in the stop, or NULL; AIRY_PX as in glint_smear_light(). Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_star_set_core(struct glint_star_tables *tables,
                                       const struct glint_psf *psf,
                                       const struct glint_smear *smear,
                                       double airy_px);
 
-/* Sets RGB to the light of lines and halo at (X, Y) from a light of power 1, as
- * drawn except for the rounding of integers. */
+/* Sets RGB to the light of lines and halo at (X, Y) from a light of power 1;
+ * differs from the drawn light by integer rounding alone. */
 void glint_star_tabled(const struct glint_star_tables *tables, double x,
                        double y, double rgb[3]);
 

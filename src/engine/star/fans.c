@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The far field of stops with round blades or a soft edge, which throw no
- * lines: a table by distance and angle. */
+ * The far field of stops with round blades or a soft edge, which produce fans
+ * instead of lines: a table by distance and angle.
+ */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,15 +10,16 @@
 #include "glint/view.h"
 
 enum {
-    COLUMNS = 129, /* from a line to half-way to the next */
+    COLUMNS = 129, /* columns from a line to half-way to the next line */
     PER_OCTAVE = 4,
-    EVERY = 2 /* each second wavelength */
+    EVERY = 2 /* every second wavelength is used */
 };
 
-/* The table begins at this order of diffraction, and ends at these pixels. */
+/* Order of diffraction at which the table begins; pixels at which it ends. */
 static const double first_order = 12, last_px = 16384;
 
-/* Between these curvatures fans fade into the far field of a circle. */
+/* Range of curvatures over which fans are blended into the far field of a
+ * circle. */
 static const double fade_from = 0.85, fade_to = 0.98;
 
 double glint_psf_softness(double soft, double q)
@@ -29,7 +31,7 @@ double glint_psf_softness(double soft, double q)
     return a * a;
 }
 
-/* Sets RGB to the light at R pixels, times r^2, turned by OFF from a line. */
+/* Sets RGB to light times r^2 at R pixels, in a direction OFF from a line. */
 static void evaluate_direct(const struct glint_psf *p, double r, double off,
                             double rgb[3])
 {
@@ -49,9 +51,9 @@ static void evaluate_direct(const struct glint_psf *p, double r, double off,
         rgb[c] = fmax(rgb[c], 0);
 }
 
-/* Mixes the far field of a circle into RGB, which is light at R pixels, times
- * r^2: close to a circle the gaps between fans are as narrow as what blurs
- * them. */
+/* Blends the far field of a circle into RGB, light times r^2 at R pixels:
+ * for a stop close to a circle the gaps between fans are as narrow as their
+ * blur. */
 static void evaluate_fade(const struct glint_psf *p, double r, double rgb[3])
 {
     const double t =

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fourier transform of a square, by halves [Cooley65]. */
+ * Fourier transform of a square array, radix 2 [Cooley65].
+ */
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,8 +18,7 @@ static void swap_complex(double a[2], double b[2])
     }
 }
 
-/* Puts each of N numbers to the place of its index with all bits turned round.
- */
+/* Moves each of N numbers to the index with its bits reversed. */
 static void turn_bits(double (*at)[2], int n)
 {
     for (int i = 1, j = 0; i < n; i++) {
@@ -55,7 +55,8 @@ typedef double complex_number[2]; /* real, imaginary */
 
 enum glint_status glint_fourier(double (*at)[2], int n, int used)
 {
-    enum { ABREAST = 8 }; /* columns that share lines of the cache */
+    /* columns transformed together, as they share cache lines */
+    enum { ABREAST = 8 };
     complex_number *const root = malloc((size_t)n * sizeof *root);
     complex_number *const column = malloc((size_t)n * ABREAST * sizeof *column);
     const enum glint_status status = root && column ? GLINT_OK : GLINT_E_MEMORY;

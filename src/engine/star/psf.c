@@ -10,7 +10,7 @@
 
 enum { ORDERS = 20, BLEND_FROM = 15 };
 
-/* Number of widths over which a profile is tabled. */
+/* Width of the table of a profile, in units of width_px. */
 static const double span = 32;
 
 /* --------------------------------------------------------------- transform */
@@ -46,7 +46,8 @@ static double transform_circle(double q)
 
 /* The sides of a stop of circumradius 1. */
 struct sides {
-    int n, n_pair; /* 2: the opposite sides are not listed, but counted */
+    int n, n_pair; /* 2: opposite sides are parallel, and each listed side
+                      stands for both */
     double length, apothem, area;
     /* cosines and sines of the sides' normals */
     double c[GLINT_MAX_BLADES], s[GLINT_MAX_BLADES];
@@ -138,7 +139,8 @@ static void set_profile(struct glint_psf *p)
     }
 }
 
-/* Sets the smooth profile: the mean over a fringe about each place. */
+/* Sets the smooth profile: the profile averaged over one fringe around each
+ * position. */
 static void set_smooth(struct glint_psf *p)
 {
     const int half = (int)(0.6 / span * GLINT_PSF_PROFILE);
@@ -182,8 +184,8 @@ void glint_psf_profile(const struct glint_psf *p, double v, double rgb[3])
 
 /* -------------------------------------------------------------------- near */
 
-/* Returns a table of the transform: a row for each 1 / GLINT_PSF_STEPS of an
- * order of diffraction, and columns of angles; NULL if memory is short. */
+/* Returns a table of the transform, or NULL if memory is short: one row per
+ * 1 / GLINT_PSF_STEPS order of diffraction, one column per angle. */
 static double *tabulate_transforms(const struct glint_psf *p, int n_rows)
 {
     double *table =
@@ -194,8 +196,8 @@ static double *tabulate_transforms(const struct glint_psf *p, int n_rows)
     if (p->n_blades)
         set_sides(&sides, p->n_blades, 0);
     for (int k = 0; k < p->n_columns && table; k++) {
-        /* The table is for a stop without rotation. Angles begin at the normal
-         * of a side, half a side on from a corner. */
+        /* The table is for a stop without rotation. Angles begin at the
+         * normal of a side, half a side away from a corner. */
         const double angle =
             p->n_blades ? GLINT_PI / p->n_blades + half * k / (p->n_columns - 1)
                         : 0;
@@ -250,7 +252,7 @@ static enum glint_status set_near(struct glint_psf *p)
     return table && p->near ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-/* Blades of less curvature throw fans that are as good as lines. */
+/* Blades of less curvature are drawn with lines instead of fans. */
 static const double least_round = 0.02;
 
 /* Less curvature, and a softer edge than this, are those of straight blades:
@@ -259,7 +261,8 @@ static const double least_round = 0.02;
 static const double straight_round = 0.01, straight_soft = 0.002;
 static const double circle_round = 0.98;
 
-/* Takes a soft edge as one in the middle of its slope: a smaller stop. */
+/* Replaces a soft edge by a hard edge in the middle of its slope: a smaller
+ * stop. */
 static void set_soft(struct glint_psf *p, double soft)
 {
     const double apothem = p->n_blades ? cos(GLINT_PI / p->n_blades) : 1;
@@ -333,7 +336,7 @@ void glint_psf_finish(struct glint_psf *psf)
 double glint_psf_angle(const struct glint_psf *p, int i)
 {
     const double step = 180.0 / p->n_lines;
-    /* y up becomes y down, which turns the other way round */
+    /* y changes from up to down, which reverses the rotation */
     const double one =
         p->n_blades ? -(p->rotation_deg + 180.0 / p->n_blades) : 0;
 

@@ -36,22 +36,22 @@ struct glint_psf {
     int n_blades; /* 0: circle */
     double rotation_deg;
     double soft; /* width of a soft edge, stop radii */
-    int fans; /* 1: blades are round or soft, and throw fans in place of lines
+    int fans; /* 1: blades are round or soft and produce fans instead of lines
                */
     double round;           /* curvature of blades with fans */
-    struct glint_arcs arcs; /* of a stop with fans, not turned */
+    struct glint_arcs arcs; /* arcs of a stop with fans, without rotation */
     double (*far)[3];       /* [n_far][129]: light times r^2 of fans */
     int n_far;
     double airy_px; /* pixels: 550 nm times the f-number */
-    /* Number of lines that edges throw, and of parallel edges for each, 1 or 2.
-     */
+    /* Number of lines that edges produce, and number of parallel edges per
+     * line, 1 or 2. */
     int n_lines, n_pair;
-    double edge, area, perimeter; /* size of the stop, whose radius is 1 */
+    double edge, area, perimeter; /* size of the stop of radius 1 */
     /* Normals of the lines, y down; edges in order. */
     double normal[GLINT_MAX_BLADES][2];
     double width_px; /* pixels from the middle of a profile to its first zero,
                         at 550 nm */
-    double scale[GLINT_PSF_WAVES];     /* wavelength over 550 nm */
+    double scale[GLINT_PSF_WAVES];     /* wavelength / 550 nm */
     double weight[GLINT_PSF_WAVES][3]; /* each channel sums to 1 */
     /* Sums of weight * scale, and of weight * scale^2. */
     double mean[3], square[3];
@@ -65,7 +65,7 @@ struct glint_psf {
     double (*near)[3];     /* [n_rows][n_columns]: light times airy_px^2 */
 };
 
-/* Makes the pattern of a stop. GLINT_E_MEMORY. */
+/* Computes the pattern of a stop. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_psf_init(struct glint_psf *psf, int n_blades,
                                  double rotation_deg, double airy_px);
 void glint_psf_finish(struct glint_psf *psf);
@@ -77,15 +77,14 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
                                       double rotation_deg, double airy_px,
                                       double round, double soft);
 
-/* Makes the table of fans; gives their light, at orders of diffraction
- * above 12.
- */
+/* Computes the table of fans; glint_fans_at() returns their light at orders
+ * of diffraction above 12. */
 enum glint_status glint_fans_init(struct glint_psf *psf);
-void glint_fans_at(const struct glint_psf *psf, double r, double off,
-                   double rgb[3]); /* R pixels away, turned by OFF from a line
-                                    */
+void glint_fans_at(
+    const struct glint_psf *psf, double r, double off,
+    double rgb[3]); /* R pixels away, in a direction OFF from a line */
 
-/* Returns by what a soft edge of width SOFT multiplies light at Q cycles per
+/* Returns the factor of a soft edge of width SOFT on light at Q cycles per
  * stop radius: the square of the transform of its slope. */
 double glint_psf_softness(double soft, double q);
 
