@@ -80,9 +80,10 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
 /* Computes the table of fans; glint_fans_at() returns their light at orders
  * of diffraction above 12. */
 enum glint_status glint_fans_init(struct glint_psf *psf);
-void glint_fans_at(
-    const struct glint_psf *psf, double r, double off,
-    double rgb[3]); /* R pixels away, in a direction OFF from a line */
+/* Sets RGB to the light of fans R pixels away, in a direction OFF from a
+ * line. */
+void glint_fans_at(const struct glint_psf *psf, double r, double off,
+                   double rgb[3]);
 
 /* Returns the factor of a soft edge of width SOFT on light at Q cycles per
  * stop radius: the square of the transform of its slope. */
