@@ -121,8 +121,7 @@ bool glint_numbers_read(struct glint_text *text, const char *what, int n,
 
         if (!word.length && n > 1)
             return glint_text_fail(text, word.place,
-                                   "%s needs %d numbers, got %d", what, n,
-                                   i);
+                                   "%s needs %d numbers, got %d", what, n, i);
         if (!glint_text_value_of(text, &word, &range, &value[i]))
             return false;
     }

@@ -40,8 +40,8 @@ static bool read_word(struct glint_describer *d, const char *line,
     if (!word.length)
         return glint_text_fail(&d->text, word.place, "%s needs %s", line, list);
     glint_word_quote(&word, quote);
-    return glint_text_fail(&d->text, word.place, "%s accepts %s, not '%s'", line,
-                           list, quote);
+    return glint_text_fail(&d->text, word.place, "%s accepts %s, not '%s'",
+                           line, list, quote);
 }
 
 bool glint_describe_hand(struct glint_describer *d)

@@ -74,8 +74,8 @@ static bool read_item(struct reader *r, struct list *list, int least,
             continue;
         if (!word.length)
             return glint_text_fail(&r->text, word.place,
-                                   "%s needs %d numbers, got %d", what,
-                                   least, i);
+                                   "%s needs %d numbers, got %d", what, least,
+                                   i);
         if (!glint_word_number_about(&word, &item[i]))
             return glint_text_fail(&r->text, word.place, "'%s' is not a number",
                                    glint_word_quote(&word, quote));

@@ -318,7 +318,8 @@ static const struct mistake {
      "15:14: 'highlights' must be a whole number"},
     {15, "flare lights highlights 9",
      "15:25: highlights must be 0 .. 8, not 9"},
-    {15, "flare stars", "15:7: flare accepts off or lights [highlights N], not"},
+    {15, "flare stars",
+     "15:7: flare accepts off or lights [highlights N], not"},
 };
 
 TEST(mistakes)

@@ -220,7 +220,8 @@ TEST(mistakes)
                    "x.ini:1:  is not an option of configuration files");
     expect_mistake(BYTES("grid=\n"), "x.ini:1: grid needs a value");
     expect_mistake(BYTES("grid= ; 64\n"), "x.ini:1: grid needs a value");
-    expect_mistake(BYTES("dither=maybe\n"), "x.ini:1: dither accepts yes or no");
+    expect_mistake(BYTES("dither=maybe\n"),
+                   "x.ini:1: dither accepts yes or no");
     expect_mistake(BYTES("dither=\n"), "x.ini:1: dither accepts yes or no");
     expect_mistake(BYTES("grid=4\ndither=yes\n\ndither=no\n"),
                    "x.ini:4: dither is stated twice");
