@@ -66,7 +66,8 @@ TEST(line_every_ten_seconds)
 {
     struct tool_progress p = start_progress(false, false);
 
-    assert_string_equal(show_progress(&p, 1, 0.1), "");
+    assert_string_equal(show_progress(&p, 5, 0.1),
+                        "bake: will take about 45 s\n");
     assert_string_equal(show_progress(&p, 9.9, 0.2), "");
     assert_string_equal(show_progress(&p, 10, 0.25),
                         "bake: 25 % in 10 s, about 30 s left\n");
@@ -82,21 +83,23 @@ TEST(parts)
     struct tool_progress p = start_progress(false, false);
 
     tool_progress_part(&p, 0, 0.6);
-    assert_string_equal(show_progress(&p, 1, 0.5), "");
+    assert_string_equal(show_progress(&p, 5, 0.5), "");
     tool_progress_part(&p, 0.6, 0.4);
     assert_string_equal(show_progress(&p, 20, 0.5),
                         "bake: 80 % in 20 s, about 5 s left\n");
 }
 
-/* Checks that an estimate is printed once for work of 20 s or more. */
+/* Checks that an estimate is printed once, after 5 s, for work of 20 s or
+ * more. */
 TEST(long_work)
 {
     struct tool_progress p = start_progress(false, false);
 
-    assert_string_equal(show_progress(&p, 1, 0), "");
-    assert_string_equal(show_progress(&p, 1, 0.02),
-                        "bake: will take about 49 s\n");
-    assert_string_equal(show_progress(&p, 2, 0.02), "");
+    assert_string_equal(show_progress(&p, 5, 0), "");
+    assert_string_equal(show_progress(&p, 4.9, 0.1), "");
+    assert_string_equal(show_progress(&p, 5, 0.1),
+                        "bake: will take about 45 s\n");
+    assert_string_equal(show_progress(&p, 6, 0.02), "");
     p = start_progress(false, false);
     p.less = "a larger --tolerance";
     p.besides = ", and reports";
@@ -114,7 +117,7 @@ TEST(clock_of_first_report)
     p.waits = true;
     p.least_s = 3;
     assert_string_equal(show_progress(&p, 50, 0.01), "");
-    assert_string_equal(show_progress(&p, 50.9, 0.2), "");
+    assert_string_equal(show_progress(&p, 50.7, 0.2), "");
     assert_string_equal(show_progress(&p, 51, 0.25),
                         "bake: will take about 3 s\n");
 }

@@ -276,13 +276,13 @@ static void show_line(struct tool_progress *p, double now, double done)
             100 * p->most, spent, spent * (1 - done) / done);
 }
 
-/* Prints an estimate of the time once, after a second, if it is p->least_s or
- * more. */
+/* Prints an estimate of the time once, if it is p->least_s or more. It waits for
+ * a quarter of that: the first ghosts of a bake say little about the others. */
 static void print_estimate(struct tool_progress *p, double spent, double done)
 {
     const double all = spent / done, left = all - spent;
 
-    if (spent < 1)
+    if (spent < p->least_s / 4)
         return;
     p->told = true;
     if (all < p->least_s)
