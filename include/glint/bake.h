@@ -53,10 +53,10 @@ struct glint_bake_options {
      * decrease; may be NULL. */
     glint_progress_fn *progress;
     void *progress_ctx;
-    /* Called after each fit with its work, 1 or 2 (about 40 ms of processor
-     * time each), by several workers at once. The sum does not depend on their
-     * number. If it returns false, glint_bake() ends and returns
-     * GLINT_E_UNSUPPORTED with an empty ERROR. NULL: no limit. */
+    /* Called before each ghost with 0 and after each fit with its work, 1 or 2
+     * (about 40 ms of processor time each), by several workers at once. The sum
+     * does not depend on their number. If it returns false, glint_bake() ends
+     * and returns GLINT_E_UNSUPPORTED with an empty ERROR. NULL: no limit. */
     bool (*allow)(void *ctx, int work);
     void *allow_ctx;
 };

@@ -13,7 +13,10 @@
 static const int deadly[] = {
     SIGHUP,    SIGINT,    SIGTERM, SIGQUIT, SIGUSR1, SIGUSR2,
     SIGALRM,   SIGVTALRM, SIGPROF, SIGXCPU, SIGSYS,  SIGABRT,
-    SIGSEGV,   SIGBUS,    SIGILL,  SIGFPE,  SIGTRAP, SIGPOLL,
+    SIGSEGV,   SIGBUS,    SIGILL,  SIGFPE,  SIGTRAP,
+#ifdef SIGPOLL
+    SIGPOLL,
+#endif
 #ifdef SIGPWR
     SIGPWR,
 #endif
@@ -88,8 +91,10 @@ static void install_signal_handlers(void)
     act.sa_flags = (int)SA_RESETHAND;
     for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
         replace_default(deadly[i], &act);
+#ifdef SIGRTMIN
     for (int i = SIGRTMIN; i <= SIGRTMAX; i++)
         replace_default(i, &act);
+#endif
     atexit(run_at_exit);
 }
 

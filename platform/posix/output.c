@@ -337,19 +337,27 @@ static int create_temporary(char *name, mode_t mode)
     return fd;
 }
 
-/* Reports that no temporary file could be created, with the first 40 bytes
- * of its folder's name: the cause must fit behind it. */
+/* Reports that no temporary file could be created, with the last 40 bytes of
+ * its folder's name, from whole characters on: the cause must fit behind it. */
 static enum glint_status report_folder(const struct glint_output *out,
                                        int number, struct glint_error *error)
 {
     const char *const slash = strrchr(out->target, '/');
+    const char *folder = slash ? out->target : ".";
     const int n = slash && slash > out->target ? (int)(slash - out->target) : 1;
+    const int left_out = n > 40 ? n - 40 : 0;
 
-    return glint_error_report(error, GLINT_E_OUTPUT, out->name,
-                              "cannot create a temporary file in its folder "
-                              "'%.*s': %s",
-                              n < 40 ? n : 40, slash ? out->target : ".",
-                              strerror(number));
+    folder += left_out;
+    while (left_out > 0 && (*folder & 0xc0) == 0x80)
+        folder++;
+
+    return glint_error_report(
+        error, GLINT_E_OUTPUT, out->name,
+        "cannot create a temporary file in its folder "
+        "'%s%.*s': %s",
+        left_out ? "..." : "",
+        n - (int)(folder - (slash ? out->target : folder)), folder,
+        strerror(number));
 }
 
 /* Opens a temporary file in the folder of out->target. MODE: its permission

@@ -166,6 +166,12 @@ static void fit_job(void *ctx, int ghost, int worker)
 {
     struct bake_run *run = ctx;
 
+    const struct glint_bake_options *const o = &run->options;
+
+    if (o->allow && !o->allow(o->allow_ctx, 0)) {
+        run->status[ghost] = GLINT_E_UNSUPPORTED;
+        return;
+    }
     if (worker == 0)
         glint_effort_begin(&run->effort, ghost);
     run->status[ghost] = run->options.ghosts && !run->options.ghosts[ghost]

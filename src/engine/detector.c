@@ -190,8 +190,8 @@ static void choose_strongest(struct glint_spot *spot, int n, int max)
 }
 
 /* Finds the lamps of IMAGE without regard to earlier pictures; returns their
- * number. Among up to MEASURED spots those of the most power are chosen: a
- * flat window has more clipped light than a lamp that is brighter. */
+ * number. Of up to MEASURED spots, if max is lower, those of the most power are
+ * chosen: a flat window has more clipped light than a lamp that is brighter. */
 static int find_still_lamps(struct glint_lamp_detector *f,
                             const struct glint_image *image)
 {

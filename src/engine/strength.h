@@ -20,11 +20,13 @@
  * and the factor on the power of all lamps is
  *     strength^2 * ((p / t)^4 + (m / 0.32)^4)^(-1/4),
  *     t = 2^tanh(0.15 log2(b / b0)),    b0 = 1/32
- * So the peak is about strength^2, and the mean, if the lens veils the picture
- * or there are many lamps, at most a third of that. Each doubling of the
- * strength adds two stops; 0.5 is a quarter of white. Lamps with ten stops more
- * light have 1.25 stops more flare: a sun shows more than a candle, within a
- * stop either way. The ratios between lamps are preserved.
+ * but at most 0.06 strength^2 / m, so that no lens fogs the picture: the mean
+ * is at most 1.5 % of white at strength 0.5. So the peak is about strength^2,
+ * and the mean, if the lens veils the picture or there are many lamps, at most
+ * a third of that. Each doubling of the strength adds two stops; 0.5 is a
+ * quarter of white. Lamps with ten stops more light have 1.25 stops more flare:
+ * a sun shows more than a candle, within a stop either way. The ratios between
+ * lamps are preserved.
  *
  * The response is measured with one lamp on one line from the axis. For a still
  * picture its own flare is drawn at reduced size first, which gives p and m

@@ -474,7 +474,7 @@ static void start_channels(struct glint_record *r, const struct glint_spot *s)
 void glint_record_begin(struct glint_record *r, uint32_t id,
                         const struct glint_spot *spot)
 {
-    *r = (struct glint_record){.id = id, .last = *spot, .is_new = 1};
+    *r = (struct glint_record){.id = id, .last = *spot, .is_new = 3};
     start_channels(r, spot);
 }
 
@@ -518,7 +518,10 @@ void glint_record_see(struct glint_record *r,
     }
     blend_channels(r, step);
     r->last = *spot;
-    r->is_new = 0;
+    if (r->velocity_q16[0] || r->velocity_q16[1])
+        r->is_new = 0;
+    else if (r->is_new > 0)
+        r->is_new--;
     r->lost_us = 0;
 }
 

@@ -60,7 +60,8 @@ struct glint_record {
     struct glint_spot last; /* the last spot that was assigned to the lamp */
     int n_same; /* number of consecutive pictures, after the first, with an
                    equal spot */
-    int is_new; /* the lamp was seen once: its velocity is unknown */
+    int is_new; /* number of steps in which the first motion is taken as the
+                   lamp's velocity; 0: it has one, or does not move */
     int64_t velocity_q16[2]; /* pixels per second */
     int64_t ahead_q16[2];    /* predicted position of the lamp, pixels, _q16 */
     int32_t level_q30;

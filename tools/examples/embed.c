@@ -10,7 +10,7 @@
 #include "glint/bake.h"
 #include "glint/engine.h"
 
-static unsigned char *read_whole_file(const char *path, size_t *bytes)
+static unsigned char *read_file(const char *path, size_t *bytes)
 {
     FILE *file = fopen(path, "rb");
     unsigned char *data = (unsigned char *)calloc(1, 1 << 28);
@@ -31,9 +31,8 @@ int main(int argc, char **argv)
     struct glint_engine *engine = NULL;
     struct glint_lens lens;
     size_t lens_bytes, bytes;
-    unsigned char *model =
-        read_whole_file(argc == 3 ? argv[1] : "", &lens_bytes);
-    unsigned char *picture = read_whole_file(argc == 3 ? argv[2] : "", &bytes);
+    unsigned char *model = read_file(argc == 3 ? argv[1] : "", &lens_bytes);
+    unsigned char *picture = read_file(argc == 3 ? argv[2] : "", &bytes);
     const char *reason = "";
     int begin = 0, n, bad = 1;
 #ifndef EMBED_MODELS

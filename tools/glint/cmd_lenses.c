@@ -28,7 +28,7 @@ static const char help[] =
     "angle at a corner of the film (90+: 90 degrees or more), the f-number, "
     "the\n"
     "film, the number of ghosts, and whether a model is baked. The first "
-    "drawing\n"
+    "video\n"
     "with a lens bakes its model: seconds to minutes for narrow stops, minutes "
     "to\n"
     "an hour for wide stops, hours for anamorphic lenses. The list includes "
@@ -191,8 +191,8 @@ static void print_flares(struct lenses *l, const char *name,
     size_t bytes = 0;
 
     if (!e->is_baked && !l->exact)
-        fputs("<p class=\"less\">no model yet: one is baked when the lens is "
-              "first drawn</p>",
+        fputs("<p class=\"less\">no model yet: one is baked for the first "
+              "video</p>",
               l->page);
     else if (!settings)
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);

@@ -26,7 +26,7 @@ static const char help[] =
     "\n"
     "Draws the ghosts of a lens alone, from its table or its baked model. A "
     "table\n"
-    "is baked when it is first drawn (see 'glint bake'). Values are linear: a\n"
+    "without a cached model is drawn by exact rays. Values are linear: a\n"
     "light of POWER 1 with its in-focus image on one pixel gives 1. OUT is "
     ".pfm,\n"
     "or with the image plug-in .exr or .hdr: linear values. A .ppm, .png or "
@@ -242,20 +242,29 @@ static int render_model(struct tool *tool, struct render *r)
     struct glint_engine_config cfg;
     struct glint_engine *engine;
     struct glint_error error = {""};
+    struct tool_progress progress;
     enum glint_status status;
 
+    tool_progress_start(&progress, tool, "exact rays");
+    progress.least_s = 3;
+    progress.waits = true;
     opened_lens_engine(tool, &r->lens, &r->settings, r->width, r->height, &cfg);
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
     cfg.drawing.is_fresh = 1;
     cfg.search.more_lamps = r->n_lamps;
     cfg.search.max_drawn = cfg.drawing.dials.max_lights;
+    if (!r->lens.model.data) {
+        cfg.drawing.progress = tool_progress_show;
+        cfg.drawing.progress_ctx = &progress;
+    }
     status = glint_engine_create(&engine, &cfg, &error);
     if (status == GLINT_OK)
         status = glint_engine_render(
             engine, r->lamp, r->n_lamps, settings_scale(&r->settings),
             GLINT_ENGINE_ALL | GLINT_ENGINE_CORES, r->image.rgb, &report);
     glint_engine_destroy(engine);
+    tool_progress_end(&progress);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (tool->json) {

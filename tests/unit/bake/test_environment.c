@@ -522,7 +522,7 @@ TEST(rejects_damaged_files)
     paint_picture(day_light);
     bake_panorama(&b, &o);
     h = b.environment.header;
-    check_refused(&b, AT(magic), 0, "no baked environment");
+    check_refused(&b, AT(magic), 0, "not a baked environment");
     check_refused(&b, AT(version), 9, "newer");
     check_refused(&b, AT(crc32), 0, "checksum");
     check_refused(&b, AT(variant), 2, "unknown");

@@ -164,8 +164,6 @@ static void read_text(struct lamp_list *list, const char *text)
     remove(path);
 }
 
-/* Checks that CSV and JSON lines give the same lamps; a row belongs to one
- * frame, or to all frames. */
 /* Checks that of a lamp and a larger flat window, which clip alike, the lamp
  * is kept, as its halo shows that it has more light. */
 TEST(strongest_lamp)
@@ -195,6 +193,8 @@ TEST(strongest_lamp)
     glint_lamp_detector_close(&finder);
 }
 
+/* Checks that CSV and JSON lines give the same lamps; a row belongs to one
+ * frame, or to all frames. */
 TEST(lists)
 {
     static const char *const texts[2] = {

@@ -445,8 +445,8 @@ TEST(refuses)
     assert_memory_equal(error.text, "...000", 6);
     assert_non_null(strstr(error.text,
                            "1/x?.ppm: cannot create a temporary file in its "
-                           "folder '/nowhere/00"));
-    assert_non_null(strstr(error.text, "00': No such file or directory"));
+                           "folder '...000000"));
+    assert_non_null(strstr(error.text, "': No such file or directory"));
 }
 
 TEST(checks)

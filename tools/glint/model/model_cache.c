@@ -143,7 +143,8 @@ static int refuse_work(const struct tool *tool, const char *file)
 {
     tool_error(tool,
                "%.200s: baking takes more than about 30 s of processor time; "
-               "run glint bake on it, and give its model as the lens",
+               "--rays exact draws without, and glint bake has no limit: give "
+               "its model as the lens",
                file);
     return EXIT_LENS;
 }
@@ -174,9 +175,9 @@ static int bake_model(const struct tool *tool,
     tool_progress_start(&progress, tool, "bake");
     status = glint_bake(lens, &options, &data, &model->bytes, &report, &error);
     tool_progress_end(&progress);
-    if (work > MODEL_CACHE_WORK)
-        return refuse_work(tool, file);
     model->data = data;
+    if (status == GLINT_E_UNSUPPORTED && work > MODEL_CACHE_WORK)
+        return refuse_work(tool, file);
     if (status == GLINT_OK) {
         status = glint_lens_open(&model->lens, data, model->bytes, &reason);
         if (status != GLINT_OK)

@@ -253,6 +253,7 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
     p->most = 0;
     p->least_s = 20;
     p->waits = false;
+    p->before = 0;
     p->shown = !tool->quiet;
     p->told = false;
     p->is_terminal = isatty(STDERR_FILENO);
@@ -264,6 +265,13 @@ void tool_progress_part(struct tool_progress *p, double from, double share)
     p->share = share;
 }
 
+/* Returns the time left, s, at the rate since the start of the clock. */
+static double estimate_left(const struct tool_progress *p, double spent,
+                            double done)
+{
+    return done > p->before ? spent * (1 - done) / (done - p->before) : 0;
+}
+
 /* Prints a line every ten seconds, if standard error is not a terminal. */
 static void show_line(struct tool_progress *p, double now, double done)
 {
@@ -273,19 +281,20 @@ static void show_line(struct tool_progress *p, double now, double done)
         return;
     p->last = now;
     fprintf(stderr, "%s: %.0f %% in %.0f s, about %.0f s left\n", p->what,
-            100 * p->most, spent, spent * (1 - done) / done);
+            100 * p->most, spent, estimate_left(p, spent, done));
 }
 
-/* Prints an estimate of the time once, if it is p->least_s or more. It waits for
- * a quarter of that: the first ghosts of a bake say little about the others. */
+/* Prints an estimate of the time once, if it is p->least_s or more. It waits
+ * for a quarter of that: the first ghosts of a bake say little about the
+ * others. */
 static void print_estimate(struct tool_progress *p, double spent, double done)
 {
-    const double all = spent / done, left = all - spent;
+    const double left = estimate_left(p, spent, done);
 
     if (spent < p->least_s / 4)
         return;
     p->told = true;
-    if (all < p->least_s)
+    if (spent + left < p->least_s)
         return;
     if (left < 120)
         fprintf(stderr, "%s: will take about %.0f s%s\n", p->what, left,
@@ -305,14 +314,16 @@ void tool_progress_show(void *progress, double done)
     char bar[32];
     int filled;
 
-    if (p->waits)
-        p->started = now;
-    p->waits = false;
-    spent = now - p->started;
     done = p->from + p->share * done;
+    if (p->waits) {
+        p->started = now;
+        p->before = done;
+        p->waits = false;
+    }
+    spent = now - p->started;
     p->most = fmax(done, p->most);
     filled = (int)(p->most * width);
-    if (p->shown && !p->told && done > 0)
+    if (p->shown && !p->told && done > p->before)
         print_estimate(p, spent, done);
     if (p->shown && !p->is_terminal)
         show_line(p, now, done);
@@ -323,7 +334,8 @@ void tool_progress_show(void *progress, double done)
         bar[i] = i < filled ? '#' : '.';
     bar[width] = '\0';
     fprintf(stderr, "\r%s [%s] %3.0f %%  %.0f s left \033[K", p->what, bar,
-            100 * p->most, done > 0.01 ? spent * (1 - done) / done : 0);
+            100 * p->most,
+            done > p->before + 0.01 ? estimate_left(p, spent, done) : 0);
     fflush(stderr);
 }
 

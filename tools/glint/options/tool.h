@@ -130,8 +130,8 @@ struct tool_progress {
                             with it, or NULL */
     double from, share;  /* see tool_progress_part() */
     double least_s;      /* shortest work with an estimate, s; default: 20 */
-    bool waits;          /* its clock starts with the first report: what comes
-                            before is not part of DONE */
+    bool waits;          /* its clock starts with the first report */
+    double before;       /* work done at the start of the clock, of 1 */
     bool shown, is_terminal;
     bool told;             /* the estimate was printed, or is below LEAST_S */
     double (*clock)(void); /* seconds; tool_seconds() except in unit tests */

@@ -288,7 +288,10 @@ int drawing_size(const struct tool *tool, struct drawing *drawing, int width,
     int code;
 
     unsize(run);
-    warn_of_outside(tool, &drawing->line.at, width, height);
+    if (drawing->files.has_lens &&
+        (!drawing->files.lens.is_unbaked ||
+         drawing->line.settings.unbaked != SETTINGS_SEARCH))
+        warn_of_outside(tool, &drawing->line.at, width, height);
     run->view = drawing->files.has_lens
                     ? opened_lens_view(&drawing->files.lens,
                                        &drawing->line.settings, width, height)
