@@ -249,11 +249,11 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
         enum glint_next next = GLINT_KEEP;
 
         status = try_zone(f, &p, &system, &attempt);
-        if (status == GLINT_OK)
+        if (status == GLINT_OK) {
             next =
                 n + 2 > DEEP ? GLINT_KEEP : glint_next(&f->rules, &p, &attempt);
-        if (status == GLINT_OK)
             status = count_fit(f, &p, next == GLINT_KEEP);
+        }
         if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
         system.part = f->n_parts;
