@@ -26,7 +26,7 @@ build/things/%.glint: $(OUT)/glint
 	$(Q)$(OUT)/glint bake $(filter %/$*.scene,$(ARM_SCENES)) -q -o $@
 arm-tests: $(ARM_UNIT:%=$(OUT)/tests/unit/test_%)
 check-arm:
-	@tools/make/deps "ARM in an emulator" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
+	@tools/make/deps "ARM in an emulator" libcmocka-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross gcc-arm-linux-gnueabi \
 	        libc6-dev-armel-cross qemu-user-static debian-archive-keyring
 	@$(MAKE) --no-print-directory WERROR=-Werror all $(OUT)/scenes $(OUT)/things $(ARM_BAKES) \
