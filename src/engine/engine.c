@@ -302,10 +302,12 @@ static enum glint_status make_optics(struct glint_engine *e,
     e->paint.lamp = malloc(((size_t)e->most_lamps + 1) * sizeof *e->paint.lamp);
     e->expose.before =
         malloc(((size_t)e->most_lamps + 1) * sizeof *e->expose.before);
+    e->expose.part =
+        malloc(((size_t)e->most_lamps + 1) * sizeof *e->expose.part);
     e->expose.by_drawing = !c->arena_bytes || c->arena_has_all;
     glint_strength_defaults(&e->expose.strength);
     glint_engine_set_light(e, &c->light);
-    if (!e->paint.lamp || !e->expose.before)
+    if (!e->paint.lamp || !e->expose.before || !e->expose.part)
         status = GLINT_E_MEMORY;
     if (status == GLINT_OK)
         status = open_frame(e, c);
@@ -374,6 +376,7 @@ void glint_engine_destroy(struct glint_engine *engine)
         engine->optics.camera.stops->free_front(engine->optics.own_front);
     free(engine->paint.lamp);
     free(engine->expose.before);
+    free(engine->expose.part);
     free(engine);
 }
 

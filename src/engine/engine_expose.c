@@ -31,8 +31,13 @@ const struct glint_lamp *
 glint_engine_plain(struct glint_engine *engine,
                    const struct glint_engine_lamp *lamps, int n)
 {
-    for (int i = 0; i < n; i++)
+    const struct glint_engine_exposing *const x = &engine->expose;
+
+    for (int i = 0; i < n; i++) {
         engine->paint.lamp[i] = lamps[i].lamp;
+        if (i < x->n_before && x->before[i].id == lamps[i].id)
+            engine->paint.lamp[i].power *= x->part[i];
+    }
     return engine->paint.lamp;
 }
 
@@ -119,7 +124,7 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
     struct glint_engine_exposing *const x = &engine->expose;
     struct glint_frame *const f = &engine->paint.frame;
     const struct glint_strength_lamps all = {
-        lamps, n, (double)f->view.width * f->view.height * white};
+        lamps, x->part, n, (double)f->view.width * f->view.height * white};
     const int32_t elapsed_us = find->elapsed_us;
     const bool is_new =
         find->is_cut || (find->is_searched && elapsed_us > 0 &&
@@ -135,6 +140,7 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
         status = glint_response_measure(f, 0, &x->response);
     if (status != GLINT_OK)
         return status;
+    set_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);
     glint_strength_expose(&x->strength, x->response.n ? &x->response : &any,
                           &all, is_new ? 0 : elapsed_us);
     glint_engine_plain(engine, lamps, n);
@@ -142,7 +148,6 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
         status = expose_as_drawn(engine, n, image, white);
     if (status != GLINT_OK)
         return status;
-    set_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);
     glint_engine_choose(engine, engine->paint.parts,
                         glint_strength_star(&x->strength, x->light.starburst),
                         x->light.gain > 0);

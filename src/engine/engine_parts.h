@@ -62,6 +62,8 @@ struct glint_engine_exposing {
                         at reduced size and measuring it */
     bool is_done;    /* true: the exposure of the next picture is set */
     struct glint_engine_before *before;
+    double *part; /* [most_lamps]: factor on the ghosts of each lamp of the last
+                     picture (engine/strength.h) */
     int n_before;
 };
 
@@ -105,7 +107,7 @@ bool glint_engine_fits(const struct glint_engine *engine,
                        const struct glint_image *image, int n);
 
 /* Copies N LAMPS to the array from which they are drawn, and returns that
- * array. */
+ * array. The powers are those of their ghosts. */
 const struct glint_lamp *
 glint_engine_plain(struct glint_engine *engine,
                    const struct glint_engine_lamp *lamps, int n);

@@ -142,20 +142,19 @@ static double compute_limit(double times)
                       : (1 + overshoot * tanh((times - 1) / overshoot)) / times;
 }
 
-/* Lowers the power of lamp I towards the exposure that it would get alone.
- * LIGHT is the light of its own flare, which is lowered with it. */
-static void limit_lamp(const struct glint_strength *s,
-                       const struct glint_strength_lamps *lamps, int i,
-                       struct glint_response_light *light)
+/* Lowers LIGHT, the light of a lamp's ghosts, towards the exposure that they
+ * would get alone. Returns the factor. */
+static double limit_light(const struct glint_strength *s,
+                          struct glint_response_light *light)
 {
     const double times = exp2(s->factor_log2 - compute_target_log2(light));
     const double by = compute_limit(times);
 
-    lamps->lamp[i].lamp.power *= by;
     for (int c = 0; c < 3; c++) {
         light->peak[c] *= by;
         light->mean[c] *= by;
     }
+    return by;
 }
 
 static void follow_target(struct glint_strength *s, double target,
@@ -196,7 +195,7 @@ static void expose_lamps(struct glint_strength *s,
         struct glint_response_light one;
 
         compute_light(response, lamps, i, &one);
-        limit_lamp(s, lamps, i, &one);
+        lamps->part[i] = limit_light(s, &one);
         add_light(&s->light, &one, lamps->lamp[i].level);
     }
     compute_peaks(&s->light);
@@ -221,6 +220,8 @@ void glint_strength_expose(struct glint_strength *strength,
     s->light = (struct glint_response_light){{0}, {0}};
     s->scale = 0;
     s->is_drawn = false;
+    for (int i = 0; i < lamps->n; i++)
+        lamps->part[i] = 1;
     if (lamps->n == 0) {
         s->follows = false;
         return;

@@ -45,9 +45,9 @@
  * rises by at most 2, and changes by at most an eighth of a stop per frame, so
  * that no step exceeds 10 %. It starts again after a cut, and when the first
  * lamp appears. Lamps fade in and out with their tracks; the factor is chosen
- * from their powers without these levels. A new lamp that is too bright for the
- * current factor is limited to 1.5 times the exposure that it would get alone,
- * until the factor has adapted.
+ * from their powers without these levels. The ghosts of a lamp that is too
+ * bright for the current factor are limited to 1.5 times the exposure that they
+ * would get alone, until the factor has adapted; its starburst is not.
  */
 #ifndef GLINT_ENGINE_STRENGTH_H
 #define GLINT_ENGINE_STRENGTH_H
@@ -56,9 +56,12 @@
 
 /* The lamps of a frame, for exposure. */
 struct glint_strength_lamps {
-    /* [n]; powers include the fade levels but not scale; powers of new lamps
-     * that are too bright are lowered in place */
-    struct glint_engine_lamp *lamp;
+    /* [n]; powers include the fade levels but not scale */
+    const struct glint_engine_lamp *lamp;
+    /* [n]; set by glint_strength_expose() to the factor on the ghosts of each
+     * lamp: below 1 for a lamp that would still be too bright. Starbursts do
+     * not depend on it. */
+    double *part;
     int n;
     double pixels; /* number of pixels of the picture, times the linear light of
                       its white */
@@ -91,9 +94,8 @@ void glint_strength_defaults(struct glint_strength *strength);
 double glint_strength_star(const struct glint_strength *strength,
                            double starburst);
 
-/* Sets the scale and the light for LAMPS, ELAPSED_US after the last frame,
- * or 0 if this frame is unrelated to the last one. Lowers the powers of
- * lamps that would still be too bright. */
+/* Sets the scale, the light and the parts of LAMPS, ELAPSED_US after the last
+ * frame, or 0 if this frame is unrelated to the last one. */
 void glint_strength_expose(struct glint_strength *strength,
                            const struct glint_response *response,
                            const struct glint_strength_lamps *lamps,

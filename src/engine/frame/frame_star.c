@@ -149,6 +149,15 @@ size_t glint_frame_star_bytes(const struct glint_frame *f)
            f->veil.bytes + (f->veil.table ? f->veil.table->bytes : 0);
 }
 
+/* Returns lamp I of LAMPS, the lamps of the ghosts, as its starburst has it:
+ * with its whole power. */
+static const struct glint_lamp *find_star_lamp(const struct glint_frame *f,
+                                               const struct glint_lamp *lamps,
+                                               int i)
+{
+    return f->known ? &f->known[i].lamp : &lamps[i];
+}
+
 /* What the picture shows of a lamp. */
 struct seen {
     double radius_px; /* radius of a disc of its extent; 0 if unknown */
@@ -293,8 +302,8 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
     for (int i = 0; i < n; i++) {
         const struct seen seen = find_seen_lamp(f, i);
 
-        n_lights += set_light(f, &lamps[i], scale * s->share, &seen,
-                              &s->light[n_lights]);
+        n_lights += set_light(f, find_star_lamp(f, lamps, i), scale * s->share,
+                              &seen, &s->light[n_lights]);
     }
     if (n_lights > GLINT_STAR_MAX_LIGHTS)
         qsort(s->light, (size_t)n_lights, sizeof *s->light, by_power);
@@ -323,14 +332,18 @@ void glint_frame_paint(struct glint_frame *frame,
         glint_flare_draw(frame->memory.flare, image);
 }
 
-/* Returns the largest channel of the powers of all lamps. */
-static double find_brightest(const struct glint_lamp *lamps, int n)
+/* Returns the largest channel of the powers of all lamps' starbursts. */
+static double find_brightest(const struct glint_frame *f,
+                             const struct glint_lamp *lamps, int n)
 {
     double most = 0;
 
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
+        const struct glint_lamp *const lamp = find_star_lamp(f, lamps, i);
+
         for (int c = 0; c < 3; c++)
-            most = fmax(most, lamps[i].power * lamps[i].rgb[c]);
+            most = fmax(most, lamp->power * lamp->rgb[c]);
+    }
     return most;
 }
 
@@ -344,7 +357,7 @@ enum glint_status glint_frame_star_alone(struct glint_frame *frame,
     struct glint_image layer =
         glint_image_over(linear_q20, GLINT_LINEAR_Q20, width, height);
     /* No pixel gets more than all of a lamp's light. */
-    const double most = find_brightest(lamps, n) * frame->star.share;
+    const double most = find_brightest(frame, lamps, n) * frame->star.share;
     const double scale = most > 0 ? exp2(10 - ceil(log2(most))) : 1;
     enum glint_status status;
 

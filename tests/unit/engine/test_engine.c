@@ -281,6 +281,51 @@ TEST(layers)
     glint_engine_destroy(engine);
 }
 
+/* Returns the light of the layer PART of the given LAMP, US microseconds after
+ * the previous picture. */
+static double add_layer(struct glint_engine *engine,
+                        const struct glint_lamp *lamp, int32_t us,
+                        unsigned part)
+{
+    static uint8_t px[BYTES];
+    static float layer[BYTES];
+    struct glint_engine_lamp one = glint_engine_lamp_of(lamp, 1);
+    const struct glint_image image = make_picture(px);
+    struct glint_engine_report report;
+    double sum = 0;
+
+    glint_engine_elapsed(engine, us);
+    assert_ok(glint_engine_expose(engine, &one, 1, &image, 1));
+    assert_ok(glint_engine_draw_layer(engine, &one, 1, part, layer, &report));
+    for (int i = 0; i < BYTES; i++)
+        sum += (double)layer[i];
+    return sum;
+}
+
+/* Checks that a lamp which becomes too bright for the exposure of a video has
+ * its ghosts limited, but not its starburst, whose brightness does not depend
+ * on the exposure. */
+TEST(star_of_a_limited_lamp)
+{
+    const struct glint_lamp faint = {5, 30, 1e2, {1, 1, 1}, {0, 0}, 0};
+    const struct glint_lamp sun = {5, 30, 1e6, {1, 1, 1}, {0, 0}, 0};
+    double still[2], video[2];
+
+    for (int k = 0; k < 2; k++) {
+        struct glint_engine *engine = make_engine(NULL, 0);
+        const unsigned part = k ? GLINT_ENGINE_STAR : GLINT_ENGINE_GHOSTS;
+
+        still[k] = add_layer(engine, &sun, 0, part);
+        add_layer(engine, &faint, 0, part);
+        for (int i = 0; i < 3; i++)
+            add_layer(engine, &faint, 40000, part);
+        video[k] = add_layer(engine, &sun, 40000, part);
+        glint_engine_destroy(engine);
+    }
+    assert_true(still[0] > 0 && video[0] < 2 * still[0]);
+    assert_true(fabs(video[1] / still[1] - 1) < 1e-3);
+}
+
 TEST(refuses)
 {
     static uint8_t px[BYTES];

@@ -22,6 +22,9 @@ enum { PIXELS = 1000000, FRAME_US = 40000 };
  * white by default with the responses below. */
 static const double common = PIXELS / 8.0;
 
+/* Factors on the ghosts of the lamps that were exposed last. */
+static double part[16];
+
 /* Returns the response of a lens whose flare falls by SLOPE stops from the
  * axis to 20 degrees and whose mean is MEAN stops below its peak. */
 static struct glint_response make_response(double slope, double mean)
@@ -51,7 +54,7 @@ static double exposed_peak(struct glint_strength *s,
                            struct glint_engine_lamp *lamps, const double *level,
                            int n, int us)
 {
-    const struct glint_strength_lamps all = {lamps, n, PIXELS};
+    const struct glint_strength_lamps all = {lamps, part, n, PIXELS};
 
     for (int i = 0; i < n; i++)
         lamps[i].level = level ? level[i] : 1;
@@ -122,7 +125,7 @@ TEST(a_veil_is_held_by_its_mean)
 {
     const struct glint_response r = make_response(0, 0.5);
     struct glint_engine_lamp lamp = make_lamp(5, PIXELS);
-    const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
+    const struct glint_strength_lamps all = {&lamp, part, 1, PIXELS};
 
     glint_strength_expose(&strength, &r, &all, 0);
     assert_true(fabs(glint_largest_channel(strength.light.mean) - 0.015) <
@@ -133,10 +136,10 @@ TEST(ratios_between_lamps_stay)
 {
     const struct glint_response r = make_response(5, 7);
     struct glint_engine_lamp lamps[2] = {make_lamp(5, 1e6), make_lamp(9, 1e3)};
-    const struct glint_strength_lamps all = {lamps, 2, PIXELS};
+    const struct glint_strength_lamps all = {lamps, part, 2, PIXELS};
 
     glint_strength_expose(&strength, &r, &all, 0);
-    assert_true(lamps[0].lamp.power == 1e6 && lamps[1].lamp.power == 1e3);
+    assert_true(part[0] == 1 && part[1] == 1);
 }
 
 TEST(many_equal_lamps_share)
@@ -157,7 +160,7 @@ TEST(by_hand)
 {
     const struct glint_response r = make_response(0, 7);
     struct glint_engine_lamp lamp = make_lamp(5, common);
-    const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
+    const struct glint_strength_lamps all = {&lamp, part, 1, PIXELS};
 
     strength.is_physical = true;
     strength.exposure_ev = 3;
@@ -178,8 +181,8 @@ TEST(lamps_without_light)
 {
     const struct glint_response r = make_response(0, 7);
     struct glint_engine_lamp lamp = make_lamp(5, 0);
-    const struct glint_strength_lamps all = {&lamp, 1, PIXELS};
-    const struct glint_strength_lamps none = {NULL, 0, PIXELS};
+    const struct glint_strength_lamps all = {&lamp, part, 1, PIXELS};
+    const struct glint_strength_lamps none = {NULL, NULL, 0, PIXELS};
 
     glint_strength_expose(&strength, &r, &all, 0);
     assert_true(isfinite(strength.scale));
@@ -285,10 +288,11 @@ TEST(a_lamp_that_rises)
         if (i > 0)
             assert_true(fabs(log2(strength.scale / scale)) < 0.126);
         scale = strength.scale;
-        if (i == 50) /* The sun is limited to 1/100 of its power. */
-            assert_true(lamps[1].lamp.power < 1e6 / 100);
+        if (i == 50) /* The sun's ghosts are limited to 1/100. */
+            assert_true(part[1] < 0.01);
         if (i == 249)
-            assert_true(lamps[1].lamp.power > 0.99e6);
+            assert_true(part[1] > 0.99);
+        assert_true(lamps[1].lamp.power == 1e6);
     }
 }
 
@@ -346,7 +350,7 @@ TEST(restarts_after_a_cut)
 
     exposed_peak(&strength, &r, &faint, NULL, 1, FRAME_US);
     assert_true(exposed_peak(&strength, &r, &bright, NULL, 1, FRAME_US) > 0.3);
-    assert_true(bright.lamp.power < common);
+    assert_true(part[0] < 1);
     bright = make_lamp(5, common);
     assert_true(fabs(exposed_peak(&strength, &r, &bright, NULL, 1, 0) - 0.25) <
                 1e-4);
@@ -383,7 +387,7 @@ TEST(strength_by_frame)
         s.asked = 0.5;
         assert_true(fabs(exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
                          still_peak(0.5, &r, 5, 64 * common)) < 1e-3);
-        assert_true(lamp.lamp.power > 63.9 * common);
+        assert_true(part[0] > 0.998);
     }
 }
 
@@ -405,7 +409,7 @@ static void check_lens(const char *lens, double corner_deg)
     for (int i = 0; i < 6; i++) {
         struct glint_engine_lamp lamp =
             make_lamp(corner_deg * i / 6, exp2(5 * i - 4) * 100);
-        const struct glint_strength_lamps all = {&lamp, 1, 640 * 360};
+        const struct glint_strength_lamps all = {&lamp, part, 1, 640 * 360};
         struct glint_response_light drawn;
         struct glint_strength s;
 
