@@ -520,6 +520,52 @@ TEST(a_pan_does_not_leave_its_lamps_behind)
     }
 }
 
+/* Returns the max distance between the track and the centroid of a lamp of
+ * RADIUS, pixels, in its first eight frames, in which it enters the picture at
+ * SPEED pixels per frame. */
+static double measure_entry(double radius, double speed)
+{
+    double furthest = 0;
+    int n = 0;
+
+    night_init(&night, (int)fmax(320, 16 * speed), 120);
+    night.sigma = 2;
+    assert_true(night_open(&night));
+    for (int frame = 0; n < 8; frame++) {
+        const struct night_lamp lamp = {0.3 - radius + speed * frame, 60.4,
+                                        radius, 3};
+
+        assert_true(frame < 60);
+        night_step(&night, &lamp, 1, 40000);
+        if (night.n_tracks == 0)
+            continue;
+        assert_int_equal(night.n_spots, 1);
+        furthest =
+            fmax(furthest, hypot(night.track[0].x_q8 - night.spot[0].x_q8,
+                                 night.track[0].y_q8 - night.spot[0].y_q8) /
+                               256);
+        n++;
+    }
+    night_close(&night);
+    return furthest;
+}
+
+/* Checks that a lamp that enters the picture in a fast pan is followed from its
+ * second frame on. At 3 pixels per frame its shape changes in many frames,
+ * which is no motion. */
+TEST(a_lamp_that_enters_in_a_pan)
+{
+    static const double speeds[] = {3, 13, 40}, radii[] = {1.5, 3, 8, 20};
+
+    for (int k = 0; k < 3 * 4; k++) {
+        const double off = measure_entry(radii[k % 4], speeds[k / 4]);
+
+        print_message("radius %.1f, %2.0f px a frame: %.2f px\n", radii[k % 4],
+                      speeds[k / 4], off);
+        assert_true(off < (k < 4 ? 5 : 0.5));
+    }
+}
+
 /* Checks a lamp that returns after a second, 25 pixels off, which is too far
  * for one frame (0.06 of 320 is 19 pixels): its track fades in at the new
  * position. */
