@@ -277,7 +277,8 @@ static void record_truth(struct steady *s, const struct night *night,
 {
     const struct drawing *c = &s->drawing;
     struct glint_engine_lamp all[16];
-    const struct glint_strength_lamps lamps = {all, NULL, n, (double)WIDTH * HEIGHT};
+    const struct glint_strength_lamps lamps = {all, NULL, n,
+                                               (double)WIDTH * HEIGHT};
     struct glint_response_light light;
 
     for (int i = 0; i < n; i++) {
