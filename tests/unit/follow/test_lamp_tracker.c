@@ -552,7 +552,7 @@ static double measure_entry(double radius, double speed)
 
 /* Checks that a lamp that enters the picture in a fast pan is followed from its
  * second frame on. At 3 pixels per frame its shape changes in many frames,
- * which is no motion. */
+ * which is not a motion. */
 TEST(a_lamp_that_enters_in_a_pan)
 {
     static const double speeds[] = {3, 13, 40}, radii[] = {1.5, 3, 8, 20};
