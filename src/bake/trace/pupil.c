@@ -27,9 +27,9 @@ enum { ACROSS = 64, DOWN = 32, ROUNDS = 8, TURNS = 16 };
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
 struct search {
-    struct glint_openings openings;
-    /* path to the stop and barrels, without energies */
-    struct glint_path places;
+    struct glint_openings openings; /* its path is PLACES */
+    struct glint_path places;       /* the path, without energies */
+    const struct glint_path *path;
     int across, down; /* number of cells of this round */
     struct glint_ray ray[DOWN + 1][ACROSS + 1];
     enum glint_ray_status status[DOWN + 1][ACROSS + 1];
@@ -166,7 +166,7 @@ static bool shrink_to_cells(struct search *s, struct glint_pupil *p)
     found.x0_mm = column_x(s, p, (int)box.low[0]);
     found.x1_mm = column_x(s, p, (int)box.high[0]);
     found.y1_mm = row_y(s, p, box.high[2]);
-    if (s->openings.path->round)
+    if (s->path->round)
         mirror_sensor(&found);
     else
         found.y0_mm = row_y(s, p, box.low[2]);
@@ -229,7 +229,7 @@ static double find_max_energy(struct search *s)
     for (int j = 0; j <= s->down; j++) {
         if (!memchr(s->kept[j], 1, sizeof s->kept[j]))
             continue;
-        sample_row(s, &s->grid, s->openings.path, j);
+        sample_row(s, &s->grid, s->path, j);
         for (int i = 0; i <= s->across; i++)
             if (s->kept[j][i] && s->status[j][i] == GLINT_RAY_OK)
                 most = fmax(most, s->ray[j][i].energy);
@@ -356,10 +356,11 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
     if (!front)
         return false;
     s.openings = (struct glint_openings){
-        .path = path,
+        .path = &s.places,
         .direction = {direction[0], direction[1], direction[2]},
         .stop_mm = stop_radius_mm,
         .field_mm = field_mm};
+    s.path = path;
     s.places = *path;
     s.places.places_only = true;
     whole = whole_front(path, front, direction);

@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdbool.h>
 
+/* number of rays that are traced at a time */
+enum { SOME = 8 };
+
 /* Weight of a pair of rays that proves a cut; rays that only suggest a cut
  * have weight 1. */
 enum { SHOWN = 1000 };
@@ -17,30 +20,55 @@ struct probe {
     double r2[GLINT_MAX_EVENTS + 1];
 };
 
-static void probe_ray(struct probe *p, const struct glint_path *path, double x,
-                      double y, const double direction[3],
+/* Sets P from RAY, which was traced, and its HITS. */
+static void set_probe(struct probe *p, const struct glint_path *path,
+                      const struct glint_ray *ray, double (*hits)[2],
                       double stop_radius_mm)
 {
-    double hits[GLINT_MAX_EVENTS + 1][2];
-    struct glint_ray ray;
-    double sx, sy;
+    const double sx = ray->stop_x_mm / stop_radius_mm;
+    const double sy = ray->stop_y_mm / stop_radius_mm;
 
-    p->traced = glint_trace(path, x, y, direction, &ray, hits) == GLINT_RAY_OK;
-    if (!p->traced)
-        return;
-    p->x_mm = ray.sensor_x_mm;
-    p->y_mm = ray.sensor_y_mm;
-    sx = ray.stop_x_mm / stop_radius_mm;
-    sy = ray.stop_y_mm / stop_radius_mm;
+    p->x_mm = ray->sensor_x_mm;
+    p->y_mm = ray->sensor_y_mm;
     p->stop_x = sx;
     p->stop_y = sy;
     p->stop_r2 = sx * sx + sy * sy;
-    p->inside = p->stop_r2 <= 1 && ray.rel_radius <= 1;
+    p->inside = p->stop_r2 <= 1 && ray->rel_radius <= 1;
     for (int k = 0; k < path->n_events; k++) {
         const struct glint_event *e = &path->event[k];
         const double hx = hits[k][0] / e->semi_mm, hy = hits[k][1] / e->semi_mm;
 
         p->r2[k] = e->kind == GLINT_STOP ? 0 : hx * hx + hy * hy;
+    }
+}
+
+/* Sets ROW to the SIDE + 1 rays that start at Y on PUPIL. */
+static void probe_row(struct probe *row, const struct glint_path *path,
+                      const struct glint_pupil *pupil, double y,
+                      const double direction[3], double stop_radius_mm,
+                      int side)
+{
+    double hits[SOME * (GLINT_MAX_EVENTS + 1)][2];
+    struct glint_launch from[SOME];
+    struct glint_ray ray[SOME];
+    enum glint_ray_status status[SOME];
+
+    for (int first = 0; first <= side; first += SOME) {
+        const int n = side + 1 - first < SOME ? side + 1 - first : SOME;
+
+        for (int k = 0; k < n; k++)
+            from[k] = (struct glint_launch){
+                pupil->x0_mm +
+                    (pupil->x1_mm - pupil->x0_mm) * (first + k) / side,
+                y,
+                {direction[0], direction[1], direction[2]}};
+        glint_trace_many(path, n, from, ray, status, hits);
+        for (int k = 0; k < n; k++) {
+            row[first + k].traced = status[k] == GLINT_RAY_OK;
+            if (row[first + k].traced)
+                set_probe(&row[first + k], path, &ray[k],
+                          hits + k * path->n_events, stop_radius_mm);
+        }
     }
 }
 
@@ -235,17 +263,18 @@ void glint_sampling_run(struct glint_sampling *sampling,
 {
     int weight[GLINT_MAX_EVENTS + 1] = {0};
     struct bend bend = {.n = 0};
+    struct glint_path places = *path;
     struct rows r; /* 460 KB; see GLINT_BAKE_STACK_BYTES */
 
-    for (int j = 0; j <= (path->round ? side / 2 : side); j++)
-        for (int i = 0; i <= side; i++) {
-            probe_ray(&r.row[j % 3][i], path,
-                      p->x0_mm + (p->x1_mm - p->x0_mm) * i / side,
-                      path->round ? p->y1_mm * 2 * j / side
-                                  : p->y0_mm + (p->y1_mm - p->y0_mm) * j / side,
-                      direction, stop_radius_mm);
+    places.places_only = true;
+    for (int j = 0; j <= (path->round ? side / 2 : side); j++) {
+        probe_row(r.row[j % 3], &places, p,
+                  path->round ? p->y1_mm * 2 * j / side
+                              : p->y0_mm + (p->y1_mm - p->y0_mm) * j / side,
+                  direction, stop_radius_mm, side);
+        for (int i = 0; i <= side; i++)
             process_ray(&r, i, j, path->n_events, weight, &bend);
-        }
+    }
     sampling->bend_mm = sampling->outline_mm = sampling->round_mm = 0;
     sampling->n_inside = bend.n;
     sampling->step = bend.n_steps ? bend.n_steps / bend.thick * side : 0;

@@ -21,7 +21,7 @@
 /* Limits that a ray must pass: the barrels of PATH, and the stop and the
  * field with these radii. */
 struct glint_openings {
-    const struct glint_path *path;
+    const struct glint_path *path; /* energies are not used */
     double direction[3];
     double stop_mm, field_mm;
 };
