@@ -522,7 +522,7 @@ enum glint_status glint_engine_render(struct glint_engine *engine,
 /* Sets LIGHT to the light of the flare of N LAMPS with unchanged powers,
  * measured in a picture of about 640 x 360 pixels. The peak is the 99.99th
  * percentile. May return GLINT_E_MEMORY. */
-enum glint_status glint_engine_measure(const struct glint_engine *engine,
+enum glint_status glint_engine_measure(struct glint_engine *engine,
                                        const struct glint_engine_lamp *lamps,
                                        int n,
                                        struct glint_response_light *light);

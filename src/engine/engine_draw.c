@@ -150,7 +150,7 @@ enum glint_status glint_engine_render(struct glint_engine *engine,
     return status;
 }
 
-enum glint_status glint_engine_measure(const struct glint_engine *engine,
+enum glint_status glint_engine_measure(struct glint_engine *engine,
                                        const struct glint_engine_lamp *lamps,
                                        int n,
                                        struct glint_response_light *light)

@@ -343,12 +343,10 @@ static void set_peak(const struct proxy *p, struct glint_response_light *light)
     }
 }
 
-enum glint_status glint_response_draw(const struct glint_frame *like,
-                                      const struct glint_lamp *lamps, int n,
-                                      int pixels,
-                                      const struct glint_ground *ground,
-                                      struct glint_response_light *light,
-                                      struct glint_seen *seen)
+enum glint_status
+glint_response_draw(struct glint_frame *frame, const struct glint_lamp *lamps,
+                    int n, int pixels, const struct glint_ground *ground,
+                    struct glint_response_light *light, struct glint_seen *seen)
 {
     struct glint_lamp *small = malloc((size_t)(n ? n : 1) * sizeof *small);
     struct proxy p;
@@ -359,18 +357,22 @@ enum glint_status glint_response_draw(const struct glint_frame *like,
     if (!small)
         return GLINT_E_MEMORY;
     if (n) {
-        status = open_proxy(like, pixels, 0, &p);
+        status = open_proxy(frame, pixels, 0, &p);
         by = (double)p.view.width * p.view.height /
-             ((double)like->view.width * like->view.height);
+             ((double)frame->view.width * frame->view.height);
         memcpy(small, lamps, (size_t)n * sizeof *small);
         for (int i = 0; i < n; i++)
             small[i].power *= by;
+        if (frame->trace)
+            frame->trace->adopt(&p.frame, frame);
         if (status == GLINT_OK)
             status = draw_in_range(&p, small, n, &peak_log2, light);
         if (status == GLINT_OK)
             set_peak(&p, light);
         if (status == GLINT_OK && ground && seen)
             glint_seen_on(seen, ground, p.rgb, p.view.width, p.view.height);
+        if (frame->trace)
+            frame->trace->adopt(frame, &p.frame);
         close_proxy(&p);
     }
     free(small);

@@ -49,11 +49,12 @@ struct glint_response {
 };
 
 /* Sets LIGHT to the light of the flare of N lamps, drawn with the lens of
- * LIKE in a small picture of about PIXELS pixels. The lamps' powers refer to
- * the view of LIKE. The peak is the value that 1/10000 of the pixels reach;
+ * FRAME in a small picture of about PIXELS pixels. The lamps' powers refer to
+ * the view of FRAME, whose next picture of these lamps takes less time if it is
+ * drawn by exact rays. The peak is the value that 1/10000 of the pixels reach;
  * smaller specks are ignored. Sets SEEN to the flare's visibility on GROUND,
  * unless both are NULL. Returns GLINT_E_MEMORY on failure. */
-enum glint_status glint_response_draw(const struct glint_frame *like,
+enum glint_status glint_response_draw(struct glint_frame *frame,
                                       const struct glint_lamp *lamps, int n,
                                       int pixels,
                                       const struct glint_ground *ground,

@@ -275,7 +275,7 @@ void glint_strength_correct(struct glint_strength *strength,
 }
 
 enum glint_status glint_strength_expose_still(struct glint_strength *strength,
-                                              const struct glint_frame *frame,
+                                              struct glint_frame *frame,
                                               const struct glint_lamp *lamps,
                                               int n,
                                               const struct glint_ground *ground,

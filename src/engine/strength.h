@@ -115,7 +115,7 @@ void glint_strength_correct(struct glint_strength *strength,
  * linear light of the picture's white. GROUND: the picture under the flare,
  * or NULL. On GLINT_E_MEMORY nothing has changed. */
 enum glint_status glint_strength_expose_still(struct glint_strength *strength,
-                                              const struct glint_frame *frame,
+                                              struct glint_frame *frame,
                                               const struct glint_lamp *lamps,
                                               int n,
                                               const struct glint_ground *ground,

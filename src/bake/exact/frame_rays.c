@@ -30,6 +30,9 @@ enum { MAX_BUNDLES = 1 << 20 };
  * pixel. */
 #define SPAN_DEG 1.0
 
+/* Radius of a lamp's outermost points / its largest semi-axis, about. */
+#define REACH 2.2
+
 /* Parts of the work between which progress is reported, and min jobs of a
  * part.
  */
@@ -46,6 +49,7 @@ enum { LEVELS = 8 };
 struct point {
     struct glint_lamp lamp;
     double at[2];
+    double reach; /* radius of what it stands for, in the same coordinates */
     int patch;
     int first, last; /* levels that it belongs to: FIRST .. LAST */
 };
@@ -79,8 +83,8 @@ struct traced {
     int n_sets;
     struct point *point;
     struct ray_patch *patch;
-    struct ray_field
-        *looked;             /* [looked]: as glint_ray_field_look() made them */
+    /* [patches][n_ghosts of the setup]: as glint_ray_field_look() made them */
+    struct ray_field *looked;
     struct ray_field *field; /* [fields]: those as this frame draws them */
     int *set_of; /* [fields]: index of its set; -1: no pixel shows the field */
     void **mem;  /* [fields]: its rays; NULL: they are traced when needed */
@@ -90,7 +94,7 @@ struct traced {
     bool in_codes;
     int *level; /* [fields]: level of the points that a field is drawn from */
     int n_lamps;
-    double stop_mm;
+    struct glint_optics optics; /* of the setup that was looked through */
     int only_ghost;
     int n_points, n_patches, n_fields, n_bundles, n_workers;
     struct glint_flare_rays rays;
@@ -232,82 +236,164 @@ static int by_angle(const void *a, const void *b)
     return (p->at[0] > q->at[0]) - (p->at[0] < q->at[0]);
 }
 
-/* Puts points FIRST .. LAST - 1 into a new patch. */
-static void close_patch(struct traced *t, int first, int last, double phi_deg)
+/* Sets the coordinates of P in the frame of azimuth PHI_DEG. */
+static void set_at(const struct traced *t, struct point *p, double phi_deg)
 {
-    struct ray_patch *p = &t->patch[t->n_patches];
-    double low[2], high[2];
+    const double sine = glint_sin_deg(p->lamp.theta_deg);
 
-    for (int k = 0; k < 2; k++) {
-        low[k] = high[k] = t->point[first].at[k];
-        for (int i = first + 1; i < last; i++) {
-            low[k] = fmin(low[k], t->point[i].at[k]);
-            high[k] = fmax(high[k], t->point[i].at[k]);
+    p->at[0] = t->cfg.round ? p->lamp.theta_deg
+                            : sine * glint_cos_deg(p->lamp.phi_deg - phi_deg);
+    p->at[1] =
+        t->cfg.round ? 0 : sine * glint_sin_deg(p->lamp.phi_deg - phi_deg);
+}
+
+/* Adds to PATCH, which has N, one that holds the points FIRST .. LAST - 1. */
+static void add_patch(const struct traced *t, struct point *point, int first,
+                      int last, double phi_deg, struct ray_patch *patch, int n)
+{
+    struct ray_patch *p = &patch[n];
+
+    *p = (struct ray_patch){.phi_deg = phi_deg};
+    for (int k = 0; k < (t->cfg.round ? 1 : 2); k++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+
+        for (int i = first; i < last; i++) {
+            low = fmin(low, point[i].at[k] - point[i].reach);
+            high = fmax(high, point[i].at[k] + point[i].reach);
         }
-        p->middle[k] = 0.5 * (low[k] + high[k]);
-        p->half[k] = 0.5 * (high[k] - low[k]);
+        p->middle[k] = 0.5 * (low + high);
+        p->half[k] = 0.5 * (high - low);
     }
     /* Both components or none, so that cross terms are known. */
     if (!t->cfg.round && (p->half[0] > 0 || p->half[1] > 0))
         for (int k = 0; k < 2; k++)
             p->half[k] = fmax(p->half[k], 1e-4);
-    p->phi_deg = phi_deg;
     for (int i = first; i < last; i++)
-        t->point[i].patch = t->n_patches;
-    t->n_patches++;
+        point[i].patch = n;
 }
 
-/* Sorts the points of a round lens by their angle, into patches. */
-static void gather_round(struct traced *t)
+/* Sorts N points of a round lens by their angle, and adds their patches to
+ * PATCH, which has HAD; returns how many there are. */
+static int gather_round(const struct traced *t, struct point *point, int n,
+                        struct ray_patch *patch, int had)
 {
+    double low = 0, high = 0;
     int first = 0;
 
-    for (int i = 0; i < t->n_points; i++) {
-        t->point[i].at[0] = t->point[i].lamp.theta_deg;
-        t->point[i].at[1] = 0;
-    }
-    qsort(t->point, (size_t)t->n_points, sizeof *t->point, by_angle);
-    for (int i = 1; i <= t->n_points; i++)
-        if (i == t->n_points ||
-            t->point[i].at[0] - t->point[first].at[0] > SPAN_DEG) {
-            close_patch(t, first, i, 0);
+    for (int i = 0; i < n; i++)
+        set_at(t, &point[i], 0);
+    qsort(point, (size_t)n, sizeof *point, by_angle);
+    for (int i = 0; i < n; i++) {
+        const double from = point[i].at[0] - point[i].reach;
+        const double to = point[i].at[0] + point[i].reach;
+
+        if (i > first && fmax(high, to) - fmin(low, from) > SPAN_DEG) {
+            add_patch(t, point, first, i, 0, patch, had++);
             first = i;
         }
+        low = i > first ? fmin(low, from) : from;
+        high = i > first ? fmax(high, to) : to;
+    }
+    if (n > 0)
+        add_patch(t, point, first, n, 0, patch, had++);
+    return had;
 }
 
-/* Sets the coordinates of P in the frame of azimuth PHI_DEG. */
-static void set_at(struct point *p, double phi_deg)
-{
-    const double sine = glint_sin_deg(p->lamp.theta_deg);
-
-    p->at[0] = sine * glint_cos_deg(p->lamp.phi_deg - phi_deg);
-    p->at[1] = sine * glint_sin_deg(p->lamp.phi_deg - phi_deg);
-}
-
-/* Puts each point that is in no patch yet, and all those near it, into one. */
-static void gather_others(struct traced *t)
+/* Puts each of N points that is in no patch yet, and all those near it, into
+ * one of PATCH, which has HAD; returns how many there are. */
+static int gather_others(const struct traced *t, struct point *point, int n,
+                         struct ray_patch *patch, int had)
 {
     const double near = 0.5 * SPAN_DEG * GLINT_PI / 180;
     int last;
 
-    for (int first = 0; first < t->n_points; first = last) {
-        const double phi_deg = t->point[first].lamp.phi_deg;
-        struct point *seed = &t->point[first];
+    for (int first = 0; first < n; first = last) {
+        const double phi_deg = point[first].lamp.phi_deg;
+        struct point *seed = &point[first];
 
-        set_at(seed, phi_deg);
+        set_at(t, seed, phi_deg);
         last = first + 1;
-        for (int i = first + 1; i < t->n_points; i++) {
+        for (int i = first + 1; i < n; i++) {
+            struct point p = point[i];
+
+            set_at(t, &p, phi_deg);
+            if (fabs(p.at[0] - seed->at[0]) + p.reach > near ||
+                fabs(p.at[1] - seed->at[1]) + p.reach > near)
+                continue;
+            point[i] = point[last];
+            point[last++] = p;
+        }
+        add_patch(t, point, first, last, phi_deg, patch, had++);
+    }
+    return had;
+}
+
+static int gather_points(const struct traced *t, struct point *point, int n,
+                         struct ray_patch *patch, int had)
+{
+    return t->cfg.round ? gather_round(t, point, n, patch, had)
+                        : gather_others(t, point, n, patch, had);
+}
+
+static bool is_inside(const struct ray_patch *patch, const struct point *p)
+{
+    return fabs(p->at[0] - patch->middle[0]) <= patch->half[0] &&
+           fabs(p->at[1] - patch->middle[1]) <= patch->half[1];
+}
+
+/* Returns the radius of LAMP, in coordinates of patches; points of it lie
+ * within. */
+static double reach_of(const struct traced *t, const struct glint_lamp *lamp)
+{
+    const double cosine = glint_cos_deg(lamp->theta_deg);
+
+    return REACH * fmax(lamp->axis[0], lamp->axis[1]) * cosine *
+           (t->cfg.round ? cosine * 180 / GLINT_PI : 1);
+}
+
+/* Sets PATCH[N] to patches of the N whole LAMPS, but for those that are wider
+ * than a patch; returns how many there are. They do not depend on the size of
+ * the picture, which decides into how many points a lamp is divided. */
+static int gather_lamps(const struct traced *t, const struct glint_lamp *lamps,
+                        int n, struct point *room, struct ray_patch *patch)
+{
+    const double span = t->cfg.round ? SPAN_DEG : SPAN_DEG * GLINT_PI / 180;
+    int narrow = 0;
+
+    for (int i = 0; i < n; i++) {
+        const double reach = reach_of(t, &lamps[i]);
+
+        if (2 * reach <= span)
+            room[narrow++] = (struct point){.lamp = lamps[i], .reach = reach};
+    }
+    return gather_points(t, room, narrow, patch, 0);
+}
+
+/* Puts points into those of the N patches FROM in which they lie. Moves the
+ * others to the front; returns their number. */
+static int gather_inside(struct traced *t, const struct ray_patch *from, int n)
+{
+    int left = t->n_points;
+
+    for (int k = 0; k < n; k++) {
+        const int before = left;
+
+        for (int i = 0; i < left;) {
             struct point p = t->point[i];
 
-            set_at(&p, phi_deg);
-            if (fabs(p.at[0] - seed->at[0]) > near ||
-                fabs(p.at[1] - seed->at[1]) > near)
+            set_at(t, &p, from[k].phi_deg);
+            if (!is_inside(&from[k], &p)) {
+                i++;
                 continue;
-            t->point[i] = t->point[last];
-            t->point[last++] = p;
+            }
+            p.patch = t->n_patches;
+            t->point[i] = t->point[--left];
+            t->point[left] = p;
         }
-        close_patch(t, first, last, phi_deg);
+        if (left < before)
+            t->patch[t->n_patches++] = from[k];
     }
+    return left;
 }
 
 /* ------------------------------------------------------------------- levels */
@@ -343,19 +429,7 @@ static void unite(const struct traced *t, const struct point *a,
         both->lamp.rgb[c] =
             (a->lamp.rgb[c] * a->lamp.power + b->lamp.rgb[c] * b->lamp.power) /
             both->lamp.power;
-    if (t->cfg.round)
-        both->at[0] = both->lamp.theta_deg;
-    else
-        set_at(both, t->patch[a->patch].phi_deg);
-}
-
-/* Returns whether P lies in its patch. */
-static bool is_inside(const struct traced *t, const struct point *p)
-{
-    const struct ray_patch *patch = &t->patch[p->patch];
-
-    return fabs(p->at[0] - patch->middle[0]) <= patch->half[0] &&
-           fabs(p->at[1] - patch->middle[1]) <= patch->half[1];
+    set_at(t, both, t->patch[a->patch].phi_deg);
 }
 
 /* Returns the square of the sine between A and B, about. */
@@ -402,7 +476,7 @@ static bool add_level(struct traced *t, int level)
         if (with < 0)
             continue;
         unite(t, a, &t->point[with], &both);
-        if (!is_inside(t, &both))
+        if (!is_inside(&t->patch[both.patch], &both))
             continue;
         a->last = t->point[with].last = level;
         both.first = level + 1;
@@ -435,9 +509,11 @@ static void look_job(void *ctx, int job, int worker)
 {
     const struct job *j = ctx;
     struct traced *t = state_of(j->frame);
+    struct ray_field *const field = &t->looked[j->first + job];
 
     (void)worker;
-    glint_ray_field_look(&t->cfg, &t->field[j->first + job]);
+    if (!field->is_looked && is_wanted(j->frame, field->ghost))
+        glint_ray_field_look(&t->cfg, field);
 }
 
 /* Returns whether the box of FIELD on the sensor, turned by PHI_DEG, meets the
@@ -516,6 +592,23 @@ static bool is_same_view(const struct glint_view *a, const struct glint_view *b)
            a->sensor_width_mm == b->sensor_width_mm;
 }
 
+/* Returns whether the fields of T were looked at through the lens and with the
+ * wavelengths of CFG. */
+static bool is_same_lens(const struct traced *t,
+                         const struct ray_field_config *cfg)
+{
+    const struct glint_optics *const a = &t->optics;
+    const struct glint_optics *const b = &cfg->setup->optics;
+    bool same = t->cfg.setup == cfg->setup &&
+                a->stop_radius_mm == b->stop_radius_mm &&
+                a->focal_mm == b->focal_mm && a->length_mm == b->length_mm &&
+                a->squeeze == b->squeeze;
+
+    for (int k = 0; k < 3; k++)
+        same = same && t->cfg.wave_nm[k] == cfg->wave_nm[k];
+    return same;
+}
+
 /* Returns whether the fields of CFG and LAMPS are there. */
 static bool is_looked(const struct glint_frame *f,
                       const struct ray_field_config *cfg,
@@ -523,15 +616,11 @@ static bool is_looked(const struct glint_frame *f,
 {
     const struct traced *t = state_of(f);
     const struct ray_field_config *had = &t->cfg;
-    bool same = t->n_lamps == n && n > 0 && !f->tints &&
-                had->setup == cfg->setup && had->max_cells == cfg->max_cells &&
-                had->uniform == cfg->uniform &&
-                is_same_view(&had->view, &cfg->view) &&
-                t->only_ghost == f->only_ghost &&
-                t->stop_mm == cfg->setup->optics.stop_radius_mm;
+    bool same =
+        t->n_lamps == n && n > 0 && !f->tints && is_same_lens(t, cfg) &&
+        had->max_cells == cfg->max_cells && had->uniform == cfg->uniform &&
+        is_same_view(&had->view, &cfg->view) && t->only_ghost == f->only_ghost;
 
-    for (int k = 0; k < 3; k++)
-        same = same && had->wave_nm[k] == cfg->wave_nm[k];
     for (int i = 0; i < n && same; i++)
         same = t->lamp[i].theta_deg == lamps[i].theta_deg &&
                t->lamp[i].phi_deg == lamps[i].phi_deg &&
@@ -542,26 +631,131 @@ static bool is_looked(const struct glint_frame *f,
     return same;
 }
 
-/* Gathers LAMPS in patches. */
-static enum glint_status gather(struct traced *t,
-                                const struct glint_lamp *lamps, int n)
+/* Patches, and their fields, of an earlier picture. */
+struct sights {
+    struct ray_patch *patch;
+    struct ray_field *field;
+    int n; /* patches */
+};
+
+/* Takes the patches and fields of T, if they were made for the lens and the
+ * wavelengths of CFG. */
+static void take_sights(struct traced *t, const struct ray_field_config *cfg,
+                        struct sights *had)
 {
-    const size_t size = (size_t)n;
+    *had = (struct sights){NULL, NULL, 0};
+    if (!is_same_lens(t, cfg))
+        return;
+    *had = (struct sights){t->patch, t->looked, t->looked ? t->n_patches : 0};
+    t->patch = NULL;
+    t->looked = NULL;
+}
+
+/* Gathers LAMPS, N points of the GIVEN lamps, in patches. */
+static enum glint_status gather(struct traced *t,
+                                const struct glint_lamp *lamps, int n,
+                                const struct glint_lamp *given, int n_given)
+{
+    const size_t size = (size_t)n, all = (size_t)n_given;
+    struct point *const room = calloc(all + 1, sizeof *room);
+    struct ray_patch *const patch = calloc(all + 1, sizeof *patch);
+    int left;
 
     t->lamp = calloc(size, sizeof *t->lamp);
     t->point = calloc(2 * size, sizeof *t->point); /* with all levels */
     t->patch = calloc(size, sizeof *t->patch);
-    if (!t->lamp || !t->point || !t->patch)
+    if (room && patch && t->lamp && t->point && t->patch) {
+        memcpy(t->lamp, lamps, size * sizeof *t->lamp);
+        t->n_lamps = t->n_points = n;
+        for (int i = 0; i < n; i++)
+            t->point[i] = (struct point){.lamp = lamps[i], .last = LEVELS};
+        left = gather_inside(t, patch,
+                             gather_lamps(t, given, n_given, room, patch));
+        t->n_patches = gather_points(t, t->point, left, t->patch, t->n_patches);
+        add_levels(t);
+    }
+    free(room);
+    free(patch);
+    return t->n_points ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+static bool is_same_patch(const struct ray_patch *a, const struct ray_patch *b)
+{
+    return a->phi_deg == b->phi_deg && a->middle[0] == b->middle[0] &&
+           a->middle[1] == b->middle[1] && a->half[0] == b->half[0] &&
+           a->half[1] == b->half[1];
+}
+
+/* Returns the fields of HAD over PATCH, or NULL. They are the same bits as if
+ * they were looked at again. */
+static const struct ray_field *find_sight(const struct sights *had,
+                                          const struct ray_patch *patch,
+                                          int n_ghosts)
+{
+    for (int k = 0; k < had->n; k++)
+        if (is_same_patch(&had->patch[k], patch))
+            return had->field + k * n_ghosts;
+    return NULL;
+}
+
+/* Sets the fields to look at: those of HAD as they are. */
+static enum glint_status set_fields(struct traced *t, const struct sights *had,
+                                    int n_ghosts)
+{
+    const size_t size = (size_t)t->n_patches * (size_t)n_ghosts;
+
+    t->looked = calloc(size + 1, sizeof *t->looked);
+    t->field = calloc(size + 1, sizeof *t->field);
+    if (!t->looked || !t->field)
         return GLINT_E_MEMORY;
-    memcpy(t->lamp, lamps, size * sizeof *t->lamp);
-    t->n_lamps = t->n_points = n;
-    for (int i = 0; i < n; i++)
-        t->point[i] = (struct point){.lamp = lamps[i], .last = LEVELS};
-    if (t->cfg.round)
-        gather_round(t);
-    else
-        gather_others(t);
-    add_levels(t);
+    for (int patch = 0; patch < t->n_patches; patch++) {
+        struct ray_field *const field = t->looked + patch * n_ghosts;
+        const struct ray_field *const from =
+            find_sight(had, &t->patch[patch], n_ghosts);
+
+        if (from)
+            memcpy(field, from, (size_t)n_ghosts * sizeof *field);
+        for (int ghost = 0; ghost < n_ghosts; ghost++) {
+            field[ghost].ghost = ghost;
+            field[ghost].patch = &t->patch[patch];
+        }
+    }
+    return GLINT_OK;
+}
+
+/* Lists the fields that are drawn, with grids for the picture of F. */
+static void list_fields(const struct glint_frame *f)
+{
+    struct traced *const t = state_of(f);
+
+    t->n_fields = 0;
+    for (int i = 0; i < t->n_patches * f->setup->n_ghosts; i++)
+        if (t->looked[i].is_open && is_wanted(f, t->looked[i].ghost)) {
+            t->field[t->n_fields] = t->looked[i];
+            glint_ray_field_fit(&t->cfg, &t->field[t->n_fields++]);
+        }
+}
+
+/* Looks at the fields of N LAMPS, at least 1, but for those of HAD. */
+static enum glint_status look_at(struct glint_frame *f,
+                                 const struct glint_lamp *lamps, int n,
+                                 const struct sights *had)
+{
+    struct traced *const t = state_of(f);
+    const int n_ghosts = f->setup->n_ghosts;
+    enum glint_status status;
+
+    if ((int64_t)n * n_ghosts * f->setup->n_wavelengths > INT_MAX)
+        return GLINT_E_MEMORY;
+    status = gather(t, lamps, n, f->lights.given, f->lights.n_given);
+    if (status == GLINT_OK && (int64_t)t->n_patches * n_ghosts > INT_MAX / 2)
+        status = GLINT_E_MEMORY;
+    if (status == GLINT_OK)
+        status = set_fields(t, had, n_ghosts);
+    if (status != GLINT_OK)
+        return status;
+    run(f, t->n_patches * n_ghosts, look_job, 0, LOOK_SHARE);
+    list_fields(f);
     return GLINT_OK;
 }
 
@@ -577,46 +771,26 @@ static enum glint_status look(struct glint_frame *f,
                                        glint_prescription_is_round(s->lens),
                                    .max_cells = f->dials.fineness,
                                    .uniform = f->picture.uniform};
-    enum glint_status status;
-    int kept = 0;
+    enum glint_status status = GLINT_OK;
+    struct sights had;
 
     set_waves(t, s, &cfg);
     if (is_looked(f, &cfg, lamps, n)) {
         forget_plan(t);
         return GLINT_OK;
     }
+    take_sights(t, &cfg, &had);
     forget(t);
     t->cfg = cfg;
     t->only_ghost = f->only_ghost;
-    t->stop_mm = s->optics.stop_radius_mm;
-    if (n == 0)
-        return GLINT_OK;
-    if ((int64_t)n * s->n_ghosts * s->n_wavelengths > INT_MAX)
-        return GLINT_E_MEMORY;
-    status = gather(t, lamps, n);
+    t->optics = s->optics;
+    if (n > 0)
+        status = look_at(f, lamps, n, &had);
     if (status != GLINT_OK)
-        return status;
-    if ((size_t)t->n_patches * (size_t)s->n_ghosts > INT_MAX / 2)
-        return GLINT_E_MEMORY;
-    t->field = calloc((size_t)t->n_patches * (size_t)s->n_ghosts + 1,
-                      sizeof *t->field);
-    if (!t->field)
-        return GLINT_E_MEMORY;
-    for (int patch = 0; patch < t->n_patches; patch++)
-        for (int ghost = 0; ghost < s->n_ghosts; ghost++)
-            if (is_wanted(f, ghost))
-                t->field[t->n_fields++] = (struct ray_field){
-                    .ghost = ghost, .patch = &t->patch[patch]};
-    run(f, t->n_fields, look_job, 0, LOOK_SHARE);
-    for (int i = 0; i < t->n_fields; i++)
-        if (t->field[i].n_cells > 0)
-            t->field[kept++] = t->field[i];
-    t->n_fields = kept;
-    t->looked = malloc(((size_t)kept + 1) * sizeof *t->looked);
-    if (!t->looked)
-        return GLINT_E_MEMORY;
-    memcpy(t->looked, t->field, (size_t)kept * sizeof *t->looked);
-    return GLINT_OK;
+        forget(t);
+    free(had.patch);
+    free(had.field);
+    return status;
 }
 
 /* Skips ghosts that no pixel shows: by the most light that all points may give
@@ -803,8 +977,7 @@ static enum glint_status plan(struct glint_frame *f,
     if (!t->set_of || !t->mem || !t->level)
         return GLINT_E_MEMORY;
     t->in_codes = is_in_codes(f, image);
-    if (t->n_fields) /* without lamps there are no fields */
-        memcpy(t->field, t->looked, (size_t)t->n_fields * sizeof *t->field);
+    list_fields(f);
     status = skip_faint(f, scale,
                         glint_frame_codes_light(f, image, f->dials.cull_codes));
     if (status != GLINT_OK)
@@ -1093,5 +1266,12 @@ static void finish(struct glint_frame *frame)
     frame->memory.traced = NULL;
 }
 
-const struct glint_frame_rays glint_frame_traces = {draw, set_scale, n_bundles,
-                                                    ghost, finish};
+static void adopt(struct glint_frame *frame, struct glint_frame *from)
+{
+    finish(frame);
+    frame->memory.traced = from->memory.traced;
+    from->memory.traced = NULL;
+}
+
+const struct glint_frame_rays glint_frame_traces = {draw,  set_scale, n_bundles,
+                                                    ghost, finish,    adopt};

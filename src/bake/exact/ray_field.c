@@ -45,21 +45,25 @@ static void init_path(const struct ray_field_config *cfg,
 
 /* --------------------------------------------------------------------- look */
 
+/* Returns the curvature of the stop's sides / that of a circle. */
+static double curvature_of(const struct ray_field_config *cfg)
+{
+    return cfg->setup->n_blades == 0 ? 1 : cfg->setup->iris.roundness;
+}
+
 /* Returns the cells a side by the rule of lens/grid.h, but not so few that they
  * could step over the stop. If a rim next to total reflection comes through,
  * too, the pupil is the whole front, of which the opening may be a hundredth.
  */
 static int cells_of(const struct ray_field_config *cfg,
-                    const struct glint_sampling *s, int *least_cells)
+                    const struct ray_sight *s, bool folds, int *least_cells)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
-    const double curvature =
-        cfg->setup->n_blades == 0 ? 1 : cfg->setup->iris.roundness;
-    const double round = curvature * s->round_mm;
+    const double round = curvature_of(cfg) * s->round_mm;
     const double outline = fmax(s->outline_mm, round);
     const double bend = fmax(s->bend_mm, 0.1 * outline);
     const double finer = cfg->max_cells / 64.0;
-    const double most = glint_grid_most(cfg->max_cells, s->folds);
+    const double most = glint_grid_most(cfg->max_cells, folds);
     const double n = fmin(most, finer * sqrt(bend * pixels / (8 * 0.01)));
     const double least =
         s->n_inside < FEW_INSIDE
@@ -116,20 +120,6 @@ static void add_sampling(struct glint_sampling *all,
         all->step = more->step;
     }
     all->folds |= more->folds;
-}
-
-static void unite(struct glint_pupil *all, const struct glint_pupil *p)
-{
-    all->x0_mm = fmin(all->x0_mm, p->x0_mm);
-    all->x1_mm = fmax(all->x1_mm, p->x1_mm);
-    all->y0_mm = fmin(all->y0_mm, p->y0_mm);
-    all->y1_mm = fmax(all->y1_mm, p->y1_mm);
-    all->energy = fmax(all->energy, p->energy);
-    for (int k = 0; k < 4; k += 2) {
-        all->sensor_mm[k] = fmin(all->sensor_mm[k], p->sensor_mm[k]);
-        all->sensor_mm[k + 1] =
-            fmax(all->sensor_mm[k + 1], p->sensor_mm[k + 1]);
-    }
 }
 
 /* Sets AT to corner K, 0 .. 3, of the directions of PATCH; returns false if
@@ -242,9 +232,10 @@ static void look_through(const struct ray_field_config *cfg,
     }
 }
 
-/* Adds cell (I, J): its flux, and how bright it is where it lands. */
-static void add_look(const struct looks *l, int i, int j, double pixel_mm2,
-                     double *flux, double *peak)
+/* Adds cell (I, J) to FLUX: its flux, and to SIGHT: how bright it is where it
+ * lands. */
+static void add_look(const struct looks *l, int i, int j, double *flux,
+                     struct ray_sight *sight)
 {
     const struct glint_ray *a = &l->ray[j][i], *b = a + 1;
     const struct glint_ray *c = &l->ray[j + 1][i], *d = c + 1;
@@ -259,16 +250,18 @@ static void add_look(const struct looks *l, int i, int j, double pixel_mm2,
     energy = fmax(energy, l->inside[j + 1][i] ? c->energy : 0);
     energy = fmax(energy, l->inside[j + 1][i + 1] ? d->energy : 0);
     *flux += energy * l->cell_mm2 * n / 4;
+    sight->cell_flux = fmax(sight->cell_flux, energy * l->cell_mm2);
     if (!(l->traced[j][i] && l->traced[j][i + 1] && l->traced[j + 1][i] &&
           l->traced[j + 1][i + 1])) {
-        *peak = HUGE_VAL;
+        sight->density = sight->cell_flux = HUGE_VAL;
         return;
     }
     area = 0.5 * fabs((d->sensor_x_mm - a->sensor_x_mm) *
                           (c->sensor_y_mm - b->sensor_y_mm) -
                       (d->sensor_y_mm - a->sensor_y_mm) *
                           (c->sensor_x_mm - b->sensor_x_mm));
-    *peak = fmax(*peak, energy * l->cell_mm2 / fmax(area, pixel_mm2));
+    sight->density =
+        fmax(sight->density, energy * l->cell_mm2 / fmax(area, 1e-12));
 }
 
 /* Sums of squares and second differences along the lines of a grid. */
@@ -301,56 +294,49 @@ static void add_bowl(const struct looks *l, int i, int j, int di, int dj,
     b->n_bends++;
 }
 
-/* Sets the sags of FIELD: if a cell bends by D across and E down, they are
+/* Sets the sags of SIGHT: if a cell bends by D across and E down, they are
  * (D + E) / 12. */
-static void set_sags(const struct ray_field_config *cfg,
-                     struct ray_field *field, const struct looks *l)
+static void set_sags(struct ray_sight *sight, double stop_mm,
+                     const struct looks *l)
 {
-    const double by = (double)LOOKS / field->n_cells;
-    const double curved =
-        cfg->setup->n_blades == 0 ? 1 : cfg->setup->iris.roundness;
+    const double by = LOOKS;
 
-    field->sag[0] = field->sag[1] = field->sag[2] = 0;
+    sight->sag[0] = sight->sag[1] = sight->sag[2] = 0;
     for (int way = 0; way < 2; way++) {
         struct bowls b = {0, 0, 0, {0, 0}};
 
         for (int j = 0; j < l->rows; j++)
             for (int i = 0; i <= LOOKS; i++)
-                add_bowl(l, i, j, !way, way, cfg->setup->optics.stop_radius_mm,
-                         &b);
+                add_bowl(l, i, j, !way, way, stop_mm, &b);
         for (int k = 0; k < 2 && b.n_bends; k++)
-            field->sag[k] += b.bend[k] / b.n_bends * by * by / 12;
+            sight->sag[k] += b.bend[k] / b.n_bends * by * by / 12;
         if (b.n_steps)
-            field->sag[2] += curved * b.step2 / b.n_steps * by * by / 12;
+            sight->sag[2] += b.step2 / b.n_steps * by * by / 12;
     }
-    for (int k = 0; k < 3; k++)
-        field->sag[k] = fmin(fmax(field->sag[k], 0), MOST_SAG);
 }
 
 /* Sets how bright FIELD is and how far its wavelengths are apart. */
-static void measure(const struct ray_field_config *cfg, struct ray_field *field,
-                    bool folds)
+static void measure(const struct ray_field_config *cfg, struct ray_field *field)
 {
-    const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
+    struct ray_sight *const sight = &field->sight;
     const double both = field->pupil.mirrored ? 2 : 1;
     struct looks look[3];
     double most = field->pupil.energy, squares = 0;
     int n = 0;
 
-    field->flux = field->peak_mm2 = 0;
+    field->flux = sight->cell_flux = sight->density = 0;
     for (int w = 0; w < 3; w++) {
-        double flux = 0, peak = 0;
+        double flux = 0;
 
         look_through(cfg, field, cfg->wave_nm[w], &look[w]);
         for (int j = 0; j + 1 < look[w].rows; j++)
             for (int i = 0; i < LOOKS; i++)
-                add_look(&look[w], i, j, pixel * pixel, &flux, &peak);
+                add_look(&look[w], i, j, &flux, sight);
         for (int j = 0; j < look[w].rows; j++)
             for (int i = 0; i <= LOOKS; i++)
                 if (look[w].inside[j][i])
                     most = fmax(most, look[w].ray[j][i].energy);
         field->flux = fmax(field->flux, both * flux);
-        field->peak_mm2 = fmax(field->peak_mm2, peak);
     }
     for (int j = 0; j < look[0].rows; j++)
         for (int i = 0; i <= LOOKS; i++)
@@ -365,39 +351,24 @@ static void measure(const struct ray_field_config *cfg, struct ray_field *field,
                 n++;
             }
     field->apart_mm = n ? sqrt(squares / n) : HUGE_VAL;
-    set_sags(cfg, field, &look[1]);
+    set_sags(sight, cfg->setup->optics.stop_radius_mm, &look[1]);
     field->energy_unit = 1.5 * most;
     if (field->flux == 0) { /* the opening lies between the rays */
         field->flux = field->pupil.energy *
                       (field->pupil.x1_mm - field->pupil.x0_mm) *
                       glint_pupil_height(&field->pupil);
-        field->peak_mm2 = HUGE_VAL;
+        sight->density = sight->cell_flux = HUGE_VAL;
     }
-    if (folds)
-        field->peak_mm2 *= 8;
-}
-
-static bool find_pupil(const struct ray_field_config *cfg,
-                       const struct ray_field *field, double nm,
-                       const double at[2], const struct glint_pupil *near,
-                       struct glint_pupil *pupil, struct glint_path *path)
-{
-    double d[3];
-
-    init_path(cfg, field, nm, path);
-    glint_ray_direction(cfg, at, d);
-    return glint_pupil_find_towards(
-        pupil, path, d, cfg->setup->optics.stop_radius_mm, HUGE_VAL, near);
 }
 
 /* Finds the part of the pupil that all directions and wavelengths need. */
-static bool find_all(const struct ray_field_config *cfg,
-                     struct ray_field *field, struct glint_path *path)
+static bool find_pupil(const struct ray_field_config *cfg,
+                       struct ray_field *field, struct glint_path *path)
 {
     const struct ray_patch *patch = field->patch;
-    struct glint_pupil p, *all = &field->pupil;
+    const double stop_mm = cfg->setup->optics.stop_radius_mm;
     bool found = false;
-    double at[2];
+    double at[2], d[3];
 
     for (int k = 0; k < 7; k++) {
         const double nm = cfg->wave_nm[k == 1 ? 0 : k == 2 ? 2 : 1];
@@ -405,15 +376,13 @@ static bool find_all(const struct ray_field_config *cfg,
         memcpy(at, patch->middle, sizeof at);
         if (k > 2 && !corner_of(cfg, patch, k - 3, at))
             continue;
-        /* Where nothing comes through in the middle, corners of a single
-         * direction are not searched. */
-        if (!find_pupil(cfg, field, nm, at, found ? all : NULL, &p, path))
-            continue;
+        init_path(cfg, field, nm, path);
+        glint_ray_direction(cfg, at, d);
         if (found)
-            unite(all, &p);
+            glint_pupil_extend(&field->pupil, path, d, stop_mm);
         else
-            *all = p;
-        found = true;
+            found = glint_pupil_find_towards(&field->pupil, path, d, stop_mm,
+                                             HUGE_VAL, NULL);
     }
     return found;
 }
@@ -427,8 +396,9 @@ void glint_ray_field_look(const struct ray_field_config *cfg,
     struct glint_path path;
     double at[2], d[3];
 
-    field->n_cells = 0;
-    if (!find_all(cfg, field, &path))
+    field->is_looked = true;
+    field->is_open = find_pupil(cfg, field, &path);
+    if (!field->is_open)
         return;
     init_path(cfg, field, cfg->wave_nm[1], &path);
     glint_ray_direction(cfg, patch->middle, d);
@@ -441,9 +411,30 @@ void glint_ray_field_look(const struct ray_field_config *cfg,
             add_sampling(&sampling, &more);
         }
     choose_cuts(field, &sampling);
-    field->n_cells = cells_of(cfg, &sampling, &field->least_cells);
     field->folds = sampling.folds;
-    measure(cfg, field, sampling.folds);
+    field->sight = (struct ray_sight){.bend_mm = sampling.bend_mm,
+                                      .outline_mm = sampling.outline_mm,
+                                      .round_mm = sampling.round_mm,
+                                      .step = sampling.step,
+                                      .n_inside = sampling.n_inside};
+    measure(cfg, field);
+}
+
+void glint_ray_field_fit(const struct ray_field_config *cfg,
+                         struct ray_field *field)
+{
+    const struct ray_sight *const s = &field->sight;
+    const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
+    const double curvature = curvature_of(cfg);
+    double n;
+
+    field->n_cells = cells_of(cfg, s, field->folds, &field->least_cells);
+    n = field->n_cells;
+    for (int k = 0; k < 3; k++)
+        field->sag[k] = fmin(
+            fmax((k == 2 ? curvature : 1) * s->sag[k] / (n * n), 0), MOST_SAG);
+    field->peak_mm2 = (field->folds ? 8 : 1) *
+                      fmin(s->density, s->cell_flux / (pixel * pixel));
     add_rim(cfg, &field->pupil);
 }
 

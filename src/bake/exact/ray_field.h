@@ -53,20 +53,34 @@ struct ray_sample {
     double nm, at[2];
 };
 
+/* What the rays of a field tell, whatever the size of the picture. */
+struct ray_sight {
+    /* From struct glint_sampling, mm. */
+    double bend_mm, outline_mm, round_mm, step;
+    int n_inside;
+    /* Largest flux of a cell of a coarse grid, mm^2, and largest flux per mm^2
+     * of the sensor, for irradiance 1; HUGE_VAL: not known. */
+    double cell_flux, density;
+    double
+        sag[3]; /* as of a field with one cell per side; of a circular stop */
+};
+
 struct ray_field {
     int ghost;
     const struct ray_patch *patch;
-    struct glint_pupil pupil;
-    int n_cells;     /* cells per side; 0: no light of the ghost is in the
-                        picture */
-    int least_cells; /* fewest that do not step over the opening */
+    /* Set by glint_ray_field_look(): */
+    bool is_looked, is_open; /* is_open: light of the ghost gets through */
+    struct ray_sight sight;
+    struct glint_pupil pupil; /* without a rim until glint_ray_field_fit() */
+    int n_cells;              /* cells per side */
+    int least_cells;          /* fewest that do not step over the opening */
     bool folds;
     int n_cuts, cut_event[RAY_FIELD_CUTS]; /* as chosen by the sampling */
     double
         energy_unit; /* ray energy that energy 65536 of a vertex stands for */
     double flux;     /* mm^2 of pupil times energy that get through */
-    double peak_mm2; /* largest flux per mm^2 of the sensor for irradiance 1;
-                        HUGE_VAL: not known */
+    double peak_mm2; /* bound of the flux per mm^2 of a pixel of the sensor for
+                        irradiance 1; HUGE_VAL: not known */
     /* Mean height by which straight lines between the rays of a cell lie above
      * (1 + r^2) / 2 of two barrels and of a round stop, which is bent. */
     double sag[3];
@@ -77,12 +91,18 @@ struct ray_field {
     struct ray_sample sample[RAY_FIELD_SAMPLES];
 };
 
-/* Sets all but nodes of FIELD, whose ghost and patch are set: finds the part of
- * the pupil, the barrels that cut, the grid and how bright the ghost is. With
- * max_cells 64 light is off by 0.01 px (RMS), outlines by 0.1 px; with n times
- * as many cells, by n^2 times less. */
+/* Looks at FIELD, whose ghost and patch are set: finds the part of the pupil,
+ * the barrels that cut, and how bright the ghost is. Does not depend on the
+ * view and the fineness of CFG. */
 void glint_ray_field_look(const struct ray_field_config *cfg,
                           struct ray_field *field);
+
+/* Sets the grid of FIELD, which was looked at and is open, for the view of CFG,
+ * and adds a rim of a pixel to its pupil. With max_cells 64 light is off by
+ * 0.01 px (RMS), outlines by 0.1 px; with n times as many cells, by n^2 times
+ * less. */
+void glint_ray_field_fit(const struct ray_field_config *cfg,
+                         struct ray_field *field);
 
 /* Makes the grid BY times as fine, BY at most 1, for a faint ghost. */
 void glint_ray_field_coarsen(const struct ray_field_config *cfg,

@@ -26,6 +26,10 @@ enum { ACROSS = 64, DOWN = 32, ROUNDS = 8, TURNS = 16 };
  * suffices. */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
+/* Fraction of its size by which a pupil is enlarged on each side to contain
+ * those of wavelengths and directions near by. */
+#define EXTEND 0.125
+
 struct search {
     struct glint_openings openings; /* its path is PLACES */
     struct glint_path places;       /* the path, without energies */
@@ -242,15 +246,15 @@ static double compute_area(const struct glint_pupil *p)
     return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
 }
 
-/* Returns BOX enlarged by half its size on each side, and by a fraction of
+/* Returns BOX enlarged by PART of its size on each side, and by a fraction of
  * the front element, as boxes may be very thin. */
-static struct glint_pupil grow_box(const struct glint_pupil *box,
+static struct glint_pupil grow_box(const struct glint_pupil *box, double part,
                                    const struct glint_pupil *front)
 {
     const double more =
-        0.5 * (box->x1_mm - box->x0_mm) + 0.01 * (front->x1_mm - front->x0_mm);
+        part * (box->x1_mm - box->x0_mm) + 0.01 * (front->x1_mm - front->x0_mm);
 
-    const double half = 0.5 * (box->y1_mm - box->y0_mm);
+    const double half = part * (box->y1_mm - box->y0_mm);
     const double rim = 0.02 * front->y1_mm;
 
     return (struct glint_pupil){
@@ -340,6 +344,31 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
                                     field_mm, near);
 }
 
+/* Prepares S for PATH, and sets FRONT to its whole front element; returns false
+ * if PATH has no surface. */
+static bool start_search(struct search *s, const struct glint_path *path,
+                         const double direction[3], double stop_mm,
+                         double field_mm, struct glint_pupil *whole)
+{
+    const struct glint_event *front = NULL;
+
+    for (int k = 0; k < path->n_events && !front; k++)
+        if (path->event[k].kind != GLINT_STOP)
+            front = &path->event[k];
+    if (!front)
+        return false;
+    s->openings = (struct glint_openings){
+        .path = &s->places,
+        .direction = {direction[0], direction[1], direction[2]},
+        .stop_mm = stop_mm,
+        .field_mm = field_mm};
+    s->path = path;
+    s->places = *path;
+    s->places.places_only = true;
+    *whole = whole_front(path, front, direction);
+    return true;
+}
+
 bool glint_pupil_find_towards(struct glint_pupil *pupil,
                               const struct glint_path *path,
                               const double direction[3], double stop_radius_mm,
@@ -347,26 +376,62 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
 {
     struct search s; /* 150 KB: the offline half has the stack for it */
     struct glint_pupil whole, p;
-    const struct glint_event *front = NULL;
     bool found;
 
-    for (int k = 0; k < path->n_events && !front; k++)
-        if (path->event[k].kind != GLINT_STOP)
-            front = &path->event[k];
-    if (!front)
+    if (!start_search(&s, path, direction, stop_radius_mm, field_mm, &whole))
         return false;
-    s.openings = (struct glint_openings){
-        .path = &s.places,
-        .direction = {direction[0], direction[1], direction[2]},
-        .stop_mm = stop_radius_mm,
-        .field_mm = field_mm};
-    s.path = path;
-    s.places = *path;
-    s.places.places_only = true;
-    whole = whole_front(path, front, direction);
-    p = near ? grow_box(near, &whole) : whole;
+    p = near ? grow_box(near, 0.5, &whole) : whole;
     found = find_pupil(&s, &whole, &p, near);
     if (found)
         *pupil = p;
     return found;
+}
+
+/* Returns whether A reaches a side of B that is not a side of FRONT. */
+static bool reaches_side(const struct glint_pupil *a,
+                         const struct glint_pupil *b,
+                         const struct glint_pupil *front)
+{
+    return (a->x0_mm <= b->x0_mm && b->x0_mm > front->x0_mm) ||
+           (a->x1_mm >= b->x1_mm && b->x1_mm < front->x1_mm) ||
+           (!a->mirrored && a->y0_mm <= b->y0_mm && b->y0_mm > front->y0_mm) ||
+           (a->y1_mm >= b->y1_mm && b->y1_mm < front->y1_mm);
+}
+
+static void unite(struct glint_pupil *all, const struct glint_pupil *p)
+{
+    all->x0_mm = fmin(all->x0_mm, p->x0_mm);
+    all->x1_mm = fmax(all->x1_mm, p->x1_mm);
+    all->y0_mm = fmin(all->y0_mm, p->y0_mm);
+    all->y1_mm = fmax(all->y1_mm, p->y1_mm);
+    all->energy = fmax(all->energy, p->energy);
+    for (int k = 0; k < 4; k += 2) {
+        all->sensor_mm[k] = fmin(all->sensor_mm[k], p->sensor_mm[k]);
+        all->sensor_mm[k + 1] =
+            fmax(all->sensor_mm[k + 1], p->sensor_mm[k + 1]);
+    }
+}
+
+bool glint_pupil_extend(struct glint_pupil *pupil,
+                        const struct glint_path *path,
+                        const double direction[3], double stop_radius_mm)
+{
+    struct search s;
+    struct glint_pupil whole, grown, p;
+
+    if (!start_search(&s, path, direction, stop_radius_mm, HUGE_VAL, &whole))
+        return false;
+    grown = p = grow_box(pupil, EXTEND, &whole);
+    s.across = NEXT_ACROSS;
+    s.down = NEXT_DOWN;
+    if (shrink_to_cells(&s, &p) && !reaches_side(&p, &grown, &whole)) {
+        p.energy = pupil->energy;
+        unite(pupil, &p);
+        return true;
+    }
+    p = grow_box(pupil, 0.5, &whole);
+    if (!find_pupil(&s, &whole, &p, true))
+        return false;
+    unite(pupil, &p);
+    return true;
 }

@@ -28,11 +28,12 @@ static void set_probe(struct probe *p, const struct glint_path *path,
     const double sx = ray->stop_x_mm / stop_radius_mm;
     const double sy = ray->stop_y_mm / stop_radius_mm;
 
-    p->x_mm = ray->sensor_x_mm;
-    p->y_mm = ray->sensor_y_mm;
-    p->stop_x = sx;
-    p->stop_y = sy;
-    p->stop_r2 = sx * sx + sy * sy;
+    *p = (struct probe){.traced = true,
+                        .x_mm = ray->sensor_x_mm,
+                        .y_mm = ray->sensor_y_mm,
+                        .stop_x = sx,
+                        .stop_y = sy,
+                        .stop_r2 = sx * sx + sy * sy};
     p->inside = p->stop_r2 <= 1 && ray->rel_radius <= 1;
     for (int k = 0; k < path->n_events; k++) {
         const struct glint_event *e = &path->event[k];
@@ -64,8 +65,8 @@ static void probe_row(struct probe *row, const struct glint_path *path,
                 {direction[0], direction[1], direction[2]}};
         glint_trace_many(path, n, from, ray, status, hits);
         for (int k = 0; k < n; k++) {
-            row[first + k].traced = status[k] == GLINT_RAY_OK;
-            if (row[first + k].traced)
+            row[first + k].traced = false;
+            if (status[k] == GLINT_RAY_OK)
                 set_probe(&row[first + k], path, &ray[k],
                           hits + k * path->n_events, stop_radius_mm);
         }

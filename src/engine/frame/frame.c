@@ -322,6 +322,8 @@ merge_exact_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 {
     struct glint_lamp *merged;
 
+    f->lights.given = lamps;
+    f->lights.n_given = *n;
     if (set_lights(f, lamps, *n, 1) != GLINT_OK)
         return NULL;
     if (f->lights.n == *n && f->lights.n_more == 0)

@@ -65,6 +65,9 @@ struct glint_frame_rays {
     int (*n_bundles)(const struct glint_frame *frame);
     int (*ghost)(const struct glint_frame *frame, int bundle);
     void (*finish)(struct glint_frame *frame);
+    /* Moves to FRAME what FROM, a frame with the same lens, knows of its lamps.
+     * Pictures of the same lamps then take less time, of any size. */
+    void (*adopt)(struct glint_frame *frame, struct glint_frame *from);
 };
 
 /* Settings from which the next picture is planned. */
@@ -112,6 +115,10 @@ struct glint_frame_lights {
     /* Factors on the lights, or NULL. */
     const int32_t (*gain_q14)[3];
     struct glint_lamp *merged; /* [n]: lamps to be traced, if some merged */
+    /* [n_given]: the lamps of which those to be traced are points, while exact
+     * rays are drawn */
+    const struct glint_lamp *given;
+    int n_given;
     bool *seen; /* [GLINT_MAX_GHOSTS]: true for ghosts in the last frame */
 };
 

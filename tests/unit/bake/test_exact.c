@@ -389,6 +389,49 @@ TEST(torics_that_are_spheres)
     assert_true(db >= 50);
 }
 
+/* Draws LAMPS into LINEAR of VIEW with FRAME. */
+static void draw_linear(struct glint_frame *frame, struct glint_view view,
+                        const struct glint_lamp *lamps, int n, float *linear)
+{
+    struct glint_engine_report report;
+
+    glint_frame_init(frame, &setup, view, NULL);
+    frame->trace = &glint_frame_traces;
+    assert_ok(glint_frame_draw_alone(frame, lamps, n, 1, linear, &report));
+}
+
+/* Checks that a frame which adopts what a smaller frame found of its lamps, and
+ * of others, draws the same bits as one that finds it itself. */
+TEST(what_is_adopted_does_not_matter)
+{
+    const struct glint_view view = {
+        .width = 240, .height = 135, .sensor_width_mm = 36};
+    const struct glint_view small = {
+        .width = 96, .height = 54, .sensor_width_mm = 36};
+    const struct glint_lamp lamps[3] = {
+        {7.58, 33.2, 1, {1, 1, 1}, {4e-3, 2e-3}, 30},
+        {7.9, -70, 1, {1, 1, 1}, {3e-3, 3e-3}, 0},
+        make_lamp(3.1, -100)};
+    static float linear[2][3 * 240 * 135], other_size[3 * 96 * 54];
+
+    for (int k = 0; k < 2; k++) {
+        struct glint_frame own, adopting, from;
+        struct glint_engine_report report;
+
+        load_shaped("", k ? "shape toric x 41\n" : "", "");
+        draw_linear(&own, view, lamps + k, 2, linear[0]);
+        draw_linear(&adopting, view, lamps + 1 - k, 2, linear[1]);
+        draw_linear(&from, small, lamps + k, 2, other_size);
+        glint_frame_traces.adopt(&adopting, &from);
+        assert_ok(glint_frame_draw_alone(&adopting, lamps + k, 2, 1, linear[1],
+                                         &report));
+        assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
+        glint_frame_finish(&from);
+        glint_frame_finish(&own);
+        glint_frame_finish(&adopting);
+    }
+}
+
 /* A decentre in x for light at azimuth 30 equals a decentre in y at 60,
  * mirrored at the diagonal, and differs from the centred lens. */
 TEST(decentred_at_the_diagonal)

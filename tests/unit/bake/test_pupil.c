@@ -25,18 +25,23 @@ static bool ray_passes(const struct glint_path *path, double x, double y,
            hypot(ray->stop_x_mm, ray->stop_y_mm) <= optics.stop_radius_mm;
 }
 
+static bool is_in_box(const struct glint_pupil *box, double x, double y)
+{
+    return x >= box->x0_mm && x <= box->x1_mm && y <= box->y1_mm;
+}
+
 /* Checks the pupil box of GHOST at an angle and wavelength against a scan.
  * Adds the number of unblocked rays to *N_SEEN. NEAR: the search for the box
- * starts from the box at 532 nm, as in a frame. */
+ * starts from the box at 532 nm, and that box is extended, as in a frame. */
 static void check_box(int ghost, double theta_deg, double nm, bool near,
                       int *n_seen)
 {
     const double t = theta_deg * 3.14159265358979 / 180;
     const double direction[3] = {sin(t), 0, cos(t)};
     const double semi = lens.surface[0].semi_mm * 1.1;
-    struct glint_pupil box, middle;
+    struct glint_pupil box, middle = {0}, extended;
     struct glint_path path;
-    bool found;
+    bool found, can_extend;
 
     glint_path_init(&path, &lens, &ghosts[ghost], 532);
     near = near && glint_pupil_find(&middle, &path, theta_deg,
@@ -44,6 +49,9 @@ static void check_box(int ghost, double theta_deg, double nm, bool near,
     glint_path_init(&path, &lens, &ghosts[ghost], nm);
     found = glint_pupil_find(&box, &path, theta_deg, optics.stop_radius_mm,
                              near ? &middle : NULL);
+    extended = middle;
+    can_extend = near && glint_pupil_extend(&extended, &path, direction,
+                                            optics.stop_radius_mm);
     for (int j = 0; j <= SCAN / 2; j++)
         for (int i = 0; i <= SCAN; i++) {
             const double x = semi * (2.0 * i / SCAN - 1);
@@ -53,9 +61,13 @@ static void check_box(int ghost, double theta_deg, double nm, bool near,
             if (!ray_passes(&path, x, y, direction, &ray))
                 continue;
             ++*n_seen;
-            if (!found || x < box.x0_mm || x > box.x1_mm || y > box.y1_mm)
+            if (!found || !is_in_box(&box, x, y))
                 fail_msg("ghost %d at %g degrees: (%g, %g) passes outside "
                          "the box",
+                         ghost, theta_deg, x, y);
+            if (near && !(can_extend && is_in_box(&extended, x, y)))
+                fail_msg("ghost %d at %g degrees: (%g, %g) passes outside "
+                         "the extended box",
                          ghost, theta_deg, x, y);
             assert_true(ray.energy <= 1.5 * box.energy);
             assert_true(ray.sensor_x_mm >= box.sensor_mm[0] - 1e-6 ||
