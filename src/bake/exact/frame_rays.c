@@ -38,6 +38,10 @@ enum { MAX_BUNDLES = 1 << 20 };
  */
 enum { PARTS = 100, LEAST_PART = 4 };
 
+/* Edges of a bundle, and their references in tiles, that most frames have room
+ * for at once. */
+#define EDGES 128.0
+
 /* Shares of looking and of tracing in the work of a frame, about. */
 #define LOOK_SHARE  0.4
 #define TRACE_SHARE 0.7
@@ -1221,6 +1225,7 @@ static enum glint_status draw(struct glint_frame *frame,
                               double scale, const struct glint_image *image,
                               struct glint_flare_stats *stats, double times[5])
 {
+    struct glint_flare_stats expected = {0};
     enum glint_status status;
     struct traced *t;
 
@@ -1234,11 +1239,14 @@ static enum glint_status draw(struct glint_frame *frame,
     times[1] = now(frame);
     run(frame, t->n_fields, trace_job, LOOK_SHARE, TRACE_SHARE);
     times[2] = times[3] = now(frame);
+    expected.need_primitives = (int)fmin(EDGES * t->n_bundles, INT_MAX);
+    expected.need_refs = expected.need_primitives;
     *stats = (struct glint_flare_stats){0};
     frame->cfg.max_bundles = larger(t->n_bundles, 1);
     frame->cfg.max_vertices = 0;
     frame->cfg.max_primitives = larger(frame->cfg.max_primitives, 1 << 13);
     frame->cfg.max_refs = larger(frame->cfg.max_refs, 1 << 14);
+    widen(frame, &expected, false);
     status = begin_flare(frame, scale);
     if (status == GLINT_OK)
         status = draw_rows(frame, scale, image, stats);
