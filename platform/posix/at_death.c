@@ -58,14 +58,22 @@ static void run_at_exit(void)
     report_library();
 }
 
+/* Returns whether libraries raise SIGNAL_NUMBER on files that they do not
+ * expect. */
+static bool is_fault(int signal_number)
+{
+    return signal_number == SIGABRT || signal_number == SIGSEGV ||
+           signal_number == SIGBUS;
+}
+
 /* Signal handler. Runs all functions, then lets the signal kill the process, or
- * exits with 1 after an abort in a library. SA_RESETHAND has restored the
+ * exits with 1 after a fault in a library. SA_RESETHAND has restored the
  * default action, so the second signal, delivered on return, kills the process
  * with the status that its parent expects. */
 static void handle_signal(int signal_number)
 {
     run_all_handlers();
-    if (signal_number == SIGABRT && report_library())
+    if (is_fault(signal_number) && report_library())
         _exit(EXIT_FAILURE);
     raise(signal_number);
 }

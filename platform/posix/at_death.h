@@ -31,10 +31,10 @@ typedef void glint_at_death_fn(void);
 bool glint_at_death(glint_at_death_fn *fn);
 
 /* Sets REPORT, which is called when a library may have ended the process: by
- * exit(), as libjpeg does, or by an abort (SIGABRT, an assertion,
- * std::terminate), which then becomes exit code 1. REPORT must be
- * async-signal-safe; if the library is running, it prints a message and returns
- * 1, else it returns 0. A later REPORT replaces it. */
+ * exit(), as libjpeg does, by an abort (SIGABRT, an assertion, std::terminate)
+ * or by an access to invalid memory, which then becomes exit code 1. REPORT
+ * must be async-signal-safe; if the library is running, it prints a message and
+ * returns 1, else it returns 0. A later REPORT replaces it. */
 void glint_at_death_in_library(int (*report)(void));
 
 /* Runs all functions, then ends the process by the default action of
