@@ -184,7 +184,8 @@ build/glint-oiio.so: $(OIIO) $(wildcard platform/oiio/*.h) $(addprefix platform/
 	$(Q)$(CXX) -std=c++17 -Wall -Wextra $(PLUGGED) -Iinclude -Iplatform \
 	        $(OIIO) -o $@ $$(pkg-config --cflags --libs OpenImageIO) \
 	        $$(pkg-config --exists libwebp && pkg-config --cflags --libs libwebp) \
-	        $$(pkg-config --exists libheif && pkg-config --cflags --libs libheif)
+	        $$(pkg-config --exists libheif && pkg-config --cflags --libs libheif) \
+	        $$(pkg-config --exists lcms2 libjpeg && pkg-config --cflags --libs lcms2 libjpeg)
 
 # The mesh plug-in: PLY, STL, glTF ... through Open Asset Import.
 assimp: build/glint-assimp.so

@@ -23,6 +23,7 @@
 #include "oiio/blocks.h"
 #include "oiio/guard.h"
 #include "oiio/heif.h"
+#include "oiio/icc.h"
 
 #if __has_include(<webp/encode.h>)
 #include <webp/decode.h>
@@ -67,6 +68,11 @@ struct glint_oiio_file {
     int bits;
     bool is_avif;
     std::string lost;
+    /* If the profile of parts[0] is a table and can encode: its pixels as RGB,
+     * to which light is added. */
+    std::unique_ptr<glint::icc_link> link;
+    glint::kept_part rgb;
+    bool drops_icc; /* pixels of parts[0] are not in the file's profile */
 };
 
 namespace
@@ -223,15 +229,34 @@ void choose_types(ImageSpec &spec)
         spec.set_format(TypeDesc::FLOAT);
 }
 
-void read_part(ImageInput &in, int index, const bytes &whole, kept_part &part)
+/* Returns SPEC, of C M Y K or of the RGB that OpenImageIO makes of these, as
+ * that of C M Y K. */
+ImageSpec inks_of(ImageSpec spec)
+{
+    spec.nchannels = 4;
+    spec.channelnames = {"C", "M", "Y", "K"};
+    spec.alpha_channel = -1; /* OpenImageIO 2.4: K of a TIFF */
+    return spec;
+}
+
+void read_part(ImageInput &in, int index, const struct glint_oiio_file &file,
+               kept_part &part)
 {
     part.spec = in.spec(index);
     if (part.spec.width < 1 || part.spec.nchannels < 1)
         throw failure{GLINT_E_FORMAT, in.geterror()};
     check_spec(part.spec);
     choose_types(part.spec);
-    if (in.format_name() == std::string("webp") && webp_takes(whole)) {
-        part.pixels = webp_decode(whole, part.spec.nchannels);
+    if (file.link && index == 0) {
+        part.spec = inks_of(part.spec);
+        if (file.type == "jpeg") {
+            part.pixels = glint::inks_of_jpeg(file.whole, part.spec.width,
+                                              part.spec.height);
+            return;
+        }
+    }
+    if (file.type == "webp" && webp_takes(file.whole)) {
+        part.pixels = webp_decode(file.whole, part.spec.nchannels);
         part.spec.attribute("oiio:UnassociatedAlpha", 1);
         return;
     }
@@ -301,6 +326,103 @@ bool take_heif(struct glint_oiio_file &file, const char *path)
     return true;
 }
 
+/* Returns the ICC profile of a part of FILE; empty if it has none. */
+bytes icc_of(const struct glint_oiio_file &file, const ImageSpec &spec)
+{
+    const OIIO::ParamValue *const icc = spec.find_attribute("ICCProfile");
+
+    if (icc && icc->type().basetype == TypeDesc::UINT8) {
+        const auto *const at = static_cast<const unsigned char *>(icc->data());
+
+        return bytes(at, at + icc->type().size());
+    }
+    return file.type == "webp" ? file.meta.icc : bytes();
+}
+
+/* Returns whether OpenImageIO has made RGB of C M Y K. */
+bool is_from_inks(const struct glint_oiio_file &file, const ImageSpec &spec)
+{
+    return spec.nchannels == 3 &&
+           (file.type == "jpeg"
+                ? glint::is_of_inks(file.whole)
+                : spec.get_string_attribute("tiff:ColorSpace") == "CMYK");
+}
+
+/* Opens the link of PART, whose pixels are those of its profile. */
+void open_link(struct glint_oiio_file &file, const kept_part &part)
+{
+    const ImageSpec &spec = part.spec;
+    const bool alpha = spec.alpha_channel >= 0;
+    const glint::code_layout layout = {size_t(spec.nchannels - alpha), alpha,
+                                       spec.format.size()};
+
+    if (glint::is_mixed(spec) || file.meta.cicp[1] ||
+        (spec.format != TypeDesc::UINT8 && spec.format != TypeDesc::UINT16) ||
+        (alpha && (spec.alpha_channel != spec.nchannels - 1 ||
+                   !spec.get_int_attribute("oiio:UnassociatedAlpha", 0))))
+        return;
+    /* OpenImageIO writes no JPEG of inks. */
+    file.link =
+        glint::open_icc_link(icc_of(file, spec), layout,
+                             file.type != "jpeg" || layout.n_colours != 4);
+}
+
+/* Has the picture IN of PATH read as C M Y K if its profile is for that. */
+void choose_inks(struct glint_oiio_file &file, std::unique_ptr<ImageInput> &in,
+                 const char *path, ImageSpec &config)
+{
+    /* OpenImageIO 2.4 has RGB of inks alone if a TIFF is compressed as JPEG. */
+    if (!is_from_inks(file, in->spec()) ||
+        in->spec().get_string_attribute("compression") == "jpeg")
+        return;
+    open_link(file, {inks_of(in->spec()), {}});
+    if (!file.link || file.type == "jpeg")
+        return;
+    config.attribute("oiio:RawColor", 1);
+    std::unique_ptr<ImageInput> raw = open_picture(path, &config);
+    if (raw->spec().nchannels == 4)
+        in = std::move(raw);
+    else
+        file.link.reset();
+}
+
+/* Adds the RGB of the link, if FILE has one. If the link cannot encode, this
+ * RGB takes the place of the pixels. */
+void link_colours(struct glint_oiio_file &file)
+{
+    kept_part &part = file.parts.at(0);
+    kept_part rgb;
+
+    if (!file.link && !is_from_inks(file, part.spec))
+        open_link(file, part);
+    if (!file.link)
+        return;
+    const bool alpha = file.link->rgb.has_alpha;
+    const bool is_ink = file.link->codes.n_colours == 4;
+    rgb.pixels = file.link->decode(part.pixels);
+    rgb.spec = part.spec;
+    rgb.spec.nchannels = 3 + alpha;
+    rgb.spec.default_channel_names();
+    rgb.spec.set_format(types[file.link->rgb.sample_bytes - 1]);
+    for (const char *name : {"ICCProfile", "tiff:ColorSpace", "oiio:ColorSpace",
+                             "tiff:PhotometricInterpretation"})
+        rgb.spec.erase_attribute(name);
+    if (file.link->can_encode) {
+        file.rgb = std::move(rgb);
+        if (is_ink && part.spec.format != TypeDesc::UINT8) /* OpenImageIO 2.4 */
+            file.lost = "its CMYK is written in 8 bits";
+        return;
+    }
+    file.lost += std::string(file.lost.empty() ? "" : "; ") +
+                 (is_ink ? "its CMYK becomes sRGB"
+                         : "its profile has no table for writing: it becomes "
+                           "sRGB");
+    part = std::move(rgb);
+    file.meta.icc.clear();
+    file.drops_icc = true;
+    file.link.reset();
+}
+
 void read_file(struct glint_oiio_file &file, const char *path)
 {
     ImageSpec as_stored;
@@ -308,16 +430,17 @@ void read_file(struct glint_oiio_file &file, const char *path)
     if (take_heif(file, path))
         return;
     as_stored.attribute("oiio:UnassociatedAlpha", 1);
-    const std::unique_ptr<ImageInput> in = open_picture(path, &as_stored);
+    std::unique_ptr<ImageInput> in = open_picture(path, &as_stored);
     check_spec(in->spec());
     file.type = in->format_name();
     if (is_carried(file.type))
         file.whole = read_whole(path);
     check_whole(file);
     file.meta = glint::blocks_of(file.type, file.whole);
+    choose_inks(file, in, path, as_stored);
     for (int i = 0; i < 64 && in->seek_subimage(i, 0); i++) {
         file.parts.emplace_back();
-        read_part(*in, i, file.whole, file.parts.back());
+        read_part(*in, i, file, file.parts.back());
         if (in->format_name() != std::string("openexr") &&
             in->format_name() != std::string("tiff"))
             break;
@@ -445,18 +568,18 @@ void fill_png_facts(struct glint_oiio_facts &facts, const bytes &whole)
         facts.primaries[(i / 2 + 3) % 4][i % 2] = big32(primaries, 4 * i);
 }
 
-void say(struct glint_oiio_facts &facts, const char *text)
+/* Appends TEXT to NOTES, of facts or options. */
+void say(char (&notes)[160], const char *text)
 {
-    const size_t used = std::strlen(facts.note);
+    const size_t used = std::strlen(notes);
 
-    std::snprintf(facts.note + used, sizeof facts.note - used, "%s%s",
-                  used ? "; " : "", text);
+    std::snprintf(notes + used, sizeof notes - used, "%s%s", used ? "; " : "",
+                  text);
 }
 
 void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
                 const ImageSpec &spec)
 {
-    const OIIO::ParamValue *const icc = spec.find_attribute("ICCProfile");
     const OIIO::ParamValue *const xy = spec.find_attribute("chromaticities");
 
     facts = {};
@@ -467,15 +590,8 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
     facts.metadata = file.metadata;
     facts.cicp[0] = file.meta.cicp[0];
     facts.cicp[1] = file.meta.cicp[1];
-    if (icc && icc->type().basetype == TypeDesc::UINT8) {
-        const auto *const at = static_cast<const unsigned char *>(icc->data());
-
-        file.icc.assign(at, at + icc->type().size());
-        facts.icc = file.icc.data();
-        facts.icc_bytes = file.icc.size();
-    }
-    if (!facts.icc && file.type == "webp" && !file.meta.icc.empty()) {
-        file.icc = file.meta.icc;
+    file.icc = icc_of(file, spec);
+    if (!file.icc.empty()) {
         facts.icc = file.icc.data();
         facts.icc_bytes = file.icc.size();
     }
@@ -494,18 +610,34 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
         const std::string more = glint::more_of_jpeg(file.whole);
 
         if (!more.empty())
-            say(facts, more.c_str());
-        if (glint::is_of_inks(file.whole))
-            say(facts, "its CMYK becomes RGB");
+            say(facts.note, more.c_str());
+    }
+    if (is_from_inks(file, spec) && !file.drops_icc) {
+        say(facts.note, file.type == "jpeg"
+                            ? "its CMYK becomes RGB"
+                            : "its CMYK is read as RGB: all inks change");
+        file.drops_icc = true;
     }
     if (!file.lost.empty())
-        say(facts, file.lost.c_str());
+        say(facts.note, file.lost.c_str());
     if (spec.get_int_attribute("oiio:Movie", 0) ||
         spec.get_int_attribute("gif:FrameCount", 0) > 1 ||
         (file.type == "png" &&
          !glint::chunk_of_png(file.whole, "acTL").empty()) ||
         (file.type == "webp" && glint::is_animated_webp(file.whole)))
-        say(facts, "only the first of its frames is kept");
+        say(facts.note, "only the first of its frames is kept");
+}
+
+/* States in FACTS the colours of the RGB that a link of FILE has made. */
+void state_colours(struct glint_oiio_facts &facts,
+                   const struct glint_oiio_file &file)
+{
+    facts.icc = nullptr;
+    facts.colour_space[0] = 0;
+    facts.gamma = file.link ? glint::wide_gamma : 0;
+    facts.has_primaries = file.link != nullptr;
+    for (int i = 0; i < 8; i++)
+        facts.primaries[i / 2][i % 2] = glint::wide_primaries[i / 2][i % 2];
 }
 
 } // namespace
@@ -553,7 +685,10 @@ enum glint_status glint::open_file(struct glint_oiio_file **file,
         size_t at = 0;
 
         read_file(*made, path);
-        for (size_t i = 0; i < made->parts.size(); i++) {
+        link_colours(*made);
+        /* Of several parts only the first has a link. */
+        const bool linked = made->link || made->drops_icc;
+        for (size_t i = 0; i < (linked ? 1 : made->parts.size()); i++) {
             const choice here = choose_channels(made->parts[i].spec);
 
             if (here.rank > best.rank) {
@@ -561,8 +696,13 @@ enum glint_status glint::open_file(struct glint_oiio_file **file,
                 at = i;
             }
         }
-        fill_samples(*samples, made->parts.at(at), best);
-        fill_facts(*facts, *made, made->parts[at].spec);
+        fill_facts(*facts, *made, made->parts.at(at).spec);
+        if (linked)
+            state_colours(*facts, *made);
+        if (made->link)
+            fill_samples(*samples, made->rgb, choose_channels(made->rgb.spec));
+        else
+            fill_samples(*samples, made->parts[at], best);
         *file = made.release();
     });
 }
@@ -666,6 +806,7 @@ void clear_coding(ImageSpec &spec)
                              "oiio:BitsPerSample",
                              "tiff:Compression",
                              "tiff:PhotometricInterpretation",
+                             "tiff:ColorSpace",
                              "tiff:PlanarConfiguration",
                              "planarconfig",
                              "tiff:RowsPerStrip",
@@ -968,11 +1109,18 @@ enum glint_status glint::encode_file(void **data, size_t *n_bytes,
         const bool same = file && is_same_type(file, path);
         std::vector<kept_part> made;
 
+        if (file && file->drops_icc)
+            options->drop_colours = 1;
         if (pixels)
             made.push_back(part_of(*pixels, file));
+        else if (file->link)
+            file->link->encode(file->rgb.pixels, file->parts[0].pixels);
         const bytes encoded = encode_parts(path, pixels ? made : file->parts,
                                            file, same, *options);
 
+        if (pixels && file && file->link && !same &&
+            pixels->colour[0].sample < GLINT_SAMPLE_HALF)
+            say(options->said, "the colours of its profile become sRGB");
         give(data, n_bytes, encoded);
     });
 }

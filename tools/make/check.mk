@@ -98,7 +98,7 @@ check-all:
 # What other programs find in files that overlay has written.
 check-files:
 	@tools/make/deps "picture files as other programs see them" g++ pkg-config libopenimageio-dev \
-	        libwebp-dev libheif-dev libheif-examples openimageio-tools libimage-exiftool-perl imagemagick ffmpeg
+	        libwebp-dev libheif-dev libheif-examples liblcms2-dev libjpeg62-turbo-dev openimageio-tools libimage-exiftool-perl imagemagick ffmpeg
 	@$(MAKE) --no-print-directory all oiio
 	@GLINT=build/glint GLINT_OIIO=build/glint-oiio.so tests/cli/files
 	@GLINT=build/glint tests/cli/video
