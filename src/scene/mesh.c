@@ -350,6 +350,8 @@ static int begin_walk(struct inside *in, struct walk *w)
                          : (((int64_t)w->cell[k] + 1) << m->cell_log2) - from;
     }
     in->start += t;
+    /* Triangles in the side of the grid at which the ray enters are met. */
+    in->sheared.least = -q_smaller(t, SLACK);
     for (int k = 0; k < 3; k++)
         in->ray.at[k] = in->sheared.at[k] = at[k];
     return 1;

@@ -124,6 +124,7 @@ void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to)
     to->along_q30 = is_back ? -(int32_t)one_over_q30 : (int32_t)one_over_q30;
     to->x_q29 = q_mul(d_q30[to->axis[0]], to->along_q30, 31);
     to->y_q29 = q_mul(d_q30[to->axis[1]], to->along_q30, 31);
+    to->least = 0;
 }
 
 /* A triangle in the space of a sheared ray: edge functions and depths. */
@@ -204,7 +205,7 @@ int glint_ray_triangle(const struct glint_sheared *ray,
         return 0;
     glint_weigh(s.edge, s.sum, spot->part_q30);
     set_spot(ray, &s, spot);
-    return spot->t > 0;
+    return spot->t > ray->least;
 }
 
 int glint_ray_hold(const struct glint_sheared *ray,

@@ -63,13 +63,15 @@ struct glint_sheared {
     int32_t x_q29, y_q29; /* direction divided by its longest element */
     int32_t along_q30;    /* 1 / the longest element; magnitude 2^30 ..
                              2^30.8 */
+    int32_t least;        /* intersections are above this distance */
 };
 
 struct glint_spot_on {
-    int32_t t;           /* distance along the ray, above 0 */
+    int32_t t;           /* distance along the ray */
     int32_t part_q30[3]; /* weights of the vertices, which sum to 1 */
 };
 
+/* Prepares RAY, with intersections above 0. */
 void glint_shear(const struct glint_scene_ray *ray, struct glint_sheared *to);
 
 /* Finds the intersection of RAY and the triangle, edges included; returns 0

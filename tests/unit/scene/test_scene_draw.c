@@ -494,6 +494,46 @@ TEST(shadows)
     assert_true(dark > 500 && partly > 200 && other <= 3);
 }
 
+/* A square mesh across each axis, which lies in a side of its grid, keeps the
+ * light of a lamp from a point behind it, on either side. */
+TEST(flat_shadows)
+{
+    static const uint32_t t[2][3] = {{0, 1, 2}, {0, 2, 3}};
+
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = -1; side <= 1; side += 2) {
+            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+            const struct glint_scene_config cfg = make_config();
+            struct glint_met_surface surface = {.object = 0};
+            int32_t at[4][3], lamp[3] = {0, 0, 0};
+            struct glint_scene_stats stats;
+            struct glint_scene *s;
+
+            memset(at, 0, sizeof at);
+            for (int i = 0; i < 4; i++) {
+                at[i][u] = i == 1 || i == 2 ? UNIT : -UNIT;
+                at[i][v] = i >= 2 ? UNIT : -UNIT;
+            }
+            scene_begin(&file);
+            file.header.shadow = 1;
+            scene_material(&file, "m");
+            scene_sphere(&file, "far", 0, 90 * UNIT, 0, 0, UNIT);
+            scene_object(&file, "flat", 0,
+                         scene_mesh(&file, (const int32_t(*)[3])at, NULL, NULL,
+                                    4, t, 2));
+            lamp[axis] = 3 * side * UNIT;
+            scene_lamp(&file, lamp, UNIT);
+            s = scene_start(&file, &cfg, &stats);
+            surface.place[axis] = -side * UNIT;
+            surface.place[u] = UNIT / 3;
+            surface.face_q30[axis] = side < 0 ? -ONE_Q30 : ONE_Q30;
+            assert_int_equal(glint_scene_reaches(s, &surface, &s->lit[0]), 0);
+            surface.place[u] = 4 * UNIT;
+            assert_int_equal(glint_scene_reaches(s, &surface, &s->lit[0]),
+                             32768);
+        }
+}
+
 /* Checks two shortcuts: shadow catchers are shaded only where shadows may
  * fall, and small balls use a single depth. Images equal those that shade
  * all pixels with exact depths. */
