@@ -40,9 +40,10 @@ enum {
     GLINT_DESCRIPTION_MAX_STONES = 16,
     GLINT_DESCRIPTION_MAX_OBJECTS = 1024,
     GLINT_DESCRIPTION_MAX_TRIANGLES = 1 << 20, /* of all objects together */
-    GLINT_DESCRIPTION_MAX_SIDE = 4096, /* max side of a texture, texels */
-    GLINT_DESCRIPTION_MAX_RATIO = 10,  /* max ratio of the alphas of
-                                          brushed metal */
+    GLINT_DESCRIPTION_MAX_SIDE = 4096,      /* max side of a texture, texels */
+    GLINT_DESCRIPTION_MAX_TEXELS = 1 << 26, /* of all textures together */
+    GLINT_DESCRIPTION_MAX_RATIO = 10,       /* max ratio of the alphas of
+                                               brushed metal */
     GLINT_DESCRIPTION_MAX_MESH_BYTES = 1 << 27
 };
 

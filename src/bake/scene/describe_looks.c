@@ -423,6 +423,16 @@ bool glint_describe_light(struct glint_describer *d)
     return good;
 }
 
+/* Returns the number of texels of all textures. */
+static int64_t count_texels(const struct glint_description *s)
+{
+    int64_t n = 0;
+
+    for (int i = 0; i < s->n_textures; i++)
+        n += (int64_t)s->texture[i].image.width * s->texture[i].image.height;
+    return n;
+}
+
 bool glint_describe_texture(struct glint_describer *d)
 {
     struct glint_description *s = d->scene;
@@ -456,6 +466,10 @@ bool glint_describe_texture(struct glint_describer *d)
     if (d->status != GLINT_OK)
         return glint_describe_refuse(d, word.place, d->status);
     d->status = GLINT_E_LENS;
+    if (count_texels(s) > GLINT_DESCRIPTION_MAX_TEXELS)
+        return glint_text_fail(&d->text, word.place,
+                               "more than %d texels in all textures",
+                               GLINT_DESCRIPTION_MAX_TEXELS);
     return true;
 }
 

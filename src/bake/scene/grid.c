@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Limits of a grid: max cells per triangle; max list entries per triangle,
- * and in total if that is more. Cells are enlarged until both hold, so that
- * N triangles cost O(N) even if they coincide. */
+/* Limits of a grid: max cells per triangle; max list entries per triangle, and
+ * if that is more, of a mesh's share of those of all meshes. Cells are enlarged
+ * until both hold, so that N triangles cost O(N) even if they coincide. */
 #define CELLS_EACH 2
 #define REFS_EACH  64
 #define FEW_REFS   (1 << 22)
@@ -273,9 +273,10 @@ static uint64_t choose_cells(const struct mesher *m,
                              uint64_t *refs)
 {
     const uint64_t most = CELLS_EACH * (uint64_t)mesh->n_triangles + 1;
+    const uint64_t few = FEW_REFS / (uint64_t)m->scene->n_objects;
     uint64_t most_refs = REFS_EACH * (uint64_t)mesh->n_triangles;
 
-    most_refs = most_refs < FEW_REFS ? FEW_REFS : most_refs;
+    most_refs = most_refs < few ? few : most_refs;
     for (mesh->cell_log2 = 4;; mesh->cell_log2++) {
         const uint64_t n = set_cells(mesh, low, high);
 

@@ -20,10 +20,16 @@ static uint8_t encode_srgb(double light)
     return (uint8_t)lrint(255 * fmin(fmax(x, 0.0), 1.0));
 }
 
+/* Returns the share of texel K in the mean of the texels FROM .. TO, RATIO of
+ * them. */
+static double compute_share(int k, double from, double to, double ratio)
+{
+    return (fmin(k + 1, to) - fmax(k, from)) / ratio;
+}
+
 /* Sets each of N texels of DST to the mean of the texels of SRC that it
- * covers. STEP and SRC_STEP are the distances between texels, in doubles. */
-static void resize_row(double *dst, int n, ptrdiff_t step, const double *src,
-                       int src_n, ptrdiff_t src_step)
+ * covers. */
+static void resize_row(double *dst, int n, const double *src, int src_n)
 {
     const double ratio = (double)src_n / n;
 
@@ -32,13 +38,61 @@ static void resize_row(double *dst, int n, ptrdiff_t step, const double *src,
         double sum[3] = {0, 0, 0};
 
         for (int k = (int)from; k < src_n && k < to; k++) {
-            const double share = (fmin(k + 1, to) - fmax(k, from)) / ratio;
+            const double share = compute_share(k, from, to, ratio);
 
             for (int c = 0; c < 3; c++)
-                sum[c] += share * src[k * src_step + c];
+                sum[c] += share * src[3 * k + c];
         }
         for (int c = 0; c < 3; c++)
-            dst[i * step + c] = sum[c];
+            dst[3 * i + c] = sum[c];
+    }
+}
+
+/* Buffers of a resize: rows of three doubles a texel, as the whole picture
+ * would take 24 bytes a texel. */
+struct rows {
+    double table[256]; /* light of each code */
+    double *light;     /* a row of the source */
+    double *across;    /* row HELD of the source at the width of the result */
+    double *sum;       /* a row of the result */
+    int held;          /* -1: none */
+};
+
+/* Sets rows->across to row Y of the source, of SRC_WIDTH texels. */
+static void hold_row(struct rows *rows, int y, int width, const uint8_t *src,
+                     int src_width)
+{
+    const size_t n = 3 * (size_t)src_width;
+
+    if (rows->held == y)
+        return;
+    for (size_t i = 0; i < n; i++)
+        rows->light[i] = rows->table[src[(size_t)y * n + i]];
+    resize_row(rows->across, width, rows->light, src_width);
+    rows->held = y;
+}
+
+/* As glint_texels_resize(), in the buffers ROWS. */
+static void resize(struct rows *rows, uint8_t *dst, int width, int height,
+                   const uint8_t *src, int src_width, int src_height)
+{
+    const double ratio = (double)src_height / height;
+    const size_t n = 3 * (size_t)width;
+
+    for (int y = 0; y < height; y++) {
+        const double from = y * ratio, to = (y + 1) * ratio;
+
+        for (size_t i = 0; i < n; i++)
+            rows->sum[i] = 0;
+        for (int k = (int)from; k < src_height && k < to; k++) {
+            const double share = compute_share(k, from, to, ratio);
+
+            hold_row(rows, k, width, src, src_width);
+            for (size_t i = 0; i < n; i++)
+                rows->sum[i] += share * rows->across[i];
+        }
+        for (size_t i = 0; i < n; i++)
+            dst[(size_t)y * n + i] = encode_srgb(rows->sum[i]);
     }
 }
 
@@ -46,30 +100,20 @@ enum glint_status glint_texels_resize(uint8_t *dst, int width, int height,
                                       const uint8_t *src, int src_width,
                                       int src_height)
 {
-    const size_t n_src = 3 * (size_t)src_width * (size_t)src_height;
-    const size_t n_half = 3 * (size_t)width * (size_t)src_height;
-    const size_t n_dst = 3 * (size_t)width * (size_t)height;
-    double *light = malloc(n_src * sizeof *light);
-    double *half = malloc(n_half * sizeof *half);
-    double *out = malloc(n_dst * sizeof *out);
-    const bool good = light && half && out;
-    double table[256];
+    struct rows rows = {.held = -1};
+    bool good;
 
+    rows.light = malloc(3 * (size_t)src_width * sizeof *rows.light);
+    rows.across = malloc(3 * (size_t)width * sizeof *rows.across);
+    rows.sum = malloc(3 * (size_t)width * sizeof *rows.sum);
+    good = rows.light && rows.across && rows.sum;
     for (int code = 0; code < 256; code++)
-        table[code] = decode_srgb((uint8_t)code);
-    for (size_t i = 0; good && i < n_src; i++)
-        light[i] = table[src[i]];
-    for (ptrdiff_t y = 0; good && y < src_height; y++)
-        resize_row(half + 3 * y * width, width, 3, light + 3 * y * src_width,
-                   src_width, 3);
-    for (ptrdiff_t x = 0; good && x < width; x++)
-        resize_row(out + 3 * x, height, 3 * (ptrdiff_t)width, half + 3 * x,
-                   src_height, 3 * (ptrdiff_t)width);
-    for (size_t i = 0; good && i < n_dst; i++)
-        dst[i] = encode_srgb(out[i]);
-    free(light);
-    free(half);
-    free(out);
+        rows.table[code] = decode_srgb((uint8_t)code);
+    if (good)
+        resize(&rows, dst, width, height, src, src_width, src_height);
+    free(rows.light);
+    free(rows.across);
+    free(rows.sum);
     return good ? GLINT_OK : GLINT_E_MEMORY;
 }
 

@@ -60,7 +60,8 @@ static enum glint_status read_file(void *ctx, const char *name, uint8_t **data,
     return GLINT_OK;
 }
 
-/* Returns a picture of 6 x 2 pixels: one third is black, the rest white. */
+/* Returns a picture of 6 x 2 pixels: one third is black, the rest white; as
+ * big.ppm the largest texture, black. */
 static enum glint_status read_picture(void *ctx, const char *name,
                                       struct glint_image *image,
                                       struct glint_error *error)
@@ -69,8 +70,17 @@ static enum glint_status read_picture(void *ctx, const char *name,
 
     (void)ctx;
     (void)error;
-    assert_string_equal(name, "wood.ppm");
     assert_non_null(mem);
+    if (strcmp(name, "big.ppm") == 0) {
+        const int side = GLINT_DESCRIPTION_MAX_SIDE;
+
+        free(mem);
+        mem = calloc(3 * (size_t)side, (size_t)side);
+        assert_non_null(mem);
+        *image = glint_image_over(mem, GLINT_RGB24, side, side);
+        return GLINT_OK;
+    }
+    assert_string_equal(name, "wood.ppm");
     for (int i = 0; i < 36; i++)
         mem[i] = i % 18 < 6 ? 0 : 255;
     *image = glint_image_over(mem, GLINT_RGB24, 6, 2);
@@ -247,6 +257,10 @@ static const struct mistake {
     {5, "light lamp at 0 3 2e6 colour 8 7 6",
      "5:19: at must be -1000000 .. 1000000, not 2e+06"},
     {6, "texture wood", "6:13: the texture's file is missing"},
+    {6,
+     "texture a big.ppm\ntexture b big.ppm\ntexture c big.ppm\n"
+     "texture d big.ppm\ntexture wood wood.ppm",
+     "10:14: more than 67108864 texels in all textures"},
     {7, "material red phong .1 .8 .2",
      "7:14: the weights of phong sum to 1.1; above 1 the surface would reflect "
      "more light than it receives"},
