@@ -392,6 +392,7 @@ static int test_cell(const struct inside *in, const struct walk *w,
     const uint32_t *ref = glint_mesh_table(in->scene, m->ref_at);
     int any = 0;
 
+    glint_scene_count(in->scene, 1 + (int64_t)start[cell + 1] - start[cell]);
     for (uint32_t i = start[cell]; i < start[cell + 1]; i++) {
         const int32_t *vertex[3];
         struct glint_spot_on spot;

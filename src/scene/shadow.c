@@ -511,6 +511,7 @@ is_blocked(const struct glint_scene *s, const struct glint_shadow *shadow,
     const int32_t height = below->at[2];
     const int is_sorted = end - ref <= SORTED;
 
+    glint_scene_count(s, end - ref);
     for (; ref < end; ref++) {
         const struct glint_shadow_thing *thing = &shadow->thing[*ref];
         const struct glint_placed *p;

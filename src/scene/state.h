@@ -259,7 +259,16 @@ struct glint_scene {
     int cover_across, cover_down;
     uint16_t *cover; /* [cover_down][cover_across]: sums of cover, _q8, over
                         squares of 8 x 8 pixels */
+    /* Counts tests of rays, see glint_scene_count_tests(); NULL: not counted */
+    int64_t *tests;
 };
+
+/* Counts N tests of a ray with an object, a cell of a grid or a triangle. */
+static inline void glint_scene_count(const struct glint_scene *scene, int64_t n)
+{
+    if (scene->tests)
+        *scene->tests += n;
+}
 
 static inline uint32_t glint_id(uint32_t object, uint32_t triangle)
 {

@@ -62,6 +62,7 @@ int glint_scene_meet(const struct glint_scene *scene,
 {
     int any = 0;
 
+    glint_scene_count(scene, scene->model.header->n_objects);
     met->t = GLINT_FAR;
     for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
         struct glint_met next = {.t = met->t};
@@ -81,14 +82,19 @@ int glint_scene_blocks(const struct glint_scene *scene,
                        const struct glint_scene_ray *ray, uint32_t object,
                        uint32_t triangle, int32_t limit)
 {
-    for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
+    const uint32_t n = scene->model.header->n_objects;
+
+    for (uint32_t i = 0; i < n; i++) {
         struct glint_met met = {.t = limit};
 
         if (may_be_met(scene, i, object) &&
             intersect_object(scene, i, ray,
-                             i == object ? triangle : GLINT_NOTHING, 1, &met))
+                             i == object ? triangle : GLINT_NOTHING, 1, &met)) {
+            glint_scene_count(scene, i + 1);
             return 1;
+        }
     }
+    glint_scene_count(scene, n);
     return 0;
 }
 

@@ -275,7 +275,7 @@ static int print_medium(const struct tool *tool, const char *path)
     struct glint_error error = {""};
     struct stone_file file;
     const enum glint_status status =
-        stone_file_read(tool, path, NULL, NULL, false, &file, &error);
+        stone_file_read(tool, path, NULL, NULL, false, NULL, &file, &error);
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);

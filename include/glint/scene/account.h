@@ -57,6 +57,13 @@ void glint_scene_account(struct glint_scene *scene,
                          struct glint_scene_part *objects,
                          struct glint_scene_part *all, int16_t *seen);
 
+/* Returns about how many tests of reflected, transmitted and shadow rays the
+ * frame that was begun last takes, each with an object, a cell of a mesh's grid
+ * or a triangle: those of about 2000 pixels, times all pixels. Ends early, with
+ * a number above MOST, if it is that many. No result depends on the processor
+ * or the number of threads. */
+int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most);
+
 /* Overlays of a recorded motion: number of shells, lines or box edges in the
  * picture, and number of pixels that they may touch. */
 struct glint_scene_layered {

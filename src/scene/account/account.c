@@ -4,6 +4,7 @@
  * for drawing, but surfaces are not shaded. */
 #include "glint/scene/account.h"
 
+#include "glint/scene/translucent.h"
 #include "scene/mesh.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
@@ -34,9 +35,12 @@ static void count_shadows(const struct glint_scene *s,
 
         if (glint_scene_light_at(s, lit, surface->place, toward_q30,
                                  level_q15) &&
-            v3_dot(toward_q30, surface->normal_q30) > 0)
+            v3_dot(toward_q30, surface->normal_q30) > 0) {
             part->count[GLINT_SCENE_SHADOWS] +=
                 lit->light->radius ? s->cfg.shadow_points : 1;
+            if (s->tests)
+                glint_scene_reaches(s, surface, lit);
+        }
     }
 }
 
@@ -307,6 +311,80 @@ void glint_scene_account(struct glint_scene *scene,
             if (k != GLINT_SCENE_COVERING)
                 all->count[k] += objects[i].count[k];
     }
+}
+
+/* ------------------------------------------------------------------- tests */
+
+/* Finds the surface at the middle of pixel (X, Y), without counting; returns 0
+ * if there is none. */
+static int find_surface(const struct glint_scene *s, int x, int y,
+                        struct glint_scene_ray *ray,
+                        struct glint_met_surface *surface)
+{
+    struct glint_met met;
+    int32_t seen_q30[3];
+
+    glint_view_ray(&s->view, glint_place(s, x, 0), glint_place(s, y, 1), ray,
+                   seen_q30);
+    if (glint_scene_meet(s, ray, GLINT_NOTHING, GLINT_NOTHING, &met))
+        return glint_scene_surface(s, ray, &met, surface);
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++)
+        if (s->placed[i].is_shown && s->placed[i].is_catcher &&
+            glint_scene_meet_id(s, ray, seen_q30, glint_id(i, 0), &met))
+            return glint_scene_surface(s, ray, &met, surface);
+    return 0;
+}
+
+/* Adds the tests of the pixel (X, Y) to TESTS; returns whether it sees a
+ * surface. */
+static int count_tests(struct glint_scene *s, int x, int y, int64_t *tests)
+{
+    const int64_t before = *tests;
+    struct glint_met_surface surface;
+    struct glint_scene_ray ray;
+    struct glint_scene_part part = {.by = -1};
+
+    if (!find_surface(s, x, y, &ray, &surface))
+        return 0;
+    s->tests = tests;
+    count_lit(s, &surface, &part);
+    if (!s->placed[surface.object].is_catcher)
+        count_bounces(s, &ray, &surface, &part);
+    s->tests = NULL;
+    /* Samples of mirrors and glass are shaded one by one. */
+    if (s->placed[surface.object].is_split)
+        *tests += (*tests - before) * (s->cfg.edge_samples - 1);
+    return 1;
+}
+
+/* Returns a bound on the number of texels of all translucent maps; that of a
+ * ball is twice as wide as high. */
+static int64_t count_map_texels(const struct glint_scene_model *m)
+{
+    int64_t n = 0;
+
+    for (uint32_t i = 0; i < m->header->n_skins; i++)
+        n += INT64_C(2) << 2 * GLINT_TRANSLUCENT_MOST_LOG2;
+    return n;
+}
+
+int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most)
+{
+    const int width = scene->cfg.width, height = scene->cfg.height;
+    const int step = q_larger(
+        4, (int32_t)glint_root((uint64_t)width * (uint64_t)height / 2048));
+    int64_t tests = 0, n = 0;
+
+    for (int y = step / 2; y < height; y += step)
+        for (int x = step / 2; x < width; x += step) {
+            n += count_tests(scene, x, y, &tests);
+            if (tests > most / (step * step))
+                return most + 1;
+        }
+    if (n > 0 && tests > 0)
+        tests =
+            tests * step * step + tests / n * count_map_texels(&scene->model);
+    return tests;
 }
 
 int glint_scene_hider(const struct glint_scene *scene, int light)

@@ -70,6 +70,21 @@ int tool_refuse(const struct tool *tool, const char *option, const char *value)
                       takes ? "; expected " : "", takes ? takes : "");
 }
 
+enum glint_status tool_take_work(int64_t *left, int64_t work, const char *file,
+                                 struct glint_error *error)
+{
+    if (!left || work <= *left) {
+        if (left)
+            *left -= work;
+        return GLINT_OK;
+    }
+    snprintf(error->text, sizeof error->text,
+             "%.100s: baking takes more than about 30 s of processor time; "
+             "glint bake has no limit: name the file that it writes",
+             file);
+    return GLINT_E_LENS;
+}
+
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text)
 {

@@ -32,6 +32,8 @@ struct tool {
     bool json, quiet;
     /* rejects a lens whose model is not cached, as a reload must not bake */
     bool no_bake;
+    /* the command bake, of which what a scene names may take any time */
+    bool is_bake;
     int verbose;
     int n_threads;
     int seed; /* random seed for synth, and for the noise of live -d test */
@@ -69,6 +71,12 @@ void tool_error(const struct tool *tool, const char *format, ...);
 int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);
+
+/* Takes WORK of *LEFT, unless LEFT is NULL. Returns GLINT_E_LENS, with the
+ * reason in ERROR, if that is not left: the bake of FILE, which a command other
+ * than bake needs, takes more than about 30 s of processor time. */
+enum glint_status tool_take_work(int64_t *left, int64_t work, const char *file,
+                                 struct glint_error *error);
 
 /* Prints that OPTION does not accept VALUE, and which values it accepts.
  * Returns the code of tool_usage(). */

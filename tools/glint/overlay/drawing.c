@@ -183,6 +183,7 @@ static int size_scene(struct drawing *d, int width, int height)
     if (d->files.has_lens)
         dials.focal_px =
             1 / glint_view_pixel_tangent(&d->run.view, focal_of(d));
+    dials.is_bounded = !dials.shadow_points;
     if (!dials.shadow_points)
         dials.shadow_points = d->line.is_still ? STILL_POINTS : VIDEO_POINTS;
     dials.tile_log2 = 3 + o->tile;

@@ -186,6 +186,7 @@ static int parse(struct tool *tool, int argc, char **argv,
                           r->samples);
     if (!GLINT_OPTION_GIVEN(&r->drawing.line.settings.options, quality)) {
         r->samples = r->samples ? r->samples : 4;
+        asked->is_bounded = !asked->shadow_points;
         if (!asked->shadow_points)
             asked->shadow_points = 4;
     }

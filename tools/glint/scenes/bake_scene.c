@@ -27,6 +27,7 @@ int cmd_bake_scene(struct tool *tool, int argc, char **argv)
                            "expects one scene");
     if (code >= 0)
         return code;
+    tool->is_bake = true;
     code = baked_scene_open(tool, argv[optind], &scene);
     if (code != EXIT_OK)
         return code;

@@ -87,7 +87,8 @@ bake_picture(const char *named, const char *from,
 static enum glint_status
 bake_source(const char *path, const char *written,
             void (*override)(void *ctx, struct glint_environment_options *),
-            void *ctx, struct environment_file *file, struct glint_error *error)
+            void *ctx, int64_t *left, struct environment_file *file,
+            struct glint_error *error)
 {
     struct glint_environment_options options;
     char source[GLINT_ENVIRONMENT_FILE_BYTES], beside[TOOL_PATH_BYTES];
@@ -105,6 +106,9 @@ bake_source(const char *path, const char *written,
     }
     if (override)
         override(ctx, &options);
+    if (status == GLINT_OK)
+        status = tool_take_work(left, INT64_C(1) << 3 * options.side_log2, path,
+                                error);
     return status == GLINT_OK
                ? bake_picture(path, picture, &options, file, error)
                : status;
@@ -113,7 +117,7 @@ bake_source(const char *path, const char *written,
 enum glint_status environment_file_read(
     const char *path, const char *written,
     void (*override)(void *ctx, struct glint_environment_options *), void *ctx,
-    struct environment_file *file, struct glint_error *error)
+    int64_t *left, struct environment_file *file, struct glint_error *error)
 {
     char self[TOOL_PATH_BYTES];
     const char *reason = "";
@@ -123,7 +127,7 @@ enum glint_status environment_file_read(
     *file = (struct environment_file){.data = NULL};
     status = tool_find_input("", path, written, self, error);
     if (status == GLINT_OK && environment_file_is_source(path)) {
-        status = bake_source(path, written, override, ctx, file, error);
+        status = bake_source(path, written, override, ctx, left, file, error);
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
@@ -149,8 +153,8 @@ int environment_file_open(const struct tool *tool, const char *path,
 
     if (code != EXIT_OK)
         return code;
-    status =
-        environment_file_read(path, tool->written, override, ctx, file, &error);
+    status = environment_file_read(path, tool->written, override, ctx, NULL,
+                                   file, &error);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 

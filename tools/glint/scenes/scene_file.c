@@ -14,6 +14,10 @@
 
 enum { TEXT_BYTES = 1 << 20 };
 
+/* Max work (tool_take_work()) of baking what a scene names: about 30 s of
+ * processor time. */
+#define MOST_WORK (INT64_C(1) << 28)
+
 bool tool_is_scene(const char *argument)
 {
     return glint_ends_in(argument, ".scene");
@@ -25,6 +29,7 @@ struct reading {
     const char *path;
     const char *written; /* output file, which must not be read, or NULL */
     uint64_t key;
+    int64_t left; /* work that bakes may still take */
 };
 
 /* Sets PATH to the file NAME, relative to the folder of the text. Errors as
@@ -108,7 +113,7 @@ static enum glint_status read_environment(void *ctx, const char *name,
 
     if (status == GLINT_OK)
         status = environment_file_read(path, reading->written, NULL, NULL,
-                                       &file, error);
+                                       &reading->left, &file, error);
     return return_data(reading, status, file.data, file.bytes, data, bytes);
 }
 
@@ -122,8 +127,8 @@ static enum glint_status read_stone(void *ctx, const char *name, uint8_t **data,
     enum glint_status status = find_file(reading, name, path, error);
 
     if (status == GLINT_OK)
-        status = stone_file_read(reading->tool, path, NULL, NULL, false, &file,
-                                 error);
+        status = stone_file_read(reading->tool, path, NULL, NULL, false,
+                                 &reading->left, &file, error);
     return return_data(reading, status, file.data, file.bytes, data, bytes);
 }
 
@@ -145,7 +150,8 @@ static enum glint_status read_motion(void *ctx, const char *name,
 int tool_scene(const struct tool *tool, const char *path,
                struct glint_description *scene, uint64_t *key)
 {
-    struct reading reading = {tool, path, tool->written, TOOL_KEY_BEGIN};
+    struct reading reading = {tool, path, tool->written, TOOL_KEY_BEGIN,
+                              tool->is_bake ? INT64_MAX : MOST_WORK};
     const struct glint_description_files files = {
         &reading,         read_mesh,   read_picture,
         read_environment, read_motion, read_stone};

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "glint/scene/account.h"
+
 /* alignment of the run time's memory, bytes */
 #define ALIGNMENT 64
 
@@ -80,6 +82,34 @@ static int report_status(const struct tool *tool, enum glint_status status)
             : NULL);
 }
 
+/* Refuses a scene whose picture takes more than SCENE_TESTS, at the poses of
+ * its model. */
+static int bound_tests(struct scene_frame *frame)
+{
+    const int64_t px = (int64_t)frame->cfg.width * frame->cfg.height;
+    const int64_t most =
+        px * SCENE_TESTS_PX > SCENE_TESTS ? px * SCENE_TESTS_PX : SCENE_TESTS;
+    struct glint_scene_stats stats;
+    int64_t tests;
+
+    glint_scene_begin(frame->scene, &stats);
+    /* A pixel of a triangle's tile takes about as long as a test. */
+    tests = (int64_t)stats.need_refs << 2 * frame->cfg.tile_log2;
+    if (tests <= most)
+        tests += glint_scene_count_tests(frame->scene, most - tests);
+    if (tests <= most)
+        return EXIT_OK;
+    tool_error(
+        frame->tool,
+        "a picture of this scene takes more than %g tests of objects and "
+        "triangles, about %lld s of processor time; take out objects or "
+        "lights, or give --shadow-points 1, 4 or 16, with which there "
+        "is no limit",
+        (double)most, (long long)(most / (SCENE_TESTS / 30)));
+    scene_frame_close(frame);
+    return EXIT_LENS;
+}
+
 int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
                      const struct glint_scene_model *model,
                      const struct scene_dials *dials)
@@ -97,7 +127,9 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
         &glint_scene_wards,  &glint_scene_stones,   &glint_scene_highlights,
         &glint_scene_motions};
     status = place_scene(frame);
-    return status == GLINT_OK ? EXIT_OK : report_status(tool, status);
+    if (status != GLINT_OK)
+        return report_status(tool, status);
+    return dials->is_bounded ? bound_tests(frame) : EXIT_OK;
 }
 
 void scene_frame_close(struct scene_frame *frame)

@@ -25,7 +25,17 @@ struct scene_dials {
     int highlights; /* with has_highlights: 0 .. 8, overrides the scene */
     int tile_log2;
     bool dither;
+    /* Refuses a scene whose first picture takes more tests of rays than
+     * SCENE_TESTS. Set where shadow_points is not the user's. */
+    bool is_bounded;
 };
+
+/* Max tests of rays (glint_scene_count_tests()), and pixels of the tiles that
+ * each triangle touches, of a picture of a scene, unless an option allows more:
+ * about 30 s of processor time. Large pictures may take SCENE_TESTS_PX a pixel,
+ * ten times as many as the scenes that come with glint. */
+#define SCENE_TESTS    INT64_C(1500000000)
+#define SCENE_TESTS_PX 1000
 
 /* Sets the members of DIALS that OPTIONS set. */
 void scene_dials_choose(struct scene_dials *dials,
@@ -56,7 +66,8 @@ struct scene_frame {
 };
 
 /* Allocates memory for pictures of MODEL, which must outlive FRAME. Returns an
- * exit code, after printing the reason on failure. */
+ * exit code, after printing the reason on failure; EXIT_LENS if DIALS are
+ * bounded and a picture of MODEL takes more. */
 int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
                      const struct glint_scene_model *model,
                      const struct scene_dials *dials);

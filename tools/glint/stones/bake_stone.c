@@ -77,7 +77,7 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
     if (code >= 0)
         return code;
     status = stone_file_read(tool, argv[optind], override_text, &line, true,
-                             &file, &error);
+                             NULL, &file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,

@@ -281,10 +281,19 @@ static void write_cached(const struct tool *tool, char *path,
                 tool->name, error.text);
 }
 
+/* Returns how many numbers the rows of STONE have in each channel. */
+static int64_t count_numbers(const struct glint_stone *stone)
+{
+    const int64_t side = stone->side, kernel = stone->kernel;
+
+    return side * side * kernel * kernel;
+}
+
 static enum glint_status
 read_text(const struct tool *tool, const char *path,
           void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
-          bool anew, struct stone_file *file, struct glint_error *error)
+          bool anew, int64_t *left, struct stone_file *file,
+          struct glint_error *error)
 {
     struct source source = {.mask = NULL};
     char kept[CACHE_PATH_BYTES], name[64];
@@ -297,7 +306,10 @@ read_text(const struct tool *tool, const char *path,
                 cache_file_name(kept, sizeof kept, name, source.key, "stone");
     if (status == GLINT_OK &&
         (anew || !has_cache || !load_cached(kept, source.key, file))) {
-        status = bake_source(tool, &source, name, file, error);
+        status = tool_take_work(left, 8 * count_numbers(&source.text.stone),
+                                path, error);
+        if (status == GLINT_OK)
+            status = bake_source(tool, &source, name, file, error);
         if (status == GLINT_OK && has_cache)
             write_cached(tool, kept, file);
     }
@@ -308,7 +320,8 @@ read_text(const struct tool *tool, const char *path,
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,
                 void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
-                bool anew, struct stone_file *file, struct glint_error *error)
+                bool anew, int64_t *left, struct stone_file *file,
+                struct glint_error *error)
 {
     uint8_t *data = NULL;
     enum glint_status status;
@@ -317,7 +330,7 @@ stone_file_read(const struct tool *tool, const char *path,
     *file = (struct stone_file){.data = NULL};
     status = tool_find_input("", path, tool->written, self, error);
     if (status == GLINT_OK && stone_file_is_text(path)) {
-        status = read_text(tool, path, over, ctx, anew, file, error);
+        status = read_text(tool, path, over, ctx, anew, left, file, error);
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
