@@ -119,8 +119,7 @@ static void write_cached(const struct tool *tool, char *path,
                 tool->name, error.text);
 }
 
-/* Returns whether FILE is a lens file that does not come with glint. */
-static bool is_foreign(const struct glint_prescription *lens, const char *file)
+bool model_is_foreign(const struct glint_prescription *lens, const char *file)
 {
     char own[CACHE_PATH_BYTES];
     struct stat a, b;
@@ -170,7 +169,7 @@ static int bake_model(const struct tool *tool,
     options.workers = tool->workers;
     options.progress = tool_progress_show;
     options.progress_ctx = &progress;
-    options.allow = is_foreign(lens, file) ? allow_work : NULL;
+    options.allow = model_is_foreign(lens, file) ? allow_work : NULL;
     options.allow_ctx = &work;
     tool_progress_start(&progress, tool, "bake");
     status = glint_bake(lens, &options, &data, &model->bytes, &report, &error);

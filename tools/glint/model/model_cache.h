@@ -25,6 +25,10 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
 /* Work of struct glint_bake_options, allow; about 30 s of processor time. */
 enum { MODEL_CACHE_WORK = 750 };
 
+/* Returns whether FILE, the name of LENS as the command line gives it, is a
+ * lens file that is not in a folder of glint's lenses. */
+bool model_is_foreign(const struct glint_prescription *lens, const char *file);
+
 /* Returns whether the model is installed or cached, so that no bake is
  * needed. */
 bool model_is_cached(const struct glint_prescription *lens,

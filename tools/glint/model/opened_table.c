@@ -84,6 +84,31 @@ static int stop_table(const struct tool *tool, struct opened_lens *lens,
     return settings_refuse_stop(tool, settings, error.text);
 }
 
+/* Max ghosts times surfaces of a lens file from elsewhere that exact rays draw
+ * unasked, and the surfaces for which one counts that is not a sphere: two
+ * lamps take about 30 s of processor time then. */
+#define MOST_PATHS 18000
+enum { SHAPED = 7 };
+
+/* Refuses LENS, given as NAME, if it has more than MOST_PATHS. */
+static int bound_paths(const struct tool *tool,
+                       const struct glint_prescription *lens, const char *name)
+{
+    const int ghosts = lens->n_surfaces * (lens->n_surfaces - 1) / 2;
+    int surfaces = 0;
+
+    for (int k = 0; k < lens->n_surfaces; k++)
+        surfaces += glint_surface_is_shaped(&lens->surface[k]) ? SHAPED : 1;
+    if (ghosts * surfaces <= MOST_PATHS || !model_is_foreign(lens, name))
+        return EXIT_OK;
+    tool_error(tool,
+               "%.200s: exact rays of a lens of %d ghosts take more than about "
+               "30 s of processor time; --rays exact draws them however long "
+               "that takes, and models of glint bake are faster",
+               name, ghosts);
+    return EXIT_LENS;
+}
+
 /* Finds or bakes the model of LENS, given as NAME, for lights up to DEG off the
  * axis. */
 static int find_model(const struct tool *tool, struct opened_lens *lens,
@@ -100,6 +125,9 @@ static int find_model(const struct tool *tool, struct opened_lens *lens,
                        !model_is_cached(&lens->table, &options);
     if (lens->is_unbaked && settings->picture)
         code = check_picture(tool, settings->picture);
+    if (lens->is_unbaked && settings->unbaked == SETTINGS_TRACE &&
+        code == EXIT_OK)
+        code = bound_paths(tool, &lens->table, name);
     if (lens->is_unbaked && settings->unbaked != SETTINGS_BAKE)
         return code == EXIT_OK ? stop_table(tool, lens, settings) : code;
     lens->is_unbaked = false;
