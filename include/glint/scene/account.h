@@ -59,8 +59,9 @@ void glint_scene_account(struct glint_scene *scene,
 
 /* Returns about how many tests of reflected, transmitted and shadow rays the
  * frame that was begun last takes, each with an object, a cell of a mesh's grid
- * or a triangle: those of about 2000 pixels, times all pixels. Ends early, with
- * a number above MOST, if it is that many. No result depends on the processor
+ * or a triangle: those of about 2000 pixels, times all pixels. A light on a
+ * point counts as 4, a pixel of the box around a ball as 3. Ends early, with a
+ * number above MOST, if it is that many. No result depends on the processor
  * or the number of threads. */
 int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most);
 

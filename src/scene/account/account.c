@@ -12,8 +12,11 @@
 enum {
     TEXELS = 8,     /* texels per lookup: four of each of two levels */
     MAP_TEXELS = 4, /* texels per lookup in the map of a translucent medium */
-    POINTS = 16     /* points of a light's disc that are tested for
+    POINTS = 16,    /* points of a light's disc that are tested for
                        visibility */
+    LIT_TESTS = 4,  /* tests of a ray that take as long as a light on a point,
+                       and as a pixel of a ball's box */
+    BALL_TESTS = 3
 };
 
 struct account {
@@ -63,6 +66,7 @@ static void count_lit(const struct glint_scene *s,
 {
     const int is_metal = surface->material->ward != GLINT_SCENE_NONE;
 
+    glint_scene_count(s, LIT_TESTS * (int64_t)s->n_lit);
     if (is_stone(s, surface)) {
         part->count[GLINT_SCENE_TEXELS] += MAP_TEXELS;
         if (!is_metal)
@@ -368,23 +372,38 @@ static int64_t count_map_texels(const struct glint_scene_model *m)
     return n;
 }
 
+/* Returns the work of finding the visible balls, in tests. */
+static int64_t count_balls(const struct glint_scene *s)
+{
+    int64_t px = 0;
+
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
+        const struct glint_placed *p = &s->placed[i];
+
+        if (p->is_seen && p->object->kind == GLINT_OBJECT_SPHERE)
+            px += (int64_t)(p->box.x1 - p->box.x0) * (p->box.y1 - p->box.y0);
+    }
+    return BALL_TESTS * px;
+}
+
 int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most)
 {
     const int width = scene->cfg.width, height = scene->cfg.height;
     const int step = q_larger(
         4, (int32_t)glint_root((uint64_t)width * (uint64_t)height / 2048));
+    const int64_t balls = count_balls(scene);
     int64_t tests = 0, n = 0;
 
     for (int y = step / 2; y < height; y += step)
         for (int x = step / 2; x < width; x += step) {
             n += count_tests(scene, x, y, &tests);
-            if (tests > most / (step * step))
+            if (tests > (most - balls) / (step * step))
                 return most + 1;
         }
     if (n > 0 && tests > 0)
         tests =
             tests * step * step + tests / n * count_map_texels(&scene->model);
-    return tests;
+    return tests + balls;
 }
 
 int glint_scene_hider(const struct glint_scene *scene, int light)
