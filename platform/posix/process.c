@@ -26,36 +26,51 @@ const char *glint_process_setting(const char *name)
     return secure_getenv(name);
 }
 
+/* Returns the file of LINE of /proc/self/maps, "BEGIN-END ... FILE" with two
+ * hexadecimal addresses, if it holds the address AT; else NULL. */
+static const char *find_mapped_file(const char *line, uintptr_t at)
+{
+    char *rest;
+    const uintmax_t begin = strtoumax(line, &rest, 16);
+    const uintmax_t end = *rest == '-' ? strtoumax(rest + 1, &rest, 16) : 0;
+
+    return begin <= at && at < end ? strchr(rest, '/') : NULL;
+}
+
 /* Reads /proc/self/maps, as dladdr() returns the path passed to dlopen(),
  * which may be relative to an earlier working directory, and argv[0] for a
- * program. */
+ * program. Takes no memory: a file that is not found for want of it would be
+ * taken for none. */
 bool glint_process_own_file(char *path, size_t bytes)
 {
     static const char own = 0;
-    const uintptr_t at = (uintptr_t)&own;
-    FILE *const maps = fopen("/proc/self/maps", "re");
-    char line[4096 + 128], *file = NULL;
-    size_t n = 0;
+    const int maps = open("/proc/self/maps", O_RDONLY | O_CLOEXEC);
+    char text[2 * (4096 + 128)];
+    const char *file = NULL;
+    size_t n = 0, length = 0;
+    ssize_t got;
 
-    while (maps && !file && fgets(line, sizeof line, maps)) {
-        char *rest; /* A line begins with "BEGIN-END ", two hexadecimal
-                       addresses. */
-        const uintmax_t begin = strtoumax(line, &rest, 16);
-        const uintmax_t end = *rest == '-' ? strtoumax(rest + 1, &rest, 16) : 0;
+    while (maps >= 0 && !file &&
+           (got = read(maps, text + n, sizeof text - 1 - n)) > 0) {
+        char *line = text, *end;
 
-        if (begin <= at && at < end)
-            file = strchr(rest, '/');
-    }
-    if (file) {
-        n = strcspn(file, "\n");
-        if (n < bytes) {
-            memcpy(path, file, n);
-            path[n] = '\0';
+        n += (size_t)got;
+        text[n] = '\0';
+        for (; !file && (end = strchr(line, '\n')); line = end + 1) {
+            *end = '\0';
+            file = find_mapped_file(line, (uintptr_t)&own);
+        }
+        if (!file) {
+            n -= (size_t)(line - text);
+            memmove(text, line, n);
         }
     }
-    if (maps)
-        fclose(maps);
-    return n > 0 && n < bytes;
+    if (maps >= 0)
+        close(maps);
+    length = file ? strlen(file) : 0;
+    if (length > 0 && length < bytes)
+        memcpy(path, file, length + 1);
+    return length > 0 && length < bytes;
 }
 
 struct call {
