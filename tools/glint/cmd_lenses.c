@@ -213,11 +213,14 @@ static void print_flares(struct lenses *l, const char *name,
     free(settings);
 }
 
-static void print_measured(FILE *page, const char *name)
+static void print_measured(struct lenses *l, const char *name)
 {
+    FILE *const page = l->page;
     struct measured m;
 
-    if (!measured_find(name, &m))
+    if (measured_find(name, &m) != GLINT_OK)
+        l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
+    else if (!*m.f_number)
         fputs("<p class=\"less\">bake and frame not measured yet</p>", page);
     else if (!*m.kb)
         fprintf(page, "<p class=\"less\">measured for f/%s: bake %s s</p>",
@@ -244,7 +247,7 @@ static void print_html(struct lenses *l, const char *name,
         page_begin(l->page);
     page_card_begin(l->page, &card);
     print_flares(l, name, e);
-    print_measured(l->page, name);
+    print_measured(l, name);
     page_card_end(l->page);
 }
 

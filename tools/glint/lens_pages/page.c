@@ -3,6 +3,7 @@
 
 #include "model/opened_lens.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,23 +51,28 @@ static bool read_row(const char *line, const char *name,
            read_cell(&line, measured->ms, sizeof measured->ms);
 }
 
-bool measured_find(const char *name, struct measured *measured)
+enum glint_status measured_find(const char *name, struct measured *measured)
 {
     static const char file_name[] = "/figures.md";
     char path[PATH_CHARS], line[LINE_CHARS];
-    bool found = false;
+    bool found = false, failed = false;
 
-    for (int i = 0; !found && lens_folder(i, "lenses", path,
-                                          sizeof path - sizeof file_name);
+    for (int i = 0;
+         !found && !failed &&
+         lens_folder(i, "lenses", path, sizeof path - sizeof file_name);
          i++) {
         FILE *file = *path ? fopen(strcat(path, file_name), "r") : NULL;
 
+        failed = *path && !file && errno == ENOMEM;
         while (file && !found && fgets(line, sizeof line, file))
             found = read_row(line, name, measured);
+        failed |= file && !found && ferror(file);
         if (file)
             fclose(file);
     }
-    return found;
+    if (!found)
+        *measured = (struct measured){.f_number = ""};
+    return failed ? GLINT_E_MEMORY : GLINT_OK;
 }
 
 enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };

@@ -28,8 +28,9 @@ struct page_card {
     int n_ghosts;
 };
 
-/* Reads the row of lens NAME. Returns false if there is none. */
-bool measured_find(const char *name, struct measured *measured);
+/* Reads the row of lens NAME; without one, f_number is "". Returns
+ * GLINT_E_MEMORY if there is no memory to read it. */
+enum glint_status measured_find(const char *name, struct measured *measured);
 
 /* Writes to FILE three <img>: the flare of a lamp at 0.25, 0.5 and 0.8 of
  * the distance to the film's corner. SETTINGS must be the defaults. NAME is
