@@ -429,6 +429,8 @@ void glint_engine_update_stop(struct glint_engine *engine)
 {
     struct glint_frame *f = &engine->paint.frame;
 
+    if (f->trace) /* forgets the rays of the former setup */
+        f->trace->finish(f);
     glint_setup_stop(engine->optics.setup, &f->cfg.stop);
     glint_frame_retune(f);
 }

@@ -94,12 +94,10 @@ struct traced {
     void **mem;  /* [fields]: its rays; NULL: they are traced when needed */
     struct ray_bundle *bundle;
     struct at_work *worker;
-    struct glint_lamp *lamp; /* [n_lamps]: those that fields were found for */
     bool in_codes;
     int *level; /* [fields]: level of the points that a field is drawn from */
-    int n_lamps;
     struct glint_optics optics; /* of the setup that was looked through */
-    int only_ghost;
+    int n_ghosts;
     int n_points, n_patches, n_fields, n_bundles, n_workers;
     struct glint_flare_rays rays;
 };
@@ -137,17 +135,15 @@ static void forget_plan(struct traced *t)
 static void forget(struct traced *t)
 {
     forget_plan(t);
-    free(t->lamp);
     free(t->point);
     free(t->patch);
     free(t->looked);
     free(t->field);
-    t->lamp = NULL;
     t->point = NULL;
     t->patch = NULL;
     t->looked = NULL;
     t->field = NULL;
-    t->n_lamps = t->n_points = t->n_patches = t->n_fields = 0;
+    t->n_points = t->n_patches = t->n_fields = 0;
 }
 
 /* Runs N jobs, in parts, and reports progress after each: FROM and TO,
@@ -590,12 +586,6 @@ static void sum_light(const struct glint_frame *f, int field, int level,
         }
 }
 
-static bool is_same_view(const struct glint_view *a, const struct glint_view *b)
-{
-    return a->width == b->width && a->height == b->height &&
-           a->sensor_width_mm == b->sensor_width_mm;
-}
-
 /* Returns whether the fields of T were looked at through the lens and with the
  * wavelengths of CFG. */
 static bool is_same_lens(const struct traced *t,
@@ -603,35 +593,13 @@ static bool is_same_lens(const struct traced *t,
 {
     const struct glint_optics *const a = &t->optics;
     const struct glint_optics *const b = &cfg->setup->optics;
-    bool same = t->cfg.setup == cfg->setup &&
-                a->stop_radius_mm == b->stop_radius_mm &&
-                a->focal_mm == b->focal_mm && a->length_mm == b->length_mm &&
-                a->squeeze == b->squeeze;
+    bool same =
+        t->cfg.setup == cfg->setup && t->n_ghosts == cfg->setup->n_ghosts &&
+        a->stop_radius_mm == b->stop_radius_mm && a->focal_mm == b->focal_mm &&
+        a->length_mm == b->length_mm && a->squeeze == b->squeeze;
 
     for (int k = 0; k < 3; k++)
         same = same && t->cfg.wave_nm[k] == cfg->wave_nm[k];
-    return same;
-}
-
-/* Returns whether the fields of CFG and LAMPS are there. */
-static bool is_looked(const struct glint_frame *f,
-                      const struct ray_field_config *cfg,
-                      const struct glint_lamp *lamps, int n)
-{
-    const struct traced *t = state_of(f);
-    const struct ray_field_config *had = &t->cfg;
-    bool same =
-        t->n_lamps == n && n > 0 && !f->tints && is_same_lens(t, cfg) &&
-        had->max_cells == cfg->max_cells && had->uniform == cfg->uniform &&
-        is_same_view(&had->view, &cfg->view) && t->only_ghost == f->only_ghost;
-
-    for (int i = 0; i < n && same; i++)
-        same = t->lamp[i].theta_deg == lamps[i].theta_deg &&
-               t->lamp[i].phi_deg == lamps[i].phi_deg &&
-               t->lamp[i].power == lamps[i].power &&
-               t->lamp[i].rgb[0] == lamps[i].rgb[0] &&
-               t->lamp[i].rgb[1] == lamps[i].rgb[1] &&
-               t->lamp[i].rgb[2] == lamps[i].rgb[2];
     return same;
 }
 
@@ -665,12 +633,10 @@ static enum glint_status gather(struct traced *t,
     struct ray_patch *const patch = calloc(all + 1, sizeof *patch);
     int left;
 
-    t->lamp = calloc(size, sizeof *t->lamp);
     t->point = calloc(2 * size, sizeof *t->point); /* with all levels */
     t->patch = calloc(size, sizeof *t->patch);
-    if (room && patch && t->lamp && t->point && t->patch) {
-        memcpy(t->lamp, lamps, size * sizeof *t->lamp);
-        t->n_lamps = t->n_points = n;
+    if (room && patch && t->point && t->patch) {
+        t->n_points = n;
         for (int i = 0; i < n; i++)
             t->point[i] = (struct point){.lamp = lamps[i], .last = LEVELS};
         left = gather_inside(t, patch,
@@ -763,7 +729,7 @@ static enum glint_status look_at(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Finds the fields of LAMPS, unless they are those of the last frame. */
+/* Finds the fields of LAMPS. */
 static enum glint_status look(struct glint_frame *f,
                               const struct glint_lamp *lamps, int n)
 {
@@ -779,15 +745,11 @@ static enum glint_status look(struct glint_frame *f,
     struct sights had;
 
     set_waves(t, s, &cfg);
-    if (is_looked(f, &cfg, lamps, n)) {
-        forget_plan(t);
-        return GLINT_OK;
-    }
     take_sights(t, &cfg, &had);
     forget(t);
     t->cfg = cfg;
-    t->only_ghost = f->only_ghost;
     t->optics = s->optics;
+    t->n_ghosts = s->n_ghosts;
     if (n > 0)
         status = look_at(f, lamps, n, &had);
     if (status != GLINT_OK)
