@@ -466,11 +466,12 @@ double glint_engine_focal_px(const struct glint_engine *engine);
 /* ------------------------------------------------------------ expose and draw
  */
 
-/* Chooses the brightness of the flare of N LAMPS on IMAGE, and lowers the power
- * of new lamps that are still too bright for it. WHITE is the light that the
- * code of white stands for: 1, or more if IMAGE is a proxy of a picture with
- * more light than white. glint_engine_draw() calls this function with WHITE 1
- * if the program did not. May return GLINT_E_ARGUMENT or GLINT_E_MEMORY. */
+/* Chooses the brightness of the flare of N LAMPS on IMAGE, and limits the
+ * ghosts of new lamps that are still too bright for it. WHITE is the light that
+ * the code of white stands for: 1, or more if IMAGE is a proxy of a picture
+ * with more light than white. glint_engine_draw() calls this function with
+ * WHITE 1 if the program did not. May return GLINT_E_ARGUMENT or
+ * GLINT_E_MEMORY. */
 enum glint_status glint_engine_expose(struct glint_engine *engine,
                                       struct glint_engine_lamp *lamps, int n,
                                       const struct glint_image *image,

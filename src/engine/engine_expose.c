@@ -27,6 +27,19 @@ bool glint_engine_fits(const struct glint_engine *engine,
            n >= 0 && n <= engine->most_lamps;
 }
 
+/* Returns the factor on the ghosts of the lamp ID, which is lamp I of the
+ * picture or, if only some of its lamps are drawn, another one. */
+static double find_part(const struct glint_engine_exposing *x, uint32_t id,
+                        int i)
+{
+    if (i < x->n_before && x->before[i].id == id)
+        return x->part[i];
+    for (int k = 0; k < x->n_before; k++)
+        if (x->before[k].id == id)
+            return x->part[k];
+    return 1;
+}
+
 const struct glint_lamp *
 glint_engine_plain(struct glint_engine *engine,
                    const struct glint_engine_lamp *lamps, int n)
@@ -35,8 +48,7 @@ glint_engine_plain(struct glint_engine *engine,
 
     for (int i = 0; i < n; i++) {
         engine->paint.lamp[i] = lamps[i].lamp;
-        if (i < x->n_before && x->before[i].id == lamps[i].id)
-            engine->paint.lamp[i].power *= x->part[i];
+        engine->paint.lamp[i].power *= find_part(x, lamps[i].id, i);
     }
     return engine->paint.lamp;
 }

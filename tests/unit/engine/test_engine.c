@@ -326,6 +326,47 @@ TEST(star_of_a_limited_lamp)
     assert_true(fabs(video[1] / still[1] - 1) < 1e-3);
 }
 
+/* Returns the light of the ghosts of N LAMPS, which were exposed. */
+static double sum_ghosts(struct glint_engine *engine,
+                         const struct glint_engine_lamp *lamps, int n)
+{
+    static float layer[BYTES];
+    struct glint_engine_report report;
+    double sum = 0;
+
+    assert_ok(glint_engine_draw_layer(engine, lamps, n, GLINT_ENGINE_GHOSTS,
+                                      layer, &report));
+    for (int i = 0; i < BYTES; i++)
+        sum += (double)layer[i];
+    return sum;
+}
+
+/* Checks that the layers of single lamps add up to that of all, one of which is
+ * limited. */
+TEST(layers_of_single_lamps)
+{
+    static uint8_t px[BYTES];
+    const struct glint_lamp faint = {5, 30, 1e2, {1, 1, 1}, {0, 0}, 0};
+    const struct glint_lamp sun = {9, -140, 1e6, {1, 1, 1}, {0, 0}, 0};
+    struct glint_engine_lamp both[2] = {glint_engine_lamp_of(&faint, 1),
+                                        glint_engine_lamp_of(&sun, 2)};
+    struct glint_engine *engine = make_engine(NULL, 0);
+    const struct glint_image image = make_picture(px);
+    double sum;
+
+    for (int i = 0; i < 4; i++)
+        add_layer(engine, &faint, 40000, GLINT_ENGINE_GHOSTS);
+    glint_engine_elapsed(engine, 40000);
+    assert_ok(glint_engine_expose(engine, both, 2, &image, 1));
+    sum = sum_ghosts(engine, both, 2);
+    assert_true(sum > 0);
+    assert_true(fabs((sum_ghosts(engine, &both[0], 1) +
+                      sum_ghosts(engine, &both[1], 1)) /
+                         sum -
+                     1) < 1e-3);
+    glint_engine_destroy(engine);
+}
+
 TEST(refuses)
 {
     static uint8_t px[BYTES];
