@@ -410,7 +410,8 @@ void link_colours(struct glint_oiio_file &file)
     if (file.link->can_encode) {
         file.rgb = std::move(rgb);
         if (is_ink && part.spec.format != TypeDesc::UINT8) /* OpenImageIO 2.4 */
-            file.lost = "its CMYK is written in 8 bits";
+            file.lost += std::string(file.lost.empty() ? "" : "; ") +
+                         "its CMYK is written in 8 bits";
         return;
     }
     file.lost += std::string(file.lost.empty() ? "" : "; ") +
