@@ -87,7 +87,7 @@ static int stop_table(const struct tool *tool, struct opened_lens *lens,
 /* Max ghosts times surfaces of a lens file from elsewhere that exact rays draw
  * unasked, and the surfaces for which one counts that is not a sphere: two
  * lamps take about 30 s of processor time then. */
-#define MOST_PATHS 18000
+#define MOST_PATHS 50000
 enum { SHAPED = 7 };
 
 /* Refuses LENS, given as NAME, if it has more than MOST_PATHS. */
