@@ -15,8 +15,8 @@ static uint16_t square_q16(uint16_t x_q16)
 
 /* Sets RGB to a glow around (X0, Y0), white at the centre and redder further
  * out. Red falls to a quarter at RADIUS pixels. */
-static void set_glow(uint16_t *const rgb[3], int width, int height, int x0,
-                     int y0, int radius)
+static void compute_glow_rgb(uint16_t *const rgb[3], int width, int height,
+                             int x0, int y0, int radius)
 {
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
@@ -48,7 +48,7 @@ static int add_glow(const struct glint_image *image, int x, int y, int radius)
         const struct glint_layer layer = {{rgb[0], rgb[1], rgb[2]},
                                           image->width};
 
-        set_glow(rgb, image->width, image->height, x, y, radius);
+        compute_glow_rgb(rgb, image->width, image->height, x, y, radius);
         glint_composite_add(composite, image, &layer);
         code = 0;
     } else

@@ -22,7 +22,7 @@ static unsigned char frame[BYTES], model[8 << 20];
 
 /* Requests 640x480 YUYV from CAMERA. Returns true also if CAMERA is not a
  * device, as a file has a fixed format. */
-static int is_ready(int camera)
+static int request_camera_format(int camera)
 {
     struct v4l2_capability can;
     static struct v4l2_format format;
@@ -60,7 +60,8 @@ int main(int argc, char **argv)
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &lens;
     if (glint_lens_open(&lens, model, bytes, &reason) == GLINT_OK &&
-        is_ready(camera) && glint_pool_create(&cfg.workers, 0) == GLINT_OK)
+        request_camera_format(camera) &&
+        glint_pool_create(&cfg.workers, 0) == GLINT_OK)
         glint_engine_create(&engine, &cfg, &error);
     while (engine && left > 0 && read(camera, frame, BYTES) == BYTES) {
         const int n = glint_engine_find(engine, &image, US, lamps, 16);

@@ -49,7 +49,7 @@ static int parse_number(const uint8_t **at)
 
 /* Sets IMAGE to the pixels of the PPM file in picture, BYTES long. Returns 0 if
  * it is not a binary 8-bit PPM without comments. */
-static int find_image(struct glint_image *image, size_t bytes)
+static int find_ppm_pixels(struct glint_image *image, size_t bytes)
 {
     const uint8_t *at = picture + 2;
 
@@ -99,7 +99,7 @@ static int draw_flare(const struct glint_lens *lens,
 
 /* Returns the centre of the pixel with the number TEXT. The number is clamped
  * to 2 * GLINT_MAX_SIDE, far outside the largest picture. */
-static int32_t pixel_centre_q8(const char *text)
+static int32_t parse_pixel_centre_q8(const char *text)
 {
     const int pixel = atoi(text);
 
@@ -129,11 +129,11 @@ int main(int argc, char **argv)
     if (!bytes || glint_lens_open(&lens, model, bytes, &reason) != GLINT_OK)
         return print_error(5, reason);
     bytes = load_file(argv[2], picture, sizeof picture);
-    if (!find_image(&image, bytes))
+    if (!find_ppm_pixels(&image, bytes))
         return print_error(3, "no binary PPM of 8 bits, or more than 12 MiB");
     light = glint_light_from_pixel(&lens, image.width, image.height,
-                                   pixel_centre_q8(argv[3]),
-                                   pixel_centre_q8(argv[4]));
+                                   parse_pixel_centre_q8(argv[3]),
+                                   parse_pixel_centre_q8(argv[4]));
     light.power.exponent += stops;
     if (!draw_flare(&lens, &image, &light))
         return print_error(1, "a picture of this size takes more than 16 MiB");

@@ -13,7 +13,7 @@ enum { FAN = 9 };
 
 /* Prints a fan of rays of GHOST in the meridional plane, at the middle
  * wavelength. */
-static int print_fan(const struct glint_lens *lens, int ghost, double sine)
+static int print_ray_fan(const struct glint_lens *lens, int ghost, double sine)
 {
     static struct glint_transfer transfer; /* static, as it is too large for
                                               small stacks */
@@ -59,7 +59,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "%s: has ghosts 0 to %d\n", argv[1],
                 (int)lens.header->n_ghosts - 1);
     else
-        code = print_fan(&lens, atoi(argv[2]), atof(argv[3]));
+        code = print_ray_fan(&lens, atoi(argv[2]), atof(argv[3]));
     free(data);
     return code;
 }

@@ -151,9 +151,9 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     return -1;
 }
 
-static int print_report(const struct tool *tool, const void *model,
-                        size_t bytes, double seconds,
-                        const struct glint_bake_report *r)
+static int print_bake_report(const struct tool *tool, const void *model,
+                             size_t bytes, double seconds,
+                             const struct glint_bake_report *r)
 {
     const char *reason;
     struct glint_lens lens;
@@ -165,8 +165,9 @@ static int print_report(const struct tool *tool, const void *model,
 }
 
 /* Bakes LENS into OUT, and commits or aborts OUT. Returns an exit code. */
-static int bake_into(struct glint_output *out, struct tool *tool,
-                     struct bake *b, const struct glint_prescription *lens)
+static int bake_lens_to_output(struct glint_output *out, struct tool *tool,
+                               struct bake *b,
+                               const struct glint_prescription *lens)
 {
     struct glint_error error = {""};
     struct glint_bake_report r;
@@ -190,7 +191,8 @@ static int bake_into(struct glint_output *out, struct tool *tool,
     if (status != GLINT_OK)
         code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
     else if (strcmp(b->output, "-") != 0)
-        code = print_report(tool, model, bytes, tool_seconds() - start, &r);
+        code =
+            print_bake_report(tool, model, bytes, tool_seconds() - start, &r);
     free(model);
     return code;
 }
@@ -229,8 +231,9 @@ static void print_zoom_report(const struct tool *tool, const struct bake *b,
 }
 
 /* Bakes LENS, as it was read, at all positions into OUT. */
-static int bake_positions(struct glint_output *out, struct tool *tool,
-                          struct bake *b, const struct glint_prescription *lens)
+static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
+                               struct bake *b,
+                               const struct glint_prescription *lens)
 {
     const struct zoom_bake zoom = {.lens = lens,
                                    .options = &b->options,
@@ -256,7 +259,8 @@ static int bake_positions(struct glint_output *out, struct tool *tool,
 
 /* Bakes the lens NAME. The output is opened first, as baking can take
  * minutes. */
-static int bake_name(struct tool *tool, struct bake *b, const char *name)
+static int bake_lens_by_name(struct tool *tool, struct bake *b,
+                             const char *name)
 {
     struct glint_prescription *lens = malloc(sizeof *lens);
     struct glint_error error = {""};
@@ -284,8 +288,8 @@ static int bake_name(struct tool *tool, struct bake *b, const char *name)
     if (status != GLINT_OK)
         code = tool_fail(tool, status, error.text);
     if (code == EXIT_OK)
-        code = b->positions ? bake_positions(&out, tool, b, lens)
-                            : bake_into(&out, tool, b, lens);
+        code = b->positions ? bake_zoom_positions(&out, tool, b, lens)
+                            : bake_lens_to_output(&out, tool, b, lens);
     free(lens);
     return code;
 }
@@ -302,13 +306,13 @@ static int bake_lens(struct tool *tool, int argc, char **argv)
         return code;
     code = tool_start(tool);
     if (code == EXIT_OK)
-        code = bake_name(tool, &b, argv[optind]);
+        code = bake_lens_by_name(tool, &b, argv[optind]);
     tool_finish(tool);
     return code;
 }
 
 /* Calls the bake command for the type of the first input that is not a lens. */
-static int bake_any(struct tool *tool, int argc, char **argv)
+static int bake_by_file_type(struct tool *tool, int argc, char **argv)
 {
     static const struct {
         bool (*is_one)(const char *name);
@@ -330,7 +334,7 @@ int cmd_bake(int argc, char **argv)
 {
     struct glint_error cause = {""};
     struct tool tool = {.name = "bake", .cause = &cause};
-    const int code = bake_any(&tool, argc, argv);
+    const int code = bake_by_file_type(&tool, argc, argv);
 
     if (code != EXIT_OK && tool.json &&
         !(tool.written && strcmp(tool.written, "-") == 0))

@@ -54,7 +54,7 @@ static int parse_options(struct bench *b, int argc, char **argv)
 
 /* Returns whether the command line has --scene, which selects the bench of
  * scenes with other options. */
-static bool has_scene(int argc, char **argv)
+static bool has_scene_option(int argc, char **argv)
 {
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
         if (strcmp(argv[i], "--scene") == 0 ||
@@ -72,7 +72,7 @@ int cmd_bench(int argc, char **argv)
 
     if (!b)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    b->subject = has_scene(argc, argv) ? &bench_scene : &bench_flare;
+    b->subject = has_scene_option(argc, argv) ? &bench_scene : &bench_flare;
     tool.help = b->subject->help;
     b->tool = &tool;
     b->rounds = 15;

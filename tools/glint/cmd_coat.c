@@ -73,31 +73,31 @@ static struct reflected compute_reflectance(const struct coat *c, double nm,
 }
 
 /* Returns wavelength K of the table, K = 0 .. STEPS, nm. */
-static double wavelength_nm(const struct coat *c, int k)
+static double table_wavelength_nm(const struct coat *c, int k)
 {
     return c->band_nm[0] + (c->band_nm[1] - c->band_nm[0]) * k / STEPS;
 }
 
 /* ------------------------------------------------------------------- words */
 
-static void print_text(const struct coat *c)
+static void print_reflectance_text(const struct coat *c)
 {
     printf("%s, on index %g\n\n      nm", c->name, c->glass[0]);
     for (int a = 0; a < c->n_angles; a++)
         printf("  %5g deg", c->angle_deg[a]);
     printf("\n");
     for (int k = 0; k <= STEPS; k += 2) {
-        printf("%8.1f", wavelength_nm(c, k));
+        printf("%8.1f", table_wavelength_nm(c, k));
         for (int a = 0; a < c->n_angles; a++)
             printf("  %7.3f %%",
-                   100 * compute_reflectance(c, wavelength_nm(c, k),
+                   100 * compute_reflectance(c, table_wavelength_nm(c, k),
                                              c->angle_deg[a])
                              .both);
         printf("\n");
     }
 }
 
-static void print_json(const struct coat *c)
+static void print_reflectance_json(const struct coat *c)
 {
     struct json_writer json = {.to = stdout};
 
@@ -109,11 +109,11 @@ static void print_json(const struct coat *c)
     json_write(&json, "], reflected: [");
     for (int k = 0; k <= STEPS; k++)
         for (int a = 0; a < c->n_angles; a++) {
-            const struct reflected r =
-                compute_reflectance(c, wavelength_nm(c, k), c->angle_deg[a]);
+            const struct reflected r = compute_reflectance(
+                c, table_wavelength_nm(c, k), c->angle_deg[a]);
 
             json_write(&json, "{nm: %g, deg: %g, s: %.9g, p: %.9g}",
-                       wavelength_nm(c, k), c->angle_deg[a], r.s, r.p);
+                       table_wavelength_nm(c, k), c->angle_deg[a], r.s, r.p);
         }
     json_write(&json, "]}\n");
 }
@@ -128,7 +128,7 @@ struct curve {
     double lo, hi;
 };
 
-static double compute_percent(const struct curve *v, double x)
+static double compute_reflectance_percent(const struct curve *v, double x)
 {
     const struct reflected r = v->kind ? compute_reflectance(v->c, v->fixed, x)
                                        : compute_reflectance(v->c, x, v->fixed);
@@ -136,17 +136,17 @@ static double compute_percent(const struct curve *v, double x)
     return 100 * (v->kind == 0 ? r.both : v->kind == 1 ? r.s : r.p);
 }
 
-static void extend_axes(struct plot *plot, const struct curve *v)
+static void fit_axes_to_curve(struct plot *plot, const struct curve *v)
 {
     for (int i = 0; i <= 2 * STEPS; i++) {
         const double x = v->lo + (v->hi - v->lo) * i / (2 * STEPS);
 
-        plot_stretch(plot, x, compute_percent(v, x));
+        plot_stretch(plot, x, compute_reflectance_percent(v, x));
     }
 }
 
-static void draw_curve(const struct plot *plot, const struct curve *v,
-                       const char *colour)
+static void draw_reflectance_curve(const struct plot *plot,
+                                   const struct curve *v, const char *colour)
 {
     enum { N = 200 };
 
@@ -154,12 +154,12 @@ static void draw_curve(const struct plot *plot, const struct curve *v,
         const double x0 = v->lo + (v->hi - v->lo) * i / N;
         const double x1 = v->lo + (v->hi - v->lo) * (i + 1) / N;
 
-        plot_line(plot, x0, compute_percent(v, x0), x1, compute_percent(v, x1),
-                  colour, v->kind != 2);
+        plot_line(plot, x0, compute_reflectance_percent(v, x0), x1,
+                  compute_reflectance_percent(v, x1), colour, v->kind != 2);
     }
 }
 
-static void plot_wavelengths(const struct coat *c, struct plot *plot)
+static void plot_over_wavelength(const struct coat *c, struct plot *plot)
 {
     struct curve v = {c, 0, 0, c->band_nm[0], c->band_nm[1]};
     char words[32];
@@ -169,18 +169,18 @@ static void plot_wavelengths(const struct coat *c, struct plot *plot)
     plot_stretch(plot, v.lo, 0);
     for (int a = 0; a < c->n_angles; a++) {
         v.fixed = c->angle_deg[a];
-        extend_axes(plot, &v);
+        fit_axes_to_curve(plot, &v);
     }
     plot_frame(plot);
     for (int a = 0; a < c->n_angles; a++) {
         v.fixed = c->angle_deg[a];
-        draw_curve(plot, &v, plot_colour(a));
+        draw_reflectance_curve(plot, &v, plot_colour(a));
         snprintf(words, sizeof words, "%g degrees", v.fixed);
         plot_key(plot, 's', plot_colour(a), words);
     }
 }
 
-static void plot_angles(const struct coat *c, struct plot *plot)
+static void plot_over_angle(const struct coat *c, struct plot *plot)
 {
     static const double nm[3] = {450, 550, 650};
     static const char *const colour[3] = {"#1f6fb2", "#3a8f3a", "#c0281a"};
@@ -189,37 +189,39 @@ static void plot_angles(const struct coat *c, struct plot *plot)
     plot->x.words = "degrees";
     plot->y.words = "% reflected, s thick, p thin";
     for (int k = 0; k < 6; k++)
-        extend_axes(plot, &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75});
+        fit_axes_to_curve(plot,
+                          &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75});
     plot_frame(plot);
     for (int k = 0; k < 6; k++)
-        draw_curve(plot, &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75},
-                   colour[k / 2]);
+        draw_reflectance_curve(plot,
+                               &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75},
+                               colour[k / 2]);
     for (int k = 0; k < 3; k++) {
         snprintf(words, sizeof words, "%g nm", nm[k]);
         plot_key(plot, 's', colour[k], words);
     }
 }
 
-static void write_plot(const struct coat *c, FILE *file)
+static void write_reflectance_plot(const struct coat *c, FILE *file)
 {
     struct plot plot;
 
     plot_open(file, 2);
     plot_init(&plot, file, 0, c->name);
-    plot_wavelengths(c, &plot);
+    plot_over_wavelength(c, &plot);
     plot_init(&plot, file, 1, "by angle");
-    plot_angles(c, &plot);
+    plot_over_angle(c, &plot);
     plot_close(file);
 }
 
-static int save_plot(const struct tool *tool, const struct coat *c)
+static int save_reflectance_plot(const struct tool *tool, const struct coat *c)
 {
     char *text = NULL;
     size_t bytes = 0;
     FILE *file = glint_memory_file_open(&text, &bytes);
 
     if (file)
-        write_plot(c, file);
+        write_reflectance_plot(c, file);
     return tool_save_text(tool, c->output, file, &text, &bytes);
 }
 
@@ -286,8 +288,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
 /* ------------------------------------------------------------------ coating */
 
-static int coat_of_lens(const struct tool *tool, const char *name,
-                        struct coat *c)
+static int find_lens_coating(const struct tool *tool, const char *name,
+                             struct coat *c)
 {
     struct glint_prescription *lens = calloc(1, sizeof *lens);
     int code;
@@ -319,8 +321,8 @@ static int coat_of_lens(const struct tool *tool, const char *name,
     return code;
 }
 
-static int coat_of_text(const struct tool *tool, const char *text,
-                        struct coat *c)
+static int parse_coating_text(const struct tool *tool, const char *text,
+                              struct coat *c)
 {
     struct glint_coating read[GLINT_MAX_COATINGS];
     struct glint_error error;
@@ -347,13 +349,13 @@ int cmd_coat(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    code = c.surface < 0 ? coat_of_text(&tool, argv[optind], &c)
-                         : coat_of_lens(&tool, argv[optind], &c);
+    code = c.surface < 0 ? parse_coating_text(&tool, argv[optind], &c)
+                         : find_lens_coating(&tool, argv[optind], &c);
     if (code != EXIT_OK)
         return code;
     if (tool.json)
-        print_json(&c);
+        print_reflectance_json(&c);
     else if (!tool.quiet)
-        print_text(&c);
-    return c.output ? save_plot(&tool, &c) : EXIT_OK;
+        print_reflectance_text(&c);
+    return c.output ? save_reflectance_plot(&tool, &c) : EXIT_OK;
 }

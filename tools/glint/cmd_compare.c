@@ -48,14 +48,14 @@ struct asked {
 
 /* ------------------------------------------------------------------- result */
 
-static bool is_identical(const struct glint_float_image image[2])
+static bool are_images_identical(const struct glint_float_image image[2])
 {
     const size_t n = 3 * (size_t)image[0].width * (size_t)image[0].height;
 
     return memcmp(image[0].rgb, image[1].rgb, n * sizeof(float)) == 0;
 }
 
-static void print_json(const struct glint_measure *m, bool identical)
+static void print_comparison_json(const struct glint_measure *m, bool identical)
 {
     json_write(&(struct json_writer){.to = stdout},
                "{psnr_db: %.3f, ssim: %.6f, p99: %g, flux: %.6f, "
@@ -64,7 +64,7 @@ static void print_json(const struct glint_measure *m, bool identical)
                m->flux, m->factor, m->exposure, identical);
 }
 
-static void print_text(const struct glint_measure *m, bool identical)
+static void print_comparison_text(const struct glint_measure *m, bool identical)
 {
     const char *words = identical ? "identical: "
                         : m->psnr_db == 999
@@ -84,7 +84,7 @@ static void print_text(const struct glint_measure *m, bool identical)
 
 /* Returns whether the image NAME may contain floats: by its extension, or
  * because it is a pipe ("-"), which has none. */
-static bool has_floats(const char *name)
+static bool may_contain_floats(const char *name)
 {
     return glint_picture_is_float(name) || strcmp(name, "-") == 0;
 }
@@ -92,26 +92,28 @@ static bool has_floats(const char *name)
 static double choose_exposure(const struct asked *a,
                               const struct glint_float_image *reference)
 {
-    const bool codes = !has_floats(a->name[0]) && !has_floats(a->name[1]);
+    const bool codes =
+        !may_contain_floats(a->name[0]) && !may_contain_floats(a->name[1]);
 
     if (a->has_ev)
         return exp2(a->ev);
     return codes && !a->is_auto ? 1 : glint_measure_exposure(reference);
 }
 
-static int measure_images(const struct tool *tool, const struct asked *a,
-                          struct glint_float_image image[2])
+static int measure_image_difference(const struct tool *tool,
+                                    const struct asked *a,
+                                    struct glint_float_image image[2])
 {
     const double exposure = choose_exposure(a, &image[0]);
-    const bool identical = is_identical(image);
+    const bool identical = are_images_identical(image);
     struct glint_measure m;
 
     if (!glint_measure_at(&image[0], &image[1], a->fit, exposure, &m))
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (tool->json)
-        print_json(&m, identical);
+        print_comparison_json(&m, identical);
     else
-        print_text(&m, identical);
+        print_comparison_text(&m, identical);
     return EXIT_OK;
 }
 
@@ -136,7 +138,7 @@ static int compare_files(const struct tool *tool, const struct asked *a)
         code = EXIT_INPUT;
     }
     if (code == EXIT_OK)
-        code = measure_images(tool, a, image);
+        code = measure_image_difference(tool, a, image);
     free(image[0].rgb);
     free(image[1].rgb);
     return code;

@@ -111,7 +111,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     return code == EXIT_OK ? -1 : code;
 }
 
-static int save_drawing(const struct tool *tool, const struct draw *o)
+static int save_lens_drawing(const struct tool *tool, const struct draw *o)
 {
     char *text = NULL;
     size_t bytes = 0;
@@ -128,7 +128,8 @@ static int save_drawing(const struct tool *tool, const struct draw *o)
     return EXIT_OK;
 }
 
-static int draw_lens(struct tool *tool, struct draw *o, const char *name)
+static int draw_lens_section(struct tool *tool, struct draw *o,
+                             const char *name)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -147,7 +148,7 @@ static int draw_lens(struct tool *tool, struct draw *o, const char *name)
     if (o->drawing.ghost >= n)
         return tool_usage(tool, "%s has %d ghosts, numbered 0 .. %d",
                           o->lens.name, n, n - 1);
-    return save_drawing(tool, o);
+    return save_lens_drawing(tool, o);
 }
 
 int cmd_draw(int argc, char **argv)
@@ -162,7 +163,7 @@ int cmd_draw(int argc, char **argv)
         return code;
     code = tool_start(&tool);
     if (code == EXIT_OK)
-        code = draw_lens(&tool, &o, argv[optind]);
+        code = draw_lens_section(&tool, &o, argv[optind]);
     tool_finish(&tool);
     return code;
 }

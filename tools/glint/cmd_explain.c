@@ -172,7 +172,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
 /* ------------------------------------------------------------------- frame */
 
-static int load_input(struct tool *tool, struct explain_command *c)
+static int load_input_image(struct tool *tool, struct explain_command *c)
 {
     struct glint_error error = {""};
     enum glint_status status;
@@ -194,7 +194,7 @@ static int load_input(struct tool *tool, struct explain_command *c)
 
 /* Draws the flare as glint render does, and converts c->image to the 8-bit
  * image that glint render would save. */
-static enum glint_status draw_linear(struct explain_command *c)
+static enum glint_status draw_linear_flare(struct explain_command *c)
 {
     struct drawing *drawing = &c->drawing;
     const size_t n = (size_t)c->width * (size_t)c->height;
@@ -253,8 +253,8 @@ static int save_picture(struct tool *tool, const struct explain_command *c,
 }
 
 /* Writes the requested files with images of single ghosts. */
-static int save_ghosts(struct tool *tool, const struct explain_command *c,
-                       struct glint_explain *e)
+static int save_ghost_images(struct tool *tool, const struct explain_command *c,
+                             struct glint_explain *e)
 {
     struct glint_error error = {""};
     int ghosts[GLINT_MAX_GHOSTS];
@@ -275,8 +275,9 @@ static int save_ghosts(struct tool *tool, const struct explain_command *c,
 
 /* Prints the explanation of the scene, followed by that of FLARE unless that
  * is NULL. */
-static int print_scene(struct tool *tool, const struct explain_command *c,
-                       struct glint_explain *flare)
+static int print_scene_explanation(struct tool *tool,
+                                   const struct explain_command *c,
+                                   struct glint_explain *flare)
 {
     struct json_writer json = {.to = stdout};
     struct explained_scene scene;
@@ -321,7 +322,7 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     int code = EXIT_OK;
 
     if (status == GLINT_OK && drawing->files.scene.is_open)
-        code = print_scene(tool, c, &e);
+        code = print_scene_explanation(tool, c, &e);
     if (status != GLINT_OK)
         code = tool_fail(tool, status, NULL);
     else if (tool->json)
@@ -337,13 +338,13 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
         code = save_picture(tool, c, &e, &title, NULL);
     if (code == EXIT_OK && (c->ghosts || c->sheet))
-        code = save_ghosts(tool, c, &e);
+        code = save_ghost_images(tool, c, &e);
     glint_explain_close(&e);
     return code;
 }
 
 /* Rejects an image that cannot be written before the work begins. */
-static int check_picture(const struct tool *tool, const char *path)
+static int check_picture_name(const struct tool *tool, const char *path)
 {
     struct glint_error error = {""};
 
@@ -357,7 +358,8 @@ static int check_picture(const struct tool *tool, const char *path)
     return EXIT_OUTPUT;
 }
 
-static int check_apart(const struct tool *tool, const struct explain_command *c)
+static int check_outputs_differ_from_inputs(const struct tool *tool,
+                                            const struct explain_command *c)
 {
     struct apart files = {.n_read = 0};
 
@@ -377,26 +379,28 @@ static int explain_frame(struct tool *tool, struct explain_command *c)
     enum glint_status status;
     int code;
 
-    if (check_picture(tool, c->output) != EXIT_OK ||
-        check_picture(tool, c->sheet) != EXIT_OK ||
+    if (check_picture_name(tool, c->output) != EXIT_OK ||
+        check_picture_name(tool, c->sheet) != EXIT_OK ||
         (c->ghosts && tool_check_output(tool, c->ghosts) != EXIT_OK))
         return EXIT_OUTPUT;
-    code = check_apart(tool, c);
+    code = check_outputs_differ_from_inputs(tool, c);
     if (code == EXIT_OK)
         code = drawing_open(tool, &c->drawing);
     if (code == EXIT_OK)
-        code = load_input(tool, c);
+        code = load_input_image(tool, c);
     if (code == EXIT_OK)
         code = drawing_size(tool, &c->drawing, c->image.width, c->image.height);
     if (code != EXIT_OK)
         return code;
-    status = linear ? draw_linear(c) : drawing_draw(&c->drawing, &c->image, 0);
+    status =
+        linear ? draw_linear_flare(c) : drawing_draw(&c->drawing, &c->image, 0);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
     code = drawing_finish(tool, &c->drawing);
     if (code == EXIT_OK)
-        code = c->drawing.files.has_lens ? print_explanation(tool, c, linear)
-                                         : print_scene(tool, c, NULL);
+        code = c->drawing.files.has_lens
+                   ? print_explanation(tool, c, linear)
+                   : print_scene_explanation(tool, c, NULL);
     return code;
 }
 

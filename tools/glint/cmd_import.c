@@ -52,7 +52,7 @@ struct import {
     double film_mm[2], f_number;
 };
 
-static bool parse_format(struct import *o, const char *value)
+static bool parse_import_format(struct import *o, const char *value)
 {
     for (int k = 0; (o->format = import_format_at(k)) != NULL; k++)
         if (strcmp(o->format->name, value) == 0)
@@ -60,7 +60,7 @@ static bool parse_format(struct import *o, const char *value)
     return false;
 }
 
-static bool parse_film(struct import *o, const char *value)
+static bool parse_film_size(struct import *o, const char *value)
 {
     const char *by = strchr(value, 'x');
     char width[24];
@@ -85,9 +85,9 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     else if (c == 's')
         o->strict = true;
     else if (c == 'F')
-        good = parse_format(o, value);
+        good = parse_import_format(o, value);
     else if (c == 'm')
-        good = parse_film(o, value);
+        good = parse_film_size(o, value);
     else if (c == 'f')
         good = tool_number(value, &o->f_number) && o->f_number >= 0.5 &&
                o->f_number <= 1000;
@@ -138,7 +138,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
 /* Sets NAME to the name of the file PATH, reduced to the characters allowed
  * in lens names. */
-static void set_name(char name[GLINT_NAME_BYTES], const char *path)
+static void set_lens_name(char name[GLINT_NAME_BYTES], const char *path)
 {
     const char *stem = strrchr(path, '/');
     const char *end;
@@ -166,7 +166,8 @@ static void set_name(char name[GLINT_NAME_BYTES], const char *path)
 
 /* Prints all notes of the import; if --strict rejects the lens, only those
  * about guessed values. */
-static void print_notes(const struct tool *tool, const struct imported *lens)
+static void print_import_notes(const struct tool *tool,
+                               const struct imported *lens)
 {
     const bool refused = lens->strict && lens->n_guesses > 0;
 
@@ -187,8 +188,8 @@ static void print_notes(const struct tool *tool, const struct imported *lens)
                 lens->n_notes - IMPORT_NOTES);
 }
 
-static void print_json(const struct imported *lens,
-                       const struct glint_prescription *read)
+static void print_import_json(const struct imported *lens,
+                              const struct glint_prescription *read)
 {
     struct json_writer json = {.to = stdout};
     struct glint_optics optics;
@@ -206,8 +207,8 @@ static void print_json(const struct imported *lens,
     json_write(&json, "]}\n");
 }
 
-static int save_table(const struct tool *tool, const struct import *o,
-                      const char *text, size_t bytes)
+static int save_lens_table(const struct tool *tool, const struct import *o,
+                           const char *text, size_t bytes)
 {
     struct glint_prescription read;
     struct glint_error error = {""};
@@ -223,11 +224,12 @@ static int save_table(const struct tool *tool, const struct import *o,
     }
     code = tool_save(tool, o->output, GLINT_OUTPUT_TEXT, text, bytes);
     if (code == EXIT_OK && tool->json)
-        print_json(&o->lens, &read);
+        print_import_json(&o->lens, &read);
     return code;
 }
 
-static int import_file(struct tool *tool, struct import *o, const char *path)
+static int import_lens_file(struct tool *tool, struct import *o,
+                            const char *path)
 {
     struct glint_error error = {""};
     enum glint_status status;
@@ -242,7 +244,7 @@ static int import_file(struct tool *tool, struct import *o, const char *path)
         return tool_fail(tool, status, error.text);
     }
     imported_begin(&o->lens, path, o->strict);
-    set_name(o->lens.name, strcmp(o->output, "-") == 0 ? path : o->output);
+    set_lens_name(o->lens.name, strcmp(o->output, "-") == 0 ? path : o->output);
     memcpy(o->lens.film_mm, o->film_mm, sizeof o->film_mm);
     o->lens.f_number_given = o->f_number;
     o->lens.position = o->position;
@@ -250,12 +252,12 @@ static int import_file(struct tool *tool, struct import *o, const char *path)
     text = import_read(&o->lens, o->format, data, &bytes);
     free(data);
     imported_sort_notes(&o->lens);
-    print_notes(tool, &o->lens);
+    print_import_notes(tool, &o->lens);
     if (!text) {
         fprintf(stderr, "glint import: %s\n", o->lens.error);
         return EXIT_INPUT;
     }
-    code = save_table(tool, o, text, bytes);
+    code = save_lens_table(tool, o, text, bytes);
     free(text);
     return code;
 }
@@ -272,7 +274,7 @@ int cmd_import(int argc, char **argv)
     if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = import_file(&tool, o, argv[optind]);
+            code = import_lens_file(&tool, o, argv[optind]);
         tool_finish(&tool);
     }
     free(o);

@@ -60,7 +60,7 @@ struct info {
     int n_ghosts;
 };
 
-static void print_json(const struct info *info)
+static void print_lens_json(const struct info *info)
 {
     const struct glint_prescription *const l = &info->lens;
     const struct glint_optics *const o = &info->optics;
@@ -89,8 +89,8 @@ static void print_json(const struct info *info)
 }
 
 /* Prints zoom position and focus of L. */
-static void print_moves(const struct glint_prescription *l,
-                        const struct glint_optics *o)
+static void print_zoom_and_focus(const struct glint_prescription *l,
+                                 const struct glint_optics *o)
 {
     const struct glint_zoom *const z = &l->zoom;
 
@@ -109,7 +109,7 @@ static void print_moves(const struct glint_prescription *l,
                o->scale_mm);
 }
 
-static void print_text(const struct info *info)
+static void print_lens_text(const struct info *info)
 {
     const struct glint_prescription *l = &info->lens;
     const struct glint_optics *o = &info->optics;
@@ -120,7 +120,7 @@ static void print_text(const struct info *info)
         printf(" up and down, %.3f mm across: squeeze %.4g",
                o->focal_mm / o->squeeze, o->squeeze);
     printf("\n");
-    print_moves(l, o);
+    print_zoom_and_focus(l, o);
     printf("back focal length   %10.3f mm\n", o->back_focal_mm);
     printf("entrance pupil      %10.3f mm radius, %.3f mm behind the front\n",
            o->entrance_radius_mm, o->entrance_z_mm);
@@ -142,7 +142,7 @@ static void print_text(const struct info *info)
     printf("\n");
 }
 
-static void print_coatings(const struct glint_prescription *l)
+static void print_lens_coatings(const struct glint_prescription *l)
 {
     printf("\nsurface  reflects of 450, 550, 650 nm    film\n");
     for (int k = 0; k < l->n_surfaces; k++) {
@@ -163,8 +163,8 @@ static void print_coatings(const struct glint_prescription *l)
     }
 }
 
-static int print_model(const struct tool *tool, const char *path,
-                       const struct zoom_option *zoom)
+static int print_model_info(const struct tool *tool, const char *path,
+                            const struct zoom_option *zoom)
 {
     struct model_file model;
     int code = tool_model(tool, path, &model);
@@ -184,7 +184,7 @@ static int print_model(const struct tool *tool, const char *path,
     return code;
 }
 
-static int print_scene(const struct tool *tool, const char *path)
+static int print_scene_info(const struct tool *tool, const char *path)
 {
     struct baked_scene scene;
     const int code = baked_scene_open(tool, path, &scene);
@@ -196,7 +196,7 @@ static int print_scene(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
-static int print_environment(const struct tool *tool, const char *path)
+static int print_environment_info(const struct tool *tool, const char *path)
 {
     struct environment_file file;
     const int code = environment_file_open(tool, path, NULL, NULL, &file);
@@ -208,8 +208,8 @@ static int print_environment(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
-static int print_motion(const struct tool *tool, const char *path,
-                        const char *poses)
+static int print_motion_info(const struct tool *tool, const char *path,
+                             const char *poses)
 {
     struct motion_file file;
     int code = motion_file_open(tool, path, &file);
@@ -270,7 +270,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     return -1;
 }
 
-static int print_medium(const struct tool *tool, const char *path)
+static int print_medium_info(const struct tool *tool, const char *path)
 {
     struct glint_error error = {""};
     struct stone_file file;
@@ -287,8 +287,9 @@ static int print_medium(const struct tool *tool, const char *path)
 /* Prints the file PATH if it is not a lens. STOP: the command line has
  * options for a lens, which are then errors. Returns an exit code, or -1 if
  * PATH is a lens. */
-static int print_non_lens(const struct tool *tool, const char *path, bool stop,
-                          const char *poses)
+static int print_file_that_is_not_lens(const struct tool *tool,
+                                       const char *path, bool stop,
+                                       const char *poses)
 {
     const bool is_motion =
         motion_file_is_source(path) || motion_file_is_baked(path);
@@ -308,17 +309,17 @@ static int print_non_lens(const struct tool *tool, const char *path, bool stop,
             : is_around ? "an environment"
                         : "a translucent medium");
     if (is_motion)
-        return print_motion(tool, path, poses);
+        return print_motion_info(tool, path, poses);
     if (poses)
         return tool_usage(tool, "--poses needs a motion");
-    return is_scene    ? print_scene(tool, path)
-           : is_around ? print_environment(tool, path)
-           : is_stone  ? print_medium(tool, path)
+    return is_scene    ? print_scene_info(tool, path)
+           : is_around ? print_environment_info(tool, path)
+           : is_stone  ? print_medium_info(tool, path)
                        : -1;
 }
 
-static int print_table(const struct tool *tool, const char *path,
-                       const struct asked *asked, struct info *info)
+static int print_table_info(const struct tool *tool, const char *path,
+                            const struct asked *asked, struct info *info)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -337,9 +338,9 @@ static int print_table(const struct tool *tool, const char *path,
     glint_optics_of(&info->lens, &info->optics);
     info->n_ghosts =
         glint_ghost_list(&info->lens, info->ghost, GLINT_MAX_GHOSTS);
-    (tool->json ? print_json : print_text)(info);
+    (tool->json ? print_lens_json : print_lens_text)(info);
     if (!tool->json && tool->verbose)
-        print_coatings(&info->lens);
+        print_lens_coatings(&info->lens);
     return EXIT_OK;
 }
 
@@ -352,11 +353,11 @@ int cmd_info(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    code = print_non_lens(&tool, argv[optind],
-                          asked.f_number != 0 || asked.zoom.is_zoomed ||
-                              asked.zoom.is_focused ||
-                              asked.coating.kind != COATING_TABLE,
-                          asked.poses);
+    code = print_file_that_is_not_lens(
+        &tool, argv[optind],
+        asked.f_number != 0 || asked.zoom.is_zoomed || asked.zoom.is_focused ||
+            asked.coating.kind != COATING_TABLE,
+        asked.poses);
     if (code >= 0)
         return code;
     if (tool_is_model(argv[optind]) &&
@@ -367,11 +368,11 @@ int cmd_info(int argc, char **argv)
                    ? tool_usage(
                          &tool,
                          "the f-number of a model is set when it is baked")
-                   : print_model(&tool, argv[optind], &asked.zoom);
+                   : print_model_info(&tool, argv[optind], &asked.zoom);
     info = calloc(1, sizeof *info);
     if (!info)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    code = print_table(&tool, argv[optind], &asked, info);
+    code = print_table_info(&tool, argv[optind], &asked, info);
     free(info);
     return code;
 }

@@ -86,7 +86,7 @@ struct entry {
 
 /* Sets SETTINGS to the defaults of overlay, live and explain, or to those of
  * render if PLAIN. */
-static void set_settings(struct settings *settings, bool plain)
+static void set_default_settings(struct settings *settings, bool plain)
 {
     if (plain)
         settings_defaults(settings);
@@ -94,12 +94,12 @@ static void set_settings(struct settings *settings, bool plain)
         settings_defaults_photo(settings);
 }
 
-static int set_entry(const struct tool *tool, const char *name, struct entry *e,
-                     bool plain)
+static int load_lens_entry(const struct tool *tool, const char *name,
+                           struct entry *e, bool plain)
 {
     int code;
 
-    set_settings(&e->settings, plain);
+    set_default_settings(&e->settings, plain);
     code = tool_lens(tool, name, &e->table);
     if (code != EXIT_OK)
         return code;
@@ -119,7 +119,7 @@ static int set_entry(const struct tool *tool, const char *name, struct entry *e,
 /* max angle of a light in an image, degrees */
 #define WIDEST_DEG 89.9
 
-static double corner_deg(const struct entry *e)
+static double corner_field_angle_deg(const struct entry *e)
 {
     const struct glint_prescription *l = &e->table;
     const double rho =
@@ -135,8 +135,8 @@ static double corner_deg(const struct entry *e)
                : deg;
 }
 
-static void print_json(struct lenses *l, const char *name,
-                       const struct entry *e)
+static void print_entry_json(struct lenses *l, const char *name,
+                             const struct entry *e)
 {
     if (l->n++ == 0)
         json_write(&l->json, "{lenses: [");
@@ -146,14 +146,14 @@ static void print_json(struct lenses *l, const char *name,
                "film_mm: [%g, %g], corner_deg: %.2f, ghosts: %d, baked: %c}",
                name, e->table.source, e->table.character, e->optics.focal_mm,
                e->optics.squeeze, e->table.f_number, e->table.film_width_mm,
-               e->table.film_height_mm, corner_deg(e), e->n_ghosts,
+               e->table.film_height_mm, corner_field_angle_deg(e), e->n_ghosts,
                e->is_baked);
 }
 
-static void print_text(struct lenses *l, const char *name,
-                       const struct entry *e)
+static void print_entry_text(struct lenses *l, const char *name,
+                             const struct entry *e)
 {
-    const double corner = corner_deg(e);
+    const double corner = corner_field_angle_deg(e);
     char film[32];
 
     if (l->n++ == 0)
@@ -174,9 +174,10 @@ static void print_text(struct lenses *l, const char *name,
 
 /* Sets SETTINGS for drawing thumbnails of E: three wavelengths and coarse
  * grids suffice for images of that size. */
-static void set_flares(struct settings *settings, const struct entry *e)
+static void set_thumbnail_settings(struct settings *settings,
+                                   const struct entry *e)
 {
-    set_settings(settings, false);
+    set_default_settings(settings, false);
     if (e->is_baked)
         return;
     settings->options.rays = GLINT_RAYS_EXACT;
@@ -184,8 +185,8 @@ static void set_flares(struct settings *settings, const struct entry *e)
 }
 
 /* Writes thumbnails of the flare if the lens has a model or rays are exact. */
-static void print_flares(struct lenses *l, const char *name,
-                         const struct entry *e)
+static void write_flare_thumbnails(struct lenses *l, const char *name,
+                                   const struct entry *e)
 {
     struct settings *settings = calloc(1, sizeof *settings);
     size_t bytes = 0;
@@ -197,7 +198,7 @@ static void print_flares(struct lenses *l, const char *name,
     else if (!settings)
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
     else {
-        set_flares(settings, e);
+        set_thumbnail_settings(settings, e);
         fputs("<p>", l->page);
         if (thumbnails_write(l->tool, settings, name, l->page, &bytes) !=
             EXIT_OK)
@@ -213,7 +214,7 @@ static void print_flares(struct lenses *l, const char *name,
     free(settings);
 }
 
-static void print_measured(struct lenses *l, const char *name)
+static void print_measured_times(struct lenses *l, const char *name)
 {
     FILE *const page = l->page;
     struct measured m;
@@ -233,28 +234,28 @@ static void print_measured(struct lenses *l, const char *name)
                 m.ms, *m.ms ? " ms" : "");
 }
 
-static void print_html(struct lenses *l, const char *name,
-                       const struct entry *e)
+static void print_lens_card(struct lenses *l, const char *name,
+                            const struct entry *e)
 {
     const struct page_card card = {.name = name,
                                    .lens = &e->table,
                                    .focal_mm = e->optics.focal_mm,
                                    .squeeze = e->optics.squeeze,
-                                   .corner_deg = corner_deg(e),
+                                   .corner_deg = corner_field_angle_deg(e),
                                    .n_ghosts = e->n_ghosts};
 
     if (l->n++ == 0)
         page_begin(l->page);
     page_card_begin(l->page, &card);
-    print_flares(l, name, e);
-    print_measured(l, name);
+    write_flare_thumbnails(l, name, e);
+    print_measured_times(l, name);
     page_card_end(l->page);
 }
 
 /* ------------------------------------------------------------------ models */
 
-static int save_model(const struct tool *tool, const char *path,
-                      const struct model_file *model)
+static int save_model_to_folder(const struct tool *tool, const char *path,
+                                const struct model_file *model)
 {
     return tool_save(tool, path, GLINT_OUTPUT_BINARY, model->data,
                      model->bytes);
@@ -262,7 +263,7 @@ static int save_model(const struct tool *tool, const char *path,
 
 /* Copies the model of E from the cache to the folder, or bakes it, unless
  * the folder has it already. */
-static int write_model(const struct lenses *l, const struct entry *e)
+static int copy_or_bake_model(const struct lenses *l, const struct entry *e)
 {
     const uint64_t key = glint_bake_key(&e->table, &e->options);
     struct model_file model = {.data = NULL};
@@ -277,7 +278,7 @@ static int write_model(const struct lenses *l, const struct entry *e)
         return EXIT_OK;
     code = model_cached(l->tool, &e->table, e->table.name, e->options, &model);
     if (code == EXIT_OK)
-        code = save_model(l->tool, path, &model);
+        code = save_model_to_folder(l->tool, path, &model);
     if (code == EXIT_OK && !l->tool->quiet)
         fprintf(stderr, "%s: %zu bytes\n", path, model.bytes);
     model_file_close(&model);
@@ -286,7 +287,7 @@ static int write_model(const struct lenses *l, const struct entry *e)
 
 /* ----------------------------------------------------------------- command */
 
-static bool is_wanted(const struct lenses *l, const char *name)
+static bool is_lens_requested(const struct lenses *l, const char *name)
 {
     for (int i = 0; i < l->n_only; i++)
         if (strcmp(l->only[i], name) == 0)
@@ -294,7 +295,7 @@ static bool is_wanted(const struct lenses *l, const char *name)
     return l->n_only == 0;
 }
 
-static bool print_name(struct lenses *l, const char *name)
+static bool print_lens_name(struct lenses *l, const char *name)
 {
     l->n++;
     puts(name);
@@ -311,41 +312,41 @@ static bool list_lens(void *ctx, const char *name)
 
     if (l->page)
         tool_progress_show(&l->progress, (double)l->n_looked++ / l->n_files);
-    if (!is_wanted(l, name))
+    if (!is_lens_requested(l, name))
         return true;
     if (l->names && l->n_words == 0)
-        return print_name(l, name);
+        return print_lens_name(l, name);
     e = calloc(1, sizeof *e);
     if (!e) {
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
         return true;
     }
-    code = set_entry(l->tool, name, e, false);
+    code = load_lens_entry(l->tool, name, e, false);
     if (code == EXIT_OK &&
         !lens_has_words(name, &e->table, l->words, l->n_words)) {
         free(e);
         return true;
     }
     if (code == EXIT_OK && l->names)
-        print_name(l, name);
+        print_lens_name(l, name);
     else if (code == EXIT_OK && l->folder) {
-        code = write_model(l, e);
+        code = copy_or_bake_model(l, e);
         if (code == EXIT_OK)
-            code = set_entry(l->tool, name, e, true);
+            code = load_lens_entry(l->tool, name, e, true);
         if (code == EXIT_OK)
-            code = write_model(l, e);
+            code = copy_or_bake_model(l, e);
         l->n++;
     } else if (code == EXIT_OK)
-        (l->page         ? print_html
-         : l->tool->json ? print_json
-                         : print_text)(l, name, e);
+        (l->page         ? print_lens_card
+         : l->tool->json ? print_entry_json
+                         : print_entry_text)(l, name, e);
     free(e);
     if (code != EXIT_OK)
         l->code = code;
     return code == EXIT_OK || code == EXIT_LENS;
 }
 
-static bool stop_at_first(void *ctx, const char *name)
+static bool stop_at_first_lens(void *ctx, const char *name)
 {
     (void)ctx;
     (void)name;
@@ -353,7 +354,7 @@ static bool stop_at_first(void *ctx, const char *name)
 }
 
 /* Prints that no lens matches the words. Returns an exit code. */
-static int report_no_match(const struct lenses *l)
+static int report_no_matching_lens(const struct lenses *l)
 {
     if (l->n_words)
         return lens_words_missed(l->tool, l->words, l->n_words);
@@ -364,7 +365,7 @@ static int report_no_match(const struct lenses *l)
 
 /* Writes the list to the HTML page L->html; leaves the file unchanged if the
  * list is empty. */
-static int run_page(struct lenses *l)
+static int write_lens_page(struct lenses *l)
 {
     char *text = NULL;
     size_t bytes = 0;
@@ -372,7 +373,7 @@ static int run_page(struct lenses *l)
 
     l->page = glint_memory_file_open(&text, &bytes);
     if (l->page) {
-        l->n_files = lens_files_each(stop_at_first, l);
+        l->n_files = lens_files_each(stop_at_first_lens, l);
         tool_progress_start(&l->progress, l->tool, "lenses");
         n = lens_files_each(list_lens, l);
         tool_progress_end(&l->progress);
@@ -383,21 +384,21 @@ static int run_page(struct lenses *l)
     if (n < 0 || l->n == 0) {
         free(text);
         return n < 0                ? tool_fail(l->tool, GLINT_E_MEMORY, NULL)
-               : l->code == EXIT_OK ? report_no_match(l)
+               : l->code == EXIT_OK ? report_no_matching_lens(l)
                                     : l->code;
     }
     code = tool_save_text(l->tool, l->html, l->page, &text, &bytes);
     return code == EXIT_OK ? l->code : code;
 }
 
-static int run_list(struct lenses *l)
+static int print_lens_list(struct lenses *l)
 {
     const int code = lens_names_check(l->only, l->n_only);
 
     if (code != EXIT_OK)
         return code;
     if (l->html)
-        return run_page(l);
+        return write_lens_page(l);
     if (l->folder && mkdir(l->folder, 0777) != 0 && errno != EEXIST) {
         fprintf(stderr, "glint lenses: %s: %s\n", l->folder, strerror(errno));
         return EXIT_OUTPUT;
@@ -405,7 +406,7 @@ static int run_list(struct lenses *l)
     if (lens_files_each(list_lens, l) < 0)
         return tool_fail(l->tool, GLINT_E_MEMORY, NULL);
     if (l->n == 0 && l->code == EXIT_OK)
-        return report_no_match(l);
+        return report_no_matching_lens(l);
     if (l->tool->json && !l->folder && !l->names && l->n > 0)
         json_write(&l->json, "\n]}\n");
     return l->code;
@@ -468,7 +469,7 @@ int cmd_lenses(int argc, char **argv)
     if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = run_list(&l);
+            code = print_lens_list(&l);
         tool_finish(&tool);
     }
     return code;

@@ -56,7 +56,7 @@ static bool is_plastic(double nd, double vd)
 
 /* Returns whether a glass with nd and Vd exists or existed: between fluoride
  * crowns and flints; if MOULDED, also a plastic. */
-static bool is_known_glass(double nd, double vd, bool moulded)
+static bool is_plausible_glass(double nd, double vd, bool moulded)
 {
     int k = 0;
     double part;
@@ -74,7 +74,7 @@ static bool is_known_glass(double nd, double vd, bool moulded)
 
 /* Returns whether the glass behind surface K of LENS is in the catalogue or
  * also behind another surface. */
-static bool glass_is_listed(const struct glint_prescription *lens, int k)
+static bool is_glass_in_catalogue(const struct glint_prescription *lens, int k)
 {
     const struct glint_surface *s = &lens->surface[k];
     const struct glint_glass *glass;
@@ -99,14 +99,14 @@ static bool glass_is_listed(const struct glint_prescription *lens, int k)
 
 /* Returns whether the element behind surface S, which is not the last, has
  * an aspheric side, as moulded elements do. */
-static bool is_moulded(const struct glint_surface *s)
+static bool is_element_moulded(const struct glint_surface *s)
 {
     return glint_surface_is_shaped(&s[0]) || glint_surface_is_shaped(&s[1]);
 }
 
 /* Returns whether ND has more than three decimals. Indices with fewer are
  * shared by different glasses, as 1.755 by a lanthanum crown and a flint. */
-static bool is_precise(double nd)
+static bool is_index_precise(double nd)
 {
     return fabs(1e3 * nd - nearbyint(1e3 * nd)) > 1e-6;
 }
@@ -114,20 +114,20 @@ static bool is_precise(double nd)
 /* Returns the first surface of LENS whose glass does not exist, or has the
  * nd (four decimals or more) of another glass in the table but a different
  * Vd; -1 if there is none. Writes the reason to TEXT[BYTES]. */
-static int glass_suspect(const struct glint_prescription *lens, char *text,
-                         size_t bytes)
+static int find_suspect_glass(const struct glint_prescription *lens, char *text,
+                              size_t bytes)
 {
     for (int k = 0; k < lens->n_surfaces; k++) {
         const struct glint_surface *s = &lens->surface[k];
 
         if (!(s->vd > 0))
             continue;
-        if (!is_known_glass(s->nd, s->vd, is_moulded(s))) {
+        if (!is_plausible_glass(s->nd, s->vd, is_element_moulded(s))) {
             snprintf(text, bytes, "no glass has nd %.6g and Vd %.4g", s->nd,
                      s->vd);
             return k;
         }
-        for (int i = 0; i < k && is_precise(s->nd); i++)
+        for (int i = 0; i < k && is_index_precise(s->nd); i++)
             if (fabs(lens->surface[i].nd - s->nd) < 2e-6 &&
                 fabs(lens->surface[i].vd - s->vd) > 1.5) {
                 snprintf(text, bytes,
@@ -155,7 +155,7 @@ struct search {
 
 /* Parses TEXT[BYTES] into LENS. Returns whether it is a table without
  * errors; else ERROR states the first error. */
-static bool table_is_right(const char *text, size_t bytes, const char *file,
+static bool is_table_valid(const char *text, size_t bytes, const char *file,
                            struct glint_prescription *lens,
                            struct glint_error *error)
 {
@@ -164,14 +164,14 @@ static bool table_is_right(const char *text, size_t bytes, const char *file,
 
     if (glint_prescription_parse(lens, text, bytes, file, error) != GLINT_OK)
         return false;
-    k = glass_suspect(lens, why, sizeof why);
+    k = find_suspect_glass(lens, why, sizeof why);
     if (k >= 0)
         snprintf(error->text, sizeof error->text, "%s: surface %d: %s", file, k,
                  why);
     return k < 0;
 }
 
-static double relative_difference(double got, double stated)
+static double relative_deviation(double got, double stated)
 {
     return stated > 0 ? fabs(got / stated - 1) : 0;
 }
@@ -179,7 +179,7 @@ static double relative_difference(double got, double stated)
 /* Returns whether A is more likely than B: an existing glass first, then a
  * sign or swapped digits before a wrong digit, then the smaller difference
  * from the stated values. */
-static bool is_likelier(const struct mend *a, const struct mend *b)
+static bool is_correction_likelier(const struct mend *a, const struct mend *b)
 {
     const bool first = a->slip <= SLIP_SWAP, second = b->slip <= SLIP_SWAP;
 
@@ -188,12 +188,12 @@ static bool is_likelier(const struct mend *a, const struct mend *b)
                                   : a->off < b->off;
 }
 
-static void insert_mend(struct search *s, const struct mend *found)
+static void insert_correction(struct search *s, const struct mend *found)
 {
     int k = s->n < MENDS ? s->n : MENDS;
 
     s->n++;
-    for (; k > 0 && is_likelier(found, &s->mend[k - 1]); k--)
+    for (; k > 0 && is_correction_likelier(found, &s->mend[k - 1]); k--)
         if (k < MENDS)
             s->mend[k] = s->mend[k - 1];
     if (k < MENDS)
@@ -201,8 +201,8 @@ static void insert_mend(struct search *s, const struct mend *found)
 }
 
 /* Tests the table with NUMBER in place of the current number. */
-static void try_number_text(struct search *s, const char *number,
-                            enum slip slip)
+static void try_replacement_number(struct search *s, const char *number,
+                                   enum slip slip)
 {
     static struct glint_prescription lens;
     struct glint_error error = {""};
@@ -216,19 +216,19 @@ static void try_number_text(struct search *s, const char *number,
     memcpy(s->edited, s->text, s->at);
     memcpy(s->edited + s->at, number, n);
     memcpy(s->edited + s->at + n, s->text + tail, s->bytes - tail);
-    if (!table_is_right(s->edited, s->bytes - s->length + n, "t", &lens,
+    if (!is_table_valid(s->edited, s->bytes - s->length + n, "t", &lens,
                         &error))
         return;
     glint_optics_of(&lens, &optics);
     memcpy(found.from, s->text + s->at, s->length);
     memcpy(found.to, number, n);
-    found.listed = s->glass >= 0 && glass_is_listed(&lens, s->glass);
+    found.listed = s->glass >= 0 && is_glass_in_catalogue(&lens, s->glass);
     found.focal_mm = optics.focal_mm;
     found.back_mm = optics.back_focal_mm;
     found.off =
-        fmax(relative_difference(optics.focal_mm, lens.check_focal_mm),
-             relative_difference(optics.back_focal_mm, lens.check_back_mm));
-    insert_mend(s, &found);
+        fmax(relative_deviation(optics.focal_mm, lens.check_focal_mm),
+             relative_deviation(optics.back_focal_mm, lens.check_back_mm));
+    insert_correction(s, &found);
 }
 
 static bool is_digit(char c)
@@ -236,7 +236,7 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-static void try_digits(struct search *s, char number[24])
+static void try_digit_misprints(struct search *s, char number[24])
 {
     for (size_t i = 0; i < s->length; i++) {
         const char was = number[i];
@@ -247,20 +247,20 @@ static void try_digits(struct search *s, char number[24])
         for (int digit = 0; digit < 10; digit++) {
             number[i] = (char)('0' + digit);
             if (number[i] != was)
-                try_number_text(s, number, SLIP_DIGIT);
+                try_replacement_number(s, number, SLIP_DIGIT);
         }
         number[i] = was;
         if (next >= s->length || !is_digit(number[next]) || number[next] == was)
             continue;
         number[i] = number[next];
         number[next] = was;
-        try_number_text(s, number, SLIP_SWAP);
+        try_replacement_number(s, number, SLIP_SWAP);
         number[next] = number[i];
         number[i] = was;
     }
 }
 
-static void try_point(struct search *s, const char number[24])
+static void try_decimal_point_shifts(struct search *s, const char number[24])
 {
     const char *point = strchr(number, '.');
     char moved[24];
@@ -273,12 +273,12 @@ static void try_point(struct search *s, const char number[24])
         memcpy(moved, number, sizeof moved);
         moved[i] = number[i + way];
         moved[i + way] = '.';
-        try_number_text(s, moved, SLIP_POINT);
+        try_replacement_number(s, moved, SLIP_POINT);
     }
 }
 
 /* Tries all misprints of the number at S->at. */
-static void try_number(struct search *s)
+static void try_number_misprints(struct search *s)
 {
     char number[24] = "", flipped[24];
 
@@ -286,17 +286,17 @@ static void try_number(struct search *s)
         return;
     memcpy(number, s->text + s->at, s->length);
     if (number[0] == '-')
-        try_number_text(s, number + 1, SLIP_SIGN);
+        try_replacement_number(s, number + 1, SLIP_SIGN);
     else {
         snprintf(flipped, sizeof flipped, "-%.21s", number);
-        try_number_text(s, flipped, SLIP_SIGN);
+        try_replacement_number(s, flipped, SLIP_SIGN);
     }
-    try_digits(s, number);
-    try_point(s, number);
+    try_digit_misprints(s, number);
+    try_decimal_point_shifts(s, number);
 }
 
 /* Tries all misprints of the numbers in the line START .. END. */
-static void try_line(struct search *s, size_t start, size_t end)
+static void try_line_misprints(struct search *s, size_t start, size_t end)
 {
     size_t at = start;
 
@@ -314,7 +314,7 @@ static void try_line(struct search *s, size_t start, size_t end)
         if (word > (s->glass < 0 ? 0 : 3) &&
             (is_digit(s->text[s->at]) || s->text[s->at] == '-' ||
              s->text[s->at] == '.'))
-            try_number(s);
+            try_number_misprints(s);
     }
 }
 
@@ -322,7 +322,8 @@ static void try_line(struct search *s, size_t start, size_t end)
  * two swapped digits, a wrong digit, the decimal point. If a glass is the
  * only error, tries only its nd and Vd. Fills MEND with those that make TEXT
  * correct, the likeliest first, at most MENDS; returns their total number. */
-static int find_mends(const char *text, size_t bytes, struct mend mend[MENDS])
+static int find_corrections(const char *text, size_t bytes,
+                            struct mend mend[MENDS])
 {
     static struct search s;
     static struct glint_prescription lens;
@@ -338,7 +339,7 @@ static int find_mends(const char *text, size_t bytes, struct mend mend[MENDS])
     s.mend = mend;
     s.glass =
         glint_prescription_parse(&lens, text, bytes, "t", &error) == GLINT_OK
-            ? glass_suspect(&lens, why, sizeof why)
+            ? find_suspect_glass(&lens, why, sizeof why)
             : -1;
     for (size_t at = 0; at < bytes;) {
         size_t end = at;
@@ -350,7 +351,7 @@ static int find_mends(const char *text, size_t bytes, struct mend mend[MENDS])
                              memcmp(text + at, "stop", 4) == 0)) {
             s.surface = text[at + 1] == 'u' ? surface++ : -1;
             if (s.glass < 0 || s.surface == s.glass)
-                try_line(&s, at, end);
+                try_line_misprints(&s, at, end);
         }
         at = end + 1;
     }
@@ -377,7 +378,7 @@ static const char help[] =
 
 static const char help_end[] = COMMON_HELP;
 
-static const char *slip_name(enum slip slip)
+static const char *misprint_name(enum slip slip)
 {
     return slip == SLIP_SIGN    ? "sign"
            : slip == SLIP_SWAP  ? "digits swapped"
@@ -385,8 +386,8 @@ static const char *slip_name(enum slip slip)
                                 : "decimal point";
 }
 
-static void print_text(const char *file, const char *wrong,
-                       const struct mend *mend, int n)
+static void print_lint_text(const char *file, const char *wrong,
+                            const struct mend *mend, int n)
 {
     if (!*wrong) {
         printf("%s: nothing found\n", file);
@@ -399,12 +400,12 @@ static void print_text(const char *file, const char *wrong,
         printf("%s:%d:%d: %s for %s? (%s; then f = %.3f mm, back focus %.3f "
                "mm)\n",
                file, mend[k].line, mend[k].column, mend[k].to, mend[k].from,
-               slip_name(mend[k].slip), mend[k].focal_mm, mend[k].back_mm);
+               misprint_name(mend[k].slip), mend[k].focal_mm, mend[k].back_mm);
     if (n > MENDS)
         printf("and %d more\n", n - MENDS);
 }
 
-static void print_json(const char *wrong, const struct mend *mend, int n)
+static void print_lint_json(const char *wrong, const struct mend *mend, int n)
 {
     struct json_writer json = {.to = stdout};
 
@@ -414,11 +415,12 @@ static void print_json(const char *wrong, const struct mend *mend, int n)
                    "{line: %d, column: %d, from: %s, to: %s, slip: %s, "
                    "focal_length_mm: %.6f, back_focal_length_mm: %.6f}",
                    mend[k].line, mend[k].column, mend[k].from, mend[k].to,
-                   slip_name(mend[k].slip), mend[k].focal_mm, mend[k].back_mm);
+                   misprint_name(mend[k].slip), mend[k].focal_mm,
+                   mend[k].back_mm);
     json_write(&json, "]}\n");
 }
 
-static int lint_file(const struct tool *tool, const char *name)
+static int lint_lens_file(const struct tool *tool, const char *name)
 {
     static struct glint_prescription lens;
     struct mend mend[MENDS];
@@ -439,12 +441,12 @@ static int lint_file(const struct tool *tool, const char *name)
         free(text);
         return tool_fail(tool, status, error.text);
     }
-    if (!table_is_right((const char *)text, bytes, file, &lens, &error))
-        n = find_mends((const char *)text, bytes, mend);
+    if (!is_table_valid((const char *)text, bytes, file, &lens, &error))
+        n = find_corrections((const char *)text, bytes, mend);
     if (tool->json)
-        print_json(error.text, mend, n);
+        print_lint_json(error.text, mend, n);
     else
-        print_text(file, error.text, mend, n);
+        print_lint_text(file, error.text, mend, n);
     free(text);
     return error.text[0] ? EXIT_LENS : EXIT_OK;
 }
@@ -464,7 +466,7 @@ int cmd_lint(int argc, char **argv)
         return code;
     code = tool_start(&tool);
     if (code == EXIT_OK)
-        code = lint_file(&tool, argv[optind]);
+        code = lint_lens_file(&tool, argv[optind]);
     tool_finish(&tool);
     return code;
 }

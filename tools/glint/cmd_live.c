@@ -119,7 +119,7 @@ struct line {
     struct live_options *into;
 };
 
-static void set_defaults(struct live_options *o)
+static void set_live_defaults(struct live_options *o)
 {
     *o = (struct live_options){.input = {.camera = {.device = "/dev/video0",
                                                     .input = -1,
@@ -134,7 +134,7 @@ static void set_defaults(struct live_options *o)
 }
 
 /* Parses TEXT, "30" or "30000/1001", as a frame rate. */
-static bool parse_rate(const char *text, int *num, int *den)
+static bool parse_frame_rate(const char *text, int *num, int *den)
 {
     char top[16];
     const char *slash = strchr(text, '/');
@@ -150,7 +150,7 @@ static bool parse_rate(const char *text, int *num, int *den)
 }
 
 /* Returns whether TEXT has exactly one conversion, and it is for an int. */
-static bool is_pattern(const char *text)
+static bool is_numbered_pattern(const char *text)
 {
     const char *at = strchr(text, '%');
     const size_t digits = at ? strspn(at + 1, "0123456789") : 0;
@@ -160,7 +160,8 @@ static bool is_pattern(const char *text)
 
 /* Applies an option of the camera. Returns -1, -2 if OPTION is not of the
  * camera, or -3 if VALUE is invalid. */
-static int take_camera(struct live_wish *wish, int option, const char *value)
+static int parse_camera_option(struct live_wish *wish, int option,
+                               const char *value)
 {
     static const char *const ranges[] = {"auto", "full", "limited", NULL};
     static const char *const matrices[] = {"auto", "601", "709", NULL};
@@ -178,7 +179,7 @@ static int take_camera(struct live_wish *wish, int option, const char *value)
         good = tool_size(value, &c->width, &c->height);
         break;
     case 'r':
-        good = parse_rate(value, &c->fps_num, &c->fps_den);
+        good = parse_frame_rate(value, &c->fps_num, &c->fps_den);
         break;
     case 'f':
         good = glint_fourcc_parse(value, &c->fourcc);
@@ -205,9 +206,9 @@ static int take_camera(struct live_wish *wish, int option, const char *value)
 }
 
 /* Applies an option that only glint live has. Returns the same values as
- * take_camera(). */
-static int parse_own_option(struct live_options *o, int option,
-                            const char *value)
+ * parse_camera_option(). */
+static int parse_live_option(struct live_options *o, int option,
+                             const char *value)
 {
     static const char *const stats[] = {"auto", "line", "json", "none", NULL};
     static const char *const fits[] = {"scale", "centre", NULL};
@@ -244,7 +245,7 @@ static int parse_own_option(struct live_options *o, int option,
         break;
     case OPT_SNAPSHOT:
         o->snapshot = value;
-        good = is_pattern(value) &&
+        good = is_numbered_pattern(value) &&
                snprintf(NULL, 0, value, INT_MAX) < LIVE_NAME_BYTES;
         break;
     case 'o':
@@ -252,7 +253,7 @@ static int parse_own_option(struct live_options *o, int option,
         good = live_output_parse(&(struct live_output){.path = NULL}, value);
         break;
     default:
-        return take_camera(&o->input, option, value);
+        return parse_camera_option(&o->input, option, value);
     }
     return good && word >= 0 ? -1 : -3;
 }
@@ -272,19 +273,19 @@ static int parse_option(struct line *line, int option, const char *value)
                                    option, value);
 
     if (code == -2)
-        code = parse_own_option(line->into, option, value);
+        code = parse_live_option(line->into, option, value);
     if (code == -3)
         return tool_refuse(line->tool, find_option_name(option), value);
     return code == -2 ? tool_option(line->tool, option, value) : code;
 }
 
-static int parse_file_option(void *ctx, const struct option *option,
-                             const char *value)
+static int parse_config_option(void *ctx, const struct option *option,
+                               const char *value)
 {
     return parse_option(ctx, option->val, value);
 }
 
-static int parse_line(struct line *line)
+static int parse_command_line(struct line *line)
 {
     int c, code;
 
@@ -301,8 +302,9 @@ static int parse_line(struct line *line)
 /* Rejects options O with which an output would overwrite an input, the file
  * CONFIG (may be NULL) or another output. Returns -1 if there is no
  * conflict, else an exit code. */
-static int check_apart(const struct tool *tool, const struct live_options *o,
-                       const char *config)
+static int check_outputs_differ_from_inputs(const struct tool *tool,
+                                            const struct live_options *o,
+                                            const char *config)
 {
     struct apart files = {.n_read = 0};
     struct live_output output = {.path = NULL};
@@ -327,7 +329,7 @@ static int parse_options(struct line *line, struct config *config,
     const char *path;
     int code;
 
-    set_defaults(into);
+    set_live_defaults(into);
     line->into = into;
     path = tool_value_of(line->argc, line->argv, SHORT, options, OPT_CONFIG);
     if (path) {
@@ -339,8 +341,9 @@ static int parse_options(struct line *line, struct config *config,
     code = drawing_line_style_of(line->tool, &into->drawing.line, line->argc,
                                  line->argv, SHORT, options);
     if (code < 0)
-        code = parse_line(line);
-    return code < 0 ? check_apart(line->tool, into, path) : code;
+        code = parse_command_line(line);
+    return code < 0 ? check_outputs_differ_from_inputs(line->tool, into, path)
+                    : code;
 }
 
 static int reread_options(void *ctx, struct tool *tool,
@@ -370,16 +373,17 @@ int cmd_live(int argc, char **argv)
 {
     struct tool tool = {.name = "live", .help = help, .help_end = COMMON_HELP};
     struct live_options *o = calloc(1, sizeof *o);
-    struct line line = {.tool = &tool,
-                        .argc = argc,
-                        .argv = argv,
-                        .config = {&tool, NULL, parse_file_option, &line, NULL},
-                        .into = o};
+    struct line line = {
+        .tool = &tool,
+        .argc = argc,
+        .argv = argv,
+        .config = {&tool, NULL, parse_config_option, &line, NULL},
+        .into = o};
     int code;
 
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    set_defaults(o);
+    set_live_defaults(o);
     options = engine_getopt(&tool, ENGINE_ALL,
                             &o->drawing.line.settings.options, own);
     line.config.options = options;

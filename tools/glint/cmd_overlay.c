@@ -71,14 +71,15 @@ static const char help[] =
 
 /* ------------------------------------------------------------------ options */
 
-static bool parse_word(const char *text, const char *const *words, int *value)
+static bool parse_option_word(const char *text, const char *const *words,
+                              int *value)
 {
     *value = tool_word(text, words);
     return *value >= 0;
 }
 
 /* Parses the range of frames TEXT, "A-B". */
-static bool parse_frames(struct overlay *o, const char *text)
+static bool parse_frame_range(struct overlay *o, const char *text)
 {
     char first[12];
     const size_t n = strcspn(text, "-");
@@ -92,7 +93,7 @@ static bool parse_frames(struct overlay *o, const char *text)
 }
 
 /* Parses the size TEXT, "WxH". */
-static bool parse_size(struct overlay *o, const char *text)
+static bool parse_image_size(struct overlay *o, const char *text)
 {
     char width[12];
     const size_t n = strcspn(text, "x");
@@ -115,9 +116,9 @@ static bool parse_option(struct overlay *o, int option, const char *value)
 
     switch (option) {
     case 'r':
-        return parse_word(value, ranges, &o->range);
+        return parse_option_word(value, ranges, &o->range);
     case 'x':
-        return parse_word(value, matrices, &o->matrix);
+        return parse_option_word(value, matrices, &o->matrix);
     case '4':
         o->transfer = tool_word(value, glint_transfer_words);
         return o->transfer >= 0 || strcmp(value, "auto") == 0;
@@ -126,7 +127,7 @@ static bool parse_option(struct overlay *o, int option, const char *value)
         o->has_raw = true;
         return o->raw.format >= 0;
     case '2':
-        return parse_size(o, value);
+        return parse_image_size(o, value);
     case '3':
         return tool_integer(value, 1, 4 * GLINT_MAX_SIDE, &o->raw.stride);
     case 'Q':
@@ -140,7 +141,7 @@ static bool parse_option(struct overlay *o, int option, const char *value)
         o->has_layers_type = true;
         return word >= 0;
     case 'F':
-        return parse_frames(o, value);
+        return parse_frame_range(o, value);
     case 'W':
         return tool_integer(value, 0, INT_MAX, &o->warm_up);
     case 'B':
@@ -168,7 +169,7 @@ static const struct option own[] = {
     {"layers-type", required_argument, NULL, 'T'},
     {NULL, 0, NULL, 0}};
 
-static int check_raw(const struct tool *tool, const struct overlay *o)
+static int check_raw_options(const struct tool *tool, const struct overlay *o)
 {
     if (o->has_raw != (o->raw.width > 0) || (o->raw.stride && !o->has_raw))
         return tool_usage(tool, "frames without headers need --format F and "
@@ -181,7 +182,8 @@ static int check_raw(const struct tool *tool, const struct overlay *o)
 
 /* Rejects options for N inputs that write a single file, and raw files,
  * whose names do not state the output format. */
-static int check_folder(const struct tool *tool, const struct overlay *o, int n)
+static int check_folder_options(const struct tool *tool,
+                                const struct overlay *o, int n)
 {
     if (o->has_raw)
         return tool_usage(tool, "--format excludes an output folder: raw "
@@ -197,8 +199,8 @@ static int check_folder(const struct tool *tool, const struct overlay *o, int n)
 }
 
 /* Checks the options of one input. Returns -1 or an exit code. */
-static int check_line(const struct tool *tool, int argc, char **argv,
-                      struct overlay *o)
+static int check_input_options(const struct tool *tool, int argc, char **argv,
+                               struct overlay *o)
 {
     int code;
 
@@ -217,7 +219,7 @@ static int check_line(const struct tool *tool, int argc, char **argv,
                                 "none: leave out -o and --frames");
     if (o->lists_shots)
         o->output = "-";
-    if ((code = check_raw(tool, o)) != EXIT_OK)
+    if ((code = check_raw_options(tool, o)) != EXIT_OK)
         return code;
     if (o->has_layers_type && !o->layers.path)
         return tool_usage(tool, "--layers-type is for --layers OUT");
@@ -236,9 +238,9 @@ static int check_line(const struct tool *tool, int argc, char **argv,
 /* Parses the command line and moves its inputs to ARGV[optind] on. OUTPUT:
  * the output file; NULL: as given by -o; if that is a folder, it is stored
  * in *FOLDER. */
-static int parse_inputs(struct tool *tool, int argc, char **argv,
-                        struct overlay *o, const char *output,
-                        const char **folder)
+static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
+                                    struct overlay *o, const char *output,
+                                    const char **folder)
 {
     const struct option *const options =
         engine_getopt(tool, ENGINE_ALL, &o->drawing.line.settings.options, own);
@@ -272,17 +274,17 @@ static int parse_inputs(struct tool *tool, int argc, char **argv,
                            "needs a picture, a sequence or a video");
     if (!output && o->output && folder_is(o->output)) {
         *folder = o->output;
-        code = check_folder(tool, o, argc - optind);
+        code = check_folder_options(tool, o, argc - optind);
         return code == EXIT_OK ? -1 : code;
     }
     if (output)
         o->output = output;
-    return check_line(tool, argc, argv, o);
+    return check_input_options(tool, argc, argv, o);
 }
 
 /* ------------------------------------------------------------------- result */
 
-static void print_figures(const struct overlay *o)
+static void print_overlay_statistics(const struct overlay *o)
 {
     const int drawn = overlay_count_frames(o), n = drawn ? drawn : 1;
 
@@ -297,8 +299,8 @@ static void print_figures(const struct overlay *o)
             o->figures.peak_bytes);
 }
 
-static void print_json(const struct overlay *o,
-                       const struct overlay_light *light)
+static void print_overlay_json(const struct overlay *o,
+                               const struct overlay_light *light)
 {
     const double seconds = tool_seconds() - o->figures.started;
     const int drawn = overlay_count_frames(o), n = drawn ? drawn : 1;
@@ -316,7 +318,7 @@ static void print_json(const struct overlay *o,
     json_write(&json, "}\n");
 }
 
-static void print_result(const struct tool *tool, struct overlay *o)
+static void print_overlay_result(const struct tool *tool, struct overlay *o)
 {
     const bool json = tool->json && strcmp(o->output, "-") != 0;
     struct overlay_light light;
@@ -328,16 +330,16 @@ static void print_result(const struct tool *tool, struct overlay *o)
         return;
     light = overlay_light(o);
     if (json)
-        print_json(o, &light);
+        print_overlay_json(o, &light);
     else
         overlay_say(o, &light, stderr);
     if (tool->verbose && !tool->quiet)
-        print_figures(o);
+        print_overlay_statistics(o);
 }
 
 /* Rejects an input that is missing, empty or not an image before a lens is
  * baked. Returns an exit code. */
-static int check_input(struct tool *tool, struct overlay *o)
+static int check_input_file(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -369,7 +371,7 @@ static int check_input(struct tool *tool, struct overlay *o)
 
 /* Rejects an output that cannot be written or does not fit the type of the
  * input before the work begins. */
-static int check_output(struct tool *tool, struct overlay *o)
+static int check_output_file(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
     bool frames;
@@ -407,7 +409,7 @@ static int check_output(struct tool *tool, struct overlay *o)
 
 /* Sets S so that no model is baked and no brightness is measured if nothing
  * is drawn, unless key frames, control lines or a zoom may need them later. */
-static void draw_nothing(struct settings *s, bool is_zoomed)
+static void disable_bake_and_metering(struct settings *s, bool is_zoomed)
 {
     struct glint_options *const o = &s->options;
 
@@ -422,7 +424,7 @@ static void draw_nothing(struct settings *s, bool is_zoomed)
 /* Returns what to do if the lens has no model: one picture is drawn by exact
  * rays; for several pictures, or if an option needs the model, it is baked as
  * soon as a lamp is found. */
-static enum settings_unbaked choose_unbaked(const struct overlay *o)
+static enum settings_unbaked choose_unbaked_rendering(const struct overlay *o)
 {
     const struct settings *const s = &o->drawing.line.settings;
     const struct glint_options *const of = &s->options;
@@ -436,16 +438,16 @@ static enum settings_unbaked choose_unbaked(const struct overlay *o)
                : SETTINGS_SEARCH;
 }
 
-static int overlay_input(struct tool *tool, struct overlay *o)
+static int overlay_single_input(struct tool *tool, struct overlay *o)
 {
-    int code = check_output(tool, o);
+    int code = check_output_file(tool, o);
 
     if (o->lists_shots)
-        draw_nothing(&o->drawing.line.settings, o->zoom.is_asked);
+        disable_bake_and_metering(&o->drawing.line.settings, o->zoom.is_asked);
     if (code == EXIT_OK && o->is_video)
         code = overlay_video_check(tool, o);
     if (code == EXIT_OK)
-        code = check_input(tool, o);
+        code = check_input_file(tool, o);
     if (code == EXIT_OK)
         code = layers_check(tool, &o->layers,
                             o->is_video || overlay_is_sequence(o));
@@ -454,7 +456,7 @@ static int overlay_input(struct tool *tool, struct overlay *o)
     if (code == EXIT_OK)
         code = zoom_clip_open(tool, &o->zoom, o->is_video ? o->input : NULL,
                               &o->drawing.line);
-    o->drawing.line.settings.unbaked = choose_unbaked(o);
+    o->drawing.line.settings.unbaked = choose_unbaked_rendering(o);
     if (code == EXIT_OK)
         code = drawing_open(tool, &o->drawing);
     if (code != EXIT_OK)
@@ -469,22 +471,23 @@ static int overlay_input(struct tool *tool, struct overlay *o)
     if (code == EXIT_OK)
         code = drawing_finish(tool, &o->drawing);
     if (code == EXIT_OK && !o->lists_shots)
-        print_result(tool, o);
+        print_overlay_result(tool, o);
     return code;
 }
 
 /* ------------------------------------------------------------------ folders */
 
-/* Adds a flare to the input of a command line, for overlay_folder() to one
- * of N inputs. OUTPUT: see parse(). */
-static int overlay_line(int argc, char **argv, const char *output, int n);
+/* Adds a flare to the input of a command line, for overlay_inputs_to_folder()
+ * to one of N inputs. OUTPUT: see parse(). */
+static int overlay_command_line(int argc, char **argv, const char *output,
+                                int n);
 
 /* Adds flares to the N inputs ARGV[FIRST] on; each is written to FOLDER
  * under its own name. An input that fails does not stop the others, unless
  * the command line or the lens is wrong. Returns the largest exit code. */
-static int overlay_folder(const struct tool *tool, char **argv, int first,
-                          int n, const char *folder,
-                          const struct glint_options *options)
+static int overlay_inputs_to_folder(const struct tool *tool, char **argv,
+                                    int first, int n, const char *folder,
+                                    const struct glint_options *options)
 {
     char **const line = calloc((size_t)first + 2, sizeof *line);
     bool is_new = false, is_wrong = false;
@@ -502,7 +505,7 @@ static int overlay_folder(const struct tool *tool, char **argv, int first,
         line[first] = argv[first + i];
         optind = 0;
         if (folder_path(path, folder, argv[first + i]))
-            one = overlay_line(first + 1, line, path, n);
+            one = overlay_command_line(first + 1, line, path, n);
         else
             tool_error(tool, "%s: the name is too long", argv[first + i]);
         done += one == EXIT_OK;
@@ -521,7 +524,8 @@ static int overlay_folder(const struct tool *tool, char **argv, int first,
     return code;
 }
 
-static int overlay_line(int argc, char **argv, const char *output, int n)
+static int overlay_command_line(int argc, char **argv, const char *output,
+                                int n)
 {
     struct tool tool = {
         .name = "overlay", .help = help, .help_end = COMMON_HELP};
@@ -535,14 +539,15 @@ static int overlay_line(int argc, char **argv, const char *output, int n)
     o->start_number = o->transfer = -1;
     o->last = o->warm_up = INT_MAX;
     o->is_one_of_many = n > 1;
-    code = parse_inputs(&tool, argc, argv, o, output, &folder);
+    code = parse_options_and_inputs(&tool, argc, argv, o, output, &folder);
     if (code < 0 && folder)
-        code = overlay_folder(&tool, argv, optind, argc - optind, folder,
-                              &o->drawing.line.settings.options);
+        code =
+            overlay_inputs_to_folder(&tool, argv, optind, argc - optind, folder,
+                                     &o->drawing.line.settings.options);
     else if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = overlay_input(&tool, o);
+            code = overlay_single_input(&tool, o);
         tool_finish(&tool);
     }
     overlay_y4m_close(o);
@@ -554,5 +559,5 @@ static int overlay_line(int argc, char **argv, const char *output, int n)
 
 int cmd_overlay(int argc, char **argv)
 {
-    return overlay_line(argc, argv, NULL, 1);
+    return overlay_command_line(argc, argv, NULL, 1);
 }

@@ -145,7 +145,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 /* Returns the point lights that the lamps are drawn as, several for a lamp
  * of visible extent; the caller frees them. Sets *N to their number. Returns
  * NULL if there is no memory. */
-static struct glint_lamp *make_points(const struct render *r, int *n)
+static struct glint_lamp *split_lamps_into_points(const struct render *r,
+                                                  int *n)
 {
     const struct glint_view view =
         opened_lens_view(&r->lens, &r->settings, r->width, r->height);
@@ -171,12 +172,12 @@ static struct glint_lamp *make_points(const struct render *r, int *n)
     return points;
 }
 
-static int render_exact(struct tool *tool, struct render *r)
+static int render_exact_rays(struct tool *tool, struct render *r)
 {
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
     struct tool_progress progress;
     int n_points = 0;
-    struct glint_lamp *points = make_points(r, &n_points);
+    struct glint_lamp *points = split_lamps_into_points(r, &n_points);
     struct glint_exact_config cfg = {
         .setup = &r->lens.setup,
         .view = opened_lens_view(&r->lens, &r->settings, r->width, r->height),
@@ -215,8 +216,8 @@ static int render_exact(struct tool *tool, struct render *r)
     return EXIT_OK;
 }
 
-static void print_lights(const struct tool *tool,
-                         const struct glint_engine_report *report)
+static void print_light_statistics(const struct tool *tool,
+                                   const struct glint_engine_report *report)
 {
     char lights[64];
 
@@ -230,13 +231,13 @@ static void print_lights(const struct tool *tool,
 }
 
 /* Returns MODEL or EXACT, by what is drawn. */
-static const char *rays_of(const struct render *r, const char *model,
-                           const char *exact)
+static const char *chosen_ray_method(const struct render *r, const char *model,
+                                     const char *exact)
 {
     return r->lens.model.data ? model : exact;
 }
 
-static int render_model(struct tool *tool, struct render *r)
+static int render_model_flare(struct tool *tool, struct render *r)
 {
     struct glint_engine_report report = {.lights = 0};
     struct glint_engine_config cfg;
@@ -269,15 +270,15 @@ static int render_model(struct tool *tool, struct render *r)
         return tool_fail(tool, status, error.text);
     if (tool->json) {
         json_write(&r->json, "{engine: %s, rays: %s", "model",
-                   rays_of(r, "model", "exact"));
+                   chosen_ray_method(r, "model", "exact"));
         settings_json(&r->json, &report);
     }
-    print_lights(tool, &report);
+    print_light_statistics(tool, &report);
     return EXIT_OK;
 }
 
 /* Appends the lamps of frame 0 of the file to those of the command line. */
-static int read_lamps(struct tool *tool, struct render *r)
+static int append_lamp_file(struct tool *tool, struct render *r)
 {
     const struct glint_view view =
         opened_lens_view(&r->lens, &r->settings, r->width, r->height);
@@ -309,8 +310,9 @@ static int read_lamps(struct tool *tool, struct render *r)
 }
 
 /* Rejects an output that would overwrite LENS or an option's file. */
-static int check_apart(const struct tool *tool, const struct render *r,
-                       const char *lens)
+static int check_output_differs_from_inputs(const struct tool *tool,
+                                            const struct render *r,
+                                            const char *lens)
 {
     struct apart files = {.n_read = 0};
 
@@ -322,9 +324,10 @@ static int check_apart(const struct tool *tool, const struct render *r,
     return apart_check(tool, &files);
 }
 
-static int render_lens(struct tool *tool, struct render *r, const char *lens)
+static int render_lens_flare(struct tool *tool, struct render *r,
+                             const char *lens)
 {
-    int code = check_apart(tool, r, lens);
+    int code = check_output_differs_from_inputs(tool, r, lens);
     char what[sizeof r->lens.table.name + 16];
     double start;
 
@@ -334,7 +337,7 @@ static int render_lens(struct tool *tool, struct render *r, const char *lens)
     if (code == EXIT_OK)
         code = opened_lens_open(tool, &r->lens, &r->settings, lens);
     if (code == EXIT_OK && r->lights_file)
-        code = read_lamps(tool, r);
+        code = append_lamp_file(tool, r);
     if (code != EXIT_OK)
         return code;
     start = tool_seconds();
@@ -344,7 +347,7 @@ static int render_lens(struct tool *tool, struct render *r, const char *lens)
         calloc(3 * (size_t)r->width * (size_t)r->height, sizeof(float));
     if (!r->image.rgb)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = r->exact ? render_exact(tool, r) : render_model(tool, r);
+    code = r->exact ? render_exact_rays(tool, r) : render_model_flare(tool, r);
     if (code == EXIT_OK)
         code = render_file_save(
             tool, r->output, r->linear, &r->image,
@@ -352,7 +355,7 @@ static int render_lens(struct tool *tool, struct render *r, const char *lens)
     if (code == EXIT_OK && tool->json)
         json_write(&r->json, "ms: %.3f}\n", 1e3 * (tool_seconds() - start));
     snprintf(what, sizeof what, "%s, %s", r->lens.table.name,
-             rays_of(r, "baked model", "exact rays"));
+             chosen_ray_method(r, "baked model", "exact rays"));
     if (code == EXIT_OK)
         render_file_say(tool, r->output, r->width, r->height, what,
                         tool_seconds() - start);
@@ -382,7 +385,7 @@ int cmd_render(int argc, char **argv)
     if (code < 0) {
         code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = render_lens(&tool, r, argv[optind]);
+            code = render_lens_flare(&tool, r, argv[optind]);
         tool_finish(&tool);
     }
     opened_lens_close(&r->lens);

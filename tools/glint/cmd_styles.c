@@ -78,8 +78,8 @@ static int parse_options(struct tool *tool, struct styles_command *c,
 
 /* Loads the photograph that comes with glint; the small one if the large one
  * needs a missing plug-in. Returns GLINT_E_ARGUMENT if neither is installed. */
-static enum glint_status load_photograph(struct glint_image *image,
-                                         struct glint_error *error)
+static enum glint_status load_sample_photograph(struct glint_image *image,
+                                                struct glint_error *error)
 {
     static const char *const places[] = {
         "../bridge.jpg", "../tests/data/bridge.jpg", "../bridge.ppm",
@@ -101,12 +101,12 @@ static enum glint_status load_photograph(struct glint_image *image,
     return status;
 }
 
-static int load_input(struct tool *tool, struct styles_command *c)
+static int load_input_image(struct tool *tool, struct styles_command *c)
 {
     struct glint_error error = {""};
     const enum glint_status status =
         c->input ? glint_picture_load(c->input, &c->image, &error)
-                 : load_photograph(&c->image, &error);
+                 : load_sample_photograph(&c->image, &error);
     uint8_t *copy;
 
     if (status != GLINT_OK)
@@ -122,15 +122,16 @@ static int load_input(struct tool *tool, struct styles_command *c)
     return EXIT_OK;
 }
 
-static void make_caption(char text[CAPTION_BYTES], const struct style *style)
+static void write_style_caption(char text[CAPTION_BYTES],
+                                const struct style *style)
 {
     snprintf(text, CAPTION_BYTES, "%s: %s", style->name, style->about);
 }
 
 /* Opens SHEET for N images of the size of SMALL, with space for the longest
  * caption. */
-static enum glint_status open_sheet(struct sheet *sheet, int n,
-                                    const struct glint_image *small)
+static enum glint_status open_contact_sheet(struct sheet *sheet, int n,
+                                            const struct glint_image *small)
 {
     char text[CAPTION_BYTES];
     int most = 1;
@@ -138,15 +139,15 @@ static enum glint_status open_sheet(struct sheet *sheet, int n,
     for (int k = 0; k < n; k++) {
         int rows;
 
-        make_caption(text, &styles[k]);
+        write_style_caption(text, &styles[k]);
         rows = sheet_caption_lines(small->width, text);
         most = rows > most ? rows : most;
     }
     return sheet_open(sheet, n, small->width, small->height, most);
 }
 
-static void copy_rows(const struct glint_image *to,
-                      const struct glint_image *from)
+static void copy_image_rows(const struct glint_image *to,
+                            const struct glint_image *from)
 {
     for (int y = 0; y < to->height; y++)
         memcpy(to->plane[0] + y * to->stride_bytes[0],
@@ -156,9 +157,9 @@ static void copy_rows(const struct glint_image *to,
 
 /* Draws the input in STYLE as image K of SHEET; the first call opens the
  * sheet. */
-static int draw_style(struct tool *tool, struct styles_command *c,
-                      struct drawing *drawing, const struct style *style,
-                      struct sheet *sheet, int k, int n)
+static int draw_style_image(struct tool *tool, struct styles_command *c,
+                            struct drawing *drawing, const struct style *style,
+                            struct sheet *sheet, int k, int n)
 {
     struct glint_image small = {.plane = {NULL}};
     enum glint_status status;
@@ -167,17 +168,17 @@ static int draw_style(struct tool *tool, struct styles_command *c,
 
     if (code != EXIT_OK)
         return code;
-    copy_rows(&c->drawn, &c->image);
+    copy_image_rows(&c->drawn, &c->image);
     status = drawing_draw(drawing, &c->drawn, 0);
     if (status == GLINT_OK)
         status = sheet_reduce(&small, &c->drawn, c->width);
     if (status == GLINT_OK && k == 0)
-        status = open_sheet(sheet, n, &small);
+        status = open_contact_sheet(sheet, n, &small);
     if (status == GLINT_OK) {
         const struct glint_image to = sheet_picture(sheet, k);
 
-        copy_rows(&to, &small);
-        make_caption(text, style);
+        copy_image_rows(&to, &small);
+        write_style_caption(text, style);
         sheet_caption(sheet, k, text);
     }
     free(small.plane[0]);
@@ -185,16 +186,16 @@ static int draw_style(struct tool *tool, struct styles_command *c,
 }
 
 /* Opens the lens of a style, without a bake. Returns an exit code. */
-static int open_style(const struct tool *tool, struct drawing *drawing)
+static int open_style_lens(const struct tool *tool, struct drawing *drawing)
 {
     drawing->line.is_still = true;
     drawing->line.settings.unbaked = settings_still(&drawing->line.settings);
     return drawing_open_lens(tool, drawing);
 }
 
-static int draw_styles(struct tool *tool, struct styles_command *c,
-                       const struct style *style, struct sheet *sheet, int k,
-                       int n)
+static int draw_all_styles(struct tool *tool, struct styles_command *c,
+                           const struct style *style, struct sheet *sheet,
+                           int k, int n)
 {
     struct drawing *const drawing = calloc(1, sizeof *drawing);
     int code;
@@ -206,15 +207,15 @@ static int draw_styles(struct tool *tool, struct styles_command *c,
     if (code < 0)
         code = parse_options(tool, c, drawing);
     if (code < 0)
-        code = open_style(tool, drawing);
+        code = open_style_lens(tool, drawing);
     if (code == EXIT_OK)
-        code = draw_style(tool, c, drawing, style, sheet, k, n);
+        code = draw_style_image(tool, c, drawing, style, sheet, k, n);
     drawing_close(drawing);
     free(drawing);
     return code;
 }
 
-static int draw_sheet(struct tool *tool, struct styles_command *c)
+static int draw_contact_sheet(struct tool *tool, struct styles_command *c)
 {
     struct glint_error error = {""};
     struct sheet sheet = {.columns = 0};
@@ -223,11 +224,11 @@ static int draw_sheet(struct tool *tool, struct styles_command *c)
 
     while (styles[n].name)
         n++;
-    code = load_input(tool, c);
+    code = load_input_image(tool, c);
     for (int k = 0; k < n && code == EXIT_OK; k++) {
         if (!tool->quiet)
             fprintf(stderr, "glint styles: %s\n", styles[k].name);
-        code = draw_styles(tool, c, &styles[k], &sheet, k, n);
+        code = draw_all_styles(tool, c, &styles[k], &sheet, k, n);
     }
     if (code == EXIT_OK) {
         status = glint_picture_save(c->output, &sheet.image, &error);
@@ -249,7 +250,8 @@ static void list_styles(void)
 }
 
 /* Returns -1 if OUT may be written, else an exit code. */
-static int check_output(const struct tool *tool, const struct styles_command *c)
+static int check_sheet_output(const struct tool *tool,
+                              const struct styles_command *c)
 {
     struct glint_error error = {""};
 
@@ -261,8 +263,9 @@ static int check_output(const struct tool *tool, const struct styles_command *c)
     return EXIT_OUTPUT;
 }
 
-static int check_apart(const struct tool *tool, const struct styles_command *c,
-                       const struct drawing *drawing)
+static int check_output_differs_from_inputs(const struct tool *tool,
+                                            const struct styles_command *c,
+                                            const struct drawing *drawing)
 {
     struct apart files = {.n_read = 0};
 
@@ -273,7 +276,7 @@ static int check_apart(const struct tool *tool, const struct styles_command *c,
 }
 
 /* Checks the command line before a lens is baked. */
-static int check_options(struct tool *tool, struct styles_command *c)
+static int check_style_options(struct tool *tool, struct styles_command *c)
 {
     struct drawing *const drawing = calloc(1, sizeof *drawing);
     int code;
@@ -285,14 +288,15 @@ static int check_options(struct tool *tool, struct styles_command *c)
     if (code < 0 && drawing->line.style)
         code =
             tool_usage(tool, "draws every style and does not accept --style");
-    if (code < 0 && check_apart(tool, c, drawing) != EXIT_OK)
+    if (code < 0 &&
+        check_output_differs_from_inputs(tool, c, drawing) != EXIT_OK)
         code = EXIT_USAGE;
     drawing_close(drawing);
     free(drawing);
     if (code >= 0)
         return code;
     if (c->output)
-        return check_output(tool, c);
+        return check_sheet_output(tool, c);
     return c->input ? tool_usage(tool, "needs -o OUT for the sheet") : -1;
 }
 
@@ -301,7 +305,7 @@ int cmd_styles(int argc, char **argv)
     struct tool tool = {
         .name = "styles", .help = help, .help_end = COMMON_HELP};
     struct styles_command c = {.argc = argc, .argv = argv, .width = 640};
-    int code = check_options(&tool, &c);
+    int code = check_style_options(&tool, &c);
 
     if (code >= 0)
         return code;
@@ -311,7 +315,7 @@ int cmd_styles(int argc, char **argv)
     }
     code = tool_start(&tool);
     if (code == EXIT_OK)
-        code = draw_sheet(&tool, &c);
+        code = draw_contact_sheet(&tool, &c);
     tool_finish(&tool);
     glint_picture_free(&c.image);
     free(c.drawn.plane[0]);

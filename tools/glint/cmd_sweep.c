@@ -61,7 +61,7 @@ struct asked {
 
 /* ------------------------------------------------------------------- cases */
 
-static void add_case(struct sweep *s, struct sweep_case c)
+static void add_sweep_case(struct sweep *s, struct sweep_case c)
 {
     if (s->n_cases < SWEEP_CASES)
         s->scase[s->n_cases++] = c;
@@ -70,32 +70,33 @@ static void add_case(struct sweep *s, struct sweep_case c)
 /* Adds, for the first lens, a smaller image with one light and one with 16
  * lights that can merge. It is smaller because the time of exact images is
  * proportional to the number of lights. */
-static void add_more(struct sweep *s)
+static void add_smaller_cases(struct sweep *s)
 {
     const struct sweep_case c = {
         .width = 640, .height = 360, .n_lamps = 1, .angle = 12};
     struct sweep_case many = c;
 
     many.n_lamps = 16;
-    add_case(s, c);
-    add_case(s, many);
+    add_sweep_case(s, c);
+    add_sweep_case(s, many);
 }
 
-static void add_cases(struct sweep *s, const struct asked *a)
+static void add_requested_cases(struct sweep *s, const struct asked *a)
 {
     for (int lens = 0; lens < s->n_lenses; lens++) {
         for (int i = 0; i < a->n_sizes; i++)
             for (int k = 0; k < a->n_lights; k++)
                 for (int m = 0; m < a->n_angles; m++)
-                    add_case(s, (struct sweep_case){
-                                    .lens = lens,
-                                    .width = a->size[i][0],
-                                    .height = a->size[i][1],
-                                    .n_lamps = a->lights[k],
-                                    .angle = a->angle[m],
-                                    .together = i == 0 && k == 0 && m == 0});
+                    add_sweep_case(s,
+                                   (struct sweep_case){
+                                       .lens = lens,
+                                       .width = a->size[i][0],
+                                       .height = a->size[i][1],
+                                       .n_lamps = a->lights[k],
+                                       .angle = a->angle[m],
+                                       .together = i == 0 && k == 0 && m == 0});
         if (lens == 0 && a->plain)
-            add_more(s);
+            add_smaller_cases(s);
     }
 }
 
@@ -112,8 +113,8 @@ static const struct file files[] = {{"sweep.csv", sweep_write_csv},
                                     {"table.md", sweep_names},
                                     {"index.html", sweep_write_page}};
 
-static int save_file(const struct sweep *s, const char *folder,
-                     const struct file *f)
+static int save_sweep_file(const struct sweep *s, const char *folder,
+                           const struct file *f)
 {
     char *text = NULL, path[PATH_MAX];
     size_t bytes = 0;
@@ -125,12 +126,12 @@ static int save_file(const struct sweep *s, const char *folder,
     return tool_save_text(s->tool, path, file, &text, &bytes);
 }
 
-static int save_all(const struct sweep *s, const char *folder)
+static int save_all_sweep_files(const struct sweep *s, const char *folder)
 {
     int code = EXIT_OK;
 
     for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
-        code = save_file(s, folder, &files[i]);
+        code = save_sweep_file(s, folder, &files[i]);
     if (code == EXIT_OK && s->tool->json)
         sweep_write_json(s, stdout);
     else if (code == EXIT_OK && !s->tool->quiet)
@@ -140,7 +141,7 @@ static int save_all(const struct sweep *s, const char *folder)
 
 /* ----------------------------------------------------------------- command */
 
-static void print_case(const struct sweep *s, int c)
+static void print_sweep_case(const struct sweep *s, int c)
 {
     const struct sweep_case *k = &s->scase[c];
 
@@ -152,13 +153,13 @@ static void print_case(const struct sweep *s, int c)
                 k->n_lamps, k->n_lamps > 1 ? "s" : "", k->angle, k->n);
 }
 
-static int measure_cases(struct sweep *s)
+static int measure_sweep_cases(struct sweep *s)
 {
     struct tool_progress progress;
     int code = EXIT_OK;
 
     for (int c = 0; c < s->n_cases && code == EXIT_OK; c++) {
-        print_case(s, c);
+        print_sweep_case(s, c);
         tool_progress_start(&progress, s->tool, "sweep");
         code = sweep_measure(s, c, &progress);
         tool_progress_end(&progress);
@@ -184,19 +185,19 @@ static int run_sweep(struct sweep *s, const struct asked *a)
     code = tool_check_output(s->tool, path);
     if (code != EXIT_OK)
         return code;
-    add_cases(s, a);
+    add_requested_cases(s, a);
     if (sweep_plan(s) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     s->counter = glint_instructions_open();
-    code = measure_cases(s);
+    code = measure_sweep_cases(s);
     glint_instructions_close(s->counter);
     if (code != EXIT_OK)
         return code;
     sweep_mark_fronts(s);
-    return save_all(s, a->folder);
+    return save_all_sweep_files(s, a->folder);
 }
 
-static bool parse_sizes(const char *text, struct asked *a)
+static bool parse_image_sizes(const char *text, struct asked *a)
 {
     char copy[128], *word, *rest = copy;
 
@@ -211,7 +212,8 @@ static bool parse_sizes(const char *text, struct asked *a)
 
 /* Parses up to MAX_LIST numbers within LOW .. HIGH. Returns their number, or 0
  * if TEXT is malformed. */
-static int parse_numbers(const char *text, double low, double high, double *to)
+static int parse_number_list(const char *text, double low, double high,
+                             double *to)
 {
     const int n = tool_numbers(text, to, MAX_LIST);
 
@@ -221,11 +223,11 @@ static int parse_numbers(const char *text, double low, double high, double *to)
     return n;
 }
 
-static bool parse_lights(const char *text, struct asked *a)
+static bool parse_light_counts(const char *text, struct asked *a)
 {
     double v[MAX_LIST];
 
-    a->n_lights = parse_numbers(text, 1, 10000, v);
+    a->n_lights = parse_number_list(text, 1, 10000, v);
     for (int i = 0; i < a->n_lights; i++) {
         if (v[i] != floor(v[i]))
             return false;
@@ -254,11 +256,11 @@ static int parse_option(struct sweep *s, struct asked *a, int c)
         a->folder = optarg;
         return 1;
     case 's':
-        return parse_sizes(optarg, a);
+        return parse_image_sizes(optarg, a);
     case 'l':
-        return parse_lights(optarg, a);
+        return parse_light_counts(optarg, a);
     case 'a':
-        return (a->n_angles = parse_numbers(optarg, 0, 60, a->angle)) > 0;
+        return (a->n_angles = parse_number_list(optarg, 0, 60, a->angle)) > 0;
     case 'r':
         return tool_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
     case OPT_SMALL:
@@ -293,7 +295,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
 /* Sets the lenses, sizes, numbers of lights, angles, rounds and grid that
  * the command line does not set. */
-static void set_defaults(struct sweep *s, struct asked *a)
+static void set_sweep_defaults(struct sweep *s, struct asked *a)
 {
     const int n =
         s->small ? 1 : (int)(sizeof default_lenses / sizeof *default_lenses);
@@ -339,7 +341,7 @@ int cmd_sweep(int argc, char **argv)
     if (code < 0)
         code = tool_start(&tool);
     if (code == EXIT_OK && tool.workers && asked.folder) {
-        set_defaults(s, &asked);
+        set_sweep_defaults(s, &asked);
         code = run_sweep(s, &asked);
     }
     close_sweep(s);

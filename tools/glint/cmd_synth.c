@@ -99,32 +99,33 @@ static const struct synth_layout *find_layout(const char *name)
 
 /* Sets PATH to the path of FILE for item NUMBER in FOLDER. Returns false if
  * PATH is too long. */
-static bool file_path(char path[SYNTH_PATH_BYTES], const char *folder,
-                      const struct synth_file *file, int number,
-                      const char *type)
+static bool make_item_file_path(char path[SYNTH_PATH_BYTES], const char *folder,
+                                const struct synth_file *file, int number,
+                                const char *type)
 {
     return snprintf(path, SYNTH_PATH_BYTES, "%s/%s%s%06d.%s", folder,
                     file->folder, file->prefix, number,
                     type) < SYNTH_PATH_BYTES;
 }
 
-static int too_long(const struct tool *tool, const struct synth_set *set)
+static int report_long_folder_name(const struct tool *tool,
+                                   const struct synth_set *set)
 {
     return tool_usage(tool, "-o %s: the name is too long", set->folder);
 }
 
-static bool line_path(char path[SYNTH_PATH_BYTES], const struct synth_set *set,
-                      int number)
+static bool make_description_path(char path[SYNTH_PATH_BYTES],
+                                  const struct synth_set *set, int number)
 {
     static const struct synth_file lines = {"items/", "", 0, false};
 
-    return file_path(path, set->folder, &lines, number, "json");
+    return make_item_file_path(path, set->folder, &lines, number, "json");
 }
 
 /* ------------------------------------------------------------------ folders */
 
 /* Creates the folder PATH and the folders above it, up to the last slash. */
-static int make_folder(const struct tool *tool, char *path)
+static int create_folder(const struct tool *tool, char *path)
 {
     struct glint_error error;
 
@@ -141,7 +142,8 @@ static int make_folder(const struct tool *tool, char *path)
 }
 
 /* Creates the folders of SET. */
-static int make_folders(const struct tool *tool, const struct synth_set *set)
+static int create_set_folders(const struct tool *tool,
+                              const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
     int code = EXIT_OK;
@@ -149,19 +151,22 @@ static int make_folders(const struct tool *tool, const struct synth_set *set)
     for (int i = 0;
          i < SYNTH_MAX_FILES && set->layout->file[i].folder && code == EXIT_OK;
          i++) {
-        if (!file_path(path, set->folder, &set->layout->file[i], 0, set->type))
-            return too_long(tool, set);
-        code = make_folder(tool, path);
+        if (!make_item_file_path(path, set->folder, &set->layout->file[i], 0,
+                                 set->type))
+            return report_long_folder_name(tool, set);
+        code = create_folder(tool, path);
     }
     if (code != EXIT_OK)
         return code;
-    return line_path(path, set, 0) ? make_folder(tool, path)
-                                   : too_long(tool, set);
+    return make_description_path(path, set, 0)
+               ? create_folder(tool, path)
+               : report_long_folder_name(tool, set);
 }
 
 /* Rejects a folder that contains a set: the item of --item would overwrite
  * one of the set's items. */
-static int check_apart(const struct tool *tool, const struct synth_set *set)
+static int check_item_outside_set(const struct tool *tool,
+                                  const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
 
@@ -175,7 +180,8 @@ static int check_apart(const struct tool *tool, const struct synth_set *set)
 
 /* Rejects a count below the number of items in SET. A set never shrinks, as
  * its manifest would be wrong. */
-static int check_count(const struct tool *tool, const struct synth_set *set)
+static int check_item_count(const struct tool *tool,
+                            const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
     const struct dirent *entry;
@@ -204,8 +210,8 @@ static int check_count(const struct tool *tool, const struct synth_set *set)
 /* Creates the folders of SET. SETTINGS is a line of JSON with what all items
  * have in common. Returns an exit code: EXIT_USAGE if the folder was begun
  * with other settings or has items beyond SET's count. */
-static int begin_set(const struct tool *tool, const struct synth_set *set,
-                     const char *settings)
+static int open_item_set(const struct tool *tool, const struct synth_set *set,
+                         const char *settings)
 {
     enum { MOST_BYTES = 1 << 26 };
     char path[SYNTH_PATH_BYTES];
@@ -214,7 +220,7 @@ static int begin_set(const struct tool *tool, const struct synth_set *set,
     uint8_t *kept = NULL;
     size_t bytes = 0;
     bool is_same;
-    int code = make_folders(tool, set);
+    int code = create_set_folders(tool, set);
 
     snprintf(path, sizeof path, "%s/synth.json", set->folder);
     if (code != EXIT_OK)
@@ -227,7 +233,7 @@ static int begin_set(const struct tool *tool, const struct synth_set *set,
     free(kept);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    return is_same ? check_count(tool, set)
+    return is_same ? check_item_count(tool, set)
                    : tool_usage(tool,
                                 "%s was made with other options or backgrounds "
                                 "(%s): use those, or name another folder",
@@ -235,8 +241,8 @@ static int begin_set(const struct tool *tool, const struct synth_set *set,
 }
 
 /* Writes SETTINGS to synth.json after they were validated. */
-static int write_settings(const struct tool *tool, const struct synth_set *set,
-                          const char *settings)
+static int write_set_settings(const struct tool *tool,
+                              const struct synth_set *set, const char *settings)
 {
     char path[SYNTH_PATH_BYTES];
 
@@ -249,24 +255,26 @@ static int write_settings(const struct tool *tool, const struct synth_set *set,
 /* -------------------------------------------------------------------- items */
 
 /* Returns whether item NUMBER exists and is complete. */
-static bool has_item(const struct synth_set *set, int number)
+static bool is_item_complete(const struct synth_set *set, int number)
 {
     const struct synth_file *const file = set->layout->file;
     char path[SYNTH_PATH_BYTES];
-    bool is_there = line_path(path, set, number) && access(path, F_OK) == 0;
+    bool is_there =
+        make_description_path(path, set, number) && access(path, F_OK) == 0;
 
     for (int i = 0; i < SYNTH_MAX_FILES && file[i].folder && is_there; i++)
-        is_there = file_path(path, set->folder, &file[i], number, set->type) &&
+        is_there = make_item_file_path(path, set->folder, &file[i], number,
+                                       set->type) &&
                    access(path, F_OK) == 0;
     return is_there;
 }
 
 /* Writes FILE of ITEM; RGB is scratch memory for its pixels. */
-static enum glint_status write_file(const struct synth_set *set,
-                                    const struct synth_file *file,
-                                    const struct synth_item *item,
-                                    const struct synth_drawing *d, float *rgb,
-                                    struct glint_error *error)
+static enum glint_status write_item_file(const struct synth_set *set,
+                                         const struct synth_file *file,
+                                         const struct synth_item *item,
+                                         const struct synth_drawing *d,
+                                         float *rgb, struct glint_error *error)
 {
     const size_t n = 3 * (size_t)d->width * (size_t)d->height;
     const struct glint_float_image light = {d->width, d->height, rgb};
@@ -276,7 +284,7 @@ static enum glint_status write_file(const struct synth_set *set,
     enum glint_status status;
     uint8_t *codes;
 
-    file_path(path, set->folder, file, (int)item->number, set->type);
+    make_item_file_path(path, set->folder, file, (int)item->number, set->type);
     if (file->layers)
         synth_sum(d, file->layers, rgb);
     if (file->is_noisy)
@@ -297,10 +305,11 @@ static enum glint_status write_file(const struct synth_set *set,
 }
 
 /* Writes the files of ITEM, then its description. Returns an exit code. */
-static int write_item(const struct tool *tool, const struct synth_set *set,
-                      const struct synth_item *item,
-                      const struct synth_result *result,
-                      const struct synth_drawing *drawing)
+static int write_item_files(const struct tool *tool,
+                            const struct synth_set *set,
+                            const struct synth_item *item,
+                            const struct synth_result *result,
+                            const struct synth_drawing *drawing)
 {
     const size_t n = 3 * (size_t)drawing->width * (size_t)drawing->height;
     const struct synth_file *const file = set->layout->file;
@@ -313,9 +322,9 @@ static int write_item(const struct tool *tool, const struct synth_set *set,
 
     for (int i = 0; i < SYNTH_MAX_FILES && file[i].folder && status == GLINT_OK;
          i++)
-        status = write_file(set, &file[i], item, drawing, rgb, &error);
+        status = write_item_file(set, &file[i], item, drawing, rgb, &error);
     free(rgb);
-    line_path(path, set, (int)item->number);
+    make_description_path(path, set, (int)item->number);
     if (status != GLINT_OK)
         code = tool_fail(tool, status, error.text);
     else if (line)
@@ -327,8 +336,9 @@ static int write_item(const struct tool *tool, const struct synth_set *set,
 /* ---------------------------------------------------------------- manifests */
 
 /* Appends the file PATH to OUT. */
-static enum glint_status append_file(struct glint_output *out, const char *path,
-                                     struct glint_error *error)
+static enum glint_status append_file_to_stream(struct glint_output *out,
+                                               const char *path,
+                                               struct glint_error *error)
 {
     uint8_t part[4096]; /* a description of three lights has 1.5 KiB */
     struct glint_input in;
@@ -347,8 +357,10 @@ static enum glint_status append_file(struct glint_output *out, const char *path,
 
 /* Writes the descriptions of items FIRST, FIRST + STEP, ... to the file
  * NAME. If one is missing, writes nothing and sets *IS_WHOLE to false. */
-static int write_lines(const struct tool *tool, const struct synth_set *set,
-                       const char *name, int first, int step, bool *is_whole)
+static int write_item_descriptions(const struct tool *tool,
+                                   const struct synth_set *set,
+                                   const char *name, int first, int step,
+                                   bool *is_whole)
 {
     char path[SYNTH_PATH_BYTES], line[SYNTH_PATH_BYTES];
     struct glint_error error = {""};
@@ -357,21 +369,21 @@ static int write_lines(const struct tool *tool, const struct synth_set *set,
 
     *is_whole = true;
     for (int i = first; i < set->count && *is_whole; i += step)
-        *is_whole = has_item(set, i);
+        *is_whole = is_item_complete(set, i);
     if (!*is_whole)
         return EXIT_OK;
     snprintf(path, sizeof path, "%s/%s", set->folder, name);
     status = glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error);
     for (int i = first; i < set->count && status == GLINT_OK; i += step) {
-        line_path(line, set, i);
-        status = append_file(&out, line, &error);
+        make_description_path(line, set, i);
+        status = append_file_to_stream(&out, line, &error);
     }
     status = glint_output_end(&out, status, &error);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
 /* Removes the manifests of all shards. */
-static void remove_parts(const struct synth_set *set)
+static void remove_shard_manifests(const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
     DIR *const dir = opendir(set->folder);
@@ -389,23 +401,25 @@ static void remove_parts(const struct synth_set *set)
 /* Writes the manifest of a shard if all of its items exist. If all items of
  * the set exist, writes the set's manifest and removes those of the shards.
  * Sets *IS_WHOLE to whether all exist. Returns an exit code. */
-static int end_set(const struct tool *tool, const struct synth_set *set,
-                   bool *is_whole)
+static int write_shard_manifest(const struct tool *tool,
+                                const struct synth_set *set, bool *is_whole)
 {
     char name[64];
     bool is_done = true;
     /* another process may have drawn more items */
-    int code = check_count(tool, set);
+    int code = check_item_count(tool, set);
 
     *is_whole = false;
     snprintf(name, sizeof name, "manifest-%d-of-%d.jsonl", set->shard,
              set->shards);
     if (code == EXIT_OK && set->shards > 1)
-        code = write_lines(tool, set, name, set->shard, set->shards, &is_done);
+        code = write_item_descriptions(tool, set, name, set->shard, set->shards,
+                                       &is_done);
     if (code == EXIT_OK && is_done)
-        code = write_lines(tool, set, "manifest.jsonl", 0, 1, is_whole);
+        code = write_item_descriptions(tool, set, "manifest.jsonl", 0, 1,
+                                       is_whole);
     if (code == EXIT_OK && *is_whole)
-        remove_parts(set);
+        remove_shard_manifests(set);
     return code;
 }
 
@@ -510,7 +524,7 @@ struct synth {
 /* ------------------------------------------------------------------ options */
 
 /* Parses the shard TEXT, "I/N". */
-static bool parse_shard(struct synth_set *set, const char *text)
+static bool parse_shard_number(struct synth_set *set, const char *text)
 {
     char first[16];
     const size_t n = strcspn(text, "/");
@@ -523,7 +537,7 @@ static bool parse_shard(struct synth_set *set, const char *text)
            tool_integer(first, 0, set->shards - 1, &set->shard);
 }
 
-static bool add_lens(void *ctx, const char *name)
+static bool add_lens_name(void *ctx, const char *name)
 {
     struct synth *const s = ctx;
 
@@ -534,13 +548,13 @@ static bool add_lens(void *ctx, const char *name)
 }
 
 /* Parses TEXT, lens names separated by commas, or "all". */
-static bool parse_lenses(struct synth *s, const char *text)
+static bool parse_lens_list(struct synth *s, const char *text)
 {
     char name[64];
 
     s->n_lenses = 0;
     if (strcmp(text, "all") == 0)
-        return lens_files_each(add_lens, s) > 0;
+        return lens_files_each(add_lens_name, s) > 0;
     for (;;) {
         const size_t n = strcspn(text, ",");
 
@@ -548,7 +562,7 @@ static bool parse_lenses(struct synth *s, const char *text)
             return false;
         memcpy(name, text, n);
         name[n] = '\0';
-        if (!add_lens(s, name))
+        if (!add_lens_name(s, name))
             return false;
         if (!text[n])
             return true;
@@ -556,7 +570,7 @@ static bool parse_lenses(struct synth *s, const char *text)
     }
 }
 
-static bool parse_size(struct synth_item *item, const char *text)
+static bool parse_image_size(struct synth_item *item, const char *text)
 {
     int width, height;
 
@@ -593,8 +607,8 @@ static int parse_coating(const struct tool *tool, struct synth *s,
     return code;
 }
 
-static int parse_range(const struct tool *tool, struct synth *s,
-                       const char *text)
+static int parse_parameter_range(const struct tool *tool, struct synth *s,
+                                 const char *text)
 {
     struct glint_error why = {""};
 
@@ -620,18 +634,18 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
         good = tool_integer(value, 0, MAX_COUNT, &s->set.count);
         break;
     case OPT_SHARD:
-        good = parse_shard(&s->set, value);
+        good = parse_shard_number(&s->set, value);
         break;
     case OPT_SIZE:
-        good = parse_size(&s->all, value);
+        good = parse_image_size(&s->all, value);
         break;
     case OPT_LENSES:
-        good = parse_lenses(s, value);
+        good = parse_lens_list(s, value);
         break;
     case OPT_COATING_OF:
         return parse_coating(tool, s, value);
     case OPT_RANGE:
-        return parse_range(tool, s, value);
+        return parse_parameter_range(tool, s, value);
     case OPT_LAYOUT:
         s->set.layout = find_layout(value);
         good = s->set.layout != NULL;
@@ -653,7 +667,7 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
 
 /* Sets the layout's file type if none was requested, and checks that images
  * of the type can be written. */
-static int set_type(const struct tool *tool, struct synth *s)
+static int set_layout_file_type(const struct tool *tool, struct synth *s)
 {
     const bool is_asked = s->set.type != NULL;
     struct glint_error error = {""};
@@ -685,7 +699,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
             tool, "needs backgrounds: pictures, or folders of pictures");
     if (!s->set.folder || !*s->set.folder)
         return tool_usage(tool, "needs -o FOLDER");
-    code = set_type(tool, s);
+    code = set_layout_file_type(tool, s);
     return code == EXIT_OK ? -1 : code;
 }
 
@@ -693,7 +707,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
 /* Returns the settings of all items as a line of JSON, which the caller
  * frees, or NULL if there is no memory. */
-static char *make_settings(const struct synth *s, int seed)
+static char *format_set_settings(const struct synth *s, int seed)
 {
     char *text = NULL;
     size_t bytes = 0;
@@ -721,8 +735,8 @@ static char *make_settings(const struct synth *s, int seed)
 }
 
 /* Sets ITEM to the random choices of item NUMBER. */
-static int choose_item(const struct tool *tool, struct synth *s, int number,
-                       struct synth_item *item)
+static int choose_item_parameters(const struct tool *tool, struct synth *s,
+                                  int number, struct synth_item *item)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -742,7 +756,7 @@ static int choose_item(const struct tool *tool, struct synth *s, int number,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-static int make_item(const struct tool *tool, struct synth *s,
+static int draw_item(const struct tool *tool, struct synth *s,
                      const struct synth_item *item)
 {
     struct synth_result result;
@@ -750,12 +764,12 @@ static int make_item(const struct tool *tool, struct synth *s,
                                 &s->drawing, &result);
 
     return code == EXIT_OK
-               ? write_item(tool, &s->set, item, &result, &s->drawing)
+               ? write_item_files(tool, &s->set, item, &result, &s->drawing)
                : code;
 }
 
-static int start_drawing(const struct tool *tool, struct synth *s,
-                         const struct synth_item *item)
+static int init_item_drawing(const struct tool *tool, struct synth *s,
+                             const struct synth_item *item)
 {
     const enum glint_status status =
         synth_drawing_init(&s->drawing, (int)item->width, (int)item->height);
@@ -764,7 +778,7 @@ static int start_drawing(const struct tool *tool, struct synth *s,
 }
 
 /* Draws the single item described by --item. */
-static int run_line(const struct tool *tool, struct synth *s)
+static int draw_described_item(const struct tool *tool, struct synth *s)
 {
     struct glint_error error = {""};
     struct synth_item item;
@@ -779,17 +793,17 @@ static int run_line(const struct tool *tool, struct synth *s)
                 "draw it slightly differently\n",
                 item.glint, GLINT_VERSION);
     if (code == EXIT_OK)
-        code = check_apart(tool, &s->set);
+        code = check_item_outside_set(tool, &s->set);
     if (code == EXIT_OK)
-        code = make_folders(tool, &s->set);
+        code = create_set_folders(tool, &s->set);
     if (code == EXIT_OK)
-        code = start_drawing(tool, s, &item);
-    return code == EXIT_OK ? make_item(tool, s, &item) : code;
+        code = init_item_drawing(tool, s, &item);
+    return code == EXIT_OK ? draw_item(tool, s, &item) : code;
 }
 
 /* Opens every lens, so that all are baked before the first item is drawn,
  * and wrong names are reported. */
-static int open_lenses(const struct tool *tool, struct synth *s)
+static int open_all_lenses(const struct tool *tool, struct synth *s)
 {
     int code = EXIT_OK;
 
@@ -804,7 +818,7 @@ static int open_lenses(const struct tool *tool, struct synth *s)
 }
 
 /* Draws the missing items of the shard. */
-static int run_items(const struct tool *tool, struct synth *s)
+static int draw_missing_items(const struct tool *tool, struct synth *s)
 {
     const struct synth_set *const set = &s->set;
     struct tool_progress progress;
@@ -812,49 +826,49 @@ static int run_items(const struct tool *tool, struct synth *s)
     int code = EXIT_OK, left = 0, done = 0;
 
     for (int i = set->shard; i < set->count; i += set->shards)
-        left += !has_item(set, i);
+        left += !is_item_complete(set, i);
     tool_progress_start(&progress, tool, "synth");
     for (int i = set->shard; i < set->count && code == EXIT_OK;
          i += set->shards) {
-        if (has_item(set, i))
+        if (is_item_complete(set, i))
             continue;
-        code = choose_item(tool, s, i, &item);
+        code = choose_item_parameters(tool, s, i, &item);
         if (code == EXIT_OK)
-            code = make_item(tool, s, &item);
+            code = draw_item(tool, s, &item);
         tool_progress_show(&progress, (double)++done / left);
     }
     tool_progress_end(&progress);
     return code;
 }
 
-static int run_set(const struct tool *tool, struct synth *s)
+static int draw_item_set(const struct tool *tool, struct synth *s)
 {
     bool is_whole = false;
     char *settings;
     int code;
 
-    settings = make_settings(s, tool->seed);
+    settings = format_set_settings(s, tool->seed);
     if (!settings)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = begin_set(tool, &s->set, settings);
+    code = open_item_set(tool, &s->set, settings);
     if (code == EXIT_OK)
-        code = open_lenses(tool, s);
+        code = open_all_lenses(tool, s);
     if (code == EXIT_OK)
-        code = write_settings(tool, &s->set, settings);
+        code = write_set_settings(tool, &s->set, settings);
     free(settings);
     if (code == EXIT_OK)
-        code = start_drawing(tool, s, &s->all);
+        code = init_item_drawing(tool, s, &s->all);
     if (code == EXIT_OK)
-        code = run_items(tool, s);
+        code = draw_missing_items(tool, s);
     if (code == EXIT_OK && s->set.count > 0)
-        code = end_set(tool, &s->set, &is_whole);
+        code = write_shard_manifest(tool, &s->set, &is_whole);
     if (code == EXIT_OK && !tool->quiet && s->set.count > 0)
         fprintf(stderr, "glint synth: %s: %s %d items\n", s->set.folder,
                 is_whole ? "all" : "this shard, not yet all, of", s->set.count);
     return code;
 }
 
-static void close_all(struct synth *s)
+static void close_synth(struct synth *s)
 {
     synth_lenses_close(&s->lenses);
     synth_backgrounds_close(&s->backgrounds);
@@ -879,7 +893,7 @@ int cmd_synth(int argc, char **argv)
                                  .glint = GLINT_VERSION,
                                  .coating = "mixed"};
     synth_ranges_defaults(&s->ranges);
-    parse_lenses(s, default_lenses);
+    parse_lens_list(s, default_lenses);
     code = parse_options(&tool, argc, argv, s);
     if (code < 0) {
         code = synth_backgrounds_open(&tool, &s->backgrounds, argv + optind,
@@ -890,9 +904,10 @@ int cmd_synth(int argc, char **argv)
         if (code == EXIT_OK)
             code = tool_start(&tool);
         if (code == EXIT_OK)
-            code = s->line ? run_line(&tool, s) : run_set(&tool, s);
+            code = s->line ? draw_described_item(&tool, s)
+                           : draw_item_set(&tool, s);
         tool_finish(&tool);
     }
-    close_all(s);
+    close_synth(s);
     return code;
 }

@@ -120,8 +120,9 @@ struct tracer {
     double stop_radius_mm;
 };
 
-static enum glint_ray_status trace_path(const struct tracer *t, double px_mm,
-                                        double py_mm, struct glint_ray *ray)
+static enum glint_ray_status trace_exact_ray(const struct tracer *t,
+                                             double px_mm, double py_mm,
+                                             struct glint_ray *ray)
 {
     const double angle = t->angle_deg * GLINT_PI / 180;
     const double direction[3] = {sin(angle), 0, cos(angle)};
@@ -131,28 +132,29 @@ static enum glint_ray_status trace_path(const struct tracer *t, double px_mm,
 
 /* -------------------------------------------------------------- by a model */
 
-static double evaluate_output(const struct glint_transfer *t,
-                              const struct glint_outputs *out, int kind)
+static double evaluate_model_output(const struct glint_transfer *t,
+                                    const struct glint_outputs *out, int kind)
 {
     return ldexp(out->at[kind], t->exponent[kind]);
 }
 
-static double relative_radius(const struct glint_transfer *t,
-                              const struct glint_outputs *out)
+static double relative_stop_radius(const struct glint_transfer *t,
+                                   const struct glint_outputs *out)
 {
-    double most = evaluate_output(t, out, GLINT_OUT_RADIUS);
+    double most = evaluate_model_output(t, out, GLINT_OUT_RADIUS);
 
     for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++)
         if (t->outputs >> kind & 1)
-            most = fmax(most,
-                        sqrt(fmax(0, 2 * evaluate_output(t, out, kind) - 1)));
+            most = fmax(
+                most,
+                sqrt(fmax(0, 2 * evaluate_model_output(t, out, kind) - 1)));
     return most;
 }
 
 /* Sets (U, V) to the normalised coordinates of a ray in the bounding box of
  * part T. Returns whether the ray belongs to that part. */
-static bool is_in_part(const struct glint_transfer *t, double px_mm,
-                       double py_mm, double *u, double *v)
+static bool is_ray_in_pupil_box(const struct glint_transfer *t, double px_mm,
+                                double py_mm, double *u, double *v)
 {
     const double unit = ldexp(1, t->box_exponent);
 
@@ -165,16 +167,17 @@ static bool is_in_part(const struct glint_transfer *t, double px_mm,
 /* Sets SIDE to the signs of x and y in which part T stores the ray: models
  * of round lenses store only angles and y >= 0; those of other lenses only
  * lights on one side of a symmetry plane. */
-static void find_sides(const struct glint_transfer *t, double angle_deg,
-                       double py_mm, double side[2])
+static void find_pupil_signs(const struct glint_transfer *t, double angle_deg,
+                             double py_mm, double side[2])
 {
     side[0] = t->whole ? t->sign : angle_deg < 0 ? -1 : 1;
     side[1] = t->whole ? t->side ? -t->sign : t->sign : py_mm < 0 ? -1 : 1;
 }
 
 /* Traces a ray by the model. */
-static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
-                                         double py_mm, struct glint_ray *ray)
+static enum glint_ray_status trace_model_ray(const struct tracer *t,
+                                             double px_mm, double py_mm,
+                                             struct glint_ray *ray)
 {
     const double stop = t->stop_radius_mm;
     const struct glint_transfer *p = t->part;
@@ -182,8 +185,8 @@ static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
     double u = 0, v = 0, side[2] = {1, 1};
 
     for (; p < t->part + t->n_parts; p++) {
-        find_sides(p, t->angle_deg, py_mm, side);
-        if (is_in_part(p, side[0] * px_mm, side[1] * py_mm, &u, &v))
+        find_pupil_signs(p, t->angle_deg, py_mm, side);
+        if (is_ray_in_pupil_box(p, side[0] * px_mm, side[1] * py_mm, &u, &v))
             break;
     }
     if (p == t->part + t->n_parts)
@@ -192,25 +195,27 @@ static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
                        (int32_t)lrint(ldexp(v, 30)), &out);
     *ray = (struct glint_ray){
         .stop_x_mm =
-            side[0] * stop * evaluate_output(p, &out, GLINT_OUT_STOP_X),
+            side[0] * stop * evaluate_model_output(p, &out, GLINT_OUT_STOP_X),
         .stop_y_mm =
-            side[1] * stop * evaluate_output(p, &out, GLINT_OUT_STOP_Y),
-        .sensor_x_mm = side[0] * evaluate_output(p, &out, GLINT_OUT_SENSOR_X),
-        .sensor_y_mm = side[1] * evaluate_output(p, &out, GLINT_OUT_SENSOR_Y),
-        .energy = evaluate_output(p, &out, GLINT_OUT_ENERGY),
-        .rel_radius = relative_radius(p, &out)};
+            side[1] * stop * evaluate_model_output(p, &out, GLINT_OUT_STOP_Y),
+        .sensor_x_mm =
+            side[0] * evaluate_model_output(p, &out, GLINT_OUT_SENSOR_X),
+        .sensor_y_mm =
+            side[1] * evaluate_model_output(p, &out, GLINT_OUT_SENSOR_Y),
+        .energy = evaluate_model_output(p, &out, GLINT_OUT_ENERGY),
+        .rel_radius = relative_stop_radius(p, &out)};
     return GLINT_RAY_OK;
 }
 
 /* Returns whether A, a model's number with a 31-bit mantissa, equals B
  * within a relative error of 1e-8. */
-static bool is_close(struct glint_real a, double b)
+static bool is_model_number_close(struct glint_real a, double b)
 {
     return fabs(model_real_of(a) - b) <= 1e-8 * fabs(b);
 }
 
-static bool is_part(const struct glint_lens *model, uint32_t entry,
-                    uint32_t ghost)
+static bool is_entry_of_ghost(const struct glint_lens *model, uint32_t entry,
+                              uint32_t ghost)
 {
     return model->ghost[entry].i == model->ghost[ghost].i &&
            model->ghost[entry].j == model->ghost[ghost].j;
@@ -218,9 +223,10 @@ static bool is_part(const struct glint_lens *model, uint32_t entry,
 
 /* Sets tracer->part to the parts of GHOST that the model has at this angle
  * and wavelength. Returns GLINT_E_MEMORY if there is no memory. */
-static enum glint_status prepare_parts(const struct glint_lens *model,
-                                       uint32_t ghost, int32_t sine_q30,
-                                       int32_t wave_q24, struct tracer *tracer)
+static enum glint_status find_ghost_parts(const struct glint_lens *model,
+                                          uint32_t ghost, int32_t sine_q30,
+                                          int32_t wave_q24,
+                                          struct tracer *tracer)
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     const struct glint_azimuth azimuth = {
@@ -229,21 +235,23 @@ static enum glint_status prepare_parts(const struct glint_lens *model,
     size_t n = 0;
 
     for (uint32_t k = ghost; k < end; k++)
-        n += is_part(model, k, ghost);
+        n += is_entry_of_ghost(model, k, ghost);
     tracer->part = calloc(n, sizeof *tracer->part);
     if (!tracer->part)
         return GLINT_E_MEMORY;
     for (uint32_t k = ghost; k < end; k++)
-        if (is_part(model, k, ghost))
+        if (is_entry_of_ghost(model, k, ghost))
             tracer->n_parts +=
                 glint_transfer_init_at(&tracer->part[tracer->n_parts], model,
                                        (int)k, sine_q30, azimuth, wave_q24);
     return GLINT_OK;
 }
 
-static int prepare_model(const struct tool *tool, const struct options *o,
-                         const struct glint_prescription *lens, int n_ghosts,
-                         const struct glint_lens *model, struct tracer *tracer)
+static int prepare_model_tracer(const struct tool *tool,
+                                const struct options *o,
+                                const struct glint_prescription *lens,
+                                int n_ghosts, const struct glint_lens *model,
+                                struct tracer *tracer)
 {
     const struct glint_model_header *h = model->header;
     const int32_t wave_q24 =
@@ -251,7 +259,7 @@ static int prepare_model(const struct tool *tool, const struct options *o,
     struct glint_optics optics;
 
     glint_optics_of(lens, &optics);
-    if (!is_close(h->focal_mm, optics.scale_mm) ||
+    if (!is_model_number_close(h->focal_mm, optics.scale_mm) ||
         h->n_ghosts - h->n_parts != (uint32_t)n_ghosts)
         return tool_fail(tool, GLINT_E_LENS,
                          "the model was baked from another lens");
@@ -260,9 +268,9 @@ static int prepare_model(const struct tool *tool, const struct options *o,
     if (wave_q24 < h->wave_lo_q24 || wave_q24 > h->wave_hi_q24)
         return tool_usage(tool, "%g nm is outside the model's band",
                           o->wavelength_nm);
-    tracer->trace = trace_model;
+    tracer->trace = trace_model_ray;
     tracer->stop_radius_mm = model_real_of(h->stop_radius_mm);
-    if (prepare_parts(
+    if (find_ghost_parts(
             model, (uint32_t)o->ghost,
             (int32_t)lrint(ldexp(sin(fabs(o->angle_deg) * GLINT_PI / 180), 30)),
             wave_q24, tracer) != GLINT_OK)
@@ -274,9 +282,9 @@ static int prepare_model(const struct tool *tool, const struct options *o,
 
 /* Sets AREA to the rectangle on the front element's vertex plane that the
  * grid spans. Returns an exit code. */
-static int find_area(const struct tool *tool, const struct options *o,
-                     const struct glint_prescription *lens,
-                     const struct tracer *tracer, struct glint_pupil *area)
+static int find_grid_area(const struct tool *tool, const struct options *o,
+                          const struct glint_prescription *lens,
+                          const struct tracer *tracer, struct glint_pupil *area)
 {
     const double semi = lens->surface[0].semi_mm;
     struct glint_optics optics;
@@ -296,14 +304,14 @@ static int find_area(const struct tool *tool, const struct options *o,
     return EXIT_OK;
 }
 
-static double grid_position(double from, double to, int k, int last)
+static double ray_grid_coordinate(double from, double to, int k, int last)
 {
     return last ? from + (to - from) * k / last : 0.5 * (from + to);
 }
 
-static void print_rays(const struct tool *tool, const struct options *o,
-                       const struct glint_pupil *area,
-                       const struct tracer *tracer)
+static void print_traced_rays(const struct tool *tool, const struct options *o,
+                              const struct glint_pupil *area,
+                              const struct tracer *tracer)
 {
     const int last = o->grid - 1;
     int n = 0;
@@ -311,9 +319,9 @@ static void print_rays(const struct tool *tool, const struct options *o,
     printf("px,py,status,stop_x,stop_y,sensor_x,sensor_y,energy,rel_radius\n");
     for (int k = 0; k < o->grid * o->grid && !ferror(stdout); k++) {
         const double x =
-            grid_position(area->x0_mm, area->x1_mm, k % o->grid, last);
+            ray_grid_coordinate(area->x0_mm, area->x1_mm, k % o->grid, last);
         const double y =
-            grid_position(area->y0_mm, area->y1_mm, k / o->grid, last);
+            ray_grid_coordinate(area->y0_mm, area->y1_mm, k / o->grid, last);
         struct glint_ray ray;
         const enum glint_ray_status status = tracer->trace(tracer, x, y, &ray);
 
@@ -331,8 +339,8 @@ static void print_rays(const struct tool *tool, const struct options *o,
                         "--pupil limits the grid to the entrance pupil\n");
 }
 
-static int trace_grid(const struct tool *tool, const struct options *o,
-                      const struct glint_prescription *lens)
+static int trace_ray_grid(const struct tool *tool, const struct options *o,
+                          const struct glint_prescription *lens)
 {
     static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
     static struct tracer tracer;
@@ -345,17 +353,17 @@ static int trace_grid(const struct tool *tool, const struct options *o,
         return tool_usage(tool, "%s has %d ghosts; number %d does not exist",
                           lens->name, n, o->ghost);
     tracer.angle_deg = o->angle_deg;
-    tracer.trace = trace_path;
+    tracer.trace = trace_exact_ray;
     glint_path_init(&tracer.path, lens, o->ghost < 0 ? NULL : &ghosts[o->ghost],
                     o->wavelength_nm);
     if (o->model)
         code = tool_model(tool, o->model, &model);
     if (o->model && code == EXIT_OK)
-        code = prepare_model(tool, o, lens, n, &model.lens, &tracer);
+        code = prepare_model_tracer(tool, o, lens, n, &model.lens, &tracer);
     if (code == EXIT_OK)
-        code = find_area(tool, o, lens, &tracer, &area);
+        code = find_grid_area(tool, o, lens, &tracer, &area);
     if (code == EXIT_OK)
-        print_rays(tool, o, &area, &tracer);
+        print_traced_rays(tool, o, &area, &tracer);
     free(tracer.part);
     model_file_close(&model);
     return code;
@@ -378,5 +386,5 @@ int cmd_trace(int argc, char **argv)
     if (code != EXIT_OK)
         return code;
     coating_apply(&o.coating, &lens);
-    return trace_grid(&tool, &o, &lens);
+    return trace_ray_grid(&tool, &o, &lens);
 }

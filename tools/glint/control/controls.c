@@ -70,7 +70,7 @@ const struct control_form control_forms[] = {
 const int control_n_forms = sizeof control_forms / sizeof *control_forms;
 
 /* Returns whether control lines can change OPTION. */
-static bool is_changeable(const struct glint_option *option)
+static bool can_control_change_option(const struct glint_option *option)
 {
     return option->changes == GLINT_OPTION_FRAME &&
            option->type == GLINT_OPTION_REAL;
@@ -101,7 +101,7 @@ enum glint_status control_fail(struct glint_error *error, const char *where,
 }
 
 /* Reads the next word; returns whether there is one. */
-static bool next_word(struct reader *r)
+static bool read_next_word(struct reader *r)
 {
     const char *const from = r->at + strspn(r->at, blanks);
     const size_t n = *from == '#' ? 0 : strcspn(from, blanks);
@@ -118,14 +118,15 @@ static struct reader peek_word(const struct reader *r)
 {
     struct reader ahead = *r;
 
-    next_word(&ahead);
+    read_next_word(&ahead);
     return ahead;
 }
 
 /* ---------------------------------------------------------------- the form */
 
 /* Reports that the word is unknown, and which words are valid. */
-static enum glint_status fail_word(const struct reader *r, const char *before)
+static enum glint_status report_unknown_word(const struct reader *r,
+                                             const char *before)
 {
     struct suggest suggest;
 
@@ -138,7 +139,7 @@ static enum glint_status fail_word(const struct reader *r, const char *before)
             suggest_try(&suggest, may, strlen(may));
     }
     for (int i = 0; !before && i < GLINT_N_OPTIONS; i++)
-        if (is_changeable(glint_option(i)))
+        if (can_control_change_option(glint_option(i)))
             suggest_try(&suggest, glint_option(i)->name,
                         strlen(glint_option(i)->name));
     return control_fail(r->error, r->where, r->column,
@@ -149,7 +150,7 @@ static enum glint_status fail_word(const struct reader *r, const char *before)
 
 /* Returns the first form at index I or later whose first word is WORD, or
  * NULL. */
-static const struct control_form *find_form(const char *word, int i)
+static const struct control_form *find_command_form(const char *word, int i)
 {
     for (; i < control_n_forms; i++)
         if (strcmp(control_forms[i].word, word) == 0)
@@ -158,12 +159,12 @@ static const struct control_form *find_form(const char *word, int i)
 }
 
 /* Reads the N names of FORM. */
-static enum glint_status read_names(struct reader *r,
-                                    const struct control_form *form, int n,
-                                    struct control_line *line)
+static enum glint_status read_form_names(struct reader *r,
+                                         const struct control_form *form, int n,
+                                         struct control_line *line)
 {
     for (int i = 0; i < n; i++) {
-        if (!next_word(r))
+        if (!read_next_word(r))
             return control_fail(r->error, r->where, r->column, "expected %s",
                                 form->usage);
         if (strlen(r->word) >= CONTROL_NAME)
@@ -177,30 +178,30 @@ static enum glint_status read_names(struct reader *r,
 
 /* Reads the clause, if the word has forms with one, and sets FORM to the
  * form of that clause. */
-static enum glint_status read_clause(struct reader *r,
-                                     const struct control_form **form)
+static enum glint_status read_optional_clause(struct reader *r,
+                                              const struct control_form **form)
 {
     const struct control_form *f = *form;
 
     if (!f->clause)
         return GLINT_OK;
-    if (!next_word(r))
+    if (!read_next_word(r))
         return control_fail(r->error, r->where, r->column, "expected %s",
                             f->usage);
-    for (; f; f = find_form(f->word, (int)(f - control_forms) + 1))
+    for (; f; f = find_command_form(f->word, (int)(f - control_forms) + 1))
         if (strcmp(f->clause, r->word) == 0) {
             *form = f;
             return GLINT_OK;
         }
-    return fail_word(r, (*form)->word);
+    return report_unknown_word(r, (*form)->word);
 }
 
-static enum glint_status read_numbers(struct reader *r,
-                                      const struct control_form *form,
-                                      struct control_line *line)
+static enum glint_status read_form_numbers(struct reader *r,
+                                           const struct control_form *form,
+                                           struct control_line *line)
 {
     line->column = peek_word(r).column;
-    while (line->n < form->most && next_word(r)) {
+    while (line->n < form->most && read_next_word(r)) {
         double v;
 
         if (!tool_number(r->word, &v))
@@ -225,7 +226,8 @@ static enum glint_status read_numbers(struct reader *r,
 /* -------------------------------------------------------------------- line */
 
 /* Reads the frame number, if the line begins with one. */
-static enum glint_status read_frame(struct reader *r, struct control_line *line)
+static enum glint_status read_frame_number(struct reader *r,
+                                           struct control_line *line)
 {
     const struct reader ahead = peek_word(r);
     double v;
@@ -243,10 +245,10 @@ static enum glint_status read_frame(struct reader *r, struct control_line *line)
 }
 
 /* Reads the value of OPTION, whose form is FORM. */
-static enum glint_status read_option(struct reader *r,
-                                     const struct glint_option *option,
-                                     const struct control_form *form,
-                                     struct control_line *line)
+static enum glint_status read_option_value(struct reader *r,
+                                           const struct glint_option *option,
+                                           const struct control_form *form,
+                                           struct control_line *line)
 {
     struct glint_options options;
     struct glint_error error;
@@ -255,7 +257,7 @@ static enum glint_status read_option(struct reader *r,
 
     snprintf(line->name[0], CONTROL_NAME, "%s", option->name);
     line->name_column[0] = r->column;
-    status = read_numbers(r, form, line);
+    status = read_form_numbers(r, form, line);
     glint_options_defaults(&options);
     if (status != GLINT_OK || glint_options_set(&options, option->name,
                                                 line->v[0], &error) == GLINT_OK)
@@ -266,8 +268,8 @@ static enum glint_status read_option(struct reader *r,
 }
 
 /* Reads the command after the frame number. */
-static enum glint_status read_command(struct reader *r,
-                                      struct control_line *line)
+static enum glint_status read_command_words(struct reader *r,
+                                            struct control_line *line)
 {
     struct control_form set = {CONTROL_OPTION, NULL,     NULL,  0,   0, 1, 1,
                                -HUGE_VAL,      HUGE_VAL, false, NULL};
@@ -276,29 +278,29 @@ static enum glint_status read_command(struct reader *r,
     char usage[CONTROL_LINE];
     enum glint_status status;
 
-    if (!next_word(r))
+    if (!read_next_word(r))
         return line->frame < 0
                    ? GLINT_OK
                    : control_fail(r->error, r->where, r->column,
                                   "a command must follow the frame");
     option = glint_option_named(r->word);
-    if (option && is_changeable(option)) {
+    if (option && can_control_change_option(option)) {
         snprintf(usage, sizeof usage, "%s %s", option->name, option->value);
         set.usage = usage;
-        status = read_option(r, option, form, line);
+        status = read_option_value(r, option, form, line);
     } else {
-        form = find_form(r->word, 0);
+        form = find_command_form(r->word, 0);
         if (!form)
-            return fail_word(r, NULL);
-        status = read_names(r, form, form->names, line);
+            return report_unknown_word(r, NULL);
+        status = read_form_names(r, form, form->names, line);
         if (status == GLINT_OK)
-            status = read_clause(r, &form);
+            status = read_optional_clause(r, &form);
         if (status == GLINT_OK)
-            status = read_names(r, form, form->behind, line);
+            status = read_form_names(r, form, form->behind, line);
         if (status == GLINT_OK)
-            status = read_numbers(r, form, line);
+            status = read_form_numbers(r, form, line);
     }
-    if (status == GLINT_OK && next_word(r))
+    if (status == GLINT_OK && read_next_word(r))
         status = control_fail(r->error, r->where, r->column,
                               "'%.24s' is one value too many; expected %s",
                               r->word, form->usage);
@@ -318,9 +320,9 @@ enum glint_status control_parse(const char *text, const char *where,
     if (strlen(text) >= CONTROL_LINE)
         return control_fail(error, where, CONTROL_LINE,
                             "a line has at most %d bytes", CONTROL_LINE - 1);
-    status = read_frame(&r, &read);
+    status = read_frame_number(&r, &read);
     if (status == GLINT_OK)
-        status = read_command(&r, &read);
+        status = read_command_words(&r, &read);
     if (status == GLINT_OK)
         *line = read;
     return status;
@@ -397,7 +399,7 @@ enum glint_status keyboard_open(struct keyboard *k, int fd)
 
 /* Returns the length of the first key of TEXT[N]: one byte, or the bytes of
  * an escape sequence up to its final letter. */
-static int key_length(const char *text, int n)
+static int first_key_length(const char *text, int n)
 {
     int i = 2;
 
@@ -410,7 +412,7 @@ static int key_length(const char *text, int n)
 
 int keyboard_take(const char *text, int n, struct control_line *line)
 {
-    const int length = key_length(text, n);
+    const int length = first_key_length(text, n);
 
     *line = (struct control_line){.frame = -1};
     for (int i = 0; i < N_KEYS; i++)
@@ -424,7 +426,7 @@ int keyboard_take(const char *text, int n, struct control_line *line)
 }
 
 /* Reads pressed keys into K. Returns false if there are none. */
-static bool read_keys(struct keyboard *k)
+static bool read_pressed_keys(struct keyboard *k)
 {
     struct pollfd there = {.fd = k->fd, .events = POLLIN};
     ssize_t n = 0;
@@ -438,7 +440,7 @@ static bool read_keys(struct keyboard *k)
 
 bool keyboard_next(struct keyboard *k, struct control_line *line)
 {
-    while (k->at < k->n || read_keys(k)) {
+    while (k->at < k->n || read_pressed_keys(k)) {
         if (k->bytes[k->at] == 'q')
             raise(SIGINT);
         k->at += keyboard_take(k->bytes + k->at, k->n - k->at, line);
@@ -458,7 +460,8 @@ static void close_keyboard(struct keyboard *k)
 
 enum { MAX_BYTES = 1 << 28 };
 
-static void print_where(const struct controls *in, int number, char *where)
+static void format_line_location(const struct controls *in, int number,
+                                 char *where)
 {
     const char *const name =
         strcmp(in->lines.name, "-") == 0 ? "control" : in->lines.name;
@@ -468,14 +471,15 @@ static void print_where(const struct controls *in, int number, char *where)
 }
 
 /* Parses TEXT, the last line read, into LINE. */
-static enum glint_status parse_line(const struct controls *in, const char *text,
-                                    struct control_line *line,
-                                    struct glint_error *error)
+static enum glint_status parse_control_line(const struct controls *in,
+                                            const char *text,
+                                            struct control_line *line,
+                                            struct glint_error *error)
 {
     char where[CONTROL_WHERE];
     enum glint_status status;
 
-    print_where(in, in->lines.number, where);
+    format_line_location(in, in->lines.number, where);
     status = control_parse(text, where, line, error);
     line->number = in->lines.number;
     return status;
@@ -497,7 +501,7 @@ static enum glint_status parse_all_lines(struct controls *in,
             return glint_error_report(error, GLINT_E_MEMORY, in->lines.name,
                                       "%s", text_no_memory);
         in->row = more;
-        status = parse_line(in, text, &line, error);
+        status = parse_control_line(in, text, &line, error);
         if (status == GLINT_OK && line.verb != CONTROL_NONE)
             more[in->n++] = line;
     }
@@ -543,14 +547,14 @@ void controls_close(struct controls *input)
 
 /* Reads the next command of the pipe into in->ahead. Returns false if none
  * has arrived. */
-static bool read_ahead(struct controls *in)
+static bool read_next_pipe_command(struct controls *in)
 {
     const char *text;
 
     while (in->lines.is_pipe && (text = text_lines_raw(&in->lines))) {
         struct glint_error error;
 
-        if (parse_line(in, text, &in->ahead, &error) != GLINT_OK)
+        if (parse_control_line(in, text, &in->ahead, &error) != GLINT_OK)
             controls_refuse(in, &error);
         else if (in->ahead.verb != CONTROL_NONE)
             return true;
@@ -571,7 +575,7 @@ const struct control_line *controls_next(struct controls *input, int picture)
     if (in->read_at != picture)
         text_lines_turn(&in->lines);
     in->read_at = picture;
-    in->has_ahead = in->has_ahead || read_ahead(in);
+    in->has_ahead = in->has_ahead || read_next_pipe_command(in);
     if (!in->has_ahead || in->ahead.frame > picture)
         return NULL;
     in->has_ahead = false;
@@ -587,11 +591,11 @@ void controls_where(const struct controls *input, int i, char *where)
 {
     const int row = i >= 0 ? i : input->next - 1;
 
-    print_where(input,
-                input->is_keys ? 0
-                : row >= 0     ? input->row[row].number
-                               : input->ahead.number,
-                where);
+    format_line_location(input,
+                         input->is_keys ? 0
+                         : row >= 0     ? input->row[row].number
+                                        : input->ahead.number,
+                         where);
 }
 
 void controls_refuse(struct controls *input, const struct glint_error *error)

@@ -33,10 +33,10 @@ static void open_environments(struct steer *steer)
 }
 
 /* Checks LINE, a command about environments. */
-static enum glint_status check_environment(const struct steer *steer,
-                                           const struct control_line *line,
-                                           const char *where,
-                                           struct glint_error *error)
+static enum glint_status
+check_environment_command(const struct steer *steer,
+                          const struct control_line *line, const char *where,
+                          struct glint_error *error)
 {
     struct suggest suggest;
 
@@ -96,8 +96,8 @@ static enum glint_status change_environment(struct steer *steer,
 
 /* Sets KIND to the type of objects called NAME. Returns false if there is no
  * such type, or if an object has that name. */
-static bool find_kind(const struct steer *steer, const char *name,
-                      enum glint_scene_kind *kind)
+static bool find_object_type(const struct steer *steer, const char *name,
+                             enum glint_scene_kind *kind)
 {
     static const char *const kinds[GLINT_KINDS] = {"body",   "sensors", "foods",
                                                    "shells", "lines",   "box"};
@@ -112,18 +112,19 @@ static bool find_kind(const struct steer *steer, const char *name,
     return false;
 }
 
-static bool is_kind_name(const struct steer *s, const struct control_line *line,
-                         enum glint_scene_kind *kind)
+static bool is_object_type_name(const struct steer *s,
+                                const struct control_line *line,
+                                enum glint_scene_kind *kind)
 {
     return (line->verb == CONTROL_SHOW || line->verb == CONTROL_HIDE ||
             line->verb == CONTROL_SIZE) &&
-           find_kind(s, line->name[0], kind);
+           find_object_type(s, line->name[0], kind);
 }
 
-static enum glint_status check_sensor(const struct steer *steer,
-                                      const struct control_line *line,
-                                      const char *where,
-                                      struct glint_error *error)
+static enum glint_status check_motion_sensor(const struct steer *steer,
+                                             const struct control_line *line,
+                                             const char *where,
+                                             struct glint_error *error)
 {
     const struct glint_scene_motion *const m = steer->model.motion;
     int n = 0;
@@ -139,15 +140,15 @@ static enum glint_status check_sensor(const struct steer *steer,
 /* -------------------------------------------------------------------- camera
  */
 
-static enum glint_status set_camera(const struct steer *s,
-                                    struct glint_scene *scene)
+static enum glint_status set_scene_camera(const struct steer *s,
+                                          struct glint_scene *scene)
 {
     return glint_scene_set_camera(scene, s->camera.at,
                                   (const int32_t(*)[3])s->camera.axis_q30);
 }
 
 /* Rotates axis A towards axis B by DEG degrees. */
-static void rotate_axes(double axis[3][3], int a, int b, double deg)
+static void rotate_camera_axes(double axis[3][3], int a, int b, double deg)
 {
     const double c = cos(deg * RADIAN), sine = sin(deg * RADIAN);
 
@@ -223,9 +224,10 @@ static enum glint_status move_camera(struct steer *s, struct glint_scene *scene,
             c->at[i] = (int32_t)lround(at);
     }
     if (line->verb == CONTROL_LOOK) {
-        rotate_axes(axis, 2, 0, line->v[0]); /* rotates ahead to the right */
-        rotate_axes(axis, 2, 1, line->v[1]); /* rotates ahead upwards */
-        rotate_axes(axis, 1, 0, line->v[2]); /* rolls up to the right */
+        rotate_camera_axes(axis, 2, 0,
+                           line->v[0]); /* rotates ahead to the right */
+        rotate_camera_axes(axis, 2, 1, line->v[1]); /* rotates ahead upwards */
+        rotate_camera_axes(axis, 1, 0, line->v[2]); /* rolls up to the right */
     }
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3; i++)
@@ -236,15 +238,15 @@ static enum glint_status move_camera(struct steer *s, struct glint_scene *scene,
     if (status == GLINT_OK && s->model.motion)
         glint_scene_enter(scene, -1);
     if (status == GLINT_OK)
-        status = set_camera(s, scene);
+        status = set_scene_camera(s, scene);
     if (status != GLINT_OK)
         *s = before;
     return status;
 }
 
-static enum glint_status move_to_sensor(struct steer *s,
-                                        struct glint_scene *scene,
-                                        const struct control_line *line)
+static enum glint_status move_camera_to_sensor(struct steer *s,
+                                               struct glint_scene *scene,
+                                               const struct control_line *line)
 {
     const int sensor = line->verb == CONTROL_SENSOR ? (int)line->v[0] - 1 : -1;
     enum glint_status status = GLINT_OK;
@@ -258,15 +260,16 @@ static enum glint_status move_to_sensor(struct steer *s,
     if (sensor >= 0)
         return status;
     s->camera = s->model.header->camera;
-    return set_camera(s, scene);
+    return set_scene_camera(s, scene);
 }
 
 /* --------------------------------------------------------------------- kinds
  */
 
-static enum glint_status change_kind(struct steer *s, struct glint_scene *scene,
-                                     const struct control_line *line,
-                                     enum glint_scene_kind kind)
+static enum glint_status change_objects_of_type(struct steer *s,
+                                                struct glint_scene *scene,
+                                                const struct control_line *line,
+                                                enum glint_scene_kind kind)
 {
     const double steps = rint(ldexp(line->v[0], s->model.header->unit_log2));
     enum glint_status status = GLINT_OK;
@@ -283,7 +286,8 @@ static enum glint_status change_kind(struct steer *s, struct glint_scene *scene,
     return status;
 }
 
-static void apply_motion(const struct steer *steer, struct glint_scene *scene)
+static void apply_object_type_changes(const struct steer *steer,
+                                      struct glint_scene *scene)
 {
     for (int i = 0; steer->model.motion && i < GLINT_KINDS; i++) {
         const struct steer_kind *const k = &steer->kind[i];
@@ -296,7 +300,7 @@ static void apply_motion(const struct steer *steer, struct glint_scene *scene)
     if (steer->model.motion)
         glint_scene_enter(scene, steer->sensor);
     if (steer->is_free)
-        set_camera(steer, scene);
+        set_scene_camera(steer, scene);
 }
 
 /* degrees; a camera directly above would have no right axis */
@@ -319,8 +323,8 @@ static int count_materials(const struct steer *s)
     return (int)s->model.header->n_materials;
 }
 
-static void set_look(const struct glint_scene_model *m, int i,
-                     struct glint_scene_look *look)
+static void read_material_appearance(const struct glint_scene_model *m, int i,
+                                     struct glint_scene_look *look)
 {
     const struct glint_scene_material *const from = &m->material[i];
 
@@ -357,7 +361,7 @@ enum glint_status steer_open(struct steer *steer,
                                                (int)model->object[i].material,
                                                model->object[i].radius};
     for (int i = 0; i < count_materials(steer); i++)
-        set_look(model, i, &steer->look[i]);
+        read_material_appearance(model, i, &steer->look[i]);
     return GLINT_OK;
 }
 
@@ -373,16 +377,17 @@ void steer_close(struct steer *steer)
  */
 
 /* Returns the name of object or material I. */
-static const char *find_name(const struct steer *s, bool is_material, int i)
+static const char *find_object_or_material_name(const struct steer *s,
+                                                bool is_material, int i)
 {
     return is_material ? s->model.material[i].name : s->model.object[i].name;
 }
 
 /* Sets INDEX to the index of name K of LINE. */
-static enum glint_status find_index(const struct steer *s,
-                                    const struct control_line *line, int k,
-                                    bool is_material, const char *where,
-                                    struct glint_error *error, int *index)
+static enum glint_status find_name_index(const struct steer *s,
+                                         const struct control_line *line, int k,
+                                         bool is_material, const char *where,
+                                         struct glint_error *error, int *index)
 {
     const char *const name = line->name[k];
     const int n = is_material ? count_materials(s) : count_objects(s);
@@ -394,7 +399,8 @@ static enum glint_status find_index(const struct steer *s,
         return GLINT_OK;
     suggest_begin(&suggest, name);
     for (int i = 0; i < n; i++) {
-        const char *const known = find_name(s, is_material, i);
+        const char *const known =
+            find_object_or_material_name(s, is_material, i);
 
         suggest_try(&suggest, known, strlen(known));
     }
@@ -404,31 +410,30 @@ static enum glint_status find_index(const struct steer *s,
 }
 
 /* Returns whether the first name of LINE is a material. */
-static bool is_of_material(const struct control_line *line)
+static bool is_command_for_material(const struct control_line *line)
 {
     return line->verb == CONTROL_ALPHA || line->verb == CONTROL_COLOUR ||
            line->verb == CONTROL_DIFFUSE;
 }
 
 /* Sets INDEX[2] to the indices of the names of LINE, 0 for a missing name. */
-static enum glint_status find_indices(const struct steer *s,
-                                      const struct control_line *line,
-                                      const char *where,
-                                      struct glint_error *error, int index[2])
+static enum glint_status
+find_name_indices(const struct steer *s, const struct control_line *line,
+                  const char *where, struct glint_error *error, int index[2])
 {
     enum glint_status status = GLINT_OK;
 
     index[0] = index[1] = 0;
     if (*line->name[0])
-        status =
-            find_index(s, line, 0, is_of_material(line), where, error, index);
+        status = find_name_index(s, line, 0, is_command_for_material(line),
+                                 where, error, index);
     if (status == GLINT_OK && *line->name[1])
-        status = find_index(s, line, 1, true, where, error, index + 1);
+        status = find_name_index(s, line, 1, true, where, error, index + 1);
     return status;
 }
 
 /* Returns whether material I is brushed metal. */
-static bool is_metal(const struct steer *s, int i)
+static bool is_brushed_metal(const struct steer *s, int i)
 {
     return s->model.material[i].ward != GLINT_SCENE_NONE;
 }
@@ -437,28 +442,29 @@ enum glint_status steer_check(const struct steer *steer,
                               const struct control_line *line,
                               const char *where, struct glint_error *error)
 {
-    const bool is_set = is_of_material(line) && *line->name[0];
+    const bool is_set = is_command_for_material(line) && *line->name[0];
     enum glint_scene_kind kind;
     enum glint_status status;
     int index[2];
 
     switch (line->verb) {
     case CONTROL_SENSOR:
-        return check_sensor(steer, line, where, error);
+        return check_motion_sensor(steer, line, where, error);
     case CONTROL_TURN:
     case CONTROL_SCALE:
     case CONTROL_MAP:
     case CONTROL_NEXT_MAP:
-        return check_environment(steer, line, where, error);
+        return check_environment_command(steer, line, where, error);
     default:
         break;
     }
-    if (is_kind_name(steer, line, &kind))
+    if (is_object_type_name(steer, line, &kind))
         return GLINT_OK;
-    status = find_indices(steer, line, where, error, index);
+    status = find_name_indices(steer, line, where, error, index);
     if (status != GLINT_OK)
         return status;
-    if (is_set && line->verb != CONTROL_COLOUR && !is_metal(steer, index[0]))
+    if (is_set && line->verb != CONTROL_COLOUR &&
+        !is_brushed_metal(steer, index[0]))
         return control_fail(error, where, line->name_column[0],
                             "'%s' is not brushed metal; use 'colour'",
                             line->name[0]);
@@ -473,8 +479,8 @@ enum glint_status steer_check(const struct steer *steer,
 /* -------------------------------------------------------------------- camera
  */
 
-static enum glint_status apply_orbit(const struct steer *s,
-                                     struct glint_scene *scene)
+static enum glint_status apply_orbit_to_camera(const struct steer *s,
+                                               struct glint_scene *scene)
 {
     struct glint_scene_camera c;
     const enum glint_status status = orbit_camera(s, &c);
@@ -488,7 +494,7 @@ static enum glint_status apply_orbit(const struct steer *s,
 /* Starts an orbit about a point ahead of the camera at the depth of the
  * objects' mean position (without planes and hidden objects), or one unit
  * ahead if that lies behind the camera. */
-static void begin_orbit(struct steer *s)
+static void begin_camera_orbit(struct steer *s)
 {
     const struct glint_scene_camera *const c = &s->camera;
     double mean[3] = {0, 0, 0}, ahead[3], distance = 0;
@@ -528,16 +534,16 @@ bool steer_camera(struct steer *steer, const int32_t at[3],
     return !steer->orbit.is_there && steer->sensor < 0;
 }
 
-static enum glint_status change_camera(struct steer *s,
-                                       struct glint_scene *scene,
-                                       const struct control_line *line)
+static enum glint_status execute_camera_command(struct steer *s,
+                                                struct glint_scene *scene,
+                                                const struct control_line *line)
 {
     const struct steer before = *s;
     const double *const v = line->v;
     enum glint_status status;
 
     if (!s->orbit.is_there)
-        begin_orbit(s);
+        begin_camera_orbit(s);
     s->sensor = -1;
     s->is_free = false;
     if (line->verb == CONTROL_DISTANCE)
@@ -552,7 +558,7 @@ static enum glint_status change_camera(struct steer *s,
     }
     if (before.sensor >= 0)
         glint_scene_enter(scene, -1);
-    status = apply_orbit(s, scene);
+    status = apply_orbit_to_camera(s, scene);
     if (status == GLINT_OK)
         return status;
     *s = before;
@@ -565,10 +571,12 @@ static enum glint_status change_camera(struct steer *s,
  */
 
 /* Changes LOOK, the appearance of material I, by LINE. */
-static void change_look(const struct steer *s, const struct control_line *line,
-                        int i, struct glint_scene_look *look)
+static void change_material_appearance(const struct steer *s,
+                                       const struct control_line *line, int i,
+                                       struct glint_scene_look *look)
 {
-    const bool is_specular = line->verb == CONTROL_COLOUR && is_metal(s, i);
+    const bool is_specular =
+        line->verb == CONTROL_COLOUR && is_brushed_metal(s, i);
     int32_t *const rgb_q15 = is_specular ? look->specular_q15 : look->rgb_q15;
 
     if (line->verb != CONTROL_ALPHA) {
@@ -588,22 +596,21 @@ static void change_look(const struct steer *s, const struct control_line *line,
 
 /* Returns whether material I with the appearance LOOK reflects at most the
  * light it receives. */
-static bool is_darker(const struct steer *s, int i,
-                      const struct glint_scene_look *look)
+static bool is_appearance_darker(const struct steer *s, int i,
+                                 const struct glint_scene_look *look)
 {
     bool is = true;
 
-    for (int c = 0; c < 3 && is_metal(s, i); c++)
+    for (int c = 0; c < 3 && is_brushed_metal(s, i); c++)
         is = is && look->rgb_q15[c] + look->specular_q15[c] <= (1 << 15) + 1;
     return is;
 }
 
 /* Changes the appearance of material INDEX, or of all metals. Changes
  * nothing if any of them cannot be set as LINE requests. */
-static enum glint_status change_appearance(struct steer *s,
-                                           struct glint_scene *scene,
-                                           const struct control_line *line,
-                                           int index)
+static enum glint_status
+change_appearance_of_materials(struct steer *s, struct glint_scene *scene,
+                               const struct control_line *line, int index)
 {
     const bool all = !*line->name[0];
     const int end = all ? count_materials(s) : index + 1;
@@ -613,17 +620,18 @@ static enum glint_status change_appearance(struct steer *s,
     for (; i < end && status == GLINT_OK; i++) {
         struct glint_scene_look look = s->look[i];
 
-        if (all && !is_metal(s, i))
+        if (all && !is_brushed_metal(s, i))
             continue;
-        change_look(s, line, i, &look);
-        status = is_darker(s, i, &look) ? glint_scene_set_look(scene, i, &look)
-                                        : GLINT_E_ARGUMENT;
+        change_material_appearance(s, line, i, &look);
+        status = is_appearance_darker(s, i, &look)
+                     ? glint_scene_set_look(scene, i, &look)
+                     : GLINT_E_ARGUMENT;
     }
     while (--i >= (all ? 0 : index)) {
-        if (all && !is_metal(s, i))
+        if (all && !is_brushed_metal(s, i))
             continue;
         if (status == GLINT_OK)
-            change_look(s, line, i, &s->look[i]);
+            change_material_appearance(s, line, i, &s->look[i]);
         else
             glint_scene_set_look(scene, i, &s->look[i]);
     }
@@ -634,7 +642,7 @@ static enum glint_status change_appearance(struct steer *s,
  */
 
 /* Returns the first visible object that is not a shadow catcher, or -1. */
-static int first_object(const struct steer *s)
+static int find_first_object(const struct steer *s)
 {
     for (int i = 0; i < count_objects(s); i++)
         if (s->thing[i].is_shown && s->model.object[i].catcher_q15 == 0)
@@ -642,12 +650,12 @@ static int first_object(const struct steer *s)
     return -1;
 }
 
-static enum glint_status change_material(struct steer *s,
-                                         struct glint_scene *scene,
-                                         const struct control_line *line,
-                                         const int index[2])
+static enum glint_status change_object_material(struct steer *s,
+                                                struct glint_scene *scene,
+                                                const struct control_line *line,
+                                                const int index[2])
 {
-    const int i = line->is_change ? first_object(s) : index[0];
+    const int i = line->is_change ? find_first_object(s) : index[0];
     int material = index[1];
     enum glint_status status;
 
@@ -663,8 +671,10 @@ static enum glint_status change_material(struct steer *s,
     return status;
 }
 
-static enum glint_status change_size(struct steer *s, struct glint_scene *scene,
-                                     const struct control_line *line, int i)
+static enum glint_status change_object_size(struct steer *s,
+                                            struct glint_scene *scene,
+                                            const struct control_line *line,
+                                            int i)
 {
     const double radius = ldexp(line->v[0], s->model.header->unit_log2);
     const int32_t steps = (int32_t)lround(fmin(radius, GLINT_SCENE_SPAN));
@@ -678,11 +688,11 @@ static enum glint_status change_size(struct steer *s, struct glint_scene *scene,
 /* ---------------------------------------------------------------------- line
  */
 
-static enum glint_status execute_line(struct steer *s,
-                                      struct glint_scene *scene,
-                                      const struct control_line *line,
-                                      const char *where,
-                                      struct glint_error *error)
+static enum glint_status execute_control_line(struct steer *s,
+                                              struct glint_scene *scene,
+                                              const struct control_line *line,
+                                              const char *where,
+                                              struct glint_error *error)
 {
     enum glint_scene_kind kind;
     enum glint_status status;
@@ -691,7 +701,7 @@ static enum glint_status execute_line(struct steer *s,
     switch (line->verb) {
     case CONTROL_SENSOR:
     case CONTROL_SCENE:
-        return move_to_sensor(s, scene, line);
+        return move_camera_to_sensor(s, scene, line);
     case CONTROL_WALK:
     case CONTROL_LOOK:
         return move_camera(s, scene, line);
@@ -702,29 +712,29 @@ static enum glint_status execute_line(struct steer *s,
         return change_environment(s, scene, line);
     case CONTROL_ORBIT:
     case CONTROL_DISTANCE:
-        return change_camera(s, scene, line);
+        return execute_camera_command(s, scene, line);
     default:
         break;
     }
-    if (is_kind_name(s, line, &kind))
-        return change_kind(s, scene, line, kind);
-    status = find_indices(s, line, where, error, index);
+    if (is_object_type_name(s, line, &kind))
+        return change_objects_of_type(s, scene, line, kind);
+    status = find_name_indices(s, line, where, error, index);
     if (status != GLINT_OK)
         return status;
     switch (line->verb) {
     case CONTROL_ALPHA:
     case CONTROL_COLOUR:
     case CONTROL_DIFFUSE:
-        return change_appearance(s, scene, line, index[0]);
+        return change_appearance_of_materials(s, scene, line, index[0]);
     case CONTROL_MATERIAL:
-        return change_material(s, scene, line, index);
+        return change_object_material(s, scene, line, index);
     case CONTROL_SHOW:
     case CONTROL_HIDE:
         s->thing[index[0]].is_shown = line->verb == CONTROL_SHOW;
         glint_scene_show(scene, index[0], s->thing[index[0]].is_shown);
         return GLINT_OK;
     case CONTROL_SIZE:
-        return change_size(s, scene, line, index[0]);
+        return change_object_size(s, scene, line, index[0]);
     default:
         return GLINT_OK;
     }
@@ -738,13 +748,13 @@ enum glint_status steer_take(struct steer *steer, struct glint_scene *scene,
 
     if (status != GLINT_OK)
         return line->is_change ? GLINT_OK : status;
-    status = execute_line(steer, scene, line, where, error);
+    status = execute_control_line(steer, scene, line, where, error);
     if (line->is_change)
         return GLINT_OK;
     if (status == GLINT_E_ARGUMENT)
         status = control_fail(
             error, where, line->column,
-            is_of_material(line)
+            is_command_for_material(line)
                 ? "the specular and diffuse colours sum to more than 1"
                 : "the value is out of the range that the scene was baked for");
     return status;
@@ -764,7 +774,7 @@ void steer_apply(const struct steer *steer, struct glint_scene *scene)
         glint_scene_set_look(scene, i, &steer->look[i]);
     if (count_environments(steer) > 0)
         show_environment(steer, scene);
-    apply_motion(steer, scene);
+    apply_object_type_changes(steer, scene);
     if (steer->orbit.is_there)
-        apply_orbit(steer, scene);
+        apply_orbit_to_camera(steer, scene);
 }

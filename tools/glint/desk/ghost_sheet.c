@@ -18,7 +18,7 @@ enum { WIDE = 288, DIMMED = 5 };
  * exposed, 1 = white */
 static const double shown = 0.7;
 
-static bool is_muted(const struct ghost_list *l, int ghost)
+static bool is_ghost_muted(const struct ghost_list *l, int ghost)
 {
     const struct glint_tint *tints = l->explain->tints;
 
@@ -50,7 +50,7 @@ enum glint_status ghost_list_write(const struct ghost_list *l, const char *path,
         const struct glint_explain_part *part = &l->explain->ghost[ghost];
         const struct glint_ghost *g = &l->explain->setup->ghost[ghost];
 
-        if (glint_explain_drawn(part) == 0 && !is_muted(l, ghost))
+        if (glint_explain_drawn(part) == 0 && !is_ghost_muted(l, ghost))
             continue;
         ghost_file_line(text, sizeof text, ghost,
                         l->explain->tints ? &l->explain->tints[ghost] : NULL);
@@ -71,8 +71,8 @@ enum glint_status ghost_list_write(const struct ghost_list *l, const char *path,
 
 /* Reduces the ghost drawn last to LIGHT[height][width][3] of a thumbnail, by
  * means of pixels. */
-static void reduce_ghost(const struct glint_explain *e, int width, int height,
-                         float *light)
+static void reduce_ghost_image(const struct glint_explain *e, int width,
+                               int height, float *light)
 {
     const int w = e->view->width, h = e->view->height;
 
@@ -103,7 +103,7 @@ static int compare_floats(const void *a, const void *b)
 
 /* Returns the display exposure of LIGHT[N]; ROOM is scratch memory of the
  * same size. */
-static double find_exposure(const float *light, size_t n, float *room)
+static double find_display_exposure(const float *light, size_t n, float *room)
 {
     size_t lit = 0;
 
@@ -117,9 +117,9 @@ static double find_exposure(const float *light, size_t n, float *room)
 }
 
 /* Draws LIGHT times SCALE over the dimmed image SMALL into TO. */
-static void draw_thumbnail(const struct glint_image *to,
-                           const struct glint_image *small, const float *light,
-                           double scale)
+static void draw_ghost_thumbnail(const struct glint_image *to,
+                                 const struct glint_image *small,
+                                 const float *light, double scale)
 {
     for (int y = 0; y < to->height; y++) {
         uint8_t *px = to->plane[0] + y * to->stride_bytes[0];
@@ -135,9 +135,9 @@ static void draw_thumbnail(const struct glint_image *to,
     }
 }
 
-static void draw_ghost(const struct ghost_list *l, const struct sheet *sheet,
-                       int k, int ghost, const struct glint_image *small,
-                       float *light)
+static void draw_numbered_ghost(const struct ghost_list *l,
+                                const struct sheet *sheet, int k, int ghost,
+                                const struct glint_image *small, float *light)
 {
     const size_t n = 3 * (size_t)small->width * (size_t)small->height;
     const struct glint_image to = sheet_picture(sheet, k);
@@ -145,16 +145,17 @@ static void draw_ghost(const struct ghost_list *l, const struct sheet *sheet,
     char text[64];
 
     glint_explain_draw(l->explain, ghost);
-    reduce_ghost(l->explain, small->width, small->height, light);
-    draw_thumbnail(&to, small, light, find_exposure(light, n, light + n));
+    reduce_ghost_image(l->explain, small->width, small->height, light);
+    draw_ghost_thumbnail(&to, small, light,
+                         find_display_exposure(light, n, light + n));
     snprintf(text, sizeof text, "%d  %d-%d  %.1f%%", ghost, g->i, g->j,
              100 * l->explain->ghost[ghost].share);
     sheet_caption(sheet, k, text);
 }
 
-static enum glint_status draw_sheet(const struct ghost_list *l,
-                                    const struct glint_image *small,
-                                    struct sheet *sheet)
+static enum glint_status draw_contact_sheet(const struct ghost_list *l,
+                                            const struct glint_image *small,
+                                            struct sheet *sheet)
 {
     const size_t n = 3 * (size_t)small->width * (size_t)small->height;
     float *const light = calloc(2 * n, sizeof *light);
@@ -171,7 +172,7 @@ static enum glint_status draw_sheet(const struct ghost_list *l,
     for (int i = 0; i < l->explain->n_ghosts && status == GLINT_OK && k < all;
          i++)
         if (glint_explain_drawn(&l->explain->ghost[l->ghosts[i]]) > 0)
-            draw_ghost(l, sheet, k++, l->ghosts[i], small, light);
+            draw_numbered_ghost(l, sheet, k++, l->ghosts[i], small, light);
     free(light);
     return status;
 }
@@ -184,7 +185,7 @@ enum glint_status ghost_list_sheet(const struct ghost_list *l, const char *path,
     enum glint_status status = sheet_reduce(&small, l->picture, WIDE);
 
     if (status == GLINT_OK)
-        status = draw_sheet(l, &small, &sheet);
+        status = draw_contact_sheet(l, &small, &sheet);
     if (status == GLINT_OK)
         status = glint_picture_save(path, &sheet.image, error);
     sheet_close(&sheet);

@@ -36,8 +36,8 @@ struct reading {
 };
 
 /* Parses FIELD of column C. Returns NULL or an error message. */
-static const char *read_value(struct reading *r, int c, const char *field,
-                              double *value)
+static const char *parse_key_value(struct reading *r, int c, const char *field,
+                                   double *value)
 {
     const struct glint_option *const option =
         columns[c].range ? NULL : glint_option_named(columns[c].name);
@@ -54,7 +54,8 @@ static const char *read_value(struct reading *r, int c, const char *field,
                       "expected a number, or nothing, in each column", value);
 }
 
-static const char *add_key(struct keys *keys, int column, struct key_value key)
+static const char *add_key_frame(struct keys *keys, int column,
+                                 struct key_value key)
 {
     struct key_value *const more =
         text_grow(keys->key[column], keys->n[column], sizeof *more);
@@ -66,7 +67,7 @@ static const char *add_key(struct keys *keys, int column, struct key_value key)
     return NULL;
 }
 
-static const char *check_heading(unsigned seen)
+static const char *check_column_heading(unsigned seen)
 {
     if (!(seen & 1))
         return "the column 'frame' is missing";
@@ -78,8 +79,8 @@ static const char *check_heading(unsigned seen)
     return NULL;
 }
 
-static const char *parse_heading(struct reading *r, struct text_lines *lines,
-                                 char *line)
+static const char *parse_column_heading(struct reading *r,
+                                        struct text_lines *lines, char *line)
 {
     char *name[KEYS_COLUMNS];
     const int n = text_fields(line, name, KEYS_COLUMNS);
@@ -100,11 +101,12 @@ static const char *parse_heading(struct reading *r, struct text_lines *lines,
         seen |= 1u << column;
         r->column[r->n_columns++] = column;
     }
-    return n > KEYS_COLUMNS ? "a column appears twice" : check_heading(seen);
+    return n > KEYS_COLUMNS ? "a column appears twice"
+                            : check_column_heading(seen);
 }
 
-static const char *parse_row(struct reading *r, struct text_lines *lines,
-                             char *line)
+static const char *parse_key_row(struct reading *r, struct text_lines *lines,
+                                 char *line)
 {
     struct keys *const keys = r->keys;
     struct key_value key = {-1, lines->number, 0};
@@ -119,7 +121,7 @@ static const char *parse_row(struct reading *r, struct text_lines *lines,
 
         given[c] = *field[i] != '\0';
         if (given[c])
-            cause = read_value(r, c, field[i], &value[c]);
+            cause = parse_key_value(r, c, field[i], &value[c]);
     }
     if (cause)
         return cause;
@@ -133,16 +135,18 @@ static const char *parse_row(struct reading *r, struct text_lines *lines,
         return "frames must rise from line to line";
     for (int c = 0; c < KEYS_COLUMNS && !cause; c++) {
         key.value = value[c];
-        cause = given[c] ? add_key(keys, c, key) : NULL;
+        cause = given[c] ? add_key_frame(keys, c, key) : NULL;
     }
     return cause;
 }
 
-static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
+static const char *parse_key_line(void *ctx, struct text_lines *lines,
+                                  char *line)
 {
     struct reading *const r = ctx;
 
-    return (r->n_columns ? parse_row : parse_heading)(r, lines, line);
+    return (r->n_columns ? parse_key_row : parse_column_heading)(r, lines,
+                                                                 line);
 }
 
 enum glint_status keys_parse(struct keys *keys, const char *name,
@@ -156,7 +160,7 @@ enum glint_status keys_parse(struct keys *keys, const char *name,
 
     *keys = (struct keys){.n = {0}};
     if (status == GLINT_OK)
-        status = text_lines_each(&lines, parse_line, &r, error);
+        status = text_lines_each(&lines, parse_key_line, &r, error);
     if (status == GLINT_OK && keys->n[KEYS_FRAME] == 0)
         status = glint_error_report(error, GLINT_E_FORMAT, name,
                                     "has no key frames");

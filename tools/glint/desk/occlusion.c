@@ -20,15 +20,15 @@ static const double least_level = 1e-6;
 /* ------------------------------------------------------------------- reading
  */
 
-static bool file_exists(const char *name)
+static bool does_file_exist(const char *name)
 {
     return access(name, F_OK) == 0;
 }
 
 /* Loads the image of frame FRAME of a numbered sequence, whose first number
  * is 0 or 1. */
-static enum glint_status load_numbered(struct occlusion *o, int frame,
-                                       struct glint_error *error)
+static enum glint_status load_numbered_mask(struct occlusion *o, int frame,
+                                            struct glint_error *error)
 {
     struct glint_image image = {.plane = {NULL}};
     char name[NUMBERED_BYTES];
@@ -37,8 +37,8 @@ static enum glint_status load_numbered(struct occlusion *o, int frame,
     if (!numbered_name(name, o->file, 0))
         return glint_error_report(error, GLINT_E_FORMAT, o->file,
                                   "is too long a name");
-    numbered_name(name, o->file, frame + !file_exists(name));
-    if (o->frame >= 0 && !file_exists(name)) {
+    numbered_name(name, o->file, frame + !does_file_exist(name));
+    if (o->frame >= 0 && !does_file_exist(name)) {
         o->is_over = true;
         return GLINT_OK;
     }
@@ -52,8 +52,8 @@ static enum glint_status load_numbered(struct occlusion *o, int frame,
 }
 
 /* Reads frames of the video up to FRAME. */
-static enum glint_status read_video(struct occlusion *o, long frame,
-                                    struct glint_error *error)
+static enum glint_status read_mask_video_up_to(struct occlusion *o, long frame,
+                                               struct glint_error *error)
 {
     enum glint_status status = GLINT_OK;
 
@@ -71,8 +71,8 @@ static enum glint_status read_video(struct occlusion *o, long frame,
     return status;
 }
 
-static enum glint_status open_video(struct occlusion *o,
-                                    struct glint_error *error)
+static enum glint_status open_mask_video(struct occlusion *o,
+                                         struct glint_error *error)
 {
     const enum glint_status status =
         glint_y4m_reader_open(&o->video, o->file, error);
@@ -82,7 +82,7 @@ static enum glint_status open_video(struct occlusion *o,
         o->black = 16;
         o->white = 235;
     }
-    return status == GLINT_OK ? read_video(o, 0, error) : status;
+    return status == GLINT_OK ? read_mask_video_up_to(o, 0, error) : status;
 }
 
 enum glint_status occlusion_open(struct occlusion *o, struct glint_error *error)
@@ -93,9 +93,9 @@ enum glint_status occlusion_open(struct occlusion *o, struct glint_error *error)
     if (!o->file)
         return GLINT_OK;
     if (glint_y4m_is_name(o->file))
-        return open_video(o, error);
+        return open_mask_video(o, error);
     o->is_numbered = numbered_is(o->file);
-    return o->is_numbered ? load_numbered(o, 0, error)
+    return o->is_numbered ? load_numbered_mask(o, 0, error)
                           : glint_picture_load(o->file, &o->image, error);
 }
 
@@ -111,7 +111,7 @@ void occlusion_close(struct occlusion *o)
 
 /* Loads the mask of FRAME. On a read error prints a warning and uses the
  * last mask from then on. */
-static void load_mask(struct occlusion *o, int frame)
+static void load_frame_mask(struct occlusion *o, int frame)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -119,9 +119,9 @@ static void load_mask(struct occlusion *o, int frame)
     if (o->is_over || o->frame >= frame)
         return;
     if (o->is_video)
-        status = read_video(o, frame, &error);
+        status = read_mask_video_up_to(o, frame, &error);
     else if (o->is_numbered)
-        status = load_numbered(o, frame, &error);
+        status = load_numbered_mask(o, frame, &error);
     if (status == GLINT_OK)
         return;
     fprintf(stderr, "glint: %s; the mask stays as it is\n", error.text);
@@ -132,7 +132,7 @@ static void load_mask(struct occlusion *o, int frame)
  */
 
 /* Returns the mask, 0 .. 1, at its pixel (X, Y), clamped to its borders. */
-static double read_mask(const struct occlusion *o, int x, int y)
+static double read_mask_pixel(const struct occlusion *o, int x, int y)
 {
     const struct glint_image *m = &o->image;
     const int i = x < 0 ? 0 : x < m->width ? x : m->width - 1;
@@ -148,8 +148,9 @@ static double read_mask(const struct occlusion *o, int x, int y)
 
 /* Returns the mask at (X, Y) of an image of VIEW's size, interpolated
  * bilinearly; 1 off-screen. */
-static double mask_between(const struct occlusion *o,
-                           const struct glint_view *view, double x, double y)
+static double interpolate_mask(const struct occlusion *o,
+                               const struct glint_view *view, double x,
+                               double y)
 {
     const double u = x * o->image.width / view->width - 0.5;
     const double v = y * o->image.height / view->height - 0.5;
@@ -159,16 +160,18 @@ static double mask_between(const struct occlusion *o,
 
     if (!(x >= 0 && y >= 0 && x < view->width && y < view->height))
         return 1;
-    above = read_mask(o, i, j) * (i + 1 - u) + read_mask(o, i + 1, j) * (u - i);
-    below = read_mask(o, i, j + 1) * (i + 1 - u) +
-            read_mask(o, i + 1, j + 1) * (u - i);
+    above = read_mask_pixel(o, i, j) * (i + 1 - u) +
+            read_mask_pixel(o, i + 1, j) * (u - i);
+    below = read_mask_pixel(o, i, j + 1) * (i + 1 - u) +
+            read_mask_pixel(o, i + 1, j + 1) * (u - i);
     return above * (j + 1 - v) + below * (v - j);
 }
 
 /* Returns the mean of the mask over the disc of LAMP. */
-static double mean_mask(const struct occlusion *o,
-                        const struct glint_view *view, double focal_mm,
-                        const struct glint_lamp *lamp)
+static double mean_mask_over_lamp(const struct occlusion *o,
+                                  const struct glint_view *view,
+                                  double focal_mm,
+                                  const struct glint_lamp *lamp)
 {
     const double pixel = glint_view_pixel_tangent(view, focal_mm);
     /* At this pixel size any lamp is large and gets all POINTS. */
@@ -187,15 +190,15 @@ static double mean_mask(const struct occlusion *o,
         double x, y;
 
         glint_view_to_pixel(view, focal_mm, &point, &x, &y);
-        sum += point.power * mask_between(o, view, x, y);
+        sum += point.power * interpolate_mask(o, view, x, y);
     }
     return fmin(sum, 1);
 }
 
 /* Returns the fraction of light of a lamp at (X, Y), pixels, in an image of
  * WIDTH x HEIGHT: off-screen lamps fade within FADE_PX. */
-static double off_screen_fade(double x, double y, int width, int height,
-                              double fade_px)
+static double compute_off_screen_fade(double x, double y, int width, int height,
+                                      double fade_px)
 {
     const double dx = fmax(fmax(-x, x - width), 0);
     const double dy = fmax(fmax(-y, y - height), 0);
@@ -211,15 +214,16 @@ void occlusion_apply(struct occlusion *o, int frame,
     if (!o->file && !(o->fade_px > 0))
         return;
     if (o->file)
-        load_mask(o, frame);
+        load_frame_mask(o, frame);
     for (int i = 0; i < n; i++) {
         struct glint_lamp *const lamp = &lamps[i].lamp;
         double x, y, share = 1;
 
         glint_view_to_pixel(view, focal_mm, lamp, &x, &y);
         if (o->image.plane[0])
-            share = mean_mask(o, view, focal_mm, lamp);
-        share *= off_screen_fade(x, y, view->width, view->height, o->fade_px);
+            share = mean_mask_over_lamp(o, view, focal_mm, lamp);
+        share *= compute_off_screen_fade(x, y, view->width, view->height,
+                                         o->fade_px);
         lamp->power *= share;
         lamps[i].level = fmax(lamps[i].level * share, least_level);
     }

@@ -16,7 +16,8 @@ struct labels {
 
 /* Sets X and Y to the brightest pixel of the ghost drawn last. Returns false
  * if the ghost has no light. */
-static bool find_brightest(const struct glint_explain *e, int *x, int *y)
+static bool find_brightest_ghost_pixel(const struct glint_explain *e, int *x,
+                                       int *y)
 {
     const int width = e->view->width, height = e->view->height;
     const int32_t *px = e->linear_q20;
@@ -35,7 +36,7 @@ static bool find_brightest(const struct glint_explain *e, int *x, int *y)
     return most > 0;
 }
 
-static bool is_free(const struct labels *l, const int box[4])
+static bool is_label_space_free(const struct labels *l, const int box[4])
 {
     for (int i = 0; i < l->n; i++)
         if (box[0] < l->box[i][2] && box[2] > l->box[i][0] &&
@@ -45,7 +46,7 @@ static bool is_free(const struct labels *l, const int box[4])
 }
 
 /* Writes NUMBER at (X, Y), or at the first free position below. */
-static void draw_label(struct labels *l, int number, int x, int y)
+static void draw_number_label(struct labels *l, int number, int x, int y)
 {
     struct paint *const p = &l->paint;
     const int high = 9 * p->line;
@@ -61,7 +62,7 @@ static void draw_label(struct labels *l, int number, int x, int y)
         box[1] = y;
         box[2] = x + wide;
         box[3] = y + high;
-        if (is_free(l, box))
+        if (is_label_space_free(l, box))
             break;
     }
     for (int i = 0; i < 4; i++)
@@ -95,10 +96,10 @@ enum glint_status preview_number(struct glint_engine *engine,
         if (glint_explain_drawn(&e.ghost[ghosts[i]]) == 0)
             continue;
         glint_explain_draw(&e, ghosts[i]);
-        if (find_brightest(&e, &x, &y))
-            draw_label(&l, ghosts[i],
-                       (int)((int64_t)x * image->width / e.view->width),
-                       (int)((int64_t)y * image->height / e.view->height));
+        if (find_brightest_ghost_pixel(&e, &x, &y))
+            draw_number_label(
+                &l, ghosts[i], (int)((int64_t)x * image->width / e.view->width),
+                (int)((int64_t)y * image->height / e.view->height));
     }
     glint_explain_close(&e);
     return status;

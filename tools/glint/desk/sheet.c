@@ -13,7 +13,7 @@ enum { GAP = 8, GROUND = 32 };
 
 /* ----------------------------------------------------------------- captions */
 
-static int compute_stroke_width(int width)
+static int compute_caption_stroke_width(int width)
 {
     return width >= 960 ? 3 : width >= 200 ? 2 : 1;
 }
@@ -21,9 +21,9 @@ static int compute_stroke_width(int width)
 /* Returns the number of bytes of TEXT in the next row of a caption below an
  * image of WIDTH: whole words, or a part of a word that is wider than the
  * row. */
-static size_t row_length(int width, const char *text)
+static size_t caption_row_length(int width, const char *text)
 {
-    const int line = compute_stroke_width(width);
+    const int line = compute_caption_stroke_width(width);
     /* letters with their gap are 4 strokes wide, margins 2 */
     const int fit = (width - 3 * line) / (4 * line);
     const size_t room = fit > 1 ? (size_t)fit : 1;
@@ -36,7 +36,7 @@ static size_t row_length(int width, const char *text)
     return n > 0 ? n : room;
 }
 
-static const char *skip_blanks(const char *text)
+static const char *skip_caption_blanks(const char *text)
 {
     return text + strspn(text, " ");
 }
@@ -45,8 +45,8 @@ int sheet_caption_lines(int width, const char *text)
 {
     int rows = 0;
 
-    for (text = skip_blanks(text); *text; rows++)
-        text = skip_blanks(text + row_length(width, text));
+    for (text = skip_caption_blanks(text); *text; rows++)
+        text = skip_caption_blanks(text + caption_row_length(width, text));
     return rows;
 }
 
@@ -64,13 +64,13 @@ void sheet_caption(const struct sheet *s, int k, const char *text)
     below.plane[0] += s->height * below.stride_bytes[0];
     below.height = caption_height(s);
     paint_colour(&p, 224, 224, 224);
-    text = skip_blanks(text);
+    text = skip_caption_blanks(text);
     for (int i = 0; i < s->rows && *text; i++) {
-        const size_t n = row_length(s->width, text);
+        const size_t n = caption_row_length(s->width, text);
 
         snprintf(row, sizeof row, "%.*s", (int)n, text);
         paint_text(&p, 2 * s->line, (2 + 7 * i) * s->line, row);
-        text = skip_blanks(text + n);
+        text = skip_caption_blanks(text + n);
     }
 }
 
@@ -89,7 +89,7 @@ enum glint_status sheet_open(struct sheet *s, int n, int width, int height,
         s->columns--;
     while (s->columns < n && s->columns * (width + GAP) < 700)
         s->columns++;
-    s->line = compute_stroke_width(width);
+    s->line = compute_caption_stroke_width(width);
     rows = (n + s->columns - 1) / s->columns;
     s->image = (struct glint_image){
         .format = GLINT_RGB24,
@@ -130,7 +130,7 @@ void sheet_close(struct sheet *s)
 
 /* ----------------------------------------------------------------- reducing */
 
-static double to_light(double code)
+static double convert_code_to_light(double code)
 {
     const double x = code / 255;
 
@@ -139,8 +139,9 @@ static double to_light(double code)
 
 /* Sets PX to the mean of the light of BIG over columns X[0] .. X[1] - 1 and
  * rows Y[0] .. Y[1] - 1. */
-static void mean_pixel(const struct glint_image *big, const double light[256],
-                       const int x[2], const int y[2], uint8_t *px)
+static void compute_mean_pixel(const struct glint_image *big,
+                               const double light[256], const int x[2],
+                               const int y[2], uint8_t *px)
 {
     const double n = (double)(x[1] - x[0]) * (y[1] - y[0]);
     double sum[3] = {0, 0, 0};
@@ -171,7 +172,7 @@ enum glint_status sheet_reduce(struct glint_image *small,
         (struct glint_image){.format = GLINT_RGB24, .width = w, .height = h};
     glint_image_place(small, mem);
     for (int i = 0; i < 256; i++)
-        light[i] = to_light(i);
+        light[i] = convert_code_to_light(i);
     for (int j = 0; j < h; j++)
         for (int i = 0; i < w; i++) {
             const int x[2] = {(int)((int64_t)i * big->width / w),
@@ -179,8 +180,8 @@ enum glint_status sheet_reduce(struct glint_image *small,
             const int y[2] = {(int)((int64_t)j * big->height / h),
                               (int)((int64_t)(j + 1) * big->height / h)};
 
-            mean_pixel(big, light, x, y,
-                       mem + 3 * ((size_t)j * (size_t)w + (size_t)i));
+            compute_mean_pixel(big, light, x, y,
+                               mem + 3 * ((size_t)j * (size_t)w + (size_t)i));
         }
     return GLINT_OK;
 }

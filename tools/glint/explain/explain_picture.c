@@ -32,7 +32,7 @@ struct marking {
     struct label label[MOST_LABELS];
 };
 
-static void set_palette(struct paint *p, int k)
+static void set_ghost_palette(struct paint *p, int k)
 {
     const uint8_t *c = palette[k % PALETTE];
 
@@ -43,7 +43,7 @@ static void set_palette(struct paint *p, int k)
 
 /* Checks whether any pixel of the tile at (X0, Y0), SIDE pixels wide, has
  * light. */
-static bool is_lit(const struct marking *m, int x0, int y0, int side)
+static bool is_tile_lit(const struct marking *m, int x0, int y0, int side)
 {
     for (int y = y0; y < y0 + side && y < m->height; y++)
         for (int x = x0; x < x0 + side && x < m->width; x++) {
@@ -58,8 +58,8 @@ static bool is_lit(const struct marking *m, int x0, int y0, int side)
 
 /* Shades a tile: bluish, with a brighter line at its left and top, if TOUCHED,
  * else darker. */
-static void shade_square(const struct marking *m, int x0, int y0, int side,
-                         bool touched)
+static void shade_tile(const struct marking *m, int x0, int y0, int side,
+                       bool touched)
 {
     static const int tint[3] = {6, 12, 34};
 
@@ -75,7 +75,7 @@ static void shade_square(const struct marking *m, int x0, int y0, int side,
         }
 }
 
-static void shade_tiles(struct marking *m)
+static void shade_lit_tiles(struct marking *m)
 {
     const int side = 1 << m->explain->tile_log2;
     int tile = 0;
@@ -84,15 +84,15 @@ static void shade_tiles(struct marking *m)
         glint_explain_draw(m->explain, -1);
     for (int y = 0; y < m->height; y += side)
         for (int x = 0; x < m->width; x += side, tile++)
-            shade_square(m, x, y, side,
-                         m->explain->n_lights &&
-                             (glint_explain_listed(m->explain, tile) > 0 ||
-                              is_lit(m, x, y, side)));
+            shade_tile(m, x, y, side,
+                       m->explain->n_lights &&
+                           (glint_explain_listed(m->explain, tile) > 0 ||
+                            is_tile_lit(m, x, y, side)));
 }
 
 /* ------------------------------------------------------------------ ghosts */
 
-static bool lit_at(const struct marking *m, int x, int y)
+static bool is_pixel_lit(const struct marking *m, int x, int y)
 {
     const int32_t *px;
 
@@ -103,13 +103,14 @@ static bool lit_at(const struct marking *m, int x, int y)
     return (px[0] | px[1] | px[2]) != 0;
 }
 
-static bool is_rim(const struct marking *m, int x, int y)
+static bool is_rim_pixel(const struct marking *m, int x, int y)
 {
-    return lit_at(m, x, y) && !(lit_at(m, x - 1, y) && lit_at(m, x + 1, y) &&
-                                lit_at(m, x, y - 1) && lit_at(m, x, y + 1));
+    return is_pixel_lit(m, x, y) &&
+           !(is_pixel_lit(m, x - 1, y) && is_pixel_lit(m, x + 1, y) &&
+             is_pixel_lit(m, x, y - 1) && is_pixel_lit(m, x, y + 1));
 }
 
-static bool is_free(const struct marking *m, const struct label *l)
+static bool is_label_space_free(const struct marking *m, const struct label *l)
 {
     if (l->x0 < 0 || l->y0 < 0 || l->x1 > m->width || l->y1 > m->height)
         return false;
@@ -123,25 +124,25 @@ static bool is_free(const struct marking *m, const struct label *l)
 /* Finds a place L for a label of W x H at the ghost's rim, else in its light:
  * the first free one from row START down, then from the top. Returns false if
  * there is none. */
-static bool find_place(const struct marking *m, int start, int w, int h,
-                       struct label *l)
+static bool find_label_position(const struct marking *m, int start, int w,
+                                int h, struct label *l)
 {
     for (int rim = 1; rim >= 0; rim--)
         for (int k = 0; k < m->height; k += rim ? 1 : h)
             for (int x = 0; x < m->width; x += rim ? 1 : w) {
                 const int y = (start + k) % m->height;
 
-                if (rim ? !is_rim(m, x, y) : !lit_at(m, x, y))
+                if (rim ? !is_rim_pixel(m, x, y) : !is_pixel_lit(m, x, y))
                     continue;
                 *l = (struct label){x - w / 2, y - h / 2, x - w / 2 + w,
                                     y - h / 2 + h};
-                if (is_free(m, l))
+                if (is_label_space_free(m, l))
                     return true;
             }
     return false;
 }
 
-static void put_label(struct marking *m, int k, int number)
+static void draw_ghost_label(struct marking *m, int k, int number)
 {
     struct paint p = {.image = m->image, .line = m->scale};
     const int start = k * 5 % 16 * m->height / 16; /* spread over the picture */
@@ -150,33 +151,33 @@ static void put_label(struct marking *m, int k, int number)
 
     snprintf(text, sizeof text, "%d", number);
     if (m->n_labels == MOST_LABELS ||
-        !find_place(m, start, paint_text_width(&p, text) + 4 * p.line,
-                    9 * p.line, &l))
+        !find_label_position(m, start, paint_text_width(&p, text) + 4 * p.line,
+                             9 * p.line, &l))
         return;
     m->label[m->n_labels++] = l;
     paint_colour(&p, 0, 0, 0);
     paint_fill(&p, l.x0, l.y0, l.x1, l.y1);
-    set_palette(&p, k);
+    set_ghost_palette(&p, k);
     paint_text(&p, l.x0 + 2 * p.line, l.y0 + 2 * p.line, text);
 }
 
-static void draw_outline(const struct marking *m, int k)
+static void draw_ghost_outline(const struct marking *m, int k)
 {
     struct paint p = {.image = m->image, .line = 1};
     const int wide = (m->scale + 1) / 2;
 
-    set_palette(&p, k);
+    set_ghost_palette(&p, k);
     for (int y = 0; y < m->height; y++)
         for (int x = 0; x < m->width; x++)
-            if (is_rim(m, x, y))
+            if (is_rim_pixel(m, x, y))
                 paint_fill(&p, x, y, x + wide,
                            y + wide < m->height ? y + wide : m->height);
 }
 
 /* ------------------------------------------------------------------ legend */
 
-static int n_marked(const struct glint_explain *e,
-                    const struct explain_title *t)
+static int count_marked_ghosts(const struct glint_explain *e,
+                               const struct explain_title *t)
 {
     int n = 0;
 
@@ -185,20 +186,23 @@ static int n_marked(const struct glint_explain *e,
     return n < t->top ? n : t->top;
 }
 
-static int count_columns(const struct marking *m)
+static int count_legend_columns(const struct marking *m)
 {
     const int n = m->width / (COLUMN * m->scale);
 
     return n > 0 ? n : 1;
 }
 
-static int legend_rows(const struct marking *m, const struct explain_title *t)
+static int count_legend_rows(const struct marking *m,
+                             const struct explain_title *t)
 {
     return 1 +
-           (n_marked(m->explain, t) + count_columns(m) - 1) / count_columns(m);
+           (count_marked_ghosts(m->explain, t) + count_legend_columns(m) - 1) /
+               count_legend_columns(m);
 }
 
-static void put_title(const struct marking *m, const struct explain_title *t)
+static void draw_legend_title(const struct marking *m,
+                              const struct explain_title *t)
 {
     struct paint p = {.image = m->image, .line = m->scale};
     char text[160];
@@ -208,22 +212,23 @@ static void put_title(const struct marking *m, const struct explain_title *t)
     paint_fill(&p, 4 * p.line, y, 9 * p.line, y + 5 * p.line);
     snprintf(text, sizeof text, "%d of %d tiles  %d of %d ghosts  %s",
              m->explain->all.tiles, m->explain->n_tiles,
-             n_marked(m->explain, t), m->explain->n_ghosts, t->lens);
+             count_marked_ghosts(m->explain, t), m->explain->n_ghosts, t->lens);
     paint_colour(&p, 208, 208, 208);
     paint_text(&p, 12 * p.line, y, text);
 }
 
 /* Draws entry K of the legend: the number of GHOST, its fractions of light and
  * work. */
-static void put_entry(const struct marking *m, int k, int ghost)
+static void draw_legend_entry(const struct marking *m, int k, int ghost)
 {
     struct paint p = {.image = m->image, .line = m->scale};
     const struct glint_explain_part *part = &m->explain->ghost[ghost];
-    const int x = k % count_columns(m) * COLUMN * p.line + 4 * p.line;
-    const int y = m->height + (3 + 8 * (1 + k / count_columns(m))) * p.line;
+    const int x = k % count_legend_columns(m) * COLUMN * p.line + 4 * p.line;
+    const int y =
+        m->height + (3 + 8 * (1 + k / count_legend_columns(m))) * p.line;
     char text[64];
 
-    set_palette(&p, k);
+    set_ghost_palette(&p, k);
     paint_fill(&p, x, y, x + 5 * p.line, y + 5 * p.line);
     snprintf(text, sizeof text, "%d", ghost);
     paint_text(&p, x + 8 * p.line, y, text);
@@ -266,26 +271,26 @@ enum glint_status explain_mark(struct glint_explain *e,
     enum glint_status status;
     int ghosts[GLINT_MAX_GHOSTS], n = 0;
 
-    status =
-        explain_copy(picture, (8 * legend_rows(&m, t) + 3) * m.scale, marked);
+    status = explain_copy(picture, (8 * count_legend_rows(&m, t) + 3) * m.scale,
+                          marked);
     if (status != GLINT_OK)
         return status;
     glint_explain_sort(e, ghosts);
-    shade_tiles(&m);
-    put_title(&m, t);
+    shade_lit_tiles(&m);
+    draw_legend_title(&m, t);
     for (int i = 0; i < e->n_ghosts && n < t->top; i++) {
         if (glint_explain_drawn(&e->ghost[ghosts[i]]) == 0)
             continue;
         glint_explain_draw(e, ghosts[i]);
-        draw_outline(&m, n);
-        put_entry(&m, n++, ghosts[i]);
+        draw_ghost_outline(&m, n);
+        draw_legend_entry(&m, n++, ghosts[i]);
     }
     n = 0;
     for (int i = 0; i < e->n_ghosts && n < t->top; i++) {
         if (glint_explain_drawn(&e->ghost[ghosts[i]]) == 0)
             continue;
         glint_explain_draw(e, ghosts[i]);
-        put_label(&m, n++, ghosts[i]);
+        draw_ghost_label(&m, n++, ghosts[i]);
     }
     return GLINT_OK;
 }

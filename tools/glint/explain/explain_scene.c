@@ -58,8 +58,8 @@ struct light {
 
 /* Returns the light of the flare that stands for LAMP, or -1: one within its
  * extent and a pixel. */
-static int find_drawn_light(const struct explained_scene *s,
-                            const struct glint_lamp *lamp)
+static int find_flare_light_of_lamp(const struct explained_scene *s,
+                                    const struct glint_lamp *lamp)
 {
     const double focal = s->drawing->files.lens.setup.optics.focal_mm;
     const double px = glint_view_pixel_tangent(&s->drawing->run.view, focal);
@@ -84,8 +84,8 @@ static int find_drawn_light(const struct explained_scene *s,
 }
 
 /* Returns in a word what the lens makes of LAMP. */
-static const char *find_fate_word(const struct explained_scene *s,
-                                  const struct glint_lamp *lamp)
+static const char *describe_lamp_outcome(const struct explained_scene *s,
+                                         const struct glint_lamp *lamp)
 {
     const struct glint_explain_part *part;
     int at, most = GLINT_OUTCOME_EMPTY;
@@ -96,7 +96,7 @@ static const char *find_fate_word(const struct explained_scene *s,
         return "no power";
     if (glint_explain_is_beyond(s->flare, lamp))
         return "outside the model";
-    at = find_drawn_light(s, lamp);
+    at = find_flare_light_of_lamp(s, lamp);
     if (at < 0)
         return "merged";
     part = &s->flare->light[at];
@@ -112,8 +112,9 @@ static const char *find_fate_word(const struct explained_scene *s,
 
 /* Sets LIGHT to the outcome of light I; SEEN[N] are those ahead of the camera.
  * LAMPS of the scene are those that have any light, in this order. */
-static struct light find_light(const struct explained_scene *s, int i,
-                               const struct glint_scene_lamp *seen, int n)
+static struct light find_light_outcome(const struct explained_scene *s, int i,
+                                       const struct glint_scene_lamp *seen,
+                                       int n)
 {
     const struct drawing *const c = s->drawing;
     struct light light = {.word = "behind the camera"};
@@ -140,8 +141,9 @@ static struct light find_light(const struct explained_scene *s, int i,
                 light.extra = get_object_name(
                     s, glint_scene_hider(c->files.scene.frame.scene, i));
             } else if (has_light)
-                light.word = c->files.has_lens ? find_fate_word(s, &lamp->lamp)
-                                               : "no lens";
+                light.word = c->files.has_lens
+                                 ? describe_lamp_outcome(s, &lamp->lamp)
+                                 : "no lens";
             return light;
         }
         lamp += has_light;
@@ -149,13 +151,14 @@ static struct light find_light(const struct explained_scene *s, int i,
     return light;
 }
 
-static bool is_bright(const struct glint_scene_light *light)
+static bool has_light_power(const struct glint_scene_light *light)
 {
     return light->rgb[0].mantissa || light->rgb[1].mantissa ||
            light->rgb[2].mantissa;
 }
 
-static int lights_of(const struct explained_scene *s, struct light *light)
+static int list_scene_lights(const struct explained_scene *s,
+                             struct light *light)
 {
     struct glint_scene_lamp seen[GLINT_SCENE_MAX_LIGHTS];
     const int n = glint_scene_lights(s->drawing->files.scene.frame.scene, seen);
@@ -163,16 +166,16 @@ static int lights_of(const struct explained_scene *s, struct light *light)
     const int own = (int)(h->n_lights - h->n_environment_lights);
     int all = (int)h->n_lights;
 
-    while (all > own && !is_bright(&get_model(s)->light[all - 1]))
+    while (all > own && !has_light_power(&get_model(s)->light[all - 1]))
         all--; /* kept for another environment */
     for (int i = 0; i < all; i++)
-        light[i] = find_light(s, i, seen, n);
+        light[i] = find_light_outcome(s, i, seen, n);
     return all;
 }
 
 /* Writes the name of light I, or its number. */
-static const char *light_name(const struct explained_scene *s, int i,
-                              char text[40])
+static const char *write_light_name(const struct explained_scene *s, int i,
+                                    char text[40])
 {
     const char *const name = get_model(s)->light[i].name;
 
@@ -194,7 +197,7 @@ struct highlight {
 
 /* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights, which are the last
  * lamps of the drawing, in order. Returns their number. */
-static int find_highlights(const struct explained_scene *s,
+static int list_highlights(const struct explained_scene *s,
                            struct highlight *found)
 {
     const struct drawing *const c = s->drawing;
@@ -206,10 +209,11 @@ static int find_highlights(const struct explained_scene *s,
         const struct glint_lamp *const lamp =
             c->files.has_lens ? &c->run.lamp[c->run.n_lamps - n + i].lamp
                               : NULL;
-        const int at = lamp && s->flare ? find_drawn_light(s, lamp) : -1;
+        const int at =
+            lamp && s->flare ? find_flare_light_of_lamp(s, lamp) : -1;
 
         found[i] = (struct highlight){
-            lamp ? find_fate_word(s, lamp) : "no lens",
+            lamp ? describe_lamp_outcome(s, lamp) : "no lens",
             spot->x_q8 / 256.0,
             spot->y_q8 / 256.0,
             (double)spot->power_q16 * 0x1p-16,
@@ -231,7 +235,7 @@ static int count_objects(const struct explained_scene *s,
     return n;
 }
 
-static void print_title(const struct explained_scene *s)
+static void print_scene_title(const struct explained_scene *s)
 {
     const struct glint_scene_header *const h = get_model(s)->header;
 
@@ -246,15 +250,15 @@ static void print_title(const struct explained_scene *s)
     printf("\n");
 }
 
-static void print_lights(const struct explained_scene *s)
+static void print_scene_lights(const struct explained_scene *s)
 {
     struct light light[GLINT_SCENE_MAX_LIGHTS];
-    const int n = lights_of(s, light);
+    const int n = list_scene_lights(s, light);
     char name[40];
 
     printf("\n%-22s %9s %9s %7s  %s\n", "light", "x", "y", "seen", "");
     for (int i = 0; i < n; i++) {
-        printf("%-22s ", light_name(s, i, name));
+        printf("%-22s ", write_light_name(s, i, name));
         if (light[i].is_ahead)
             printf("%9.1f %9.1f %6.0f%%", light[i].x, light[i].y,
                    100 * light[i].share);
@@ -265,10 +269,10 @@ static void print_lights(const struct explained_scene *s)
     }
 }
 
-static void print_highlights(const struct explained_scene *s)
+static void print_scene_highlights(const struct explained_scene *s)
 {
     struct highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
-    const int n = find_highlights(s, found);
+    const int n = list_highlights(s, found);
 
     if (n > 0)
         printf("\n%-22s %9s %9s %9s %7s\n", "highlight on", "x", "y", "power",
@@ -289,7 +293,7 @@ static const struct {
 
 enum { N_LAYERS = sizeof layers / sizeof *layers };
 
-static void print_layers(const struct explained_scene *s)
+static void print_scene_layers(const struct explained_scene *s)
 {
     if (!get_model(s)->motion)
         return;
@@ -304,7 +308,7 @@ static void print_layers(const struct explained_scene *s)
 }
 
 /* Light below the surface of translucent media. */
-static void print_maps(const struct explained_scene *s)
+static void print_light_maps(const struct explained_scene *s)
 {
     if (get_model(s)->header->n_skins > 0)
         printf("\nmaps of translucent media: light has spread to %d texels\n",
@@ -313,7 +317,7 @@ static void print_maps(const struct explained_scene *s)
 
 void explain_scene_print(const struct explained_scene *s)
 {
-    print_title(s);
+    print_scene_title(s);
     printf("\n%3s %-22s %8s %8s %9s %8s %8s %7s %9s\n", "", "object", "pixels",
            "shaded", "shadows", "texels", "lookups", "bounced", "triangles");
     for (uint32_t i = 0; i < get_model(s)->header->n_objects; i++) {
@@ -335,19 +339,19 @@ void explain_scene_print(const struct explained_scene *s)
                                                   : "");
         printf("\n");
     }
-    print_layers(s);
-    print_maps(s);
-    print_lights(s);
-    print_highlights(s);
+    print_scene_layers(s);
+    print_light_maps(s);
+    print_scene_lights(s);
+    print_scene_highlights(s);
 }
 
 /* --------------------------------------------------------------------- JSON */
 
-static void highlights_json(struct json_writer *json,
-                            const struct explained_scene *s)
+static void write_highlights_json(struct json_writer *json,
+                                  const struct explained_scene *s)
 {
     struct highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
-    const int n = find_highlights(s, found);
+    const int n = list_highlights(s, found);
 
     json_write(json, "highlights: [");
     for (int i = 0; i < n; i++)
@@ -359,16 +363,16 @@ static void highlights_json(struct json_writer *json,
     json_write(json, "]");
 }
 
-static void lights_json(struct json_writer *json,
-                        const struct explained_scene *s)
+static void write_lights_json(struct json_writer *json,
+                              const struct explained_scene *s)
 {
     struct light light[GLINT_SCENE_MAX_LIGHTS];
-    const int n = lights_of(s, light);
+    const int n = list_scene_lights(s, light);
     char name[40];
 
     json_write(json, "lights: [");
     for (int i = 0; i < n; i++) {
-        json_write(json, "{name: %s", light_name(s, i, name));
+        json_write(json, "{name: %s", write_light_name(s, i, name));
         if (light[i].is_ahead)
             json_write(json, "x: %.2f, y: %.2f, seen: %.4f", light[i].x,
                        light[i].y, light[i].share);
@@ -398,7 +402,7 @@ void explain_scene_json(struct json_writer *json,
                    layers[k].word, s->account.layer[layers[k].kind].n,
                    s->account.layer[layers[k].kind].pixels);
     json_write(json, "}");
-    lights_json(json, s);
-    highlights_json(json, s);
+    write_lights_json(json, s);
+    write_highlights_json(json, s);
     json_write(json, "}");
 }

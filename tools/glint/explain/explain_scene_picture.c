@@ -19,7 +19,7 @@ struct heat {
     double most; /* max steps per pixel over all objects */
 };
 
-static int n_objects(const struct heat *h)
+static int count_scene_objects(const struct heat *h)
 {
     return (int)h->scene->drawing->files.scene.baked.model.header->n_objects;
 }
@@ -40,7 +40,8 @@ static double compute_heat_steps(const struct heat *h, int object)
 
 /* Sets RGB to the colour of OBJECT: blue, red, yellow by the root of its steps.
  */
-static void find_heat_colour(const struct heat *h, int object, uint8_t rgb[3])
+static void compute_heat_colour(const struct heat *h, int object,
+                                uint8_t rgb[3])
 {
     const double x =
         h->most > 0 ? sqrt(compute_heat_steps(h, object) / h->most) : 0;
@@ -50,7 +51,7 @@ static void find_heat_colour(const struct heat *h, int object, uint8_t rgb[3])
     rgb[2] = (uint8_t)(255 * fmax(0, 1 - 1.5 * x));
 }
 
-static int find_seen_object(const struct heat *h, int x, int y)
+static int find_object_at_pixel(const struct heat *h, int x, int y)
 {
     return x < 0 || y < 0 ? -1
                           : h->scene->account.seen[(ptrdiff_t)y * h->width + x];
@@ -58,30 +59,30 @@ static int find_seen_object(const struct heat *h, int x, int y)
 
 /* Returns whether OBJECT, or -1, only receives shadows, so that the picture
  * stays visible through it. */
-static bool is_catcher(const struct heat *h, int object)
+static bool is_shadow_catcher(const struct heat *h, int object)
 {
     return object >= 0 &&
            h->scene->drawing->files.scene.baked.model.object[object]
                .catcher_q15;
 }
 
-static void shade(const struct heat *h)
+static void shade_objects_by_cost(const struct heat *h)
 {
     for (int y = 0; y < h->height; y++) {
         uint8_t *px = h->image->plane[0] + y * h->image->stride_bytes[0];
 
         for (int x = 0; x < h->width; x++, px += 3) {
-            const int object = find_seen_object(h, x, y);
+            const int object = find_object_at_pixel(h, x, y);
             const bool rim =
-                (x > 0 && object != find_seen_object(h, x - 1, y)) ||
-                (y > 0 && object != find_seen_object(h, x, y - 1));
+                (x > 0 && object != find_object_at_pixel(h, x - 1, y)) ||
+                (y > 0 && object != find_object_at_pixel(h, x, y - 1));
             uint8_t rgb[3] = {0, 0, 0};
 
             if (object >= 0)
-                find_heat_colour(h, object, rgb);
+                compute_heat_colour(h, object, rgb);
             for (int c = 0; c < 3; c++)
                 px[c] = rim ? 255
-                        : is_catcher(h, object)
+                        : is_shadow_catcher(h, object)
                             ? (uint8_t)(px[c] / 2 + rgb[c] / 6)
                             : (uint8_t)(px[c] / 3 + rgb[c] / 2);
         }
@@ -90,8 +91,8 @@ static void shade(const struct heat *h)
 
 /* Sets X and Y to the pixel nearest to AT that shows OBJECT; at least one pixel
  * must show it. */
-static void find_nearest_pixel(const struct heat *h, int object,
-                               const double at[2], int *x, int *y)
+static void find_nearest_object_pixel(const struct heat *h, int object,
+                                      const double at[2], int *x, int *y)
 {
     double best = HUGE_VAL;
 
@@ -99,7 +100,7 @@ static void find_nearest_pixel(const struct heat *h, int object,
         for (int i = 0; i < h->width; i++) {
             const double away = hypot(i - at[0], j - at[1]);
 
-            if (find_seen_object(h, i, j) == object && away < best) {
+            if (find_object_at_pixel(h, i, j) == object && away < best) {
                 best = away;
                 *x = i;
                 *y = j;
@@ -108,18 +109,18 @@ static void find_nearest_pixel(const struct heat *h, int object,
 }
 
 /* Writes the number of each object at the middle of the pixels that show it. */
-static void number_objects(const struct heat *h)
+static void draw_object_numbers(const struct heat *h)
 {
     struct paint p = {.image = h->image, .line = h->scale};
 
-    for (int i = 0; i < n_objects(h); i++) {
+    for (int i = 0; i < count_scene_objects(h); i++) {
         double sum[2] = {0, 0}, n = 0;
         char text[16];
         int x0 = 0, y0 = 0, wide;
 
         for (int y = 0; y < h->height; y++)
             for (int x = 0; x < h->width; x++)
-                if (find_seen_object(h, x, y) == i) {
+                if (find_object_at_pixel(h, x, y) == i) {
                     sum[0] += x;
                     sum[1] += y;
                     n++;
@@ -130,7 +131,7 @@ static void number_objects(const struct heat *h)
         wide = paint_text_width(&p, text);
         sum[0] /= n;
         sum[1] /= n;
-        find_nearest_pixel(h, i, sum, &x0, &y0);
+        find_nearest_object_pixel(h, i, sum, &x0, &y0);
         x0 -= wide / 2;
         y0 -= 2 * p.line;
         paint_colour(&p, 0, 0, 0);
@@ -143,29 +144,31 @@ static void number_objects(const struct heat *h)
 
 /* ------------------------------------------------------------------- legend */
 
-static int count_columns(const struct heat *h)
+static int count_legend_columns(const struct heat *h)
 {
     const int n = h->width / (COLUMN * h->scale);
 
     return n > 0 ? n : 1;
 }
 
-static int count_entries(const struct heat *h)
+static int count_legend_entries(const struct heat *h)
 {
-    return n_objects(h) < MOST_ENTRIES ? n_objects(h) : MOST_ENTRIES;
+    return count_scene_objects(h) < MOST_ENTRIES ? count_scene_objects(h)
+                                                 : MOST_ENTRIES;
 }
 
-static void put_entry(const struct heat *h, int i)
+static void draw_legend_entry(const struct heat *h, int i)
 {
     const struct glint_scene_object *const object =
         &h->scene->drawing->files.scene.baked.model.object[i];
     struct paint p = {.image = h->image, .line = h->scale};
-    const int x = i % count_columns(h) * COLUMN * p.line + 4 * p.line;
-    const int y = h->height + (3 + ROW * (i / count_columns(h))) * p.line;
+    const int x = i % count_legend_columns(h) * COLUMN * p.line + 4 * p.line;
+    const int y =
+        h->height + (3 + ROW * (i / count_legend_columns(h))) * p.line;
     char text[96];
     uint8_t rgb[3];
 
-    find_heat_colour(h, i, rgb);
+    compute_heat_colour(h, i, rgb);
     paint_colour(&p, rgb[0], rgb[1], rgb[2]);
     paint_fill(&p, x, y, x + 5 * p.line, y + 5 * p.line);
     paint_colour(&p, 208, 208, 208);
@@ -184,18 +187,19 @@ enum glint_status explain_scene_mark(const struct explained_scene *scene,
                      .height = picture->height,
                      .scale = 1 + picture->height / 540};
     const int legend =
-        ((count_entries(&h) + count_columns(&h) - 1) / count_columns(&h) * ROW +
+        ((count_legend_entries(&h) + count_legend_columns(&h) - 1) /
+             count_legend_columns(&h) * ROW +
          4) *
         h.scale;
     const enum glint_status status = explain_copy(picture, legend, marked);
 
     if (status != GLINT_OK)
         return status;
-    for (int i = 0; i < n_objects(&h); i++)
+    for (int i = 0; i < count_scene_objects(&h); i++)
         h.most = fmax(h.most, compute_heat_steps(&h, i));
-    shade(&h);
-    number_objects(&h);
-    for (int i = 0; i < count_entries(&h); i++)
-        put_entry(&h, i);
+    shade_objects_by_cost(&h);
+    draw_object_numbers(&h);
+    for (int i = 0; i < count_legend_entries(&h); i++)
+        draw_legend_entry(&h, i);
     return GLINT_OK;
 }

@@ -35,13 +35,13 @@ const char *explain_reason(enum glint_outcome outcome)
     return outcomes[outcome].reason;
 }
 
-static double degrees(double y, double x)
+static double direction_angle_deg(double y, double x)
 {
     return atan2(y, x) * 180 / GLINT_PI;
 }
 
 /* Returns the number of ghosts that are drawn at least in part. */
-static int ghosts_drawn(const struct glint_explain *e)
+static int count_drawn_ghosts(const struct glint_explain *e)
 {
     int n = 0;
 
@@ -61,7 +61,7 @@ static void print_percent(double x)
 }
 
 /* Prints the columns that all tables end with. */
-static void print_costs(const struct glint_explain_part *p)
+static void print_cost_columns(const struct glint_explain_part *p)
 {
     printf(" %9lld %8lld %9lld %8d %5d", p->vertices, p->edges, p->rows, p->lit,
            p->tiles);
@@ -71,15 +71,15 @@ static void print_costs(const struct glint_explain_part *p)
     printf("\n");
 }
 
-static void print_head(const char *what)
+static void print_table_head(const char *what)
 {
     printf("\n%-30s %9s %8s %9s %8s %5s %7s %9s %7s\n", what, "vertices",
            "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
 }
 
 /* Prints a kind of cost that few frames have. */
-static void print_price(const struct glint_explain *e,
-                        enum glint_cost_kind kind)
+static void print_rare_cost(const struct glint_explain *e,
+                            enum glint_cost_kind kind)
 {
     if (e->stage[kind] > 0)
         printf(",\n      %s %.1f (%.1f M)", glint_cost_weight[kind].name,
@@ -87,7 +87,7 @@ static void print_price(const struct glint_explain *e,
 }
 
 /* Prints how many bundles are not drawn separately because they are dim. */
-static void print_dim(const struct glint_explain *e)
+static void print_merged_dim_bundles(const struct glint_explain *e)
 {
     const double dim = e->dim_codes;
 
@@ -97,8 +97,8 @@ static void print_dim(const struct glint_explain *e)
                dim, e->all.of[GLINT_OUTCOME_SHARED]);
 }
 
-static void print_title(const struct glint_explain *e,
-                        const struct explain_title *t)
+static void print_table_title(const struct glint_explain *e,
+                              const struct explain_title *t)
 {
     const struct glint_explain_part *all = &e->all;
 
@@ -109,7 +109,7 @@ static void print_title(const struct glint_explain *e,
                                     : "%d of %d light%s drawn",
            e->n_lights, t->n_lamps, t->n_lamps == 1 ? "" : "s");
     printf("; %d of %d ghosts change a pixel, on %d of %d tiles\n",
-           ghosts_drawn(e), e->n_ghosts, all->tiles, e->n_tiles);
+           count_drawn_ghosts(e), e->n_ghosts, all->tiles, e->n_tiles);
     printf("%d of %d bundles drawn, each the rays of one ghost, point and "
            "wavelength\nbundles by barrels that cut them:",
            glint_explain_drawn(all), glint_explain_bundles(all));
@@ -124,31 +124,32 @@ static void print_title(const struct glint_explain *e,
         if (i < GLINT_COST_PARTS || i == GLINT_COST_LIT || i == GLINT_COST_STAR)
             printf("%s %s %.1f", i ? "," : "", glint_cost_weight[i].name,
                    100 * e->stage[i] / all->work);
-    print_price(e, GLINT_COST_PARTS);
-    print_price(e, GLINT_COST_VEIL);
+    print_rare_cost(e, GLINT_COST_PARTS);
+    print_rare_cost(e, GLINT_COST_VEIL);
     printf("\n");
-    print_dim(e);
+    print_merged_dim_bundles(e);
 }
 
-static void print_lights(const struct glint_explain *e,
-                         const struct explain_title *t)
+static void print_light_rows(const struct glint_explain *e,
+                             const struct explain_title *t)
 {
-    print_head("light    angle azimuth bundles");
+    print_table_head("light    angle azimuth bundles");
     for (int i = 0; i < e->n_lights && i < t->top; i++) {
         const struct glint_light *b = &e->lights[i];
 
-        printf(
-            "%5d %8.3f %7.1f %7d", i + 1, degrees(b->sine_q30, b->cosine_q30),
-            degrees(b->sin_q30, b->cos_q30), glint_explain_drawn(&e->light[i]));
-        print_costs(&e->light[i]);
+        printf("%5d %8.3f %7.1f %7d", i + 1,
+               direction_angle_deg(b->sine_q30, b->cosine_q30),
+               direction_angle_deg(b->sin_q30, b->cos_q30),
+               glint_explain_drawn(&e->light[i]));
+        print_cost_columns(&e->light[i]);
     }
     if (e->n_lights > t->top)
         printf("      and %d more (--top)\n", e->n_lights - t->top);
 }
 
-static void print_waves(const struct glint_explain *e)
+static void print_wavelength_rows(const struct glint_explain *e)
 {
-    print_head("wavelength             bundles");
+    print_table_head("wavelength             bundles");
     for (int i = 0; i < e->n_waves; i++) {
         if (e->sets)
             printf("%-3d for a ghost %14d", e->sets->size[i],
@@ -156,16 +157,16 @@ static void print_waves(const struct glint_explain *e)
         else
             printf("%7.1f nm %19d", e->setup->wavelength_nm[i],
                    glint_explain_drawn(&e->wave[i]));
-        print_costs(&e->wave[i]);
+        print_cost_columns(&e->wave[i]);
     }
 }
 
-static void print_ghosts(const struct glint_explain *e,
-                         const struct explain_title *t, const int *ghosts)
+static void print_ghost_rows(const struct glint_explain *e,
+                             const struct explain_title *t, const int *ghosts)
 {
     int n = 0;
 
-    print_head("ghost   pair bundles terms cut");
+    print_table_head("ghost   pair bundles terms cut");
     for (int i = 0; i < e->n_ghosts; i++) {
         const struct glint_explain_part *p = &e->ghost[ghosts[i]];
         const struct glint_ghost *g = &e->setup->ghost[ghosts[i]];
@@ -178,7 +179,7 @@ static void print_ghosts(const struct glint_explain *e,
                  glint_explain_bundles(p));
         printf("%5d %6s %7s %5d %3d", ghosts[i], pair, bundles, p->terms,
                p->barrels);
-        print_costs(p);
+        print_cost_columns(p);
     }
     if (n > t->top)
         printf("      and %d more (--top)\n", n - t->top);
@@ -186,8 +187,8 @@ static void print_ghosts(const struct glint_explain *e,
 
 /* Prints the numbers of the ghosts that have OUTCOME, as many as fit ROOM
  * characters, and ends the line. */
-static void print_numbers(const struct glint_explain *e,
-                          enum glint_outcome outcome, int room)
+static void print_ghost_numbers(const struct glint_explain *e,
+                                enum glint_outcome outcome, int room)
 {
     for (int i = 0; i < e->n_ghosts; i++) {
         char number[16];
@@ -205,7 +206,7 @@ static void print_numbers(const struct glint_explain *e,
     printf("\n");
 }
 
-static void print_left_out(const struct glint_explain *e)
+static void print_ghosts_left_out(const struct glint_explain *e)
 {
     printf("\n%-41s %7s %7s\n", "left out", "bundles", "ghosts");
     for (int outcome = GLINT_OUTCOME_EMPTY; outcome < GLINT_OUTCOMES;
@@ -218,12 +219,12 @@ static void print_left_out(const struct glint_explain *e)
             continue;
         printf("%-41s %7d %7d ", outcomes[outcome].reason, e->all.of[outcome],
                n);
-        print_numbers(e, (enum glint_outcome)outcome, WIDE - 58);
+        print_ghost_numbers(e, (enum glint_outcome)outcome, WIDE - 58);
     }
 }
 
-static void print_lost_lights(const struct glint_explain *e,
-                              const struct explain_title *t)
+static void print_invalid_lights(const struct glint_explain *e,
+                                 const struct explain_title *t)
 {
     const struct glint_engine_report *r = t->report;
     const double most = model_degrees(e->lens->header->sine_hi_q30);
@@ -268,7 +269,7 @@ static const char *const doubts[] = {
     [GLINT_DOUBT_LOW] = "it lies low in the picture",
     [GLINT_DOUBT_DRAWN] = "it fills a box, as windows and bars do"};
 
-static void print_rejected(const struct explain_title *t)
+static void print_rejected_lamps(const struct explain_title *t)
 {
     struct glint_spot spot;
 
@@ -280,8 +281,8 @@ static void print_rejected(const struct explain_title *t)
                doubts[spot.doubt]);
 }
 
-static void json_rejected(struct json_writer *json,
-                          const struct explain_title *t)
+static void write_rejected_json(struct json_writer *json,
+                                const struct explain_title *t)
 {
     struct glint_spot spot;
 
@@ -300,21 +301,21 @@ void explain_print(const struct glint_explain *e, const struct explain_title *t)
     int ghosts[GLINT_MAX_GHOSTS];
 
     glint_explain_sort(e, ghosts);
-    print_title(e, t);
+    print_table_title(e, t);
     if (e->n_lights) {
-        print_lights(e, t);
-        print_waves(e);
-        print_ghosts(e, t, ghosts);
-        print_left_out(e);
+        print_light_rows(e, t);
+        print_wavelength_rows(e);
+        print_ghost_rows(e, t, ghosts);
+        print_ghosts_left_out(e);
     }
-    print_lost_lights(e, t);
-    print_rejected(t);
+    print_invalid_lights(e, t);
+    print_rejected_lamps(t);
 }
 
 /* -------------------------------------------------------------------- JSON */
 
-static void json_part(struct json_writer *json,
-                      const struct glint_explain_part *p)
+static void write_bundles_json(struct json_writer *json,
+                               const struct glint_explain_part *p)
 {
     json_write(json, "bundles: %d, drawn: %d, left_out: {",
                glint_explain_bundles(p), glint_explain_drawn(p));
@@ -331,17 +332,18 @@ static void json_part(struct json_writer *json,
                p->cost);
 }
 
-static void json_lights(struct json_writer *json, const struct glint_explain *e,
-                        const struct explain_title *t)
+static void write_lights_json(struct json_writer *json,
+                              const struct glint_explain *e,
+                              const struct explain_title *t)
 {
     json_write(json, "lights: [");
     for (int i = 0; i < e->n_lights; i++) {
         const struct glint_light *b = &e->lights[i];
 
         json_write(json, "{angle_deg: %.6g, azimuth_deg: %.6g",
-                   degrees(b->sine_q30, b->cosine_q30),
-                   degrees(b->sin_q30, b->cos_q30));
-        json_part(json, &e->light[i]);
+                   direction_angle_deg(b->sine_q30, b->cosine_q30),
+                   direction_angle_deg(b->sin_q30, b->cos_q30));
+        write_bundles_json(json, &e->light[i]);
         json_write(json, "}");
     }
     json_write(json, "], beyond_model_deg: [");
@@ -352,8 +354,9 @@ static void json_lights(struct json_writer *json, const struct glint_explain *e,
                model_degrees(e->lens->header->sine_hi_q30));
 }
 
-static void json_title(struct json_writer *json, const struct glint_explain *e,
-                       const struct explain_title *t)
+static void write_title_json(struct json_writer *json,
+                             const struct glint_explain *e,
+                             const struct explain_title *t)
 {
     json_write(json,
                "{lens: %s, width: %d, height: %d, picture: %s, "
@@ -363,7 +366,7 @@ static void json_title(struct json_writer *json, const struct glint_explain *e,
                t->linear ? "linear" : "codes", t->n_lamps,
                t->report->apart_lights, e->n_tiles, t->report->stats.held_cells,
                t->report->held_samples);
-    json_part(json, &e->all);
+    write_bundles_json(json, &e->all);
     json_write(json, "}, work: {instructions: %.0f", e->all.work);
     for (int i = 0; i < GLINT_COST_KINDS; i++)
         json_write(json, "%s: %.6g",
@@ -381,16 +384,16 @@ void explain_json(const struct glint_explain *e, const struct explain_title *t)
     int ghosts[GLINT_MAX_GHOSTS];
 
     glint_explain_sort(e, ghosts);
-    json_title(&json, e, t);
-    json_lights(&json, e, t);
-    json_rejected(&json, t);
+    write_title_json(&json, e, t);
+    write_lights_json(&json, e, t);
+    write_rejected_json(&json, t);
     json_write(&json, "wavelengths: [");
     for (int i = 0; i < e->n_waves; i++) {
         if (e->sets)
             json_write(&json, "{of: %d", e->sets->size[i]);
         else
             json_write(&json, "{nm: %g", e->setup->wavelength_nm[i]);
-        json_part(&json, &e->wave[i]);
+        write_bundles_json(&json, &e->wave[i]);
         json_write(&json, "}");
     }
     json_write(&json, "], ghosts: [");
@@ -398,7 +401,7 @@ void explain_json(const struct glint_explain *e, const struct explain_title *t)
         const struct glint_ghost *g = &e->setup->ghost[ghosts[i]];
 
         json_write(&json, "{ghost: %d, pair: [%d, %d]", ghosts[i], g->i, g->j);
-        json_part(&json, &e->ghost[ghosts[i]]);
+        write_bundles_json(&json, &e->ghost[ghosts[i]]);
         json_write(&json, "}");
     }
     json_write(&json, "]}\n");
