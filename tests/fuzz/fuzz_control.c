@@ -103,7 +103,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         text[i] = (char)(text[i] ? text[i] : '?');
     text[size] = '\0';
     for (int i = 0; i < (int)size;) {
-        const int n = keyboard_take(text + i, (int)size - i, &line);
+        const int n = keyboard_parse_key(text + i, (int)size - i, &line);
 
         require(n > 0 && n <= (int)size - i);
         i += n;

@@ -206,7 +206,7 @@ static bool parse_options(struct sweep *s, int argc, char **argv)
     while ((c = getopt_long(argc, argv, "", names, NULL)) != -1)
         if (c == 'c')
             s->csv = optarg;
-        else if (c == '?' || !tool_number(optarg, value[c]))
+        else if (c == '?' || !tool_parse_number(optarg, value[c]))
             return false;
     s->lens = optind + 1 == argc ? argv[optind] : NULL;
     return s->lens && s->to > s->from;

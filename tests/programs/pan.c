@@ -90,8 +90,8 @@ int main(int argc, char **argv)
     struct glint_image photo;
     int n, width, height, code;
 
-    if (argc != 4 || !tool_integer(argv[2], 1, 100000, &n) ||
-        !tool_size(argv[3], &width, &height)) {
+    if (argc != 4 || !tool_parse_integer(argv[2], 1, 100000, &n) ||
+        !tool_parse_size(argv[3], &width, &height)) {
         fprintf(stderr, "usage: pan IN FRAMES WxH > OUT.y4m\n");
         return 2;
     }

@@ -36,16 +36,16 @@ static int parse_option(const struct tool *tool, struct exact *e, int c,
         e->output = optarg;
         break;
     case 's':
-        ok = tool_size(optarg, &e->width, &e->height);
+        ok = tool_parse_size(optarg, &e->width, &e->height);
         break;
     case 'n':
-        ok = tool_integer(optarg, 1, 16, &e->samples);
+        ok = tool_parse_integer(optarg, 1, 16, &e->samples);
         break;
     case 'p':
-        ok = tool_integer(optarg, 1, 16, &e->shadow_points);
+        ok = tool_parse_integer(optarg, 1, 16, &e->shadow_points);
         break;
     case 'w':
-        ok = tool_integer(optarg, 1, 32, &e->ward_samples);
+        ok = tool_parse_integer(optarg, 1, 32, &e->ward_samples);
         break;
     default:
         return -2;

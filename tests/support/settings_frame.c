@@ -26,10 +26,10 @@ int settings_frame(const struct tool *tool, const struct opened *opened,
     glint_frame_init(frame, &lens->setup,
                      opened_lens_view(lens, settings, width, height),
                      tool->workers);
-    frame->cfg.sets = tool_sets(tool);
+    frame->cfg.sets = tool_enabled_instruction_sets(tool);
     frame->lens = lens->model.data ? &lens->model.lens : NULL;
     frame->trace = opened_table_rays();
-    frame->clock = tool_seconds;
+    frame->clock = tool_clock_s;
     frame->dials = settings->dials;
     frame->only_ghost = settings_only_ghost(settings);
     frame->tints = lens->tints;

@@ -79,35 +79,35 @@ static int parse_option(struct tool *tool, struct bake *b, int c,
         b->output = tool->written = optarg;
         break;
     case 'c':
-        return coating_take(tool, &b->coating, optarg);
+        return coating_parse_option(tool, &b->coating, optarg);
     case 'n':
-        ok = tool_integer(optarg, 2, MOST_POSITIONS, &b->positions);
+        ok = tool_parse_integer(optarg, 2, MOST_POSITIONS, &b->positions);
         break;
     case 'H':
-        ok = tool_number(optarg, &b->halfway_db) &&
+        ok = tool_parse_number(optarg, &b->halfway_db) &&
              (b->halfway_db == 0.0 ||
               (b->halfway_db >= 20 && b->halfway_db <= 60));
         break;
     case 'z':
-        ok = zoom_option_take(&b->zoom, optarg);
+        ok = zoom_option_parse(&b->zoom, optarg);
         break;
     case 'F':
         ok = zoom_option_focus(&b->zoom, optarg);
         break;
     case 'f':
-        ok = tool_number(optarg, &b->f_number) && b->f_number > 0;
+        ok = tool_parse_number(optarg, &b->f_number) && b->f_number > 0;
         break;
     case 'w':
-        ok = tool_numbers(optarg, o->band_nm, 2) == 2;
+        ok = tool_parse_numbers(optarg, o->band_nm, 2) == 2;
         break;
     case 'a':
-        ok = tool_number(optarg, &o->max_deg);
+        ok = tool_parse_number(optarg, &o->max_deg);
         break;
     case 'm':
-        ok = tool_number(optarg, &o->field_mm) && o->field_mm > 0;
+        ok = tool_parse_number(optarg, &o->field_mm) && o->field_mm > 0;
         break;
     case 't':
-        ok = tool_number(optarg, &o->tolerance);
+        ok = tool_parse_number(optarg, &o->tolerance);
         break;
     default:
         return tool_option(tool, c, optarg);
@@ -172,7 +172,7 @@ static int bake_lens_to_output(struct glint_output *out, struct tool *tool,
     struct glint_error error = {""};
     struct glint_bake_report r;
     unsigned char *model = NULL;
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
     size_t bytes = 0;
     enum glint_status status;
     int code = EXIT_OK;
@@ -192,7 +192,7 @@ static int bake_lens_to_output(struct glint_output *out, struct tool *tool,
         code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
     else if (strcmp(b->output, "-") != 0)
         code =
-            print_bake_report(tool, model, bytes, tool_seconds() - start, &r);
+            print_bake_report(tool, model, bytes, tool_clock_s() - start, &r);
     free(model);
     return code;
 }
@@ -241,7 +241,7 @@ static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
                                    .f_number = b->f_number,
                                    .positions = b->positions,
                                    .halfway_db = b->halfway_db};
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
     struct glint_error error = {""};
     struct zoom_baked baked;
     enum glint_status status = zoom_bake_run(tool, &zoom, &baked, &error);
@@ -253,7 +253,7 @@ static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
     free(baked.data);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
-    print_zoom_report(tool, b, &baked, tool_seconds() - start);
+    print_zoom_report(tool, b, &baked, tool_clock_s() - start);
     return EXIT_OK;
 }
 

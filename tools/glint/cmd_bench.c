@@ -17,11 +17,12 @@ static int parse_option(struct bench *b, int c)
     case 'a':
         return b->all = true;
     case 's':
-        return tool_size(optarg, &b->width, &b->height);
+        return tool_parse_size(optarg, &b->width, &b->height);
     case 'r':
-        return tool_integer(optarg, 1, b->subject->max_rounds, &b->rounds);
+        return tool_parse_integer(optarg, 1, b->subject->max_rounds,
+                                  &b->rounds);
     case 'F':
-        c = tool_word(optarg, bench_format);
+        c = tool_find_word(optarg, bench_format);
         b->word = c < 0 ? b->word : c;
         return c >= 0;
     default:

@@ -235,18 +235,19 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     if (c == 'o')
         o->output = value;
     else if (c == 's')
-        good = tool_integer(value, 0, GLINT_MAX_SURFACES - 1, &o->surface);
+        good =
+            tool_parse_integer(value, 0, GLINT_MAX_SURFACES - 1, &o->surface);
     else if (c == 'C')
-        return coating_take(tool, &o->on_lens, value);
+        return coating_parse_option(tool, &o->on_lens, value);
     else if (c == 'b')
-        good = tool_numbers(value, o->band_nm, 2) == 2 &&
+        good = tool_parse_numbers(value, o->band_nm, 2) == 2 &&
                o->band_nm[0] >= 100 && o->band_nm[0] < o->band_nm[1] &&
                o->band_nm[1] <= 5000;
     else if (c == 'g')
-        good = tool_numbers(value, o->glass, 2) > 0 && o->glass[0] >= 1.01 &&
-               o->glass[0] <= 4 && o->glass[1] >= 0;
+        good = tool_parse_numbers(value, o->glass, 2) > 0 &&
+               o->glass[0] >= 1.01 && o->glass[0] <= 4 && o->glass[1] >= 0;
     else if (c == 'a') {
-        o->n_angles = tool_numbers(value, o->angle_deg, MAX_ANGLES);
+        o->n_angles = tool_parse_numbers(value, o->angle_deg, MAX_ANGLES);
         good = o->n_angles > 0;
         for (int k = 0; k < o->n_angles; k++)
             good = good && o->angle_deg[k] >= 0 && o->angle_deg[k] < 90;
@@ -267,8 +268,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         {"band", required_argument, NULL, 'b'},
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
-    int code = tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options,
-                         parse_option, o);
+    int code = tool_parse_options(
+        tool, argc, argv, TOOL_COMMON_SHORT "o:", options, parse_option, o);
 
     if (code < 0)
         code =

@@ -150,7 +150,8 @@ static bool parse_exposure(struct asked *a, const char *text)
 {
     a->is_auto = strcmp(text, "auto") == 0;
     a->has_ev = !a->is_auto;
-    return a->is_auto || (tool_number(text, &a->ev) && fabs(a->ev) <= 100);
+    return a->is_auto ||
+           (tool_parse_number(text, &a->ev) && fabs(a->ev) <= 100);
 }
 
 int cmd_compare(int argc, char **argv)

@@ -54,23 +54,24 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     if (c == 'o')
         o->output = value;
     else if (c == 'g')
-        good = tool_integer(value, 0, GLINT_MAX_GHOSTS - 1, &o->drawing.ghost);
+        good = tool_parse_integer(value, 0, GLINT_MAX_GHOSTS - 1,
+                                  &o->drawing.ghost);
     else if (c == 'a')
-        good = tool_number(value, &o->drawing.angle_deg) &&
+        good = tool_parse_number(value, &o->drawing.angle_deg) &&
                o->drawing.angle_deg >= 0 && o->drawing.angle_deg <= 89;
     else if (c == 'r')
-        good = tool_integer(value, 1, DRAWING_MAX_RAYS, &o->drawing.rays);
+        good = tool_parse_integer(value, 1, DRAWING_MAX_RAYS, &o->drawing.rays);
     else if (c == 'p') {
         good = strcmp(value, "x") == 0 || strcmp(value, "y") == 0;
         o->drawing.plane_deg = *value == 'y' ? 90 : 0;
     } else if (c == 's')
         o->drawing.spots = false;
     else if (c == 'z')
-        good = zoom_option_take(&o->zoom, value);
+        good = zoom_option_parse(&o->zoom, value);
     else if (c == 'F')
         good = zoom_option_focus(&o->zoom, value);
     else if (c == 'f')
-        good = tool_number(value, &o->f_number) && o->f_number > 0;
+        good = tool_parse_number(value, &o->f_number) && o->f_number > 0;
     else
         return tool_option(tool, c, value);
     return good ? -1 : -2;
@@ -90,8 +91,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         ZOOM_OPTIONS('z', 'F'),
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
-    int code = tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options,
-                         parse_option, o);
+    int code = tool_parse_options(
+        tool, argc, argv, TOOL_COMMON_SHORT "o:", options, parse_option, o);
 
     if (code < 0)
         code = tool_inputs(tool, argc, argv, 1, "expects one lens");

@@ -102,12 +102,12 @@ static bool parse_option(struct explain_command *c, int option,
         c->sheet = value;
         return *value != '\0';
     case OPT_SIZE:
-        return tool_size(value, &c->width, &c->height);
+        return tool_parse_size(value, &c->width, &c->height);
     case OPT_PICTURE:
-        c->picture = tool_word(value, pictures) + 1;
+        c->picture = tool_find_word(value, pictures) + 1;
         return c->picture > 0;
     case OPT_TOP:
-        return tool_integer(value, 0, GLINT_MAX_GHOSTS, &c->top);
+        return tool_parse_integer(value, 0, GLINT_MAX_GHOSTS, &c->top);
     }
     return false;
 }
@@ -213,8 +213,8 @@ static enum glint_status draw_linear_flare(struct explain_command *c)
     if (light.rgb && plain)
         status = glint_engine_render(
             drawing->run.engine, plain, drawing->run.n_lamps,
-            settings_scale(&drawing->line.settings), GLINT_ENGINE_ALL,
-            light.rgb, &drawing->run.report);
+            settings_brightness_scale(&drawing->line.settings),
+            GLINT_ENGINE_ALL, light.rgb, &drawing->run.report);
     free(plain);
     if (status == GLINT_OK) {
         codes = glint_measure_encode(
@@ -318,7 +318,7 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     struct glint_explain e;
     const enum glint_status status = glint_explain_open(
         &e, drawing->run.engine,
-        linear ? settings_scale(&drawing->line.settings) : 0);
+        linear ? settings_brightness_scale(&drawing->line.settings) : 0);
     int code = EXIT_OK;
 
     if (status == GLINT_OK && drawing->files.scene.is_open)

@@ -69,8 +69,8 @@ static bool parse_film_size(struct import *o, const char *value)
         return false;
     memcpy(width, value, (size_t)(by - value));
     width[by - value] = '\0';
-    return tool_number(width, &o->film_mm[0]) &&
-           tool_number(by + 1, &o->film_mm[1]) && o->film_mm[0] >= 0.1 &&
+    return tool_parse_number(width, &o->film_mm[0]) &&
+           tool_parse_number(by + 1, &o->film_mm[1]) && o->film_mm[0] >= 0.1 &&
            o->film_mm[1] >= 0.1 && o->film_mm[0] <= 1000 &&
            o->film_mm[1] <= 1000;
 }
@@ -89,10 +89,10 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     else if (c == 'm')
         good = parse_film_size(o, value);
     else if (c == 'f')
-        good = tool_number(value, &o->f_number) && o->f_number >= 0.5 &&
+        good = tool_parse_number(value, &o->f_number) && o->f_number >= 0.5 &&
                o->f_number <= 1000;
     else if (c == 'p')
-        good = tool_integer(value, 1, 16, &o->position);
+        good = tool_parse_integer(value, 1, 16, &o->position);
     else if (c == 'k')
         o->key = value;
     else
@@ -113,8 +113,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         {"lens", required_argument, NULL, 'k'},
         TOOL_COMMON_OPTIONS};
     struct apart files = {.n_read = 0};
-    int code = tool_take(tool, argc, argv, TOOL_COMMON_SHORT "o:", options,
-                         parse_option, o);
+    int code = tool_parse_options(
+        tool, argc, argv, TOOL_COMMON_SHORT "o:", options, parse_option, o);
 
     if (code < 0)
         code = tool_inputs(tool, argc, argv, 1, "expects one file");
@@ -222,7 +222,7 @@ static int save_lens_table(const struct tool *tool, const struct import *o,
         tool_fail(tool, status, error.text);
         return EXIT_INPUT;
     }
-    code = tool_save(tool, o->output, GLINT_OUTPUT_TEXT, text, bytes);
+    code = tool_save_file(tool, o->output, GLINT_OUTPUT_TEXT, text, bytes);
     if (code == EXIT_OK && tool->json)
         print_import_json(&o->lens, &read);
     return code;

@@ -249,16 +249,17 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
         code = -1;
         if (c == 'f')
-            good = tool_number(optarg, &asked->f_number);
+            good = tool_parse_number(optarg, &asked->f_number);
         else if (c == 'z')
-            good = zoom_option_take(&asked->zoom, optarg);
+            good = zoom_option_parse(&asked->zoom, optarg);
         else if (c == 'F')
             good = zoom_option_focus(&asked->zoom, optarg);
         else if (c == 'p')
             asked->poses = optarg;
         else
-            code = c == 'c' ? coating_take(tool, &asked->coating, optarg)
-                            : tool_option(tool, c, optarg);
+            code = c == 'c'
+                       ? coating_parse_option(tool, &asked->coating, optarg)
+                       : tool_option(tool, c, optarg);
         if (code >= 0)
             return code;
         if (!good)

@@ -257,8 +257,8 @@ static void print_lens_card(struct lenses *l, const char *name,
 static int save_model_to_folder(const struct tool *tool, const char *path,
                                 const struct model_file *model)
 {
-    return tool_save(tool, path, GLINT_OUTPUT_BINARY, model->data,
-                     model->bytes);
+    return tool_save_file(tool, path, GLINT_OUTPUT_BINARY, model->data,
+                          model->bytes);
 }
 
 /* Copies the model of E from the cache to the folder, or bakes it, unless
@@ -357,7 +357,7 @@ static bool stop_at_first_lens(void *ctx, const char *name)
 static int report_no_matching_lens(const struct lenses *l)
 {
     if (l->n_words)
-        return lens_words_missed(l->tool, l->words, l->n_words);
+        return lens_report_unknown_words(l->tool, l->words, l->n_words);
     fprintf(stderr, "glint lenses: no lens was found; set $GLINT_LENSES to a "
                     "folder of lens tables\n");
     return EXIT_LENS;
@@ -373,9 +373,9 @@ static int write_lens_page(struct lenses *l)
 
     l->page = glint_memory_file_open(&text, &bytes);
     if (l->page) {
-        l->n_files = lens_files_each(stop_at_first_lens, l);
+        l->n_files = lens_files_visit_all(stop_at_first_lens, l);
         tool_progress_start(&l->progress, l->tool, "lenses");
-        n = lens_files_each(list_lens, l);
+        n = lens_files_visit_all(list_lens, l);
         tool_progress_end(&l->progress);
         page_end(l->page);
         if (n < 0 || l->n == 0)
@@ -403,7 +403,7 @@ static int print_lens_list(struct lenses *l)
         fprintf(stderr, "glint lenses: %s: %s\n", l->folder, strerror(errno));
         return EXIT_OUTPUT;
     }
-    if (lens_files_each(list_lens, l) < 0)
+    if (lens_files_visit_all(list_lens, l) < 0)
         return tool_fail(l->tool, GLINT_E_MEMORY, NULL);
     if (l->n == 0 && l->code == EXIT_OK)
         return report_no_matching_lens(l);
@@ -432,10 +432,10 @@ static int parse_options(struct lenses *l, int argc, char **argv)
             l->folder = optarg;
         else if (c == 'H')
             l->html = optarg;
-        else if (c == 'r' && tool_word(optarg, rays) < 0)
+        else if (c == 'r' && tool_find_word(optarg, rays) < 0)
             return tool_refuse(l->tool, "rays", optarg);
         else if (c == 'r')
-            l->exact = tool_word(optarg, rays) == 1;
+            l->exact = tool_find_word(optarg, rays) == 1;
         else if (c == 'o' && l->n_only == MAX_ONLY)
             return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);
         else if (c == 'o')

@@ -145,8 +145,8 @@ static bool parse_frame_rate(const char *text, int *num, int *den)
     memcpy(top, text, n);
     top[n] = '\0';
     *den = 1;
-    return tool_integer(top, 1, 1000000, num) &&
-           (!slash || tool_integer(slash + 1, 1, 1000000, den));
+    return tool_parse_integer(top, 1, 1000000, num) &&
+           (!slash || tool_parse_integer(slash + 1, 1, 1000000, den));
 }
 
 /* Returns whether TEXT has exactly one conversion, and it is for an int. */
@@ -176,7 +176,7 @@ static int parse_camera_option(struct live_wish *wish, int option,
         good = *value != '\0';
         break;
     case 's':
-        good = tool_size(value, &c->width, &c->height);
+        good = tool_parse_size(value, &c->width, &c->height);
         break;
     case 'r':
         good = parse_frame_rate(value, &c->fps_num, &c->fps_den);
@@ -185,19 +185,20 @@ static int parse_camera_option(struct live_wish *wish, int option,
         good = glint_fourcc_parse(value, &c->fourcc);
         break;
     case 'i':
-        good = tool_integer(value, 0, 255, &c->input);
+        good = tool_parse_integer(value, 0, 255, &c->input);
         break;
     case 'n':
-        good = tool_integer(value, 2, GLINT_V4L2_MAX_BUFFERS, &wish->n_buffers);
+        good = tool_parse_integer(value, 2, GLINT_V4L2_MAX_BUFFERS,
+                                  &wish->n_buffers);
         break;
     case OPT_IO:
-        wish->io = (enum glint_v4l2_io)(word = tool_word(value, ios));
+        wish->io = (enum glint_v4l2_io)(word = tool_find_word(value, ios));
         break;
     case OPT_RANGE:
-        c->range = (word = tool_word(value, ranges)) - 1;
+        c->range = (word = tool_find_word(value, ranges)) - 1;
         break;
     case OPT_MATRIX:
-        c->matrix = (word = tool_word(value, matrices)) - 1;
+        c->matrix = (word = tool_find_word(value, matrices)) - 1;
         break;
     default:
         return -2;
@@ -232,16 +233,16 @@ static int parse_live_option(struct live_options *o, int option,
     case OPT_CONFIG: /* read before the other options */
         break;
     case OPT_STATS:
-        o->report = (enum live_report)(word = tool_word(value, stats));
+        o->report = (enum live_report)(word = tool_find_word(value, stats));
         break;
     case OPT_FIT:
-        o->fit = (enum glint_panel_fit)(word = tool_word(value, fits));
+        o->fit = (enum glint_panel_fit)(word = tool_find_word(value, fits));
         break;
     case OPT_COUNT:
-        good = tool_integer(value, 1, 1 << 30, &o->count);
+        good = tool_parse_integer(value, 1, 1 << 30, &o->count);
         break;
     case OPT_SKIP:
-        good = tool_integer(value, 0, 1 << 30, &o->skip);
+        good = tool_parse_integer(value, 0, 1 << 30, &o->skip);
         break;
     case OPT_SNAPSHOT:
         o->snapshot = value;
@@ -331,7 +332,8 @@ static int parse_options(struct line *line, struct config *config,
 
     set_live_defaults(into);
     line->into = into;
-    path = tool_value_of(line->argc, line->argv, SHORT, options, OPT_CONFIG);
+    path = tool_find_option_value(line->argc, line->argv, SHORT, options,
+                                  OPT_CONFIG);
     if (path) {
         code = config_read(config, path);
         if (code != EXIT_OK)

@@ -74,7 +74,7 @@ static const char help[] =
 static bool parse_option_word(const char *text, const char *const *words,
                               int *value)
 {
-    *value = tool_word(text, words);
+    *value = tool_find_word(text, words);
     return *value >= 0;
 }
 
@@ -88,8 +88,8 @@ static bool parse_frame_range(struct overlay *o, const char *text)
         return false;
     memcpy(first, text, n);
     first[n] = '\0';
-    return tool_integer(first, 0, INT_MAX - 1, &o->first) &&
-           tool_integer(text + n + 1, o->first, INT_MAX - 1, &o->last);
+    return tool_parse_integer(first, 0, INT_MAX - 1, &o->first) &&
+           tool_parse_integer(text + n + 1, o->first, INT_MAX - 1, &o->last);
 }
 
 /* Parses the size TEXT, "WxH". */
@@ -102,8 +102,8 @@ static bool parse_image_size(struct overlay *o, const char *text)
         return false;
     memcpy(width, text, n);
     width[n] = '\0';
-    return tool_integer(width, 1, GLINT_MAX_SIDE, &o->raw.width) &&
-           tool_integer(text + n + 1, 1, GLINT_MAX_SIDE, &o->raw.height);
+    return tool_parse_integer(width, 1, GLINT_MAX_SIDE, &o->raw.width) &&
+           tool_parse_integer(text + n + 1, 1, GLINT_MAX_SIDE, &o->raw.height);
 }
 
 static bool parse_option(struct overlay *o, int option, const char *value)
@@ -120,34 +120,34 @@ static bool parse_option(struct overlay *o, int option, const char *value)
     case 'x':
         return parse_option_word(value, matrices, &o->matrix);
     case '4':
-        o->transfer = tool_word(value, glint_transfer_words);
+        o->transfer = tool_find_word(value, glint_transfer_words);
         return o->transfer >= 0 || strcmp(value, "auto") == 0;
     case '1':
-        o->raw.format = tool_word(value, formats);
+        o->raw.format = tool_find_word(value, formats);
         o->has_raw = true;
         return o->raw.format >= 0;
     case '2':
         return parse_image_size(o, value);
     case '3':
-        return tool_integer(value, 1, 4 * GLINT_MAX_SIDE, &o->raw.stride);
+        return tool_parse_integer(value, 1, 4 * GLINT_MAX_SIDE, &o->raw.stride);
     case 'Q':
-        return tool_integer(value, 1, 100, &o->quality);
+        return tool_parse_integer(value, 1, 100, &o->quality);
     case 'L':
         o->layers.path = value;
         return *value != '\0';
     case 'T':
-        word = tool_word(value, types);
+        word = tool_find_word(value, types);
         o->layers.is_float = word == 1;
         o->has_layers_type = true;
         return word >= 0;
     case 'F':
         return parse_frame_range(o, value);
     case 'W':
-        return tool_integer(value, 0, INT_MAX, &o->warm_up);
+        return tool_parse_integer(value, 0, INT_MAX, &o->warm_up);
     case 'B':
         return o->lists_shots = true;
     default: /* 'n' */
-        return tool_integer(value, 0, 1000000000, &o->start_number);
+        return tool_parse_integer(value, 0, 1000000000, &o->start_number);
     }
 }
 
@@ -302,7 +302,7 @@ static void print_overlay_statistics(const struct overlay *o)
 static void print_overlay_json(const struct overlay *o,
                                const struct overlay_light *light)
 {
-    const double seconds = tool_seconds() - o->figures.started;
+    const double seconds = tool_clock_s() - o->figures.started;
     const int drawn = overlay_count_frames(o), n = drawn ? drawn : 1;
     struct json_writer json = {.to = stdout};
 
@@ -431,7 +431,7 @@ static enum settings_unbaked choose_unbaked_rendering(const struct overlay *o)
 
     if (o->is_video || overlay_is_sequence(o))
         return SETTINGS_BAKE;
-    if (!o->is_one_of_many && settings_still(s) == SETTINGS_TRACE)
+    if (!o->is_one_of_many && settings_choose_unbaked(s) == SETTINGS_TRACE)
         return SETTINGS_TRACE;
     return of->keys || of->control || of->scene || of->budget > 0
                ? SETTINGS_BAKE
@@ -461,7 +461,7 @@ static int overlay_single_input(struct tool *tool, struct overlay *o)
         code = drawing_open(tool, &o->drawing);
     if (code != EXIT_OK)
         return code;
-    o->figures.started = tool_seconds();
+    o->figures.started = tool_clock_s();
     if (o->is_video)
         code = overlay_video(tool, o);
     else if (overlay_is_sequence(o))

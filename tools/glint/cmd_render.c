@@ -72,7 +72,7 @@ static int parse_option(struct tool *tool, struct render *r, int c)
         r->output = optarg;
         return -1;
     case 's':
-        if (tool_size(optarg, &r->width, &r->height))
+        if (tool_parse_size(optarg, &r->width, &r->height))
             return -1;
         return tool_usage(tool,
                           "--size must be WxH of 1 to %d pixels, not '%s'",
@@ -93,7 +93,7 @@ static int parse_option(struct tool *tool, struct render *r, int c)
         r->lights_file = optarg;
         return -1;
     case 'e':
-        word = tool_word(optarg, engines);
+        word = tool_find_word(optarg, engines);
         r->exact = word == 1;
         if (r->exact)
             r->settings.options.rays = GLINT_RAYS_EXACT;
@@ -201,7 +201,8 @@ static int render_exact_rays(struct tool *tool, struct render *r)
         status = glint_exact_render(&cfg, rgb);
     tool_progress_end(&progress);
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
-        r->image.rgb[i] = (float)(rgb[i] * settings_scale(&r->settings));
+        r->image.rgb[i] =
+            (float)(rgb[i] * settings_brightness_scale(&r->settings));
     free(rgb);
     free(points);
     if (status != GLINT_OK)
@@ -224,7 +225,7 @@ static void print_light_statistics(const struct tool *tool,
     settings_warn_lights(tool, report);
     if (!tool->verbose || tool->quiet)
         return;
-    settings_lights_text(report, lights);
+    settings_describe_lights(report, lights);
     fprintf(stderr, "%s, %d ghosts, %d primitives; flare memory %zu bytes\n",
             lights, report->ghosts, report->stats.primitives,
             report->arena_bytes + report->star_bytes);
@@ -261,9 +262,10 @@ static int render_model_flare(struct tool *tool, struct render *r)
     }
     status = glint_engine_create(&engine, &cfg, &error);
     if (status == GLINT_OK)
-        status = glint_engine_render(
-            engine, r->lamp, r->n_lamps, settings_scale(&r->settings),
-            GLINT_ENGINE_ALL | GLINT_ENGINE_CORES, r->image.rgb, &report);
+        status = glint_engine_render(engine, r->lamp, r->n_lamps,
+                                     settings_brightness_scale(&r->settings),
+                                     GLINT_ENGINE_ALL | GLINT_ENGINE_CORES,
+                                     r->image.rgb, &report);
     glint_engine_destroy(engine);
     tool_progress_end(&progress);
     if (status != GLINT_OK)
@@ -333,14 +335,14 @@ static int render_lens_flare(struct tool *tool, struct render *r,
 
     if (code == EXIT_OK)
         code = render_file_check(tool, r->output, &r->linear);
-    r->settings.unbaked = settings_still(&r->settings);
+    r->settings.unbaked = settings_choose_unbaked(&r->settings);
     if (code == EXIT_OK)
         code = opened_lens_open(tool, &r->lens, &r->settings, lens);
     if (code == EXIT_OK && r->lights_file)
         code = append_lamp_file(tool, r);
     if (code != EXIT_OK)
         return code;
-    start = tool_seconds();
+    start = tool_clock_s();
     r->image.width = r->width;
     r->image.height = r->height;
     r->image.rgb =
@@ -353,12 +355,12 @@ static int render_lens_flare(struct tool *tool, struct render *r,
             tool, r->output, r->linear, &r->image,
             GLINT_OPTION_GIVEN(&r->settings.options, exposure) ? 1 : 0);
     if (code == EXIT_OK && tool->json)
-        json_write(&r->json, "ms: %.3f}\n", 1e3 * (tool_seconds() - start));
+        json_write(&r->json, "ms: %.3f}\n", 1e3 * (tool_clock_s() - start));
     snprintf(what, sizeof what, "%s, %s", r->lens.table.name,
              chosen_ray_method(r, "baked model", "exact rays"));
     if (code == EXIT_OK)
         render_file_say(tool, r->output, r->width, r->height, what,
-                        tool_seconds() - start);
+                        tool_clock_s() - start);
     free(r->image.rgb);
     return code;
 }

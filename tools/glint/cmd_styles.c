@@ -65,7 +65,7 @@ static int parse_options(struct tool *tool, struct styles_command *c,
             code = -1;
         } else if (code == -2 && option == OPT_WIDTH) {
             code = -1;
-            if (!tool_integer(optarg, 64, 2048, &c->width))
+            if (!tool_parse_integer(optarg, 64, 2048, &c->width))
                 return tool_refuse(tool, "width", optarg);
         } else if (code == -2)
             code = tool_option(tool, option, optarg);
@@ -189,7 +189,8 @@ static int draw_style_image(struct tool *tool, struct styles_command *c,
 static int open_style_lens(const struct tool *tool, struct drawing *drawing)
 {
     drawing->line.is_still = true;
-    drawing->line.settings.unbaked = settings_still(&drawing->line.settings);
+    drawing->line.settings.unbaked =
+        settings_choose_unbaked(&drawing->line.settings);
     return drawing_open_lens(tool, drawing);
 }
 

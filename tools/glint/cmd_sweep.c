@@ -205,7 +205,8 @@ static bool parse_image_sizes(const char *text, struct asked *a)
         return false;
     for (a->n_sizes = 0; (word = strtok_r(rest, ",", &rest)); a->n_sizes++)
         if (a->n_sizes == MAX_LIST ||
-            !tool_size(word, &a->size[a->n_sizes][0], &a->size[a->n_sizes][1]))
+            !tool_parse_size(word, &a->size[a->n_sizes][0],
+                             &a->size[a->n_sizes][1]))
             return false;
     return a->n_sizes > 0;
 }
@@ -215,7 +216,7 @@ static bool parse_image_sizes(const char *text, struct asked *a)
 static int parse_number_list(const char *text, double low, double high,
                              double *to)
 {
-    const int n = tool_numbers(text, to, MAX_LIST);
+    const int n = tool_parse_numbers(text, to, MAX_LIST);
 
     for (int i = 0; i < n; i++)
         if (to[i] < low || to[i] > high)
@@ -262,7 +263,7 @@ static int parse_option(struct sweep *s, struct asked *a, int c)
     case 'a':
         return (a->n_angles = parse_number_list(optarg, 0, 60, a->angle)) > 0;
     case 'r':
-        return tool_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
+        return tool_parse_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
     case OPT_SMALL:
         return s->small = true;
     default:

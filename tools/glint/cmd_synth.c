@@ -247,9 +247,10 @@ static int write_set_settings(const struct tool *tool,
     char path[SYNTH_PATH_BYTES];
 
     snprintf(path, sizeof path, "%s/synth.json", set->folder);
-    return access(path, F_OK) == 0 ? EXIT_OK
-                                   : tool_save(tool, path, GLINT_OUTPUT_TEXT,
-                                               settings, strlen(settings));
+    return access(path, F_OK) == 0
+               ? EXIT_OK
+               : tool_save_file(tool, path, GLINT_OUTPUT_TEXT, settings,
+                                strlen(settings));
 }
 
 /* -------------------------------------------------------------------- items */
@@ -328,7 +329,8 @@ static int write_item_files(const struct tool *tool,
     if (status != GLINT_OK)
         code = tool_fail(tool, status, error.text);
     else if (line)
-        code = tool_save(tool, path, GLINT_OUTPUT_TEXT, line, strlen(line));
+        code =
+            tool_save_file(tool, path, GLINT_OUTPUT_TEXT, line, strlen(line));
     free(line);
     return code;
 }
@@ -533,8 +535,8 @@ static bool parse_shard_number(struct synth_set *set, const char *text)
         return false;
     memcpy(first, text, n);
     first[n] = '\0';
-    return tool_integer(text + n + 1, 1, MAX_COUNT, &set->shards) &&
-           tool_integer(first, 0, set->shards - 1, &set->shard);
+    return tool_parse_integer(text + n + 1, 1, MAX_COUNT, &set->shards) &&
+           tool_parse_integer(first, 0, set->shards - 1, &set->shard);
 }
 
 static bool add_lens_name(void *ctx, const char *name)
@@ -554,7 +556,7 @@ static bool parse_lens_list(struct synth *s, const char *text)
 
     s->n_lenses = 0;
     if (strcmp(text, "all") == 0)
-        return lens_files_each(add_lens_name, s) > 0;
+        return lens_files_visit_all(add_lens_name, s) > 0;
     for (;;) {
         const size_t n = strcspn(text, ",");
 
@@ -574,7 +576,7 @@ static bool parse_image_size(struct synth_item *item, const char *text)
 {
     int width, height;
 
-    if (!tool_size(text, &width, &height) || width < 16 || height < 16 ||
+    if (!tool_parse_size(text, &width, &height) || width < 16 || height < 16 ||
         width > 8192 || height > 8192)
         return false;
     item->width = width;
@@ -599,7 +601,7 @@ static int parse_coating(const struct tool *tool, struct synth *s,
                          const char *text)
 {
     struct coating probe = {.given = false};
-    const int code = coating_take(tool, &probe, text);
+    const int code = coating_parse_option(tool, &probe, text);
 
     if (code < 0 && strlen(text) >= sizeof s->all.coating)
         return tool_usage(tool, "the list of --coating is too long");
@@ -631,7 +633,7 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
         s->set.folder = value;
         break;
     case OPT_COUNT:
-        good = tool_integer(value, 0, MAX_COUNT, &s->set.count);
+        good = tool_parse_integer(value, 0, MAX_COUNT, &s->set.count);
         break;
     case OPT_SHARD:
         good = parse_shard_number(&s->set, value);
@@ -689,8 +691,8 @@ static int set_layout_file_type(const struct tool *tool, struct synth *s)
 static int parse_options(struct tool *tool, int argc, char **argv,
                          struct synth *s)
 {
-    int code = tool_take(tool, argc, argv, "o:" TOOL_COMMON_SHORT, options,
-                         parse_option, s);
+    int code = tool_parse_options(tool, argc, argv, "o:" TOOL_COMMON_SHORT,
+                                  options, parse_option, s);
 
     if (code >= 0)
         return code;

@@ -74,16 +74,17 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         bool ok = true;
 
         if (c == 'g')
-            ok = tool_integer(optarg, -1, GLINT_MAX_GHOSTS, &o->ghost);
+            ok = tool_parse_integer(optarg, -1, GLINT_MAX_GHOSTS, &o->ghost);
         else if (c == 'a')
-            ok = tool_number(optarg, &o->angle_deg) && fabs(o->angle_deg) < 90;
+            ok = tool_parse_number(optarg, &o->angle_deg) &&
+                 fabs(o->angle_deg) < 90;
         else if (c == 'w')
-            ok = tool_number(optarg, &o->wavelength_nm) &&
+            ok = tool_parse_number(optarg, &o->wavelength_nm) &&
                  o->wavelength_nm >= 300 && o->wavelength_nm <= 1100;
         else if (c == 'n')
-            ok = tool_integer(optarg, 1, 4096, &o->grid);
+            ok = tool_parse_integer(optarg, 1, 4096, &o->grid);
         else if (c == 'z')
-            ok = zoom_option_take(&o->zoom, optarg);
+            ok = zoom_option_parse(&o->zoom, optarg);
         else if (c == 'F')
             ok = zoom_option_focus(&o->zoom, optarg);
         else if (c == 'm')
@@ -91,7 +92,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         else if (c == 'p')
             o->pupil = true;
         else if (c != 'c')
-            code = c == 'C' ? coating_take(tool, &o->coating, optarg)
+            code = c == 'C' ? coating_parse_option(tool, &o->coating, optarg)
                             : tool_option(tool, c, optarg);
         if (code >= 0)
             return code;
@@ -211,7 +212,7 @@ static enum glint_ray_status trace_model_ray(const struct tracer *t,
  * within a relative error of 1e-8. */
 static bool is_model_number_close(struct glint_real a, double b)
 {
-    return fabs(model_real_of(a) - b) <= 1e-8 * fabs(b);
+    return fabs(model_compute_real(a) - b) <= 1e-8 * fabs(b);
 }
 
 static bool is_entry_of_ghost(const struct glint_lens *model, uint32_t entry,
@@ -269,7 +270,7 @@ static int prepare_model_tracer(const struct tool *tool,
         return tool_usage(tool, "%g nm is outside the model's band",
                           o->wavelength_nm);
     tracer->trace = trace_model_ray;
-    tracer->stop_radius_mm = model_real_of(h->stop_radius_mm);
+    tracer->stop_radius_mm = model_compute_real(h->stop_radius_mm);
     if (find_ghost_parts(
             model, (uint32_t)o->ghost,
             (int32_t)lrint(ldexp(sin(fabs(o->angle_deg) * GLINT_PI / 180), 30)),

@@ -70,7 +70,7 @@ static int run_command(const struct command *command, int argc, char **argv)
 
     snprintf(name, sizeof name, "glint %s", command->name);
     argv[0] = name;
-    tool_line(argv);
+    tool_set_command_line(argv);
     return command->run(argc, argv);
 }
 
@@ -82,22 +82,22 @@ static const struct command *find_command(const char *name)
     return NULL;
 }
 
-static int report_no_command(const char *name)
+static int report_missing_command(const char *name)
 {
     struct suggest s;
 
     suggest_begin(&s, name);
     for (int i = 0; i < N_COMMANDS; i++)
-        suggest_try(&s, commands[i].name, strlen(commands[i].name));
+        suggest_consider(&s, commands[i].name, strlen(commands[i].name));
     fprintf(stderr, "glint: no command '%s'\n", name);
-    if (suggest_best(&s))
+    if (suggest_find_best(&s))
         fprintf(stderr, "Did you mean 'glint %s'? ", s.best);
     fputs("Try 'glint --help'.\n", stderr);
     return EXIT_USAGE;
 }
 
 /* Prints the help of the command NAME, or that of glint if NAME is NULL. */
-static int print_help(const char *name)
+static int print_command_help(const char *name)
 {
     char argument[] = "--help", *argv[] = {NULL, argument, NULL};
     const struct command *command;
@@ -107,10 +107,11 @@ static int print_help(const char *name)
         return EXIT_OK;
     }
     command = find_command(name);
-    return command ? run_command(command, 2, argv) : report_no_command(name);
+    return command ? run_command(command, 2, argv)
+                   : report_missing_command(name);
 }
 
-static int run_named(int argc, char **argv)
+static int run_command_by_name(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
     const struct command *command = find_command(name);
@@ -118,9 +119,9 @@ static int run_named(int argc, char **argv)
     if (command)
         return run_command(command, argc - 1, argv + 1);
     if (strcmp(name, "help") == 0)
-        return print_help(argc > 2 ? argv[2] : NULL);
+        return print_command_help(argc > 2 ? argv[2] : NULL);
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0)
-        return print_help(NULL);
+        return print_command_help(NULL);
     if (strcmp(name, "--commands") == 0) { /* for shell completion */
         for (int i = 0; i < N_COMMANDS; i++)
             puts(commands[i].name);
@@ -134,7 +135,7 @@ static int run_named(int argc, char **argv)
         return tool_option(&tool, 'V', NULL);
     }
     if (*name)
-        return report_no_command(name);
+        return report_missing_command(name);
     fputs(help, stderr);
     return EXIT_USAGE;
 }
@@ -144,11 +145,11 @@ struct words {
     char **argv;
 };
 
-static int run_words(void *ctx)
+static int run_command_words(void *ctx)
 {
     const struct words *words = ctx;
 
-    return run_named(words->argc, words->argv);
+    return run_command_by_name(words->argc, words->argv);
 }
 
 /* Runs the command on a large stack, as baking needs more stack than some
@@ -158,7 +159,7 @@ int main(int argc, char **argv)
     struct words words = {argc, argv};
 
     glint_process_hold_streams();
-    tool_watch_reader();
-    return tool_end(
-        glint_process_on_stack(GLINT_WORKER_STACK_BYTES, run_words, &words));
+    tool_watch_closed_pipe();
+    return tool_close_stdout(glint_process_on_stack(GLINT_WORKER_STACK_BYTES,
+                                                    run_command_words, &words));
 }

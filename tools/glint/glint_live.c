@@ -9,7 +9,7 @@
 int main(int argc, char **argv)
 {
     glint_process_hold_streams();
-    tool_line(argv);
-    tool_watch_reader();
-    return tool_end(cmd_live(argc, argv));
+    tool_set_command_line(argv);
+    tool_watch_closed_pipe();
+    return tool_close_stdout(cmd_live(argc, argv));
 }

@@ -128,7 +128,7 @@ bool lines_number(const struct lines *l, int k, const char *what, double *value)
 {
     if (k >= l->n)
         return imported_fail(l->lens, l->number, "%s is missing", what);
-    if (!tool_number(l->word[k], value))
+    if (!tool_parse_number(l->word[k], value))
         return imported_fail(
             l->lens, l->number, "%s '%.40s' is not a number%s", what,
             l->word[k],

@@ -131,7 +131,7 @@ static bool parse_value(struct reader *r, const char *name, int n,
         if (strcmp(words[i], name) != 0)
             continue;
         *done = has[i] = true;
-        if (!tool_number(r->text, &values[i]))
+        if (!tool_parse_number(r->text, &values[i]))
             return imported_fail(r->lens, current_line(r),
                                  "<%s> '%.40s' is not a number", name, r->text);
     }

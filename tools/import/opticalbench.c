@@ -82,7 +82,7 @@ static bool parse_variable(struct optical_bench *b)
 
         if (strcasecmp(text, "Infinity") == 0)
             v->value[v->n] = (double)INFINITY;
-        else if (!tool_number(text, &v->value[v->n]))
+        else if (!tool_parse_number(text, &v->value[v->n]))
             v->value[v->n] = (double)NAN;
     }
     b->n_variables++;
@@ -136,7 +136,7 @@ static bool parse_thickness(struct optical_bench *b, struct imported_surface *s)
 
     if (!*text)
         return imported_fail(b->lens, b->lines.number, "thickness is missing");
-    if (tool_number(text, &s->thickness))
+    if (tool_parse_number(text, &s->thickness))
         return true;
     s->thickness = variable_value(b, text);
     return isfinite(s->thickness) ||

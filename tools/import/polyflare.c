@@ -99,7 +99,7 @@ static bool parse_thickness(struct polyflare *p, struct imported_surface *s)
                                  "thickness '%.40s' is not a number", at);
         memcpy(word, at, bytes);
         word[bytes] = '\0';
-        if (!tool_number(word, &value[n]))
+        if (!tool_parse_number(word, &value[n]))
             return imported_fail(p->lens, l->number,
                                  "thickness '%.40s' is not a number", word);
         more = at[bytes] == '/';

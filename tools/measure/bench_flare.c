@@ -159,10 +159,10 @@ static enum glint_status bench_run(struct bench *b, struct bench_case *c,
 
     if (b->moving && t->n_lamps > 0)
         t->lamp[0].theta_deg = 8 + 8 * (round + 0.5) / b->rounds;
-    t0 = tool_seconds();
+    t0 = tool_clock_s();
     status = glint_engine_draw_at(t->engine, t->lamp, t->n_lamps, t->scale,
                                   &c->canvas->image, &t->report);
-    c->ms[WHOLE][round] = 1e3 * (tool_seconds() - t0);
+    c->ms[WHOLE][round] = 1e3 * (tool_clock_s() - t0);
     c->ms[PLAN][round] = r->plan_ms;
     c->ms[TRANSFER][round] = r->trace_ms;
     c->ms[BIN][round] = r->bin_ms;

@@ -175,15 +175,15 @@ static void time_stages(struct scene_frame *frame,
 {
     struct glint_scene_lamp lamps[GLINT_SCENE_MAX_LIGHTS];
 
-    at_s[0] = tool_seconds();
+    at_s[0] = tool_clock_s();
     scene_frame_begin(frame);
-    at_s[1] = tool_seconds();
+    at_s[1] = tool_clock_s();
     glint_scene_look_around(frame->scene, image);
-    at_s[2] = tool_seconds();
+    at_s[2] = tool_clock_s();
     glint_scene_draw(frame->scene, image);
-    at_s[3] = tool_seconds();
+    at_s[3] = tool_clock_s();
     glint_scene_lights(frame->scene, lamps);
-    at_s[4] = tool_seconds();
+    at_s[4] = tool_clock_s();
 }
 
 static enum glint_status draw_frame(struct bench *b, struct bench_case *c,

@@ -73,9 +73,9 @@ void canvas_time_floor(struct canvas *c, int round)
 
     layer[1]++;
     canvas_fresh(c);
-    t0 = tool_seconds();
+    t0 = tool_clock_s();
     add_layer(c->mem, layer, c->bytes);
-    c->floor_ms[round] = 1e3 * (tool_seconds() - t0);
+    c->floor_ms[round] = 1e3 * (tool_clock_s() - t0);
 }
 
 /* ------------------------------------------------------------------- lamps */

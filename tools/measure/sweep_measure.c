@@ -144,12 +144,12 @@ static enum glint_status draw_run(struct bay *b, struct run *r, int round)
 
     canvas_fresh(&b->canvas);
     n0 = counter >= 0 ? glint_instructions_read(counter) : 0;
-    t0 = tool_seconds();
+    t0 = tool_clock_s();
     status = glint_engine_draw_at(r->engine, b->lamp, b->c->n_lamps,
                                   b->exposure, &b->canvas.image, &r->report);
     if (round < 0)
         return status;
-    r->ms[r->n] = 1e3 * (tool_seconds() - t0);
+    r->ms[r->n] = 1e3 * (tool_clock_s() - t0);
     r->spent_ms += r->ms[r->n++];
     if (counter >= 0)
         r->point->metric[SWEEP_INSTRUCTIONS] =
@@ -247,7 +247,7 @@ static bool keep_picture(struct bay *b, int point, const uint8_t *codes)
     const int by =
         b->c->width < 2 * PICTURE_WIDTH ? 1 : b->c->width / PICTURE_WIDTH;
     struct sweep_picture *const all =
-        text_grow(s->picture, s->n_pictures, sizeof *all);
+        text_grow_array(s->picture, s->n_pictures, sizeof *all);
     struct sweep_picture *p;
 
     if (!all)

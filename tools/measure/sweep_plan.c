@@ -105,7 +105,7 @@ static enum glint_status add_point(struct sweep *s, int c,
                                    const struct sweep_setting *set)
 {
     struct sweep_point *const point =
-        text_grow(s->point, s->n_points, sizeof *point);
+        text_grow_array(s->point, s->n_points, sizeof *point);
 
     if (!point)
         return GLINT_E_MEMORY;

@@ -146,7 +146,7 @@ enum glint_status synth_background_key(char key[20], const char *path,
         glint_input_slurp(&data, &bytes, path, MOST_BYTES, error);
 
     if (status == GLINT_OK) {
-        tool_key_mix(&number, data, bytes);
+        tool_hash_into_key(&number, data, bytes);
         snprintf(key, 20, "%016" PRIx64, number);
     }
     free(data);
@@ -310,7 +310,7 @@ static int open_lens(const struct tool *tool, struct synth_lens *lens,
     snprintf(quality, sizeof quality, "%.6f", item->quality);
     settings_set_quality(s, glint_option_number(quality, &end));
     s->camera.waves.kind = GLINT_WAVES_AUTO;
-    code = coating_take(tool, &s->coating, item->coating);
+    code = coating_parse_option(tool, &s->coating, item->coating);
     if (code < 0)
         code = opened_lens_open(tool, &lens->opened, s, item->lens);
     if (code == EXIT_OK)
@@ -369,11 +369,11 @@ static int set_lens(const struct tool *tool, struct synth_lens *lens,
     /* 0 stops down requests no f-number, as rounding might make it wider
      * than the model's stop. */
     s->options.f_number = item->stops_down > 0 ? result->f_number : 0;
-    status = opened_lens_stop(&lens->opened, s, &error);
+    status = opened_lens_set_stop(&lens->opened, s, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     result->focal_mm = lens->opened.setup.optics.focal_mm;
-    return opened_lens_front(tool, &lens->opened, camera, NULL);
+    return opened_lens_set_front_dirt(tool, &lens->opened, camera, NULL);
 }
 
 /* ------------------------------------------------------------------- lights */

@@ -108,7 +108,7 @@ bool synth_ranges_take(struct synth_ranges *ranges, const char *text,
         return false;
     }
     f = field_at(k);
-    count = text[n] ? tool_numbers(text + n + 1, v, 2) : 0;
+    count = text[n] ? tool_parse_numbers(text + n + 1, v, 2) : 0;
     if (count == 1)
         v[1] = v[0];
     if (count == 0 || v[0] > v[1] || v[0] < f->least || v[1] > f->most ||

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Checks that --budget keeps the frame time on simulated machines:
- * tool_seconds() is replaced by a formula for the time of a frame.
+ * tool_clock_s() is replaced by a formula for the time of a frame.
  */
 #include <stdint.h>
 

@@ -344,7 +344,8 @@ TEST(white)
 
     settings_defaults(&bare.settings);
     bare.settings.camera.waves.kind = GLINT_WAVES_AUTO;
-    assert_int_equal(coating_take(&tool, &bare.settings.coating, "none"), -1);
+    assert_int_equal(
+        coating_parse_option(&tool, &bare.settings.coating, "none"), -1);
     assert_ok(opened_lens_open(&tool, &bare.lens, &bare.settings,
                                "lenses/heliar-tronnier.lens"));
     assert_ok(settings_frame(&tool, &bare, WIDTH, HEIGHT, &frame));

@@ -46,7 +46,7 @@ static int log_option(void *ctx, const struct option *option, const char *value)
         c->lens = value;
     if (option->val == 'D')
         return EXIT_OK;
-    if (option->val == 'g' && !tool_integer(value, 4, 1024, &c->grid))
+    if (option->val == 'g' && !tool_parse_integer(value, 4, 1024, &c->grid))
         return tool_usage(&c->tool, "--%s: '%s' is not valid", option->name,
                           value);
     return -1;
@@ -313,7 +313,7 @@ TEST(line_wins)
     int c, index;
 
     write_file("lens=a\ngrid=16\n");
-    found = tool_value_of(9, line, TOOL_COMMON_SHORT, options, 'C');
+    found = tool_find_option_value(9, line, TOOL_COMMON_SHORT, options, 'C');
     assert_string_equal(found, scratch_file);
     assert_ok(config_read(&config, found));
     assert_int_equal(command.grid, 16);
@@ -323,7 +323,8 @@ TEST(line_wins)
     assert_int_equal(command.grid, 32);
     assert_string_equal(command.log, "lens=a;grid=16;grid=32;");
     assert_string_equal(line[optind], "in");
-    assert_null(tool_value_of(3, line, TOOL_COMMON_SHORT, options, 'C'));
+    assert_null(
+        tool_find_option_value(3, line, TOOL_COMMON_SHORT, options, 'C'));
     config_free(&config);
 }
 

@@ -137,21 +137,21 @@ TEST(forms)
 
 TEST(keys)
 {
-    assert_int_equal(keyboard_take("\033[Cx", 4, &line), 3);
+    assert_int_equal(keyboard_parse_key("\033[Cx", 4, &line), 3);
     assert_int_equal(line.verb, CONTROL_ORBIT);
     assert_true(line.is_change && line.v[0] > 0 && line.v[1] == 0);
-    assert_int_equal(keyboard_take("+", 1, &line), 1);
+    assert_int_equal(keyboard_parse_key("+", 1, &line), 1);
     assert_true(line.verb == CONTROL_DISTANCE && line.v[0] < 1);
     /* not control keys: a function key, a single escape, a letter */
-    assert_int_equal(keyboard_take("\033[15~+", 6, &line), 5);
+    assert_int_equal(keyboard_parse_key("\033[15~+", 6, &line), 5);
     assert_int_equal(line.verb, CONTROL_NONE);
-    assert_int_equal(keyboard_take("\033", 1, &line), 1);
+    assert_int_equal(keyboard_parse_key("\033", 1, &line), 1);
     assert_int_equal(line.verb, CONTROL_NONE);
-    assert_int_equal(keyboard_take("}", 1, &line), 1);
+    assert_int_equal(keyboard_parse_key("}", 1, &line), 1);
     assert_true(line.verb == CONTROL_SCALE && line.v[0] > 1);
-    assert_int_equal(keyboard_take("e", 1, &line), 1);
+    assert_int_equal(keyboard_parse_key("e", 1, &line), 1);
     assert_true(line.verb == CONTROL_NEXT_MAP && line.is_change);
-    assert_int_equal(keyboard_take("z", 1, &line), 1);
+    assert_int_equal(keyboard_parse_key("z", 1, &line), 1);
     assert_int_equal(line.verb, CONTROL_NONE);
     assert_int_equal(keyboard_open(&(struct keyboard){0}, -1), GLINT_E_IO);
 }

@@ -34,7 +34,8 @@ static void simulate_machine(const double *cost_ms, double seconds)
         const int before = adapt.step;
         const double cost = cost_ms[before];
         const int n_missed = cost > PERIOD_MS ? (int)(cost / PERIOD_MS) : 0;
-        const bool changed = live_adapt_note(&adapt, cost, PERIOD_MS, n_missed);
+        const bool changed =
+            live_adapt_add_frame(&adapt, cost, PERIOD_MS, n_missed);
 
         now_s += 1e-3 * PERIOD_MS * (1 + n_missed);
         seen.n_frames++;
@@ -109,7 +110,7 @@ TEST(hiccup)
     static const double cost[8] = {20, 15, 10, 8, 6, 5, 4, 3};
 
     simulate_machine(cost, 0.2);
-    assert_false(live_adapt_note(&adapt, 30, PERIOD_MS, 0));
+    assert_false(live_adapt_add_frame(&adapt, 30, PERIOD_MS, 0));
     simulate_machine(cost, 10);
     assert_int_equal(adapt.step, 0);
     assert_int_equal(seen.n_down, 0);
@@ -175,7 +176,7 @@ TEST(steps)
             struct glint_dials d;
 
             adapt.step = s;
-            d = live_adapt_dials(&adapt, ask[i]);
+            d = live_adapt_set_dials(&adapt, ask[i]);
             if (s == 0)
                 assert_memory_equal(&d, &ask[i], sizeof d);
             /* Steps above 3 draw at half resolution. */

@@ -161,7 +161,7 @@ TEST(seconds)
     add_frames();
     assert_false(live_stats_due(&stats, 5999999));
     assert_true(live_stats_due(&stats, 6000000));
-    live_stats_next(&stats, 6000250);
+    live_stats_begin_second(&stats, 6000250);
     assert_false(live_stats_due(&stats, 7000000));
     live_stats_add(&stats, &frames[1]);
     assert_string_equal(
@@ -204,7 +204,7 @@ TEST(lines)
     assert_string_equal(live_stats_line(&stats, 6000000, true, text),
                         "\r2.0 fps  12.3 ms, p99 20.1  2 dropped 1 late 4 bad"
                         "  3 lights 39 ghosts  q 0.38\033[K");
-    live_stats_next(&stats, 6000000);
+    live_stats_begin_second(&stats, 6000000);
     live_stats_add(&stats, &frames[1]);
     assert_string_equal(
         live_stats_line(&stats, 6250000, false, text),

@@ -136,16 +136,16 @@ static enum glint_status report_unknown_word(const struct reader *r,
         const char *const may = before ? f->clause : f->word;
 
         if (may && (!before || strcmp(before, f->word) == 0))
-            suggest_try(&suggest, may, strlen(may));
+            suggest_consider(&suggest, may, strlen(may));
     }
     for (int i = 0; !before && i < GLINT_N_OPTIONS; i++)
         if (can_control_change_option(glint_option(i)))
-            suggest_try(&suggest, glint_option(i)->name,
-                        strlen(glint_option(i)->name));
+            suggest_consider(&suggest, glint_option(i)->name,
+                             strlen(glint_option(i)->name));
     return control_fail(r->error, r->where, r->column,
                         "'%.24s' is not a %s%s%s", r->word,
                         before ? "word of " : "command", before ? before : "",
-                        suggest_words(&suggest));
+                        suggest_from_words(&suggest));
 }
 
 /* Returns the first form at index I or later whose first word is WORD, or
@@ -204,7 +204,7 @@ static enum glint_status read_form_numbers(struct reader *r,
     while (line->n < form->most && read_next_word(r)) {
         double v;
 
-        if (!tool_number(r->word, &v))
+        if (!tool_parse_number(r->word, &v))
             return control_fail(r->error, r->where, r->column,
                                 "'%.24s' is not a number; expected %s", r->word,
                                 form->usage);
@@ -235,8 +235,8 @@ static enum glint_status read_frame_number(struct reader *r,
     if (!strchr("+-.0123456789", *ahead.word) || !*ahead.word)
         return GLINT_OK;
     *r = ahead;
-    if (!tool_number(r->word, &v) || !(v >= 0 && v <= CONTROL_MOST_FRAME) ||
-        v != rint(v))
+    if (!tool_parse_number(r->word, &v) ||
+        !(v >= 0 && v <= CONTROL_MOST_FRAME) || v != rint(v))
         return control_fail(
             r->error, r->where, r->column,
             "a frame must be a whole number from 0, not '%.24s'", r->word);
@@ -410,7 +410,7 @@ static int first_key_length(const char *text, int n)
     return i < n ? i + 1 : n;
 }
 
-int keyboard_take(const char *text, int n, struct control_line *line)
+int keyboard_parse_key(const char *text, int n, struct control_line *line)
 {
     const int length = first_key_length(text, n);
 
@@ -443,7 +443,7 @@ bool keyboard_next(struct keyboard *k, struct control_line *line)
     while (k->at < k->n || read_pressed_keys(k)) {
         if (k->bytes[k->at] == 'q')
             raise(SIGINT);
-        k->at += keyboard_take(k->bytes + k->at, k->n - k->at, line);
+        k->at += keyboard_parse_key(k->bytes + k->at, k->n - k->at, line);
         if (line->verb != CONTROL_NONE)
             return true;
     }
@@ -493,9 +493,9 @@ static enum glint_status parse_all_lines(struct controls *in,
     struct control_line line = {.verb = CONTROL_NONE};
     const char *text;
 
-    while (status == GLINT_OK && (text = text_lines_raw(&in->lines))) {
+    while (status == GLINT_OK && (text = text_lines_read_raw(&in->lines))) {
         struct control_line *const more =
-            text_grow(in->row, in->n, sizeof *more);
+            text_grow_array(in->row, in->n, sizeof *more);
 
         if (!more)
             return glint_error_report(error, GLINT_E_MEMORY, in->lines.name,
@@ -523,8 +523,8 @@ enum glint_status controls_open(struct controls *input, const char *path,
                            : glint_error_report(error, GLINT_E_IO, path, "%s",
                                                 strerror(errno));
     }
-    if (is_live && (is_input || text_is_pipe(path)))
-        return text_lines_pipe(&in->lines, path, error);
+    if (is_live && (is_input || text_is_named_pipe(path)))
+        return text_lines_open_pipe(&in->lines, path, error);
     status = text_lines_open(&in->lines, path, NULL, MAX_BYTES, error);
     if (status == GLINT_OK)
         status = parse_all_lines(in, error);
@@ -551,7 +551,7 @@ static bool read_next_pipe_command(struct controls *in)
 {
     const char *text;
 
-    while (in->lines.is_pipe && (text = text_lines_raw(&in->lines))) {
+    while (in->lines.is_pipe && (text = text_lines_read_raw(&in->lines))) {
         struct glint_error error;
 
         if (parse_control_line(in, text, &in->ahead, &error) != GLINT_OK)
@@ -573,7 +573,7 @@ const struct control_line *controls_next(struct controls *input, int picture)
     if (in->next < in->n)
         return in->row[in->next].frame > picture ? NULL : &in->row[in->next++];
     if (in->read_at != picture)
-        text_lines_turn(&in->lines);
+        text_lines_begin_turn(&in->lines);
     in->read_at = picture;
     in->has_ahead = in->has_ahead || read_next_pipe_command(in);
     if (!in->has_ahead || in->ahead.frame > picture)

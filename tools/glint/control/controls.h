@@ -166,7 +166,7 @@ bool keyboard_next(struct keyboard *k, struct control_line *line);
 
 /* Sets LINE to the command of the first key of TEXT[N], with verb CONTROL_NONE
  * if the key has no command. Returns the bytes of the key. */
-int keyboard_take(const char *text, int n, struct control_line *line);
+int keyboard_parse_key(const char *text, int n, struct control_line *line);
 
 /* Opens PATH, which must outlive INPUT; "-" is standard input. If IS_LIVE, a
  * FIFO and standard input are read line by line as data arrives, and a

@@ -50,11 +50,11 @@ check_environment_command(const struct steer *steer,
     for (int i = 0; i < count_environments(steer); i++) {
         const char *const name = steer->model.environment[i].name;
 
-        suggest_try(&suggest, name, strlen(name));
+        suggest_consider(&suggest, name, strlen(name));
     }
     return control_fail(error, where, line->name_column[0],
                         "the scene has no environment '%s'%s", line->name[0],
-                        suggest_words(&suggest));
+                        suggest_from_words(&suggest));
 }
 
 /* Shows the current environment with its rotation and scale. */
@@ -402,11 +402,12 @@ static enum glint_status find_name_index(const struct steer *s,
         const char *const known =
             find_object_or_material_name(s, is_material, i);
 
-        suggest_try(&suggest, known, strlen(known));
+        suggest_consider(&suggest, known, strlen(known));
     }
-    return control_fail(
-        error, where, line->name_column[k], "the scene has no %s '%s'%s",
-        is_material ? "material" : "object", name, suggest_words(&suggest));
+    return control_fail(error, where, line->name_column[k],
+                        "the scene has no %s '%s'%s",
+                        is_material ? "material" : "object", name,
+                        suggest_from_words(&suggest));
 }
 
 /* Returns whether the first name of LINE is a material. */

@@ -50,15 +50,15 @@ static const char *parse_key_value(struct reading *r, int c, const char *field,
         column = (struct text_column){option->name, option->low, option->high,
                                       r->range};
     }
-    return text_value(&column, field,
-                      "expected a number, or nothing, in each column", value);
+    return text_parse_value(
+        &column, field, "expected a number, or nothing, in each column", value);
 }
 
 static const char *add_key_frame(struct keys *keys, int column,
                                  struct key_value key)
 {
     struct key_value *const more =
-        text_grow(keys->key[column], keys->n[column], sizeof *more);
+        text_grow_array(keys->key[column], keys->n[column], sizeof *more);
 
     if (!more)
         return text_no_memory;
@@ -83,11 +83,11 @@ static const char *parse_column_heading(struct reading *r,
                                         struct text_lines *lines, char *line)
 {
     char *name[KEYS_COLUMNS];
-    const int n = text_fields(line, name, KEYS_COLUMNS);
+    const int n = text_split_fields(line, name, KEYS_COLUMNS);
     unsigned seen = 0;
 
     for (int i = 0; i < n && i < KEYS_COLUMNS; i++) {
-        const int column = text_column(columns, KEYS_COLUMNS, name[i]);
+        const int column = text_find_column(columns, KEYS_COLUMNS, name[i]);
 
         if (column < 0)
             return text_lines_cause(
@@ -114,7 +114,7 @@ static const char *parse_key_row(struct reading *r, struct text_lines *lines,
     bool given[KEYS_COLUMNS] = {false};
     char *field[KEYS_COLUMNS];
     const char *cause = NULL;
-    const int n = text_fields(line, field, r->n_columns);
+    const int n = text_split_fields(line, field, r->n_columns);
 
     for (int i = 0; i < n && i < r->n_columns && !cause; i++) {
         const int c = r->column[i];
@@ -160,7 +160,7 @@ enum glint_status keys_parse(struct keys *keys, const char *name,
 
     *keys = (struct keys){.n = {0}};
     if (status == GLINT_OK)
-        status = text_lines_each(&lines, parse_key_line, &r, error);
+        status = text_lines_parse_each(&lines, parse_key_line, &r, error);
     if (status == GLINT_OK && keys->n[KEYS_FRAME] == 0)
         status = glint_error_report(error, GLINT_E_FORMAT, name,
                                     "has no key frames");
@@ -177,7 +177,7 @@ enum glint_status keys_read(struct keys *keys, const char *path,
 
 int keys_column(const char *name)
 {
-    return text_column(columns, KEYS_COLUMNS, name);
+    return text_find_column(columns, KEYS_COLUMNS, name);
 }
 
 bool keys_has(const struct keys *keys, enum key_column column)

@@ -34,10 +34,10 @@ static enum glint_status load_numbered_mask(struct occlusion *o, int frame,
     char name[NUMBERED_BYTES];
     enum glint_status status;
 
-    if (!numbered_name(name, o->file, 0))
+    if (!numbered_make_name(name, o->file, 0))
         return glint_error_report(error, GLINT_E_FORMAT, o->file,
                                   "is too long a name");
-    numbered_name(name, o->file, frame + !does_file_exist(name));
+    numbered_make_name(name, o->file, frame + !does_file_exist(name));
     if (o->frame >= 0 && !does_file_exist(name)) {
         o->is_over = true;
         return GLINT_OK;
@@ -94,7 +94,7 @@ enum glint_status occlusion_open(struct occlusion *o, struct glint_error *error)
         return GLINT_OK;
     if (glint_y4m_is_name(o->file))
         return open_mask_video(o, error);
-    o->is_numbered = numbered_is(o->file);
+    o->is_numbered = numbered_is_pattern(o->file);
     return o->is_numbered ? load_numbered_mask(o, 0, error)
                           : glint_picture_load(o->file, &o->image, error);
 }

@@ -227,7 +227,7 @@ static void print_invalid_lights(const struct glint_explain *e,
                                  const struct explain_title *t)
 {
     const struct glint_engine_report *r = t->report;
-    const double most = model_degrees(e->lens->header->sine_hi_q30);
+    const double most = model_angle_deg(e->lens->header->sine_hi_q30);
     int n = 0, dark = 0;
 
     for (int i = 0; i < t->n_lamps; i++) {
@@ -351,7 +351,7 @@ static void write_lights_json(struct json_writer *json,
         if (glint_explain_is_beyond(e, &t->lamp[i].lamp))
             json_write(json, "%.6g", t->lamp[i].lamp.theta_deg);
     json_write(json, "], model_max_deg: %.6g",
-               model_degrees(e->lens->header->sine_hi_q30));
+               model_angle_deg(e->lens->header->sine_hi_q30));
 }
 
 static void write_title_json(struct json_writer *json,

@@ -25,7 +25,7 @@
 #include "posix/error.h"
 #include "posix/input.h"
 
-static bool has_one_of(const char *text, const char *const *words)
+static bool contains_one_of(const char *text, const char *const *words)
 {
     for (; *words; words++)
         if (strstr(text, *words))
@@ -34,39 +34,39 @@ static bool has_one_of(const char *text, const char *const *words)
 }
 
 /* Returns the bits of a sample of PIXELS: 8, 10, 12 or 16. */
-static int pixels_bits(const char *pixels)
+static int pixel_format_bits(const char *pixels)
 {
     static const char *const of_8[] = {"nv12", "nv16", "yuv410p", NULL};
     static const char *const of_16[] = {"16", "14", "48", "64", "f32", NULL};
     static const char *const of_10[] = {"10", "p9", NULL};
 
-    return has_one_of(pixels, of_8)    ? 8
-           : has_one_of(pixels, of_16) ? 16
-           : strstr(pixels, "12")      ? 12
-           : has_one_of(pixels, of_10) ? 10
-                                       : 8;
+    return contains_one_of(pixels, of_8)    ? 8
+           : contains_one_of(pixels, of_16) ? 16
+           : strstr(pixels, "12")           ? 12
+           : contains_one_of(pixels, of_10) ? 10
+                                            : 8;
 }
 
-static bool pixels_are_rgb(const char *pixels)
+static bool is_pixel_format_rgb(const char *pixels)
 {
     static const char *const rgb[] = {"rgb", "bgr",  "gbr", "argb",
                                       "xyz", "pal8", NULL};
 
-    return has_one_of(pixels, rgb);
+    return contains_one_of(pixels, rgb);
 }
 
-static bool pixels_have_alpha(const char *pixels)
+static bool has_pixel_format_alpha(const char *pixels)
 {
     static const char *const alpha[] = {"yuva", "ayuv", "vuya", "rgba",
                                         "bgra", "argb", "abgr", "gbrap",
                                         "ya8",  "ya16", NULL};
 
-    return has_one_of(pixels, alpha);
+    return contains_one_of(pixels, alpha);
 }
 
 /* Returns the chroma of PIXELS: "444" also of RGB, "422", "440", "420", "411",
  * "410", or "gray" for none. */
-static const char *pixels_chroma(const char *pixels)
+static const char *pixel_format_chroma(const char *pixels)
 {
     static const char *const of_444[] = {"444",  "nv24", "nv42", "p410", "p416",
                                          "ayuv", "vuy",  "xv",   NULL};
@@ -77,9 +77,9 @@ static const char *pixels_chroma(const char *pixels)
     if (strncmp(pixels, "gray", 4) == 0 || strncmp(pixels, "mono", 4) == 0 ||
         strncmp(pixels, "ya", 2) == 0)
         return "gray";
-    if (pixels_are_rgb(pixels) || has_one_of(pixels, of_444))
+    if (is_pixel_format_rgb(pixels) || contains_one_of(pixels, of_444))
         return "444";
-    if (has_one_of(pixels, of_422))
+    if (contains_one_of(pixels, of_422))
         return "422";
     for (int i = 0; rare[i]; i++)
         if (strstr(pixels, rare[i]))
@@ -87,7 +87,7 @@ static const char *pixels_chroma(const char *pixels)
     return "420";
 }
 
-const char *pixels_named(const char *chroma, int bits)
+const char *find_pixel_format(const char *chroma, int bits)
 {
     static const char *const table[][5] = {
         {"422", "yuv422p", "yuv422p10le", "yuv422p12le", "yuv422p16le"},
@@ -104,15 +104,15 @@ const char *pixels_named(const char *chroma, int bits)
 
 /* Returns the y4m format that keeps all samples of PIXELS but alpha, of chroma
  * that has no such format the nearest. */
-static const char *pixels_of_y4m(const char *pixels)
+static const char *choose_y4m_pixel_format(const char *pixels)
 {
-    const char *const chroma = pixels_chroma(pixels);
+    const char *const chroma = pixel_format_chroma(pixels);
 
     if (strncmp(pixels, "yuvj", 4) == 0) /* full range, too */
         return strcmp(chroma, "444") == 0   ? "yuvj444p"
                : strcmp(chroma, "422") == 0 ? "yuvj422p"
                                             : "yuvj420p";
-    return pixels_named(chroma, pixels_bits(pixels));
+    return find_pixel_format(chroma, pixel_format_bits(pixels));
 }
 
 enum { MAX_CHILDREN = 4, NOT_FOUND = 127 };
@@ -120,7 +120,7 @@ enum { MAX_CHILDREN = 4, NOT_FOUND = 127 };
 /* processes to kill at death; atomic, 0: free */
 static pid_t running[MAX_CHILDREN];
 
-static void kill_all(void)
+static void kill_all_children(void)
 {
     const int saved = errno;
 
@@ -133,7 +133,7 @@ static void kill_all(void)
     errno = saved;
 }
 
-static void replace(pid_t old, pid_t fresh)
+static void replace_running_child(pid_t old, pid_t fresh)
 {
     for (int i = 0; i < MAX_CHILDREN; i++) {
         pid_t expected = old;
@@ -166,8 +166,8 @@ bool child_exists(const char *name)
 /* Runs ARGV in the child, with IN, OUT and SAID, unless that is -1, as its
  * streams. If it cannot be run, sends errno through FAILED. Makes system calls
  * only. */
-static void become(const char *const *argv, int in, int out, int said,
-                   int failed)
+static void exec_child_program(const char *const *argv, int in, int out,
+                               int said, int failed)
 {
     sigset_t none;
     int number;
@@ -187,7 +187,7 @@ static void become(const char *const *argv, int in, int out, int said,
 }
 
 /* Returns the errno that kept the child from running, or 0. */
-static int read_failure(int fd)
+static int read_child_exec_errno(int fd)
 {
     int number = 0;
     ssize_t n;
@@ -199,7 +199,7 @@ static int read_failure(int fd)
 }
 
 /* Opens two pipes, DATA and FAILED, whose ends are closed by exec. */
-static bool open_pipes(int data[2], int failed[2])
+static bool open_child_pipes(int data[2], int failed[2])
 {
     if (pipe2(data, O_CLOEXEC) < 0)
         return false;
@@ -210,8 +210,8 @@ static bool open_pipes(int data[2], int failed[2])
     return false;
 }
 
-static enum glint_status refuse(const char *name, int number,
-                                struct glint_error *error)
+static enum glint_status report_start_failure(const char *name, int number,
+                                              struct glint_error *error)
 {
     if (number == ENOENT)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
@@ -219,31 +219,34 @@ static enum glint_status refuse(const char *name, int number,
     return glint_error_errno(error, GLINT_E_IO, name, number);
 }
 
-static enum glint_status start(struct child *child, const char *const *argv,
-                               enum child_pipe kind, struct glint_error *error)
+static enum glint_status start_program(struct child *child,
+                                       const char *const *argv,
+                                       enum child_pipe kind,
+                                       struct glint_error *error)
 {
     const int mine = kind == CHILD_READS ? 1 : 0;
     int data[2], failed[2], number;
     const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
 
-    glint_at_death(kill_all);
-    if (null < 0 || !open_pipes(data, failed)) {
+    glint_at_death(kill_all_children);
+    if (null < 0 || !open_child_pipes(data, failed)) {
         number = errno;
         if (null >= 0)
             close(null);
-        return refuse(argv[0], number, error);
+        return report_start_failure(argv[0], number, error);
     }
     child->pid = fork();
     if (child->pid == 0)
-        become(argv, mine == 0 ? null : data[0], mine == 0 ? data[1] : null,
-               kind == CHILD_PRINTS ? data[1] : child->said, failed[1]);
+        exec_child_program(
+            argv, mine == 0 ? null : data[0], mine == 0 ? data[1] : null,
+            kind == CHILD_PRINTS ? data[1] : child->said, failed[1]);
     number = errno;
     close(null);
     close(data[1 - mine]);
     close(failed[1]);
     if (child->pid > 0) {
-        replace(0, child->pid);
-        number = read_failure(failed[0]);
+        replace_running_child(0, child->pid);
+        number = read_child_exec_errno(failed[0]);
     }
     close(failed[0]);
     child->fd = data[mine];
@@ -251,24 +254,25 @@ static enum glint_status start(struct child *child, const char *const *argv,
         return GLINT_OK;
     if (child->pid < 0)
         child->pid = 0;
-    child_end(child);
-    return refuse(argv[0], number, error);
+    child_wait(child);
+    return report_start_failure(argv[0], number, error);
 }
 
 /* Starts ARGV[0] of $PATH with ARGV, which ends with NULL. GLINT_E_UNSUPPORTED:
  * it is not there. GLINT_E_MEMORY: the system gives no process or descriptor.
  * GLINT_E_IO: it cannot be run. */
-static enum glint_status start_child(struct child *child,
-                                     const char *const *argv,
-                                     enum child_pipe kind,
-                                     struct glint_error *error)
+static enum glint_status start_ffmpeg_child(struct child *child,
+                                            const char *const *argv,
+                                            enum child_pipe kind,
+                                            struct glint_error *error)
 {
     *child = CHILD_NONE;
-    return start(child, argv, kind, error);
+    return start_program(child, argv, kind, error);
 }
 
-/* As start_child(), but the child's messages go to a file. child_hear() copies
- * them to standard error and searches them for WORDS, which end with NULL. */
+/* As start_ffmpeg_child(), but the child's messages go to a file.
+ * child_forward_messages() copies them to standard error and searches them for
+ * WORDS, which end with NULL. */
 static enum glint_status
 start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
             const char *const *words, struct glint_error *error)
@@ -281,7 +285,7 @@ start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
     child->said = memfd_create("said", MFD_CLOEXEC);
     if (child->said >= 0)
         fcntl(child->said, F_SETFL, O_APPEND);
-    status = start(child, argv, kind, error);
+    status = start_program(child, argv, kind, error);
     if (status != GLINT_OK)
         child_kill(child);
     return status;
@@ -291,7 +295,7 @@ start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
 
 /* Copies the child's messages to standard error: whole lines, or, if ALL,
  * everything left. */
-static void pass_on(struct child *child, bool all)
+static void forward_child_messages(struct child *child, bool all)
 {
     char text[4096];
     ssize_t n;
@@ -316,14 +320,14 @@ static void pass_on(struct child *child, bool all)
     }
 }
 
-void child_hear(struct child *child)
+void child_forward_messages(struct child *child)
 {
-    pass_on(child, false);
+    forward_child_messages(child, false);
 }
 
-static void end_hearing(struct child *child)
+static void close_child_messages(struct child *child)
 {
-    pass_on(child, true);
+    forward_child_messages(child, true);
     if (child->said >= 0)
         close(child->said);
     child->said = -1;
@@ -333,14 +337,14 @@ static void end_hearing(struct child *child)
 
 /* Closes the filter of a child that has ended: a running one may not have
  * opened it yet. */
-static void close_script(struct child *child)
+static void close_filter_script(struct child *child)
 {
     if (child->script >= 0)
         close(child->script);
     child->script = -1;
 }
 
-int child_end(struct child *child)
+int child_wait(struct child *child)
 {
     int status = 0;
     pid_t pid;
@@ -349,17 +353,17 @@ int child_end(struct child *child)
         close(child->fd);
     child->fd = -1;
     if (child->pid <= 0) {
-        close_script(child);
-        end_hearing(child);
+        close_filter_script(child);
+        close_child_messages(child);
         return 0;
     }
     do
         pid = waitpid(child->pid, &status, 0);
     while (pid < 0 && errno == EINTR);
-    replace(child->pid, 0);
+    replace_running_child(child->pid, 0);
     child->pid = 0;
-    close_script(child);
-    end_hearing(child);
+    close_filter_script(child);
+    close_child_messages(child);
     if (pid < 0)
         return NOT_FOUND;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -369,19 +373,19 @@ void child_kill(struct child *child)
 {
     if (child->pid > 0)
         kill(child->pid, SIGKILL);
-    child_end(child);
+    child_wait(child);
 }
 
 enum { MAX_WORDS = 96, PROBE_BYTES = 1 << 16 };
 
-static const char *extension(const char *name)
+static const char *find_file_extension(const char *name)
 {
     const char *dot = strrchr(name, '.');
 
     return dot && !strchr(dot, '/') ? dot + 1 : "";
 }
 
-static bool is_one_of(const char *word, const char *const *words)
+static bool is_word_in_list(const char *word, const char *const *words)
 {
     for (; *words; words++)
         if (strcasecmp(word, *words) == 0)
@@ -395,12 +399,12 @@ bool ffmpeg_is_video(const char *name)
         "mp4", "m4v",  "mkv", "mov", "webm", "avi", "mpg", "mpeg", "ts",
         "mts", "m2ts", "wmv", "flv", "ogv",  "3gp", "mxf", NULL};
 
-    return is_one_of(extension(name), extensions);
+    return is_word_in_list(find_file_extension(name), extensions);
 }
 
 /* Sets URL to "file:NAME", which ffmpeg opens as a file whatever NAME looks
  * like. Returns false if it is too long. */
-static bool set_url(char url[FFMPEG_URL], const char *name)
+static bool set_file_url(char url[FFMPEG_URL], const char *name)
 {
     return (size_t)snprintf(url, FFMPEG_URL, "file:%s", name) < FFMPEG_URL;
 }
@@ -418,7 +422,7 @@ static const char *const input_limits[] = {"-format_whitelist", containers,
 
 /* Sets WORD by LINE, "NAME=value", unless WORD is set already or the value is
  * unknown. */
-static void take_word(const char *line, const char *name, char *word)
+static void parse_word_line(const char *line, const char *name, char *word)
 {
     const size_t n = strlen(name);
 
@@ -430,35 +434,36 @@ static void take_word(const char *line, const char *name, char *word)
     snprintf(word, FFMPEG_WORD, "%s", line + n + 1);
 }
 
-static void take_number(const char *line, const char *name, int *number)
+static void parse_number_line(const char *line, const char *name, int *number)
 {
     char word[FFMPEG_WORD] = "";
 
-    take_word(line, name, word);
+    parse_word_line(line, name, word);
     if (*word)
-        tool_integer(word, 1, GLINT_MAX_SIDE, number);
+        tool_parse_integer(word, 1, GLINT_MAX_SIDE, number);
 }
 
 /* Takes LINE of the first stream of pictures. */
-static void take_line(struct ffmpeg_video *v, const char *line)
+static void parse_stream_line(struct ffmpeg_video *v, const char *line)
 {
-    take_word(line, "codec_name", v->codec);
-    take_word(line, "profile", v->profile);
-    take_word(line, "pix_fmt", v->pixels);
-    take_word(line, "field_order", v->fields);
-    take_word(line, "r_frame_rate", v->rate);
-    take_word(line, "avg_frame_rate", v->mean_rate);
-    take_word(line, "color_range", v->range);
-    take_word(line, "color_space", v->space);
-    take_word(line, "color_transfer", v->transfer);
-    take_word(line, "color_primaries", v->primaries);
-    take_number(line, "width", &v->width);
-    take_number(line, "height", &v->height);
+    parse_word_line(line, "codec_name", v->codec);
+    parse_word_line(line, "profile", v->profile);
+    parse_word_line(line, "pix_fmt", v->pixels);
+    parse_word_line(line, "field_order", v->fields);
+    parse_word_line(line, "r_frame_rate", v->rate);
+    parse_word_line(line, "avg_frame_rate", v->mean_rate);
+    parse_word_line(line, "color_range", v->range);
+    parse_word_line(line, "color_space", v->space);
+    parse_word_line(line, "color_transfer", v->transfer);
+    parse_word_line(line, "color_primaries", v->primaries);
+    parse_number_line(line, "width", &v->width);
+    parse_number_line(line, "height", &v->height);
 }
 
 /* Returns the numerator of the ratio NAME of TEXT, lines of ffprobe's, in units
  * of 1 / UNITS; -1 if it is not there. */
-static long take_ratio(const char *text, const char *name, long units)
+static long parse_ratio_numerator(const char *text, const char *name,
+                                  long units)
 {
     const char *const at = strstr(text, name);
     char *end;
@@ -474,7 +479,7 @@ static long take_ratio(const char *text, const char *name, long units)
 
 /* Takes the mastering display, the light levels and Dolby Vision from TEXT,
  * lines on the side data of a frame or a stream. */
-static void take_side_data(struct ffmpeg_video *v, const char *text)
+static void parse_side_data(struct ffmpeg_video *v, const char *text)
 {
     static const char *const names[] = {
         "green_x=",       "green_y=",      "blue_x=",        "blue_y=",
@@ -484,7 +489,7 @@ static void take_side_data(struct ffmpeg_video *v, const char *text)
     bool is_whole = true;
 
     for (int i = 0; i < 10; i++) {
-        m[i] = take_ratio(text, names[i], i < 8 ? 50000 : 10000);
+        m[i] = parse_ratio_numerator(text, names[i], i < 8 ? 50000 : 10000);
         is_whole = is_whole && m[i] >= 0;
     }
     if (is_whole)
@@ -493,15 +498,15 @@ static void take_side_data(struct ffmpeg_video *v, const char *text)
                  m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9]);
     if (strstr(text, "max_content="))
         snprintf(v->light, sizeof v->light, "%ld,%ld",
-                 take_ratio(text, "max_content=", 1),
-                 take_ratio(text, "max_average=", 1));
+                 parse_ratio_numerator(text, "max_content=", 1),
+                 parse_ratio_numerator(text, "max_average=", 1));
     v->has_dolby =
         v->has_dolby || strstr(text, "DOVI") || strstr(text, "Dolby Vision");
 }
 
 /* Counts a stream of CODEC and of the KIND that ffprobe names. */
-static void count_stream(struct ffmpeg_video *v, const char *codec,
-                         const char *kind)
+static void count_stream_of_type(struct ffmpeg_video *v, const char *codec,
+                                 const char *kind)
 {
     static const char *const texts[] = {"subrip", "srt",    "ass",      "ssa",
                                         "text",   "webvtt", "mov_text", NULL};
@@ -514,7 +519,7 @@ static void count_stream(struct ffmpeg_video *v, const char *codec,
         v->n_subtitles++;
         if (!*v->subtitle)
             snprintf(v->subtitle, sizeof v->subtitle, "%s", codec);
-        if (!is_one_of(codec, texts))
+        if (!is_word_in_list(codec, texts))
             v->subtitles = SUBTITLES_IMAGES;
         else if (v->subtitles == SUBTITLES_NONE)
             v->subtitles = SUBTITLES_TEXT;
@@ -523,25 +528,25 @@ static void count_stream(struct ffmpeg_video *v, const char *codec,
 
 /* Takes a line on all streams, chapters and tags; CODEC is that of the stream
  * it is of. A track of time code is counted by its tag alone. */
-static void take_other(struct ffmpeg_video *v, char *line,
-                       char codec[FFMPEG_WORD])
+static void parse_other_stream_line(struct ffmpeg_video *v, char *line,
+                                    char codec[FFMPEG_WORD])
 {
     char kind[FFMPEG_WORD] = "";
     const size_t n = strlen(v->tags);
 
     if (strncmp(line, "codec_name=", 11) == 0)
         snprintf(codec, FFMPEG_WORD, "%.31s", line + 11);
-    take_word(line, "codec_type", kind);
+    parse_word_line(line, "codec_type", kind);
     if (*kind) {
-        count_stream(v, codec, kind);
+        count_stream_of_type(v, codec, kind);
         if (strcmp(kind, "audio") == 0 && !*v->sound)
             snprintf(v->sound, sizeof v->sound, "%s", codec);
         *codec = '\0';
     }
     if (strcmp(line, "codec_tag_string=tmcd") == 0)
         v->n_data--;
-    take_word(line, "TAG:timecode", v->timecode);
-    take_word(line, "TAG:TIMECODE", v->timecode);
+    parse_word_line(line, "TAG:timecode", v->timecode);
+    parse_word_line(line, "TAG:TIMECODE", v->timecode);
     v->n_chapters += strncmp(line, "start_time=", 11) == 0;
     if (strncmp(line, "TAG:", 4) != 0)
         return;
@@ -551,7 +556,7 @@ static void take_other(struct ffmpeg_video *v, char *line,
 }
 
 /* Reads the output of CHILD into TEXT as a string, up to PROBE_BYTES. */
-static void read_all(struct child *child, char text[PROBE_BYTES])
+static void read_child_output(struct child *child, char text[PROBE_BYTES])
 {
     size_t used = 0;
     ssize_t n;
@@ -566,8 +571,8 @@ static void read_all(struct child *child, char text[PROBE_BYTES])
 /* Sets TEXT to the lines that ffprobe prints about ENTRIES of URL. OPTIONS are
  * up to five words, ended by NULL. Returns false if ffprobe fails; TEXT is ""
  * if it cannot be run. */
-static bool ask(const char *url, const char *const *options,
-                const char *entries, char text[PROBE_BYTES])
+static bool run_ffprobe(const char *url, const char *const *options,
+                        const char *entries, char text[PROBE_BYTES])
 {
     const char *argv[18] = {"ffprobe",       "-v",
                             "quiet",         "-show_entries",
@@ -581,10 +586,10 @@ static bool ask(const char *url, const char *const *options,
     for (int i = 0; options[i]; i++)
         argv[12 + i] = options[i];
     *text = '\0';
-    if (start_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+    if (start_ffmpeg_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
         return false;
-    read_all(&child, text);
-    return child_end(&child) == 0;
+    read_child_output(&child, text);
+    return child_wait(&child) == 0;
 }
 
 static const char *const of_pictures[] = {"-select_streams", "v:0", NULL};
@@ -598,26 +603,28 @@ void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
     char codec[FFMPEG_WORD] = "";
 
     *video = (struct ffmpeg_video){.width = 0};
-    if (!set_url(url, name))
+    if (!set_file_url(url, name))
         return;
-    ask(url, of_pictures,
+    run_ffprobe(
+        url, of_pictures,
         "stream=codec_name,profile,width,height,pix_fmt,field_order,"
         "r_frame_rate,avg_frame_rate,color_range,color_space,color_transfer,"
         "color_primaries",
         text);
     while ((line = strtok_r(rest, "\r\n", &rest)))
-        take_line(video, line);
+        parse_stream_line(video, line);
     rest = text;
-    ask(url, of_all,
+    run_ffprobe(
+        url, of_all,
         "stream=codec_name,codec_type,codec_tag_string:stream_tags=timecode:"
         "chapter=start_time:chapter_tags=:format_tags",
         text);
     while ((line = strtok_r(rest, "\r\n", &rest)))
-        take_other(video, line, codec);
+        parse_other_stream_line(video, line, codec);
     if (strcmp(video->transfer, "smpte2084") == 0 ||
         strcmp(video->transfer, "arib-std-b67") == 0) {
-        ask(url, of_first, "stream_side_data:frame_side_data", text);
-        take_side_data(video, text);
+        run_ffprobe(url, of_first, "stream_side_data:frame_side_data", text);
+        parse_side_data(video, text);
     }
 }
 
@@ -632,17 +639,17 @@ long ffmpeg_count_frames(const char *name)
     if (glint_input_open_file(&file, name, &error) != GLINT_OK)
         return 0;
     glint_input_close(&file);
-    if (!set_url(url, name) ||
-        !ask(url, of_counted, "stream=nb_read_packets", text))
+    if (!set_file_url(url, name) ||
+        !run_ffprobe(url, of_counted, "stream=nb_read_packets", text))
         return 0;
     text[strcspn(text, "\r\n")] = '\0';
-    take_word(text, "nb_read_packets", n);
+    parse_word_line(text, "nb_read_packets", n);
     return strtol(n, NULL, 10);
 }
 
 /* Adds KIND and TAG to REPORT, ", KIND TAG", if they are unknown. */
-static int note_tag(int value, const char *kind, const char *tag,
-                    char report[FFMPEG_REPORT])
+static int add_unknown_tag(int value, const char *kind, const char *tag,
+                           char report[FFMPEG_REPORT])
 {
     const size_t n = strlen(report);
 
@@ -657,7 +664,7 @@ void ffmpeg_colours(const struct ffmpeg_video *video,
     static const char *const sd[] = {"smpte170m", "bt470bg", "fcc", NULL};
     static const char *const rgb[] = {"gbr", "rgb", NULL};
     const char *const space = video->space;
-    const int matrix = is_one_of(space, sd)             ? GLINT_MATRIX_BT601
+    const int matrix = is_word_in_list(space, sd)       ? GLINT_MATRIX_BT601
                        : strcmp(space, "bt709") == 0    ? GLINT_MATRIX_BT709
                        : strcmp(space, "bt2020nc") == 0 ? GLINT_MATRIX_BT2020
                                                         : -1;
@@ -665,10 +672,10 @@ void ffmpeg_colours(const struct ffmpeg_video *video,
     const int primaries = glint_primaries_of_tag(video->primaries);
 
     *report = '\0';
-    if (!is_one_of(space, rgb))
-        note_tag(matrix, "matrix", space, report);
-    note_tag(transfer, "transfer", video->transfer, report);
-    note_tag(primaries, "primaries", video->primaries, report);
+    if (!is_word_in_list(space, rgb))
+        add_unknown_tag(matrix, "matrix", space, report);
+    add_unknown_tag(transfer, "transfer", video->transfer, report);
+    add_unknown_tag(primaries, "primaries", video->primaries, report);
     if (matrix >= 0)
         header->matrix = (enum glint_matrix)matrix;
     if (transfer >= 0)
@@ -685,39 +692,40 @@ struct words {
     int n;
 };
 
-static void add(struct words *w, const char *word)
+static void add_argument(struct words *w, const char *word)
 {
     if (w->n < MAX_WORDS)
         w->word[w->n] = word;
     w->n++;
 }
 
-static void add_two(struct words *w, const char *a, const char *b)
+static void add_two_arguments(struct words *w, const char *a, const char *b)
 {
-    add(w, a);
-    add(w, b);
+    add_argument(w, a);
+    add_argument(w, b);
 }
 
 /* Adds the input URL. */
-static void add_input(struct words *w, const char *url)
+static void add_input_url(struct words *w, const char *url)
 {
     for (int i = 0; input_limits[i]; i++)
-        add(w, input_limits[i]);
-    add_two(w, "-i", url);
+        add_argument(w, input_limits[i]);
+    add_two_arguments(w, "-i", url);
 }
 
-static void begin(struct words *w)
+static void begin_ffmpeg_arguments(struct words *w)
 {
     static const char *const first[] = {"ffmpeg",    "-nostdin", "-hide_banner",
                                         "-loglevel", "error",    NULL};
 
     w->n = 0;
     for (int i = 0; first[i]; i++)
-        add(w, first[i]);
+        add_argument(w, first[i]);
 }
 
 /* Ends the words with NULL, or reports that there are too many. */
-static enum glint_status end(struct words *w, struct glint_error *error)
+static enum glint_status end_arguments(struct words *w,
+                                       struct glint_error *error)
 {
     if (w->n > MAX_WORDS)
         return glint_error_report(error, GLINT_E_ARGUMENT, "ffmpeg",
@@ -732,7 +740,8 @@ static const char *const ffmpeg_cut_words[] = {
     "File ended prematurely" /* .mkv, .webm */, "partial file" /* .mp4, .mov */,
     NULL};
 
-static enum glint_status too_long(const char *name, struct glint_error *error)
+static enum glint_status report_long_name(const char *name,
+                                          struct glint_error *error)
 {
     return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                               "the name is too long");
@@ -741,7 +750,7 @@ static enum glint_status too_long(const char *name, struct glint_error *error)
 /* ------------------------------------------------------------------- times */
 
 /* Returns the ratio TEXT, "N/D", or 0. */
-static double ratio_of(const char *text)
+static double parse_ratio(const char *text)
 {
     const char *end;
     const double n = glint_option_number(text, &end);
@@ -755,10 +764,10 @@ bool ffmpeg_keeps_times(const char *name)
     static const char *const types[] = {"mp4", "m4v",  "mov",
                                         "mkv", "webm", NULL};
 
-    return is_one_of(extension(name), types);
+    return is_word_in_list(find_file_extension(name), types);
 }
 
-static int by_time(const void *a, const void *b)
+static int compare_times(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
 
@@ -767,7 +776,7 @@ static int by_time(const void *a, const void *b)
 
 /* Reads from FROM lines "seconds,flags" of packets; those with the flag D are
  * not shown. */
-static void read_times(FILE *from, struct ffmpeg_times *times)
+static void read_packet_times(FILE *from, struct ffmpeg_times *times)
 {
     double *more;
     char line[128];
@@ -789,12 +798,13 @@ static void read_times(FILE *from, struct ffmpeg_times *times)
         times->at[times->n++] = time;
     }
     if (times->n)
-        qsort(times->at, (size_t)times->n, sizeof *times->at, by_time);
+        qsort(times->at, (size_t)times->n, sizeof *times->at, compare_times);
 }
 
 /* Returns whether TIMES deviate from RATE frames per second: one step by more
  * than a quarter and 2 ms, or all steps together by half a step. */
-static bool is_variable(const struct ffmpeg_times *times, double rate)
+static bool is_frame_rate_variable(const struct ffmpeg_times *times,
+                                   double rate)
 {
     const double *const at = times->at;
     const double step = rate > 0 ? 1 / rate : 0;
@@ -806,7 +816,7 @@ static bool is_variable(const struct ffmpeg_times *times, double rate)
     return false;
 }
 
-bool ffmpeg_times_read(struct ffmpeg_times *times, const char *name,
+bool ffmpeg_read_times(struct ffmpeg_times *times, const char *name,
                        const struct ffmpeg_video *video)
 {
     char url[FFMPEG_URL], text[PROBE_BYTES], start[FFMPEG_WORD] = "";
@@ -827,21 +837,21 @@ bool ffmpeg_times_read(struct ffmpeg_times *times, const char *name,
     FILE *from;
 
     *times = (struct ffmpeg_times){NULL, 0};
-    if (!set_url(url, name) ||
-        start_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+    if (!set_file_url(url, name) ||
+        start_ffmpeg_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
         return false;
     from = fdopen(child.fd, "r");
     if (from) {
-        read_times(from, times);
+        read_packet_times(from, times);
         fclose(from);
         child.fd = -1;
     }
-    child_end(&child);
-    if (!is_variable(times, ratio_of(video->rate)))
+    child_wait(&child);
+    if (!is_frame_rate_variable(times, parse_ratio(video->rate)))
         return false;
-    ask(url, of_all, "format=start_time", text);
+    run_ffprobe(url, of_all, "format=start_time", text);
     text[strcspn(text, "\r\n")] = '\0';
-    take_word(text, "start_time", start);
+    parse_word_line(text, "start_time", start);
     for (int i = 0; i < times->n; i++)
         times->at[i] -= glint_option_number(start, &end);
     return true;
@@ -849,7 +859,8 @@ bool ffmpeg_times_read(struct ffmpeg_times *times, const char *name,
 
 /* Writes an expression of the frame's number N that is TIMES[N] in units of
  * 1 / 90000 s for N from FIRST to END - 1: a tree of comparisons. */
-static void write_tree(FILE *to, const double *times, int first, int end)
+static void write_time_expression(FILE *to, const double *times, int first,
+                                  int end)
 {
     const int middle = first + (end - first) / 2;
 
@@ -858,17 +869,17 @@ static void write_tree(FILE *to, const double *times, int first, int end)
         return;
     }
     fprintf(to, "if(lt(N,%d),", middle);
-    write_tree(to, times, first, middle);
+    write_time_expression(to, times, first, middle);
     fputc(',', to);
-    write_tree(to, times, middle, end);
+    write_time_expression(to, times, middle, end);
     fputc(')', to);
 }
 
 /* Writes to a file in memory the filter that gives frames their TIMES, after
  * FILTER unless that is NULL. NAME becomes its name. Returns its descriptor, or
  * -1 if there is none to be had. */
-static int make_script(const struct ffmpeg_times *times, const char *filter,
-                       char name[FFMPEG_WORD + 16])
+static int write_filter_script(const struct ffmpeg_times *times,
+                               const char *filter, char name[FFMPEG_WORD + 16])
 {
     const int fd = memfd_create("times", MFD_CLOEXEC);
     FILE *const to = fd >= 0 ? fdopen(dup(fd), "w") : NULL;
@@ -877,7 +888,7 @@ static int make_script(const struct ffmpeg_times *times, const char *filter,
     if (to) {
         fprintf(to, "%s%ssettb=1/90000,setpts='", filter ? filter : "",
                 filter ? "," : "");
-        write_tree(to, times->at, 0, times->n);
+        write_time_expression(to, times->at, 0, times->n);
         fputs("'", to);
         is_whole = !ferror(to) && fclose(to) == 0;
     }
@@ -899,18 +910,18 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
     struct words w;
 
     *child = CHILD_NONE;
-    if (!set_url(url, name))
-        return too_long(name, error);
-    begin(&w);
-    add_input(&w, url);
-    add_two(&w, "-map", "0:v:0");
+    if (!set_file_url(url, name))
+        return report_long_name(name, error);
+    begin_ffmpeg_arguments(&w);
+    add_input_url(&w, url);
+    add_two_arguments(&w, "-map", "0:v:0");
     if (keeps_times)
-        add_two(&w, "-fps_mode", "passthrough");
-    add_two(&w, "-pix_fmt", pixels_of_y4m(video->pixels));
-    add_two(&w, "-strict", "-1");
-    add_two(&w, "-f", "yuv4mpegpipe");
-    add(&w, "-");
-    status = end(&w, error);
+        add_two_arguments(&w, "-fps_mode", "passthrough");
+    add_two_arguments(&w, "-pix_fmt", choose_y4m_pixel_format(video->pixels));
+    add_two_arguments(&w, "-strict", "-1");
+    add_two_arguments(&w, "-f", "yuv4mpegpipe");
+    add_argument(&w, "-");
+    status = end_arguments(&w, error);
     return status == GLINT_OK ? start_heard(child, w.word, CHILD_WRITES,
                                             ffmpeg_cut_words, error)
                               : status;
@@ -920,7 +931,7 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
 
 /* Returns whether files with extension EXT can hold sound of CODEC without
  * encoding it again. */
-static bool takes_sound(const char *ext, const char *codec)
+static bool can_hold_sound_codec(const char *ext, const char *codec)
 {
     static const char *const webm[] = {"opus", "vorbis", NULL};
     static const char *const mp4[] = {"aac",  "mp3",  "ac3", "eac3", "alac",
@@ -941,7 +952,7 @@ static bool takes_sound(const char *ext, const char *codec)
 
     for (size_t i = 0; i < sizeof table / sizeof *table; i++)
         if (strcasecmp(ext, table[i].ext) == 0)
-            return is_one_of(codec, table[i].codecs);
+            return is_word_in_list(codec, table[i].codecs);
     return true; /* .mkv and .ts take nearly all */
 }
 
@@ -950,46 +961,48 @@ static const char *const of_mkv[] = {"mkv", "mka", NULL};
 
 /* Adds the subtitles of the second input where a file of type EXT takes them:
  * Matroska any, others text alone, in a codec of their own. */
-static void add_subtitles(struct words *w, const char *ext,
-                          const struct ffmpeg_video *v)
+static void add_subtitle_arguments(struct words *w, const char *ext,
+                                   const struct ffmpeg_video *v)
 {
-    const bool is_mov = is_one_of(ext, of_mov);
+    const bool is_mov = is_word_in_list(ext, of_mov);
     const bool is_webm = strcasecmp(ext, "webm") == 0;
 
-    if (is_one_of(ext, of_mkv)) {
-        add_two(w, "-map", "1:s?");
+    if (is_word_in_list(ext, of_mkv)) {
+        add_two_arguments(w, "-map", "1:s?");
         if (v->n_subtitles)
-            add_two(w, "-c:s",
-                    strcmp(v->subtitle, "mov_text") == 0 ? "srt" : "copy");
+            add_two_arguments(w, "-c:s",
+                              strcmp(v->subtitle, "mov_text") == 0 ? "srt"
+                                                                   : "copy");
         if (v->n_files) {
-            add_two(w, "-map", "1:t?");
-            add_two(w, "-c:t", "copy");
+            add_two_arguments(w, "-map", "1:t?");
+            add_two_arguments(w, "-c:t", "copy");
         }
     } else if (v->subtitles == SUBTITLES_TEXT && (is_mov || is_webm)) {
-        add_two(w, "-map", "1:s?");
-        add_two(w, "-c:s", is_webm ? "webvtt" : "mov_text");
+        add_two_arguments(w, "-map", "1:s?");
+        add_two_arguments(w, "-c:s", is_webm ? "webvtt" : "mov_text");
     }
 }
 
 /* Adds sound, subtitles, chapters and tags of the second input; TIMECODE has
  * room for a word. */
-static void add_rest(struct words *w, const struct ffmpeg_target *t,
-                     const struct ffmpeg_video *v, char timecode[FFMPEG_REPORT])
+static void add_other_streams(struct words *w, const struct ffmpeg_target *t,
+                              const struct ffmpeg_video *v,
+                              char timecode[FFMPEG_REPORT])
 {
-    const char *const ext = extension(t->name);
+    const char *const ext = find_file_extension(t->name);
 
-    add_two(w, "-map", "1:a?");
-    add_subtitles(w, ext, v);
-    add_two(w, "-map_metadata", "1");
-    add_two(w, "-map_chapters", "1");
+    add_two_arguments(w, "-map", "1:a?");
+    add_subtitle_arguments(w, ext, v);
+    add_two_arguments(w, "-map_metadata", "1");
+    add_two_arguments(w, "-map_chapters", "1");
     snprintf(timecode, FFMPEG_REPORT, "timecode=%s", v->timecode);
     if (*v->timecode)
-        add_two(w, "-metadata:s:v:0", timecode);
+        add_two_arguments(w, "-metadata:s:v:0", timecode);
     /* Without this the tags of phones, as the place, are left out. */
-    if (is_one_of(ext, of_mov) && strstr(v->tags, " com."))
-        add_two(w, "-movflags", "use_metadata_tags");
-    if (takes_sound(ext, v->sound))
-        add_two(w, "-c:a", "copy");
+    if (is_word_in_list(ext, of_mov) && strstr(v->tags, " com."))
+        add_two_arguments(w, "-movflags", "use_metadata_tags");
+    if (can_hold_sound_codec(ext, v->sound))
+        add_two_arguments(w, "-c:a", "copy");
     else if (*v->sound && !t->quiet)
         fprintf(stderr,
                 "glint overlay: %s: sound is encoded again, as .%s does not "
@@ -1000,27 +1013,28 @@ static void add_rest(struct words *w, const struct ffmpeg_target *t,
 /* Adds the meaning of V's codes: range, matrix, transfer and primaries. It is
  * stated of the input and again of the output, so that ffmpeg converts
  * nothing. */
-static void add_tags(struct words *w, const struct ffmpeg_target *t,
-                     const struct ffmpeg_video *v)
+static void add_colour_tags(struct words *w, const struct ffmpeg_target *t,
+                            const struct ffmpeg_video *v)
 {
-    add_two(w, "-color_range", t->range == GLINT_RANGE_FULL ? "pc" : "tv");
+    add_two_arguments(w, "-color_range",
+                      t->range == GLINT_RANGE_FULL ? "pc" : "tv");
     if (*v->space && strcmp(v->space, "gbr") != 0 &&
         strcmp(v->space, "rgb") != 0)
-        add_two(w, "-colorspace", v->space);
+        add_two_arguments(w, "-colorspace", v->space);
     if (*v->transfer)
-        add_two(w, "-color_trc", v->transfer);
+        add_two_arguments(w, "-color_trc", v->transfer);
     if (*v->primaries)
-        add_two(w, "-color_primaries", v->primaries);
+        add_two_arguments(w, "-color_primaries", v->primaries);
 }
 
 /* Returns the filter that pads odd sides to even sides if chroma is subsampled,
  * or NULL. */
-static const char *pad_of(const struct ffmpeg_target *t,
-                          const struct ffmpeg_video *v)
+static const char *find_padding_filter(const struct ffmpeg_target *t,
+                                       const struct ffmpeg_video *v)
 {
     const bool x = t->width % 2, y = t->height % 2;
 
-    if ((!x && !y) || (t->is_444 && !pixels_are_rgb(v->pixels)))
+    if ((!x && !y) || (t->is_444 && !is_pixel_format_rgb(v->pixels)))
         return NULL;
     return x && y ? "pad=iw+1:ih+1,fillborders=right=1:bottom=1:mode=smear"
            : x    ? "pad=iw+1:ih,fillborders=right=1:mode=smear"
@@ -1034,22 +1048,24 @@ static const char *pad_of(const struct ffmpeg_target *t,
  * of 1280x720 and 1920x1080, 4:2:0 of 960x720 and 1440x1080) as AVC-Intra,
  * which leaves the decoder's parameters out of the file: nothing decodes it.
  * The label avc1 has them, but is taken in these sizes with -strict -1 only. */
-static void add_h264(struct words *w, const struct ffmpeg_target *t,
-                     const struct ffmpeg_video *v)
+static void add_h264_options(struct words *w, const struct ffmpeg_target *t,
+                             const struct ffmpeg_video *v)
 {
     static const char *const by_default[] = {"mp4", "m4v", "mkv", NULL};
-    const char *ext = extension(t->name);
+    const char *ext = find_file_extension(t->name);
 
-    if (!is_one_of(ext, by_default))
-        add_two(w, "-c:v", "libx264");
-    add_two(w, "-crf", "18");
+    if (!is_word_in_list(ext, by_default))
+        add_two_arguments(w, "-c:v", "libx264");
+    add_two_arguments(w, "-crf", "18");
     if (strcasecmp(ext, "mov") == 0) {
-        add_two(w, "-tag:v", "avc1");
-        add_two(w, "-strict", "-1");
+        add_two_arguments(w, "-tag:v", "avc1");
+        add_two_arguments(w, "-strict", "-1");
     }
-    if (pixels_are_rgb(v->pixels))
-        add_two(w, "-pix_fmt", pixels_named("420", pixels_bits(v->pixels)));
-    if (pad_of(t, v) && !t->quiet)
+    if (is_pixel_format_rgb(v->pixels))
+        add_two_arguments(
+            w, "-pix_fmt",
+            find_pixel_format("420", pixel_format_bits(v->pixels)));
+    if (find_padding_filter(t, v) && !t->quiet)
         fprintf(stderr,
                 "glint overlay: %s: %dx%d, as H.264 has even sides only\n",
                 t->name, t->width + t->width % 2, t->height + t->height % 2);
@@ -1077,14 +1093,14 @@ static const struct family families[] = {
     {"mpeg2video", " mpg mpeg ts mxf mkv mov", "mpeg2video", "-q:v 2", NULL},
     {"mjpeg", " avi mov mkv", "mjpeg", "-q:v 2", NULL}};
 
-static bool is_hdr(const struct ffmpeg_video *v)
+static bool is_transfer_hdr(const struct ffmpeg_video *v)
 {
     return strcmp(v->transfer, "smpte2084") == 0 ||
            strcmp(v->transfer, "arib-std-b67") == 0;
 }
 
 /* Returns whether the installed ffmpeg has ENCODER. */
-static bool has_encoder(const char *encoder)
+static bool is_encoder_installed(const char *encoder)
 {
     const char *const argv[] = {"ffmpeg", "-hide_banner", "-v",
                                 "error",  "-encoders",    NULL};
@@ -1092,37 +1108,37 @@ static bool has_encoder(const char *encoder)
     struct glint_error error;
     struct child child;
 
-    if (start_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+    if (start_ffmpeg_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
         return false;
-    read_all(&child, text);
-    child_end(&child);
+    read_child_output(&child, text);
+    child_wait(&child);
     snprintf(word, sizeof word, " %s ", encoder);
     return strstr(text, word) != NULL;
 }
 
 /* Returns the encoder of V's codec for T's type, or else of HEVC for HDR, as
  * players expect it; NULL: that of the type. */
-static const struct family *family_of(const struct ffmpeg_target *t,
-                                      const struct ffmpeg_video *v)
+static const struct family *choose_encoder_family(const struct ffmpeg_target *t,
+                                                  const struct ffmpeg_video *v)
 {
     const struct family *found = NULL;
     char type[FFMPEG_WORD];
 
-    snprintf(type, sizeof type, " %s", extension(t->name));
+    snprintf(type, sizeof type, " %s", find_file_extension(t->name));
     for (size_t i = sizeof families / sizeof *families; i-- > 0;) {
         const struct family *const f = &families[i];
         const char *const at = strcasestr(f->types, type);
         const bool takes = at && (at[strlen(type)] == ' ' || !at[strlen(type)]);
         const bool is_own = strcmp(f->codec, v->codec) == 0;
 
-        if (takes && (is_own || (i == 0 && is_hdr(v) && !found)))
+        if (takes && (is_own || (i == 0 && is_transfer_hdr(v) && !found)))
             found = f;
     }
-    return found && has_encoder(found->encoder) ? found : NULL;
+    return found && is_encoder_installed(found->encoder) ? found : NULL;
 }
 
 /* Returns prores_ks's word for V's profile. */
-static const char *prores_profile(const struct ffmpeg_video *v)
+static const char *find_prores_profile(const struct ffmpeg_video *v)
 {
     static const char *const names[][2] = {
         {"Proxy", "proxy"},   {"LT", "lt"},     {"Standard", "standard"},
@@ -1132,91 +1148,93 @@ static const char *prores_profile(const struct ffmpeg_video *v)
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcasecmp(names[i][0], v->profile) == 0)
             return names[i][1];
-    return strcmp(pixels_chroma(v->pixels), "444") == 0 ? "4444" : "hq";
+    return strcmp(pixel_format_chroma(v->pixels), "444") == 0 ? "4444" : "hq";
 }
 
-static bool is_interlaced(const struct ffmpeg_video *v)
+static bool is_video_interlaced(const struct ffmpeg_video *v)
 {
     static const char *const orders[] = {"tt", "bb", "tb", "bt", NULL};
 
-    return is_one_of(v->fields, orders);
+    return is_word_in_list(v->fields, orders);
 }
 
-static void add_fields(struct words *w, const struct ffmpeg_video *v)
+static void add_interlace_flags(struct words *w, const struct ffmpeg_video *v)
 {
-    if (is_interlaced(v))
-        add_two(w, "-flags", "+ildct+ilme");
+    if (is_video_interlaced(v))
+        add_two_arguments(w, "-flags", "+ildct+ilme");
 }
 
 /* Adds the words of OPTIONS, and replaces the blanks between them by zeros. */
-static void add_options(struct words *w, char *options)
+static void add_option_words(struct words *w, char *options)
 {
     char *word, *rest = options;
 
     while ((word = strtok_r(rest, " ", &rest)))
-        add(w, word);
+        add_argument(w, word);
 }
 
 /* Adds the options of encoder F, kept in TEXT. */
-static void add_family(struct words *w, const struct ffmpeg_target *t,
-                       const struct ffmpeg_video *v, const struct family *f,
-                       char text[FFMPEG_REPORT])
+static void add_encoder_family(struct words *w, const struct ffmpeg_target *t,
+                               const struct ffmpeg_video *v,
+                               const struct family *f, char text[FFMPEG_REPORT])
 {
     const bool is_hevc = strcmp(f->encoder, "libx265") == 0;
 
-    add_two(w, "-c:v", f->encoder);
+    add_two_arguments(w, "-c:v", f->encoder);
     if (strcmp(f->encoder, "prores_ks") == 0)
-        add_two(w, "-profile:v", prores_profile(v));
-    if (is_hevc && is_one_of(extension(t->name), of_mov))
-        add_two(w, "-tag:v", "hvc1");
+        add_two_arguments(w, "-profile:v", find_prores_profile(v));
+    if (is_hevc && is_word_in_list(find_file_extension(t->name), of_mov))
+        add_two_arguments(w, "-tag:v", "hvc1");
     snprintf(text, FFMPEG_REPORT, "%s%s%s%s%s%s", f->options,
              is_hevc ? " -x265-params log-level=error:repeat-headers=1" : "",
              is_hevc && *v->mastering ? ":hdr10=1:master-display=" : "",
              is_hevc ? v->mastering : "",
              is_hevc && *v->light ? ":max-cll=" : "", is_hevc ? v->light : "");
-    add_options(w, text);
-    add_fields(w, v);
+    add_option_words(w, text);
+    add_interlace_flags(w, v);
 }
 
-static void add_pictures(struct words *w, const struct ffmpeg_target *t,
-                         const struct ffmpeg_video *v, const struct family *f,
-                         char text[FFMPEG_REPORT], const char **pad)
+static void add_picture_options(struct words *w, const struct ffmpeg_target *t,
+                                const struct ffmpeg_video *v,
+                                const struct family *f,
+                                char text[FFMPEG_REPORT], const char **pad)
 {
     static const char *const h264[] = {"mp4", "m4v", "mkv",  "mov", "flv",
                                        "ts",  "mts", "m2ts", "3gp", NULL};
     static const char *const with_fields[] = {"mpg", "mpeg", "mxf", "avi",
                                               NULL};
-    const char *ext = extension(t->name);
+    const char *ext = find_file_extension(t->name);
 
     if (strcasecmp(ext, "gif") == 0) {
-        add_two(w, "-filter_complex",
-                "[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse");
+        add_two_arguments(w, "-filter_complex",
+                          "[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse");
     } else if (f) {
-        add_family(w, t, v, f, text);
-        *pad = strcmp(f->encoder, "libx265") == 0 ? pad_of(t, v) : NULL;
+        add_encoder_family(w, t, v, f, text);
+        *pad = strcmp(f->encoder, "libx265") == 0 ? find_padding_filter(t, v)
+                                                  : NULL;
     } else if (strcasecmp(ext, "webm") == 0) {
-        add_two(w, "-crf", "24");
-        add_two(w, "-b:v", "0");
-        add_two(w, "-row-mt", "1");
-        add_two(w, "-cpu-used", "4");
-    } else if (is_one_of(ext, h264)) {
-        add_h264(w, t, v);
-        *pad = pad_of(t, v);
-        add_fields(w, v);
+        add_two_arguments(w, "-crf", "24");
+        add_two_arguments(w, "-b:v", "0");
+        add_two_arguments(w, "-row-mt", "1");
+        add_two_arguments(w, "-cpu-used", "4");
+    } else if (is_word_in_list(ext, h264)) {
+        add_h264_options(w, t, v);
+        *pad = find_padding_filter(t, v);
+        add_interlace_flags(w, v);
     } else {
         /* MPEG-1 has no fields; .ogv and .wmv neither. */
-        if (is_interlaced(v) && strncasecmp(ext, "mp", 2) == 0)
-            add_two(w, "-c:v", "mpeg2video");
-        add_two(w, "-q:v", "2");
-        if (is_one_of(ext, with_fields))
-            add_fields(w, v);
+        if (is_video_interlaced(v) && strncasecmp(ext, "mp", 2) == 0)
+            add_two_arguments(w, "-c:v", "mpeg2video");
+        add_two_arguments(w, "-q:v", "2");
+        if (is_word_in_list(ext, with_fields))
+            add_interlace_flags(w, v);
     }
 }
 
 /* Adds a filter that gives the pictures the alpha of the second input, in
  * FORMAT; TEXT has room for it. */
-static void add_alpha(struct words *w, const char *format,
-                      char text[FFMPEG_REPORT])
+static void add_alpha_filter(struct words *w, const char *format,
+                             char text[FFMPEG_REPORT])
 {
     const char *const opaque =
         strcmp(format, "yuva420p") == 0 ? "yuv420p" : "yuv444p10le";
@@ -1226,8 +1244,8 @@ static void add_alpha(struct words *w, const char *format,
              "[0:v]format=%s,setpts=PTS-STARTPTS[v];"
              "[v][a]mergeplanes=0x00010210:%s[o]",
              format, opaque, format);
-    add_two(w, "-filter_complex", text);
-    add_two(w, "-map", "[o]");
+    add_two_arguments(w, "-filter_complex", text);
+    add_two_arguments(w, "-map", "[o]");
 }
 
 enum glint_status ffmpeg_write(struct child *child,
@@ -1246,42 +1264,43 @@ enum glint_status ffmpeg_write(struct child *child,
     struct words w;
 
     *child = CHILD_NONE;
-    if (!set_url(out, t->file) || (t->sound && !set_url(sound, t->sound)) ||
+    if (!set_file_url(out, t->file) ||
+        (t->sound && !set_file_url(sound, t->sound)) ||
         (t->options && strlen(t->options) >= sizeof options))
-        return too_long(t->name, error);
-    begin(&w);
-    add(&w, "-y");
-    add_two(&w, "-f", "yuv4mpegpipe");
-    add_tags(&w, t, video);
-    add_two(&w, "-i", "-");
-    f = t->options ? NULL : family_of(t, video);
+        return report_long_name(t->name, error);
+    begin_ffmpeg_arguments(&w);
+    add_argument(&w, "-y");
+    add_two_arguments(&w, "-f", "yuv4mpegpipe");
+    add_colour_tags(&w, t, video);
+    add_two_arguments(&w, "-i", "-");
+    f = t->options ? NULL : choose_encoder_family(t, video);
     if (t->sound)
-        add_two(&w, "-i", sound);
+        add_two_arguments(&w, "-i", sound);
     if (t->sound && !t->times && f && f->alpha &&
-        pixels_have_alpha(video->pixels))
-        add_alpha(&w, f->alpha, alpha);
+        has_pixel_format_alpha(video->pixels))
+        add_alpha_filter(&w, f->alpha, alpha);
     else if (t->sound)
-        add_two(&w, "-map", "0:v:0");
+        add_two_arguments(&w, "-map", "0:v:0");
     if (t->sound)
-        add_rest(&w, t, video, timecode);
-    add_tags(&w, t, video);
+        add_other_streams(&w, t, video, timecode);
+    add_colour_tags(&w, t, video);
     if (t->options) {
         snprintf(options, sizeof options, "%s", t->options);
-        add_options(&w, options);
+        add_option_words(&w, options);
     } else
-        add_pictures(&w, t, video, f, text, &pad);
+        add_picture_options(&w, t, video, f, text, &pad);
     if (t->times)
-        script_fd = make_script(t->times, pad, script);
+        script_fd = write_filter_script(t->times, pad, script);
     if (script_fd >= 0) {
-        add_two(&w, "-filter_script:v", script);
-        add_two(&w, "-fps_mode", "vfr");
-        add_two(&w, "-enc_time_base", "1/90000");
+        add_two_arguments(&w, "-filter_script:v", script);
+        add_two_arguments(&w, "-fps_mode", "vfr");
+        add_two_arguments(&w, "-enc_time_base", "1/90000");
     } else if (pad)
-        add_two(&w, "-vf", pad);
-    add(&w, out);
-    status = end(&w, error);
+        add_two_arguments(&w, "-vf", pad);
+    add_argument(&w, out);
+    status = end_arguments(&w, error);
     if (status == GLINT_OK)
-        status = start_child(child, w.word, CHILD_READS, error);
+        status = start_ffmpeg_child(child, w.word, CHILD_READS, error);
     if (status == GLINT_OK)
         child->script = script_fd;
     else if (script_fd >= 0)
@@ -1289,7 +1308,8 @@ enum glint_status ffmpeg_write(struct child *child,
     return status;
 }
 
-void ffmpeg_by_hand(const struct tool *tool, const char *in, const char *out)
+void ffmpeg_print_manual_commands(const struct tool *tool, const char *in,
+                                  const char *out)
 {
     const bool coded = ffmpeg_is_video(in);
 
@@ -1317,7 +1337,8 @@ enum piece { FIRST, LAST, ALL };
 
 /* Sets CAUSE to LINE, a message of ffmpeg, without the context before it:
  * "[h264 @ 0x55d0] " or URL and ": ". */
-static void set_cause(char cause[CAUSE], const char *line, const char *url)
+static void set_ffmpeg_cause(char cause[CAUSE], const char *line,
+                             const char *url)
 {
     const char *const context = *line == '[' ? strstr(line, "] ") : NULL;
     const size_t n = strlen(url);
@@ -1332,7 +1353,7 @@ static void set_cause(char cause[CAUSE], const char *line, const char *url)
 /* Reads from FROM what ffmpeg prints: a line that begins with a digit for each
  * frame, lines with '#', and messages, the first of which becomes CAUSE.
  * Returns the number of frames, or 0 if the file is cut off. */
-static long count_frames(FILE *from, const char *url, char cause[CAUSE])
+static long count_printed_frames(FILE *from, const char *url, char cause[CAUSE])
 {
     char line[LINE];
     bool is_cut = false;
@@ -1341,7 +1362,7 @@ static long count_frames(FILE *from, const char *url, char cause[CAUSE])
     while (fgets(line, sizeof line, from)) {
         n += isdigit((unsigned char)*line) != 0;
         if (!*cause && *line != '#' && !isdigit((unsigned char)*line))
-            set_cause(cause, line, url);
+            set_ffmpeg_cause(cause, line, url);
         for (int i = 0; ffmpeg_cut_words[i]; i++)
             is_cut |= strstr(line, ffmpeg_cut_words[i]) != NULL;
     }
@@ -1350,7 +1371,8 @@ static long count_frames(FILE *from, const char *url, char cause[CAUSE])
 
 /* Decodes PIECE of URL. Returns false if that fails or yields no frame, with
  * the reason in CAUSE. */
-static bool decode(const char *url, enum piece piece, char cause[CAUSE])
+static bool decode_video_piece(const char *url, enum piece piece,
+                               char cause[CAUSE])
 {
     /* Packets from the key frame before the place on give frames only with the
      * time stamps that they have in the file. */
@@ -1373,17 +1395,17 @@ static bool decode(const char *url, enum piece piece, char cause[CAUSE])
     for (int i = 0; rest[i]; i++)
         argv[k++] = rest[i];
     *cause = '\0';
-    if (start_child(&child, argv, CHILD_PRINTS, &error) != GLINT_OK) {
+    if (start_ffmpeg_child(&child, argv, CHILD_PRINTS, &error) != GLINT_OK) {
         snprintf(cause, CAUSE, "%.*s", CAUSE - 1, error.text);
         return false;
     }
     from = fdopen(child.fd, "r");
     if (from) {
-        n = count_frames(from, url, cause);
+        n = count_printed_frames(from, url, cause);
         fclose(from);
         child.fd = -1;
     }
-    if (child_end(&child) == 0 && n > 0)
+    if (child_wait(&child) == 0 && n > 0)
         return true;
     if (!*cause)
         snprintf(cause, CAUSE, "ffmpeg decodes no frame");
@@ -1396,13 +1418,14 @@ enum glint_status ffmpeg_check(const char *file, const char *name,
     char url[FFMPEG_URL], cause[CAUSE];
     bool has_first;
 
-    if (!set_url(url, file))
+    if (!set_file_url(url, file))
         return glint_error_report(error, GLINT_E_OUTPUT, name,
                                   "the name is too long");
-    has_first = decode(url, FIRST, cause);
+    has_first = decode_video_piece(url, FIRST, cause);
     /* Files without an index, as .ts, are not found a way into from their end;
      * all of their frames are decoded. */
-    if (has_first && (decode(url, LAST, cause) || decode(url, ALL, cause)))
+    if (has_first && (decode_video_piece(url, LAST, cause) ||
+                      decode_video_piece(url, ALL, cause)))
         return GLINT_OK;
     return glint_error_report(
         error, GLINT_E_OUTPUT, name,
@@ -1432,7 +1455,8 @@ __attribute__((format(printf, 2, 3))) static void note(struct report *report,
 }
 
 /* Adds to the report that only MADE of FROM streams of KIND are left. */
-static void note_streams(struct report *r, const char *kind, int from, int made)
+static void note_lost_streams(struct report *r, const char *kind, int from,
+                              int made)
 {
     if (made < from)
         note(r, ", %d of %d %s", made, from, kind);
@@ -1440,7 +1464,7 @@ static void note_streams(struct report *r, const char *kind, int from, int made)
 
 /* Adds to the report the tags of FROM that are not in MADE, ignoring case,
  * except tags that belong to the file type. */
-static void note_names(struct report *r, const char *from, const char *made)
+static void note_lost_tags(struct report *r, const char *from, const char *made)
 {
     static const char *const own[] = {"major_brand",
                                       "minor_version",
@@ -1460,22 +1484,23 @@ static void note_names(struct report *r, const char *from, const char *made)
     snprintf(has, sizeof has, "%s ", made);
     while ((word = strtok_r(rest, " ", &rest))) {
         snprintf(name, sizeof name, " %s ", word);
-        if (!is_one_of(word, own) && !strcasestr(has, name))
+        if (!is_word_in_list(word, own) && !strcasestr(has, name))
             note(r, ", no tag %s", word);
     }
 }
 
-static void note_pixels(struct report *r, const char *made, const char *from)
+static void note_pixel_losses(struct report *r, const char *made,
+                              const char *from)
 {
-    if (pixels_bits(made) < pixels_bits(from))
-        note(r, ", %d bits in place of %d", pixels_bits(made),
-             pixels_bits(from));
-    if (strcmp(pixels_chroma(from), "gray") != 0 &&
-        strcmp(pixels_chroma(made), "444") != 0 &&
-        strcmp(pixels_chroma(made), pixels_chroma(from)) != 0)
-        note(r, ", chroma %s in place of %s", pixels_chroma(made),
-             pixels_are_rgb(from) ? "RGB" : pixels_chroma(from));
-    if (pixels_have_alpha(from) && !pixels_have_alpha(made))
+    if (pixel_format_bits(made) < pixel_format_bits(from))
+        note(r, ", %d bits in place of %d", pixel_format_bits(made),
+             pixel_format_bits(from));
+    if (strcmp(pixel_format_chroma(from), "gray") != 0 &&
+        strcmp(pixel_format_chroma(made), "444") != 0 &&
+        strcmp(pixel_format_chroma(made), pixel_format_chroma(from)) != 0)
+        note(r, ", chroma %s in place of %s", pixel_format_chroma(made),
+             is_pixel_format_rgb(from) ? "RGB" : pixel_format_chroma(from));
+    if (has_pixel_format_alpha(from) && !has_pixel_format_alpha(made))
         note(r, ", no alpha");
 }
 
@@ -1489,10 +1514,10 @@ void ffmpeg_report_losses(const char *file, const char *name,
     ffmpeg_probe(&made, file);
     if (!*made.pixels || !*v->pixels)
         return;
-    note_pixels(&r, made.pixels, v->pixels);
-    if (is_hdr(v) && strcmp(v->transfer, made.transfer) != 0)
+    note_pixel_losses(&r, made.pixels, v->pixels);
+    if (is_transfer_hdr(v) && strcmp(v->transfer, made.transfer) != 0)
         note(&r, ", no tag of its transfer %s", v->transfer);
-    if (is_interlaced(v) && !is_interlaced(&made))
+    if (is_video_interlaced(v) && !is_video_interlaced(&made))
         note(&r, ", no flags of its fields (%s)", v->fields);
     if (*v->timecode && !*made.timecode)
         note(&r, ", no time code");
@@ -1500,13 +1525,15 @@ void ffmpeg_report_losses(const char *file, const char *name,
         note(&r, ", no mastering data");
     if (v->has_dolby)
         note(&r, ", no Dolby Vision");
-    note_streams(&r, "streams of pictures", v->n_pictures, made.n_pictures);
-    note_streams(&r, "streams of sound", v->n_sounds, made.n_sounds);
-    note_streams(&r, "streams of subtitles", v->n_subtitles, made.n_subtitles);
-    note_streams(&r, "streams of data", v->n_data, made.n_data);
-    note_streams(&r, "attached files", v->n_files, made.n_files);
-    note_streams(&r, "chapters", v->n_chapters, made.n_chapters);
-    note_names(&r, v->tags, made.tags);
+    note_lost_streams(&r, "streams of pictures", v->n_pictures,
+                      made.n_pictures);
+    note_lost_streams(&r, "streams of sound", v->n_sounds, made.n_sounds);
+    note_lost_streams(&r, "streams of subtitles", v->n_subtitles,
+                      made.n_subtitles);
+    note_lost_streams(&r, "streams of data", v->n_data, made.n_data);
+    note_lost_streams(&r, "attached files", v->n_files, made.n_files);
+    note_lost_streams(&r, "chapters", v->n_chapters, made.n_chapters);
+    note_lost_tags(&r, v->tags, made.tags);
     if (*r.text)
         fprintf(stderr,
                 "glint overlay: %s: has %s; see --encode for encoders that "

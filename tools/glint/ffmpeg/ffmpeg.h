@@ -107,17 +107,17 @@ struct ffmpeg_target {
 
 /* Returns ffmpeg's name of the planar format with CHROMA, "420", "422", "444"
  * or "gray", and BITS per sample. */
-const char *pixels_named(const char *chroma, int bits);
+const char *find_pixel_format(const char *chroma, int bits);
 
 /* Returns whether NAME is a program in $PATH. */
 bool child_exists(const char *name);
 
 /* Copies lines that CHILD has written since the last call to standard error. */
-void child_hear(struct child *child);
+void child_forward_messages(struct child *child);
 
 /* Closes the pipe and waits until the child has ended. Returns its exit status,
  * or 128 plus the signal that killed it, or 0 if there is no child. */
-int child_end(struct child *child);
+int child_wait(struct child *child);
 
 /* Kills the child, if there is one, and waits for its exit status. */
 void child_kill(struct child *child);
@@ -143,7 +143,7 @@ void ffmpeg_colours(const struct ffmpeg_video *video,
 
 /* Reads the times of NAME's frames. Returns true if they deviate from a
  * constant VIDEO->rate. The caller frees times->at. */
-bool ffmpeg_times_read(struct ffmpeg_times *times, const char *name,
+bool ffmpeg_read_times(struct ffmpeg_times *times, const char *name,
                        const struct ffmpeg_video *video);
 
 /* Returns whether the file type of NAME stores a time for each frame. */
@@ -177,6 +177,7 @@ void ffmpeg_report_losses(const char *file, const char *name,
                           const struct ffmpeg_video *video);
 
 /* Prints the shell pipeline that is equivalent to glint overlay IN -o OUT. */
-void ffmpeg_by_hand(const struct tool *tool, const char *in, const char *out);
+void ffmpeg_print_manual_commands(const struct tool *tool, const char *in,
+                                  const char *out);
 
 #endif

@@ -31,7 +31,7 @@ void help_all(const struct help *help)
             fputs(help->part[i], stdout);
 }
 
-static size_t line_length(const char *line)
+static size_t help_line_length(const char *line)
 {
     const size_t n = strcspn(line, "\n");
 
@@ -59,21 +59,21 @@ static bool parse_option_name(const char *line, char name[NAME_CHARS])
     return true;
 }
 
-static bool is_continuation(const char *line)
+static bool is_continuation_line(const char *line)
 {
     return strncmp(line, "          ", 10) == 0;
 }
 
-static int count_lines(const char *text)
+static int count_help_lines(const char *text)
 {
     int n = 0;
 
-    for (; *text; text += line_length(text))
+    for (; *text; text += help_line_length(text))
         n++;
     return n;
 }
 
-static bool is_usual(const char *options, const char *name)
+static bool contains_option_name(const char *options, const char *name)
 {
     char word[NAME_CHARS + 2];
 
@@ -83,20 +83,21 @@ static bool is_usual(const char *options, const char *name)
 
 /* Prints those lines of TEXT that describe OPTIONS; if INTRO also the lines
  * above the first option. */
-static void print_usual(const char *text, const char *options, bool intro)
+static void print_common_options(const char *text, const char *options,
+                                 bool intro)
 {
     char name[NAME_CHARS];
     bool shown = intro;
 
-    for (; *text; text += line_length(text)) {
+    for (; *text; text += help_line_length(text)) {
         if (parse_option_name(text, name))
-            shown = is_usual(options, name);
-        else if (!intro && !is_continuation(text))
+            shown = contains_option_name(options, name);
+        else if (!intro && !is_continuation_line(text))
             shown = false;
         if (parse_option_name(text, name))
             intro = false;
         if (shown)
-            fwrite(text, 1, line_length(text), stdout);
+            fwrite(text, 1, help_line_length(text), stdout);
     }
 }
 
@@ -109,25 +110,25 @@ void help_screen(const struct help *help)
         if (strcmp(usual[i].command, help->command) == 0)
             options = usual[i].options;
     for (int i = 0; i < HELP_PARTS; i++)
-        lines += help->part[i] ? count_lines(help->part[i]) : 0;
+        lines += help->part[i] ? count_help_lines(help->part[i]) : 0;
     if (!options || lines <= HELP_SCREEN) {
         help_all(help);
         return;
     }
     for (int i = 0; i < HELP_PARTS; i++)
         if (help->part[i])
-            print_usual(help->part[i], options, i == 0);
+            print_common_options(help->part[i], options, i == 0);
     printf("  --help-all          all options\n");
 }
 
 /* ------------------------------------------------------------------ options */
 
 /* Prints the first line of the description of option NAME in TEXT. */
-static bool print_about(const char *text, const char *name)
+static bool print_option_summary(const char *text, const char *name)
 {
     char at[NAME_CHARS];
 
-    for (; *text; text += line_length(text)) {
+    for (; *text; text += help_line_length(text)) {
         size_t n = strcspn(text, "\n"), from = ABOUT;
 
         if (!parse_option_name(text, at) || strcmp(at, name) != 0)
@@ -146,7 +147,7 @@ void help_options(const struct help *help, const struct option *options)
     for (const struct option *o = options; o && o->name; o++) {
         printf("--%s%s\t", o->name, o->has_arg == required_argument ? "=" : "");
         for (int i = 0; i < HELP_PARTS; i++)
-            if (help->part[i] && print_about(help->part[i], o->name))
+            if (help->part[i] && print_option_summary(help->part[i], o->name))
                 break;
         putchar('\n');
     }

@@ -115,7 +115,7 @@ const char *values_of(const char *command, const char *option)
 
 /* Returns the end of the list item at TEXT: the position of ", ", "; ", " or
  * ", or the end of the text. */
-static const char *item_end(const char *text)
+static const char *find_item_end(const char *text)
 {
     while (*text && strncmp(text, ", ", 2) != 0 &&
            strncmp(text, "; ", 2) != 0 && strncmp(text, " or ", 4) != 0)
@@ -124,18 +124,18 @@ static const char *item_end(const char *text)
 }
 
 /* Returns whether the item at TEXT is a range of numbers. */
-static bool is_range(const char *text)
+static bool is_number_range(const char *text)
 {
     const char *const to = strstr(text, " to ");
 
     return ((*text == '-' || (*text >= '0' && *text <= '9')) && to &&
-            to < item_end(text)) ||
+            to < find_item_end(text)) ||
            strncmp(text, "above ", 6) == 0 || strncmp(text, "from ", 5) == 0;
 }
 
 /* Returns whether the item TEXT[LENGTH] is a literal word: not a range, a
  * placeholder, or a unit (which a range follows). */
-static bool is_word(const char *text, size_t length)
+static bool is_literal_word(const char *text, size_t length)
 {
     const char *const end = text + length;
 
@@ -143,7 +143,8 @@ static bool is_word(const char *text, size_t length)
         if (!strchr("abcdefghijklmnopqrstuvwxyz0123456789-", text[i]))
             return false;
     return length > 0 && text[0] != '-' &&
-           !(text[0] > '9' && strncmp(end, ", ", 2) == 0 && is_range(end + 2));
+           !(text[0] > '9' && strncmp(end, ", ", 2) == 0 &&
+             is_number_range(end + 2));
 }
 
 void values_print_words(const char *command, const char *option)
@@ -151,9 +152,9 @@ void values_print_words(const char *command, const char *option)
     const char *text = option ? values_of(command, option) : NULL;
 
     while (text && *text) {
-        const char *const end = item_end(text);
+        const char *const end = find_item_end(text);
 
-        if (is_word(text, (size_t)(end - text)))
+        if (is_literal_word(text, (size_t)(end - text)))
             printf("%.*s\n", (int)(end - text), text);
         text = end + strcspn(end, " ");
         text += *text == ' ';

@@ -28,7 +28,7 @@ struct key {
     uint64_t lamp;
 };
 
-static int compare_frames(const void *a, const void *b)
+static int compare_key_frames(const void *a, const void *b)
 {
     const struct key *x = a, *y = b;
 
@@ -37,17 +37,18 @@ static int compare_frames(const void *a, const void *b)
     return (x->row > y->row) - (x->row < y->row);
 }
 
-static int compare_lamps(const void *a, const void *b)
+static int compare_lamp_ids(const void *a, const void *b)
 {
     const struct key *x = a, *y = b;
 
     if (x->lamp != y->lamp)
         return x->lamp < y->lamp ? -1 : 1;
-    return compare_frames(a, b);
+    return compare_key_frames(a, b);
 }
 
 /* Sets the lamp of each key; keys are sorted by frame. */
-static void identify_lamps(struct key *key, int n, const struct lamp_list *list)
+static void identify_lamps_of_keys(struct key *key, int n,
+                                   const struct lamp_list *list)
 {
     int place = 0;
 
@@ -69,9 +70,9 @@ enum glint_status lamp_keys_link(struct lamp_list *list)
     for (int i = 0; i < list->n; i++)
         if (list->row[i].frame >= 0)
             key[n++] = (struct key){i, list->row[i].frame, 0};
-    qsort(key, (size_t)n, sizeof *key, compare_frames);
-    identify_lamps(key, n, list);
-    qsort(key, (size_t)n, sizeof *key, compare_lamps);
+    qsort(key, (size_t)n, sizeof *key, compare_key_frames);
+    identify_lamps_of_keys(key, n, list);
+    qsort(key, (size_t)n, sizeof *key, compare_lamp_ids);
     for (int i = 0; i + 1 < n; i++)
         if (key[i].lamp == key[i + 1].lamp)
             list->row[key[i].row].next = key[i + 1].row;
@@ -79,7 +80,7 @@ enum glint_status lamp_keys_link(struct lamp_list *list)
     return GLINT_OK;
 }
 
-static double interpolate_linear(double a, double b, double t)
+static double interpolate_linearly(double a, double b, double t)
 {
     return a + (b - a) * t;
 }
@@ -97,25 +98,25 @@ bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
     if (!b || a->frame > frame || b->frame <= frame)
         return false;
     t = (double)(frame - a->frame) / (b->frame - a->frame);
-    row->x = interpolate_linear(a->x, b->x, t);
-    row->y = interpolate_linear(a->y, b->y, t);
-    row->size = interpolate_linear(a->size, b->size, t);
-    row->shape = interpolate_linear(a->shape, b->shape, t);
+    row->x = interpolate_linearly(a->x, b->x, t);
+    row->y = interpolate_linearly(a->y, b->y, t);
+    row->size = interpolate_linearly(a->size, b->size, t);
+    row->shape = interpolate_linearly(a->shape, b->shape, t);
     row->turn = a->turn + t * remainder(b->turn - a->turn, 180);
-    row->level = interpolate_linear(a->level, b->level, t);
-    row->seen = interpolate_linear(a->seen, b->seen, t);
+    row->level = interpolate_linearly(a->level, b->level, t);
+    row->seen = interpolate_linearly(a->seen, b->seen, t);
     row->power =
         a->power > 0 && b->power > 0
-            ? exp2(interpolate_linear(log2(a->power), log2(b->power), t))
-            : interpolate_linear(a->power, b->power, t);
+            ? exp2(interpolate_linearly(log2(a->power), log2(b->power), t))
+            : interpolate_linearly(a->power, b->power, t);
     for (int c = 0; c < 3; c++)
-        row->rgb[c] = interpolate_linear(a->rgb[c], b->rgb[c], t);
+        row->rgb[c] = interpolate_linearly(a->rgb[c], b->rgb[c], t);
     return true;
 }
 
 /* Lists the ids of the lamps at FRAME. Returns their number. */
-static int list_ids(const struct lamp_list *list, int frame,
-                    uint32_t id[GLINT_ENGINE_MAX_LAMPS])
+static int list_lamp_ids_at_frame(const struct lamp_list *list, int frame,
+                                  uint32_t id[GLINT_ENGINE_MAX_LAMPS])
 {
     struct lamp_row row;
     int n = 0;
@@ -129,8 +130,9 @@ static int list_ids(const struct lamp_list *list, int frame,
 bool lamp_keys_is_cut(const struct lamp_list *list, int frame)
 {
     uint32_t now[GLINT_ENGINE_MAX_LAMPS], before[GLINT_ENGINE_MAX_LAMPS];
-    const int n = list_ids(list, frame, now);
-    const int m = n && frame > 0 ? list_ids(list, frame - 1, before) : 0;
+    const int n = list_lamp_ids_at_frame(list, frame, now);
+    const int m =
+        n && frame > 0 ? list_lamp_ids_at_frame(list, frame - 1, before) : 0;
 
     for (int i = 0; i < n; i++)
         for (int k = 0; k < m; k++)

@@ -59,7 +59,7 @@ struct reading {
     int n, column[COLUMNS];
 };
 
-static struct lamp_row make_row(const double *v)
+static struct lamp_row make_lamp_row(const double *v)
 {
     return (struct lamp_row){.frame = (int)v[FRAME],
                              .x = v[X],
@@ -77,8 +77,8 @@ static struct lamp_row make_row(const double *v)
 
 /* Parses the fields that are not NULL into V, which contains the defaults.
  * Returns OTHER if one is not a number. */
-static const char *parse_fields(char *const field[COLUMNS], bool is_object,
-                                const char *other, double *v)
+static const char *parse_row_fields(char *const field[COLUMNS], bool is_object,
+                                    const char *other, double *v)
 {
     const char *cause = NULL;
 
@@ -92,11 +92,11 @@ static const char *parse_fields(char *const field[COLUMNS], bool is_object,
                  (strcmp(text + is_object, "*") == 0 || !*text))
             v[k] = -1;
         else if (text)
-            cause = text_value(&columns[k], text,
-                               k == FRAME && other == plain
-                                   ? "the frame is not a number"
-                                   : other,
-                               &v[k]);
+            cause = text_parse_value(&columns[k], text,
+                                     k == FRAME && other == plain
+                                         ? "the frame is not a number"
+                                         : other,
+                                     &v[k]);
     }
     if (cause)
         return cause;
@@ -107,10 +107,11 @@ static const char *parse_fields(char *const field[COLUMNS], bool is_object,
 
 /* Parses LINE: "frame,x,y,power[,r,g,b[,size]]", or by the columns of the
  * heading. */
-static const char *parse_row(const struct reading *r, char *line, double *v)
+static const char *parse_lamp_row(const struct reading *r, char *line,
+                                  double *v)
 {
     char *row[COLUMNS], *field[COLUMNS] = {NULL};
-    const int n = text_fields(line, row, r->n ? r->n : ID);
+    const int n = text_split_fields(line, row, r->n ? r->n : ID);
 
     if (r->n ? n != r->n : n != 4 && n != 7 && n != 8)
         return r->n     ? "expected as many values as the heading has names"
@@ -118,32 +119,34 @@ static const char *parse_row(const struct reading *r, char *line, double *v)
                         : plain;
     for (int i = 0; i < n; i++)
         field[r->n ? r->column[i] : i] = row[i];
-    return parse_fields(
+    return parse_row_fields(
         field, false,
         r->n ? "expected numbers, as many as the heading has names" : plain, v);
 }
 
-static const char *parse_object(struct text_lines *lines, char *line, double *v)
+static const char *parse_lamp_object(struct text_lines *lines, char *line,
+                                     double *v)
 {
     char *field[COLUMNS] = {NULL};
-    const char *const cause = text_object(lines, line, columns, KEYS, field);
+    const char *const cause =
+        text_parse_json_object(lines, line, columns, KEYS, field);
 
     if (cause)
         return cause;
     if (!field[X] || !field[Y] || !field[POWER])
         return "x, y and power are needed";
-    return parse_fields(field, true, "a value is not a number", v);
+    return parse_row_fields(field, true, "a value is not a number", v);
 }
 
 /* Sets the columns from the names in LINE if "id" is among them. */
-static const char *parse_heading(struct reading *r, char *line)
+static const char *parse_column_heading(struct reading *r, char *line)
 {
     char *name[COLUMNS];
-    const int n = text_fields(line, name, COLUMNS);
+    const int n = text_split_fields(line, name, COLUMNS);
     unsigned seen = 0;
 
     for (int i = 0; i < n && i < COLUMNS; i++) {
-        r->column[i] = text_column(columns, COLUMNS, name[i]);
+        r->column[i] = text_find_column(columns, COLUMNS, name[i]);
         seen |= 1u << (r->column[i] < 0 ? COLUMNS : r->column[i]);
     }
     if (!(seen >> ID & 1))
@@ -160,7 +163,8 @@ static const char *parse_heading(struct reading *r, char *line)
 enum glint_status lamp_list_add(struct lamp_list *list,
                                 const struct lamp_row *row)
 {
-    struct lamp_row *const more = text_grow(list->row, list->n, sizeof *more);
+    struct lamp_row *const more =
+        text_grow_array(list->row, list->n, sizeof *more);
 
     if (!more)
         return GLINT_E_MEMORY;
@@ -169,7 +173,8 @@ enum glint_status lamp_list_add(struct lamp_list *list,
     return GLINT_OK;
 }
 
-static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
+static const char *parse_lamp_line(void *ctx, struct text_lines *lines,
+                                   char *line)
 {
     double v[COLUMNS] = {-1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 0, 1};
     struct reading *const r = ctx;
@@ -177,13 +182,14 @@ static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
     struct lamp_row row;
 
     if (lines->number == 1 && strncmp(line, "frame", 5) == 0)
-        return parse_heading(r, line);
-    cause = *line == '{' ? parse_object(lines, line, v) : parse_row(r, line, v);
+        return parse_column_heading(r, line);
+    cause = *line == '{' ? parse_lamp_object(lines, line, v)
+                         : parse_lamp_row(r, line, v);
     if (cause)
         return cause;
     if (r->list->n == LAMP_LIST_MAX_ROWS)
         return "more than 1048576 lights";
-    row = make_row(v);
+    row = make_lamp_row(v);
     return lamp_list_add(r->list, &row) == GLINT_OK ? NULL : text_no_memory;
 }
 
@@ -198,7 +204,7 @@ enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
 
     *list = (struct lamp_list){NULL, 0};
     if (status == GLINT_OK)
-        status = text_lines_each(&lines, parse_line, &r, error);
+        status = text_lines_parse_each(&lines, parse_lamp_line, &r, error);
     if (status != GLINT_OK)
         lamp_list_free(list);
     return status;
@@ -218,8 +224,8 @@ void lamp_list_free(struct lamp_list *list)
 
 /* Sets the extent of LAMP from R: a disc if its shape is 1, else an ellipse.
  * TANGENT is the tangent of a pixel's angle. */
-static void set_shape(struct glint_lamp *lamp, const struct lamp_row *r,
-                      double tangent)
+static void set_lamp_shape(struct glint_lamp *lamp, const struct lamp_row *r,
+                           double tangent)
 {
     const double major = r->size * tangent / sqrt(1 + r->shape * r->shape);
 
@@ -250,7 +256,7 @@ int lamp_list_frame(const struct lamp_list *list, int frame,
         glint_view_to_angles(view, focal_mm, r.x, r.y, &lamp);
         lamp.power = r.power;
         memcpy(lamp.rgb, r.rgb, sizeof r.rgb);
-        set_shape(&lamp, &r, glint_view_pixel_tangent(view, focal_mm));
+        set_lamp_shape(&lamp, &r, glint_view_pixel_tangent(view, focal_mm));
         lamps[n] = glint_engine_lamp_of(
             &lamp, r.id ? r.id : largest + 1 + (uint32_t)n);
         lamps[n].level = r.level;

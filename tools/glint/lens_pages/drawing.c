@@ -57,9 +57,9 @@ struct figure {
 /* Prepares FAN for light at THETA_DEG in the plane at azimuth PHI_DEG, which
  * is the x-z plane of its rays. GHOST is NULL for the direct path. Returns
  * false if no light passes. */
-static bool fan_init(struct fan *fan, const struct glint_prescription *lens,
-                     const struct glint_ghost *ghost, double nm, double phi_deg,
-                     double theta_deg)
+static bool init_ray_fan(struct fan *fan, const struct glint_prescription *lens,
+                         const struct glint_ghost *ghost, double nm,
+                         double phi_deg, double theta_deg)
 {
     const double theta = theta_deg * GLINT_PI / 180;
     struct glint_optics optics;
@@ -76,7 +76,7 @@ static bool fan_init(struct fan *fan, const struct glint_prescription *lens,
 }
 
 /* Returns the x at which the ray (U, 0) starts. */
-static double fan_start_mm(const struct fan *fan, double u)
+static double ray_start_mm(const struct fan *fan, double u)
 {
     const struct glint_pupil *p = &fan->pupil;
 
@@ -85,10 +85,10 @@ static double fan_start_mm(const struct fan *fan, double u)
 
 /* Traces the ray that starts at (U, V) of the pupil, -1 .. 1 each. HITS: see
  * glint_trace(). Returns whether the ray passes. */
-static bool fan_ray(const struct fan *fan, double u, double v,
-                    struct glint_ray *ray, double (*hits)[2])
+static bool trace_fan_ray(const struct fan *fan, double u, double v,
+                          struct glint_ray *ray, double (*hits)[2])
 {
-    return glint_trace(&fan->path, fan_start_mm(fan, u), v * fan->pupil.y1_mm,
+    return glint_trace(&fan->path, ray_start_mm(fan, u), v * fan->pupil.y1_mm,
                        fan->direction, ray, hits) == GLINT_RAY_OK &&
            ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <=
@@ -97,7 +97,7 @@ static bool fan_ray(const struct fan *fan, double u, double v,
 
 /* Sets U to the min and max U of rays (U, 0) that pass. Returns false if no ray
  * passes. */
-static bool fan_edges(const struct fan *fan, double u[2])
+static bool find_fan_edges(const struct fan *fan, double u[2])
 {
     enum { STEPS = 100, HALVINGS = 12 };
     double hits[GLINT_MAX_EVENTS + 1][2];
@@ -107,7 +107,7 @@ static bool fan_edges(const struct fan *fan, double u[2])
     for (int i = -STEPS; i <= STEPS; i++) {
         const double at = (double)i / STEPS;
 
-        if (!fan_ray(fan, at, 0, &ray, hits))
+        if (!trace_fan_ray(fan, at, 0, &ray, hits))
             continue;
         if (!any)
             u[0] = at;
@@ -119,7 +119,7 @@ static bool fan_edges(const struct fan *fan, double u[2])
 
         for (int i = 0; i < HALVINGS; i++) {
             out *= 0.5;
-            if (fan_ray(fan, u[side] + out, 0, &ray, hits))
+            if (trace_fan_ray(fan, u[side] + out, 0, &ray, hits))
                 u[side] += out;
         }
     }
@@ -130,8 +130,8 @@ static const double spot_nm[SPOT_COLOURS] = {450, 546, 650};
 
 /* Adds those rays of one ring that pass. The pupil's box is the square -1 ..
  * 1; its corners lie on the outermost ring. */
-static void gather_ring(struct spots *s, const struct fan *fan, int colour,
-                        int ring)
+static void gather_ring_rays(struct spots *s, const struct fan *fan, int colour,
+                             int ring)
 {
     const int n = ring == 0 ? 1 : 6 * ring;
     const double radius = sqrt(2) * ring / SPOT_RINGS;
@@ -142,7 +142,7 @@ static void gather_ring(struct spots *s, const struct fan *fan, int colour,
         const double turn = 2 * GLINT_PI * i / n;
         const double u = radius * cos(turn), v = radius * sin(turn);
 
-        if (fabs(u) > 1 || fabs(v) > 1 || !fan_ray(fan, u, v, &ray, hits))
+        if (fabs(u) > 1 || fabs(v) > 1 || !trace_fan_ray(fan, u, v, &ray, hits))
             continue;
         s->colour[s->n] = colour;
         s->at[s->n][0] = ray.sensor_x_mm;
@@ -150,7 +150,7 @@ static void gather_ring(struct spots *s, const struct fan *fan, int colour,
     }
 }
 
-static void measure_spots(struct spots *s)
+static void measure_spot_extent(struct spots *s)
 {
     double sum[2] = {0, 0}, square = 0;
 
@@ -172,17 +172,18 @@ static void measure_spots(struct spots *s)
 
 /* Fills S with the rays that light at THETA_DEG, in the plane at PHI_DEG,
  * sends through LENS, evenly distributed over its pupil. */
-static void spots_gather(struct spots *s, const struct glint_prescription *lens,
-                         double phi_deg, double theta_deg)
+static void gather_field_spots(struct spots *s,
+                               const struct glint_prescription *lens,
+                               double phi_deg, double theta_deg)
 {
     struct fan fan;
 
     s->n = 0;
     for (int c = 0; c < SPOT_COLOURS; c++)
-        if (fan_init(&fan, lens, NULL, spot_nm[c], phi_deg, theta_deg))
+        if (init_ray_fan(&fan, lens, NULL, spot_nm[c], phi_deg, theta_deg))
             for (int ring = 0; ring <= SPOT_RINGS; ring++)
-                gather_ring(s, &fan, c, ring);
-    measure_spots(s);
+                gather_ring_rays(s, &fan, c, ring);
+    measure_spot_extent(s);
 }
 
 /* position of the outermost field, as a fraction of the film's half size:
@@ -192,18 +193,18 @@ static void spots_gather(struct spots *s, const struct glint_prescription *lens,
 static const char *const field_colour[DRAWING_FIELDS] = {"#1f5fa8", "#2f8a3c",
                                                          "#c0392b"};
 
-static double x_px(const struct figure *f, double z)
+static double horizontal_px(const struct figure *f, double z)
 {
     return f->left + f->scale * z;
 }
 
-static double y_px(const struct figure *f, double x)
+static double vertical_px(const struct figure *f, double x)
 {
     return f->middle - f->scale * x;
 }
 
 /* Returns 1, 2 or 5 times a power of ten, at least VALUE. */
-static double round_up(double value)
+static double round_up_to_1_2_5(double value)
 {
     const double power = pow(10, floor(log10(fmax(value, 1e-9))));
     const double share = value / power;
@@ -219,9 +220,9 @@ static double image_height_mm(const struct figure *f, double theta_deg)
     struct fan fan;
     struct glint_ray ray;
 
-    if (!fan_init(&fan, f->drawing->lens, NULL, FIGURE_NM,
-                  f->drawing->plane_deg, theta_deg) ||
-        !fan_ray(&fan, 0, 0, &ray, hits))
+    if (!init_ray_fan(&fan, f->drawing->lens, NULL, FIGURE_NM,
+                      f->drawing->plane_deg, theta_deg) ||
+        !trace_fan_ray(&fan, 0, 0, &ray, hits))
         return -1;
     return fabs(ray.sensor_x_mm);
 }
@@ -229,7 +230,8 @@ static double image_height_mm(const struct figure *f, double theta_deg)
 /* Returns the angle of the light that the lens images at HEIGHT_MM from the
  * centre, degrees, by rays through the centre of the pupil. If no light
  * reaches that height, returns the widest angle that passes. */
-static double find_angle(const struct figure *f, double height_mm)
+static double find_angle_of_image_height(const struct figure *f,
+                                         double height_mm)
 {
     double low = 0, high = 89;
 
@@ -246,11 +248,12 @@ static double find_angle(const struct figure *f, double height_mm)
 }
 
 /* Returns the angle of FIELD, 0 .. DRAWING_FIELDS - 1, in degrees. */
-static double field_deg(const struct figure *f, int field)
+static double field_angle_deg(const struct figure *f, int field)
 {
     static const double share[DRAWING_FIELDS] = {0, 0.7, 1};
 
-    return find_angle(f, FIELD_ENDS * share[field] * f->film_mm);
+    return find_angle_of_image_height(f,
+                                      FIELD_ENDS * share[field] * f->film_mm);
 }
 
 enum { PROFILE = 24 };
@@ -260,7 +263,8 @@ enum { PROFILE = 24 };
 /* ------------------------------------------------------------------ places */
 
 /* Sets AT to the point of surface K at the height X of the section's plane. */
-static void rim_point(const struct figure *f, int k, double x, double at[3])
+static void find_section_point(const struct figure *f, int k, double x,
+                               double at[3])
 {
     const double phi = f->drawing->plane_deg;
     const double angle = phi * GLINT_PI / 180;
@@ -275,9 +279,9 @@ static void rim_point(const struct figure *f, int k, double x, double at[3])
 
 /* Sets AT to z and x of the point HIT on surface or stop EVENT; see
  * glint_trace() for HIT. */
-static void find_meeting(const struct figure *f,
-                         const struct glint_event *event, const double hit[2],
-                         double at[2])
+static void find_surface_hit(const struct figure *f,
+                             const struct glint_event *event,
+                             const double hit[2], double at[2])
 {
     const struct glint_prescription *lens = f->drawing->lens;
     double point[3] = {hit[0], hit[1], 0};
@@ -296,7 +300,7 @@ static void find_meeting(const struct figure *f,
     at[1] = point[0];
 }
 
-static void place_vertices(struct figure *f)
+static void place_surface_vertices(struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
     double z = lens->stop_after == 0 ? -lens->stop_thickness_mm : 0;
@@ -316,7 +320,7 @@ static void place_vertices(struct figure *f)
 
 /* Sets the extent of the image in the section's plane: its whole diagonal,
  * unless the lens is not rotationally symmetric. */
-static void set_film(struct figure *f)
+static void set_section_image_extent(struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
     const bool along_x = f->drawing->plane_deg == 0;
@@ -331,19 +335,19 @@ static void set_film(struct figure *f)
 }
 
 /* Sets positions and scale of F, whose drawing and file are set. */
-static void begin_figure(struct figure *f)
+static void begin_lens_figure(struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
     const double width = f->drawing->width_px - 2 * FIGURE_MARGIN_PX;
     double length, least, at[3];
 
-    place_vertices(f);
-    set_film(f);
+    place_surface_vertices(f);
+    set_section_image_extent(f);
     least = fmin(0, f->stop_z);
     f->x1 = fmax(f->film_mm / f->widen, lens->stop_semi_mm);
     for (int k = 0; k < lens->n_surfaces; k++)
         for (int side = -1; side <= 1; side += 2) {
-            rim_point(f, k, side * lens->surface[k].semi_mm, at);
+            find_section_point(f, k, side * lens->surface[k].semi_mm, at);
             f->x1 = fmax(f->x1, fabs(at[0]));
             least = fmin(least, at[2]);
         }
@@ -365,37 +369,40 @@ static void begin_figure(struct figure *f)
 
 /* Writes the points of surface K from its lower to its upper rim; in the
  * opposite order if SENSE is -1. */
-static void write_profile(const struct figure *f, int k, int sense)
+static void write_surface_profile(const struct figure *f, int k, int sense)
 {
     const double semi = f->drawing->lens->surface[k].semi_mm;
     double at[3];
 
     for (int i = -PROFILE; i <= PROFILE; i++) {
-        rim_point(f, k, sense * semi * i / PROFILE, at);
-        fprintf(f->file, "%.2f,%.2f ", x_px(f, at[2]), y_px(f, at[0]));
+        find_section_point(f, k, sense * semi * i / PROFILE, at);
+        fprintf(f->file, "%.2f,%.2f ", horizontal_px(f, at[2]),
+                vertical_px(f, at[0]));
     }
 }
 
 /* Writes the edge of the glass between surfaces K and K + 1 on one SIDE: out
  * to the wider of both rims, then parallel to the axis. */
-static void write_edge(const struct figure *f, int k, int side)
+static void write_glass_edge(const struct figure *f, int k, int side)
 {
     const struct glint_surface *s = &f->drawing->lens->surface[k];
     double a[3], b[3], out;
 
-    rim_point(f, k, side * s[0].semi_mm, a);
-    rim_point(f, k + 1, side * s[1].semi_mm, b);
+    find_section_point(f, k, side * s[0].semi_mm, a);
+    find_section_point(f, k + 1, side * s[1].semi_mm, b);
     out = side * fmax(side * a[0], side * b[0]);
     if (side > 0)
-        fprintf(f->file, "%.2f,%.2f %.2f,%.2f ", x_px(f, a[2]), y_px(f, out),
-                x_px(f, b[2]), y_px(f, out));
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f ", horizontal_px(f, a[2]),
+                vertical_px(f, out), horizontal_px(f, b[2]),
+                vertical_px(f, out));
     else
-        fprintf(f->file, "%.2f,%.2f %.2f,%.2f", x_px(f, b[2]), y_px(f, out),
-                x_px(f, a[2]), y_px(f, out));
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f", horizontal_px(f, b[2]),
+                vertical_px(f, out), horizontal_px(f, a[2]),
+                vertical_px(f, out));
 }
 
 /* Draws the glass behind surface K, darker for a higher index. */
-static void draw_glass(const struct figure *f, int k)
+static void draw_glass_element(const struct figure *f, int k)
 {
     const struct glint_surface *s = &f->drawing->lens->surface[k];
     const double shade = fmin(1, fmax(0, (s->nd - 1.4) / 0.6));
@@ -405,17 +412,17 @@ static void draw_glass(const struct figure *f, int k)
             "stroke-width=\"0.9\" stroke-linejoin=\"round\" points=\"",
             (unsigned)(232 - 62 * shade), (unsigned)(241 - 46 * shade),
             (unsigned)(250 - 26 * shade));
-    write_profile(f, k, 1);
-    write_edge(f, k, 1);
-    write_profile(f, k + 1, -1);
-    write_edge(f, k, -1);
+    write_surface_profile(f, k, 1);
+    write_glass_edge(f, k, 1);
+    write_surface_profile(f, k + 1, -1);
+    write_glass_edge(f, k, -1);
     fprintf(f->file,
             "\"><title>surface %d; nd %.5g, Vd %.4g</title></polygon>\n", k,
             s->nd, s->vd);
 }
 
 /* Draws the barrel around the glass from surface FIRST to LAST. */
-static void draw_barrel(const struct figure *f, int first, int last)
+static void draw_lens_barrel(const struct figure *f, int first, int last)
 {
     const struct glint_prescription *lens = f->drawing->lens;
     const double wall = 3.5;
@@ -423,7 +430,8 @@ static void draw_barrel(const struct figure *f, int first, int last)
 
     for (int k = first; k <= last; k++)
         for (int side = 0; side < 2; side++) {
-            rim_point(f, k, (side ? 1 : -1) * lens->surface[k].semi_mm, at);
+            find_section_point(f, k, (side ? 1 : -1) * lens->surface[k].semi_mm,
+                               at);
             semi[side] = fmax(semi[side], fabs(at[0]));
             a = fmin(a, fmin(f->vertex[k], at[2]));
             b = fmax(b, fmax(f->vertex[k], at[2]));
@@ -433,11 +441,13 @@ static void draw_barrel(const struct figure *f, int first, int last)
                 "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.1f\" "
                 "fill=\"url(#hatch-%s)\" stroke=\"#777\" "
                 "stroke-width=\"0.5\"/>\n",
-                x_px(f, a), side ? y_px(f, semi[1]) - wall : y_px(f, -semi[0]),
+                horizontal_px(f, a),
+                side ? vertical_px(f, semi[1]) - wall
+                     : vertical_px(f, -semi[0]),
                 f->scale * (b - a), wall, lens->name);
 }
 
-static void draw_glasses(const struct figure *f)
+static void draw_all_glass_elements(const struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
     int first = -1;
@@ -445,15 +455,15 @@ static void draw_glasses(const struct figure *f)
     for (int k = 0; k < lens->n_surfaces; k++) {
         if (lens->surface[k].vd > 0) {
             first = first < 0 ? k : first;
-            draw_glass(f, k);
+            draw_glass_element(f, k);
         } else if (first >= 0) {
-            draw_barrel(f, first, k);
+            draw_lens_barrel(f, first, k);
             first = -1;
         }
     }
 }
 
-static void draw_stop(const struct figure *f, double radius)
+static void draw_aperture_stop(const struct figure *f, double radius)
 {
     const double end =
         fmax(f->drawing->lens->stop_semi_mm * 1.18, radius + 9 / f->scale);
@@ -462,20 +472,21 @@ static void draw_stop(const struct figure *f, double radius)
         fprintf(f->file,
                 "<path d=\"M%.2f %.2f V%.2f M%.2f %.2f h6\" stroke=\"#111\" "
                 "stroke-width=\"2.2\" fill=\"none\"/>\n",
-                x_px(f, f->stop_z), y_px(f, side * radius), y_px(f, side * end),
-                x_px(f, f->stop_z) - 3, y_px(f, side * radius));
+                horizontal_px(f, f->stop_z), vertical_px(f, side * radius),
+                vertical_px(f, side * end), horizontal_px(f, f->stop_z) - 3,
+                vertical_px(f, side * radius));
 }
 
 /* Writes the number of surface K above its rim. */
-static void draw_number(const struct figure *f, int k)
+static void draw_surface_number(const struct figure *f, int k)
 {
     double at[3];
 
-    rim_point(f, k, f->drawing->lens->surface[k].semi_mm, at);
+    find_section_point(f, k, f->drawing->lens->surface[k].semi_mm, at);
     fprintf(f->file,
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
             "fill=\"#a2640c\">%d</text>\n",
-            x_px(f, at[2]), y_px(f, at[0]) - 7, k);
+            horizontal_px(f, at[2]), vertical_px(f, at[0]) - 7, k);
 }
 
 static void draw_axis_and_sensor(const struct figure *f)
@@ -487,8 +498,9 @@ static void draw_axis_and_sensor(const struct figure *f)
             "stroke-dasharray=\"12 3 2 3\"/>\n"
             "<path d=\"M%.2f %.2f V%.2f\" stroke=\"#111\" "
             "stroke-width=\"2\"/>\n",
-            x_px(f, f->z0), y_px(f, 0), x_px(f, f->z1), x_px(f, f->sensor_z),
-            y_px(f, film), y_px(f, -film));
+            horizontal_px(f, f->z0), vertical_px(f, 0), horizontal_px(f, f->z1),
+            horizontal_px(f, f->sensor_z), vertical_px(f, film),
+            vertical_px(f, -film));
 }
 
 enum { SPOT_PX = 170 };
@@ -499,27 +511,27 @@ static const char *const spot_colour[SPOT_COLOURS] = {"#2a52d0", "#2f9a3c",
                                                       "#d0342a"};
 
 /* Returns the height of the spot diagrams with legend and gap, pixels. */
-static double spots_px(const struct figure *f)
+static double spot_diagrams_height_px(const struct figure *f)
 {
     return f->drawing->spots ? BELOW_PX + SPOT_PX + LEGEND_PX : 0;
 }
 
-static double top_px(const struct figure *f)
+static double spot_diagrams_top_px(const struct figure *f)
 {
     return f->middle + 0.5 * f->height_px + BELOW_PX;
 }
 
-static double length_factor(double mm)
+static double length_unit_factor(double mm)
 {
     return mm < 1 ? 1e3 : 1;
 }
 
-static const char *length_unit(double mm)
+static const char *length_unit_name(double mm)
 {
     return mm < 1 ? "µm" : "mm";
 }
 
-static void draw_box(const struct figure *f, double x, double y)
+static void draw_spot_diagram_box(const struct figure *f, double x, double y)
 {
     fprintf(f->file,
             "<rect x=\"%.1f\" y=\"%.1f\" width=\"%d\" height=\"%d\" "
@@ -530,17 +542,17 @@ static void draw_box(const struct figure *f, double x, double y)
             x + 0.5 * SPOT_PX, y, SPOT_PX);
 }
 
-static void draw_one(const struct figure *f, const struct spots *s, int field,
-                     double theta)
+static void draw_spot_diagram(const struct figure *f, const struct spots *s,
+                              int field, double theta)
 {
     const double step =
         (f->drawing->width_px - 2 * FIGURE_MARGIN_PX) / DRAWING_FIELDS;
     const double cx = FIGURE_MARGIN_PX + step * (field + 0.5);
-    const double cy = top_px(f) + 0.5 * SPOT_PX;
-    const double half_mm = round_up(s->radius_mm);
+    const double cy = spot_diagrams_top_px(f) + 0.5 * SPOT_PX;
+    const double half_mm = round_up_to_1_2_5(s->radius_mm);
     const double scale = 0.5 * SPOT_PX / half_mm;
 
-    draw_box(f, cx - 0.5 * SPOT_PX, cy - 0.5 * SPOT_PX);
+    draw_spot_diagram_box(f, cx - 0.5 * SPOT_PX, cy - 0.5 * SPOT_PX);
     for (int c = 0; c < SPOT_COLOURS; c++) {
         fprintf(f->file, "<g fill=\"%s\">\n", spot_colour[c]);
         for (int k = 0; k < s->n; k++)
@@ -556,15 +568,16 @@ static void draw_one(const struct figure *f, const struct spots *s, int field,
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
             "fill=\"#444\">side %.4g %s</text>\n",
             cx, cy - 0.5 * SPOT_PX - 7, field_colour[field], theta,
-            length_factor(s->rms_mm) * s->rms_mm, length_unit(s->rms_mm), cx,
-            cy + 0.5 * SPOT_PX + 15, length_factor(half_mm) * 2 * half_mm,
-            length_unit(half_mm));
+            length_unit_factor(s->rms_mm) * s->rms_mm,
+            length_unit_name(s->rms_mm), cx, cy + 0.5 * SPOT_PX + 15,
+            length_unit_factor(half_mm) * 2 * half_mm,
+            length_unit_name(half_mm));
 }
 
 /* Draws the legend of colours, bottom right below the spot diagrams. */
-static void draw_legend(const struct figure *f)
+static void draw_colour_legend(const struct figure *f)
 {
-    const double y = top_px(f) + SPOT_PX + 34;
+    const double y = spot_diagrams_top_px(f) + SPOT_PX + 34;
     const double end = f->drawing->width_px - FIGURE_MARGIN_PX;
 
     for (int c = 0; c < SPOT_COLOURS; c++) {
@@ -578,17 +591,17 @@ static void draw_legend(const struct figure *f)
 }
 
 /* Draws a spot diagram for each field below the section. */
-static void draw_spots(const struct figure *f)
+static void draw_all_spot_diagrams(const struct figure *f)
 {
     struct spots s;
 
     for (int i = 0; i < DRAWING_FIELDS; i++) {
-        const double theta = field_deg(f, i);
+        const double theta = field_angle_deg(f, i);
 
-        spots_gather(&s, f->drawing->lens, f->drawing->plane_deg, theta);
-        draw_one(f, &s, i, theta);
+        gather_field_spots(&s, f->drawing->lens, f->drawing->plane_deg, theta);
+        draw_spot_diagram(f, &s, i, theta);
     }
-    draw_legend(f);
+    draw_colour_legend(f);
 }
 
 void lens_drawing_defaults(struct lens_drawing *d,
@@ -606,9 +619,9 @@ void lens_drawing_defaults(struct lens_drawing *d,
 /* -------------------------------------------------------------------- rays */
 
 /* Writes the path of a ray that starts at X mm in the front vertex plane. */
-static void draw_ray(struct figure *f, const struct fan *fan, double x,
-                     const struct glint_ray *ray, double (*hits)[2],
-                     const char *colour)
+static void draw_ray_path(struct figure *f, const struct fan *fan, double x,
+                          const struct glint_ray *ray, double (*hits)[2],
+                          const char *colour)
 {
     const double slope = fan->direction[0] / fan->direction[2];
     double back = f->z0;
@@ -618,7 +631,7 @@ static void draw_ray(struct figure *f, const struct fan *fan, double x,
     fprintf(f->file,
             "<path fill=\"none\" stroke=\"%s\" stroke-width=\"0.7\" "
             "stroke-linejoin=\"round\" d=\"M%.2f %.2f ",
-            colour, x_px(f, back), y_px(f, x + slope * back));
+            colour, horizontal_px(f, back), vertical_px(f, x + slope * back));
     for (int e = 0; e < fan->path.n_events; e++) {
         const bool stop = fan->path.event[e].kind == GLINT_STOP;
         double at[2];
@@ -628,63 +641,64 @@ static void draw_ray(struct figure *f, const struct fan *fan, double x,
         if (stop && f->drawing->lens->stop_after == 0 &&
             f->drawing->lens->stop_thickness_mm < 0)
             continue;
-        find_meeting(f, &fan->path.event[e], hits[e], at);
-        fprintf(f->file, "L%.2f %.2f ", x_px(f, at[0]), y_px(f, at[1]));
+        find_surface_hit(f, &fan->path.event[e], hits[e], at);
+        fprintf(f->file, "L%.2f %.2f ", horizontal_px(f, at[0]),
+                vertical_px(f, at[1]));
     }
-    fprintf(f->file, "L%.2f %.2f\"/>\n", x_px(f, f->sensor_z),
-            y_px(f, ray->sensor_x_mm / f->widen));
+    fprintf(f->file, "L%.2f %.2f\"/>\n", horizontal_px(f, f->sensor_z),
+            vertical_px(f, ray->sensor_x_mm / f->widen));
     f->shown++;
 }
 
-static void draw_fan(struct figure *f, const struct fan *fan,
-                     const char *colour)
+static void draw_ray_fan(struct figure *f, const struct fan *fan,
+                         const char *colour)
 {
     const int n = f->drawing->rays;
     double hits[GLINT_MAX_EVENTS + 1][2], edge[2];
     struct glint_ray ray;
 
-    if (!fan_edges(fan, edge))
+    if (!find_fan_edges(fan, edge))
         return;
     for (int i = 0; i < n; i++) {
         const double share = n > 1 ? (double)i / (n - 1) : 0.5;
         const double u = edge[0] + share * (edge[1] - edge[0]);
 
-        if (fan_ray(fan, u, 0, &ray, hits))
-            draw_ray(f, fan, fan_start_mm(fan, u), &ray, hits, colour);
+        if (trace_fan_ray(fan, u, 0, &ray, hits))
+            draw_ray_path(f, fan, ray_start_mm(fan, u), &ray, hits, colour);
     }
 }
 
-static void draw_rays(struct figure *f)
+static void draw_field_rays(struct figure *f)
 {
     struct fan fan;
 
     for (int i = DRAWING_FIELDS - 1; i >= 0; i--)
-        if (fan_init(&fan, f->drawing->lens, NULL, FIGURE_NM,
-                     f->drawing->plane_deg, field_deg(f, i)))
-            draw_fan(f, &fan, field_colour[i]);
+        if (init_ray_fan(&fan, f->drawing->lens, NULL, FIGURE_NM,
+                         f->drawing->plane_deg, field_angle_deg(f, i)))
+            draw_ray_fan(f, &fan, field_colour[i]);
 }
 
-static void draw_ghost(struct figure *f, const struct glint_ghost *ghost,
-                       double theta)
+static void draw_ghost_path(struct figure *f, const struct glint_ghost *ghost,
+                            double theta)
 {
     struct fan fan;
 
-    if (fan_init(&fan, f->drawing->lens, ghost, FIGURE_NM,
-                 f->drawing->plane_deg, theta))
-        draw_fan(f, &fan, "#c0392b");
+    if (init_ray_fan(&fan, f->drawing->lens, ghost, FIGURE_NM,
+                     f->drawing->plane_deg, theta))
+        draw_ray_fan(f, &fan, "#c0392b");
     for (int i = 0; i < 2; i++) {
         const int k = i ? ghost->j : ghost->i;
 
         fprintf(f->file, "<polyline fill=\"none\" stroke=\"#d0881b\" "
                          "stroke-width=\"2.4\" points=\"");
-        write_profile(f, k, 1);
+        write_surface_profile(f, k, 1);
         fprintf(f->file, "\"/>\n");
     }
 }
 
 /* ------------------------------------------------------------------- words */
 
-static void write_words(FILE *file, const char *text)
+static void write_svg_text(FILE *file, const char *text)
 {
     for (; *text; text++)
         if (*text == '&' || *text == '<' || *text == '>')
@@ -693,8 +707,8 @@ static void write_words(FILE *file, const char *text)
             fputc(*text, file);
 }
 
-static void draw_title(const struct figure *f, const struct glint_optics *o,
-                       const char *path)
+static void draw_figure_title(const struct figure *f,
+                              const struct glint_optics *o, const char *path)
 {
     const struct glint_prescription *lens = f->drawing->lens;
     char focus[64] = "", across[48] = "";
@@ -709,20 +723,20 @@ static void draw_title(const struct figure *f, const struct glint_optics *o,
             "<text x=\"%.0f\" y=\"22\" font-size=\"15\" "
             "font-weight=\"bold\">",
             FIGURE_MARGIN_PX);
-    write_words(f->file, lens->name);
+    write_svg_text(f->file, lens->name);
     fprintf(f->file,
             "<tspan dx=\"10\" font-weight=\"normal\" font-size=\"12\">"
             "f = %.2f mm%s, f/%.3g%s%s</tspan></text>\n",
             o->focal_mm, across, lens->f_number, focus, path);
     fprintf(f->file, "<text x=\"%.0f\" y=\"40\" fill=\"#555\">",
             FIGURE_MARGIN_PX);
-    write_words(f->file, lens->source);
+    write_svg_text(f->file, lens->source);
     fputs("</text>\n", f->file);
 }
 
 static void draw_scale_bar(const struct figure *f)
 {
-    const double mm = round_up(40 / f->scale);
+    const double mm = round_up_to_1_2_5(40 / f->scale);
     const double y = f->middle + 0.5 * f->height_px + 10;
 
     fprintf(f->file,
@@ -735,11 +749,11 @@ static void draw_scale_bar(const struct figure *f)
 
 /* --------------------------------------------------------------------- all */
 
-static void open_svg(const struct figure *f)
+static void open_svg_file(const struct figure *f)
 {
     const double width = f->drawing->width_px;
-    const double height =
-        f->middle + 0.5 * f->height_px + FIGURE_MARGIN_PX + spots_px(f);
+    const double height = f->middle + 0.5 * f->height_px + FIGURE_MARGIN_PX +
+                          spot_diagrams_height_px(f);
 
     fprintf(f->file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" "
@@ -752,31 +766,31 @@ static void open_svg(const struct figure *f)
             "width=\"%.1f\" height=\"%.1f\"/></clipPath></defs>\n"
             "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
             width, height, width, height, f->drawing->lens->name,
-            f->drawing->lens->name, x_px(f, f->z0),
+            f->drawing->lens->name, horizontal_px(f, f->z0),
             f->middle - 0.5 * f->height_px, f->scale * (f->z1 - f->z0),
             f->height_px);
 }
 
 /* Draws the rays to the sensor or along the ghost. PATH receives the ghost's
  * path as text. */
-static void draw_light(struct figure *f, char *path, size_t bytes)
+static void draw_rays_or_ghost(struct figure *f, char *path, size_t bytes)
 {
     const struct lens_drawing *d = f->drawing;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
     double theta = d->angle_deg;
 
     if (d->ghost < 0) {
-        draw_rays(f);
+        draw_field_rays(f);
         return;
     }
     glint_ghost_list(d->lens, ghost, GLINT_MAX_GHOSTS);
     if (theta < 0)
-        theta = find_angle(f, 0.5 * f->film_mm);
-    draw_ghost(f, &ghost[d->ghost], theta);
+        theta = find_angle_of_image_height(f, 0.5 * f->film_mm);
+    draw_ghost_path(f, &ghost[d->ghost], theta);
     snprintf(path, bytes, "; ghost %d, surfaces %d and %d, light at %.3g°",
              d->ghost, ghost[d->ghost].i, ghost[d->ghost].j, theta);
-    draw_number(f, ghost[d->ghost].i);
-    draw_number(f, ghost[d->ghost].j);
+    draw_surface_number(f, ghost[d->ghost].i);
+    draw_surface_number(f, ghost[d->ghost].j);
 }
 
 int lens_drawing_write(const struct lens_drawing *drawing, FILE *file)
@@ -786,20 +800,20 @@ int lens_drawing_write(const struct lens_drawing *drawing, FILE *file)
     char path[96] = "";
 
     glint_optics_of(drawing->lens, &optics);
-    begin_figure(&f);
-    open_svg(&f);
+    begin_lens_figure(&f);
+    open_svg_file(&f);
     draw_axis_and_sensor(&f);
-    draw_glasses(&f);
+    draw_all_glass_elements(&f);
     fprintf(file, "<g clip-path=\"url(#view-%s)\">\n", drawing->lens->name);
-    draw_light(&f, path, sizeof path);
+    draw_rays_or_ghost(&f, path, sizeof path);
     fputs("</g>\n", file);
-    draw_stop(&f, optics.stop_radius_mm);
+    draw_aperture_stop(&f, optics.stop_radius_mm);
     if (drawing->title) {
-        draw_title(&f, &optics, path);
+        draw_figure_title(&f, &optics, path);
         draw_scale_bar(&f);
     }
     if (drawing->spots)
-        draw_spots(&f);
+        draw_all_spot_diagrams(&f);
     fputs("</svg>\n", file);
     return f.shown;
 }

@@ -18,7 +18,7 @@ enum { LINE_CHARS = 200, PATH_CHARS = 1024 };
 /* Copies the cell at *AT, which follows a '|', to CELL without blanks at its
  * ends, and moves *AT after the next '|'. Returns false if there is no '|'
  * or the cell is too long. */
-static bool read_cell(const char **at, char *cell, size_t bytes)
+static bool read_table_cell(const char **at, char *cell, size_t bytes)
 {
     const char *from = *at + strspn(*at, " "), *end = strchr(*at, '|');
     size_t n;
@@ -38,17 +38,19 @@ static bool read_cell(const char **at, char *cell, size_t bytes)
     return true;
 }
 
-static bool read_row(const char *line, const char *name,
-                     struct measured *measured)
+static bool read_table_row(const char *line, const char *name,
+                           struct measured *measured)
 {
     char lens[64];
 
-    return *line++ == '|' && read_cell(&line, lens, sizeof lens) &&
+    return *line++ == '|' && read_table_cell(&line, lens, sizeof lens) &&
            strcmp(lens, name) == 0 &&
-           read_cell(&line, measured->f_number, sizeof measured->f_number) &&
-           read_cell(&line, measured->seconds, sizeof measured->seconds) &&
-           read_cell(&line, measured->kb, sizeof measured->kb) &&
-           read_cell(&line, measured->ms, sizeof measured->ms);
+           read_table_cell(&line, measured->f_number,
+                           sizeof measured->f_number) &&
+           read_table_cell(&line, measured->seconds,
+                           sizeof measured->seconds) &&
+           read_table_cell(&line, measured->kb, sizeof measured->kb) &&
+           read_table_cell(&line, measured->ms, sizeof measured->ms);
 }
 
 enum glint_status measured_find(const char *name, struct measured *measured)
@@ -65,7 +67,7 @@ enum glint_status measured_find(const char *name, struct measured *measured)
 
         failed = *path && !file && errno == ENOMEM;
         while (file && !found && fgets(line, sizeof line, file))
-            found = read_row(line, name, measured);
+            found = read_table_row(line, name, measured);
         failed |= file && !found && ferror(file);
         if (file)
             fclose(file);
@@ -86,7 +88,7 @@ static const double share[ANGLES] = {0.25, 0.5, 0.8};
 
 /* Returns the angle at the fraction AT of the half diagonal by the pinhole
  * projection (f tan), which positions lamps in images. */
-static double angle_deg(const struct opened_lens *lens, double at)
+static double field_angle_deg(const struct opened_lens *lens, double at)
 {
     const double half =
         0.5 * hypot(lens->table.film_width_mm, lens->table.film_height_mm);
@@ -94,10 +96,10 @@ static double angle_deg(const struct opened_lens *lens, double at)
     return atan(at * half / lens->setup.optics.focal_mm) * 180 / GLINT_PI;
 }
 
-static enum glint_status draw_flare(struct glint_engine *engine,
-                                    double theta_deg,
-                                    struct glint_float_image *image,
-                                    float *star, FILE *file)
+static enum glint_status draw_thumbnail_flare(struct glint_engine *engine,
+                                              double theta_deg,
+                                              struct glint_float_image *image,
+                                              float *star, FILE *file)
 {
     const struct glint_lamp lamp = {
         .theta_deg = theta_deg, .phi_deg = 33, .power = 1, .rgb = {1, 1, 1}};
@@ -130,9 +132,9 @@ static enum glint_status draw_flare(struct glint_engine *engine,
     return GLINT_OK;
 }
 
-static int draw_thumbnails(const struct tool *tool,
-                           const struct opened_lens *lens,
-                           const struct settings *s, FILE *file)
+static int draw_lens_thumbnails(const struct tool *tool,
+                                const struct opened_lens *lens,
+                                const struct settings *s, FILE *file)
 {
     const double tall =
         ceil(WIDE * lens->table.film_height_mm / lens->table.film_width_mm);
@@ -154,8 +156,8 @@ static int draw_thumbnails(const struct tool *tool,
     if (image.rgb && star)
         status = glint_engine_create(&engine, &cfg, &error);
     for (int i = 0; i < ANGLES && status == GLINT_OK; i++)
-        status =
-            draw_flare(engine, angle_deg(lens, share[i]), &image, star, file);
+        status = draw_thumbnail_flare(engine, field_angle_deg(lens, share[i]),
+                                      &image, star, file);
     glint_engine_destroy(engine);
     free(star);
     free(image.rgb);
@@ -174,7 +176,7 @@ int thumbnails_write(const struct tool *tool, const struct settings *settings,
     code = opened_lens_open(tool, lens, settings, name);
     *model_bytes = lens->model.bytes;
     if (code == EXIT_OK)
-        code = draw_thumbnails(tool, lens, settings, file);
+        code = draw_lens_thumbnails(tool, lens, settings, file);
     opened_lens_close(lens);
     free(lens);
     return code;
@@ -233,7 +235,7 @@ void page_begin(FILE *file)
 }
 
 /* Writes the data that matter to a photographer who chooses a lens. */
-static void print_numbers(FILE *file, const struct page_card *card)
+static void print_lens_numbers(FILE *file, const struct page_card *card)
 {
     const struct glint_prescription *lens = card->lens;
 
@@ -266,7 +268,7 @@ void page_card_begin(FILE *file, const struct page_card *card)
         html_text(file, card->lens->character);
         fputs("</p>\n", file);
     }
-    print_numbers(file, card);
+    print_lens_numbers(file, card);
     lens_drawing_defaults(&drawing, card->lens);
     drawing.spots = drawing.title = false;
     drawing.width_px = SECTION_PX;

@@ -10,7 +10,7 @@
 #include "model/table_file.h"
 #include "options/suggest.h"
 
-static bool contains_word(const char *text, const char *word)
+static bool contains_search_word(const char *text, const char *word)
 {
     const size_t n = strlen(word);
 
@@ -24,8 +24,9 @@ static bool lens_has_word(const char *name,
                           const struct glint_prescription *lens,
                           const char *word)
 {
-    return contains_word(name, word) || contains_word(lens->source, word) ||
-           contains_word(lens->character, word);
+    return contains_search_word(name, word) ||
+           contains_search_word(lens->source, word) ||
+           contains_search_word(lens->character, word);
 }
 
 bool lens_has_words(const char *name, const struct glint_prescription *lens,
@@ -52,12 +53,12 @@ struct search {
 
 /* Offers each word of TEXT with at least four letters or digits, and the
  * whole TEXT. */
-static void offer_words(struct suggest *suggest, const char *text)
+static void suggest_words_of_text(struct suggest *suggest, const char *text)
 {
     char small[SUGGEST_CHARS];
     size_t n = 0;
 
-    suggest_try(suggest, text, strlen(text));
+    suggest_consider(suggest, text, strlen(text));
     for (;; text++) {
         const int c = tolower((unsigned char)*text);
 
@@ -65,7 +66,7 @@ static void offer_words(struct suggest *suggest, const char *text)
             small[n++] = (char)c;
         else if (!isalnum(c)) {
             if (n > 3)
-                suggest_try(suggest, small, n);
+                suggest_consider(suggest, small, n);
             n = 0;
         }
         if (!c)
@@ -73,31 +74,31 @@ static void offer_words(struct suggest *suggest, const char *text)
     }
 }
 
-static bool search_lens(void *ctx, const char *name)
+static bool search_lens_words(void *ctx, const char *name)
 {
     struct search *s = ctx;
 
     if (tool_lens(s->tool, name, s->lens) != EXIT_OK)
         return true;
     s->found = lens_has_word(name, s->lens, s->word);
-    offer_words(&s->near[OF_NAME], name);
-    offer_words(&s->near[OF_SOURCE], s->lens->source);
-    offer_words(&s->near[OF_CHARACTER], s->lens->character);
+    suggest_words_of_text(&s->near[OF_NAME], name);
+    suggest_words_of_text(&s->near[OF_SOURCE], s->lens->source);
+    suggest_words_of_text(&s->near[OF_CHARACTER], s->lens->character);
     return !s->found;
 }
 
 /* Returns the most similar known word, or NULL. */
-static const char *find_similar(const struct search *s)
+static const char *find_similar_word(const struct search *s)
 {
     const struct suggest *best = &s->near[0];
 
     for (int i = 1; i < N_PLACES; i++)
         if (s->near[i].distance < best->distance)
             best = &s->near[i];
-    return suggest_best(best);
+    return suggest_find_best(best);
 }
 
-int lens_words_missed(const struct tool *tool, char **words, int n)
+int lens_report_unknown_words(const struct tool *tool, char **words, int n)
 {
     struct search s = {
         .tool = tool, .lens = malloc(sizeof *s.lens), .found = true};
@@ -113,10 +114,10 @@ int lens_words_missed(const struct tool *tool, char **words, int n)
             *c = (char)tolower((unsigned char)*c);
         for (int k = 0; k < N_PLACES; k++)
             suggest_begin(&s.near[k], s.small);
-        lens_files_each(search_lens, &s);
+        lens_files_visit_all(search_lens_words, &s);
     }
     free(s.lens);
-    best = find_similar(&s);
+    best = find_similar_word(&s);
     if (s.found)
         fprintf(stderr, "glint lenses: no lens has all of these words in its "
                         "name, source or character\n");
@@ -134,12 +135,12 @@ struct wanted {
     bool found;
 };
 
-static bool compare_name(void *ctx, const char *name)
+static bool compare_lens_name(void *ctx, const char *name)
 {
     struct wanted *w = ctx;
 
     w->found = strcmp(name, w->name) == 0;
-    suggest_try(&w->near, name, strlen(name));
+    suggest_consider(&w->near, name, strlen(name));
     return !w->found;
 }
 
@@ -150,10 +151,10 @@ int lens_names_check(const char *const *names, int n)
         const char *best;
 
         suggest_begin(&w.near, w.name);
-        lens_files_each(compare_name, &w);
+        lens_files_visit_all(compare_lens_name, &w);
         if (w.found)
             continue;
-        best = suggest_best(&w.near);
+        best = suggest_find_best(&w.near);
         fprintf(stderr,
                 "glint lenses: -o, --only: no lens has the name '%s'; %s%s\n",
                 w.name,

@@ -63,15 +63,15 @@ enum glint_status live_output_open(struct live_output *output,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error);
 
-/* Describe an open output. live_output_text() writes a description to TEXT,
- * "" if the output's name suffices, and returns TEXT. live_output_note()
+/* Describe an open output. live_output_describe() writes a description to TEXT,
+ * "" if the output's name suffices, and returns TEXT. live_output_find_note()
  * returns the description of a problem with the output, or NULL. */
-const char *live_output_text(const struct live_output *output, char *text,
-                             size_t size);
-const char *live_output_note(const struct live_output *output);
+const char *live_output_describe(const struct live_output *output, char *text,
+                                 size_t size);
+const char *live_output_find_note(const struct live_output *output);
 
 /* Returns the number of frames that OUTPUT dropped because it was busy. */
-long live_output_dropped(const struct live_output *output);
+long live_output_count_dropped(const struct live_output *output);
 
 /* Closes OUTPUT, unless it is closed already, and renames its file, if any, to
  * its path. */

@@ -29,7 +29,7 @@ void live_adapt_init(struct live_adapt *a)
     *a = (struct live_adapt){.hold_s = HOLD_S, .busy_ms = -1};
 }
 
-static bool change_step(struct live_adapt *a, int by)
+static bool change_quality_step(struct live_adapt *a, int by)
 {
     const int step = a->step + by;
 
@@ -52,7 +52,7 @@ static bool change_step(struct live_adapt *a, int by)
 
 /* Returns the number of steps to go down at once if a frame takes PERIODS
  * frame periods. Each step saves about a third. */
-static int steps_down(const struct live_adapt *a, double periods)
+static int count_steps_down(const struct live_adapt *a, double periods)
 {
     const int wanted = periods > 8 ? 4 : periods > 4 ? 3 : periods > 2 ? 2 : 1;
     const int left = LIVE_MAX_STEP - a->step;
@@ -60,8 +60,8 @@ static int steps_down(const struct live_adapt *a, double periods)
     return left > 0 && left < wanted ? left : wanted;
 }
 
-bool live_adapt_note(struct live_adapt *a, double busy_ms, double period_ms,
-                     int n_missed)
+bool live_adapt_add_frame(struct live_adapt *a, double busy_ms,
+                          double period_ms, int n_missed)
 {
     const double elapsed_s = 1e-3 * period_ms * (1 + n_missed);
 
@@ -71,9 +71,10 @@ bool live_adapt_note(struct live_adapt *a, double busy_ms, double period_ms,
     a->since_s += elapsed_s;
     if (n_missed > 0 || a->busy_ms > TIGHT * period_ms)
         return a->since_s >= SETTLE_S &&
-               change_step(a, steps_down(a, a->busy_ms / period_ms));
+               change_quality_step(a,
+                                   count_steps_down(a, a->busy_ms / period_ms));
     a->below_s = a->busy_ms < SPARE * period_ms ? a->below_s + elapsed_s : 0;
-    return a->below_s >= a->hold_s && change_step(a, -1);
+    return a->below_s >= a->hold_s && change_quality_step(a, -1);
 }
 
 double live_adapt_quality(const struct live_adapt *a)
@@ -81,8 +82,8 @@ double live_adapt_quality(const struct live_adapt *a)
     return a->step > 0 ? step_of[a->step].quality : 1;
 }
 
-struct glint_dials live_adapt_dials(const struct live_adapt *a,
-                                    struct glint_dials asked)
+struct glint_dials live_adapt_set_dials(const struct live_adapt *a,
+                                        struct glint_dials asked)
 {
     struct glint_dials d = asked;
 

@@ -33,12 +33,12 @@ void live_adapt_init(struct live_adapt *adapt);
 
 /* Records a frame that took BUSY_MS of its period PERIOD_MS, after N_MISSED
  * lost frames. Returns whether the step has changed. */
-bool live_adapt_note(struct live_adapt *adapt, double busy_ms, double period_ms,
-                     int n_missed);
+bool live_adapt_add_frame(struct live_adapt *adapt, double busy_ms,
+                          double period_ms, int n_missed);
 
 /* Returns the quality parameters ASKED, coarsened to ADAPT's step. */
-struct glint_dials live_adapt_dials(const struct live_adapt *adapt,
-                                    struct glint_dials asked);
+struct glint_dials live_adapt_set_dials(const struct live_adapt *adapt,
+                                        struct glint_dials asked);
 
 /* Returns the max --quality for drawing a scene at this step. */
 double live_adapt_quality(const struct live_adapt *adapt);

@@ -11,21 +11,21 @@
 #include "formats/paint.h"
 #include "posix/clock.h"
 
-static void ignore_done(struct glint_source *source,
-                        struct glint_source_frame *frame)
+static void ignore_returned_frame(struct glint_source *source,
+                                  struct glint_source_frame *frame)
 {
     (void)source, (void)frame;
 }
 
-static void get_format(const struct glint_source *source,
-                       struct glint_source_format *format)
+static void get_timed_format(const struct glint_source *source,
+                             struct glint_source_format *format)
 {
     *format = ((const struct live_timed *)source)->format;
 }
 
 /* Starts the timer, unless the source has its own descriptor. */
-static enum glint_status start_timer(struct glint_source *source,
-                                     struct glint_error *error)
+static enum glint_status start_frame_timer(struct glint_source *source,
+                                           struct glint_error *error)
 {
     struct live_timed *timed = (struct live_timed *)source;
     const struct glint_source_format *f = &timed->format;
@@ -50,17 +50,18 @@ static enum glint_status start_timer(struct glint_source *source,
  * set, override those of FORMAT. CARD is a description of the source.
  * start() starts a timer and makes it the source's descriptor. The caller
  * sets next() and close(). */
-static void init_timed(struct live_timed *timed,
-                       const struct glint_source_format *format,
-                       const struct glint_v4l2_config *wish, const char *card)
+static void init_timed_source(struct live_timed *timed,
+                              const struct glint_source_format *format,
+                              const struct glint_v4l2_config *wish,
+                              const char *card)
 {
     struct glint_source_format *f = &timed->format;
 
     timed->source = (struct glint_source){.fd = -1,
                                           .has_signal = true,
-                                          .start = start_timer,
-                                          .done = ignore_done,
-                                          .describe = get_format};
+                                          .start = start_frame_timer,
+                                          .done = ignore_returned_frame,
+                                          .describe = get_timed_format};
     timed->format = *format;
     timed->name = wish->device;
     timed->timer = -1;
@@ -82,7 +83,7 @@ static void init_timed(struct live_timed *timed,
 
 /* Returns the number of frames due now. The first is due at once; without a
  * timer one is due at every call. */
-static uint64_t count_due(struct live_timed *timed)
+static uint64_t count_due_frames(struct live_timed *timed)
 {
     uint64_t n = 0;
 
@@ -93,10 +94,10 @@ static uint64_t count_due(struct live_timed *timed)
 
 /* Begins FRAME. Returns the number of frames due since the last call, of
  * which the last is shown; 0 if none is due. */
-static uint64_t begin_frame(struct live_timed *timed,
-                            struct glint_source_frame *frame)
+static uint64_t begin_timed_frame(struct live_timed *timed,
+                                  struct glint_source_frame *frame)
 {
-    const uint64_t n = count_due(timed);
+    const uint64_t n = count_due_frames(timed);
 
     *frame = (struct glint_source_frame){.is_drawable = true};
     if (n > 0)
@@ -105,9 +106,9 @@ static uint64_t begin_frame(struct live_timed *timed,
 }
 
 /* Completes FRAME with IMAGE, the last of N frames due. */
-static void finish_frame(struct live_timed *timed,
-                         struct glint_source_frame *frame,
-                         const struct glint_image *image, uint64_t n)
+static void complete_timed_frame(struct live_timed *timed,
+                                 struct glint_source_frame *frame,
+                                 const struct glint_image *image, uint64_t n)
 {
     frame->image = *image;
     frame->image.range = timed->format.image.range;
@@ -116,7 +117,7 @@ static void finish_frame(struct live_timed *timed,
     frame->n_late = (int)(n - 1);
 }
 
-static void stop_timer(struct live_timed *timed)
+static void stop_frame_timer(struct live_timed *timed)
 {
     if (timed->timer >= 0)
         close(timed->timer);
@@ -136,7 +137,7 @@ static uint32_t hash_bits(uint32_t x)
 
 /* Draws house number HOUSE from the bottom up. Some windows are lit, none so
  * bright that it would count as a lamp. */
-static void build_house(struct live_timed *s, int house)
+static void draw_house(struct live_timed *s, int house)
 {
     const int w = s->image.width, h = s->image.height;
     const int left = house * w / HOUSES, right = (house + 1) * w / HOUSES;
@@ -158,7 +159,7 @@ static void build_house(struct live_timed *s, int house)
         }
 }
 
-static void draw_street(struct live_timed *s)
+static void draw_test_street(struct live_timed *s)
 {
     const int w = s->image.width, h = s->image.height;
 
@@ -166,12 +167,12 @@ static void draw_street(struct live_timed *s)
         memset(s->still + (size_t)y * (size_t)w, DARKEST + 14 * y / h,
                (size_t)w);
     for (int house = 0; house < HOUSES; house++)
-        build_house(s, house);
+        draw_house(s, house);
 }
 
 /* Copies the static street to the frame and adds noise of -1 .. 2 codes that
  * depends on the seed and N. */
-static void start_frame(struct live_timed *s, int64_t n)
+static void draw_frame_background(struct live_timed *s, int64_t n)
 {
     const int w = s->image.width;
     uint32_t bits = hash_bits(s->seed * 2654435761u + (uint32_t)n) | 1;
@@ -212,7 +213,7 @@ static void add_lamp(struct live_timed *s, double cx, double cy, double radius)
 }
 
 /* Draws frame N. */
-static void draw_test(struct live_timed *s, int64_t n)
+static void draw_test_frame(struct live_timed *s, int64_t n)
 {
     const struct glint_image *i = &s->image;
     const double per_second = (double)s->format.fps_num / s->format.fps_den;
@@ -223,7 +224,7 @@ static void draw_test(struct live_timed *s, int64_t n)
         paint_black(i);
         return;
     }
-    start_frame(s, n);
+    draw_frame_background(s, n);
     for (int p = 1; p < 3; p++) /* chroma of a bluish night */
         for (int y = 0; y < glint_image_plane_height(i->format, p, i->height);
              y++)
@@ -236,34 +237,34 @@ static void draw_test(struct live_timed *s, int64_t n)
 
 /* ------------------------------------------------------------------- source */
 
-static enum glint_status next_test(struct glint_source *source,
-                                   struct glint_source_frame *frame,
-                                   struct glint_error *error)
+static enum glint_status next_test_frame(struct glint_source *source,
+                                         struct glint_source_frame *frame,
+                                         struct glint_error *error)
 {
     struct live_timed *s = (struct live_timed *)source;
-    const uint64_t n = begin_frame(s, frame);
+    const uint64_t n = begin_timed_frame(s, frame);
 
     (void)error;
     if (n == 0)
         return GLINT_OK;
     s->n += (int64_t)n;
-    draw_test(s, s->n - 1);
-    finish_frame(s, frame, &s->image, n);
+    draw_test_frame(s, s->n - 1);
+    complete_timed_frame(s, frame, &s->image, n);
     return GLINT_OK;
 }
 
-static void close_test(struct glint_source *source)
+static void close_test_image(struct glint_source *source)
 {
     struct live_timed *s = (struct live_timed *)source;
 
-    stop_timer(s);
+    stop_frame_timer(s);
     free(s->mem);
     s->mem = NULL;
 }
 
 /* Returns the format of the test image: limited range, the size of WISH or
  * 640 x 360, without memory. */
-static struct glint_image make_format(const struct glint_v4l2_config *wish)
+static struct glint_image set_test_format(const struct glint_v4l2_config *wish)
 {
     const int width = wish->width ? wish->width : 640;
     const int height = wish->width ? wish->height : 360;
@@ -277,7 +278,7 @@ static struct glint_image make_format(const struct glint_v4l2_config *wish)
                                 .transfer = GLINT_TONE_BT709};
 }
 
-static enum glint_status allocate_images(struct live_timed *s)
+static enum glint_status allocate_test_images(struct live_timed *s)
 {
     const int w = s->image.width, h = s->image.height;
     const size_t luma = (size_t)w * (size_t)h;
@@ -287,7 +288,7 @@ static enum glint_status allocate_images(struct live_timed *s)
         return GLINT_E_MEMORY;
     s->still = s->mem;
     glint_image_place(&s->image, s->still + luma);
-    draw_street(s);
+    draw_test_street(s);
     return GLINT_OK;
 }
 
@@ -295,12 +296,12 @@ static enum glint_status allocate_images(struct live_timed *s)
  * per side, rate, range and matrix. SEED seeds the noise. The lamp circles
  * in eight seconds. IS_BLACK: all frames are black. On failure TEST is
  * closed. Errors: GLINT_E_UNSUPPORTED, GLINT_E_MEMORY, GLINT_E_DEVICE. */
-static enum glint_status open_test(struct live_timed *test,
-                                   const struct glint_v4l2_config *wish,
-                                   uint32_t seed, bool is_black,
-                                   struct glint_error *error)
+static enum glint_status open_test_image(struct live_timed *test,
+                                         const struct glint_v4l2_config *wish,
+                                         uint32_t seed, bool is_black,
+                                         struct glint_error *error)
 {
-    const struct glint_image image = make_format(wish);
+    const struct glint_image image = set_test_format(wish);
 
     if (image.width < 16 || image.height < 16 ||
         image.width > GLINT_PANEL_SIDE || image.height > GLINT_PANEL_SIDE)
@@ -309,25 +310,25 @@ static enum glint_status open_test(struct live_timed *test,
                                   GLINT_PANEL_SIDE);
     *test =
         (struct live_timed){.image = image, .seed = seed, .is_black = is_black};
-    if (allocate_images(test) != GLINT_OK)
+    if (allocate_test_images(test) != GLINT_OK)
         return glint_error_report(error, GLINT_E_MEMORY, "test",
                                   "no memory for %d x %d pixels", image.width,
                                   image.height);
-    init_timed(test, &(struct glint_source_format){.image = image}, wish,
-               is_black ? "black" : "a lamp over a night street");
-    test->source.next = next_test;
-    test->source.close = close_test;
+    init_timed_source(test, &(struct glint_source_format){.image = image}, wish,
+                      is_black ? "black" : "a lamp over a night street");
+    test->source.next = next_test_frame;
+    test->source.close = close_test_image;
     return GLINT_OK;
 }
 
 /* Shows the last frame due, or the last frame of the video if it ends
  * before. Skipped frames count as late. */
-static enum glint_status next_video(struct glint_source *source,
-                                    struct glint_source_frame *frame,
-                                    struct glint_error *error)
+static enum glint_status next_video_frame(struct glint_source *source,
+                                          struct glint_source_frame *frame,
+                                          struct glint_error *error)
 {
     struct live_timed *v = (struct live_timed *)source;
-    const uint64_t n = begin_frame(v, frame);
+    const uint64_t n = begin_timed_frame(v, frame);
     const struct glint_image *image = NULL, *after = NULL;
     uint64_t n_read = 0;
 
@@ -344,23 +345,23 @@ static enum glint_status next_video(struct glint_source *source,
     }
     v->n += (int64_t)n_read;
     if (image)
-        finish_frame(v, frame, image, n_read);
+        complete_timed_frame(v, frame, image, n_read);
     return n > 0 && !image ? GLINT_E_CLOSED : GLINT_OK;
 }
 
-static void close_video(struct glint_source *source)
+static void close_video_input(struct glint_source *source)
 {
     struct live_timed *v = (struct live_timed *)source;
 
-    stop_timer(v);
+    stop_frame_timer(v);
     glint_y4m_reader_close(&v->reader);
 }
 
 /* Opens the video that is the device of WISH, FILE.y4m or "-". WISH may
  * override rate, range and matrix. On failure VIDEO is closed. */
-static enum glint_status open_video(struct live_timed *video,
-                                    const struct glint_v4l2_config *wish,
-                                    struct glint_error *error)
+static enum glint_status open_video_input(struct live_timed *video,
+                                          const struct glint_v4l2_config *wish,
+                                          struct glint_error *error)
 {
     const struct glint_y4m_header *h = &video->reader.header;
     const enum glint_status status =
@@ -368,7 +369,7 @@ static enum glint_status open_video(struct live_timed *video,
 
     if (status != GLINT_OK)
         return status;
-    init_timed(
+    init_timed_source(
         video,
         &(struct glint_source_format){.image = {.format = h->format,
                                                 .width = h->width,
@@ -379,21 +380,22 @@ static enum glint_status open_video(struct live_timed *video,
                                       .fps_num = h->fps_num,
                                       .fps_den = h->fps_den},
         wish, "a video");
-    video->source.next = next_video;
-    video->source.close = close_video;
+    video->source.next = next_video_frame;
+    video->source.close = close_video_input;
     if (strcmp(wish->device, "-") == 0)
         video->source.fd = video->reader.in.fd;
     return GLINT_OK;
 }
 
-static bool is_test(const char *name)
+static bool is_test_device(const char *name)
 {
     return strcmp(name, "test") == 0 || strcmp(name, "none") == 0;
 }
 
 bool live_input_is_camera(const char *name)
 {
-    return !is_test(name) && !glint_y4m_is_name(name) && strcmp(name, "-") != 0;
+    return !is_test_device(name) && !glint_y4m_is_name(name) &&
+           strcmp(name, "-") != 0;
 }
 
 enum glint_status live_input_open(struct live_input *input,
@@ -408,13 +410,13 @@ enum glint_status live_input_open(struct live_input *input,
         source = &input->as.camera.source;
         status = glint_v4l2_open(&input->as.camera, &wish->camera, wish->io,
                                  wish->n_buffers, error);
-    } else if (is_test(name)) {
+    } else if (is_test_device(name)) {
         source = &input->as.timed.source;
-        status = open_test(&input->as.timed, &wish->camera, seed,
-                           strcmp(name, "none") == 0, error);
+        status = open_test_image(&input->as.timed, &wish->camera, seed,
+                                 strcmp(name, "none") == 0, error);
     } else {
         source = &input->as.timed.source;
-        status = open_video(&input->as.timed, &wish->camera, error);
+        status = open_video_input(&input->as.timed, &wish->camera, error);
     }
     input->source = status == GLINT_OK ? source : NULL;
     return status;
@@ -438,7 +440,7 @@ void live_input_close(struct live_input *input)
 }
 
 /* Returns whether NAME has a file extension, unlike devices. */
-static bool is_file_name(const char *name)
+static bool has_file_extension(const char *name)
 {
     const char *const slash = strrchr(name, '/');
 
@@ -450,7 +452,7 @@ int live_input_fail(const struct live_log *log, const char *device,
 {
     char text[sizeof error->text + 120];
 
-    if (status == GLINT_E_DEVICE && is_file_name(device)) {
+    if (status == GLINT_E_DEVICE && has_file_extension(device)) {
         snprintf(text, sizeof text,
                  "%.160s: no camera; videos and pictures are for glint "
                  "overlay, or 'ffmpeg -i FILE -f yuv4mpegpipe - | glint live "
@@ -458,7 +460,7 @@ int live_input_fail(const struct live_log *log, const char *device,
                  device);
         return tool_fail(log->tool, status, text);
     }
-    return live_log_fail(
+    return live_log_print_error(
         log, status, error,
         live_input_is_camera(device) ? "-d test, or a .y4m file" : NULL);
 }

@@ -18,7 +18,7 @@ static const char *const stage_names[LIVE_N_STAGES] = {
 
 /* ---------------------------------------------------------------- counting */
 
-static void start_sums(struct live_sums *sums, int64_t now_us)
+static void start_frame_sums(struct live_sums *sums, int64_t now_us)
 {
     memset(sums, 0, sizeof *sums);
     sums->began_us = now_us;
@@ -26,8 +26,8 @@ static void start_sums(struct live_sums *sums, int64_t now_us)
 
 void live_stats_start(struct live_stats *stats, int64_t now_us)
 {
-    start_sums(&stats->second, now_us);
-    start_sums(&stats->total, now_us);
+    start_frame_sums(&stats->second, now_us);
+    start_frame_sums(&stats->total, now_us);
 }
 
 bool live_stats_due(const struct live_stats *stats, int64_t now_us)
@@ -35,9 +35,9 @@ bool live_stats_due(const struct live_stats *stats, int64_t now_us)
     return now_us - stats->second.began_us >= SECOND_US;
 }
 
-void live_stats_next(struct live_stats *stats, int64_t now_us)
+void live_stats_begin_second(struct live_stats *stats, int64_t now_us)
 {
-    start_sums(&stats->second, now_us);
+    start_frame_sums(&stats->second, now_us);
 }
 
 /* Counts a latency of US microseconds. If a bin is full, all bins are
@@ -54,7 +54,8 @@ static void count_latency(struct live_sums *s, int64_t us)
     s->longest_us = us > s->longest_us ? us : s->longest_us;
 }
 
-static void add_frame(struct live_sums *s, const struct live_frame_times *t)
+static void add_frame_to_sums(struct live_sums *s,
+                              const struct live_frame_times *t)
 {
     s->frames++;
     for (int i = 0; i < LIVE_N_STAGES; i++)
@@ -67,20 +68,21 @@ static void add_frame(struct live_sums *s, const struct live_frame_times *t)
     s->reused += t->reused;
 }
 
-static void add_to_sums(struct live_sums *s, const struct live_frame_times *t)
+static void add_frame_to_all_sums(struct live_sums *s,
+                                  const struct live_frame_times *t)
 {
     s->drops += (unsigned)t->n_dropped;
     s->late += (unsigned)t->n_late;
     s->corrupt += (unsigned)t->n_corrupt;
     if (t->shown)
-        add_frame(s, t);
+        add_frame_to_sums(s, t);
 }
 
 void live_stats_add(struct live_stats *stats,
                     const struct live_frame_times *times)
 {
-    add_to_sums(&stats->second, times);
-    add_to_sums(&stats->total, times);
+    add_frame_to_all_sums(&stats->second, times);
+    add_frame_to_all_sums(&stats->total, times);
 }
 
 /* --------------------------------------------------------------- evaluating */
@@ -140,8 +142,8 @@ append(struct writer *w, const char *format, ...)
 
 /* Writes SUM / number of frames, with DIGITS after the point, or null if there
  * are no frames. */
-static void append_mean(struct writer *w, const struct live_sums *s, double sum,
-                        int digits)
+static void append_mean_ms(struct writer *w, const struct live_sums *s,
+                           double sum, int digits)
 {
     if (s->frames)
         append(w, "%.*f", digits, sum / (double)s->frames);
@@ -149,8 +151,8 @@ static void append_mean(struct writer *w, const struct live_sums *s, double sum,
         append(w, "null");
 }
 
-static void append_latency(struct writer *w, const struct live_sums *s,
-                           int percent)
+static void append_latency_ms(struct writer *w, const struct live_sums *s,
+                              int percent)
 {
     if (s->frames)
         append(w, "%.2f", live_stats_latency_ms(s, percent));
@@ -159,7 +161,7 @@ static void append_latency(struct writer *w, const struct live_sums *s,
 }
 
 /* Returns whether STAGE is reported: LIVE_SCENE only in a run with a scene. */
-static bool is_reported(const struct live_stats *stats, int stage)
+static bool is_stage_reported(const struct live_stats *stats, int stage)
 {
     return stage != LIVE_SCENE || stats->total.stage_us[LIVE_SCENE] > 0;
 }
@@ -175,26 +177,26 @@ char *live_stats_json(const struct live_stats *stats, int64_t now_us,
            ",\"late\":%" PRIu64 ",\"corrupt\":%" PRIu64 ",\"latency_ms_p50\":",
            seconds_since(stats->total.began_us, now_us), compute_fps(s, now_us),
            s->frames, s->drops, s->late, s->corrupt);
-    append_latency(&w, s, 50);
+    append_latency_ms(&w, s, 50);
     append(&w, ",\"latency_ms_p99\":");
-    append_latency(&w, s, 99);
+    append_latency_ms(&w, s, 99);
     append(&w, ",\"ms\":{");
     for (int i = 0; i < LIVE_N_STAGES; i++) {
-        if (!is_reported(stats, i))
+        if (!is_stage_reported(stats, i))
             continue;
         append(&w, "%s\"%s\":", i ? "," : "", stage_names[i]);
-        append_mean(&w, s, 1e-3 * (double)s->stage_us[i], 3);
+        append_mean_ms(&w, s, 1e-3 * (double)s->stage_us[i], 3);
     }
     append(&w, "},\"lights\":%d,\"ghosts\":%d,\"bytes\":%zu,\"quality\":",
            s->most_lights, s->most_ghosts, s->most_bytes);
-    append_mean(&w, s, s->quality, 3);
+    append_mean_ms(&w, s, s->quality, 3);
     append(&w, ",\"reused\":%" PRIu64, s->reused);
     append(&w, "%s}", total ? ",\"total\":true" : "");
     return text;
 }
 
-static void append_summary(struct writer *w, const struct live_stats *stats,
-                           int64_t now_us)
+static void append_summary_text(struct writer *w,
+                                const struct live_stats *stats, int64_t now_us)
 {
     const struct live_sums *const s = &stats->second;
     const struct live_sums *const t = &stats->total;
@@ -211,16 +213,16 @@ static void append_summary(struct writer *w, const struct live_stats *stats,
         append(w, "  q %.2f", s->quality / (double)s->frames);
 }
 
-static void append_stages(struct writer *w, const struct live_stats *stats)
+static void append_stage_times(struct writer *w, const struct live_stats *stats)
 {
     const struct live_sums *const s = &stats->second;
 
     append(w, "  ms:");
     for (int i = 0; i < LIVE_N_STAGES; i++) {
-        if (!is_reported(stats, i))
+        if (!is_stage_reported(stats, i))
             continue;
         append(w, " %s ", stage_names[i]);
-        append_mean(w, s, 1e-3 * (double)s->stage_us[i], 2);
+        append_mean_ms(w, s, 1e-3 * (double)s->stage_us[i], 2);
     }
     append(w, "  %zu bytes\n", s->most_bytes);
 }
@@ -231,13 +233,13 @@ char *live_stats_line(const struct live_stats *stats, int64_t now_us,
     struct writer w = {text, 0, LIVE_STATS_TEXT};
 
     if (!terminal) {
-        append_summary(&w, stats, now_us);
-        append_stages(&w, stats);
+        append_summary_text(&w, stats, now_us);
+        append_stage_times(&w, stats);
         return text;
     }
     append(&w, "\r");
     w.room = 1 + COLUMNS + 1; /* a wrapped line could not be overwritten */
-    append_summary(&w, stats, now_us);
+    append_summary_text(&w, stats, now_us);
     w.room = LIVE_STATS_TEXT;
     append(&w, "\033[K");
     return text;
@@ -256,20 +258,20 @@ void live_log_init(struct live_log *log, const struct tool *tool,
 }
 
 /* Returns whether statistics overwrite one line of a terminal. */
-static bool is_line(const struct live_log *log)
+static bool is_terminal_line_overwritten(const struct live_log *log)
 {
     return log->report == LIVE_REPORT_LINE && isatty(STDERR_FILENO);
 }
 
-void live_log_say(const struct live_log *log, const char *text)
+void live_log_print(const struct live_log *log, const char *text)
 {
     if (!log->tool->quiet)
-        fprintf(stderr, "%sglint live: %s\n", is_line(log) ? "\r\033[K" : "",
-                text);
+        fprintf(stderr, "%sglint live: %s\n",
+                is_terminal_line_overwritten(log) ? "\r\033[K" : "", text);
 }
 
-int live_log_fail(const struct live_log *log, enum glint_status status,
-                  const struct glint_error *error, const char *instead)
+int live_log_print_error(const struct live_log *log, enum glint_status status,
+                         const struct glint_error *error, const char *instead)
 {
     char text[sizeof error->text + 80];
 
@@ -279,7 +281,8 @@ int live_log_fail(const struct live_log *log, enum glint_status status,
     return tool_fail(log->tool, status, text);
 }
 
-void live_log_short(struct live_log *log, const struct glint_flare_stats *of)
+void live_log_warn_memory(struct live_log *log,
+                          const struct glint_flare_stats *of)
 {
     char text[160];
 
@@ -292,10 +295,10 @@ void live_log_short(struct live_log *log, const struct glint_flare_stats *of)
              "of %d edges are left out",
              of->dropped_bundles, of->need_bundles,
              of->need_primitives - of->primitives, of->need_primitives);
-    live_log_say(log, text);
+    live_log_print(log, text);
 }
 
-static void print_report(const struct live_log *log, bool total)
+static void print_statistics(const struct live_log *log, bool total)
 {
     const int64_t now_us = glint_now_us();
     char text[LIVE_STATS_TEXT];
@@ -306,26 +309,28 @@ static void print_report(const struct live_log *log, bool total)
         fprintf(out, "%s\n", live_stats_json(&log->stats, now_us, total, text));
         fflush(out);
     } else if (log->report == LIVE_REPORT_LINE && !total)
-        fputs(live_stats_line(&log->stats, now_us, is_line(log), text), stderr);
+        fputs(live_stats_line(&log->stats, now_us,
+                              is_terminal_line_overwritten(log), text),
+              stderr);
 }
 
-void live_log_second(struct live_log *log, bool is_asked)
+void live_log_print_second(struct live_log *log, bool is_asked)
 {
     const int64_t now_us = glint_now_us();
 
     if (!live_stats_due(&log->stats, now_us) && !is_asked)
         return;
-    print_report(log, false);
-    live_stats_next(&log->stats, now_us);
+    print_statistics(log, false);
+    live_stats_begin_second(&log->stats, now_us);
 }
 
-void live_log_conclude(struct live_log *log, bool is_well, int n_shown,
-                       long n_refused)
+void live_log_print_summary(struct live_log *log, bool is_well, int n_shown,
+                            long n_refused)
 {
     const struct live_sums *t = &log->stats.total;
     char text[200];
 
-    print_report(log, true);
+    print_statistics(log, true);
     if (log->report != LIVE_REPORT_LINE || !is_well || n_shown == 0)
         return;
     snprintf(text, sizeof text,
@@ -334,11 +339,11 @@ void live_log_conclude(struct live_log *log, bool is_well, int n_shown,
              n_shown, n_refused, (unsigned long long)t->drops,
              (unsigned long long)t->late, (unsigned long long)t->corrupt,
              live_stats_latency_ms(t, 50), live_stats_latency_ms(t, 99));
-    live_log_say(log, text);
+    live_log_print(log, text);
     if (log->n_short) {
         snprintf(text, sizeof text,
                  "%d frames are incomplete because --memory is too small",
                  log->n_short);
-        live_log_say(log, text);
+        live_log_print(log, text);
     }
 }

@@ -90,11 +90,11 @@ void live_stats_add(struct live_stats *stats,
                     const struct live_frame_times *times);
 
 /* Returns whether a second has passed since live_stats_start() or
- * live_stats_next(). */
+ * live_stats_begin_second(). */
 bool live_stats_due(const struct live_stats *stats, int64_t now_us);
 
 /* Begins the next second. */
-void live_stats_next(struct live_stats *stats, int64_t now_us);
+void live_stats_begin_second(struct live_stats *stats, int64_t now_us);
 
 /* Returns the latency in ms that PERCENT of the frames (1 .. 100) do not
  * exceed, or -1 if there are no frames. */
@@ -122,24 +122,25 @@ void live_log_init(struct live_log *log, const struct tool *tool,
 
 /* Prints ERROR, and, if a device is missing, the advice INSTEAD, unless NULL.
  * Returns an exit code. */
-int live_log_fail(const struct live_log *log, enum glint_status status,
-                  const struct glint_error *error, const char *instead);
+int live_log_print_error(const struct live_log *log, enum glint_status status,
+                         const struct glint_error *error, const char *instead);
 
 /* Prints TEXT on a line of its own, unless -q is given. */
-void live_log_say(const struct live_log *log, const char *text);
+void live_log_print(const struct live_log *log, const char *text);
 
 /* Counts a frame that, by its statistics OF, was drawn incompletely because
  * of the memory limit. Reports the first such frame. */
-void live_log_short(struct live_log *log, const struct glint_flare_stats *of);
+void live_log_warn_memory(struct live_log *log,
+                          const struct glint_flare_stats *of);
 
 /* If the second is over or IS_ASKED, prints its statistics and begins the next
  * second. */
-void live_log_second(struct live_log *log, bool is_asked);
+void live_log_print_second(struct live_log *log, bool is_asked);
 
 /* Prints the statistics of the run, and how many of N_SHOWN frames were
  * incomplete or were refused by the output (N_REFUSED). IS_WELL: the run did
  * not fail. */
-void live_log_conclude(struct live_log *log, bool is_well, int n_shown,
-                       long n_refused);
+void live_log_print_summary(struct live_log *log, bool is_well, int n_shown,
+                            long n_refused);
 
 #endif

@@ -43,7 +43,7 @@ struct live {
 /* --------------------------------------------------------------------- made */
 
 /* Queries and prints the format of the input. */
-static void read_format(struct live *l)
+static void read_input_format(struct live *l)
 {
     const struct glint_source *source = l->in.source;
 
@@ -51,26 +51,27 @@ static void read_format(struct live *l)
     l->n_restarts = source->n_restarts;
 }
 
-static enum glint_status start_input(struct live *l, struct glint_error *error)
+static enum glint_status start_live_input(struct live *l,
+                                          struct glint_error *error)
 {
     const enum glint_status status = live_input_start(&l->in, error);
 
     if (status != GLINT_OK)
         return status;
-    live_log_say(&l->log, l->format.text);
+    live_log_print(&l->log, l->format.text);
     if (l->tool->verbose && l->format.detail)
-        live_log_say(&l->log, l->format.detail);
+        live_log_print(&l->log, l->format.detail);
     return GLINT_OK;
 }
 
-static void print_output(const struct live *l)
+static void print_output_description(const struct live *l)
 {
     char text[320];
 
-    if (*live_output_text(&l->output, text, sizeof text))
-        live_log_say(&l->log, text);
-    if (l->tool->verbose && live_output_note(&l->output))
-        live_log_say(&l->log, live_output_note(&l->output));
+    if (*live_output_describe(&l->output, text, sizeof text))
+        live_log_print(&l->log, text);
+    if (l->tool->verbose && live_output_find_note(&l->output))
+        live_log_print(&l->log, live_output_find_note(&l->output));
 }
 
 static enum glint_status open_camera(struct live *l, struct glint_error *error)
@@ -87,7 +88,7 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     return GLINT_OK;
 }
 
-static int open_output(struct live *l, const struct glint_image *image)
+static int open_live_output(struct live *l, const struct glint_image *image)
 {
     struct glint_error error = {""};
     enum glint_status status;
@@ -99,15 +100,15 @@ static int open_output(struct live *l, const struct glint_image *image)
     status = live_output_open(&l->output, image, l->format.fps_num,
                               l->format.fps_den, &error);
     if (status == GLINT_OK)
-        print_output(l);
+        print_output_description(l);
     if (status == GLINT_OK || (l->retry_us && status == GLINT_E_DEVICE)) {
         l->retry_us = glint_now_us() + 1000 * RETRY_MS;
         return EXIT_OK;
     }
-    return live_log_fail(&l->log, status, &error,
-                         l->output.kind == LIVE_OUTPUT_FB
-                             ? "-o window, or -o y4m:- into a player"
-                             : NULL);
+    return live_log_print_error(&l->log, status, &error,
+                                l->output.kind == LIVE_OUTPUT_FB
+                                    ? "-o window, or -o y4m:- into a player"
+                                    : NULL);
 }
 
 /* Applies the current quality step to flare and scene. Returns an exit code. */
@@ -119,7 +120,7 @@ static int apply_quality_step(struct live *l)
 
     if (drawing->run.engine)
         glint_engine_set_dials(drawing->run.engine,
-                               live_adapt_dials(&l->adapt, l->asked));
+                               live_adapt_set_dials(&l->adapt, l->asked));
     return status == GLINT_OK ? EXIT_OK : tool_fail(l->tool, status, NULL);
 }
 
@@ -142,41 +143,41 @@ static int prepare_drawing(struct live *l, const struct glint_image *image)
 
 /* Sets up for the input's format: drawing and output. Returns an exit
  * code. */
-static int set_up(struct live *l)
+static int set_up_drawing_and_output(struct live *l)
 {
     int code;
 
-    read_format(l);
+    read_input_format(l);
     code = prepare_drawing(l, &l->format.image);
-    return code == EXIT_OK ? open_output(l, &l->format.image) : code;
+    return code == EXIT_OK ? open_live_output(l, &l->format.image) : code;
 }
 
 /* ------------------------------------------------------------------- frames */
 
-static void save_snapshot(struct live *l, const struct glint_image *image)
+static void save_snapshot_image(struct live *l, const struct glint_image *image)
 {
     struct glint_error error = {""};
     char name[LIVE_NAME_BYTES], text[LIVE_NAME_BYTES + 320];
     enum glint_status status;
 
     snprintf(name, sizeof name, l->o->snapshot, ++l->n_snapshots);
-    status = live_save(name, image, &error);
+    status = live_save_image(name, image, &error);
     snprintf(text, sizeof text, "snapshot %s%s%s", name,
              status == GLINT_OK ? "" : ": ",
              status == GLINT_OK ? ""
              : *error.text      ? error.text
                                 : glint_status_text(status));
-    live_log_say(&l->log, text);
+    live_log_print(&l->log, text);
 }
 
-static double period_ms(const struct live *l)
+static double frame_period_ms(const struct live *l)
 {
     const struct glint_source_format *f = &l->format;
 
     return f->fps_num ? 1e3 * f->fps_den / f->fps_num : 0;
 }
 
-static bool is_adaptive(const struct live_options *o)
+static bool is_quality_adaptive(const struct live_options *o)
 {
     return o->adaptive == LIVE_ADAPTIVE ||
            (o->adaptive == LIVE_ADAPTIVE_CAMERA &&
@@ -189,27 +190,28 @@ static void adapt_quality(struct live *l, int64_t busy_us, int n_missed)
     const int before = l->adapt.step;
     char text[96];
 
-    if (!is_adaptive(l->o) || period_ms(l) == 0 ||
-        !live_adapt_note(&l->adapt, 1e-3 * (double)busy_us, period_ms(l),
-                         n_missed))
+    if (!is_quality_adaptive(l->o) || frame_period_ms(l) == 0 ||
+        !live_adapt_add_frame(&l->adapt, 1e-3 * (double)busy_us,
+                              frame_period_ms(l), n_missed))
         return;
     apply_quality_step(l);
     snprintf(text, sizeof text, "quality %s: step %d of %d%s",
              l->adapt.step > before ? "lowered to hold the rate" : "raised",
              l->adapt.step, LIVE_MAX_STEP,
              l->adapt.step == LIVE_MAX_STEP ? ", which is the last" : "");
-    live_log_say(&l->log, text);
+    live_log_print(&l->log, text);
 }
 
-static int64_t to_us(double ms)
+static int64_t convert_s_to_us(double ms)
 {
     return (int64_t)(1e3 * ms);
 }
 
 /* Adds FRAME to the statistics. AT_US[4]: times at which it was received,
  * copied, drawn and shown; NULL: there was no frame to show. */
-static void record_frame(struct live *l, const struct glint_source_frame *frame,
-                         const int64_t *at_us)
+static void record_frame_statistics(struct live *l,
+                                    const struct glint_source_frame *frame,
+                                    const int64_t *at_us)
 {
     const struct drawing *drawing = &l->o->drawing;
     struct live_frame_times t = {.shown = at_us != NULL,
@@ -221,11 +223,11 @@ static void record_frame(struct live *l, const struct glint_source_frame *frame,
         t.captured_us = frame->time_us;
         t.shown_us = at_us[3];
         t.stage_us[LIVE_CONVERT] = at_us[1] - at_us[0];
-        t.stage_us[LIVE_FIND] = to_us(drawing->run.find_ms);
-        t.stage_us[LIVE_SCENE] = to_us(drawing->files.scene.ms);
-        t.stage_us[LIVE_PLAN] = to_us(drawing->run.report.plan_ms);
-        t.stage_us[LIVE_BIN] = to_us(drawing->run.report.bin_ms);
-        t.stage_us[LIVE_DRAW] = to_us(drawing->run.report.draw_ms);
+        t.stage_us[LIVE_FIND] = convert_s_to_us(drawing->run.find_ms);
+        t.stage_us[LIVE_SCENE] = convert_s_to_us(drawing->files.scene.ms);
+        t.stage_us[LIVE_PLAN] = convert_s_to_us(drawing->run.report.plan_ms);
+        t.stage_us[LIVE_BIN] = convert_s_to_us(drawing->run.report.bin_ms);
+        t.stage_us[LIVE_DRAW] = convert_s_to_us(drawing->run.report.draw_ms);
         t.stage_us[LIVE_SHOW] = at_us[3] - at_us[2];
         t.lights = drawing->run.report.drawn_lights;
         t.ghosts = drawing->run.report.ghosts;
@@ -250,7 +252,7 @@ static int handle_device_loss(struct live *l, const char *what,
     if (!l->o->reconnect || status != GLINT_E_DEVICE)
         return tool_fail(l->tool, status, why);
     snprintf(text, sizeof text, "%s; waiting for the %s", why, what);
-    live_log_say(&l->log, text);
+    live_log_print(&l->log, text);
     return -1;
 }
 
@@ -277,15 +279,15 @@ static int retry_camera(struct live *l)
     struct glint_error error = {""};
 
     if (open_camera(l, &error) == GLINT_OK) {
-        const int code = set_up(l);
+        const int code = set_up_drawing_and_output(l);
 
         if (code != EXIT_OK)
             return code;
-        if (start_input(l, &error) == GLINT_OK)
+        if (start_live_input(l, &error) == GLINT_OK)
             return -1;
     }
     if (strcmp(error.text, l->why.text) != 0)
-        live_log_say(&l->log, error.text);
+        live_log_print(&l->log, error.text);
     l->why = error;
     live_signals_wait(-1, RETRY_MS);
     return -1;
@@ -318,7 +320,7 @@ static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
 
     at_us[0] = taken_us; /* includes the decoding of a JPEG */
     if (!frame->is_drawable)
-        image = live_copy(&l->copy, image);
+        image = live_copy_image(&l->copy, image);
     code = image ? prepare_drawing(l, image)
                  : tool_fail(l->tool, GLINT_E_MEMORY, "");
     if (code != EXIT_OK)
@@ -327,17 +329,17 @@ static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
     status = drawing_draw(drawing, image, elapsed_us(l, frame->time_us));
     if (status != GLINT_OK)
         return tool_fail(l->tool, status, NULL);
-    live_log_short(&l->log, &drawing->run.report.stats);
-    if (live_signal(LIVE_SNAPSHOT))
-        save_snapshot(l, image);
-    code = open_output(l, image);
+    live_log_warn_memory(&l->log, &drawing->run.report.stats);
+    if (live_signals_is_raised(LIVE_SNAPSHOT))
+        save_snapshot_image(l, image);
+    code = open_live_output(l, image);
     if (code != EXIT_OK)
         return code;
     at_us[2] = glint_now_us();
     if (l->output.sink)
         status = l->output.sink->put(l->output.sink, image, &error);
     at_us[3] = glint_now_us();
-    record_frame(l, frame, at_us);
+    record_frame_statistics(l, frame, at_us);
     adapt_quality(l, at_us[3] - at_us[0],
                   l->n_shown ? frame->n_dropped + frame->n_late : 0);
     l->n_shown++;
@@ -346,12 +348,12 @@ static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
 
 /* ---------------------------------------------------------------- the loop */
 
-static void report_signal(struct live *l)
+static void report_stop_signal(struct live *l)
 {
     const bool has = l->in.source->has_signal;
 
     if (has != l->had_signal)
-        live_log_say(
+        live_log_print(
             &l->log,
             has ? "the camera has a signal again"
                 : "the camera reports no signal; its frames may be blank");
@@ -363,18 +365,18 @@ static void report_signal(struct live *l)
 static int restart_input(struct live *l)
 {
     struct glint_error error = {""};
-    const int code = set_up(l);
+    const int code = set_up_drawing_and_output(l);
     enum glint_status status;
 
     if (code != EXIT_OK)
         return code;
-    status = start_input(l, &error);
+    status = start_live_input(l, &error);
     return status == GLINT_OK ? -1 : handle_camera_loss(l, status, error.text);
 }
 
 /* Gets a frame from the input and shows it, if there is one. Returns -1 to
  * continue, or an exit code. */
-static int process_frame(struct live *l)
+static int process_next_frame(struct live *l)
 {
     struct glint_source *const source = l->in.source;
     struct glint_source_frame frame;
@@ -385,9 +387,9 @@ static int process_frame(struct live *l)
 
     if (status != GLINT_OK)
         return handle_camera_loss(l, status, error.text);
-    report_signal(l);
+    report_stop_signal(l);
     if (!frame.image.plane[0]) {
-        record_frame(l, &frame, NULL);
+        record_frame_statistics(l, &frame, NULL);
         return source->n_restarts != l->n_restarts ? restart_input(l) : -1;
     }
     if (l->o->skip > 0)
@@ -400,7 +402,8 @@ static int process_frame(struct live *l)
 
 /* Returns false if FRESH has no lens option but the present options do: the
  * file may be only partly written. */
-static bool names_lens(const struct live *l, const struct live_options *fresh)
+static bool check_config_names_lens(const struct live *l,
+                                    const struct live_options *fresh)
 {
     if (GLINT_OPTION_GIVEN(&fresh->drawing.line.settings.options, lens) ||
         !GLINT_OPTION_GIVEN(&l->o->drawing.line.settings.options, lens))
@@ -412,49 +415,51 @@ static bool names_lens(const struct live *l, const struct live_options *fresh)
 
 /* Reads configuration and lens again. Devices stay open, and nothing is
  * baked. On any error the present configuration is kept. */
-static void reload_config(struct live *l)
+static void reload_config_and_lens(struct live *l)
 {
     struct live_options *fresh = calloc(1, sizeof *fresh);
 
     if (!fresh) {
-        live_log_say(&l->log, "not reloaded: out of memory");
+        live_log_print(&l->log, "not reloaded: out of memory");
         return;
     }
     l->tool->no_bake = true;
-    if (l->reread(l->ctx, l->tool, fresh) < 0 && names_lens(l, fresh) &&
+    if (l->reread(l->ctx, l->tool, fresh) < 0 &&
+        check_config_names_lens(l, fresh) &&
         drawing_open(l->tool, &fresh->drawing) == EXIT_OK) {
         drawing_replace(&l->o->drawing, &fresh->drawing);
         live_adapt_init(&l->adapt);
-        live_log_say(&l->log, "reloaded");
+        live_log_print(&l->log, "reloaded");
     } else {
         drawing_close(&fresh->drawing);
-        live_log_say(&l->log,
-                     "not reloaded: the previous configuration stays in use");
+        live_log_print(&l->log,
+                       "not reloaded: the previous configuration stays in use");
     }
     free(fresh);
 }
 
-static int run_loop(struct live *l)
+static int run_frame_loop(struct live *l)
 {
     int code = -1;
 
-    while (code < 0 && !live_signal(LIVE_STOP) &&
+    while (code < 0 && !live_signals_is_raised(LIVE_STOP) &&
            (l->o->count == 0 || l->n_shown < l->o->count)) {
-        if (live_signal(LIVE_RELOAD))
-            reload_config(l);
+        if (live_signals_is_raised(LIVE_RELOAD))
+            reload_config_and_lens(l);
         if (!l->in.source) {
             code = retry_camera(l);
-            live_log_second(&l->log, live_signal(LIVE_REPORT_NOW));
+            live_log_print_second(&l->log,
+                                  live_signals_is_raised(LIVE_REPORT_NOW));
             continue;
         }
         live_signals_wait(l->in.source->fd, WAIT_MS);
-        code = process_frame(l);
-        live_log_second(&l->log, live_signal(LIVE_REPORT_NOW));
+        code = process_next_frame(l);
+        live_log_print_second(&l->log, live_signals_is_raised(LIVE_REPORT_NOW));
     }
     return code < 0 ? EXIT_OK : code;
 }
 
-static int start_run(struct live *l)
+static int start_live_run(struct live *l)
 {
     const char *const device = l->o->input.camera.device;
     struct glint_error error = {""};
@@ -462,7 +467,7 @@ static int start_run(struct live *l)
     int code = EXIT_OK;
 
     if (live_output_is_flexible(&l->output))
-        code = open_output(l, &(struct glint_image){.width = 0});
+        code = open_live_output(l, &(struct glint_image){.width = 0});
     if (code != EXIT_OK)
         return code;
     status = open_camera(l, &error);
@@ -471,11 +476,11 @@ static int start_run(struct live *l)
     code = drawing_open(l->tool, &l->o->drawing);
     if (code != EXIT_OK)
         return code;
-    live_signals_take(); /* until here a signal ends the run at once */
-    code = set_up(l);
+    live_signals_install(); /* until here a signal ends the run at once */
+    code = set_up_drawing_and_output(l);
     if (code != EXIT_OK)
         return code;
-    status = start_input(l, &error);
+    status = start_live_input(l, &error);
     return status == GLINT_OK
                ? EXIT_OK
                : live_input_fail(&l->log, device, status, &error);
@@ -502,14 +507,14 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
                   l->output.kind == LIVE_OUTPUT_Y4M &&
                       strcmp(l->output.path, "-") == 0);
     if (code == EXIT_OK)
-        code = start_run(l);
+        code = start_live_run(l);
     if (code == EXIT_OK) {
         live_stats_start(&l->log.stats, glint_now_us());
-        code = run_loop(l);
+        code = run_frame_loop(l);
         if (code == EXIT_OK)
             code = drawing_finish(tool, &o->drawing);
-        live_log_conclude(&l->log, code == EXIT_OK, l->n_shown,
-                          live_output_dropped(&l->output));
+        live_log_print_summary(&l->log, code == EXIT_OK, l->n_shown,
+                               live_output_count_dropped(&l->output));
     }
     live_input_close(&l->in);
     status = live_output_close(&l->output, &error);

@@ -7,8 +7,8 @@
 #include "panel/panel.h"
 #include "formats/picture.h"
 
-const struct glint_image *live_copy(struct live_copy *c,
-                                    const struct glint_image *from)
+const struct glint_image *live_copy_image(struct live_copy *c,
+                                          const struct glint_image *from)
 {
     const size_t bytes =
         glint_image_bytes(from->format, from->width, from->height);
@@ -37,8 +37,9 @@ void live_copy_free(struct live_copy *c)
     *c = (struct live_copy){.mem = NULL};
 }
 
-enum glint_status live_save(const char *name, const struct glint_image *from,
-                            struct glint_error *error)
+enum glint_status live_save_image(const char *name,
+                                  const struct glint_image *from,
+                                  struct glint_error *error)
 {
     const struct glint_panel_config as_rgb = {
         .width = from->width,

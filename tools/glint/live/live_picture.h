@@ -17,12 +17,13 @@ struct live_copy {
 /* Copies FROM, reading each row only once. Returns the copy, or NULL if
  * there is no memory. Allocates only if FROM is larger than all images
  * before. */
-const struct glint_image *live_copy(struct live_copy *copy,
-                                    const struct glint_image *from);
+const struct glint_image *live_copy_image(struct live_copy *copy,
+                                          const struct glint_image *from);
 void live_copy_free(struct live_copy *copy);
 
 /* Saves FROM, in any 8-bit pixel format, to the image file NAME. */
-enum glint_status live_save(const char *name, const struct glint_image *from,
-                            struct glint_error *error);
+enum glint_status live_save_image(const char *name,
+                                  const struct glint_image *from,
+                                  struct glint_error *error);
 
 #endif

@@ -34,7 +34,7 @@ static void handle_signal(int number)
         }
 }
 
-void live_signals_take(void)
+void live_signals_install(void)
 {
     struct sigaction act = {.sa_handler = handle_signal};
 
@@ -44,7 +44,7 @@ void live_signals_take(void)
     signal(SIGPIPE, SIG_IGN);
 }
 
-bool live_signal(enum live_signal which)
+bool live_signals_is_raised(enum live_signal which)
 {
     const bool was = asked[which];
 
@@ -56,7 +56,7 @@ bool live_signal(enum live_signal which)
 
 /* Returns whether a signal must be handled now. A snapshot is handled with
  * the next frame instead. */
-static bool is_any_asked(void)
+static bool is_signal_pending(void)
 {
     for (int i = 0; i < LIVE_N_SIGNALS; i++)
         if (asked[i] && i != LIVE_SNAPSHOT)
@@ -74,7 +74,7 @@ void live_signals_wait(int fd, int ms)
     for (int i = 0; i < N_TAKEN; i++)
         sigaddset(&block, taken[i].number);
     sigprocmask(SIG_BLOCK, &block, &before);
-    if (!is_any_asked())
+    if (!is_signal_pending())
         ppoll(&p, 1, &timeout, &before);
     sigprocmask(SIG_SETMASK, &before, NULL);
 }

@@ -17,15 +17,15 @@ enum live_signal {
     LIVE_N_SIGNALS
 };
 
-void live_signals_take(void);
+void live_signals_install(void);
 
 /* Returns whether signal WHICH arrived since the last call. LIVE_STOP stays
  * true. */
-bool live_signal(enum live_signal which);
+bool live_signals_is_raised(enum live_signal which);
 
 /* Waits until FD (unless -1) is readable, has an event or an error, until a
- * signal arrives that live_signal() has not returned yet (except LIVE_SNAPSHOT,
- * which needs a frame), or until MS milliseconds have passed. */
+ * signal arrives that live_signals_is_raised() has not returned yet (except
+ * LIVE_SNAPSHOT, which needs a frame), or until MS milliseconds have passed. */
 void live_signals_wait(int fd, int ms);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "options/command_line.h"
 
-int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
+int bake_line_parse(struct tool *tool, const char *help, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,
                     void *line, const char *text)
 {
@@ -32,7 +32,7 @@ int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
     return tool_check_output(tool, tool->written) == EXIT_OK ? -1 : EXIT_OUTPUT;
 }
 
-bool bake_line_tells(const struct tool *tool)
+bool bake_line_prints_report(const struct tool *tool)
 {
     return strcmp(tool->written, "-") != 0 && !tool->quiet;
 }

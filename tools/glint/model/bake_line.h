@@ -32,12 +32,12 @@ typedef int bake_line_fn(struct tool *tool, void *line, int c,
  * Prints TEXT as an error unless there is exactly one input. Sets TOOL->written
  * to the output file and checks that it can be created. Returns -1, or an exit
  * code. */
-int bake_line_begin(struct tool *tool, const char *help, int argc, char **argv,
+int bake_line_parse(struct tool *tool, const char *help, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,
                     void *line, const char *text);
 
 /* Returns whether a report may be printed to standard output, as the output
  * file does not go there. */
-bool bake_line_tells(const struct tool *tool);
+bool bake_line_prints_report(const struct tool *tool);
 
 #endif

@@ -57,7 +57,7 @@ void cache_file_make_folders(char *path)
 
 /* Checks whether nobody but this user, its group and root could have written
  * the file or folder of ST. */
-static bool is_trusted(const struct stat *st)
+static bool is_file_trusted(const struct stat *st)
 {
     return (st->st_uid == geteuid() || st->st_uid == 0) &&
            !(st->st_mode & S_IWOTH);
@@ -76,7 +76,7 @@ static bool is_folder_trusted(const char *path)
         return false;
     memcpy(folder, path, n);
     folder[n] = '\0';
-    return stat(folder, &st) == 0 && is_trusted(&st);
+    return stat(folder, &st) == 0 && is_file_trusted(&st);
 }
 
 uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
@@ -91,8 +91,8 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
     *bytes = 0;
     if (in.fd < 0)
         return NULL;
-    if (fstat(in.fd, &st) < 0 || !S_ISREG(st.st_mode) || !is_trusted(&st) ||
-        !is_folder_trusted(path) ||
+    if (fstat(in.fd, &st) < 0 || !S_ISREG(st.st_mode) ||
+        !is_file_trusted(&st) || !is_folder_trusted(path) ||
         glint_input_append(&in, &data, bytes, max, &error) != GLINT_OK) {
         free(data);
         data = NULL;
@@ -104,8 +104,8 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
 /* Refuses to write through a link or into a file that is not regular.
  * Removes a file that other users own or may write to, so that the new file
  * gets fresh permissions. */
-static enum glint_status remove_untrusted(const char *path,
-                                          struct glint_error *error)
+static enum glint_status remove_untrusted_file(const char *path,
+                                               struct glint_error *error)
 {
     struct stat st;
 
@@ -115,7 +115,7 @@ static enum glint_status remove_untrusted(const char *path,
         return glint_error_report(error, GLINT_E_OUTPUT, path,
                                   "is not a regular file; remove it");
     /* Not reported: replacing the file fails later as well. */
-    if (!is_trusted(&st))
+    if (!is_file_trusted(&st))
         unlink(path);
     return GLINT_OK;
 }
@@ -128,7 +128,7 @@ enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
     cache_file_make_folders(path);
     status =
         is_folder_trusted(path)
-            ? remove_untrusted(path, error)
+            ? remove_untrusted_file(path, error)
             : glint_error_report(
                   error, GLINT_E_OUTPUT, path,
                   "is in a folder that other users may write to; chmod o-w it");
@@ -137,7 +137,7 @@ enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                               : status;
 }
 
-static bool lock_name(char *name, size_t bytes, const char *path)
+static bool make_lock_name(char *name, size_t bytes, const char *path)
 {
     return (size_t)snprintf(name, bytes, "%s.lock", path) < bytes;
 }
@@ -149,7 +149,7 @@ int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx)
     int fd, got;
 
     cache_file_make_folders(path);
-    if (!lock_name(name, sizeof name, path))
+    if (!make_lock_name(name, sizeof name, path))
         return -1;
     fd = open(name, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
               0600);
@@ -177,7 +177,7 @@ void cache_file_unlock(const char *path, int lock)
 
     if (lock < 0)
         return;
-    if (lock_name(name, sizeof name, path))
+    if (make_lock_name(name, sizeof name, path))
         unlink(name);
     close(lock);
 }

@@ -3,11 +3,12 @@
 
 #include "glint/bake.h"
 
-int coating_take(const struct tool *tool, struct coating *c, const char *text)
+int coating_parse_option(const struct tool *tool, struct coating *c,
+                         const char *text)
 {
     static const char *const words[] = {"table", "mixed", NULL};
     struct glint_error error = {""};
-    const int word = tool_word(text, words);
+    const int word = tool_find_word(text, words);
 
     c->given = true;
     c->kind = word < 0 ? COATING_DEALT : (enum coating_kind)word;
@@ -22,7 +23,7 @@ int coating_take(const struct tool *tool, struct coating *c, const char *text)
 }
 
 /* Returns the name of COATING, or NULL if it has none. */
-static const char *find_name(const struct glint_coating *coating)
+static const char *find_coating_name(const struct glint_coating *coating)
 {
     struct glint_coating known;
     const char *name;
@@ -41,7 +42,7 @@ static const char *find_name(const struct glint_coating *coating)
 
 void coating_print(FILE *file, const struct glint_coating *c)
 {
-    const char *name = find_name(c);
+    const char *name = find_coating_name(c);
 
     if (c->n_films == 0)
         fprintf(file, "none");

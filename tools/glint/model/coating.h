@@ -35,8 +35,8 @@ struct coating {
 
 /* Parses TEXT, the value of --coating, into COATING. Returns -1, or an exit
  * code after printing the error. */
-int coating_take(const struct tool *tool, struct coating *coating,
-                 const char *text);
+int coating_parse_option(const struct tool *tool, struct coating *coating,
+                         const char *text);
 
 /* Prints COATING: "none", or "550 nm, index 1.38" and further layers, if
  * any. */

@@ -24,7 +24,7 @@ struct reading {
 
 /* Returns the next word of *REST, delimited by blanks, and moves *REST past
  * it. Returns NULL if there is none. */
-static char *next_word(char **rest)
+static char *read_next_word(char **rest)
 {
     char *word = *rest + strspn(*rest, " \t"), *end;
 
@@ -37,19 +37,20 @@ static char *next_word(char **rest)
 }
 
 /* Returns the number of the ghost WORD, "12" or "7-3", or -1. */
-static int parse_ghost(const struct reading *r, const char *word)
+static int parse_ghost_number(const struct reading *r, const char *word)
 {
     const char *const dash = strchr(word, '-');
     int ghost = -1, i, j;
     char first[16];
 
     if (!dash)
-        return tool_integer(word, 0, r->n - 1, &ghost) ? ghost : -1;
+        return tool_parse_integer(word, 0, r->n - 1, &ghost) ? ghost : -1;
     if (dash - word >= (ptrdiff_t)sizeof first)
         return -1;
     memcpy(first, word, (size_t)(dash - word));
     first[dash - word] = '\0';
-    if (!tool_integer(first, 0, 999, &i) || !tool_integer(dash + 1, 0, 999, &j))
+    if (!tool_parse_integer(first, 0, 999, &i) ||
+        !tool_parse_integer(dash + 1, 0, 999, &j))
         return -1;
     for (int k = 0; k < r->n; k++)
         if (r->setup->ghost[k].i == i && r->setup->ghost[k].j == j)
@@ -57,21 +58,22 @@ static int parse_ghost(const struct reading *r, const char *word)
     return -1;
 }
 
-static const char *parse_gain(struct glint_tint *tint, const char *text)
+static const char *parse_ghost_gain(struct glint_tint *tint, const char *text)
 {
     double gain;
 
-    if (!text || !tool_number(text, &gain) || !(gain >= 0 && gain <= 1000))
+    if (!text || !tool_parse_number(text, &gain) ||
+        !(gain >= 0 && gain <= 1000))
         return "gain must be a factor, 0 to 1000";
     tint->gain = glint_real_of(gain);
     return NULL;
 }
 
-static const char *parse_tint(struct glint_tint *tint, const char *text)
+static const char *parse_ghost_tint(struct glint_tint *tint, const char *text)
 {
     double rgb[3];
 
-    if (!text || tool_numbers(text, rgb, 3) != 3)
+    if (!text || tool_parse_numbers(text, rgb, 3) != 3)
         return "tint takes R,G,B";
     for (int c = 0; c < 3; c++) {
         if (!(rgb[c] >= 0 && rgb[c] <= 4))
@@ -82,14 +84,14 @@ static const char *parse_tint(struct glint_tint *tint, const char *text)
 }
 
 /* Parses the words after a ghost. Returns NULL, or the error as text. */
-static const char *parse_words(struct reading *r, int ghost, char *rest)
+static const char *parse_ghost_words(struct reading *r, int ghost, char *rest)
 {
     static const char *const words[] = {"mute", "solo", "gain", "tint", NULL};
     const char *cause = NULL;
     char *word;
 
-    while (!cause && (word = next_word(&rest)))
-        switch (tool_word(word, words)) {
+    while (!cause && (word = read_next_word(&rest)))
+        switch (tool_find_word(word, words)) {
         case 0:
             r->mute[ghost] = true;
             break;
@@ -97,10 +99,10 @@ static const char *parse_words(struct reading *r, int ghost, char *rest)
             r->solo[ghost] = true;
             break;
         case 2:
-            cause = parse_gain(&r->tint[ghost], next_word(&rest));
+            cause = parse_ghost_gain(&r->tint[ghost], read_next_word(&rest));
             break;
         case 3:
-            cause = parse_tint(&r->tint[ghost], next_word(&rest));
+            cause = parse_ghost_tint(&r->tint[ghost], read_next_word(&rest));
             break;
         default:
             cause = "expected mute, solo, gain G or tint R,G,B after a ghost";
@@ -110,26 +112,27 @@ static const char *parse_words(struct reading *r, int ghost, char *rest)
     return cause;
 }
 
-static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
+static const char *parse_ghost_line(void *ctx, struct text_lines *lines,
+                                    char *line)
 {
     struct reading *const r = ctx;
     char *rest = line, *word;
     int ghost;
 
     line[strcspn(line, "#")] = '\0';
-    word = next_word(&rest);
+    word = read_next_word(&rest);
     if (!word)
         return NULL;
     if (strcmp(word, "lens") == 0) {
-        word = next_word(&rest);
+        word = read_next_word(&rest);
         return word && strcmp(word, r->lens) == 0
                    ? NULL
                    : "the file lists ghosts of another lens (glint explain "
                      "--save-ghosts writes those of this lens)";
     }
-    ghost = parse_ghost(r, word);
+    ghost = parse_ghost_number(r, word);
     if (ghost >= 0)
-        return parse_words(r, ghost, rest);
+        return parse_ghost_words(r, ghost, rest);
     return text_lines_cause(
         lines,
         "no ghost '%.20s': lines begin with a number, 0 to %d, or the two "
@@ -139,7 +142,7 @@ static const char *parse_line(void *ctx, struct text_lines *lines, char *line)
 
 /* Mutes all ghosts that are not solo if any ghost is solo, and copies the
  * tints of ghosts to the parts of their pupils. */
-static void finish_tints(struct reading *r)
+static void apply_solo_and_mute(struct reading *r)
 {
     bool any_solo = false;
 
@@ -155,7 +158,7 @@ static void finish_tints(struct reading *r)
                 r->tint[i] = r->tint[k];
 }
 
-static bool allocate_tints(struct reading *r)
+static bool allocate_ghost_tints(struct reading *r)
 {
     const size_t n = (size_t)r->setup->n_ghosts + 1;
 
@@ -179,14 +182,14 @@ enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
     enum glint_status status =
         text_lines_open(&lines, name, text, bytes, error);
 
-    if (status == GLINT_OK && !allocate_tints(&r))
+    if (status == GLINT_OK && !allocate_ghost_tints(&r))
         status = glint_error_report(error, GLINT_E_MEMORY, name, "%s",
                                     text_no_memory);
     if (status == GLINT_OK)
-        status = text_lines_each(&lines, parse_line, &r, error);
+        status = text_lines_parse_each(&lines, parse_ghost_line, &r, error);
     text_lines_close(&lines);
     if (status == GLINT_OK)
-        finish_tints(&r);
+        apply_solo_and_mute(&r);
     else {
         free(r.tint);
         r.tint = NULL;

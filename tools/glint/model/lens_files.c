@@ -22,7 +22,7 @@ enum { ABOVE = 3, NAME_CHARS = 64, PATH_CHARS = 1024 };
 /* Sets PATH to the folder UP levels above the program or plug-in that
  * contains this code; 1 is its own folder. Returns false if all users may
  * write to that folder. */
-static bool folder_above(int up, char *path, size_t bytes)
+static bool find_folder_above_program(int up, char *path, size_t bytes)
 {
     struct stat st;
 
@@ -50,7 +50,7 @@ bool lens_folder(int i, const char *kind, char *path, size_t bytes)
     if (i == 0) {
         n = snprintf(path, bytes, "%s", given ? given : "");
     } else if (i <= 2 * ABOVE) {
-        if (folder_above((i + 1) / 2, path, bytes)) {
+        if (find_folder_above_program((i + 1) / 2, path, bytes)) {
             used = strlen(path);
             n = snprintf(path + used, bytes - used,
                          i % 2 ? "/%s" : "/share/glint/%s", kind);
@@ -94,7 +94,7 @@ struct list {
     int n;
 };
 
-static bool has_name(const struct list *l, const char *name, size_t length)
+static bool has_lens_name(const struct list *l, const char *name, size_t length)
 {
     for (int i = 0; i < l->n; i++)
         if (strlen(l->name[i]) == length &&
@@ -103,13 +103,13 @@ static bool has_name(const struct list *l, const char *name, size_t length)
     return false;
 }
 
-static bool add_name(struct list *l, const char *name, size_t length)
+static bool add_lens_name(struct list *l, const char *name, size_t length)
 {
     void *more;
 
-    if (length >= NAME_CHARS || has_name(l, name, length))
+    if (length >= NAME_CHARS || has_lens_name(l, name, length))
         return true;
-    more = text_grow(l->name, l->n, sizeof *l->name);
+    more = text_grow_array(l->name, l->n, sizeof *l->name);
     if (!more)
         return false;
     l->name = more;
@@ -120,7 +120,7 @@ static bool add_name(struct list *l, const char *name, size_t length)
 
 /* Adds the .lens files of the folder PATH. Returns false without memory
  * or descriptors. */
-static bool add_folder(struct list *l, const char *path)
+static bool add_lens_folder(struct list *l, const char *path)
 {
     DIR *folder = *path ? opendir(path) : NULL;
     const struct dirent *entry;
@@ -131,14 +131,14 @@ static bool add_folder(struct list *l, const char *path)
         const size_t n = strlen(entry->d_name);
 
         if (n > 5 && strcmp(entry->d_name + n - 5, ".lens") == 0)
-            ok = add_name(l, entry->d_name, n - 5);
+            ok = add_lens_name(l, entry->d_name, n - 5);
     }
     if (folder)
         closedir(folder);
     return ok;
 }
 
-static int compare_names(const void *a, const void *b)
+static int compare_lens_names(const void *a, const void *b)
 {
     return strcmp(a, b);
 }
@@ -156,7 +156,7 @@ static void check_user_folder(void)
         closedir(folder);
 }
 
-int lens_files_each(lens_files_fn *each, void *ctx)
+int lens_files_visit_all(lens_files_fn *each, void *ctx)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     struct list l = {NULL, 0};
@@ -167,10 +167,10 @@ int lens_files_each(lens_files_fn *each, void *ctx)
     for (int i = 0; ok && lens_folder(i, "lenses", path, sizeof path); i++)
         for (int r = 0; ok && *path && r < N_ROOMS; r++) {
             snprintf(room, sizeof room, "%s%s", path, rooms[r]);
-            ok = add_folder(&l, room);
+            ok = add_lens_folder(&l, room);
         }
     if (l.n > 0)
-        qsort(l.name, (size_t)l.n, sizeof *l.name, compare_names);
+        qsort(l.name, (size_t)l.n, sizeof *l.name, compare_lens_names);
     for (int i = 0; ok && i < l.n && each(ctx, l.name[i]); i++)
         ;
     free(l.name);

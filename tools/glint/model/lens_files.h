@@ -24,6 +24,6 @@ bool lens_file_find(const char *name, char *path, size_t bytes);
 /* Calls EACH for every lens, sorted by name, until it returns false. Returns
  * the number of lenses, or -1 if there is no memory. */
 typedef bool lens_files_fn(void *ctx, const char *name);
-int lens_files_each(lens_files_fn *each, void *ctx);
+int lens_files_visit_all(lens_files_fn *each, void *ctx);
 
 #endif

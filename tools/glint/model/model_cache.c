@@ -16,25 +16,26 @@ bool model_cache_name(char *path, size_t bytes, const char *lens, uint64_t key)
     return cache_file_name(path, bytes, lens, key, "glint");
 }
 
-static bool model_path(char *path, size_t bytes, const char *lens, uint64_t key)
+static bool make_model_path(char *path, size_t bytes, const char *lens,
+                            uint64_t key)
 {
     return cache_file_folder(path, bytes) &&
            model_cache_name(path, bytes, lens, key);
 }
 
-static uint64_t make_key(const struct glint_lens *lens)
+static uint64_t compute_model_key(const struct glint_lens *lens)
 {
     return lens->header->key[0] | (uint64_t)lens->header->key[1] << 32;
 }
 
-static uint8_t *read_cached(const char *path, size_t *bytes)
+static uint8_t *read_cached_model(const char *path, size_t *bytes)
 {
     return cache_file_read(path, MAX_BYTES, bytes);
 }
 
 /* Reads an installed model. It is trusted like the program itself, whoever owns
  * the file. */
-static uint8_t *read_installed(const char *path, size_t *bytes)
+static uint8_t *read_installed_model(const char *path, size_t *bytes)
 {
     struct glint_error error;
     uint8_t *data = NULL;
@@ -46,9 +47,9 @@ static uint8_t *read_installed(const char *path, size_t *bytes)
 
 /* Reads the model PATH by READ and opens it. Returns false if it is damaged
  * or has another key. */
-static bool load_model(const char *path, uint64_t key,
-                       uint8_t *(*read)(const char *path, size_t *bytes),
-                       struct model_file *model)
+static bool load_model_file(const char *path, uint64_t key,
+                            uint8_t *(*read)(const char *path, size_t *bytes),
+                            struct model_file *model)
 {
     uint8_t *data;
     const char *reason;
@@ -60,7 +61,7 @@ static bool load_model(const char *path, uint64_t key,
     model->data = data;
     if (glint_lens_open(&model->lens, data, model->bytes, &reason) ==
             GLINT_OK &&
-        make_key(&model->lens) == key)
+        compute_model_key(&model->lens) == key)
         return true;
     model_file_close(model);
     return false;
@@ -68,14 +69,14 @@ static bool load_model(const char *path, uint64_t key,
 
 /* Opens the model of LENS that was installed with the lenses. Returns false if
  * there is none. */
-static bool load_installed(const char *lens, uint64_t key,
-                           struct model_file *model)
+static bool load_installed_model(const char *lens, uint64_t key,
+                                 struct model_file *model)
 {
     char path[CACHE_PATH_BYTES];
 
     for (int i = 0; lens_folder(i, "models", path, sizeof path); i++)
         if (model_cache_name(path, sizeof path, lens, key) &&
-            load_model(path, key, read_installed, model))
+            load_model_file(path, key, read_installed_model, model))
             return true;
     return false;
 }
@@ -86,9 +87,9 @@ bool model_is_cached(const struct glint_prescription *lens,
     const uint64_t key = glint_bake_key(lens, options);
     struct model_file model = {.data = NULL};
     char path[CACHE_PATH_BYTES];
-    const bool is = load_installed(lens->name, key, &model) ||
-                    (model_path(path, sizeof path, lens->name, key) &&
-                     load_model(path, key, read_cached, &model));
+    const bool is = load_installed_model(lens->name, key, &model) ||
+                    (make_model_path(path, sizeof path, lens->name, key) &&
+                     load_model_file(path, key, read_cached_model, &model));
 
     model_file_close(&model);
     return is;
@@ -108,8 +109,8 @@ bool model_cache_path(char *path, size_t bytes, const char *file)
     return true;
 }
 
-static void write_cached(const struct tool *tool, char *path,
-                         const struct model_file *model)
+static void write_cached_model(const struct tool *tool, char *path,
+                               const struct model_file *model)
 {
     struct glint_error error = {""};
 
@@ -119,7 +120,8 @@ static void write_cached(const struct tool *tool, char *path,
                 tool->name, error.text);
 }
 
-bool model_is_foreign(const struct glint_prescription *lens, const char *file)
+bool model_is_lens_from_file(const struct glint_prescription *lens,
+                             const char *file)
 {
     char own[CACHE_PATH_BYTES];
     struct stat a, b;
@@ -131,14 +133,14 @@ bool model_is_foreign(const struct glint_prescription *lens, const char *file)
 
 /* Counts WORK, by several threads at once. Returns false if the sum is above
  * MODEL_CACHE_WORK. */
-static bool allow_work(void *ctx, int work)
+static bool count_bake_work(void *ctx, int work)
 {
     return __atomic_add_fetch((int *)ctx, work, __ATOMIC_RELAXED) <=
            MODEL_CACHE_WORK;
 }
 
 /* Reports that baking FILE is more than MODEL_CACHE_WORK. */
-static int refuse_work(const struct tool *tool, const char *file)
+static int report_too_much_work(const struct tool *tool, const char *file)
 {
     tool_error(tool,
                "%.200s: baking takes more than about 30 s of processor time; "
@@ -169,14 +171,15 @@ static int bake_model(const struct tool *tool,
     options.workers = tool->workers;
     options.progress = tool_progress_show;
     options.progress_ctx = &progress;
-    options.allow = model_is_foreign(lens, file) ? allow_work : NULL;
+    options.allow =
+        model_is_lens_from_file(lens, file) ? count_bake_work : NULL;
     options.allow_ctx = &work;
     tool_progress_start(&progress, tool, "bake");
     status = glint_bake(lens, &options, &data, &model->bytes, &report, &error);
     tool_progress_end(&progress);
     model->data = data;
     if (status == GLINT_E_UNSUPPORTED && work > MODEL_CACHE_WORK)
-        return refuse_work(tool, file);
+        return report_too_much_work(tool, file);
     if (status == GLINT_OK) {
         status = glint_lens_open(&model->lens, data, model->bytes, &reason);
         if (status != GLINT_OK)
@@ -186,12 +189,12 @@ static int bake_model(const struct tool *tool,
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
     if (path)
-        write_cached(tool, path, model);
+        write_cached_model(tool, path, model);
     return EXIT_OK;
 }
 
-static int refuse_bake(const struct tool *tool,
-                       const struct glint_prescription *lens)
+static int report_bake_refused(const struct tool *tool,
+                               const struct glint_prescription *lens)
 {
     tool_error(tool,
                "%s has no model, and a reload does not bake; run glint bake, "
@@ -205,7 +208,7 @@ struct wait {
     const char *lens;
 };
 
-static void report_wait(void *ctx)
+static void report_bake_wait(void *ctx)
 {
     const struct wait *const w = ctx;
 
@@ -223,19 +226,19 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     char path[CACHE_PATH_BYTES];
     int lock, code = EXIT_OK;
 
-    if (load_installed(lens->name, key, model))
+    if (load_installed_model(lens->name, key, model))
         return EXIT_OK;
-    if (!model_path(path, sizeof path, lens->name, key))
+    if (!make_model_path(path, sizeof path, lens->name, key))
         return tool->no_bake
-                   ? refuse_bake(tool, lens)
+                   ? report_bake_refused(tool, lens)
                    : bake_model(tool, lens, file, options, NULL, model);
-    if (load_model(path, key, read_cached, model))
+    if (load_model_file(path, key, read_cached_model, model))
         return EXIT_OK;
     if (tool->no_bake)
-        return refuse_bake(tool, lens);
+        return report_bake_refused(tool, lens);
     /* Another process may be baking the same model. */
-    lock = cache_file_lock(path, report_wait, &wait);
-    if (!load_model(path, key, read_cached, model))
+    lock = cache_file_lock(path, report_bake_wait, &wait);
+    if (!load_model_file(path, key, read_cached_model, model))
         code = bake_model(tool, lens, file, options, path, model);
     cache_file_unlock(path, lock);
     return code;

@@ -27,7 +27,8 @@ enum { MODEL_CACHE_WORK = 750 };
 
 /* Returns whether FILE, the name of LENS as the command line gives it, is a
  * lens file that is not in a folder of glint's lenses. */
-bool model_is_foreign(const struct glint_prescription *lens, const char *file);
+bool model_is_lens_from_file(const struct glint_prescription *lens,
+                             const char *file);
 
 /* Returns whether the model is installed or cached, so that no bake is
  * needed. */

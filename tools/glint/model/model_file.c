@@ -21,7 +21,7 @@ bool tool_is_file_name(const char *argument)
     return is_file;
 }
 
-static uint32_t read_magic(const unsigned char *b)
+static uint32_t read_file_magic(const unsigned char *b)
 {
     return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 |
            (uint32_t)b[3] << 24;
@@ -44,17 +44,17 @@ bool tool_is_model(const char *path)
     if (fread(b, 1, sizeof b, file) < sizeof b)
         b[0] = 0;
     fclose(file);
-    return read_magic(b) == GLINT_MODEL_MAGIC ||
-           read_magic(b) == GLINT_ZOOM_MAGIC;
+    return read_file_magic(b) == GLINT_MODEL_MAGIC ||
+           read_file_magic(b) == GLINT_ZOOM_MAGIC;
 }
 
 /* Opens the model in MODEL->data. */
-static enum glint_status open_data(struct model_file *model,
-                                   const char **reason)
+static enum glint_status open_model_data(struct model_file *model,
+                                         const char **reason)
 {
     enum glint_status status;
 
-    if (model->bytes < 4 || read_magic(model->data) != GLINT_ZOOM_MAGIC)
+    if (model->bytes < 4 || read_file_magic(model->data) != GLINT_ZOOM_MAGIC)
         return glint_lens_open(&model->lens, model->data, model->bytes, reason);
     *reason = "no memory";
     model->zoom = malloc(sizeof *model->zoom);
@@ -78,7 +78,7 @@ int tool_model(const struct tool *tool, const char *path,
         glint_input_slurp(&data, &model->bytes, path, MAX_MODEL_BYTES, &error);
     model->data = data; /* malloc() aligns it */
     if (status == GLINT_OK) {
-        status = open_data(model, &reason);
+        status = open_model_data(model, &reason);
         if (status == GLINT_OK)
             return EXIT_OK;
         snprintf(error.text, sizeof error.text, "%.180s: %.70s", path, reason);
@@ -91,7 +91,7 @@ int tool_model(const struct tool *tool, const char *path,
 static double focal_length_at(struct glint_zoom_lens *z, int32_t along_q30)
 {
     glint_zoom_set(z, along_q30);
-    return model_real_of(z->header.focal_mm);
+    return model_compute_real(z->header.focal_mm);
 }
 
 int model_file_positions(const struct glint_zoom_lens *zoom)
@@ -147,7 +147,7 @@ void model_file_close(struct model_file *model)
     *model = (struct model_file){.data = NULL};
 }
 
-double model_real_of(struct glint_real x)
+double model_compute_real(struct glint_real x)
 {
     return ldexp(x.mantissa, x.exponent);
 }

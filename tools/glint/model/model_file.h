@@ -50,6 +50,6 @@ int model_file_positions(const struct glint_zoom_lens *zoom);
 void model_file_close(struct model_file *model);
 
 /* Returns X as a double. */
-double model_real_of(struct glint_real x);
+double model_compute_real(struct glint_real x);
 
 #endif

@@ -10,8 +10,8 @@
  */
 
 /* Prints "errors", an object with a member for each output. */
-static void json_errors(struct json_writer *json,
-                        const struct model_summary *sum)
+static void write_errors_json(struct json_writer *json,
+                              const struct model_summary *sum)
 {
     json_write(json, "errors: {");
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
@@ -28,12 +28,13 @@ static void json_errors(struct json_writer *json,
 }
 
 /* Prints "misses", a list of the ghosts that miss their targets. */
-static void json_misses(struct json_writer *json, const struct glint_lens *lens)
+static void write_misses_json(struct json_writer *json,
+                              const struct glint_lens *lens)
 {
     json_write(json, "misses: [");
-    for (uint32_t k = 0; k < model_ghost_count(lens); k++) {
+    for (uint32_t k = 0; k < model_count_ghosts(lens); k++) {
         const struct glint_model_ghost *g = &lens->ghost[k];
-        const struct model_miss miss = model_miss_of(lens, k);
+        const struct model_miss miss = model_find_misses(lens, k);
 
         if (miss.zones)
             json_write(json,
@@ -46,25 +47,27 @@ static void json_misses(struct json_writer *json, const struct glint_lens *lens)
     json_write(json, "]");
 }
 
-static void json_header(struct json_writer *json,
-                        const struct model_file *model)
+static void write_header_json(struct json_writer *json,
+                              const struct model_file *model)
 {
     const struct glint_model_header *h = model->lens.header;
     const struct model_summary sum =
-        model_summary_of(&model->lens, model_span_of_all(&model->lens));
+        model_summarise(&model->lens, model_full_span(&model->lens));
 
-    json_write(
-        json,
-        "{name: %s, focal_length_mm: %.6f, back_focal_length_mm: %.6f, "
-        "entrance_pupil_radius_mm: %.6f, stop_radius_mm: %.6f, "
-        "f_number: %g, film_mm: [%g, %g], surfaces: %u, ghosts: %u, "
-        "parts: %u, ghost_pairs: [",
-        h->name, model_real_of(h->focal_mm), model_real_of(h->back_focal_mm),
-        model_real_of(h->entrance_radius_mm), model_real_of(h->stop_radius_mm),
-        model_real_of(h->f_number), model_real_of(h->film_width_mm),
-        model_real_of(h->film_height_mm), h->n_surfaces,
-        model_ghost_count(&model->lens), h->n_ghosts);
-    for (uint32_t k = 0; k < model_ghost_count(&model->lens); k++)
+    json_write(json,
+               "{name: %s, focal_length_mm: %.6f, back_focal_length_mm: %.6f, "
+               "entrance_pupil_radius_mm: %.6f, stop_radius_mm: %.6f, "
+               "f_number: %g, film_mm: [%g, %g], surfaces: %u, ghosts: %u, "
+               "parts: %u, ghost_pairs: [",
+               h->name, model_compute_real(h->focal_mm),
+               model_compute_real(h->back_focal_mm),
+               model_compute_real(h->entrance_radius_mm),
+               model_compute_real(h->stop_radius_mm),
+               model_compute_real(h->f_number),
+               model_compute_real(h->film_width_mm),
+               model_compute_real(h->film_height_mm), h->n_surfaces,
+               model_count_ghosts(&model->lens), h->n_ghosts);
+    for (uint32_t k = 0; k < model_count_ghosts(&model->lens); k++)
         json_write(json, "[%u, %u]", model->lens.ghost[k].i,
                    model->lens.ghost[k].j);
     json_write(json, "], bytes: %zu, basis: %s", model->bytes,
@@ -76,102 +79,106 @@ static void json_header(struct json_writer *json,
     json_write(json,
                "band_nm: [%.3f, %.3f], max_angle_deg: %.6f, field_mm: %.6f, "
                "systems: %u, mean_terms: %.4f",
-               model_nanometres(h->wave_hi_q24),
-               model_nanometres(h->wave_lo_q24), model_degrees(h->sine_hi_q30),
-               model_real_of(h->field_mm), h->n_systems,
-               model_mean_terms(&sum));
-    json_errors(json, &sum);
-    json_misses(json, &model->lens);
+               model_wavelength_nm(h->wave_hi_q24),
+               model_wavelength_nm(h->wave_lo_q24),
+               model_angle_deg(h->sine_hi_q30), model_compute_real(h->field_mm),
+               h->n_systems, model_compute_mean_terms(&sum));
+    write_errors_json(json, &sum);
+    write_misses_json(json, &model->lens);
 }
 
-static void json_system(struct json_writer *json, const struct glint_lens *lens,
-                        uint32_t ghost, uint32_t system)
+static void write_system_json(struct json_writer *json,
+                              const struct glint_lens *lens, uint32_t ghost,
+                              uint32_t system)
 {
     const struct glint_model_system *s = &lens->system[system];
     const struct model_span span = {system, 1};
-    const struct model_summary sum = model_summary_of(lens, span);
+    const struct model_summary sum = model_summarise(lens, span);
 
     json_write(json,
                "{ghost: %u, angle_deg: [%.6f, %.6f], band_nm: [%.3f, %.3f], "
                "energy_roots: %d, terms: %.0f, bytes: %zu",
-               model_ghost_of(lens, ghost), model_degrees(s->sine_lo_q30),
-               model_degrees(s->sine_hi_q30), model_nanometres(s->wave_hi_q24),
-               model_nanometres(s->wave_lo_q24),
+               model_find_first_entry(lens, ghost),
+               model_angle_deg(s->sine_lo_q30), model_angle_deg(s->sine_hi_q30),
+               model_wavelength_nm(s->wave_hi_q24),
+               model_wavelength_nm(s->wave_lo_q24),
                model_outputs_of(lens, s)[GLINT_OUT_ENERGY].roots,
-               model_terms(&sum), model_span_bytes(lens, span));
-    json_errors(json, &sum);
+               model_count_terms(&sum), model_span_bytes(lens, span));
+    write_errors_json(json, &sum);
     json_write(json, "}");
 }
 
-static void json_systems(struct json_writer *json,
-                         const struct glint_lens *lens)
+static void write_systems_json(struct json_writer *json,
+                               const struct glint_lens *lens)
 {
     json_write(json, "system_list: [");
     for (uint32_t g = 0; g < lens->header->n_ghosts; g++)
         for (uint32_t k = 0; k < lens->ghost[g].n_systems; k++)
-            json_system(json, lens, g, lens->ghost[g].first_system + k);
+            write_system_json(json, lens, g, lens->ghost[g].first_system + k);
     json_write(json, "]");
 }
 
-static void json_info(const struct tool *tool, const struct model_file *model)
+static void write_info_json(const struct tool *tool,
+                            const struct model_file *model)
 {
     struct json_writer json = {.to = stdout};
 
-    json_header(&json, model);
+    write_header_json(&json, model);
     if (model->zoom)
         json_write(&json, "positions: %d, models: %d",
                    model_file_positions(model->zoom), model->zoom->n_models);
     if (tool->verbose)
-        json_systems(&json, &model->lens);
+        write_systems_json(&json, &model->lens);
     json_write(&json, "}\n");
 }
 
-static void json_ghost(struct json_writer *json, const struct glint_lens *lens,
-                       uint32_t entry)
+static void write_ghost_json(struct json_writer *json,
+                             const struct glint_lens *lens, uint32_t entry)
 {
     const struct glint_model_ghost *g = &lens->ghost[entry];
-    const struct model_span span = model_span_of_ghost(lens, entry);
-    const struct model_summary sum = model_summary_of(lens, span);
+    const struct model_span span = model_measure_ghost_span(lens, entry);
+    const struct model_summary sum = model_summarise(lens, span);
     double range_deg[2];
 
     model_span_angles(lens, span, range_deg);
     json_write(json,
                "{ghost: %u, part: %c, pair: [%u, %u], angle_deg: [%.6f, %.6f], "
                "zones: %u, bytes: %zu, met: %c",
-               model_ghost_of(lens, entry), entry >= model_ghost_count(lens),
-               g->i, g->j, range_deg[0], range_deg[1], span.n,
-               model_span_bytes(lens, span), !model_misses(&sum));
-    json_errors(json, &sum);
+               model_find_first_entry(lens, entry),
+               entry >= model_count_ghosts(lens), g->i, g->j, range_deg[0],
+               range_deg[1], span.n, model_span_bytes(lens, span),
+               !model_has_misses(&sum));
+    write_errors_json(json, &sum);
     json_write(json, "}");
 }
 
-static void json_bake(const struct glint_lens *lens, double seconds,
-                      const struct glint_bake_report *report)
+static void write_bake_json(const struct glint_lens *lens, double seconds,
+                            const struct glint_bake_report *report)
 {
     const struct glint_model_header *h = lens->header;
     const struct model_summary sum =
-        model_summary_of(lens, model_span_of_all(lens));
+        model_summarise(lens, model_full_span(lens));
     struct json_writer json = {.to = stdout};
 
     json_write(&json,
                "{seconds: %.3f, bytes: %u, ghosts: %u, parts: %u, zones: %u, "
                "mean_terms: %.4f, unmet_zones: %d, rays: %d, intruders: %d",
-               seconds, h->bytes, model_ghost_count(lens), h->n_ghosts,
-               h->n_systems, model_mean_terms(&sum), report->unmet,
+               seconds, h->bytes, model_count_ghosts(lens), h->n_ghosts,
+               h->n_systems, model_compute_mean_terms(&sum), report->unmet,
                report->rays, report->intruders);
-    json_errors(&json, &sum);
-    json_misses(&json, lens);
+    write_errors_json(&json, &sum);
+    write_misses_json(&json, lens);
     json_write(&json, "by_ghost: [");
     for (uint32_t k = 0; k < h->n_ghosts; k++)
-        json_ghost(&json, lens, k);
+        write_ghost_json(&json, lens, k);
     json_write(&json, "]}\n");
 }
 
-static void print_header(const struct model_file *model)
+static void print_model_header(const struct model_file *model)
 {
     const struct glint_model_header *h = model->lens.header;
     const struct model_summary sum =
-        model_summary_of(&model->lens, model_span_of_all(&model->lens));
+        model_summarise(&model->lens, model_full_span(&model->lens));
 
     static const char *const lights[] = {
         "all", "a half, x of 0 or more: others are mirrored",
@@ -183,28 +190,32 @@ static void print_header(const struct model_file *model)
            (unsigned long)h->key[1], (unsigned long)h->key[0]);
     if (glint_basis_is_lens(h->basis))
         printf("directions baked    %s\n", lights[h->basis & 3U]);
-    printf("focal length        %10.3f mm\n", model_real_of(h->focal_mm));
-    printf("back focal length   %10.3f mm\n", model_real_of(h->back_focal_mm));
+    printf("focal length        %10.3f mm\n", model_compute_real(h->focal_mm));
+    printf("back focal length   %10.3f mm\n",
+           model_compute_real(h->back_focal_mm));
     printf("entrance pupil      %10.3f mm radius\n",
-           model_real_of(h->entrance_radius_mm));
+           model_compute_real(h->entrance_radius_mm));
     printf("stop                %10.4f mm radius at f/%g, its widest\n",
-           model_real_of(h->stop_radius_mm), model_real_of(h->f_number));
+           model_compute_real(h->stop_radius_mm),
+           model_compute_real(h->f_number));
     printf("front               %10.3f mm radius\n",
-           model_real_of(h->front_mm));
-    printf("film                %6gx%g mm\n", model_real_of(h->film_width_mm),
-           model_real_of(h->film_height_mm));
+           model_compute_real(h->front_mm));
+    printf("film                %6gx%g mm\n",
+           model_compute_real(h->film_width_mm),
+           model_compute_real(h->film_height_mm));
     printf("field               %10.3f mm from the middle\n",
-           model_real_of(h->field_mm));
+           model_compute_real(h->field_mm));
     printf("band                %6.0f to %.0f nm\n",
-           model_nanometres(h->wave_hi_q24), model_nanometres(h->wave_lo_q24));
+           model_wavelength_nm(h->wave_hi_q24),
+           model_wavelength_nm(h->wave_lo_q24));
     printf("largest angle       %10.3f degrees\n",
-           model_degrees(h->sine_hi_q30));
+           model_angle_deg(h->sine_hi_q30));
     printf("surfaces            %6lu\n", (unsigned long)h->n_surfaces);
     printf("ghosts              %6lu in %lu parts, %lu zones, "
            "%.1f terms an output\n",
-           (unsigned long)model_ghost_count(&model->lens),
+           (unsigned long)model_count_ghosts(&model->lens),
            (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
-           model_mean_terms(&sum));
+           model_compute_mean_terms(&sum));
     if (model->zoom)
         printf(
             "positions           %6d along the zoom, %d more of some ghosts; "
@@ -213,7 +224,7 @@ static void print_header(const struct model_file *model)
             model->zoom->n_models - model_file_positions(model->zoom));
 }
 
-static void print_errors(const struct model_summary *sum)
+static void print_model_errors(const struct model_summary *sum)
 {
     printf("\noutput    in          terms       rms       p50 worst p99       "
            "max     bound  rounding\n");
@@ -228,7 +239,7 @@ static void print_errors(const struct model_summary *sum)
     }
 }
 
-static void print_title(const char *more)
+static void print_table_title(const char *more)
 {
     printf("ghost  surfaces   zones       degrees         terms      bytes%s\n",
            more);
@@ -236,11 +247,11 @@ static void print_title(const char *more)
 
 /* Prints the table line of a ghost, or of one part of its pupil (marked by a
  * plus after the number), without a line feed. */
-static void print_ghost(const struct glint_lens *lens, uint32_t entry,
-                        const struct model_summary *sum)
+static void print_ghost_row(const struct glint_lens *lens, uint32_t entry,
+                            const struct model_summary *sum)
 {
     const struct glint_model_ghost *g = &lens->ghost[entry];
-    const struct model_span span = model_span_of_ghost(lens, entry);
+    const struct model_span span = model_measure_ghost_span(lens, entry);
     double range_deg[2];
     char pair[32];
 
@@ -248,13 +259,13 @@ static void print_ghost(const struct glint_lens *lens, uint32_t entry,
     snprintf(pair, sizeof pair, "%lu-%lu", (unsigned long)g->i,
              (unsigned long)g->j);
     printf("%5lu%c %-8s %7lu  %7.3f .. %-7.3f %7.0f  %9zu",
-           (unsigned long)model_ghost_of(lens, entry),
-           entry < model_ghost_count(lens) ? ' ' : '+', pair,
+           (unsigned long)model_find_first_entry(lens, entry),
+           entry < model_count_ghosts(lens) ? ' ' : '+', pair,
            (unsigned long)g->n_systems, range_deg[0], range_deg[1],
-           model_terms(sum), model_span_bytes(lens, span));
+           model_count_terms(sum), model_span_bytes(lens, span));
 }
 
-static void print_unseen(const struct glint_lens *lens)
+static void print_unseen_ghosts(const struct glint_lens *lens)
 {
     bool any = false;
 
@@ -271,23 +282,23 @@ static void print_unseen(const struct glint_lens *lens)
         printf("\n");
 }
 
-static void print_ghosts(const struct glint_lens *lens)
+static void print_ghost_table(const struct glint_lens *lens)
 {
     printf("\n");
-    print_title("");
+    print_table_title("");
     for (uint32_t k = 0; k < lens->header->n_ghosts; k++) {
         const struct model_summary sum =
-            model_summary_of(lens, model_span_of_ghost(lens, k));
+            model_summarise(lens, model_measure_ghost_span(lens, k));
 
         if (lens->ghost[k].n_systems == 0)
             continue;
-        print_ghost(lens, k, &sum);
+        print_ghost_row(lens, k, &sum);
         printf("\n");
     }
-    print_unseen(lens);
+    print_unseen_ghosts(lens);
 }
 
-static void print_systems(const struct glint_lens *lens)
+static void print_system_table(const struct glint_lens *lens)
 {
     printf("\n zone   ghost       degrees               nm       terms  "
            "sensor px: rms  p99  max\n");
@@ -296,33 +307,36 @@ static void print_systems(const struct glint_lens *lens)
             const uint32_t n = lens->ghost[g].first_system + k;
             const struct glint_model_system *s = &lens->system[n];
             const struct model_summary sum =
-                model_summary_of(lens, (struct model_span){n, 1});
+                model_summarise(lens, (struct model_span){n, 1});
             const struct model_errors *x = &sum.of[GLINT_OUT_SENSOR_X];
 
             printf("%6lu %6lu  %7.3f .. %-7.3f  %4.0f .. %-4.0f %6.0f  "
                    "%9.3g %9.3g %9.3g\n",
-                   (unsigned long)n, (unsigned long)model_ghost_of(lens, g),
-                   model_degrees(s->sine_lo_q30), model_degrees(s->sine_hi_q30),
-                   model_nanometres(s->wave_hi_q24),
-                   model_nanometres(s->wave_lo_q24), model_terms(&sum),
+                   (unsigned long)n,
+                   (unsigned long)model_find_first_entry(lens, g),
+                   model_angle_deg(s->sine_lo_q30),
+                   model_angle_deg(s->sine_hi_q30),
+                   model_wavelength_nm(s->wave_hi_q24),
+                   model_wavelength_nm(s->wave_lo_q24), model_count_terms(&sum),
                    sqrt(x->mean2), x->p99, x->max);
         }
 }
 
-static void print_info(const struct tool *tool, const struct model_file *model)
+static void print_model_info(const struct tool *tool,
+                             const struct model_file *model)
 {
     const struct model_summary sum =
-        model_summary_of(&model->lens, model_span_of_all(&model->lens));
+        model_summarise(&model->lens, model_full_span(&model->lens));
 
-    print_header(model);
-    print_ghosts(&model->lens);
-    print_errors(&sum);
+    print_model_header(model);
+    print_ghost_table(&model->lens);
+    print_model_errors(&sum);
     if (tool->verbose)
-        print_systems(&model->lens);
+        print_system_table(&model->lens);
 }
 
 /* Ends the line of a ghost with the outputs that miss their targets. */
-static void print_misses(const struct model_summary *sum)
+static void print_ghost_misses(const struct model_summary *sum)
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (sum->of[kind].p99 > model_output_targets[kind])
@@ -331,7 +345,7 @@ static void print_misses(const struct model_summary *sum)
 }
 
 /* Ends the line of a ghost and prints a line for each output. */
-static void print_details(const struct model_summary *sum)
+static void print_output_details(const struct model_summary *sum)
 {
     printf("\n");
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
@@ -347,43 +361,46 @@ static void print_details(const struct model_summary *sum)
 }
 
 /* Prints the ghosts that miss a target; all ghosts if ALL. */
-static void print_fits(const struct glint_lens *lens, bool all)
+static void print_fit_table(const struct glint_lens *lens, bool all)
 {
     bool titled = false;
 
     for (uint32_t k = 0; k < lens->header->n_ghosts; k++) {
         const struct model_summary sum =
-            model_summary_of(lens, model_span_of_ghost(lens, k));
+            model_summarise(lens, model_measure_ghost_span(lens, k));
 
-        if (lens->ghost[k].n_systems == 0 || (!all && !model_misses(&sum)))
+        if (lens->ghost[k].n_systems == 0 || (!all && !model_has_misses(&sum)))
             continue;
         if (!titled)
-            print_title(all ? "" : "  misses the target by p99");
+            print_table_title(all ? "" : "  misses the target by p99");
         titled = true;
-        print_ghost(lens, k, &sum);
-        (all ? print_details : print_misses)(&sum);
+        print_ghost_row(lens, k, &sum);
+        (all ? print_output_details : print_ghost_misses)(&sum);
     }
 }
 
-static void print_bake(const struct tool *tool, const struct glint_lens *lens,
-                       double seconds, const struct glint_bake_report *report)
+static void print_bake_statistics(const struct tool *tool,
+                                  const struct glint_lens *lens, double seconds,
+                                  const struct glint_bake_report *report)
 {
     const struct glint_model_header *h = lens->header;
     const struct model_summary sum =
-        model_summary_of(lens, model_span_of_all(lens));
+        model_summarise(lens, model_full_span(lens));
 
-    print_fits(lens, tool->verbose > 0);
-    print_unseen(lens);
-    print_errors(&sum);
+    print_fit_table(lens, tool->verbose > 0);
+    print_unseen_ghosts(lens);
+    print_model_errors(&sum);
     printf("\n%s: %lu bytes, %lu ghosts in %lu parts, %lu zones, "
            "%.1f terms an output, %.1f s\n",
            h->name, (unsigned long)h->bytes,
-           (unsigned long)model_ghost_count(lens), (unsigned long)h->n_ghosts,
-           (unsigned long)h->n_systems, model_mean_terms(&sum), seconds);
+           (unsigned long)model_count_ghosts(lens), (unsigned long)h->n_ghosts,
+           (unsigned long)h->n_systems, model_compute_mean_terms(&sum),
+           seconds);
     printf("%u of %lu ghosts miss the target somewhere; %d of %d rays pass "
            "where they are cut; the tolerance was too tight for %d zones\n",
-           model_missed_count(lens), (unsigned long)model_ghost_count(lens),
-           report->intruders, report->rays, report->unmet);
+           model_count_missed_ghosts(lens),
+           (unsigned long)model_count_ghosts(lens), report->intruders,
+           report->rays, report->unmet);
 }
 
 void model_report_info(const struct tool *tool, const struct model_file *model)
@@ -393,14 +410,14 @@ void model_report_info(const struct tool *tool, const struct model_file *model)
     /* Between its positions a zoom lens has no polynomial systems to report. */
     if (shown.zoom)
         shown.lens = shown.zoom->model[0];
-    (tool->json ? json_info : print_info)(tool, &shown);
+    (tool->json ? write_info_json : print_model_info)(tool, &shown);
 }
 
 void model_report_bake(const struct tool *tool, const struct glint_lens *lens,
                        double seconds, const struct glint_bake_report *report)
 {
     if (tool->json)
-        json_bake(lens, seconds, report);
+        write_bake_json(lens, seconds, report);
     else if (!tool->quiet)
-        print_bake(tool, lens, seconds, report);
+        print_bake_statistics(tool, lens, seconds, report);
 }

@@ -20,23 +20,23 @@ const char *model_basis_name(const struct glint_lens *lens)
 
 /* --------------------------------------------------------------- quantities */
 
-double model_degrees(int32_t sine_q30)
+double model_angle_deg(int32_t sine_q30)
 {
     return asin(fmin(1, ldexp(sine_q30, -30))) * (180 / GLINT_PI);
 }
 
-double model_nanometres(int32_t wave_q24)
+double model_wavelength_nm(int32_t wave_q24)
 {
     return 1e3 / sqrt(ldexp(wave_q24, -24));
 }
 
-struct model_span model_span_of_all(const struct glint_lens *lens)
+struct model_span model_full_span(const struct glint_lens *lens)
 {
     return (struct model_span){0, lens->header->n_systems};
 }
 
-struct model_span model_span_of_ghost(const struct glint_lens *lens,
-                                      uint32_t ghost)
+struct model_span model_measure_ghost_span(const struct glint_lens *lens,
+                                           uint32_t ghost)
 {
     return (struct model_span){lens->ghost[ghost].first_system,
                                lens->ghost[ghost].n_systems};
@@ -89,8 +89,8 @@ void model_span_angles(const struct glint_lens *lens, struct model_span span,
         lo_q30 = s->sine_lo_q30 < lo_q30 ? s->sine_lo_q30 : lo_q30;
         hi_q30 = s->sine_hi_q30 > hi_q30 ? s->sine_hi_q30 : hi_q30;
     }
-    range_deg[0] = span.n ? model_degrees(lo_q30) : 0;
-    range_deg[1] = model_degrees(hi_q30);
+    range_deg[0] = span.n ? model_angle_deg(lo_q30) : 0;
+    range_deg[1] = model_angle_deg(hi_q30);
 }
 
 static double decode_error(uint16_t stored)
@@ -114,10 +114,10 @@ static void add_errors(struct model_errors *e,
     e->rounding = fmax(e->rounding, ldexp(o->rounding_q8 * step, -8));
 }
 
-struct model_summary model_summary_of(const struct glint_lens *lens,
-                                      struct model_span span)
+struct model_summary model_summarise(const struct glint_lens *lens,
+                                     struct model_span span)
 {
-    const double px = 1920 / model_real_of(lens->header->film_width_mm);
+    const double px = 1920 / model_compute_real(lens->header->film_width_mm);
     struct model_summary sum = {{{0}}};
 
     for (uint32_t k = span.first; k < span.first + span.n; k++) {
@@ -131,7 +131,7 @@ struct model_summary model_summary_of(const struct glint_lens *lens,
     return sum;
 }
 
-double model_terms(const struct model_summary *sum)
+double model_count_terms(const struct model_summary *sum)
 {
     double terms = 0;
 
@@ -140,16 +140,16 @@ double model_terms(const struct model_summary *sum)
     return terms;
 }
 
-double model_mean_terms(const struct model_summary *sum)
+double model_compute_mean_terms(const struct model_summary *sum)
 {
     uint32_t n = 0;
 
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         n += sum->of[kind].n;
-    return n ? model_terms(sum) / n : 0;
+    return n ? model_count_terms(sum) / n : 0;
 }
 
-bool model_misses(const struct model_summary *sum)
+bool model_has_misses(const struct model_summary *sum)
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (sum->of[kind].p99 > model_output_targets[kind])
@@ -157,12 +157,12 @@ bool model_misses(const struct model_summary *sum)
     return false;
 }
 
-uint32_t model_ghost_count(const struct glint_lens *lens)
+uint32_t model_count_ghosts(const struct glint_lens *lens)
 {
     return lens->header->n_ghosts - lens->header->n_parts;
 }
 
-uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry)
+uint32_t model_find_first_entry(const struct glint_lens *lens, uint32_t entry)
 {
     const struct glint_model_ghost *g = &lens->ghost[entry];
     uint32_t k = 0;
@@ -184,10 +184,10 @@ static void add_miss(const struct glint_lens *lens, uint32_t system,
                      struct model_miss *miss)
 {
     const struct model_span span = {system, 1};
-    const struct model_summary sum = model_summary_of(lens, span);
+    const struct model_summary sum = model_summarise(lens, span);
     double range_deg[2];
 
-    if (!model_misses(&sum))
+    if (!model_has_misses(&sum))
         return;
     model_span_angles(lens, span, range_deg);
     miss->angle_deg[0] =
@@ -205,12 +205,13 @@ static void add_miss(const struct glint_lens *lens, uint32_t system,
     }
 }
 
-struct model_miss model_miss_of(const struct glint_lens *lens, uint32_t ghost)
+struct model_miss model_find_misses(const struct glint_lens *lens,
+                                    uint32_t ghost)
 {
     struct model_miss miss = {.zones = 0};
 
     for (uint32_t entry = ghost; entry < lens->header->n_ghosts; entry++) {
-        const struct model_span span = model_span_of_ghost(lens, entry);
+        const struct model_span span = model_measure_ghost_span(lens, entry);
 
         for (uint32_t k = 0; is_part_of(lens, entry, ghost) && k < span.n; k++)
             add_miss(lens, span.first + k, &miss);
@@ -218,11 +219,11 @@ struct model_miss model_miss_of(const struct glint_lens *lens, uint32_t ghost)
     return miss;
 }
 
-unsigned model_missed_count(const struct glint_lens *lens)
+unsigned model_count_missed_ghosts(const struct glint_lens *lens)
 {
     unsigned n = 0;
 
-    for (uint32_t k = 0; k < model_ghost_count(lens); k++)
-        n += model_miss_of(lens, k).zones > 0;
+    for (uint32_t k = 0; k < model_count_ghosts(lens); k++)
+        n += model_find_misses(lens, k).zones > 0;
     return n;
 }

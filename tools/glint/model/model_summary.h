@@ -17,8 +17,8 @@ extern const char *const model_output_units[GLINT_OUT_KINDS];
 extern const double model_output_targets[GLINT_OUT_KINDS];
 
 const char *model_basis_name(const struct glint_lens *lens);
-double model_degrees(int32_t sine_q30);
-double model_nanometres(
+double model_angle_deg(int32_t sine_q30);
+double model_wavelength_nm(
     int32_t wave_q24); /* converts 1 / square micrometres to nanometres */
 
 /* The polynomial systems first .. first + n - 1. */
@@ -26,9 +26,9 @@ struct model_span {
     uint32_t first, n;
 };
 
-struct model_span model_span_of_all(const struct glint_lens *lens);
-struct model_span model_span_of_ghost(const struct glint_lens *lens,
-                                      uint32_t ghost);
+struct model_span model_full_span(const struct glint_lens *lens);
+struct model_span model_measure_ghost_span(const struct glint_lens *lens,
+                                           uint32_t ghost);
 
 const struct glint_model_output *
 model_outputs_of(const struct glint_lens *lens,
@@ -54,24 +54,24 @@ struct model_summary {
     struct model_errors of[GLINT_OUT_KINDS];
 };
 
-struct model_summary model_summary_of(const struct glint_lens *lens,
-                                      struct model_span span);
+struct model_summary model_summarise(const struct glint_lens *lens,
+                                     struct model_span span);
 /* polynomial terms, summed over all outputs */
-double model_terms(const struct model_summary *sum);
+double model_count_terms(const struct model_summary *sum);
 double
 /* polynomial terms per output, mean */
-model_mean_terms(const struct model_summary *sum);
+model_compute_mean_terms(const struct model_summary *sum);
 
 /* Returns whether any output misses its target. */
-bool model_misses(const struct model_summary *sum);
+bool model_has_misses(const struct model_summary *sum);
 
 /* Returns the number of ghosts; ghosts whose pupil has several parts count
  * once. */
-uint32_t model_ghost_count(const struct glint_lens *lens);
+uint32_t model_count_ghosts(const struct glint_lens *lens);
 
 /* Returns the number of the ghost to which ENTRY belongs; an entry is a
  * ghost or a part of a ghost's pupil. */
-uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry);
+uint32_t model_find_first_entry(const struct glint_lens *lens, uint32_t entry);
 
 /* The zones in which a ghost misses its targets. A zone is a range of
  * angles. */
@@ -83,9 +83,10 @@ struct model_miss {
 };
 
 /* Returns where GHOST, with all parts of its pupil, misses targets. */
-struct model_miss model_miss_of(const struct glint_lens *lens, uint32_t ghost);
+struct model_miss model_find_misses(const struct glint_lens *lens,
+                                    uint32_t ghost);
 
 /* Returns the number of ghosts with any part that misses a target. */
-unsigned model_missed_count(const struct glint_lens *lens);
+unsigned model_count_missed_ghosts(const struct glint_lens *lens);
 
 #endif

@@ -7,7 +7,7 @@
 #include "model/model_file.h"
 #include "posix/output.h"
 
-bool tool_begins_as(const char *argument, uint32_t magic)
+bool tool_has_magic(const char *argument, uint32_t magic)
 {
     uint32_t first = 0;
     struct stat st;
@@ -26,7 +26,7 @@ bool tool_begins_as(const char *argument, uint32_t magic)
     return first == magic;
 }
 
-void tool_key_mix(uint64_t *key, const void *data, size_t bytes)
+void tool_hash_into_key(uint64_t *key, const void *data, size_t bytes)
 {
     const uint8_t *byte = data;
 
@@ -63,7 +63,7 @@ void tool_scene_name(const char *path, char name[64])
     snprintf(name, 64, "%.*s", (int)strcspn(start, "."), start);
 }
 
-int tool_scene_is_kept(const struct tool *tool, const char *path)
+int tool_check_scene_not_overwritten(const struct tool *tool, const char *path)
 {
     if (!tool->written || !glint_target_is_input(path, tool->written))
         return EXIT_OK;

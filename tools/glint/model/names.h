@@ -7,7 +7,7 @@
 #include "options/tool.h"
 
 /* Returns whether ARGUMENT is a file that begins with the 32-bit word MAGIC. */
-bool tool_begins_as(const char *argument, uint32_t magic);
+bool tool_has_magic(const char *argument, uint32_t magic);
 
 enum { TOOL_PATH_BYTES = 4096 };
 
@@ -22,12 +22,13 @@ enum glint_status tool_find_input(const char *text, const char *name,
 /* Sets NAME to the name of the file PATH without folder and extension. */
 void tool_scene_name(const char *path, char name[64]);
 
-/* FNV-1a hash: start with TOOL_KEY_BEGIN; tool_key_mix() adds DATA[BYTES]. */
+/* FNV-1a hash: start with TOOL_KEY_BEGIN; tool_hash_into_key() adds
+ * DATA[BYTES]. */
 #define TOOL_KEY_BEGIN UINT64_C(14695981039346656037)
-void tool_key_mix(uint64_t *key, const void *data, size_t bytes);
+void tool_hash_into_key(uint64_t *key, const void *data, size_t bytes);
 
 /* Returns EXIT_OK unless the scene PATH is the output file of TOOL; then
  * prints a usage error and returns its exit code. */
-int tool_scene_is_kept(const struct tool *tool, const char *path);
+int tool_check_scene_not_overwritten(const struct tool *tool, const char *path);
 
 #endif

@@ -27,9 +27,9 @@ struct glint_engine_camera opened_lens_camera(const struct opened_lens *lens,
     return camera;
 }
 
-enum glint_status opened_lens_stop(struct opened_lens *lens,
-                                   const struct settings *s,
-                                   struct glint_error *error)
+enum glint_status opened_lens_set_stop(struct opened_lens *lens,
+                                       const struct settings *s,
+                                       struct glint_error *error)
 {
     const struct glint_engine_camera camera = opened_lens_camera(lens, s);
     const struct glint_lens *const model =
@@ -65,14 +65,15 @@ enum glint_status opened_lens_zoom(struct opened_lens *lens,
                 ? "does not zoom: its table has one position"
                 : "does not zoom: its model is of one position");
     status = model_file_zoom(&lens->model, zoom, error);
-    return status == GLINT_OK ? opened_lens_stop(lens, settings, error)
+    return status == GLINT_OK ? opened_lens_set_stop(lens, settings, error)
                               : status;
 }
 
 /* ------------------------------------------------------------------ opening */
 
-static int check_band(const struct tool *tool, const struct opened_lens *lens,
-                      const struct settings *settings)
+static int check_wavelength_band(const struct tool *tool,
+                                 const struct opened_lens *lens,
+                                 const struct settings *settings)
 {
     const struct glint_model_header *h = lens->model.lens.header;
     const double lo = 1e3 / sqrt(h->wave_hi_q24 * 0x1p-24);
@@ -90,12 +91,13 @@ static int check_band(const struct tool *tool, const struct opened_lens *lens,
 
 /* Prints a warning if the image is larger than the field that the model was
  * baked for. */
-static void warn_field(const struct tool *tool, const struct opened_lens *lens,
-                       const struct glint_engine_camera *camera)
+static void warn_of_small_field(const struct tool *tool,
+                                const struct opened_lens *lens,
+                                const struct glint_engine_camera *camera)
 {
     const double diagonal =
         hypot(camera->sensor_width_mm, camera->sensor_height_mm);
-    const double field = model_real_of(lens->model.lens.header->field_mm);
+    const double field = model_compute_real(lens->model.lens.header->field_mm);
 
     if (!tool->quiet && 0.5 * diagonal > field)
         fprintf(stderr,
@@ -106,8 +108,9 @@ static void warn_field(const struct tool *tool, const struct opened_lens *lens,
 
 /* Moves the zoom lens of the model PATH to the position that --zoom
  * requests. */
-static int zoom_model(const struct tool *tool, struct model_file *model,
-                      const struct zoom_option *o, const char *path)
+static int zoom_model_to_option(const struct tool *tool,
+                                struct model_file *model,
+                                const struct zoom_option *o, const char *path)
 {
     struct glint_error error = {""};
 
@@ -118,8 +121,8 @@ static int zoom_model(const struct tool *tool, struct model_file *model,
                : tool_usage(tool, "%s: %s", path, error.text);
 }
 
-static int open_model(const struct tool *tool, struct opened_lens *lens,
-                      const struct settings *settings, const char *path)
+static int open_model_file(const struct tool *tool, struct opened_lens *lens,
+                           const struct settings *settings, const char *path)
 {
     const struct glint_model_header *h;
     int code;
@@ -131,26 +134,26 @@ static int open_model(const struct tool *tool, struct opened_lens *lens,
     if (code == EXIT_OK)
         code = tool_model(tool, path, &lens->model);
     if (code == EXIT_OK)
-        code = zoom_model(tool, &lens->model, &settings->zoom, path);
+        code = zoom_model_to_option(tool, &lens->model, &settings->zoom, path);
     if (code != EXIT_OK)
         return code;
     h = lens->model.lens.header;
     snprintf(lens->table.name, sizeof lens->table.name, "%s", h->name);
-    lens->table.film_width_mm = model_real_of(h->film_width_mm);
-    lens->table.film_height_mm = model_real_of(h->film_height_mm);
+    lens->table.film_width_mm = model_compute_real(h->film_width_mm);
+    lens->table.film_height_mm = model_compute_real(h->film_height_mm);
     lens->table.stop_is_circle = false; /* not stored in models */
-    warn_field(tool, lens, &settings->camera);
+    warn_of_small_field(tool, lens, &settings->camera);
     return EXIT_OK;
 }
 
-static int set_up(const struct tool *tool, struct opened_lens *lens,
-                  const struct settings *s)
+static int set_up_opened_lens(const struct tool *tool, struct opened_lens *lens,
+                              const struct settings *s)
 {
     struct glint_error error = {""};
-    enum glint_status status = opened_lens_stop(lens, s, &error);
+    enum glint_status status = opened_lens_set_stop(lens, s, &error);
 
     if (status == GLINT_E_ARGUMENT && s->options.f_number > 0)
-        return settings_refuse_stop(tool, s, error.text);
+        return settings_report_bad_stop(tool, s, error.text);
     if (status == GLINT_OK && s->options.ghosts)
         status = ghost_file_read(&lens->tints, s->options.ghosts, &lens->setup,
                                  lens->table.name, &error);
@@ -164,9 +167,10 @@ static int set_up(const struct tool *tool, struct opened_lens *lens,
     return EXIT_OK;
 }
 
-int opened_lens_front(const struct tool *tool, struct opened_lens *lens,
-                      const struct glint_engine_camera *camera,
-                      const char *file)
+int opened_lens_set_front_dirt(const struct tool *tool,
+                               struct opened_lens *lens,
+                               const struct glint_engine_camera *camera,
+                               const char *file)
 {
     struct glint_front front = camera->front_dirt;
     struct stop_mask mask = {NULL, 0, 0};
@@ -200,21 +204,21 @@ int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
     if (code == EXIT_OK && settings->options.stop_mask)
         code = stop_mask_read(tool, settings->options.stop_mask, &lens->mask);
     if (code == EXIT_OK)
-        code = opened_lens_front(tool, lens, &settings->camera,
-                                 settings->options.front_mask);
+        code = opened_lens_set_front_dirt(tool, lens, &settings->camera,
+                                          settings->options.front_mask);
     if (code != EXIT_OK)
         return code;
     if (settings->options.projection == GLINT_PROJECTION_LENS &&
         tool_is_model(name))
         return tool_usage(tool, "--projection lens needs a lens table: a "
                                 "baked model has no chief rays");
-    code = tool_is_model(name) ? open_model(tool, lens, settings, name)
+    code = tool_is_model(name) ? open_model_file(tool, lens, settings, name)
                                : opened_table(tool, lens, settings, name);
 
     if (code == EXIT_OK && lens->model.data &&
         settings->camera.waves.kind == GLINT_WAVES_LIST)
-        code = check_band(tool, lens, settings);
-    return code == EXIT_OK ? set_up(tool, lens, settings) : code;
+        code = check_wavelength_band(tool, lens, settings);
+    return code == EXIT_OK ? set_up_opened_lens(tool, lens, settings) : code;
 }
 
 void opened_lens_close(struct opened_lens *lens)
@@ -227,7 +231,7 @@ void opened_lens_close(struct opened_lens *lens)
     *lens = (struct opened_lens){.tints = NULL};
 }
 
-void opened_lens_moved(struct opened_lens *lens)
+void opened_lens_follow_move(struct opened_lens *lens)
 {
     if (lens->setup.lens)
         lens->setup.lens = &lens->table;
@@ -258,8 +262,8 @@ void opened_lens_engine(const struct tool *tool, const struct opened_lens *lens,
     glint_engine_configure(cfg, &settings->options);
     cfg->model = lens->model.data ? &lens->model.lens : NULL;
     cfg->workers = tool->workers;
-    cfg->sets = tool_sets(tool);
-    cfg->clock = tool_seconds;
+    cfg->sets = tool_enabled_instruction_sets(tool);
+    cfg->clock = tool_clock_s;
     cfg->camera.setup = &lens->setup;
     cfg->camera.rays = opened_table_rays();
     cfg->camera.tints = lens->tints;

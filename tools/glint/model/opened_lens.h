@@ -15,7 +15,7 @@
 #include "model/stop_mask.h"
 
 /* An opened lens. All zero bytes: closed. SETUP points to TABLE: see
- * opened_lens_moved(). */
+ * opened_lens_follow_move(). */
 struct opened_lens {
     /* for a model only name and film are set */
     struct glint_prescription table;
@@ -41,13 +41,13 @@ void opened_lens_close(struct opened_lens *lens);
 
 /* Points the setup of LENS to its own table again, after LENS was copied to
  * a new address. */
-void opened_lens_moved(struct opened_lens *lens);
+void opened_lens_follow_move(struct opened_lens *lens);
 
 /* Sets up LENS with the stop of SETTINGS. Returns GLINT_E_ARGUMENT if the
  * model was not baked for so wide a stop; ERROR states the limit. */
-enum glint_status opened_lens_stop(struct opened_lens *lens,
-                                   const struct settings *settings,
-                                   struct glint_error *error);
+enum glint_status opened_lens_set_stop(struct opened_lens *lens,
+                                       const struct settings *settings,
+                                       struct glint_error *error);
 
 /* Moves the zoom lens LENS to ZOOM, as model_file_zoom(). Returns
  * GLINT_E_ARGUMENT if that is impossible; ERROR states why. */
@@ -57,9 +57,10 @@ enum glint_status opened_lens_zoom(struct opened_lens *lens,
 
 /* Puts the dirt of CAMERA and the mask in the image FILE (NULL: none) on the
  * front element of LENS. Returns an exit code. */
-int opened_lens_front(const struct tool *tool, struct opened_lens *lens,
-                      const struct glint_engine_camera *camera,
-                      const char *file);
+int opened_lens_set_front_dirt(const struct tool *tool,
+                               struct opened_lens *lens,
+                               const struct glint_engine_camera *camera,
+                               const char *file);
 
 /* Returns the camera of SETTINGS with the stop mask of LENS. If the command
  * line does not set the stop's shape, it is a circle if the table says so. */

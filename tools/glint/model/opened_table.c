@@ -34,9 +34,10 @@ struct glint_bake_options opened_table_bake(const struct glint_prescription *l,
 
 /* Sets the projection of LENS, and *DEG to the largest angle in the image,
  * degrees. */
-static enum glint_status set_projection(struct opened_lens *lens,
-                                        const struct glint_engine_camera *c,
-                                        double *deg, struct glint_error *error)
+static enum glint_status
+set_lens_projection(struct opened_lens *lens,
+                    const struct glint_engine_camera *c, double *deg,
+                    struct glint_error *error)
 {
     const struct glint_prescription *l = &lens->table;
     struct glint_optics optics;
@@ -58,7 +59,7 @@ static enum glint_status set_projection(struct opened_lens *lens,
 }
 
 /* Rejects an input that is not an image before the lens is baked. */
-static int check_picture(const struct tool *tool, const char *picture)
+static int check_input_picture(const struct tool *tool, const char *picture)
 {
     struct glint_error error = {""};
     struct glint_kept kept;
@@ -72,8 +73,8 @@ static int check_picture(const struct tool *tool, const char *picture)
 
 /* Sets the f-number of the table of LENS to that of SETTINGS, as exact rays are
  * traced through the stop itself. */
-static int stop_table(const struct tool *tool, struct opened_lens *lens,
-                      const struct settings *settings)
+static int set_table_f_number(const struct tool *tool, struct opened_lens *lens,
+                              const struct settings *settings)
 {
     const double f_number = settings->options.f_number;
     struct glint_error error = {""};
@@ -81,7 +82,7 @@ static int stop_table(const struct tool *tool, struct opened_lens *lens,
     if (!(f_number > 0) || glint_prescription_set_f_number(
                                &lens->table, f_number, &error) == GLINT_OK)
         return EXIT_OK;
-    return settings_refuse_stop(tool, settings, error.text);
+    return settings_report_bad_stop(tool, settings, error.text);
 }
 
 /* Max ghosts times surfaces of a lens file from elsewhere that exact rays draw
@@ -91,15 +92,16 @@ static int stop_table(const struct tool *tool, struct opened_lens *lens,
 enum { SHAPED = 7 };
 
 /* Refuses LENS, given as NAME, if it has more than MOST_PATHS. */
-static int bound_paths(const struct tool *tool,
-                       const struct glint_prescription *lens, const char *name)
+static int check_path_count(const struct tool *tool,
+                            const struct glint_prescription *lens,
+                            const char *name)
 {
     const int ghosts = lens->n_surfaces * (lens->n_surfaces - 1) / 2;
     int surfaces = 0;
 
     for (int k = 0; k < lens->n_surfaces; k++)
         surfaces += glint_surface_is_shaped(&lens->surface[k]) ? SHAPED : 1;
-    if (ghosts * surfaces <= MOST_PATHS || !model_is_foreign(lens, name))
+    if (ghosts * surfaces <= MOST_PATHS || !model_is_lens_from_file(lens, name))
         return EXIT_OK;
     tool_error(tool,
                "%.200s: exact rays of a lens of %d ghosts take more than about "
@@ -111,9 +113,9 @@ static int bound_paths(const struct tool *tool,
 
 /* Finds or bakes the model of LENS, given as NAME, for lights up to DEG off the
  * axis. */
-static int find_model(const struct tool *tool, struct opened_lens *lens,
-                      const struct settings *settings, const char *name,
-                      double deg)
+static int find_or_bake_model(const struct tool *tool, struct opened_lens *lens,
+                              const struct settings *settings, const char *name,
+                              double deg)
 {
     struct glint_bake_options options =
         opened_table_bake(&lens->table, settings);
@@ -124,12 +126,13 @@ static int find_model(const struct tool *tool, struct opened_lens *lens,
     lens->is_unbaked = (settings->picture || settings->unbaked) &&
                        !model_is_cached(&lens->table, &options);
     if (lens->is_unbaked && settings->picture)
-        code = check_picture(tool, settings->picture);
+        code = check_input_picture(tool, settings->picture);
     if (lens->is_unbaked && settings->unbaked == SETTINGS_TRACE &&
         code == EXIT_OK)
-        code = bound_paths(tool, &lens->table, name);
+        code = check_path_count(tool, &lens->table, name);
     if (lens->is_unbaked && settings->unbaked != SETTINGS_BAKE)
-        return code == EXIT_OK ? stop_table(tool, lens, settings) : code;
+        return code == EXIT_OK ? set_table_f_number(tool, lens, settings)
+                               : code;
     lens->is_unbaked = false;
     return code == EXIT_OK
                ? model_cached(tool, &lens->table, name, options, &lens->model)
@@ -152,16 +155,16 @@ int opened_table(const struct tool *tool, struct opened_lens *lens,
     coating_apply(&settings->coating, &lens->table);
     /* A model serves all stops that are narrower than its own. */
     if (o->rays == GLINT_RAYS_EXACT || o->f_number < lens->table.f_number)
-        code = stop_table(tool, lens, settings);
+        code = set_table_f_number(tool, lens, settings);
     if (code != EXIT_OK)
         return code;
     if (o->projection == GLINT_PROJECTION_LENS)
-        status = set_projection(lens, &settings->camera, &deg, &error);
+        status = set_lens_projection(lens, &settings->camera, &deg, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     return o->rays == GLINT_RAYS_EXACT
                ? EXIT_OK
-               : find_model(tool, lens, settings, name, deg);
+               : find_or_bake_model(tool, lens, settings, name, deg);
 }
 
 const struct glint_frame_rays *opened_table_rays(void)

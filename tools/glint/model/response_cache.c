@@ -6,53 +6,55 @@
 
 #include "model/cache_file.h"
 
-static void print_response(const struct tool *tool, const char *lens,
-                           const char *what, const char *where)
+static void print_response_notice(const struct tool *tool, const char *lens,
+                                  const char *what, const char *where)
 {
     if (tool->verbose && !tool->quiet)
         fprintf(stderr, "glint %s: response of %s: %s%s\n", tool->name, lens,
                 what, where);
 }
 
-static bool find_path(char path[CACHE_PATH_BYTES], const char *lens,
-                      uint64_t key)
+static bool find_response_path(char path[CACHE_PATH_BYTES], const char *lens,
+                               uint64_t key)
 {
     return cache_file_folder(path, CACHE_PATH_BYTES) &&
            cache_file_name(path, CACHE_PATH_BYTES, lens, key, "response");
 }
 
-static int read_entry(void *ctx, const char *lens, uint64_t key, void *data,
-                      size_t bytes)
+static int read_cached_response(void *ctx, const char *lens, uint64_t key,
+                                void *data, size_t bytes)
 {
     char path[CACHE_PATH_BYTES];
     size_t got = 0;
-    uint8_t *const file =
-        find_path(path, lens, key) ? cache_file_read(path, bytes, &got) : NULL;
+    uint8_t *const file = find_response_path(path, lens, key)
+                              ? cache_file_read(path, bytes, &got)
+                              : NULL;
     const bool is_read = file && got == bytes;
 
     if (is_read) {
         memcpy(data, file, bytes);
-        print_response(ctx, lens, "read from ", path);
+        print_response_notice(ctx, lens, "read from ", path);
     }
     free(file);
     return is_read;
 }
 
-static void write_entry(void *ctx, const char *lens, uint64_t key,
-                        const void *data, size_t bytes)
+static void write_cached_response(void *ctx, const char *lens, uint64_t key,
+                                  const void *data, size_t bytes)
 {
     char path[CACHE_PATH_BYTES];
     struct glint_error error = {""};
 
-    if (!find_path(path, lens, key))
-        print_response(ctx, lens, "measured", "");
+    if (!find_response_path(path, lens, key))
+        print_response_notice(ctx, lens, "measured", "");
     else if (cache_file_write(path, data, bytes, &error) == GLINT_OK)
-        print_response(ctx, lens, "measured, kept in ", path);
+        print_response_notice(ctx, lens, "measured, kept in ", path);
     else
-        print_response(ctx, lens, "measured, not kept: ", error.text);
+        print_response_notice(ctx, lens, "measured, not kept: ", error.text);
 }
 
 struct glint_engine_cache response_cache(const struct tool *tool)
 {
-    return (struct glint_engine_cache){read_entry, write_entry, (void *)tool};
+    return (struct glint_engine_cache){read_cached_response,
+                                       write_cached_response, (void *)tool};
 }

@@ -7,7 +7,7 @@
 
 /* Computes the members of S that are derived from its options, which must be
  * valid. */
-static void compute_derived(struct settings *s)
+static void compute_derived_settings(struct settings *s)
 {
     const struct glint_options *const o = &s->options;
     const struct glint_quality quality = glint_options_quality(o);
@@ -36,7 +36,7 @@ void settings_defaults(struct settings *settings)
     o->starburst = 0;
     o->coating = "table";
     o->wavelengths = "650,532,450";
-    compute_derived(settings);
+    compute_derived_settings(settings);
 }
 
 void settings_defaults_photo(struct settings *settings)
@@ -45,7 +45,7 @@ void settings_defaults_photo(struct settings *settings)
     glint_options_defaults(&settings->options);
     settings->coating.kind = COATING_MIXED;
     settings->roundness = PHOTO_ROUNDNESS;
-    compute_derived(settings);
+    compute_derived_settings(settings);
 }
 
 int settings_option(const struct tool *tool, struct settings *settings,
@@ -54,9 +54,9 @@ int settings_option(const struct tool *tool, struct settings *settings,
     int code = engine_option(tool, &settings->options, option, value);
 
     if (code == -1 && option == ENGINE_OPTION_OF(coating))
-        code = coating_take(tool, &settings->coating, value);
+        code = coating_parse_option(tool, &settings->coating, value);
     if (code == -1)
-        compute_derived(settings);
+        compute_derived_settings(settings);
     return code;
 }
 
@@ -67,7 +67,7 @@ bool settings_set(struct settings *settings, const char *name, const char *text)
     if (glint_options_set_text(&settings->options, name, text, &error) !=
         GLINT_OK)
         return false;
-    compute_derived(settings);
+    compute_derived_settings(settings);
     return true;
 }
 
@@ -78,7 +78,7 @@ bool settings_set_number(struct settings *settings, const char *name,
 
     if (glint_options_set(&settings->options, name, value, &error) != GLINT_OK)
         return false;
-    compute_derived(settings);
+    compute_derived_settings(settings);
     return true;
 }
 
@@ -95,8 +95,8 @@ bool settings_has_grid(const struct settings *settings)
            GLINT_OPTION_GIVEN(o, error);
 }
 
-int settings_refuse_stop(const struct tool *tool, const struct settings *s,
-                         const char *text)
+int settings_report_bad_stop(const struct tool *tool, const struct settings *s,
+                             const char *text)
 {
     struct tool there = *tool;
 
@@ -112,7 +112,7 @@ bool settings_has_veil(const struct settings *settings)
            settings->camera.front_dirt.dust > 0 || settings->options.front_mask;
 }
 
-enum settings_unbaked settings_still(const struct settings *settings)
+enum settings_unbaked settings_choose_unbaked(const struct settings *settings)
 {
     const struct glint_options *const o = &settings->options;
     const bool is_chosen = GLINT_OPTION_GIVEN(o, rays) || o->memory ||
@@ -129,7 +129,7 @@ int settings_only_ghost(const struct settings *settings)
                : -1;
 }
 
-double settings_scale(const struct settings *settings)
+double settings_brightness_scale(const struct settings *settings)
 {
     return settings->options.gain * exp2(settings->options.exposure);
 }
@@ -159,7 +159,8 @@ void settings_json(struct json_writer *json,
                    r->dials.dim_codes, r->blurred, r->unveiled);
 }
 
-void settings_lights_text(const struct glint_engine_report *r, char text[64])
+void settings_describe_lights(const struct glint_engine_report *r,
+                              char text[64])
 {
     if (r->drawn_lights < r->lights - r->beyond_lights)
         snprintf(text, 64, "%d lights, %d after merging", r->lights,

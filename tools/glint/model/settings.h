@@ -77,8 +77,8 @@ int settings_option(const struct tool *tool, struct settings *settings,
 
 /* Prints TEXT, the reason why the f-number of S is impossible, and the line
  * of the file that requests it, if any. Returns an exit code. */
-int settings_refuse_stop(const struct tool *tool, const struct settings *s,
-                         const char *text);
+int settings_report_bad_stop(const struct tool *tool, const struct settings *s,
+                             const char *text);
 
 /* Set the option NAME. TEXT is its value as text; VALUE is a number, the
  * index of a word, or 0 or 1 for a flag. Return false, without a change, if
@@ -102,18 +102,18 @@ bool settings_has_veil(const struct settings *settings);
 
 /* Returns what a command that draws one picture does with a table that has no
  * model: it traces exact rays, unless an option requests or needs a model. */
-enum settings_unbaked settings_still(const struct settings *settings);
+enum settings_unbaked settings_choose_unbaked(const struct settings *settings);
 
 /* Returns the factor for all light, gain * 2^EV. */
-double settings_scale(const struct settings *settings);
+double settings_brightness_scale(const struct settings *settings);
 
 /* Writes the report of a frame as members of a JSON object. */
 void settings_json(struct json_writer *json,
                    const struct glint_engine_report *report);
 
 /* Writes the numbers of lights found and drawn as text. */
-void settings_lights_text(const struct glint_engine_report *report,
-                          char text[64]);
+void settings_describe_lights(const struct glint_engine_report *report,
+                              char text[64]);
 
 /* Prints warnings to standard error: lights outside the model's angles, and
  * lights that were merged because there are too many; even with -q: ray

@@ -10,7 +10,7 @@
 #include "model/stop_mask.h"
 
 /* Sets TO[height][width] to the luma codes of IMAGE. */
-static void read_luma(const struct glint_image *image, uint8_t *to)
+static void read_luma_codes(const struct glint_image *image, uint8_t *to)
 {
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x++) {
@@ -33,7 +33,7 @@ int stop_mask_read(const struct tool *tool, const char *file,
         return tool_fail(tool, status, error.text);
     mask->luma = malloc((size_t)image.width * (size_t)image.height);
     if (mask->luma)
-        read_luma(&image, mask->luma);
+        read_luma_codes(&image, mask->luma);
     glint_picture_free(&image);
     return mask->luma ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
 }

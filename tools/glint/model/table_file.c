@@ -13,9 +13,9 @@
 #include "posix/error.h"
 #include "posix/input.h"
 
-static bool add_suggestion(void *suggest, const char *name)
+static bool suggest_lens_name(void *suggest, const char *name)
 {
-    suggest_try(suggest, name, strlen(name));
+    suggest_consider(suggest, name, strlen(name));
     return true;
 }
 
@@ -27,7 +27,7 @@ struct lens_matches {
     size_t last;    /* offset of its last comma */
 };
 
-static bool add_match(void *matches, const char *name)
+static bool print_matching_lens(void *matches, const char *name)
 {
     struct lens_matches *m = matches;
     const size_t at = strlen(m->text);
@@ -41,12 +41,12 @@ static bool add_match(void *matches, const char *name)
 }
 
 /* Prints the lenses whose names contain NAME. Returns their number. */
-static int print_matches(const struct tool *tool, const char *name)
+static int print_matching_lenses(const struct tool *tool, const char *name)
 {
     struct lens_matches m = {.word = name};
 
     if (strlen(name) >= 3)
-        lens_files_each(add_match, &m);
+        lens_files_visit_all(print_matching_lens, &m);
     if (m.n > 1)
         tool_error(
             tool,
@@ -55,7 +55,7 @@ static int print_matches(const struct tool *tool, const char *name)
     return m.n;
 }
 
-static void print_no_lens(const struct tool *tool, const char *name)
+static void print_lens_not_found(const struct tool *tool, const char *name)
 {
     struct suggest s;
 
@@ -66,21 +66,22 @@ static void print_no_lens(const struct tool *tool, const char *name)
                    name, name);
         return;
     }
-    if (print_matches(tool, name) > 1)
+    if (print_matching_lenses(tool, name) > 1)
         return;
     suggest_begin(&s, name);
-    lens_files_each(add_suggestion, &s);
+    lens_files_visit_all(suggest_lens_name, &s);
     tool_error(tool,
                "%s: neither a file nor a lens that comes with glint "
                "(%s%s)",
                name,
-               suggest_best(&s) ? "did you mean " : "glint lenses lists them",
-               suggest_best(&s) ? s.best : "");
+               suggest_find_best(&s) ? "did you mean "
+                                     : "glint lenses lists them",
+               suggest_find_best(&s) ? s.best : "");
 }
 
 /* Returns whether NAME is an existing file of a format that glint import
  * reads. */
-static bool is_foreign(const char *name)
+static bool is_importable_file(const char *name)
 {
     static const char *const endings[] = {".zmx", ".seq", ".len", ".fx",
                                           ".xml"};
@@ -93,9 +94,9 @@ static bool is_foreign(const char *name)
 
 /* Reads the table in FILE. Rejects binary files such as pictures with a message
  * without line and column. */
-static enum glint_status parse_table(const char *file,
-                                     struct glint_prescription *lens,
-                                     struct glint_error *error)
+static enum glint_status parse_lens_table(const char *file,
+                                          struct glint_prescription *lens,
+                                          struct glint_error *error)
 {
     enum glint_status status;
     uint8_t *text = NULL;
@@ -121,7 +122,7 @@ static enum glint_status parse_table(const char *file,
 const char *tool_lens_file(const struct tool *tool, const char *argument,
                            char *path, size_t bytes)
 {
-    if (is_foreign(argument)) {
+    if (is_importable_file(argument)) {
         tool_error(
             tool,
             "%s: a lens file of another program; glint import converts it",
@@ -137,7 +138,7 @@ const char *tool_lens_file(const struct tool *tool, const char *argument,
         return argument;
     if (lens_file_find(argument, path, bytes))
         return path;
-    print_no_lens(tool, argument);
+    print_lens_not_found(tool, argument);
     return NULL;
 }
 
@@ -151,7 +152,7 @@ int tool_lens(const struct tool *tool, const char *argument,
 
     if (!file)
         return EXIT_LENS;
-    status = parse_table(file, lens, &error);
+    status = parse_lens_table(file, lens, &error);
     if (status == GLINT_OK)
         return EXIT_OK;
     if (status == GLINT_E_LENS && !glint_ends_in(file, ".lens"))

@@ -6,10 +6,10 @@
 /* Max distance of --focus, metres; larger values mean infinity. */
 #define FARTHEST_M 1e6
 
-bool zoom_option_take(struct zoom_option *option, const char *text)
+bool zoom_option_parse(struct zoom_option *option, const char *text)
 {
     option->is_zoomed = true;
-    return tool_number(text, &option->zoom) && option->zoom >= 0;
+    return tool_parse_number(text, &option->zoom) && option->zoom >= 0;
 }
 
 bool zoom_option_focus(struct zoom_option *option, const char *text)
@@ -18,7 +18,7 @@ bool zoom_option_focus(struct zoom_option *option, const char *text)
     option->focus_m = 0;
     if (strcmp(text, "inf") == 0)
         return true;
-    return tool_number(text, &option->focus_m) && option->focus_m > 0 &&
+    return tool_parse_number(text, &option->focus_m) && option->focus_m > 0 &&
            option->focus_m <= FARTHEST_M;
 }
 

@@ -33,7 +33,7 @@ struct zoom_option {
 
 /* Parse TEXT as the value of --zoom or --focus. Return false if it is
  * malformed. */
-bool zoom_option_take(struct zoom_option *option, const char *text);
+bool zoom_option_parse(struct zoom_option *option, const char *text);
 bool zoom_option_focus(struct zoom_option *option, const char *text);
 
 /* Moves the groups of LENS, which was just read, to zoom and focus. Returns

@@ -26,16 +26,16 @@ int cmd_bake_motion(struct tool *tool, int argc, char **argv)
     struct motion_file file;
     int code;
 
-    code = bake_line_begin(tool, help, argc, argv, options, NULL, NULL,
+    code = bake_line_parse(tool, help, argc, argv, options, NULL, NULL,
                            "expects one recording");
     if (code >= 0)
         return code;
     code = motion_file_open(tool, argv[optind], &file);
     if (code != EXIT_OK)
         return code;
-    code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
-                     file.bytes);
-    if (code == EXIT_OK && bake_line_tells(tool))
+    code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
+                          file.bytes);
+    if (code == EXIT_OK && bake_line_prints_report(tool))
         motion_file_print(tool, &file);
     motion_file_close(&file);
     return code;

@@ -20,7 +20,7 @@ bool motion_file_is_source(const char *argument)
 
 bool motion_file_is_baked(const char *argument)
 {
-    return tool_begins_as(argument, GLINT_MOTION_MAGIC);
+    return tool_has_magic(argument, GLINT_MOTION_MAGIC);
 }
 
 /* State of reading a recording, and the hash of its contents. */
@@ -29,19 +29,19 @@ struct reading {
     uint64_t key;
 };
 
-static long read_bytes(void *ctx, char *to, size_t n)
+static long read_motion_bytes(void *ctx, char *to, size_t n)
 {
     struct reading *reading = ctx;
     const ptrdiff_t some = glint_input_some(&reading->in, to, n);
 
     if (some > 0)
-        tool_key_mix(&reading->key, to, (size_t)some);
+        tool_hash_into_key(&reading->key, to, (size_t)some);
     return (long)some;
 }
 
-static enum glint_status bake_recording(const char *path,
-                                        struct motion_file *file,
-                                        struct glint_error *error)
+static enum glint_status bake_motion_recording(const char *path,
+                                               struct motion_file *file,
+                                               struct glint_error *error)
 {
     struct reading reading = {.key = TOOL_KEY_BEGIN};
     struct glint_motion_baker *baker = glint_motion_baker_open();
@@ -53,7 +53,8 @@ static enum glint_status bake_recording(const char *path,
         status = glint_input_open(&reading.in, path, error);
     if (status == GLINT_OK) {
         tool_scene_name(path, name);
-        status = glint_recording_read(baker, path, read_bytes, &reading, error);
+        status = glint_recording_read(baker, path, read_motion_bytes, &reading,
+                                      error);
         glint_input_close(&reading.in);
         if (status == GLINT_OK)
             status =
@@ -83,7 +84,7 @@ enum glint_status motion_file_read(const char *path, const char *written,
 
     *file = (struct motion_file){.data = NULL};
     if (status == GLINT_OK && motion_file_is_source(path)) {
-        status = bake_recording(path, file, error);
+        status = bake_motion_recording(path, file, error);
     } else if (status == GLINT_OK) {
         status =
             glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
@@ -131,8 +132,8 @@ void motion_file_close(struct motion_file *file)
 /* -------------------------------------------------------------------- poses */
 
 /* Writes line K to TEXT[BYTES]. Returns its length. */
-static int print_pose(struct motion_file *file, uint32_t k, char *text,
-                      size_t bytes)
+static int print_pose_line(struct motion_file *file, uint32_t k, char *text,
+                           size_t bytes)
 {
     const double step = ldexp(1, -file->motion.header.unit_log2);
     struct glint_motion_frame f;
@@ -159,8 +160,8 @@ int motion_file_poses(const struct tool *tool, struct motion_file *file,
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     bytes = (size_t)snprintf(text, LINE, "frame,x,y,z,qw,qx,qy,qz\n");
     for (uint32_t k = 0; k < n; k++)
-        bytes += (size_t)print_pose(file, k, text + bytes, LINE);
-    code = tool_save(tool, to, GLINT_OUTPUT_TEXT, text, bytes);
+        bytes += (size_t)print_pose_line(file, k, text + bytes, LINE);
+    code = tool_save_file(tool, to, GLINT_OUTPUT_TEXT, text, bytes);
     free(text);
     return code;
 }

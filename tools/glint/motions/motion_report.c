@@ -14,7 +14,7 @@ struct counts {
     double step; /* resolution of positions, units */
 };
 
-static struct counts count_contents(const struct motion_file *file)
+static struct counts count_motion_contents(const struct motion_file *file)
 {
     const struct glint_motion_header *h = &file->motion.header;
     const size_t block = GLINT_MOTION_BLOCK;
@@ -29,12 +29,13 @@ static struct counts count_contents(const struct motion_file *file)
         .step = ldexp(1, -h->unit_log2)};
 }
 
-static double angle_deg(const struct glint_motion_header *h)
+static double rotation_angle_deg(const struct glint_motion_header *h)
 {
     return 360 / GLINT_PI * acos(ldexp(h->cos_half_q30, -30));
 }
 
-static void print_json(const struct motion_file *file, const struct counts *n)
+static void print_motion_json(const struct motion_file *file,
+                              const struct counts *n)
 {
     const struct glint_motion_header *h = &file->motion.header;
     const struct glint_motion_report *r = &file->report;
@@ -46,10 +47,11 @@ static void print_json(const struct motion_file *file, const struct counts *n)
                "step: %.6g, low: [%.9g, %.9g, %.9g], "
                "high: [%.9g, %.9g, %.9g], residual: %.6g, residual_frame: %u",
                h->name, h->n_frames, h->n_foods, h->n_sensors,
-               h->n_events - h->n_foods, n->step * h->size, angle_deg(h),
-               n->step, n->step * h->low[0], n->step * h->low[1],
-               n->step * h->low[2], n->step * h->high[0], n->step * h->high[1],
-               n->step * h->high[2], n->step * h->residual, h->residual_frame);
+               h->n_events - h->n_foods, n->step * h->size,
+               rotation_angle_deg(h), n->step, n->step * h->low[0],
+               n->step * h->low[1], n->step * h->low[2], n->step * h->high[0],
+               n->step * h->high[1], n->step * h->high[2],
+               n->step * h->residual, h->residual_frame);
     if (file->is_baked_now)
         json_write(&json,
                    "path: %.9g, span: %.9g, residual_rms: %.6g, "
@@ -65,14 +67,15 @@ static void print_json(const struct motion_file *file, const struct counts *n)
                n->intensities, file->bytes);
 }
 
-static void print_text(const struct motion_file *file, const struct counts *n)
+static void print_motion_text(const struct motion_file *file,
+                              const struct counts *n)
 {
     const struct glint_motion_header *h = &file->motion.header;
     const struct glint_motion_report *r = &file->report;
 
     printf("%s, a motion of %u frames\n\n", h->name, h->n_frames);
     printf("body         size %.4g, %u sensors that see %.4g degrees\n",
-           n->step * h->size, h->n_sensors, angle_deg(h));
+           n->step * h->size, h->n_sensors, rotation_angle_deg(h));
     printf("foods        %u, %u resets%s\n", h->n_foods,
            h->n_events - h->n_foods,
            h->intensities ? ", with intensities" : "");
@@ -100,7 +103,7 @@ static void print_text(const struct motion_file *file, const struct counts *n)
 
 void motion_file_print(const struct tool *tool, struct motion_file *file)
 {
-    const struct counts n = count_contents(file);
+    const struct counts n = count_motion_contents(file);
 
-    (tool->json ? print_json : print_text)(file, &n);
+    (tool->json ? print_motion_json : print_motion_text)(file, &n);
 }

@@ -15,20 +15,20 @@ struct bar {
     uint32_t last; /* last frame, at least 1 */
 };
 
-static int frame_px(const struct bar *b, uint32_t frame)
+static int frame_position_px(const struct bar *b, uint32_t frame)
 {
     return b->x0 + (int)((int64_t)(b->x1 - b->x0) * frame / b->last);
 }
 
-static void draw_tick(const struct bar *b, uint32_t frame)
+static void draw_frame_tick(const struct bar *b, uint32_t frame)
 {
-    const int x = frame_px(b, frame), high = b->y1 - b->y0;
+    const int x = frame_position_px(b, frame), high = b->y1 - b->y0;
 
     paint_fill(&b->paint, x, b->y0 - high, x + b->paint.line, b->y0);
 }
 
 /* Marks the frames at which foods were replaced. */
-static void draw_events(const struct bar *b, struct glint_motion *motion)
+static void draw_food_changes(const struct bar *b, struct glint_motion *motion)
 {
     const struct glint_motion_header *const h = &motion->header;
     const uint32_t each =
@@ -39,13 +39,13 @@ static void draw_events(const struct bar *b, struct glint_motion *motion)
     for (uint32_t i = h->n_foods; i < h->n_events && h->n_events < MOST_EVENTS;
          i++)
         if (glint_motion_event(motion, i, &event) == GLINT_OK)
-            draw_tick(b, event.frame);
+            draw_frame_tick(b, event.frame);
     for (uint32_t i = 0; h->n_events >= MOST_EVENTS && i * each < h->n_frames;
          i++) {
         if (glint_motion_index(motion, i, &index) != GLINT_OK)
             return;
         if (index.event > before.event)
-            draw_tick(b, i * each);
+            draw_frame_tick(b, i * each);
         before = index;
     }
 }
@@ -67,11 +67,11 @@ void time_line_draw(const struct glint_image *image,
     paint_colour(&b.paint, 70, 75, 80);
     paint_fill(&b.paint, b.x0, b.y0, b.x1, b.y1);
     paint_colour(&b.paint, 255, 150, 40);
-    draw_events(&b, motion);
+    draw_food_changes(&b, motion);
     paint_colour(&b.paint, 240, 240, 240);
-    paint_fill(&b.paint, b.x0, b.y0, frame_px(&b, now), b.y1);
-    paint_fill(&b.paint, frame_px(&b, now) - high / 2, b.y0 - high,
-               frame_px(&b, now) + high / 2 + 1, b.y1 + high);
+    paint_fill(&b.paint, b.x0, b.y0, frame_position_px(&b, now), b.y1);
+    paint_fill(&b.paint, frame_position_px(&b, now) - high / 2, b.y0 - high,
+               frame_position_px(&b, now) + high / 2 + 1, b.y1 + high);
     snprintf(text, sizeof text, "%u/%u", now, n - 1);
     paint_text(&b.paint, b.x1 - paint_text_width(&b.paint, text),
                b.y0 - 2 * high - 6 * b.paint.line, text);

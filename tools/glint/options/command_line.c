@@ -14,14 +14,14 @@
 
 /* Sets the instruction sets that VALUE, a word of --kernels, allows. Returns
  * false if the word is unknown or this CPU lacks the set. */
-static bool parse_sets(struct tool *tool, const char *value)
+static bool parse_instruction_sets(struct tool *tool, const char *value)
 {
     static const char *const words[] = {"c",    "sse41", "avx2",
                                         "neon", "auto",  NULL};
     static const unsigned sets[] = {0, GLINT_SET_SSE41,
                                     GLINT_SET_SSE41 | GLINT_SET_AVX2,
                                     GLINT_SET_NEON, ~0U};
-    const int word = tool_word(value, words);
+    const int word = tool_find_word(value, words);
 
     if (word < 0 || (word < 4 && (sets[word] & ~glint_system_sets())))
         return false;
@@ -33,14 +33,14 @@ static bool parse_sets(struct tool *tool, const char *value)
 static char **line;
 static const struct option *taken; /* options of the command */
 
-void tool_line(char **argv)
+void tool_set_command_line(char **argv)
 {
     line = argv;
 }
 
 /* Sets NAME to the long option, without its value, that getopt_long() read
  * last. Returns false if there is none. */
-static bool last_option(char name[SUGGEST_CHARS])
+static bool find_last_option(char name[SUGGEST_CHARS])
 {
     const char *text = line && optind > 0 ? line[optind - 1] : NULL;
     size_t n;
@@ -60,17 +60,17 @@ static void suggest_option(const struct tool *tool)
     struct suggest s;
     char name[SUGGEST_CHARS];
 
-    if (last_option(name)) {
+    if (find_last_option(name)) {
         suggest_begin(&s, name);
         for (const struct option *o = taken; o && o->name; o++)
-            suggest_try(&s, o->name, strlen(o->name));
-        if (suggest_best(&s) && s.distance > 0)
+            suggest_consider(&s, o->name, strlen(o->name));
+        if (suggest_find_best(&s) && s.distance > 0)
             fprintf(stderr, "Did you mean --%s? ", s.best);
     }
     fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
 }
 
-static bool has_name(const struct option *options, const char *name)
+static bool has_option_name(const struct option *options, const char *name)
 {
     while (options->name && strcmp(options->name, name) != 0)
         options++;
@@ -93,7 +93,7 @@ const struct option *engine_getopt(struct tool *tool, unsigned groups,
     for (const struct option *o = own; o->name; o++)
         all[n++] = *o;
     for (int i = 0; (row = glint_option(i)) != NULL; i++)
-        if (groups >> row->group & 1 && !has_name(own, row->name))
+        if (groups >> row->group & 1 && !has_option_name(own, row->name))
             all[n++] = (struct option){row->name,
                                        row->type == GLINT_OPTION_FLAG
                                            ? no_argument
@@ -172,19 +172,19 @@ int tool_option(struct tool *tool, int option, const char *value)
         tool->json = true;
         return -1;
     case 'j':
-        if (tool_integer(value, 1, GLINT_MAX_WORKERS, &tool->n_threads))
+        if (tool_parse_integer(value, 1, GLINT_MAX_WORKERS, &tool->n_threads))
             return -1;
         return tool_usage(tool, "--threads must be 1 to %d, not '%s'",
                           GLINT_MAX_WORKERS, value);
     case 'K':
-        if (parse_sets(tool, value))
+        if (parse_instruction_sets(tool, value))
             return -1;
         return tool_usage(tool,
                           "--kernels must be c, auto or an instruction set of "
                           "this CPU (glint --version), not '%s'",
                           value);
     case 'S':
-        if (tool_integer(value, 0, INT_MAX, &tool->seed))
+        if (tool_parse_integer(value, 0, INT_MAX, &tool->seed))
             return -1;
         return tool_usage(tool, "--seed must be a whole number, not '%s'",
                           value);
@@ -198,8 +198,8 @@ int tool_option(struct tool *tool, int option, const char *value)
     }
 }
 
-const char *tool_value_of(int argc, char **argv, const char *shorts,
-                          const struct option *options, int option)
+const char *tool_find_option_value(int argc, char **argv, const char *shorts,
+                                   const struct option *options, int option)
 {
     /* Works on a copy, as getopt_long() reorders the words: an option at the
      * end without its value would otherwise consume the input at the second
@@ -237,8 +237,9 @@ int tool_inputs(const struct tool *tool, int argc, char **argv, int n,
                       argv[optind - 2]);
 }
 
-int tool_take(struct tool *tool, int argc, char **argv, const char *shorts,
-              const struct option *options, tool_take_fn *take, void *ctx)
+int tool_parse_options(struct tool *tool, int argc, char **argv,
+                       const char *shorts, const struct option *options,
+                       tool_take_fn *take, void *ctx)
 {
     int c, code, index = 0;
 

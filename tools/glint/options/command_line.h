@@ -29,7 +29,7 @@ enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
 
 /* Stores the command line, for suggestions of tool_option() on unknown
  * options. */
-void tool_line(char **argv);
+void tool_set_command_line(char **argv);
 
 /* Sets the GROUPS of engine options that TOOL has, and copies their DEFAULTS.
  * Returns one array, valid until the next call, of OWN, which a row without a
@@ -52,8 +52,8 @@ int tool_option(struct tool *tool, int option, const char *value);
 /* Returns the value of the last option in ARGV that getopt_long() would return
  * as OPTION, or NULL. Applies no option, and resets getopt_long() to the first
  * argument. */
-const char *tool_value_of(int argc, char **argv, const char *shorts,
-                          const struct option *options, int option);
+const char *tool_find_option_value(int argc, char **argv, const char *shorts,
+                                   const struct option *options, int option);
 
 /* Checks that N arguments of ARGV are left after the options. Returns -1, or
  * the code of tool_usage() after printing TEXT; if arguments are missing, the
@@ -69,7 +69,8 @@ typedef int tool_take_fn(struct tool *tool, void *ctx, int c,
 /* Parses the options of a command line. SHORTS are the option letters of the
  * command, without the common ones. Returns -1, or an exit code after printing
  * the reason. */
-int tool_take(struct tool *tool, int argc, char **argv, const char *shorts,
-              const struct option *options, tool_take_fn *take, void *ctx);
+int tool_parse_options(struct tool *tool, int argc, char **argv,
+                       const char *shorts, const struct option *options,
+                       tool_take_fn *take, void *ctx);
 
 #endif

@@ -36,7 +36,7 @@ struct pass {
 };
 
 /* Sets WHERE to "FILE:LINE", with only the end of a long file name. */
-static void set_where(struct pass *p, int line)
+static void set_error_location(struct pass *p, int line)
 {
     const size_t len = strlen(p->name);
 
@@ -46,12 +46,13 @@ static void set_where(struct pass *p, int line)
 
 /* Sets the error to FORMAT, which has one %s for ABOUT, and ends the pass.
  * Returns 0, which is inih's failure. */
-static int fail_pass(struct pass *p, const char *format, const char *about)
+static int report_pass_error(struct pass *p, const char *format,
+                             const char *about)
 {
     char cause[160];
 
     snprintf(cause, sizeof cause, format, about);
-    set_where(p, p->line);
+    set_error_location(p, p->line);
     glint_error_report(p->error, GLINT_E_FORMAT, p->where, "%s", cause);
     p->code = EXIT_INPUT;
     return 0;
@@ -59,12 +60,12 @@ static int fail_pass(struct pass *p, const char *format, const char *about)
 
 /* -------------------------------------------------------------------- lines */
 
-static bool is_blank(char c)
+static bool is_blank_character(char c)
 {
     return c == ' ' || c == '\t' || c == '\r';
 }
 
-static bool is_text(const char *text, size_t n)
+static bool is_text_option(const char *text, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         if (((unsigned char)text[i] < ' ' && text[i] != '\t') || text[i] == 127)
@@ -73,16 +74,16 @@ static bool is_text(const char *text, size_t n)
 }
 
 /* Sets LINE to the next line, without blanks around it. Returns its length. */
-static size_t next_line(struct pass *p, const char **line)
+static size_t read_next_line(struct pass *p, const char **line)
 {
     const char *const feed = memchr(p->at, '\n', (size_t)(p->end - p->at));
     const char *first = p->at, *last = feed ? feed : p->end;
 
     p->at = feed ? feed + 1 : p->end;
     p->line++;
-    while (first < last && is_blank(*first))
+    while (first < last && is_blank_character(*first))
         first++;
-    while (first < last && is_blank(last[-1]))
+    while (first < last && is_blank_character(last[-1]))
         last--;
     *line = first;
     return (size_t)(last - first);
@@ -90,7 +91,7 @@ static size_t next_line(struct pass *p, const char **line)
 
 /* Reads a line for inih, instead of fgets(); comments are read as empty
  * lines. */
-static char *read_line(char *dst, int size, void *stream)
+static char *read_line_for_inih(char *dst, int size, void *stream)
 {
     struct pass *const p = stream;
     const char *line;
@@ -98,15 +99,15 @@ static char *read_line(char *dst, int size, void *stream)
 
     if (p->code != EXIT_OK || p->at == p->end)
         return NULL;
-    n = next_line(p, &line);
+    n = read_next_line(p, &line);
     if (n > 0 && (*line == ';' || *line == '#'))
         n = 0;
     if (n > 0 && *line == '[')
         p->section_line = p->line;
-    if (!is_text(line, n))
-        return fail_pass(p, "holds a control character%s", ""), NULL;
+    if (!is_text_option(line, n))
+        return report_pass_error(p, "holds a control character%s", ""), NULL;
     if (n > CONFIG_LINE || n + 2 > (size_t)size)
-        return fail_pass(p, "has a line that is too long%s", ""), NULL;
+        return report_pass_error(p, "has a line that is too long%s", ""), NULL;
     memcpy(dst, line, n);
     memcpy(dst + n, "\n", 2);
     return dst;
@@ -114,7 +115,7 @@ static char *read_line(char *dst, int size, void *stream)
 
 /* ------------------------------------------------------------------ entries */
 
-static void note_section(struct pass *p, const char *section)
+static void record_section(struct pass *p, const char *section)
 {
     static const char *const known[] = {"",      "camera", "lens", "light",
                                         "flare", "output", NULL};
@@ -122,9 +123,10 @@ static void note_section(struct pass *p, const char *section)
     if (strcmp(section, p->section) == 0)
         return;
     snprintf(p->section, sizeof p->section, "%s", section);
-    if (p->taking || p->config->tool->quiet || tool_word(section, known) >= 0)
+    if (p->taking || p->config->tool->quiet ||
+        tool_find_word(section, known) >= 0)
         return;
-    set_where(p, p->section_line);
+    set_error_location(p, p->section_line);
     fprintf(stderr,
             "glint %s: %s: the section [%s] is unknown; its lines are used all "
             "the same\n",
@@ -139,34 +141,34 @@ static const struct option *find_option(const struct config *config,
     static const char *const line_only[] = {"help", "version", "config", NULL};
     const struct option *o = config->options;
 
-    if (tool_word(name, line_only) >= 0)
+    if (tool_find_word(name, line_only) >= 0)
         return NULL;
     while (o->name && strcmp(o->name, name) != 0)
         o++;
     return o->name ? o : NULL;
 }
 
-static int check_entry(struct pass *p, const struct option *option,
-                       const char *value)
+static int check_config_entry(struct pass *p, const struct option *option,
+                              const char *value)
 {
     const ptrdiff_t index = option - p->config->options;
 
     if (option->has_arg == required_argument && !*value)
-        return fail_pass(p, "%s needs a value", option->name);
+        return report_pass_error(p, "%s needs a value", option->name);
     if (option->has_arg != no_argument)
         return 1;
     if (strcmp(value, "yes") != 0 && strcmp(value, "no") != 0)
-        return fail_pass(p, "%s accepts yes or no", option->name);
+        return report_pass_error(p, "%s accepts yes or no", option->name);
     if (index < MAX_OPTIONS && p->stated[index])
-        return fail_pass(p, "%s is stated twice", option->name);
+        return report_pass_error(p, "%s is stated twice", option->name);
     if (index < MAX_OPTIONS)
         p->stated[index] = true;
     return 1;
 }
 
 /* Applies OPTION with a copy of VALUE, as inih reuses its memory. */
-static int apply_entry(struct pass *p, const struct option *option,
-                       const char *value)
+static int apply_config_entry(struct pass *p, const struct option *option,
+                              const char *value)
 {
     const bool plain = option->has_arg == no_argument;
     const size_t bytes = strlen(value) + 1;
@@ -176,38 +178,39 @@ static int apply_entry(struct pass *p, const struct option *option,
     if (plain && strcmp(value, "no") == 0)
         return 1;
     memcpy(p->value, value, bytes);
-    set_where(p, p->line);
+    set_error_location(p, p->line);
     tool->where = p->where;
     code = p->config->take(p->config->ctx, option, plain ? NULL : p->value);
     tool->where = NULL;
     p->value += bytes;
     if (code == EXIT_OK) /* an option such as --list-devices */
-        return fail_pass(p, "%s is an option of the command line only",
-                         option->name);
+        return report_pass_error(p, "%s is an option of the command line only",
+                                 option->name);
     if (code > 0)
         p->code = code;
     return code < 0;
 }
 
-static int on_entry(void *ctx, const char *section, const char *name,
-                    const char *value)
+static int handle_config_entry(void *ctx, const char *section, const char *name,
+                               const char *value)
 {
     struct pass *const p = ctx;
     const struct option *option;
 
     if (p->code != EXIT_OK)
         return 0;
-    note_section(p, section);
+    record_section(p, section);
     option = find_option(p->config, name);
     if (!option)
-        return fail_pass(p, "%s is not an option of configuration files", name);
-    return p->taking ? apply_entry(p, option, value)
-                     : check_entry(p, option, value);
+        return report_pass_error(
+            p, "%s is not an option of configuration files", name);
+    return p->taking ? apply_config_entry(p, option, value)
+                     : check_config_entry(p, option, value);
 }
 
 /* ------------------------------------------------------------------- passes */
 
-static void run_pass(struct pass *p, const char *text, size_t bytes)
+static void run_parser_pass(struct pass *p, const char *text, size_t bytes)
 {
     int malformed;
 
@@ -215,10 +218,10 @@ static void run_pass(struct pass *p, const char *text, size_t bytes)
     p->end = text + bytes;
     p->line = 0;
     p->section[0] = '\0';
-    malformed = ini_parse_stream(read_line, p, on_entry, p);
+    malformed = ini_parse_stream(read_line_for_inih, p, handle_config_entry, p);
     if (malformed > 0 && (p->code == EXIT_OK || malformed < p->line)) {
         p->line = malformed;
-        fail_pass(p, "is neither [section] nor name = value%s", "");
+        report_pass_error(p, "is neither [section] nor name = value%s", "");
     }
 }
 
@@ -234,7 +237,7 @@ int config_parse(struct config *config, const char *name, const char *text,
         text += 3;
         bytes -= 3;
     }
-    run_pass(&p, text, bytes);
+    run_parser_pass(&p, text, bytes);
     if (p.code != EXIT_OK)
         return p.code;
     /* All values fit into BYTES, as each is shorter than its line. */
@@ -244,7 +247,7 @@ int config_parse(struct config *config, const char *name, const char *text,
         return EXIT_RUNTIME;
     }
     p.taking = true;
-    run_pass(&p, text, bytes);
+    run_parser_pass(&p, text, bytes);
     return p.code;
 }
 

@@ -5,7 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-static bool has_group(const struct tool *tool, enum glint_option_group group)
+static bool has_option_group(const struct tool *tool,
+                             enum glint_option_group group)
 {
     return (tool->groups >> group & 1) != 0;
 }
@@ -36,7 +37,7 @@ struct page {
     int column;
 };
 
-static void write_text(struct page *page, const char *text, size_t n)
+static void write_help_text(struct page *page, const char *text, size_t n)
 {
     for (; n > 0 && page->at < page->end; n--, text++) {
         page->column = *text == '\n' ? 0 : page->column + 1;
@@ -45,32 +46,32 @@ static void write_text(struct page *page, const char *text, size_t n)
     *page->at = '\0';
 }
 
-static void write_blanks(struct page *page, int column)
+static void write_help_blanks(struct page *page, int column)
 {
     while (page->column < column && page->at < page->end)
-        write_text(page, " ", 1);
+        write_help_text(page, " ", 1);
 }
 
 /* Writes the words of TEXT into the column of explanations. */
-static void write_words(struct page *page, const char *text)
+static void write_explanation_words(struct page *page, const char *text)
 {
     while (*text) {
         const size_t n = strcspn(text, " ");
 
         if (page->column + 1 + (int)n > LINE)
-            write_text(page, "\n", 1);
+            write_help_text(page, "\n", 1);
         else if (page->column > ABOUT_COLUMN)
-            write_text(page, " ", 1);
-        write_blanks(page, ABOUT_COLUMN);
-        write_text(page, text, n);
+            write_help_text(page, " ", 1);
+        write_help_blanks(page, ABOUT_COLUMN);
+        write_help_text(page, text, n);
         text += n + (text[n] == ' ');
     }
 }
 
 /* Sets VALUE and TEXT to the default of row I. TEXT is NULL if the option is
  * numeric or has no default. */
-static void find_default(const struct glint_options *defaults, int i,
-                         double *value, const char **text)
+static void find_option_default(const struct glint_options *defaults, int i,
+                                double *value, const char **text)
 {
     *value = NAN;
     *text = NULL;
@@ -104,8 +105,8 @@ static const char *format_range_start(double low, char start[32])
 
 /* Writes "(LOW to HIGH, default VALUE)" of row I, without values that the
  * help text already states. */
-static void write_limits(struct page *page,
-                         const struct glint_options *defaults, int i)
+static void write_option_limits(struct page *page,
+                                const struct glint_options *defaults, int i)
 {
     const struct glint_option *const row = glint_option(i);
     const bool is_number =
@@ -114,7 +115,7 @@ static void write_limits(struct page *page,
     char range[64] = "", all[160], start[32], text_in_brackets[164];
     double value;
 
-    find_default(defaults, i, &value, &text);
+    find_option_default(defaults, i, &value, &text);
     if (is_number && row->high < INT_MAX)
         snprintf(range, sizeof range, "%s%.10g",
                  format_range_start(row->low, start), row->high);
@@ -135,23 +136,23 @@ static void write_limits(struct page *page,
     }
     if (*all) {
         snprintf(text_in_brackets, sizeof text_in_brackets, "(%s)", all);
-        write_words(page, text_in_brackets);
+        write_explanation_words(page, text_in_brackets);
     }
 }
 
-static void write_row(struct page *page, const struct tool *tool, int i)
+static void write_option_row(struct page *page, const struct tool *tool, int i)
 {
     const struct glint_option *const row = glint_option(i);
     char text[96];
 
     snprintf(text, sizeof text, "  --%s%s%s", row->name, *row->value ? " " : "",
              row->value);
-    write_text(page, text, strlen(text));
-    write_blanks(page, page->column < ABOUT_COLUMN - 1 ? ABOUT_COLUMN
-                                                       : page->column + 2);
-    write_words(page, row->help);
-    write_limits(page, tool->defaults, i);
-    write_text(page, "\n", 1);
+    write_help_text(page, text, strlen(text));
+    write_help_blanks(page, page->column < ABOUT_COLUMN - 1 ? ABOUT_COLUMN
+                                                            : page->column + 2);
+    write_explanation_words(page, row->help);
+    write_option_limits(page, tool->defaults, i);
+    write_help_text(page, "\n", 1);
 }
 
 void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES])
@@ -165,11 +166,11 @@ void engine_help(const struct tool *tool, char text[ENGINE_HELP_BYTES])
 
     text[0] = '\0';
     for (int group = 0; group < GLINT_OPTION_GROUPS; group++) {
-        if (!has_group(tool, (enum glint_option_group)group))
+        if (!has_option_group(tool, (enum glint_option_group)group))
             continue;
-        write_text(&page, headings[group], strlen(headings[group]));
+        write_help_text(&page, headings[group], strlen(headings[group]));
         for (int i = 0; (row = glint_option(i)) != NULL; i++)
             if ((int)row->group == group)
-                write_row(&page, tool, i);
+                write_option_row(&page, tool, i);
     }
 }

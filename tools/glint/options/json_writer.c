@@ -10,7 +10,7 @@
 static const char letters[] =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789.-";
 
-static void write_text(FILE *file, const char *text)
+static void write_json_text(FILE *file, const char *text)
 {
     fputc('"', file);
     while (*text) {
@@ -29,7 +29,7 @@ static void write_text(FILE *file, const char *text)
 }
 
 /* Writes the next of VALUES, an integer whose size FORM states (l, ll or z). */
-static void write_integer(FILE *file, const char *form, va_list *values)
+static void write_json_integer(FILE *file, const char *form, va_list *values)
 {
     const char *const size = form + strcspn(form, "lz");
 
@@ -44,8 +44,8 @@ static void write_integer(FILE *file, const char *form, va_list *values)
 }
 
 /* Writes the next of VALUES by the conversion FORMAT[N]. */
-static void write_value(FILE *file, const char *format, size_t n,
-                        va_list *values)
+static void write_json_value(FILE *file, const char *format, size_t n,
+                             va_list *values)
 {
     const char kind = format[n - 1];
     const char *text;
@@ -56,7 +56,7 @@ static void write_value(FILE *file, const char *format, size_t n,
     if (kind == 's') {
         text = va_arg(*values, const char *);
         if (text)
-            write_text(file, text);
+            write_json_text(file, text);
         else
             fputs("null", file);
     } else if (kind == 'c') {
@@ -65,11 +65,11 @@ static void write_value(FILE *file, const char *format, size_t n,
         real = va_arg(*values, double);
         isfinite(real) ? fprintf(file, form, real) : fputs("null", file);
     } else {
-        write_integer(file, form, values);
+        write_json_integer(file, form, values);
     }
 }
 
-static void write_comma(struct json_writer *json, const char *comma)
+static void write_json_comma(struct json_writer *json, const char *comma)
 {
     if (json->is_due)
         fputs(comma, json->to);
@@ -77,15 +77,15 @@ static void write_comma(struct json_writer *json, const char *comma)
 }
 
 /* Writes the key, conversion or word at AT. Returns the text after it. */
-static const char *write_word(struct json_writer *json, const char *at,
-                              va_list *values)
+static const char *write_json_word(struct json_writer *json, const char *at,
+                                   va_list *values)
 {
     const bool is_value = *at == '%';
     const size_t n =
         is_value ? strcspn(at, "cdefgsu") + 1 : strspn(at, letters);
     const size_t more = strspn(at + n, letters);
 
-    write_comma(json, ", ");
+    write_json_comma(json, ", ");
     if (at[n + more] == ':') {
         fprintf(json->to,
                 "\"%s%.*s\": ", is_value ? va_arg(*values, const char *) : "",
@@ -93,7 +93,7 @@ static const char *write_word(struct json_writer *json, const char *at,
         return at + n + more + 1;
     }
     if (is_value)
-        write_value(json->to, at, n, values);
+        write_json_value(json->to, at, n, values);
     else
         fwrite(at, 1, n, json->to);
     json->is_due = true;
@@ -109,7 +109,7 @@ void json_write(struct json_writer *json, const char *format, ...)
     while (*format) {
         n = 1;
         if (strchr("{[", *format)) {
-            write_comma(json, ", ");
+            write_json_comma(json, ", ");
             fputc(*format, json->to);
         } else if (strchr("]}", *format)) {
             fputc(*format, json->to);
@@ -118,10 +118,10 @@ void json_write(struct json_writer *json, const char *format, ...)
             n += strspn(format + 1, " ");
             /* no comma before these and at the end of FORMAT */
             if (!strchr("]}", format[n]))
-                write_comma(json, ",");
+                write_json_comma(json, ",");
             fwrite(format, 1, n, json->to);
         } else if (*format == '%' || strchr(letters, *format)) {
-            n = (size_t)(write_word(json, format, &values) - format);
+            n = (size_t)(write_json_word(json, format, &values) - format);
         }
         format += n;
     }

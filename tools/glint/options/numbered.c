@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool numbered_is(const char *text)
+bool numbered_is_pattern(const char *text)
 {
     const char *at = strchr(text, '%');
 
@@ -17,7 +17,7 @@ bool numbered_is(const char *text)
     return *at == 'd' && !strchr(at, '%');
 }
 
-bool numbered_name(char *name, const char *pattern, int number)
+bool numbered_make_name(char *name, const char *pattern, int number)
 {
     const char *at = strchr(pattern, '%');
     const char *end = at ? strchr(at, 'd') : NULL;
@@ -50,5 +50,5 @@ bool numbered_from_hashes(char *pattern, const char *text)
         snprintf(width, sizeof width, "0%d", (int)(last - first + 1));
     n = snprintf(pattern, NUMBERED_BYTES, "%.*s%%%sd%s", (int)(first - text),
                  text, width, last + 1);
-    return n >= 0 && n < NUMBERED_BYTES && numbered_is(pattern);
+    return n >= 0 && n < NUMBERED_BYTES && numbered_is_pattern(pattern);
 }

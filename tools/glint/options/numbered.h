@@ -11,11 +11,11 @@ enum { NUMBERED_BYTES = 4096 };
 
 /* Returns whether TEXT is a pattern: it has exactly one conversion, %d or
  * %0Nd. */
-bool numbered_is(const char *text);
+bool numbered_is_pattern(const char *text);
 
 /* Sets NAME, NUMBERED_BYTES long, to the name of file NUMBER by PATTERN.
  * Returns false if NAME is too long or PATTERN is not a pattern. */
-bool numbered_name(char *name, const char *pattern, int number);
+bool numbered_make_name(char *name, const char *pattern, int number);
 
 /* Sets PATTERN, NUMBERED_BYTES long, to TEXT with the last run of N '#' of its
  * file name, as other programs name sequences, replaced by "%0Nd". Folders stay

@@ -26,13 +26,13 @@ void suggest_begin(struct suggest *suggest, const char *word);
 
 /* Compares CANDIDATE[N] with the word. A candidate that contains the word, if
  * that has 3 letters or more, is at distance 1 at most. */
-void suggest_try(struct suggest *suggest, const char *candidate, size_t n);
+void suggest_consider(struct suggest *suggest, const char *candidate, size_t n);
 
 /* Returns the nearest candidate if its distance is at most a third of its
  * letters, or 1; else NULL. */
-const char *suggest_best(const struct suggest *suggest);
+const char *suggest_find_best(const struct suggest *suggest);
 
-/* Returns "; did you mean 'BEST'?", or "" if suggest_best() is NULL. */
-const char *suggest_words(struct suggest *suggest);
+/* Returns "; did you mean 'BEST'?", or "" if suggest_find_best() is NULL. */
+const char *suggest_from_words(struct suggest *suggest);
 
 #endif

@@ -51,15 +51,16 @@ enum glint_status text_lines_open(struct text_lines *lines, const char *name,
     return status;
 }
 
-bool text_is_pipe(const char *path)
+bool text_is_named_pipe(const char *path)
 {
     struct stat st;
 
     return stat(path, &st) == 0 && S_ISFIFO(st.st_mode);
 }
 
-enum glint_status text_lines_pipe(struct text_lines *lines, const char *path,
-                                  struct glint_error *error)
+enum glint_status text_lines_open_pipe(struct text_lines *lines,
+                                       const char *path,
+                                       struct glint_error *error)
 {
     const int fd = strcmp(path, "-") == 0
                        ? STDIN_FILENO
@@ -71,7 +72,7 @@ enum glint_status text_lines_pipe(struct text_lines *lines, const char *path,
                                         strerror(errno));
 }
 
-void text_lines_turn(struct text_lines *lines)
+void text_lines_begin_turn(struct text_lines *lines)
 {
     lines->left = READINGS;
 }
@@ -87,7 +88,7 @@ void text_lines_close(struct text_lines *lines)
 /* ------------------------------------------------------------------- lines */
 
 /* Reads more from a pipe. Returns false if no data was available. */
-static bool read_pipe(struct text_lines *l)
+static bool read_from_pipe(struct text_lines *l)
 {
     struct pollfd there = {.fd = l->fd, .events = POLLIN};
     ssize_t n;
@@ -104,7 +105,7 @@ static bool read_pipe(struct text_lines *l)
     return n > 0;
 }
 
-static char *end_line(struct text_lines *l)
+static char *terminate_line(struct text_lines *l)
 {
     l->text[l->n_text] = '\0';
     l->n_text = 0;
@@ -114,30 +115,30 @@ static char *end_line(struct text_lines *l)
     return l->text;
 }
 
-static char *next_pipe_line(struct text_lines *l)
+static char *read_next_pipe_line(struct text_lines *l)
 {
     for (;;) {
         while (l->at < l->n_bytes) {
             const char c = l->bytes[l->at++];
 
             if (c == '\n')
-                return end_line(l);
+                return terminate_line(l);
             if (l->n_text < TEXT_PIPE_BYTES - 1)
                 l->text[l->n_text++] = c ? c : '?';
             else
                 l->is_cut = true;
         }
-        if (!read_pipe(l)) /* the last line may lack a line feed */
-            return l->has_ended && l->n_text ? end_line(l) : NULL;
+        if (!read_from_pipe(l)) /* the last line may lack a line feed */
+            return l->has_ended && l->n_text ? terminate_line(l) : NULL;
     }
 }
 
-char *text_lines_raw(struct text_lines *lines)
+char *text_lines_read_raw(struct text_lines *lines)
 {
     char *const line = lines->rest, *end;
 
     if (lines->is_pipe)
-        return next_pipe_line(lines);
+        return read_next_pipe_line(lines);
     if (!line)
         return NULL;
     end = strchr(line, '\n');
@@ -159,11 +160,11 @@ static char *trim_blanks(char *text)
     return text;
 }
 
-char *text_lines_next(struct text_lines *lines)
+char *text_lines_read_next(struct text_lines *lines)
 {
     char *line;
 
-    while ((line = text_lines_raw(lines))) {
+    while ((line = text_lines_read_raw(lines))) {
         line = trim_blanks(line);
         if (*line && *line != '#')
             return line;
@@ -171,13 +172,14 @@ char *text_lines_next(struct text_lines *lines)
     return NULL;
 }
 
-enum glint_status text_lines_each(struct text_lines *lines, text_take_fn *take,
-                                  void *ctx, struct glint_error *error)
+enum glint_status text_lines_parse_each(struct text_lines *lines,
+                                        text_take_fn *take, void *ctx,
+                                        struct glint_error *error)
 {
     enum glint_status status = GLINT_OK;
     char *line;
 
-    while (status == GLINT_OK && (line = text_lines_next(lines))) {
+    while (status == GLINT_OK && (line = text_lines_read_next(lines))) {
         const char *const cause = take(ctx, lines, line);
 
         if (cause)
@@ -210,7 +212,7 @@ const char *text_lines_cause(struct text_lines *lines, const char *format, ...)
 
 /* ------------------------------------------------------------------ fields */
 
-int text_fields(char *line, char **field, int max)
+int text_split_fields(char *line, char **field, int max)
 {
     int n = 0;
 
@@ -228,7 +230,7 @@ int text_fields(char *line, char **field, int max)
     return n;
 }
 
-int text_column(const struct text_column *column, int n, const char *name)
+int text_find_column(const struct text_column *column, int n, const char *name)
 {
     while (n > 0 && strcmp(column[n - 1].name, name) != 0)
         n--;
@@ -240,8 +242,9 @@ static char *skip_blanks(char *at)
     return at + strspn(at, blanks);
 }
 
-static const char *report_no_column(struct text_lines *lines,
-                                    const struct text_column *column, int n)
+static const char *report_missing_column(struct text_lines *lines,
+                                         const struct text_column *column,
+                                         int n)
 {
     int at = snprintf(lines->cause, sizeof lines->cause, "a key is none of");
 
@@ -251,8 +254,9 @@ static const char *report_no_column(struct text_lines *lines,
     return lines->cause;
 }
 
-const char *text_object(struct text_lines *lines, char *line,
-                        const struct text_column *column, int n, char **field)
+const char *text_parse_json_object(struct text_lines *lines, char *line,
+                                   const struct text_column *column, int n,
+                                   char **field)
 {
     /* at: first the opening brace, then each separator */
     char *at = line, mark = ',';
@@ -266,9 +270,9 @@ const char *text_object(struct text_lines *lines, char *line,
         if (!end)
             return "expected a \"key\"";
         *end = '\0';
-        k = text_column(column, n, key);
+        k = text_find_column(column, n, key);
         if (k < 0)
-            return report_no_column(lines, column, n);
+            return report_missing_column(lines, column, n);
         value = skip_blanks(end + 1);
         if (*value != ':')
             return "expected : after a key";
@@ -288,10 +292,10 @@ const char *text_object(struct text_lines *lines, char *line,
     return *skip_blanks(at + 1) ? "something follows the object" : NULL;
 }
 
-const char *text_value(const struct text_column *column, const char *text,
-                       const char *other, double *value)
+const char *text_parse_value(const struct text_column *column, const char *text,
+                             const char *other, double *value)
 {
-    if (!tool_number(text, value))
+    if (!tool_parse_number(text, value))
         return other;
     return *value >= column->low && *value <= column->high ? NULL
                                                            : column->range;
@@ -299,7 +303,7 @@ const char *text_value(const struct text_column *column, const char *text,
 
 /* ------------------------------------------------------------------ values */
 
-void *text_grow(void *rows, int n, size_t size)
+void *text_grow_array(void *rows, int n, size_t size)
 {
     return n & (n - 1) ? rows : realloc(rows, 2 * ((size_t)n + 1) * size);
 }

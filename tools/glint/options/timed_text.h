@@ -55,21 +55,23 @@ enum glint_status text_lines_open(struct text_lines *lines, const char *name,
                                   struct glint_error *error);
 
 /* Returns whether PATH is a FIFO. */
-bool text_is_pipe(const char *path);
+bool text_is_named_pipe(const char *path);
 
-/* Opens the FIFO PATH, or the standard input if PATH is "-". text_lines_turn()
- * begins a turn, in which at most 64 KiB are read. Zero bytes become '?'.
- * Error: GLINT_E_IO. */
-enum glint_status text_lines_pipe(struct text_lines *lines, const char *path,
-                                  struct glint_error *error);
-void text_lines_turn(struct text_lines *lines);
+/* Opens the FIFO PATH, or the standard input if PATH is "-".
+ * text_lines_begin_turn() begins a turn, in which at most 64 KiB are read. Zero
+ * bytes become '?'. Error: GLINT_E_IO. */
+enum glint_status text_lines_open_pipe(struct text_lines *lines,
+                                       const char *path,
+                                       struct glint_error *error);
+void text_lines_begin_turn(struct text_lines *lines);
 
 /* Return the next line, which the caller may change, or NULL at the end of
- * the file or turn. text_lines_raw() returns every line unchanged;
- * text_lines_next() trims lines and skips those that are empty or begin with
+ * the file or turn. text_lines_read_raw() returns every line unchanged;
+ * text_lines_read_next() trims lines and skips those that are empty or begin
+ * with
  * #. */
-char *text_lines_raw(struct text_lines *lines);
-char *text_lines_next(struct text_lines *lines);
+char *text_lines_read_raw(struct text_lines *lines);
+char *text_lines_read_next(struct text_lines *lines);
 
 /* Calls TAKE with each line until the end or the first failure, then closes
  * LINES. TAKE returns NULL, or the cause of a failure, which may be
@@ -77,8 +79,9 @@ char *text_lines_next(struct text_lines *lines);
  * GLINT_E_FORMAT or GLINT_E_MEMORY. */
 typedef const char *text_take_fn(void *ctx, struct text_lines *lines,
                                  char *line);
-enum glint_status text_lines_each(struct text_lines *lines, text_take_fn *take,
-                                  void *ctx, struct glint_error *error);
+enum glint_status text_lines_parse_each(struct text_lines *lines,
+                                        text_take_fn *take, void *ctx,
+                                        struct glint_error *error);
 extern const char text_no_memory[];
 
 /* Sets ERROR to "FILE:LINE: CAUSE" and returns GLINT_E_FORMAT. */
@@ -101,26 +104,27 @@ struct text_column {
 
 /* Splits LINE at commas into FIELD[MAX], trimmed. Returns the number of fields,
  * which is above MAX if there are more. */
-int text_fields(char *line, char **field, int max);
+int text_split_fields(char *line, char **field, int max);
 
 /* Returns the index of the column NAME in COLUMN[N], or -1. */
-int text_column(const struct text_column *column, int n, const char *name);
+int text_find_column(const struct text_column *column, int n, const char *name);
 
 /* Sets FIELD[N] to the values of LINE, a flat JSON object whose keys are names
  * of COLUMN[N]. String values keep their opening quote. Returns NULL, or the
  * cause of a failure. */
-const char *text_object(struct text_lines *lines, char *line,
-                        const struct text_column *column, int n, char **field);
+const char *text_parse_json_object(struct text_lines *lines, char *line,
+                                   const struct text_column *column, int n,
+                                   char **field);
 
 /* Sets VALUE to the number TEXT. Returns NULL on success, OTHER if TEXT is
  * not a number, or column->range if it is out of range. */
-const char *text_value(const struct text_column *column, const char *text,
-                       const char *other, double *value);
+const char *text_parse_value(const struct text_column *column, const char *text,
+                             const char *other, double *value);
 
 /* ------------------------------------------------------------------ values */
 
 /* Reallocates ROWS, N rows of SIZE bytes, so that one more row fits. Returns
  * the new address, or NULL, with ROWS unchanged, if there is no memory. */
-void *text_grow(void *rows, int n, size_t size);
+void *text_grow_array(void *rows, int n, size_t size);
 
 #endif

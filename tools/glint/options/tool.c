@@ -20,8 +20,8 @@
 #include "posix/error.h"
 
 /* Copies the message to the tool's cause, if it has one, and prints it. */
-static void print_error(const struct tool *tool, const char *format,
-                        va_list args)
+static void print_tool_error(const struct tool *tool, const char *format,
+                             va_list args)
 {
     struct glint_error *const cause = tool->cause;
     va_list again;
@@ -39,7 +39,7 @@ void tool_error(const struct tool *tool, const char *format, ...)
 
     fprintf(stderr, "glint %s: ", tool->name);
     va_start(args, format);
-    print_error(tool, format, args);
+    print_tool_error(tool, format, args);
     va_end(args);
     fputc('\n', stderr);
 }
@@ -52,7 +52,7 @@ int tool_usage(const struct tool *tool, const char *format, ...)
     if (tool->where)
         fprintf(stderr, "%s: ", tool->where);
     va_start(args, format);
-    print_error(tool, format, args);
+    print_tool_error(tool, format, args);
     va_end(args);
     if (tool->where) {
         fputc('\n', stderr);
@@ -70,8 +70,9 @@ int tool_refuse(const struct tool *tool, const char *option, const char *value)
                       takes ? "; expected " : "", takes ? takes : "");
 }
 
-enum glint_status tool_take_work(int64_t *left, int64_t work, const char *file,
-                                 struct glint_error *error)
+enum glint_status tool_count_bake_work(int64_t *left, int64_t work,
+                                       const char *file,
+                                       struct glint_error *error)
 {
     if (!left || work <= *left) {
         if (left)
@@ -133,7 +134,7 @@ static void record_closed_pipe(int signal_number)
     reader_gone = 1;
 }
 
-void tool_watch_reader(void)
+void tool_watch_closed_pipe(void)
 {
     struct sigaction note = {.sa_handler = record_closed_pipe};
 
@@ -141,7 +142,7 @@ void tool_watch_reader(void)
     sigaction(SIGPIPE, &note, NULL);
 }
 
-int tool_end(int code)
+int tool_close_stdout(int code)
 {
     errno = 0;
     if ((fflush(stdout) == 0 && !ferror(stdout)) || reader_gone)
@@ -151,24 +152,24 @@ int tool_end(int code)
     return code == EXIT_OK ? EXIT_OUTPUT : code;
 }
 
-unsigned tool_sets(const struct tool *tool)
+unsigned tool_enabled_instruction_sets(const struct tool *tool)
 {
     return glint_system_sets() & ~tool->sets_off;
 }
 
 /* ------------------------------------------------------------------ numbers */
 
-bool tool_number(const char *text, double *value)
+bool tool_parse_number(const char *text, double *value)
 {
     return glint_option_numbers(text, value, 1) == 1;
 }
 
-int tool_numbers(const char *text, double *values, int max)
+int tool_parse_numbers(const char *text, double *values, int max)
 {
     return glint_option_numbers(text, values, max);
 }
 
-bool tool_integer(const char *text, int low, int high, int *value)
+bool tool_parse_integer(const char *text, int low, int high, int *value)
 {
     char *end;
     long n;
@@ -181,7 +182,7 @@ bool tool_integer(const char *text, int low, int high, int *value)
     return true;
 }
 
-bool tool_size(const char *text, int *width, int *height)
+bool tool_parse_size(const char *text, int *width, int *height)
 {
     char first[12];
     const char *x = strchr(text, 'x');
@@ -190,11 +191,11 @@ bool tool_size(const char *text, int *width, int *height)
         return false;
     memcpy(first, text, (size_t)(x - text));
     first[x - text] = '\0';
-    return tool_integer(first, 1, GLINT_MAX_SIDE, width) &&
-           tool_integer(x + 1, 1, GLINT_MAX_SIDE, height);
+    return tool_parse_integer(first, 1, GLINT_MAX_SIDE, width) &&
+           tool_parse_integer(x + 1, 1, GLINT_MAX_SIDE, height);
 }
 
-int tool_word(const char *text, const char *const *words)
+int tool_find_word(const char *text, const char *const *words)
 {
     for (int i = 0; words[i]; i++)
         if (strcmp(text, words[i]) == 0)
@@ -202,7 +203,7 @@ int tool_word(const char *text, const char *const *words)
     return -1;
 }
 
-double tool_seconds(void)
+double tool_clock_s(void)
 {
     struct timespec t;
 
@@ -210,8 +211,8 @@ double tool_seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-int tool_save(const struct tool *tool, const char *path,
-              enum glint_output_kind kind, const void *data, size_t bytes)
+int tool_save_file(const struct tool *tool, const char *path,
+                   enum glint_output_kind kind, const void *data, size_t bytes)
 {
     struct glint_error error = {""};
     const enum glint_status status =
@@ -225,7 +226,7 @@ int tool_save_text(const struct tool *tool, const char *path, FILE *file,
 {
     const int code =
         file && glint_memory_file_close(file)
-            ? tool_save(tool, path, GLINT_OUTPUT_TEXT, *text, *bytes)
+            ? tool_save_file(tool, path, GLINT_OUTPUT_TEXT, *text, *bytes)
             : tool_fail(tool, GLINT_E_MEMORY, NULL);
 
     free(*text);
@@ -262,7 +263,7 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
     p->what = what;
     p->less = p->besides = NULL;
     tool_progress_part(p, 0, 1);
-    p->clock = tool_seconds;
+    p->clock = tool_clock_s;
     p->started = p->clock();
     p->last = 0;
     p->most = 0;
@@ -281,14 +282,15 @@ void tool_progress_part(struct tool_progress *p, double from, double share)
 }
 
 /* Returns the time left, s, at the rate since the start of the clock. */
-static double estimate_left(const struct tool_progress *p, double spent,
-                            double done)
+static double estimate_time_left_s(const struct tool_progress *p, double spent,
+                                   double done)
 {
     return done > p->before ? spent * (1 - done) / (done - p->before) : 0;
 }
 
 /* Prints a line every ten seconds, if standard error is not a terminal. */
-static void show_line(struct tool_progress *p, double now, double done)
+static void print_progress_line(struct tool_progress *p, double now,
+                                double done)
 {
     const double spent = now - p->started;
 
@@ -296,15 +298,16 @@ static void show_line(struct tool_progress *p, double now, double done)
         return;
     p->last = now;
     fprintf(stderr, "%s: %.0f %% in %.0f s, about %.0f s left\n", p->what,
-            100 * p->most, spent, estimate_left(p, spent, done));
+            100 * p->most, spent, estimate_time_left_s(p, spent, done));
 }
 
 /* Prints an estimate of the time once, if it is p->least_s or more. It waits
  * for a quarter of that: the first ghosts of a bake say little about the
  * others. */
-static void print_estimate(struct tool_progress *p, double spent, double done)
+static void print_time_estimate(struct tool_progress *p, double spent,
+                                double done)
 {
-    const double left = estimate_left(p, spent, done);
+    const double left = estimate_time_left_s(p, spent, done);
 
     if (spent < p->least_s / 4)
         return;
@@ -339,9 +342,9 @@ void tool_progress_show(void *progress, double done)
     p->most = fmax(done, p->most);
     filled = (int)(p->most * width);
     if (p->shown && !p->told && done > p->before)
-        print_estimate(p, spent, done);
+        print_time_estimate(p, spent, done);
     if (p->shown && !p->is_terminal)
-        show_line(p, now, done);
+        print_progress_line(p, now, done);
     if (!p->shown || !p->is_terminal || (now - p->last < 0.1 && done < 1))
         return;
     p->last = now;
@@ -350,7 +353,7 @@ void tool_progress_show(void *progress, double done)
     bar[width] = '\0';
     fprintf(stderr, "\r%s [%s] %3.0f %%  %.0f s left \033[K", p->what, bar,
             100 * p->most,
-            done > p->before + 0.01 ? estimate_left(p, spent, done) : 0);
+            done > p->before + 0.01 ? estimate_time_left_s(p, spent, done) : 0);
     fflush(stderr);
 }
 

@@ -52,14 +52,15 @@ struct tool {
 int tool_start(struct tool *tool);
 void tool_finish(struct tool *tool);
 
-/* Detect failures of standard output. Call tool_watch_reader() at the start of
- * a program and tool_end() at its end. tool_end() returns CODE, or EXIT_OUTPUT
- * if writing failed; a reader that closed its pipe is no failure. */
-void tool_watch_reader(void);
-int tool_end(int code);
+/* Detect failures of standard output. Call tool_watch_closed_pipe() at the
+ * start of a program and tool_close_stdout() at its end. tool_close_stdout()
+ * returns CODE, or EXIT_OUTPUT if writing failed; a reader that closed its pipe
+ * is no failure. */
+void tool_watch_closed_pipe(void);
+int tool_close_stdout(int code);
 
 /* Returns the instruction sets that kernels may use, a bit each. */
-unsigned tool_sets(const struct tool *tool);
+unsigned tool_enabled_instruction_sets(const struct tool *tool);
 
 /* Prints "glint COMMAND: ..." and copies the message to the tool's cause. */
 void tool_error(const struct tool *tool, const char *format, ...);
@@ -75,8 +76,9 @@ int tool_fail(const struct tool *tool, enum glint_status status,
 /* Takes WORK of *LEFT, unless LEFT is NULL. Returns GLINT_E_LENS, with the
  * reason in ERROR, if that is not left: the bake of FILE, which a command other
  * than bake needs, takes more than about 30 s of processor time. */
-enum glint_status tool_take_work(int64_t *left, int64_t work, const char *file,
-                                 struct glint_error *error);
+enum glint_status tool_count_bake_work(int64_t *left, int64_t work,
+                                       const char *file,
+                                       struct glint_error *error);
 
 /* Prints that OPTION does not accept VALUE, and which values it accepts.
  * Returns the code of tool_usage(). */
@@ -86,22 +88,22 @@ int tool_refuse(const struct tool *tool, const char *option, const char *value);
 
 /* Parse all of TEXT: as one finite number, or as up to MAX numbers separated
  * by commas. Return the number of values, 0 on failure. */
-bool tool_number(const char *text, double *value);
-int tool_numbers(const char *text, double *values, int max);
+bool tool_parse_number(const char *text, double *value);
+int tool_parse_numbers(const char *text, double *values, int max);
 
 /* Parses all of TEXT as an integer within LOW .. HIGH. Returns false on
  * failure. */
-bool tool_integer(const char *text, int low, int high, int *value);
+bool tool_parse_integer(const char *text, int low, int high, int *value);
 
 /* Parses TEXT, "WxH", with W and H from 1 to GLINT_MAX_SIDE. Returns false on
  * failure. */
-bool tool_size(const char *text, int *width, int *height);
+bool tool_parse_size(const char *text, int *width, int *height);
 
 /* Returns the index of TEXT in the NULL-terminated WORDS, or -1. */
-int tool_word(const char *text, const char *const *words);
+int tool_find_word(const char *text, const char *const *words);
 
 /* Returns the time of a monotonic clock, s. */
-double tool_seconds(void);
+double tool_clock_s(void);
 
 /* ------------------------------------------------------------------- output */
 
@@ -117,11 +119,11 @@ int tool_check_output(const struct tool *tool, const char *path);
 int tool_check_ending(struct tool *tool, const char *path, const char *ending,
                       const char *what);
 
-/* Write the file PATH and return an exit code. tool_save() writes DATA.
+/* Write the file PATH and return an exit code. tool_save_file() writes DATA.
  * tool_save_text() closes FILE, opened by glint_memory_file_open() (NULL: no
  * memory), writes its TEXT and frees it. */
-int tool_save(const struct tool *tool, const char *path,
-              enum glint_output_kind kind, const void *data, size_t bytes);
+int tool_save_file(const struct tool *tool, const char *path,
+                   enum glint_output_kind kind, const void *data, size_t bytes);
 int tool_save_text(const struct tool *tool, const char *path, FILE *file,
                    char **text, const size_t *bytes);
 
@@ -142,7 +144,7 @@ struct tool_progress {
     double before;       /* work done at the start of the clock, of 1 */
     bool shown, is_terminal;
     bool told;             /* the estimate was printed, or is below LEAST_S */
-    double (*clock)(void); /* seconds; tool_seconds() except in unit tests */
+    double (*clock)(void); /* seconds; tool_clock_s() except in unit tests */
     double started, last;
     double most; /* max progress so far: the bar never moves back */
 };

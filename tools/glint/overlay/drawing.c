@@ -81,10 +81,10 @@ static enum glint_status set_option(void *ctx, const char *name, double value,
         return GLINT_E_ARGUMENT;
     }
     s->options.f_number = value;
-    status = opened_lens_stop(lens, s, error);
+    status = opened_lens_set_stop(lens, s, error);
     if (status != GLINT_OK) {
         s->options.f_number = before;
-        opened_lens_stop(lens, s, &unused);
+        opened_lens_set_stop(lens, s, &unused);
     } else if (d->run.engine)
         glint_engine_update_stop(d->run.engine);
     return status;
@@ -152,7 +152,7 @@ void drawing_replace(struct drawing *drawing, const struct drawing *fresh)
         drawing->files.save = save;
         drawing->run.n_frames = n_frames;
     }
-    opened_lens_moved(&drawing->files.lens);
+    opened_lens_follow_move(&drawing->files.lens);
 }
 
 int drawing_finish(const struct tool *tool, struct drawing *drawing)
@@ -338,7 +338,7 @@ static enum glint_status stop_by_keys(struct drawing *d, int frame)
     stop->blade_rotation_deg = turn;
     stop->iris.roundness = round;
     s->options.f_number = f_number;
-    status = opened_lens_stop(&d->files.lens, s, &error);
+    status = opened_lens_set_stop(&d->files.lens, s, &error);
     if (status == GLINT_OK)
         glint_engine_update_stop(d->run.engine);
     return status;
@@ -589,7 +589,7 @@ enum glint_status drawing_find(struct drawing *drawing,
 {
     struct over_scene *const scene = &drawing->files.scene;
     struct drawing_run *const run = &drawing->run;
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
 
     run->n_lamps = run->n_own = 0;
     if (drawing->files.has_lens) {
@@ -598,7 +598,7 @@ enum glint_status drawing_find(struct drawing *drawing,
         if (status != GLINT_OK)
             return status;
     }
-    run->find_ms = 1e3 * (tool_seconds() - start);
+    run->find_ms = 1e3 * (tool_clock_s() - start);
     scene->elapsed_us = elapsed_us;
     return scene->is_open ? draw_scene(drawing, image) : GLINT_OK;
 }
@@ -670,13 +670,13 @@ static void end_flare(struct drawing_run *run, double start)
     if (run->is_progressing)
         tool_progress_end(&run->progress);
     run->is_progressing = false;
-    run->flare_ms = 1e3 * (tool_seconds() - start);
+    run->flare_ms = 1e3 * (tool_clock_s() - start);
 }
 
 enum glint_status drawing_layer(struct drawing_run *run, bool is_deep,
                                 float *rgb)
 {
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
     const enum glint_status status = glint_engine_draw_layer(
         run->engine, run->lamp, run->n_lamps,
         is_deep ? GLINT_ENGINE_ALL : GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, rgb,
@@ -691,7 +691,7 @@ static enum glint_status draw_flare(struct drawing *d,
                                     const struct glint_image *image)
 {
     struct drawing_run *const run = &d->run;
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
     enum glint_status status = drawing_expose(d, image);
 
     if (status != GLINT_OK)

@@ -78,11 +78,11 @@ static int check_narrowest(const struct tool *tool, struct settings *s,
     if (!keys_has(&f->keys, KEYS_F_NUMBER))
         return EXIT_OK;
     request_stop(s, f, -1);
-    if (opened_lens_stop(&f->lens, s, &error) != GLINT_OK)
-        code = settings_refuse_stop(tool, s, error.text);
+    if (opened_lens_set_stop(&f->lens, s, &error) != GLINT_OK)
+        code = settings_report_bad_stop(tool, s, error.text);
     s->options.f_number = widest;
     if (code == EXIT_OK)
-        opened_lens_stop(&f->lens, s, &error);
+        opened_lens_set_stop(&f->lens, s, &error);
     s->f_number_from = NULL;
     return code;
 }
@@ -133,7 +133,7 @@ static int check_control(const struct tool *tool, struct settings *s,
     s->zoom.zoom = zoom;
     if (s->options.f_number != f_number) {
         s->options.f_number = f_number;
-        opened_lens_stop(&f->lens, s, &error);
+        opened_lens_set_stop(&f->lens, s, &error);
     }
     return code;
 }

@@ -90,8 +90,8 @@ int drawing_line_style_of(const struct tool *tool, struct drawing_line *line,
                           int argc, char **argv, const char *shorts,
                           const struct option *options)
 {
-    const char *const name =
-        tool_value_of(argc, argv, shorts, options, ENGINE_OPTION_OF(style));
+    const char *const name = tool_find_option_value(argc, argv, shorts, options,
+                                                    ENGINE_OPTION_OF(style));
 
     return name ? drawing_line_style(tool, line, name) : -1;
 }

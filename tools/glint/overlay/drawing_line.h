@@ -64,8 +64,8 @@ int drawing_line_style(const struct tool *tool, struct drawing_line *line,
                        const char *name);
 
 /* Applies the style of a command line before all other options, wherever it
- * stands, so that they override it. The arguments are those of tool_value_of().
- * Returns -1 or an exit code. */
+ * stands, so that they override it. The arguments are those of
+ * tool_find_option_value(). Returns -1 or an exit code. */
 int drawing_line_style_of(const struct tool *tool, struct drawing_line *line,
                           int argc, char **argv, const char *shorts,
                           const struct option *options);

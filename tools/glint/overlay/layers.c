@@ -41,7 +41,7 @@ static bool name_of(char name[NAME_ROOM], const char *path, const char *layer,
         memcpy(name, whole, (size_t)n + 1);
         return true;
     }
-    return numbered_is(whole) && numbered_name(name, whole, frame);
+    return numbered_is_pattern(whole) && numbered_make_name(name, whole, frame);
 }
 
 /* Returns whether the kind of file NAME takes layers: an .exr as parts of it or

@@ -361,7 +361,7 @@ enum glint_status over_scene_coarsen(struct over_scene *over, double quality)
 enum glint_status over_scene_draw(struct over_scene *over,
                                   const struct glint_image *image, int frame)
 {
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
     enum glint_status status;
 
     over_scene_obey(over, frame);
@@ -377,7 +377,7 @@ enum glint_status over_scene_draw(struct over_scene *over,
                  : GLINT_OK;
     if (status == GLINT_OK)
         status = scene_frame_try(&over->frame, image);
-    over->ms = 1e3 * (tool_seconds() - start);
+    over->ms = 1e3 * (tool_clock_s() - start);
     over->lamps_hidden = over->lights = 0;
     return status;
 }

@@ -14,7 +14,7 @@ static void say_frame(const struct overlay *o)
 {
     char lights[64];
 
-    settings_lights_text(&o->drawing.run.report, lights);
+    settings_describe_lights(&o->drawing.run.report, lights);
     fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n",
             o->drawing.run.n_frames - 1, lights, o->drawing.run.report.ghosts,
             o->drawing.run.report.stats.primitives);
@@ -148,7 +148,7 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
 
 void overlay_progress(const struct tool *tool, struct overlay *o)
 {
-    const double now = tool_seconds(), spent = now - o->figures.started;
+    const double now = tool_clock_s(), spent = now - o->figures.started;
     const bool is_terminal = isatty(STDERR_FILENO);
 
     if (tool->quiet || tool->verbose)

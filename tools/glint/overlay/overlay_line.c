@@ -93,9 +93,10 @@ static double stops_of(const struct glint_engine_lamp *lamp)
 
 static double f_number_of(const struct opened_lens *lens)
 {
-    return lens->model.data ? model_real_of(lens->model.lens.header->f_number) /
-                                  lens->setup.opening
-                            : lens->table.f_number;
+    return lens->model.data
+               ? model_compute_real(lens->model.lens.header->f_number) /
+                     lens->setup.opening
+               : lens->table.f_number;
 }
 
 /* ---------------------------------------------------------------- the line */
@@ -284,7 +285,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
                  FILE *to)
 {
     const struct drawing *drawing = &o->drawing;
-    const double seconds = tool_seconds() - o->figures.started;
+    const double seconds = tool_clock_s() - o->figures.started;
     const int n = overlay_count_frames(o);
 
     fprintf(to, "%s: ", o->output);

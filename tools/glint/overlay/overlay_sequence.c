@@ -26,7 +26,7 @@ struct numbers {
 
 static bool add(struct numbers *l, int number)
 {
-    int *const more = text_grow(l->at, l->n, sizeof *more);
+    int *const more = text_grow_array(l->at, l->n, sizeof *more);
 
     if (!more)
         return false;
@@ -50,7 +50,7 @@ static int number_of(const char *file, const char *pattern, char *name)
         !isdigit((unsigned char)file[before]))
         return -1;
     number = strtol(file + before, &end, 10);
-    if (number > 1000000000 || !numbered_name(name, pattern, (int)number))
+    if (number > 1000000000 || !numbered_make_name(name, pattern, (int)number))
         return -1;
     return strcmp(name + folder, file) == 0 ? (int)number : -1;
 }
@@ -98,11 +98,11 @@ static bool walk(struct numbers *l, const char *pattern, int first)
     int number = first;
 
     if (number < 0) {
-        numbered_name(name, pattern, 0);
+        numbered_make_name(name, pattern, 0);
         number = access(name, F_OK) == 0 ? 0 : 1;
     }
-    for (;
-         ok && numbered_name(name, pattern, number) && access(name, F_OK) == 0;
+    for (; ok && numbered_make_name(name, pattern, number) &&
+           access(name, F_OK) == 0;
          number++)
         ok = add(l, number);
     return ok;
@@ -143,9 +143,9 @@ static int draw_numbered(struct tool *tool, struct overlay *o,
     char from[NAME_BYTES], to[NAME_BYTES];
     int code;
 
-    numbered_name(from, o->input, l->at[i]);
-    if (numbered_is(o->output))
-        numbered_name(to, o->output, l->at[i]);
+    numbered_make_name(from, o->input, l->at[i]);
+    if (numbered_is_pattern(o->output))
+        numbered_make_name(to, o->output, l->at[i]);
     else
         snprintf(to, sizeof to, "%s", o->output);
     o->elapsed_us = l->n == 1                     ? 0
@@ -171,7 +171,7 @@ static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
                 o->input);
         return EXIT_INPUT;
     }
-    if (l->n > 1 && !numbered_is(o->output)) {
+    if (l->n > 1 && !numbered_is_pattern(o->output)) {
         const bool hashes = numbered_from_hashes(pattern, o->output);
 
         return tool_usage(tool,
@@ -200,10 +200,11 @@ int overlay_sequence(struct tool *tool, struct overlay *o)
     char name[NAME_BYTES];
     int code;
 
-    if (!percent || !numbered_is(o->input))
+    if (!percent || !numbered_is_pattern(o->input))
         return tool_usage(tool, "%s: a sequence needs one %%04d", o->input);
-    if (!numbered_name(name, o->input, INT_MAX) ||
-        (numbered_is(o->output) && !numbered_name(name, o->output, INT_MAX)))
+    if (!numbered_make_name(name, o->input, INT_MAX) ||
+        (numbered_is_pattern(o->output) &&
+         !numbered_make_name(name, o->output, INT_MAX)))
         return tool_usage(tool, "names of pictures have at most %d bytes",
                           NAME_BYTES - 1);
     if (strchr(percent, '/') ? walk(&l, o->input, o->start_number)

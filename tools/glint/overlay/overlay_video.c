@@ -81,7 +81,7 @@ static ptrdiff_t read_child(void *ctx, void *dst, size_t bytes)
     do
         n = read(child->fd, dst, bytes);
     while (n < 0 && errno == EINTR);
-    child_hear(child);
+    child_forward_messages(child);
     return n;
 }
 
@@ -127,7 +127,7 @@ static int open_coded(struct video *v)
         return fail(v, status);
     glint_input_close(&file);
     ffmpeg_probe(&v->about, v->o->input);
-    v->is_variable = ffmpeg_times_read(&v->times, v->o->input, &v->about);
+    v->is_variable = ffmpeg_read_times(&v->times, v->o->input, &v->about);
     v->keeps_times = v->is_variable && v->writes && takes_rest(v->o) &&
                      ffmpeg_keeps_times(v->o->output) &&
                      !(v->o->encode && strstr(v->o->encode, "-vf")) &&
@@ -142,7 +142,7 @@ static int open_coded(struct video *v)
         take_colours(v);
         return EXIT_OK;
     }
-    if (child_end(&v->reader) != 0)
+    if (child_wait(&v->reader) != 0)
         snprintf(v->error.text, sizeof v->error.text,
                  "%.180s: ffmpeg cannot read it", v->o->input);
     return fail(v, status == GLINT_E_MEMORY ? status : GLINT_E_FORMAT);
@@ -158,7 +158,7 @@ static const char *pixels_of_layout(const struct glint_y4m_layout *layout)
 
     return layout->has_alpha ? "yuva444p"
            : layout->is_411  ? "yuv411p"
-                             : pixels_named(chroma, layout->bits);
+                             : find_pixel_format(chroma, layout->bits);
 }
 
 /* Opens frames without headers, 30 a second. */
@@ -345,7 +345,7 @@ static int32_t frame_us(const struct video *v)
  * of the input. */
 static int end_reader(struct video *v)
 {
-    const int code = child_end(&v->reader);
+    const int code = child_wait(&v->reader);
 
     if (code == 0 && !v->reader.heard)
         return EXIT_OK;
@@ -364,7 +364,7 @@ static int end_writer(struct video *v)
 {
     enum glint_status status = glint_y4m_writer_commit(&v->out, &v->error);
 
-    if (v->writes && child_end(&v->writer) != 0) {
+    if (v->writes && child_wait(&v->writer) != 0) {
         fprintf(stderr, "glint overlay: %s: ffmpeg could not write it\n",
                 v->o->output);
         return EXIT_OUTPUT;
@@ -431,7 +431,7 @@ int overlay_video_check(const struct tool *tool, const struct overlay *o)
     if (((o->raw.width || is_y4m(o->input)) && is_y4m(o->output)) ||
         child_exists("ffmpeg"))
         return EXIT_OK;
-    ffmpeg_by_hand(tool, o->input, o->output);
+    ffmpeg_print_manual_commands(tool, o->input, o->output);
     return EXIT_INPUT;
 }
 

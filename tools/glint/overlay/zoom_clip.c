@@ -26,10 +26,10 @@ bool zoom_clip_take(struct zoom_clip *clip, const char *text)
         return false;
     memcpy(from, text, n);
     from[n] = '\0';
-    clip->is_asked = tool_number(from, &clip->from) &&
-                     tool_number(text + n + 1, &clip->to) && clip->from >= 0 &&
-                     clip->to >= 0 && clip->from <= MOST_MM &&
-                     clip->to <= MOST_MM;
+    clip->is_asked = tool_parse_number(from, &clip->from) &&
+                     tool_parse_number(text + n + 1, &clip->to) &&
+                     clip->from >= 0 && clip->to >= 0 &&
+                     clip->from <= MOST_MM && clip->to <= MOST_MM;
     snprintf(clip->label, sizeof clip->label, "--zoom %s", text);
     return clip->is_asked;
 }

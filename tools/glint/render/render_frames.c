@@ -46,7 +46,7 @@ static int check(const struct tool *tool, struct frames *f)
     const struct render_scene *r = f->r;
 
     f->is_y4m = overlay_is_video(r->output) && !ffmpeg_is_video(r->output);
-    f->is_numbered = numbered_is(r->output);
+    f->is_numbered = numbered_is_pattern(r->output);
     if (ffmpeg_is_video(r->output))
         return tool_usage(tool,
                           "frames become a .y4m or numbered pictures, of "
@@ -83,9 +83,9 @@ static enum glint_status open_video(struct frames *f, struct glint_error *error)
         return GLINT_E_MEMORY;
     }
     glint_image_place(&f->frame, planes);
-    glint_composite_init(&f->composite, &f->frame, tool_sets(f->tool),
-                         f->c->line.settings.options.dither, f->tables,
-                         glint_composite_bytes());
+    glint_composite_init(
+        &f->composite, &f->frame, tool_enabled_instruction_sets(f->tool),
+        f->c->line.settings.options.dither, f->tables, glint_composite_bytes());
     return glint_y4m_writer_open(&f->writer, r->output, &f->header, error);
 }
 
@@ -202,7 +202,7 @@ static int put(struct frames *f, int number)
         return status == GLINT_OK ? EXIT_OK
                                   : tool_fail(f->tool, status, error.text);
     }
-    if (f->is_numbered && !numbered_name(name, f->r->output, number))
+    if (f->is_numbered && !numbered_make_name(name, f->r->output, number))
         return tool_usage(f->tool, "-o: the name of frame %d is too long",
                           number);
     return render_file_save(f->tool, f->is_numbered ? name : f->r->output,
@@ -246,7 +246,7 @@ static void say(const struct frames *f, double ms)
 static int run(struct frames *f)
 {
     struct render_scene *const r = f->r;
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
     int code = open_frames(f);
 
     for (int i = r->first; code == EXIT_OK && i <= r->last; i++) {
@@ -262,7 +262,7 @@ static int run(struct frames *f)
     if (code == EXIT_OK)
         code = drawing_finish(f->tool, f->c);
     if (code == EXIT_OK)
-        say(f, 1e3 * (tool_seconds() - start));
+        say(f, 1e3 * (tool_clock_s() - start));
     return code;
 }
 

@@ -76,8 +76,8 @@ static bool take_frames(struct render_scene *r, const char *text)
         return false;
     snprintf(first, sizeof first, "%.*s", (int)(dash - text), text);
     r->is_video = r->is_frames = true;
-    return tool_integer(first, 0, MOST_FRAME, &r->first) &&
-           tool_integer(dash + 1, r->first, MOST_FRAME, &r->last);
+    return tool_parse_integer(first, 0, MOST_FRAME, &r->first) &&
+           tool_parse_integer(dash + 1, r->first, MOST_FRAME, &r->last);
 }
 
 /* Takes what is of frames that change. Returns -1, or -2 if it is not. */
@@ -86,7 +86,7 @@ static int take_moving(struct tool *tool, struct render_scene *r, int c)
     switch (c) {
     case OPT_FRAME:
         r->is_frames = true;
-        if (!tool_integer(optarg, 0, MOST_FRAME, &r->first))
+        if (!tool_parse_integer(optarg, 0, MOST_FRAME, &r->first))
             return tool_refuse(tool, "frame", optarg);
         r->last = r->first;
         return -1;
@@ -94,7 +94,8 @@ static int take_moving(struct tool *tool, struct render_scene *r, int c)
         return take_frames(r, optarg) ? -1
                                       : tool_refuse(tool, "frames", optarg);
     case OPT_FPS:
-        return tool_number(optarg, &r->fps) && r->fps >= 1 && r->fps <= 1000
+        return tool_parse_number(optarg, &r->fps) && r->fps >= 1 &&
+                       r->fps <= 1000
                    ? -1
                    : tool_refuse(tool, "fps", optarg);
     default:
@@ -109,17 +110,17 @@ static int take(struct tool *tool, struct render_scene *r, int c)
         r->output = optarg;
         return -1;
     case OPT_SIZE:
-        return tool_size(optarg, &r->width, &r->height)
+        return tool_parse_size(optarg, &r->width, &r->height)
                    ? -1
                    : tool_refuse(tool, "size", optarg);
     case OPT_SAMPLES:
-        return tool_integer(optarg, 1, 16, &r->samples)
+        return tool_parse_integer(optarg, 1, 16, &r->samples)
                    ? -1
                    : tool_usage(tool,
                                 "--samples accepts 1, 4, 8 or 16, not '%s'",
                                 optarg);
     case OPT_EXPOSURE_OF:
-        return tool_number(optarg, &r->exposure_ev) &&
+        return tool_parse_number(optarg, &r->exposure_ev) &&
                        fabs(r->exposure_ev) <= 100
                    ? -1
                    : tool_refuse(tool, "exposure", optarg);
@@ -254,7 +255,7 @@ static int draw_model(struct tool *tool, struct render_scene *r,
     struct scene_dials dials = r->drawing.line.scene_dials;
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
     int32_t *light_q20 = calloc(n, sizeof *light_q20);
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
     struct scene_frame frame;
     int code;
 
@@ -273,7 +274,7 @@ static int draw_model(struct tool *tool, struct render_scene *r,
 
         code = scene_frame_draw(&frame, &linear);
         if (code == EXIT_OK)
-            say_frame(tool, &frame, &dials, 1e3 * (tool_seconds() - start));
+            say_frame(tool, &frame, &dials, 1e3 * (tool_clock_s() - start));
         scene_frame_close(&frame);
     }
     for (size_t i = 0; code == EXIT_OK && i < n; i++)
@@ -302,7 +303,7 @@ static int run_model(struct tool *tool, struct render_scene *r,
 
 static int run(struct tool *tool, struct render_scene *r, const char *path)
 {
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
     int code = r->is_frames && overlay_is_video(r->output)
                    ? EXIT_OK
                    : render_file_check(tool, r->output, &r->linear);
@@ -323,7 +324,7 @@ static int run(struct tool *tool, struct render_scene *r, const char *path)
         code = render_file_save(tool, r->output, r->linear, &r->image, 1);
     if (code == EXIT_OK && !r->is_frames)
         render_file_say(tool, r->output, r->width, r->height, path,
-                        tool_seconds() - start);
+                        tool_clock_s() - start);
     free(r->image.rgb);
     return code;
 }

@@ -23,7 +23,7 @@ int cmd_bake_scene(struct tool *tool, int argc, char **argv)
     struct baked_scene scene = {.data = NULL};
     int code;
 
-    code = bake_line_begin(tool, help, argc, argv, options, NULL, NULL,
+    code = bake_line_parse(tool, help, argc, argv, options, NULL, NULL,
                            "expects one scene");
     if (code >= 0)
         return code;
@@ -31,9 +31,9 @@ int cmd_bake_scene(struct tool *tool, int argc, char **argv)
     code = baked_scene_open(tool, argv[optind], &scene);
     if (code != EXIT_OK)
         return code;
-    code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, scene.data,
-                     scene.bytes);
-    if (code == EXIT_OK && bake_line_tells(tool))
+    code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, scene.data,
+                          scene.bytes);
+    if (code == EXIT_OK && bake_line_prints_report(tool))
         baked_scene_print(tool, &scene);
     baked_scene_close(&scene);
     return code;

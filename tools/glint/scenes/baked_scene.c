@@ -15,7 +15,7 @@
 bool baked_scene_is(const char *argument)
 {
     return tool_is_scene(argument) ||
-           tool_begins_as(argument, GLINT_SCENE_MAGIC);
+           tool_has_magic(argument, GLINT_SCENE_MAGIC);
 }
 
 int baked_scene_open(const struct tool *tool, const char *path,
@@ -37,7 +37,7 @@ int baked_scene_open(const struct tool *tool, const char *path,
         scene->is_text = true;
         status = GLINT_OK;
     } else {
-        code = tool_scene_is_kept(tool, path);
+        code = tool_check_scene_not_overwritten(tool, path);
         if (code != EXIT_OK)
             return code;
         status = glint_input_slurp(&data, &scene->bytes, path, MAX_SCENE_BYTES,

@@ -30,7 +30,7 @@ bool environment_file_is_source(const char *argument)
 
 bool environment_file_is_baked(const char *argument)
 {
-    return tool_begins_as(argument, GLINT_ENVIRONMENT_MAGIC);
+    return tool_has_magic(argument, GLINT_ENVIRONMENT_MAGIC);
 }
 
 static enum glint_status read_text(const char *path,
@@ -64,10 +64,10 @@ bake_picture(const char *named, const char *from,
 
     if (status == GLINT_OK) {
         tool_scene_name(named, name);
-        tool_key_mix(&key, options, sizeof *options);
-        tool_key_mix(&key, picture.rgb,
-                     3 * sizeof(float) * (size_t)picture.width *
-                         (size_t)picture.height);
+        tool_hash_into_key(&key, options, sizeof *options);
+        tool_hash_into_key(&key, picture.rgb,
+                           3 * sizeof(float) * (size_t)picture.width *
+                               (size_t)picture.height);
         status = glint_environment_bake(&picture, options, name, key, &data,
                                         &file->bytes, &file->report, error);
         if (status == GLINT_E_UNSUPPORTED) {
@@ -107,8 +107,8 @@ bake_source(const char *path, const char *written,
     if (override)
         override(ctx, &options);
     if (status == GLINT_OK)
-        status = tool_take_work(left, INT64_C(1) << 3 * options.side_log2, path,
-                                error);
+        status = tool_count_bake_work(left, INT64_C(1) << 3 * options.side_log2,
+                                      path, error);
     return status == GLINT_OK
                ? bake_picture(path, picture, &options, file, error)
                : status;
@@ -149,7 +149,7 @@ int environment_file_open(const struct tool *tool, const char *path,
 {
     struct glint_error error = {""};
     enum glint_status status;
-    const int code = tool_scene_is_kept(tool, path);
+    const int code = tool_check_scene_not_overwritten(tool, path);
 
     if (code != EXIT_OK)
         return code;
@@ -341,19 +341,20 @@ static int take_option(struct tool *tool, void *line, int c, const char *name)
 
     switch (c) {
     case 's':
-        l->side_log2 = tool_word(optarg, sizes);
+        l->side_log2 = tool_find_word(optarg, sizes);
         ok = l->side_log2 >= 0;
         l->side_log2 += GLINT_ENVIRONMENT_LEAST_LOG2;
         break;
     case 'n':
-        ok = tool_integer(optarg, 0, GLINT_ENVIRONMENT_MAX_LIGHTS, &l->lights);
+        ok = tool_parse_integer(optarg, 0, GLINT_ENVIRONMENT_MAX_LIGHTS,
+                                &l->lights);
         break;
     case 't':
-        ok = l->has_turn =
-            tool_number(optarg, &l->turn) && l->turn >= -360 && l->turn <= 360;
+        ok = l->has_turn = tool_parse_number(optarg, &l->turn) &&
+                           l->turn >= -360 && l->turn <= 360;
         break;
     case 'x':
-        ok = l->has_scale = tool_number(optarg, &l->scale) &&
+        ok = l->has_scale = tool_parse_number(optarg, &l->scale) &&
                             l->scale >= 1e-6 && l->scale <= 1e6;
         break;
     default:
@@ -375,7 +376,7 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
     struct environment_file file;
     int code;
 
-    code = bake_line_begin(tool, bake_help, argc, argv, options, take_option,
+    code = bake_line_parse(tool, bake_help, argc, argv, options, take_option,
                            &line, "expects one environment");
     if (code >= 0)
         return code;
@@ -383,9 +384,9 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
                                  &file);
     if (code != EXIT_OK)
         return code;
-    code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
-                     file.bytes);
-    if (code == EXIT_OK && bake_line_tells(tool))
+    code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
+                          file.bytes);
+    if (code == EXIT_OK && bake_line_prints_report(tool))
         environment_file_print(tool, &file);
     environment_file_close(&file);
     return code;

@@ -24,9 +24,9 @@ bool environment_file_is_baked(const char *argument);
 /* Open the picture, text or baked file PATH. They reject PATH, or the
  * picture that a text names, if it is the output file WRITTEN. OVERRIDE,
  * unless NULL, is called after the options of a text were read and may
- * change them. LEFT, unless NULL: as in tool_take_work(), by the cube of the
- * texels along a side. environment_file_open() prints the reason of a failure
- * and returns an exit code. */
+ * change them. LEFT, unless NULL: as in tool_count_bake_work(), by the cube of
+ * the texels along a side. environment_file_open() prints the reason of a
+ * failure and returns an exit code. */
 enum glint_status environment_file_read(
     const char *path, const char *written,
     void (*override)(void *ctx, struct glint_environment_options *), void *ctx,

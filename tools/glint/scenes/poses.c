@@ -38,18 +38,19 @@ static int find_object(const struct glint_scene_model *m, const char *name,
     if (object >= 0)
         return object;
     suggest_begin(&suggest, name);
-    suggest_try(&suggest, "camera", 6);
+    suggest_consider(&suggest, "camera", 6);
     for (int i = 0; i < n; i++)
-        suggest_try(&suggest, m->object[i].name, strlen(m->object[i].name));
+        suggest_consider(&suggest, m->object[i].name,
+                         strlen(m->object[i].name));
     for (uint32_t i = 0; i < m->header->n_lights; i++) {
         const char *const light = m->light[i].name;
 
         if (strcmp(name, light) == 0)
             return n + (int)i;
-        suggest_try(&suggest, light, strlen(light));
+        suggest_consider(&suggest, light, strlen(light));
     }
     text_lines_cause(lines, "the scene has no '%.24s'%s", name,
-                     suggest_words(&suggest));
+                     suggest_from_words(&suggest));
     return -2;
 }
 
@@ -121,12 +122,12 @@ static const char *split_line(struct text_lines *lines, char *line,
     int n = 0;
 
     if (*line != '{') {
-        n = text_fields(line, field, COLUMNS);
+        n = text_split_fields(line, field, COLUMNS);
         return n == TURN || n == COLUMNS
                    ? NULL
                    : "expected frame,object,x,y,z[,qw,qx,qy,qz]";
     }
-    cause = text_object(lines, line, columns, COLUMNS, field);
+    cause = text_parse_json_object(lines, line, columns, COLUMNS, field);
     if (field[OBJECT] && *field[OBJECT]++ != '"')
         return "object is a \"name\"";
     if (cause)
@@ -152,12 +153,13 @@ static const char *parse_pose(const struct poses *p, struct text_lines *lines,
     for (int k = 0; k < COLUMNS && !cause; k++)
         if (field[k] && k != OBJECT &&
             (k != FRAME || strcmp(field[k], is_object ? "\"*" : "*") != 0))
-            cause = text_value(&columns[k], field[k],
-                               is_object    ? "a value is not a number"
-                               : k == FRAME ? columns[k].range
-                                            : "x, y, z, qw, qx, qy and qz are "
-                                              "numbers",
-                               &v[k]);
+            cause = text_parse_value(&columns[k], field[k],
+                                     is_object ? "a value is not a number"
+                                     : k == FRAME
+                                         ? columns[k].range
+                                         : "x, y, z, qw, qx, qy and qz are "
+                                           "numbers",
+                                     &v[k]);
     *pose = (struct pose){.has_turn = field[TURN] != NULL};
     if (cause || late)
         return cause ? cause : late;
@@ -167,7 +169,7 @@ static const char *parse_pose(const struct poses *p, struct text_lines *lines,
 static const char *check_heading(char *line)
 {
     char *name[COLUMNS];
-    const int n = text_fields(line, name, COLUMNS);
+    const int n = text_split_fields(line, name, COLUMNS);
     int same = 0;
 
     while (same < n && same < COLUMNS &&
@@ -198,7 +200,7 @@ static const char *insert_pose(struct poses *p, const struct pose *pose)
         i = p->next = p->n = 0;
     if (p->lines.is_pipe && p->n == POSES_AHEAD)
         return "too many poses wait for their frames";
-    more = text_grow(p->row, p->n, sizeof *more);
+    more = text_grow_array(p->row, p->n, sizeof *more);
     if (!more)
         return text_no_memory;
     p->row = more;
@@ -234,11 +236,11 @@ enum glint_status poses_open(struct poses *poses, const char *path,
     enum glint_status status;
 
     *poses = (struct poses){.is_open = true, .model = *model, .read_at = -1};
-    if (is_live && text_is_pipe(path))
-        return text_lines_pipe(&poses->lines, path, error);
+    if (is_live && text_is_named_pipe(path))
+        return text_lines_open_pipe(&poses->lines, path, error);
     status = text_lines_open(&poses->lines, path, NULL, MAX_BYTES, error);
     if (status == GLINT_OK)
-        status = text_lines_each(&poses->lines, parse_line, poses, error);
+        status = text_lines_parse_each(&poses->lines, parse_line, poses, error);
     if (poses->n > 0)
         qsort(poses->row, (size_t)poses->n, sizeof *poses->row, compare_frames);
     if (status != GLINT_OK)
@@ -267,8 +269,8 @@ static void read_pipe(struct poses *p)
     const char *cause;
     char *line;
 
-    text_lines_turn(&p->lines);
-    while ((line = text_lines_next(&p->lines))) {
+    text_lines_begin_turn(&p->lines);
+    while ((line = text_lines_read_next(&p->lines))) {
         cause = p->lines.is_long ? "the line is longer than 511 bytes"
                                  : parse_line(p, &p->lines, line);
         if (cause)

@@ -14,7 +14,7 @@
 
 enum { TEXT_BYTES = 1 << 20 };
 
-/* Max work (tool_take_work()) of baking what a scene names: about 30 s of
+/* Max work (tool_count_bake_work()) of baking what a scene names: about 30 s of
  * processor time. */
 #define MOST_WORK (INT64_C(1) << 28)
 
@@ -49,7 +49,7 @@ static enum glint_status return_data(struct reading *reading,
 {
     if (status != GLINT_OK)
         return status;
-    tool_key_mix(&reading->key, from, n);
+    tool_hash_into_key(&reading->key, from, n);
     *data = from;
     *bytes = n;
     return GLINT_OK;
@@ -81,7 +81,7 @@ static enum glint_status read_mesh(void *ctx, const char *name, uint8_t **data,
     if (status == GLINT_E_FORMAT)
         status = GLINT_E_LENS;
     if (status == GLINT_OK)
-        tool_key_mix(&reading->key, *data, *bytes);
+        tool_hash_into_key(&reading->key, *data, *bytes);
     return status;
 }
 
@@ -96,8 +96,8 @@ static enum glint_status read_picture(void *ctx, const char *name,
     if (status == GLINT_OK)
         status = glint_picture_load(path, image, error);
     if (status == GLINT_OK)
-        tool_key_mix(&reading->key, image->plane[0],
-                     3 * (size_t)image->width * (size_t)image->height);
+        tool_hash_into_key(&reading->key, image->plane[0],
+                           3 * (size_t)image->width * (size_t)image->height);
     return status;
 }
 
@@ -159,13 +159,13 @@ int tool_scene(const struct tool *tool, const char *path,
     uint8_t *text = NULL;
     size_t bytes = 0;
     enum glint_status status;
-    const int code = tool_scene_is_kept(tool, path);
+    const int code = tool_check_scene_not_overwritten(tool, path);
 
     if (code != EXIT_OK)
         return code;
     status = glint_input_slurp(&text, &bytes, path, TEXT_BYTES, &error);
     if (status == GLINT_OK) {
-        tool_key_mix(&reading.key, text, bytes);
+        tool_hash_into_key(&reading.key, text, bytes);
         status = glint_description_parse(scene, (const char *)text, bytes, path,
                                          &files, &error);
     }

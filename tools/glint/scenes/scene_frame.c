@@ -119,7 +119,7 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
     *frame = (struct scene_frame){.tool = tool, .model = model};
     glint_scene_defaults(&frame->cfg, dials->width, dials->height);
     frame->cfg.workers = tool->workers;
-    frame->cfg.sets = tool_sets(tool);
+    frame->cfg.sets = tool_enabled_instruction_sets(tool);
     set_config(&frame->cfg, dials);
     frame->cfg.focal_q16 = llrint(fmin(dials->focal_px, 1e6) * 0x1p16);
     frame->cfg.parts = (struct glint_scene_parts){
@@ -149,7 +149,7 @@ void scene_frame_begin(struct scene_frame *frame)
 enum glint_status scene_frame_try(struct scene_frame *frame,
                                   const struct glint_image *image)
 {
-    const double start = tool_seconds();
+    const double start = tool_clock_s();
     double begun, spread;
 
     scene_frame_begin(frame);
@@ -162,14 +162,14 @@ enum glint_status scene_frame_try(struct scene_frame *frame,
             return status;
         scene_frame_begin(frame);
     }
-    begun = tool_seconds();
+    begun = tool_clock_s();
     frame->map_texels = glint_scene_spread(frame->scene);
-    spread = tool_seconds();
+    spread = tool_clock_s();
     glint_scene_look_around(frame->scene, image);
     glint_scene_draw(frame->scene, image);
     frame->project_ms = 1e3 * (begun - start);
     frame->map_ms = 1e3 * (spread - begun);
-    frame->draw_ms = 1e3 * (tool_seconds() - spread);
+    frame->draw_ms = 1e3 * (tool_clock_s() - spread);
     return GLINT_OK;
 }
 

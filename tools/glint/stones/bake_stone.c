@@ -51,7 +51,7 @@ static int parse_option(struct tool *tool, void *line, int c, const char *name)
 
     switch (c) {
     case 'm':
-        l->model = tool_word(optarg, models);
+        l->model = tool_find_word(optarg, models);
         ok = l->model >= 0;
         break;
     default:
@@ -72,7 +72,7 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
     enum glint_status status;
     int code;
 
-    code = bake_line_begin(tool, help, argc, argv, options, parse_option, &line,
+    code = bake_line_parse(tool, help, argc, argv, options, parse_option, &line,
                            "expects one translucent medium");
     if (code >= 0)
         return code;
@@ -80,9 +80,9 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
                              NULL, &file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    code = tool_save(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
-                     file.bytes);
-    if (code == EXIT_OK && bake_line_tells(tool))
+    code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
+                          file.bytes);
+    if (code == EXIT_OK && bake_line_prints_report(tool))
         stone_file_print(tool, &file);
     stone_file_close(&file);
     return code;

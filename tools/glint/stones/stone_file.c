@@ -23,7 +23,7 @@ bool stone_file_is_text(const char *argument)
 
 bool stone_file_is_baked(const char *argument)
 {
-    return tool_begins_as(argument, GLINT_TRANSLUCENT_MAGIC);
+    return tool_has_magic(argument, GLINT_TRANSLUCENT_MAGIC);
 }
 
 /* State of reading a text and the files that it names. */
@@ -84,7 +84,7 @@ static enum glint_status read_mask(const struct tool *tool, const char *path,
     mask = malloc(n * sizeof *mask);
     if (mask) {
         reduce_mask(&image, side, mask);
-        tool_key_mix(&s->key, mask, n * sizeof *mask);
+        tool_hash_into_key(&s->key, mask, n * sizeof *mask);
     }
     free(image.plane[0]);
     s->mask = mask;
@@ -101,9 +101,9 @@ static enum glint_status read_rows(const struct tool *tool, const char *path,
     if (status == GLINT_OK)
         status = glint_picture_load_float(beside, &s->rows, error);
     if (status == GLINT_OK)
-        tool_key_mix(&s->key, s->rows.rgb,
-                     3 * sizeof(float) * (size_t)s->rows.width *
-                         (size_t)s->rows.height);
+        tool_hash_into_key(&s->key, s->rows.rgb,
+                           3 * sizeof(float) * (size_t)s->rows.width *
+                               (size_t)s->rows.height);
     return status;
 }
 
@@ -127,8 +127,8 @@ read_source(const struct tool *tool, const char *path,
     if (over)
         over(ctx, &s->text);
     s->key = TOOL_KEY_BEGIN;
-    tool_key_mix(&s->key, &recipe, sizeof recipe);
-    tool_key_mix(&s->key, &s->text, sizeof s->text);
+    tool_hash_into_key(&s->key, &recipe, sizeof recipe);
+    tool_hash_into_key(&s->key, &s->text, sizeof s->text);
     if (s->text.mask[0])
         status = read_mask(tool, path, s, error);
     if (status == GLINT_OK && s->text.rows[0])
@@ -306,8 +306,8 @@ read_text(const struct tool *tool, const char *path,
                 cache_file_name(kept, sizeof kept, name, source.key, "stone");
     if (status == GLINT_OK &&
         (anew || !has_cache || !load_cached(kept, source.key, file))) {
-        status = tool_take_work(left, 8 * count_numbers(&source.text.stone),
-                                path, error);
+        status = tool_count_bake_work(
+            left, 8 * count_numbers(&source.text.stone), path, error);
         if (status == GLINT_OK)
             status = bake_source(tool, &source, name, file, error);
         if (status == GLINT_OK && has_cache)

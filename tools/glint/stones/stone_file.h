@@ -35,9 +35,8 @@ bool stone_file_is_baked(const char *argument);
 /* Opens the text or baked file PATH. Rejects PATH, or a file that the text
  * names, if it is the output file of TOOL. OVER, unless NULL, is called to
  * override values of the text. ANEW: bakes the text even if it is cached.
- * LEFT, unless NULL: as in tool_take_work(), 8 for each number of a row that
- * is baked.
- * ERROR: the reason of a failure. */
+ * LEFT, unless NULL: as in tool_count_bake_work(), 8 for each number of a row
+ * that is baked. ERROR: the reason of a failure. */
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,
                 void (*over)(void *ctx, struct glint_stone_text *), void *ctx,

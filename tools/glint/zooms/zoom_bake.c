@@ -203,7 +203,7 @@ static void record_error(struct run *run, const struct zoom_error *left,
         fprintf(stderr,
                 "glint bake: at %.2f mm %d ghost%s more to bake, %.0f s\n",
                 glint_real_value(run->zoom.header.focal_mm), n_added,
-                n_added == 1 ? "" : "s", tool_seconds() - run->start);
+                n_added == 1 ? "" : "s", tool_clock_s() - run->start);
 }
 
 /* Marks the errors in the middle of the step from FROM to TO as wanted,
@@ -288,7 +288,7 @@ static enum glint_status bake_even(struct run *run)
         status = bake_place(run, k * run->step, true);
         if (status == GLINT_OK && !run->tool->quiet)
             fprintf(stderr, "glint bake: position %d of %d, %.0f s\n", k + 1,
-                    positions, tool_seconds() - run->start);
+                    positions, tool_clock_s() - run->start);
     }
     return status;
 }
@@ -340,7 +340,7 @@ enum glint_status zoom_bake_run(struct tool *tool, const struct zoom_bake *bake,
     run->bake = bake;
     run->baked = baked;
     run->error = error;
-    run->start = tool_seconds();
+    run->start = tool_clock_s();
     run->step = LAST << (bake->halfway_db > 0 ? DEPTH : 0);
     while (n * run->step + 1 > PLACES)
         run->step /= 2;

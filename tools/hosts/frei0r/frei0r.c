@@ -84,7 +84,7 @@ static bool stop_at_first(void *ctx, const char *name)
  * cannot be reported to the host: its call for pictures returns nothing. */
 static bool has_lenses(void)
 {
-    if (lens_files_each(stop_at_first, NULL) > 0)
+    if (lens_files_visit_all(stop_at_first, NULL) > 0)
         return true;
     fprintf(stderr, "glint frei0r: no lenses: neither in GLINT_LENSES nor in "
                     "lenses/ or share/glint/lenses/ above the plug-in; install "

@@ -254,7 +254,7 @@ static obs_property_t *add_text(obs_properties_t *all,
                                            : OBS_COMBO_TYPE_LIST,
                                    OBS_COMBO_FORMAT_STRING);
     if (is_lens) {
-        lens_files_each(add_lens, list);
+        lens_files_visit_all(add_lens, list);
         return list;
     }
     obs_property_list_add_string(list, "none", "");

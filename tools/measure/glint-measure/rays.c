@@ -227,7 +227,7 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
     path.places_only = true;
     if (!glint_pupil_find_within(&box, &path, angle_deg,
                                  t->optics.stop_radius_mm,
-                                 model_real_of(t->header->field_mm), NULL))
+                                 model_compute_real(t->header->field_mm), NULL))
         return;
     path.places_only = false;
     find_parts(t, ghost, angle_deg, nm, &parts);
@@ -363,7 +363,7 @@ int row_rays(struct figure_row *row)
                          "the model is of another lens");
     }
     t->picture_mm =
-        fmin(model_real_of(h->field_mm),
+        fmin(model_compute_real(h->field_mm),
              0.5 * hypot(row->table.film_width_mm, row->table.film_height_mm));
     glint_optics_of(&row->table, &t->optics);
     set_angles(t, row->step_deg);

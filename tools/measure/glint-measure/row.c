@@ -95,23 +95,23 @@ static bool parse_own(struct figure_row *r, const char *name, const char *value)
 
     for (size_t i = 0; i < sizeof integers / sizeof *integers; i++)
         if (strcmp(name, integers[i].name) == 0)
-            return tool_integer(value, integers[i].low, integers[i].high,
-                                integers[i].to);
+            return tool_parse_integer(value, integers[i].low, integers[i].high,
+                                      integers[i].to);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         if (strcmp(name, numbers[i].name) == 0)
-            return tool_number(value, numbers[i].to);
+            return tool_parse_number(value, numbers[i].to);
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (strcmp(name, words[i].name) == 0) {
             *words[i].to = value;
             return true;
         }
     if (strcmp(name, "size") == 0)
-        return tool_size(value, &r->width, &r->height);
+        return tool_parse_size(value, &r->width, &r->height);
     if (strcmp(name, "nm") == 0)
-        return (r->n_nm = tool_numbers(value, r->nm, GLINT_MAX_WAVELENGTHS)) >
-               0;
+        return (r->n_nm = tool_parse_numbers(value, r->nm,
+                                             GLINT_MAX_WAVELENGTHS)) > 0;
     if (strcmp(name, "coating") == 0 &&
-        coating_take(r->tool, &r->settings.coating, value) != -1)
+        coating_parse_option(r->tool, &r->settings.coating, value) != -1)
         return false;
     return settings_set(&r->settings, name, value);
 }
@@ -226,10 +226,10 @@ static void write_model(struct figure_row *r)
                r->opened.setup.optics.focal_mm);
     if (!model->data)
         return;
-    sum = model_summary_of(&model->lens, model_span_of_all(&model->lens));
+    sum = model_summarise(&model->lens, model_full_span(&model->lens));
     json_write(&r->json, "model_kib: %.4f, mean_terms: %.4f, table_ghosts: %u",
-               (double)model->bytes / 1024, model_mean_terms(&sum),
-               model_ghost_count(&model->lens));
+               (double)model->bytes / 1024, model_compute_mean_terms(&sum),
+               model_count_ghosts(&model->lens));
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (strcmp(model_output_names[kind], "barrel_0") == 0)
             json_write(&r->json, "barrel_rms: %.6g", sqrt(sum.of[kind].mean2));
@@ -285,9 +285,10 @@ static enum glint_status draw_frame(struct figure_row *r, struct frame *f,
     const struct glint_image *to = &layer;
 
     if (is_linear(r))
-        return glint_engine_render(
-            f->engine, f->lamp, r->n_lights, settings_scale(&r->settings),
-            GLINT_ENGINE_ALL | GLINT_ENGINE_CORES, f->got.rgb, &f->report);
+        return glint_engine_render(f->engine, f->lamp, r->n_lights,
+                                   settings_brightness_scale(&r->settings),
+                                   GLINT_ENGINE_ALL | GLINT_ENGINE_CORES,
+                                   f->got.rgb, &f->report);
     if (is_on_canvas(r)) {
         canvas_fresh(&f->canvas);
         to = &f->canvas.image;
